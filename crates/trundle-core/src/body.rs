@@ -1,6 +1,6 @@
 //! The trait of a robot's body, and the sensor events that a body yields.
 
-use crate::{GyroRate, Pose2, RgbdImage, Scan, Stamp, Twist2, WheelTicks};
+use crate::{BodyEvent, GyroRate, Odometry, Pose2, RgbdImage, Scan, Stamp, Twist2, WheelTicks};
 use serde::{Deserialize, Serialize};
 
 /// State of the bumper: pressed by an obstacle, or free.
@@ -37,6 +37,10 @@ pub enum SensorEvent {
     Cliff(Cliff),
     /// A 2-D laser's sweep.
     Scan(Scan),
+    /// Odometry that the body computes itself, with its covariance. A body yields it in place of wheels and gyro.
+    Odometry(Odometry),
+    /// Power, wheel drop, buttons, links, silence.
+    Body(BodyEvent),
     /// Ground truth, `world_from_base`, for evaluation only; the robot must not use it.
     Truth {
         /// Time of the pose.
@@ -56,6 +60,8 @@ impl SensorEvent {
             Self::Touch(touch) => touch.stamp,
             Self::Cliff(cliff) => cliff.stamp,
             Self::Scan(scan) => scan.stamp(),
+            Self::Odometry(odometry) => odometry.stamp,
+            Self::Body(event) => event.stamp,
             Self::Truth { stamp, .. } => *stamp,
         }
     }
@@ -67,6 +73,8 @@ pub trait RobotBody {
     type Error: std::error::Error;
 
     /// The next sensor event; `None` at the end.
+    ///
+    /// A live body has no end. It waits no longer than a tenth of a second, then yields [`crate::BodyEventKind::Silence`].
     ///
     /// # Errors
     /// When a sensor or the connection to it failed for good.

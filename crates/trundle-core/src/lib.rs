@@ -6,6 +6,7 @@
 
 mod angle;
 mod body;
+mod body_event;
 mod camera;
 mod camera_motion;
 mod drive;
@@ -29,6 +30,9 @@ mod twist;
 
 pub use angle::{difference_of_angles, wrap_angle};
 pub use body::{Cliff, RobotBody, SensorEvent, Touch};
+pub use body_event::{
+    Battery, BodyEvent, BodyEventKind, Button, Device, DockBeams, DockInfrared, Link, PerWheel, PowerSource,
+};
 pub use camera::{Distortion, PinholeCamera};
 pub use camera_motion::CameraMotion;
 pub use drive::{DifferentialDrive, DriveLimits};

@@ -1,6 +1,6 @@
 //! The readings of wheel encoders and gyro, and the odometry computed from both.
 
-use crate::{Pose2, Stamp, Twist2};
+use crate::{Invalid, Pose2, Stamp, Twist2, require_finite};
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 
@@ -35,4 +35,33 @@ pub struct Odometry {
     pub twist: Twist2,
     /// Covariance of `pose` as a right perturbation (x m, y m, theta rad), grown since the start.
     pub covariance: Matrix3<f64>,
+}
+
+impl Odometry {
+    /// The odometry, each number of it finite and the variances not negative.
+    ///
+    /// # Errors
+    /// Names the number that is not.
+    pub fn checked(self) -> Result<Self, Invalid> {
+        let Self { pose, twist, covariance, .. } = &self;
+        for (name, value, unit) in [
+            ("odometry x", pose.x, "m"),
+            ("odometry y", pose.y, "m"),
+            ("odometry theta", pose.theta, "rad"),
+            ("odometry v", twist.v, "m/s"),
+            ("odometry omega", twist.omega, "rad/s"),
+        ] {
+            require_finite(name, value, unit)?;
+        }
+        for (row, name) in ["x", "y", "theta"].into_iter().enumerate() {
+            for value in covariance.row(row).iter() {
+                require_finite("odometry covariance", *value, "")?;
+            }
+            if covariance[(row, row)] < 0.0 {
+                let name = format!("odometry variance of {name}");
+                return Err(Invalid::new(name, covariance[(row, row)], "", "0 or above"));
+            }
+        }
+        Ok(self)
+    }
 }

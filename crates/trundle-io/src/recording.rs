@@ -27,6 +27,10 @@ mod topics {
     pub const GYRO: &str = "/gyro";
     pub const TOUCH: &str = "/touch";
     pub const CLIFF: &str = "/cliff";
+    /// Odometry that the body computes itself.
+    pub const ODOMETRY: &str = "/odometry";
+    /// Power, wheel drop, buttons, links, silence.
+    pub const BODY: &str = "/body";
     pub const SCAN: &str = "/scan";
     pub const TRUTH: &str = "/truth";
     pub const COLOR: &str = "/camera/color";

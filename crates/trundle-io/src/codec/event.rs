@@ -1,7 +1,9 @@
 //! Sensor events with compressed images, as they are sent and recorded.
 
 use super::{CodecError, JPEG_QUALITY, decode_color, decode_depth, encode_color, encode_depth};
-use trundle_core::{Cliff, GyroRate, Pose2, RgbdImage, Scan, SensorEvent, Stamp, Touch, WheelTicks};
+use trundle_core::{
+    BodyEvent, Cliff, GyroRate, Odometry, Pose2, RgbdImage, Scan, SensorEvent, Stamp, Touch, WheelTicks,
+};
 
 /// An RGB-D image as it travels: colour as JPEG, depth as 16-bit PNG in millimetres.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,6 +55,10 @@ pub enum EncodedEvent {
     Cliff(Cliff),
     /// A 2-D laser's sweep.
     Scan(Scan),
+    /// Odometry that the body computes itself.
+    Odometry(Odometry),
+    /// Power, wheel drop, buttons, links, silence.
+    Body(BodyEvent),
     /// Ground truth, `world_from_base`, for evaluation only.
     Truth {
         /// Time of the pose.
@@ -75,6 +81,8 @@ impl EncodedEvent {
             SensorEvent::Touch(touch) => Self::Touch(*touch),
             SensorEvent::Cliff(cliff) => Self::Cliff(*cliff),
             SensorEvent::Scan(scan) => Self::Scan(scan.clone()),
+            SensorEvent::Odometry(odometry) => Self::Odometry(*odometry),
+            SensorEvent::Body(event) => Self::Body(*event),
             SensorEvent::Truth { stamp, pose } => Self::Truth { stamp: *stamp, pose: *pose },
             other => return Err(CodecError::UnknownEvent { stamp: other.stamp() }),
         })
@@ -92,6 +100,8 @@ impl EncodedEvent {
             Self::Touch(touch) => SensorEvent::Touch(*touch),
             Self::Cliff(cliff) => SensorEvent::Cliff(*cliff),
             Self::Scan(scan) => SensorEvent::Scan(scan.clone()),
+            Self::Odometry(odometry) => SensorEvent::Odometry(*odometry),
+            Self::Body(event) => SensorEvent::Body(*event),
             Self::Truth { stamp, pose } => SensorEvent::Truth { stamp: *stamp, pose: *pose },
         })
     }
@@ -105,6 +115,8 @@ impl EncodedEvent {
             Self::Touch(touch) => touch.stamp,
             Self::Cliff(cliff) => cliff.stamp,
             Self::Scan(scan) => scan.stamp(),
+            Self::Odometry(odometry) => odometry.stamp,
+            Self::Body(event) => event.stamp,
             Self::Truth { stamp, .. } => *stamp,
         }
     }

@@ -1,4 +1,4 @@
-//! The JSON messages of a recording for wheels, gyro, bumper, cliff sensors, scans and images.
+//! The JSON messages of a recording for the events of a body.
 
 use super::poses::PoseInFrame;
 use super::ros_image::ImageBytes;
@@ -6,8 +6,12 @@ use super::time::Time;
 use crate::codec::{EncodedEvent, EncodedRgbd};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
-use trundle_core::{Beam, Cliff, GyroRate, Invalid, Scan, Touch, Vector2, WheelTicks};
+use trundle_core::{
+    Beam, BodyEvent, BodyEventKind, Cliff, GyroRate, Invalid, Odometry, Pose2, Scan, Touch, Twist2, Vector2,
+    WheelTicks,
+};
 
 #[derive(Serialize, Deserialize)]
 pub(super) struct WheelTicksMessage {
@@ -32,6 +36,26 @@ pub(super) struct TouchMessage {
 pub(super) struct CliffMessage {
     stamp: Time,
     over_edge: bool,
+}
+
+/// Odometry that the body computes itself.
+#[derive(Serialize, Deserialize)]
+pub(super) struct OdometryMessage {
+    stamp: Time,
+    x_m: f64,
+    y_m: f64,
+    theta_rad: f64,
+    v_m_s: f64,
+    omega_rad_s: f64,
+    /// Row by row: x, y, theta.
+    covariance: [[f64; 3]; 3],
+}
+
+/// An event of a body besides its motion and its images.
+#[derive(Serialize, Deserialize)]
+pub(super) struct BodyEventMessage {
+    stamp: Time,
+    event: BodyEventKind,
 }
 
 /// A 2-D laser's sweep: beam i points along `angle_min_rad + i * angle_increment_rad` from `origin_m`, base frame.
@@ -61,6 +85,8 @@ pub(super) enum EventMessages {
     Touch(TouchMessage),
     Cliff(CliffMessage),
     Scan(ScanMessage),
+    Odometry(OdometryMessage),
+    Body(BodyEventMessage),
     Truth(PoseInFrame),
 }
 
@@ -76,9 +102,27 @@ impl EventMessages {
             EncodedEvent::Touch(touch) => Self::Touch(TouchMessage { stamp, pressed: touch.pressed }),
             EncodedEvent::Cliff(cliff) => Self::Cliff(CliffMessage { stamp, over_edge: cliff.over_edge }),
             EncodedEvent::Scan(scan) => Self::Scan(ScanMessage::new(stamp, scan)),
+            EncodedEvent::Odometry(odometry) => Self::Odometry(OdometryMessage::new(stamp, odometry)),
+            EncodedEvent::Body(event) => Self::Body(BodyEventMessage { stamp, event: event.kind }),
             EncodedEvent::Truth { stamp, pose } => Self::Truth(PoseInFrame::planar(*stamp, "world", *pose)),
             EncodedEvent::Rgbd(_) => return None,
         })
+    }
+}
+
+impl OdometryMessage {
+    fn new(stamp: Time, odometry: &Odometry) -> Self {
+        let Odometry { pose, twist, covariance, .. } = odometry;
+        let row = |i| [covariance[(i, 0)], covariance[(i, 1)], covariance[(i, 2)]];
+        Self {
+            stamp,
+            x_m: pose.x,
+            y_m: pose.y,
+            theta_rad: pose.theta,
+            v_m_s: twist.v,
+            omega_rad_s: twist.omega,
+            covariance: [row(0), row(1), row(2)],
+        }
     }
 }
 
@@ -158,6 +202,27 @@ impl TryFrom<CliffMessage> for EncodedEvent {
 
     fn try_from(m: CliffMessage) -> Result<Self, Invalid> {
         Ok(Self::Cliff(Cliff { stamp: m.stamp.try_into()?, over_edge: m.over_edge }))
+    }
+}
+
+impl TryFrom<OdometryMessage> for EncodedEvent {
+    type Error = Invalid;
+
+    fn try_from(m: OdometryMessage) -> Result<Self, Invalid> {
+        Ok(Self::Odometry(Odometry {
+            stamp: m.stamp.try_into()?,
+            pose: Pose2 { x: m.x_m, y: m.y_m, theta: m.theta_rad },
+            twist: Twist2 { v: m.v_m_s, omega: m.omega_rad_s },
+            covariance: Matrix3::from_fn(|i, j| m.covariance[i][j]),
+        }))
+    }
+}
+
+impl TryFrom<BodyEventMessage> for EncodedEvent {
+    type Error = Invalid;
+
+    fn try_from(m: BodyEventMessage) -> Result<Self, Invalid> {
+        Ok(Self::Body(BodyEvent { stamp: m.stamp.try_into()?, kind: m.event }))
     }
 }
 

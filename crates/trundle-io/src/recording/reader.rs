@@ -1,7 +1,8 @@
 //! Reader of a recording, message by message.
 
 use super::messages::{
-    self, CliffMessage, GyroRateMessage, JsonImage, ScanMessage, TouchMessage, WheelTicksMessage,
+    self, BodyEventMessage, CliffMessage, GyroRateMessage, JsonImage, OdometryMessage, ScanMessage,
+    TouchMessage, WheelTicksMessage,
 };
 use super::poses::PoseInFrame;
 use super::ros_image::{self, ImageBytes};
@@ -103,6 +104,8 @@ impl RecordingReader {
             topics::TOUCH => sensor::<TouchMessage>(path, &raw)?,
             topics::CLIFF => sensor::<CliffMessage>(path, &raw)?,
             topics::SCAN => sensor::<ScanMessage>(path, &raw)?,
+            topics::ODOMETRY => sensor::<OdometryMessage>(path, &raw)?,
+            topics::BODY => sensor::<BodyEventMessage>(path, &raw)?,
             topics::TRUTH => sensor::<PoseInFrame>(path, &raw)?,
             topics::COLOR => return self.image(&raw),
             topics::DEPTH => {

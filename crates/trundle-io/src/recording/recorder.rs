@@ -79,6 +79,8 @@ impl<W: Write + Seek> Recorder<W> {
             EventMessages::Touch(m) => self.record_json(topics::TOUCH, "trundle.Touch", stamp, &m),
             EventMessages::Cliff(m) => self.record_json(topics::CLIFF, "trundle.Cliff", stamp, &m),
             EventMessages::Scan(m) => self.record_json(topics::SCAN, "trundle.Scan", stamp, &m),
+            EventMessages::Odometry(m) => self.record_json(topics::ODOMETRY, "trundle.Odometry", stamp, &m),
+            EventMessages::Body(m) => self.record_json(topics::BODY, "trundle.BodyEvent", stamp, &m),
             EventMessages::Truth(m) => self.record_json(topics::TRUTH, PoseInFrame::SCHEMA, stamp, &m),
         }
     }
@@ -164,6 +166,8 @@ fn check_finite(event: &EncodedEvent) -> Result<(), Invalid> {
         EncodedEvent::Truth { pose, .. } if !pose.is_finite() => {
             Err(Invalid::new("true pose", format!("{pose:?}"), "", "finite numbers"))
         }
+        EncodedEvent::Odometry(odometry) => odometry.checked().map(drop),
+        EncodedEvent::Body(event) => event.checked().map(drop),
         _ => Ok(()),
     }
 }

@@ -24,6 +24,18 @@ pub(super) fn json_schema(name: &str) -> String {
         "trundle.GyroRate" => fields(&[STAMP, ("omega_rad_s", NUMBER)]),
         "trundle.Touch" => fields(&[STAMP, ("pressed", r#"{"type":"boolean"}"#)]),
         "trundle.Cliff" => fields(&[STAMP, ("over_edge", r#"{"type":"boolean"}"#)]),
+        "trundle.Odometry" => fields(&[
+            STAMP,
+            ("x_m", NUMBER),
+            ("y_m", NUMBER),
+            ("theta_rad", NUMBER),
+            ("v_m_s", NUMBER),
+            ("omega_rad_s", NUMBER),
+            ("covariance", r#"{"type":"array","items":{"type":"array","items":{"type":"number"}}}"#),
+        ]),
+        "trundle.BodyEvent" => {
+            fields(&[STAMP, ("event", r#"{"oneOf":[{"type":"string"},{"type":"object"}]}"#)])
+        }
         "trundle.Scan" => fields(&[
             STAMP,
             ("origin_m", NUMBERS),
@@ -74,6 +86,8 @@ mod tests {
             "trundle.GyroRate",
             "trundle.Touch",
             "trundle.Cliff",
+            "trundle.Odometry",
+            "trundle.BodyEvent",
             "trundle.Scan",
             "trundle.Twist",
             "trundle.Goal",

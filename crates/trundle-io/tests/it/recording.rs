@@ -21,8 +21,26 @@ fn events() -> Vec<EncodedEvent> {
         EncodedEvent::Touch(Touch { stamp: stamp(40), pressed: true }),
         EncodedEvent::Cliff(Cliff { stamp: stamp(41), over_edge: true }),
         EncodedEvent::Scan(scan(stamp(45))),
+        EncodedEvent::Odometry(odometry(stamp(46))),
+        EncodedEvent::Body(BodyEvent { stamp: stamp(47), kind: BodyEventKind::Silence }),
+        EncodedEvent::Body(BodyEvent { stamp: stamp(48), kind: battery() }),
         EncodedEvent::Truth { stamp: stamp(50), pose: Pose2 { x: 1.0 / 3.0, y: -0.0, theta: -2.0 / 3.0 } },
     ]
+}
+
+fn odometry(stamp: Stamp) -> Odometry {
+    let (pose, twist) = (Pose2 { x: 0.1, y: -0.0, theta: 1.0 / 3.0 }, Twist2::new(0.3, -0.7));
+    Odometry {
+        stamp,
+        pose,
+        twist,
+        covariance: nalgebra::Matrix3::from_fn(|i, j| 0.1 / (1 + i + 3 * j) as f64),
+    }
+}
+
+fn battery() -> BodyEventKind {
+    let source = PowerSource::ChargingStation;
+    BodyEventKind::Battery(Battery { voltage_v: 15.7, charge: Some(1.0 / 3.0), source, is_charging: true })
 }
 
 fn scan(stamp: Stamp) -> Scan {

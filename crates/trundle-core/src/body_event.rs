@@ -1,0 +1,160 @@
+//! Events of a body besides its motion and its images: wheel drop, power, docking light, buttons, links.
+
+use crate::{Invalid, Stamp, require_finite, require_in};
+use serde::{Deserialize, Serialize};
+
+/// An event of a body besides its motion and its images.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct BodyEvent {
+    /// When it happened.
+    pub stamp: Stamp,
+    /// What happened.
+    pub kind: BodyEventKind,
+}
+
+impl BodyEvent {
+    /// The event, its numbers finite and in range.
+    ///
+    /// # Errors
+    /// Names the number that is not.
+    pub fn checked(self) -> Result<Self, Invalid> {
+        if let BodyEventKind::Battery(battery) = self.kind {
+            require_finite("battery voltage", battery.voltage_v, "V")?;
+            battery.charge.map(|charge| require_in("battery charge", charge, "", 0.0, 1.0)).transpose()?;
+        }
+        Ok(self)
+    }
+}
+
+/// Kind of a [`BodyEvent`].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum BodyEventKind {
+    /// A wheel left the floor or came back to it. The base must not drive while a wheel hangs.
+    WheelDrop(PerWheel),
+    /// A wheel motor draws too much current, or no longer does.
+    OverCurrent(PerWheel),
+    /// Voltage and charger.
+    Battery(Battery),
+    /// The light of a charging station, as three receivers at the front of the base see it.
+    DockInfrared(DockInfrared),
+    /// A button went down or up.
+    Button(Button),
+    /// A device of the body was lost, or found again.
+    Link(Link),
+    /// No event came from the body since the last one. A live body yields it in place of a longer silence, so that the time of the robot
+    /// goes on.
+    Silence,
+}
+
+/// A state of each wheel.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct PerWheel {
+    /// Whether it holds of the left wheel.
+    pub left: bool,
+    /// Whether it holds of the right wheel.
+    pub right: bool,
+}
+
+impl PerWheel {
+    /// Whether it holds of either wheel.
+    #[must_use]
+    pub fn any(&self) -> bool {
+        self.left || self.right
+    }
+}
+
+/// State of the battery.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Battery {
+    /// Voltage \[V\].
+    pub voltage_v: f64,
+    /// Charge, 0 (empty) to 1 (full); `None` where the body cannot tell it.
+    pub charge: Option<f64>,
+    /// Source of the power.
+    pub source: PowerSource,
+    /// Whether the battery is being charged.
+    pub is_charging: bool,
+}
+
+/// Source of a body's power.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PowerSource {
+    /// The battery alone.
+    #[default]
+    Battery,
+    /// The contacts of a charging station.
+    ChargingStation,
+    /// A power supply plugged in by hand: the base must not drive.
+    Adapter,
+}
+
+/// The light of a charging station at three receivers.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DockInfrared {
+    /// Receiver at the left of the front.
+    pub left: DockBeams,
+    /// Receiver at the middle of the front.
+    pub center: DockBeams,
+    /// Receiver at the right of the front.
+    pub right: DockBeams,
+}
+
+/// Beams of a charging station that one receiver sees. Left and right are those of a robot that faces the station.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct DockBeams {
+    /// The left sector, near the station.
+    pub near_left: bool,
+    /// The middle sector, near the station.
+    pub near_center: bool,
+    /// The right sector, near the station.
+    pub near_right: bool,
+    /// The left sector, far from the station.
+    pub far_left: bool,
+    /// The middle sector, far from the station.
+    pub far_center: bool,
+    /// The right sector, far from the station.
+    pub far_right: bool,
+}
+
+/// State of a button.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Button {
+    /// Number of the button, from 0.
+    pub index: u8,
+    /// Whether it is pressed.
+    pub pressed: bool,
+}
+
+/// State of the connection to a device of the body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Link {
+    /// The device.
+    pub device: Device,
+    /// Whether it answers.
+    pub is_up: bool,
+}
+
+/// A device of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Device {
+    /// The base: wheels, gyro, bumper.
+    Base,
+    /// The RGB-D camera.
+    Camera,
+    /// The 2-D laser.
+    Laser,
+}
+
+impl std::fmt::Display for Device {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Base => "base",
+            Self::Camera => "camera",
+            Self::Laser => "laser",
+        })
+    }
+}

@@ -1,0 +1,1 @@
+//! Device clocks mapped to one clock, and events put in order.

@@ -1,0 +1,1 @@
+//! The Kobuki base: its serial protocol, driver and emulator.
