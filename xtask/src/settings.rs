@@ -352,8 +352,7 @@ fn page(settings: &[Setting]) -> String {
     let mut text = String::from(
         "# Settings\n\nEvery key of `robot.toml`, by table. Written by `cargo xtask settings` from the doc comments of the configuration structs.\n\
          `trundle config` prints the same with the values.\n\n\
-         A key is the name of a field and its unit: `safety.image_timeout_s` is `SafetyConfig::image_timeout`.\n\
-         The table `[supervisor]` is `MissionExecutorConfig`.\n",
+         A key is the name of a field and its unit: `safety.image_timeout_s` is `SafetyConfig::image_timeout`.\n",
     );
     let mut table = None;
     for Setting { path, unit, kind, doc } in settings {

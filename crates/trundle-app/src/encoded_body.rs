@@ -34,7 +34,7 @@ pub trait EncodedBody {
     fn start_job(&mut self, job: Job);
 
     /// The result of a job that is running at the end of a run; `None` without one.
-    fn finish_job(&mut self, helper: Worker) -> Option<Answer>;
+    fn finish_job(&mut self, worker: Worker) -> Option<Answer>;
 
     /// Separate contacts so far, in truth; `None` where only the bumper reports contacts.
     fn true_contacts(&self) -> Option<u32>;

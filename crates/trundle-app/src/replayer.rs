@@ -72,9 +72,9 @@ impl RunReplayer {
     }
 
     /// The result of the worker's job, which runs now.
-    fn run_job(&mut self, helper: Worker) -> Result<Option<RunInput>, AppError> {
-        let answer = self.finish_job(helper).ok_or_else(|| {
-            AppError::Input(format!("message on {}: {helper:?} has nothing to do here", RunMark::TOPIC))
+    fn run_job(&mut self, worker: Worker) -> Result<Option<RunInput>, AppError> {
+        let answer = self.finish_job(worker).ok_or_else(|| {
+            AppError::Input(format!("message on {}: {worker:?} has nothing to do here", RunMark::TOPIC))
         })?;
         Ok(Some(RunInput::Answer(answer)))
     }
@@ -90,7 +90,7 @@ impl RunReplayer {
                 Some(RecordedMessage::Json { schema, value, .. }) if schema == RunMark::SCHEMA => {
                     match Self::read_mark(value)? {
                         RunMark::Contacts(count) => self.contacts = Some(count),
-                        RunMark::Applied(helper) => return self.run_job(helper),
+                        RunMark::Applied(worker) => return self.run_job(worker),
                         RunMark::Interrupted => return Ok(Some(RunInput::Interrupted)),
                         RunMark::End => return Ok(None),
                     }
@@ -116,8 +116,8 @@ impl EncodedBody for RunReplayer {
         self.jobs.insert(job.worker(), job);
     }
 
-    fn finish_job(&mut self, helper: Worker) -> Option<Answer> {
-        self.jobs.remove(&helper).map(Job::run)
+    fn finish_job(&mut self, worker: Worker) -> Option<Answer> {
+        self.jobs.remove(&worker).map(Job::run)
     }
 
     fn true_contacts(&self) -> Option<u32> {

@@ -119,8 +119,8 @@ impl<'s> RunSession<'s> {
         if self.setup.real_time {
             self.record_mark(RunMark::End);
             self.robot.drop_queued_image();
-            for helper in Worker::ALL {
-                if let Some(answer) = body.finish_job(helper) {
+            for worker in Worker::ALL {
+                if let Some(answer) = body.finish_job(worker) {
                     let report = self.apply_answer(answer);
                     let stamp = self.log.now;
                     self.record(stamp, &report);

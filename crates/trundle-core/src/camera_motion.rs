@@ -93,9 +93,9 @@ mod tests {
         let turn = nalgebra::UnitQuaternion::from_euler_angles(-1.9, 0.1, -1.5);
         let base_from_camera = Pose3::new(turn, Vector3::new(0.3, -0.2, 0.6));
         let planar = Matrix3::new(4.0, 0.5, 0.1, 0.5, 1.0, 0.2, 0.1, 0.2, 9.0) * 1e-6;
-        let told = CameraMotion::of_base((Pose2::new(0.2, 0.0, 0.1), planar), base_from_camera);
+        let given = CameraMotion::of_base((Pose2::new(0.2, 0.0, 0.1), planar), base_from_camera);
         let to_base = base_from_camera.adjoint();
-        let back = to_base * told.covariance.unwrap() * to_base.transpose();
+        let back = to_base * given.covariance.unwrap() * to_base.transpose();
         let back = Matrix3::from_fn(|i, j| back[(IN_PLANE[i], IN_PLANE[j])]);
         assert!((back - planar).norm() < 1e-15);
     }

@@ -43,6 +43,7 @@ mod sequence_camera;
 mod stamp_text;
 mod stamp_unit;
 mod summary;
+mod toml_text;
 mod tum;
 mod warnings;
 mod yaml_document;

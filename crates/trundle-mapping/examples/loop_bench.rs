@@ -25,7 +25,7 @@ fn main() {
             for (odom, scan) in drive.odom.iter().zip(&drive.scans) {
                 if let ScanUpdate::Processed(done) = mapper.update(*odom, scan) {
                     slips += usize::from(done.slipped);
-                    bends += usize::from(done.bent.is_some());
+                    bends += usize::from(done.loop_correction_m.is_some());
                 }
                 stamps.push((scan.stamp(), *odom));
             }

@@ -59,7 +59,7 @@ pub struct RobotConfig {
     /// Safety.
     pub safety: SafetyConfig,
     /// Missions, exploration, patience.
-    pub supervisor: MissionExecutorConfig,
+    pub mission_executor: MissionExecutorConfig,
 }
 
 /// Corners as a list, or as the text that Nav2's costmaps take.
@@ -102,7 +102,7 @@ impl Default for RobotConfig {
             control: FollowerConfig::default(),
             docking: GoalApproachConfig::default(),
             safety: SafetyConfig::default(),
-            supervisor: MissionExecutorConfig::default(),
+            mission_executor: MissionExecutorConfig::default(),
         }
     }
 }

@@ -9,16 +9,16 @@
 //! ```no_run
 //! use std::time::Duration;
 //! use trundle_core::{SensorEvent, Twist2};
-//! use trundle_runtime::real_time::{WorkerThreads, Inbox, Input, ThreadPlacement, Post, LoopTimer, LoopTimerConfig};
+//! use trundle_runtime::real_time::{WorkerThreads, Inbox, Input, ThreadPlacement, InboxItem, LoopTimer, LoopTimerConfig};
 //! use trundle_runtime::{LazyImage, Robot, RobotConfig};
 //!
 //! # fn drive(base: impl Fn(Twist2)) -> Result<(), Box<dyn std::error::Error>> {
 //! let mut robot = Robot::new(RobotConfig::default())?.with_background_jobs();
 //! let mut inbox: Inbox<SensorEvent> = Inbox::new(1024);
-//! let door = inbox.door(); // for the driver's threads: door.put(Post::Urgent(wheels)), door.put(Post::Patient(image))
-//! let answers = inbox.door();
-//! let helpers = ThreadPlacement { core: Some(1), nice: 5, is_first: false };
-//! let crew = WorkerThreads::start(helpers, move |answer| _ = answers.hand_in(Post::Answer(answer)))?;
+//! let sender = inbox.sender(); // for the driver's threads: sender.put(InboxItem::Urgent(wheels)), sender.put(InboxItem::Deferred(image))
+//! let answers = inbox.sender();
+//! let workers = ThreadPlacement { core: Some(1), nice: 5, is_first: false };
+//! let worker_threads = WorkerThreads::start(workers, move |answer| _ = answers.send_waiting(InboxItem::Answer(answer)))?;
 //! ThreadPlacement { core: Some(1), nice: 0, is_first: true }.take();
 //! let mut pulse = LoopTimer::new(LoopTimerConfig::default());
 //! while let Some(input) = inbox.next(&pulse, Duration::from_millis(200)) {
@@ -38,11 +38,11 @@
 //!         pulse.end(arrival);
 //!     }
 //!     while let Some(job) = robot.next_job() {
-//!         crew.give(job);
+//!         worker_threads.give(job);
 //!     }
 //! }
 //! base(Twist2::ZERO); // nothing came for 0.2 s
-//! # drop(door);
+//! # drop(sender);
 //! # Ok(()) }
 //! ```
 
@@ -51,7 +51,7 @@ mod loop_timer;
 mod thread_placement;
 mod worker_threads;
 
-pub use inbox::{Inbox, InboxSender, Input, Post};
+pub use inbox::{Inbox, InboxItem, InboxSender, Input};
 pub use loop_timer::{LoopTimer, LoopTimerConfig, LoopTimerReport};
 pub use thread_placement::{ThreadPlacement, thread_time};
 pub use worker_threads::{WorkerCost, WorkerThreads};

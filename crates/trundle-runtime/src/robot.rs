@@ -62,7 +62,7 @@ pub struct Robot {
     /// None while a perception job runs.
     perception: Option<Box<PerceptionWorker>>,
     matcher: ScanMatcher,
-    traffic: MovingObstacleTracker,
+    obstacle_tracker: MovingObstacleTracker,
     localizer: Localizer,
     mapper: LiveMapper,
     scan_poses: ScanPoseLog,
@@ -86,7 +86,7 @@ struct Latest {
     scan_odometry: Option<Pose2>,
     camera_health: CameraHealth,
     /// Start of the time in which images show enough and are not located.
-    unplaced: Option<Stamp>,
+    unlocated: Option<Stamp>,
     /// Stamp of the newest image that was located.
     located: Option<Stamp>,
     scan_map_consistency: ScanMapConsistency,
@@ -136,13 +136,13 @@ impl Robot {
         Ok(Self {
             range_source: config.sight,
             base_from_camera,
-            lost_sigma: config.supervisor.lost_sigma,
+            lost_sigma: config.mission_executor.lost_sigma,
             inscribed_radius: inscribed_radius(&footprint),
             bumper: bumper::ahead_of(&footprint),
             odometry: WheelOdometry::new(config.drive, config.odometry.clone())?,
             perception: Some(Box::new(perception)),
             matcher: ScanMatcher::new(config.scan_match.clone())?,
-            traffic: MovingObstacleTracker::new(config.movers)?,
+            obstacle_tracker: MovingObstacleTracker::new(config.movers)?,
             localizer: Localizer::new(config.localization.clone(), base_from_camera)?,
             map_due: Ticker::new(config.schedule.validated()?.map_hz),
             mapper,
@@ -217,14 +217,14 @@ impl Robot {
         let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
         self.times.measure(Stage::Localization, || self.localizer.predict(&odometry));
         self.latest.odometry = Some(odometry);
-        self.latest.forecast_movers(&self.traffic, wheels.stamp);
-        let surroundings = WorldState {
+        self.latest.forecast_movers(&self.obstacle_tracker, wheels.stamp);
+        let world = WorldState {
             now: wheels.stamp,
             estimate: self.localizer.estimate(),
             grid: self.mapper.grid(),
             scan: self.latest.scan_with_odometry(),
             seen: self.latest.camera_health.seen(),
-            unplaced: self.latest.unplaced.map_or(0.0, |since| wheels.stamp - since),
+            unlocated: self.latest.unlocated.map_or(0.0, |since| wheels.stamp - since),
             motion: self.motion_sense(wheels.stamp),
             dynamic_obstacles: DynamicObstacles {
                 movers: &self.latest.movers,
@@ -233,8 +233,8 @@ impl Robot {
             },
         };
         match self.decision_worker.take() {
-            Some(mut decision_worker) if !self.background.is_for(&decision_worker, &surroundings) => {
-                let decision = decision_worker.step(&surroundings, &mut self.times);
+            Some(mut decision_worker) if !self.background.is_for(&decision_worker, &world) => {
+                let decision = decision_worker.step(&world, &mut self.times);
                 self.decision_worker = Some(decision_worker);
                 report.twist = Some(decision.twist);
                 report.replanned = decision.replanned;
@@ -242,8 +242,7 @@ impl Robot {
             decision_worker => {
                 let times = &mut self.times;
                 let background = &mut self.background;
-                report.twist =
-                    times.measure(Stage::Control, || background.steer(decision_worker, &surroundings));
+                report.twist = times.measure(Stage::Control, || background.steer(decision_worker, &world));
             }
         }
         report.twist.into_iter().for_each(|twist| self.odometry.set_command(twist));
@@ -294,9 +293,17 @@ impl Robot {
 
     /// Applies the result of an image: the visual pose corrects the estimate; at the grid's rate the scan does too, and enters the grid.
     fn apply_perception(&mut self, result: PerceptionResult, report: &mut StepReport) {
-        let PerceptionResult { odom_from_base, track, scan, place, unplaced, is_carried_away, bent, saved } =
-            result;
-        self.latest.unplaced = unplaced;
+        let PerceptionResult {
+            odom_from_base,
+            track,
+            scan,
+            place,
+            unlocated,
+            is_carried_away,
+            corrected_trajectory,
+            visual_snapshot,
+        } = result;
+        self.latest.unlocated = unlocated;
         if track.tracking.is_located() {
             self.latest.located = self.latest.located.max(Some(track.stamp));
         }
@@ -305,14 +312,15 @@ impl Robot {
         }
         let (times, localizer) = (&mut self.times, &mut self.localizer);
         let before = localizer.estimate().pose;
-        let correction =
-            times.measure(Stage::Localization, || correct_by_visual_pose(localizer, &track, bent.is_some()));
+        let correction = times.measure(Stage::Localization, || {
+            correct_by_visual_pose(localizer, &track, corrected_trajectory.is_some())
+        });
         event_log::correction(track.stamp, "the visual pose", before, self.localizer.estimate().pose);
         if correction == Some(Correction::Reanchored) {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
             self.scan_poses = ScanPoseLog::default();
         }
-        let goes_on = track.tracking == Tracking::Ok && bent.is_none() && !track.relocalised;
+        let goes_on = track.tracking == Tracking::Ok && corrected_trajectory.is_none() && !track.relocalised;
         let goes_on = goes_on && matches!(correction, Some(Correction::Applied { .. }));
         let base = track.visual_from_camera * self.base_from_camera.inverse();
         if goes_on {
@@ -320,7 +328,7 @@ impl Robot {
         } else {
             self.odometry.break_visual_track(track.stamp);
         }
-        if let Some(trajectory) = bent {
+        if let Some(trajectory) = corrected_trajectory {
             self.redraw_from_visual_map(&trajectory);
         }
         self.apply_global_localization(place);
@@ -340,8 +348,8 @@ impl Robot {
         }
         // A grid that has not yet followed the visual map does not fit it.
         let fits = self.is_pose_known(track.stamp) && !self.mapper.is_redrawing();
-        let saved = saved.filter(|_| fits);
-        report.checkpoint = saved.map(|visual| Arc::new(self.checkpoint_with(visual)));
+        let visual_snapshot = visual_snapshot.filter(|_| fits);
+        report.checkpoint = visual_snapshot.map(|visual| Arc::new(self.checkpoint_with(visual)));
         report.track = Some(track);
     }
 
@@ -353,7 +361,7 @@ impl Robot {
 
     /// Drops the dynamic obstacles: after a jump of the pose static things seem to move.
     fn clear_dynamic_obstacles(&mut self) {
-        self.traffic.clear();
+        self.obstacle_tracker.clear();
         self.latest.unconfirmed.clear();
         self.latest.clear_movers();
     }
@@ -381,23 +389,25 @@ impl Robot {
         if !self.is_pose_known(now) {
             // Hits of unconfirmed obstacles are in the map frame; they expire.
             let here = self.localizer.estimate().pose.position();
-            self.latest.unconfirmed = self.traffic.unconfirmed_hits(now, here, NEARBY_OBSTACLE_M);
+            self.latest.unconfirmed = self.obstacle_tracker.unconfirmed_hits(now, here, NEARBY_OBSTACLE_M);
             return self.latest.clear_movers();
         }
         let Ok(pose) = self.localizer.pose_at(now) else { return };
-        let (times, traffic, latest) = (&mut self.times, &mut self.traffic, &mut self.latest);
+        let (times, obstacle_tracker, latest) =
+            (&mut self.times, &mut self.obstacle_tracker, &mut self.latest);
         times.measure(Stage::DynamicObstacles, || {
-            traffic.add_scan(pose, scan);
-            latest.movers = traffic.moving_obstacles(now);
-            latest.unconfirmed = traffic.unconfirmed_hits(now, pose.position(), NEARBY_OBSTACLE_M);
-            latest.static_grid = (!latest.movers.is_empty()).then(|| traffic.static_grid(self.mapper.grid()));
+            obstacle_tracker.add_scan(pose, scan);
+            latest.movers = obstacle_tracker.moving_obstacles(now);
+            latest.unconfirmed = obstacle_tracker.unconfirmed_hits(now, pose.position(), NEARBY_OBSTACLE_M);
+            latest.static_grid =
+                (!latest.movers.is_empty()).then(|| obstacle_tracker.static_grid(self.mapper.grid()));
         });
     }
 
     /// Whether the pose is known well enough for scans to enter the grid.
     fn is_pose_known(&self, now: Stamp) -> bool {
-        let is_unplaced = self.latest.unplaced.is_some_and(|since| now - since > UNLOCATED_WITH_FEATURES_S);
-        !is_unplaced && position_sigma(&self.localizer.estimate()) < self.lost_sigma
+        let is_unlocated = self.latest.unlocated.is_some_and(|since| now - since > UNLOCATED_WITH_FEATURES_S);
+        !is_unlocated && position_sigma(&self.localizer.estimate()) < self.lost_sigma
     }
 
     /// Corrects the estimate by where the scan fits the map.
@@ -433,10 +443,10 @@ impl Robot {
         let mut scan_poses = std::mem::take(&mut self.scan_poses);
         let moved = scan_poses.follow(trajectory, |pose| self.visual_base(pose));
         self.scan_poses = scan_poses;
-        let bent = self.times.measure(Stage::Mapping, || {
+        let redrawn = self.times.measure(Stage::Mapping, || {
             self.mapper.correct(|stamp, pose| moved.get(&stamp).map_or(pose, |moved| *moved * pose))
         });
-        if bent > 0 {
+        if redrawn > 0 {
             self.redrawn_within = REDRAW_COMMANDS;
             // A search in the old grid is void; it begins again in the new one.
             self.perception.iter_mut().for_each(|perception| perception.global_localization.end());
@@ -516,11 +526,11 @@ impl Robot {
 
 impl Latest {
     /// Forecasts the dynamic obstacles to `now`; without recent scans they are dropped.
-    fn forecast_movers(&mut self, traffic: &MovingObstacleTracker, now: Stamp) {
+    fn forecast_movers(&mut self, obstacle_tracker: &MovingObstacleTracker, now: Stamp) {
         if self.movers.is_empty() {
             return;
         }
-        self.movers = traffic.moving_obstacles(now);
+        self.movers = obstacle_tracker.moving_obstacles(now);
         if self.movers.is_empty()
             || self.scan.as_ref().is_none_or(|scan| now - scan.stamp() > MAX_TRACK_AGE_S)
         {
@@ -559,7 +569,7 @@ fn inscribed_radius(footprint: &Footprint) -> f64 {
 fn correct_by_visual_pose(
     localizer: &mut Localizer,
     track: &TrackReport,
-    is_bent: bool,
+    is_corrected: bool,
 ) -> Option<Correction> {
     let quality = match track.tracking {
         Tracking::Ok => VisualQuality::Ok,
@@ -572,6 +582,6 @@ fn correct_by_visual_pose(
         covariance: track.covariance,
         quality,
         map: track.map.number(),
-        recognised: track.relocalised || is_bent,
+        recognised: track.relocalised || is_corrected,
     }))
 }

@@ -70,7 +70,7 @@ impl Stage {
             Self::Search => "search",
             Self::Localization => "localization",
             Self::Mapping => "mapping",
-            Self::DynamicObstacles => "traffic",
+            Self::DynamicObstacles => "dynamic_obstacles",
             Self::Supervision => "supervision",
             Self::Planning => "planning",
             Self::Control => "control",

@@ -15,7 +15,7 @@ pub(crate) struct WorldState<'a> {
     /// Stamp of the newest scan with content.
     pub(crate) seen: Option<Stamp>,
     /// For how long images that show enough have not been located, s.
-    pub(crate) unplaced: f64,
+    pub(crate) unlocated: f64,
     /// The source that measures the robot's motion.
     pub(crate) motion: MotionSense,
     pub(crate) dynamic_obstacles: DynamicObstacles<'a>,
@@ -47,7 +47,7 @@ pub(crate) struct OwnedWorldState {
     /// With `odom_from_base` when it was taken, and now.
     scan: Option<(Scan, Pose2, Pose2)>,
     seen: Option<Stamp>,
-    unplaced: f64,
+    unlocated: f64,
     motion: MotionSense,
     movers: Vec<MovingObstacle>,
     unconfirmed: Vec<Vector2>,
@@ -62,7 +62,7 @@ impl From<&WorldState<'_>> for OwnedWorldState {
             grid: s.grid.clone(),
             scan: s.scan.map(|seen| (seen.scan.clone(), seen.odom_at_scan, seen.odom_now)),
             seen: s.seen,
-            unplaced: s.unplaced,
+            unlocated: s.unlocated,
             motion: s.motion,
             movers: s.dynamic_obstacles.movers.to_vec(),
             unconfirmed: s.dynamic_obstacles.unconfirmed.to_vec(),
@@ -88,7 +88,7 @@ impl OwnedWorldState {
                 odom_now: *odom_now,
             }),
             seen: self.seen,
-            unplaced: self.unplaced,
+            unlocated: self.unlocated,
             motion: self.motion,
             dynamic_obstacles: DynamicObstacles {
                 movers: &self.movers,
@@ -127,7 +127,7 @@ mod tests {
                 odom_now: Pose2::new(0.2, 0.0, 0.0),
             }),
             seen: Some(Stamp::from_nanos(4)),
-            unplaced: 0.4,
+            unlocated: 0.4,
             motion: MotionSense::Sight,
             dynamic_obstacles: DynamicObstacles {
                 movers: &[],
@@ -139,8 +139,8 @@ mod tests {
         let copy = owned.as_world_state();
         assert_eq!((copy.now, copy.estimate, copy.grid), (original.now, original.estimate, original.grid));
         assert_eq!(
-            (copy.seen, copy.unplaced, copy.motion),
-            (original.seen, original.unplaced, original.motion)
+            (copy.seen, copy.unlocated, copy.motion),
+            (original.seen, original.unlocated, original.motion)
         );
         let (carried, kept) = (copy.scan.unwrap(), original.scan.unwrap());
         assert_eq!(carried.scan, kept.scan);

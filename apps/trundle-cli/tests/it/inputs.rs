@@ -81,7 +81,7 @@ fn the_lines_of_a_log_are_chosen_by_name_and_named_in_the_summary() {
     let (numbers, table) = run(&[]);
     assert_eq!((&numbers["scan_topic"], &numbers["odometry_topic"]), (&"RAWLASER3".into(), &"ODOM".into()));
     assert_eq!(numbers["topics_left"], serde_json::json!({ "RAWLASER1": 5 }));
-    assert!(table.contains("topics left alone") && table.contains("RAWLASER1 (5)"), "{table}");
+    assert!(table.contains("unused topics") && table.contains("RAWLASER1 (5)"), "{table}");
     assert_eq!(run(&["--scan-topic=RAWLASER1"]).0["scan_topic"], "RAWLASER1");
     let sentence = refusal(&["map", text(&log), "--scan-topic=/scan"]);
     assert!(

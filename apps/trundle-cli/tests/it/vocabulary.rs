@@ -31,9 +31,9 @@ fn a_trained_vocabulary_is_the_same_on_any_number_of_threads_and_survives_exchan
     assert!(fs::read_to_string(&exported).unwrap().starts_with("6 3 0 0\n0 0 "));
     ran(&["vocabulary", "import", text(&exported), "--out", text(&imported)]);
     assert!(bytes == fs::read(&imported).unwrap(), "exchange changed the bytes");
-    let told =
+    let output =
         ran(&["vocabulary", "recall", "--vocabulary", text(&one), "--scene", "room", "--views", "4", "-q"]);
-    assert!(told.contains("room 1") && told.contains(" %"), "{told}");
+    assert!(output.contains("room 1") && output.contains(" %"), "{output}");
 }
 
 #[test]
@@ -54,9 +54,10 @@ fn descriptors_of_another_program_can_be_trained_on() {
 
 #[test]
 fn the_programs_own_vocabulary_is_the_default() {
-    let told = ran(&["vocabulary", "info"]);
-    let bytes: usize = told.split_once("size").unwrap().1.split_whitespace().next().unwrap().parse().unwrap();
-    assert!((100_000..=12_000_000).contains(&bytes), "{told}");
+    let output = ran(&["vocabulary", "info"]);
+    let bytes: usize =
+        output.split_once("size").unwrap().1.split_whitespace().next().unwrap().parse().unwrap();
+    assert!((100_000..=12_000_000).contains(&bytes), "{output}");
 }
 
 #[test]

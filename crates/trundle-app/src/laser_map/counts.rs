@@ -58,6 +58,6 @@ impl ScanCounts {
         self.resamplings += usize::from(done.resampled);
         self.without_overlap += usize::from(done.degenerate == 3);
         self.degenerate += usize::from(done.degenerate > 0);
-        self.corrections += usize::from(done.bent.is_some());
+        self.corrections += usize::from(done.loop_correction_m.is_some());
     }
 }

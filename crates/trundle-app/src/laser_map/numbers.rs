@@ -49,7 +49,7 @@ pub fn map_rows(log: &LaserLog, run: &LaserMapRun) -> Vec<Vec<String>> {
         row("ranges that cannot be", log.bad_ranges.to_string()),
         row("processed", counts.processed.to_string()),
         row("odometry jumps", counts.jumps.to_string()),
-        row("steps where the odometry was not believed", counts.slips.to_string()),
+        row("odometry steps rejected", counts.slips.to_string()),
         row("scans without overlap with the map", counts.without_overlap.to_string()),
         row("scans with a direction left to the odometry", counts.degenerate.to_string()),
         row("scans while the pose was not known", counts.lost.to_string()),
@@ -67,7 +67,7 @@ fn source_rows(sources: &LaserLogSources) -> Vec<Vec<String>> {
     let rows = [
         ("scans are from", sources.scans.clone()),
         ("odometry is from", sources.odometry.clone()),
-        ("topics left alone", left.join(", ")),
+        ("unused topics", left.join(", ")),
     ];
     let rows = rows.into_iter().filter(|(_, value)| !value.is_empty());
     rows.map(|(name, value)| vec![name.to_owned(), value]).collect()
@@ -102,7 +102,7 @@ pub fn summary(request: &LaserMapRequest, input: &LogInput, run: &LaserMapRun) -
         .set("degenerate_scans", counts.degenerate)
         .set("lost_scans", counts.lost)
         .set("resamplings", counts.resamplings)
-        .set("bending_loops", counts.corrections)
+        .set("loop_corrections", counts.corrections)
         .set("memory_mb", run.megabytes)
         .set("wall_clock", serde_json::json!({ "total_s": run.seconds, "processed_scan_ms": run.scan_ms() }))
         .set_interrupted(run.is_interrupted);

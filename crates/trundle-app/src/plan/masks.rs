@@ -61,7 +61,10 @@ pub fn read_lanes(path: &Path) -> Result<WaypointGraph, AppError> {
     if !file.left.is_empty() {
         let kinds: Vec<String> = file.left.iter().map(|(kind, count)| format!("{kind} ({count})")).collect();
         let (count, kinds) = (file.left.values().sum::<usize>(), kinds.join(", "));
-        tracing::warn!("{}: {count} features are no nodes or lanes and left alone: {kinds}", path.display());
+        tracing::warn!(
+            "{}: {count} features are not nodes or lanes and are not used: {kinds}",
+            path.display()
+        );
     }
     WaypointGraph::one_way(file.nodes, file.lanes)
         .map_err(|error| AppError::Input(format!("{}: {error}", path.display())))

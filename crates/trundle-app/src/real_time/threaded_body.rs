@@ -10,14 +10,14 @@ use std::time::{Duration, Instant};
 use trundle_core::Twist2;
 use trundle_io::EncodedEvent;
 use trundle_runtime::real_time::{
-    Inbox, InboxSender, Input as Got, LoopTimer, LoopTimerConfig, Post, ThreadPlacement, WorkerThreads,
+    Inbox, InboxItem, InboxSender, Input as Got, LoopTimer, LoopTimerConfig, ThreadPlacement, WorkerThreads,
 };
 use trundle_runtime::{Answer, Histogram, Job, Worker};
 
 /// A background body as the control thread receives it: events and answers come through the inbox, jobs go to the worker threads.
 pub struct ThreadedBody {
     inbox: Inbox<TimedEvent>,
-    crew: Option<WorkerThreads>,
+    worker_threads: Option<WorkerThreads>,
     loop_timer: LoopTimer,
     commands: Option<Sender<Twist2>>,
     /// Arrival of the newest reading of the wheels, until its command leaves.
@@ -37,15 +37,17 @@ const INBOX_CAPACITY: usize = 1024;
 const BODY_TIMEOUT: Duration = Duration::from_secs(5);
 
 impl ThreadedBody {
-    /// Starts the worker threads at `helpers`.
-    pub fn start(config: LoopTimerConfig, helpers: ThreadPlacement) -> Result<Self, AppError> {
+    /// Starts the worker threads at `workers`.
+    pub fn start(config: LoopTimerConfig, workers: ThreadPlacement) -> Result<Self, AppError> {
         let inbox = Inbox::new(INBOX_CAPACITY);
-        let door: InboxSender<TimedEvent> = inbox.door();
-        let crew = WorkerThreads::start(helpers, move |answer| _ = door.hand_in(Post::Answer(answer)));
-        let crew = crew.map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))?;
+        let sender: InboxSender<TimedEvent> = inbox.sender();
+        let worker_threads =
+            WorkerThreads::start(workers, move |answer| _ = sender.send_waiting(InboxItem::Answer(answer)));
+        let worker_threads = worker_threads
+            .map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))?;
         Ok(Self {
             inbox,
-            crew: Some(crew),
+            worker_threads: Some(worker_threads),
             loop_timer: LoopTimer::new(config.validated()?),
             commands: None,
             reading: None,
@@ -58,7 +60,7 @@ impl ThreadedBody {
 
     /// Where the body's threads send events.
     pub fn event_sender(&self) -> InboxSender<TimedEvent> {
-        self.inbox.door()
+        self.inbox.sender()
     }
 
     /// Sends commands to `commands` from now on, and reads the contacts from `contacts`.
@@ -83,9 +85,9 @@ impl ThreadedBody {
         }
     }
 
-    fn on_answer(&mut self, helper: Worker) {
-        if let Some(since) = self.busy.remove(&helper) {
-            self.waits.entry(helper).or_default().note(since.elapsed().as_secs_f64() * 1e3);
+    fn on_answer(&mut self, worker: Worker) {
+        if let Some(since) = self.busy.remove(&worker) {
+            self.waits.entry(worker).or_default().note(since.elapsed().as_secs_f64() * 1e3);
         }
     }
 
@@ -93,8 +95,8 @@ impl ThreadedBody {
     pub fn report(mut self, run: &FinishedRun, control: Duration, body: BodyTiming) -> RealTimeReport {
         let part = |spent: Duration| spent.as_secs_f64() / run.seconds;
         let mut load = vec![ThreadLoad { thread: "control".to_owned(), part: part(control) }];
-        for cost in self.crew.take().map(WorkerThreads::dismiss).unwrap_or_default() {
-            let thread = format!("{:?}", cost.helper).to_lowercase();
+        for cost in self.worker_threads.take().map(WorkerThreads::finish).unwrap_or_default() {
+            let thread = format!("{:?}", cost.worker).to_lowercase();
             load.push(ThreadLoad { thread, part: part(cost.spent) });
         }
         load.push(ThreadLoad { thread: "recorder".to_owned(), part: part(run.recording.cpu_time) });
@@ -130,15 +132,15 @@ impl EncodedBody for ThreadedBody {
 
     fn start_job(&mut self, job: Job) {
         self.busy.insert(job.worker(), Instant::now());
-        if let Some(crew) = &self.crew {
-            crew.give(job);
+        if let Some(worker_threads) = &self.worker_threads {
+            worker_threads.give(job);
         }
     }
 
-    fn finish_job(&mut self, helper: Worker) -> Option<Answer> {
-        self.busy.get(&helper)?;
-        let answer = self.inbox.next_answer(helper, BODY_TIMEOUT)?;
-        self.on_answer(helper);
+    fn finish_job(&mut self, worker: Worker) -> Option<Answer> {
+        self.busy.get(&worker)?;
+        let answer = self.inbox.next_answer(worker, BODY_TIMEOUT)?;
+        self.on_answer(worker);
         Some(answer)
     }
 

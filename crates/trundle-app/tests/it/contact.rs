@@ -7,8 +7,8 @@ use trundle_core::{
 use trundle_docking::{DockingConfig, DockingPlan, DockingPlanner, ObstacleScene};
 use trundle_planning::{Plan, Planner, PlannerConfig};
 
-/// A wall with a door of `cells` cells of 5 cm, on the line y = 1.5 m.
-fn door(cells: usize) -> OccupancyGrid {
+/// A wall with a sender of `cells` cells of 5 cm, on the line y = 1.5 m.
+fn sender(cells: usize) -> OccupancyGrid {
     let geometry =
         GridGeometry::new(0.05, Vector2::new(0.0, 1.5 - 0.025 * cells as f64 - 1.0), 80, 40 + cells).unwrap();
     let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
@@ -38,7 +38,7 @@ fn passes_by_docking(footprint: &Footprint, grid: &OccupancyGrid, start: Pose2, 
 fn planning_and_docking_pass_the_same_doors() {
     let (start, goal) = (Pose2::new(1.4, 1.5, 0.0), Pose2::new(2.6, 1.5, 0.0));
     for cells in [7, 8] {
-        let (grid, half) = (door(cells), 0.025 * cells as f64);
+        let (grid, half) = (sender(cells), 0.025 * cells as f64);
         for (spare, fits) in [(5e-4, true), (0.0, true), (-5e-5, false), (-5e-4, false)] {
             let wide = half - spare;
             let corners = [(0.25, wide), (-0.25, wide), (-0.25, -wide), (0.25, -wide)];

@@ -1,5 +1,5 @@
 //! Runs on a body without a camera: session, recorder, replayer, checkpoint writer, report.
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+#![allow(clippy::unwrap_used, reason = "workers of tests")]
 
 mod body;
 mod checkpoint_writer;

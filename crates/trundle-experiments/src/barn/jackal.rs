@@ -51,7 +51,7 @@ pub fn robot() -> RobotConfig {
         ..SafetyConfig::default()
     };
     // Long enough to measure the gyro's bias; the laser's first scan is a first view.
-    robot.supervisor.opening = 0.6;
+    robot.mission_executor.opening = 0.6;
     robot
 }
 

@@ -10,7 +10,7 @@ use trundle_app::real_time::{BackgroundBody, BodyTiming, MemoryUsage, RealTimePa
 use trundle_core::{RobotBody, SensorEvent, Twist2};
 use trundle_io::EncodedEvent;
 use trundle_runtime::Histogram;
-use trundle_runtime::real_time::{InboxSender, Post, ThreadPlacement};
+use trundle_runtime::real_time::{InboxItem, InboxSender, ThreadPlacement};
 use trundle_sim::{CameraAside, Shot, Simulator};
 
 /// The simulator in real time beside the robot: a thread for the base, one for the camera.
@@ -143,7 +143,7 @@ fn send(event: &SensorEvent, events: &InboxSender<TimedEvent>) -> Result<(), App
     let is_image = matches!(event, SensorEvent::Rgbd(_));
     let event = EncodedEvent::encode(event).map_err(|error| AppError::Input(error.to_string()))?;
     let arrived = TimedEvent { event, at: Instant::now() };
-    events.put(if is_image { Post::Patient(arrived) } else { Post::Urgent(arrived) });
+    events.put(if is_image { InboxItem::Deferred(arrived) } else { InboxItem::Urgent(arrived) });
     Ok(())
 }
 

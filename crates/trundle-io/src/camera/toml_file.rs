@@ -1,7 +1,7 @@
 //! Camera files of trundle: TOML.
 
 use super::fields::CameraFields;
-use crate::IoError;
+use crate::{IoError, toml_text::parse_toml};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use trundle_core::{Distortion, PinholeCamera};
@@ -55,28 +55,13 @@ impl CameraFile {
 
 /// The numbers of a file, all of them accepted.
 pub(super) fn parse(path: &Path, text: &str) -> Result<CameraFields, IoError> {
-    let file: CameraFile = toml::from_str(text).map_err(|error| located(path, text, &error))?;
+    let file: CameraFile = parse_toml(path, text)?;
     let fields = file.fields();
     fields.camera().map_err(|invalid| match line_of_key(text, &invalid.field) {
         Some(line) => IoError::line(path, line, invalid.to_string()),
         None => IoError::field(path)(invalid),
     })?;
     Ok(fields)
-}
-
-/// The parser's complaint with its line and, where a value is at fault, its key.
-fn located(path: &Path, text: &str, error: &toml::de::Error) -> IoError {
-    let message = error.message().replace('\n', ", ");
-    let Some(span) = error.span().filter(|_| !message.starts_with("missing field")) else {
-        return IoError::malformed(path, message);
-    };
-    let before = text.get(..span.start).unwrap_or(text);
-    let line = before.bytes().filter(|&byte| byte == b'\n').count() + 1;
-    let content = text.lines().nth(line - 1).unwrap_or_default();
-    let key = content.split_once('=').map_or("", |(key, _)| key.trim());
-    let names_it = key.is_empty() || message.contains(&format!("`{key}`"));
-    let problem = if names_it { message } else { format!("{}: {message}", crate::excerpt::excerpt(key)) };
-    IoError::line(path, line, problem)
 }
 
 fn line_of_key(text: &str, key: &str) -> Option<usize> {

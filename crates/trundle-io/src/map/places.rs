@@ -1,11 +1,12 @@
 //! Named places: a TOML file.
 
 use crate::files::read_text;
+use crate::toml_text::parse_toml;
 use crate::{Expected, IoError};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
-use trundle_core::{Pose2, require_in, toml_problem};
+use trundle_core::{Pose2, require_in};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -34,10 +35,7 @@ struct Place {
 pub fn read_places(path: &Path) -> Result<BTreeMap<String, Pose2>, IoError> {
     Expected::Toml.check(path)?;
     let text = read_text(path)?;
-    let places: BTreeMap<String, Place> = toml::from_str(&text).map_err(|error| {
-        let problem = toml_problem(&text, error.span().map(|span| span.start), error.message());
-        IoError::line(path, problem.line, problem.message)
-    })?;
+    let places: BTreeMap<String, Place> = parse_toml(path, &text)?;
     places.into_iter().map(|(name, place)| checked(path, name, &place)).collect()
 }
 

@@ -48,7 +48,7 @@ fn run(log: &log::Log, config: &ParticleConfig, seed: u64) -> Run {
             scans_ms.push(ms);
             resamplings += usize::from(p.resampled);
             degenerate += usize::from(p.degenerate > 0);
-            bends += usize::from(p.bent.is_some());
+            bends += usize::from(p.loop_correction_m.is_some());
             if std::env::var("TRACE").is_ok() {
                 println!(
                     "{i} {:.2} {:.2} {} {:.1} {} {:?}",

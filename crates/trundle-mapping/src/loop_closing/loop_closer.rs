@@ -156,20 +156,20 @@ impl LoopCloser {
             return None;
         }
         let constraints = history.constraints(poses);
-        let bent = solve(poses.to_vec(), &constraints);
-        let fits = |bent: &Vec<Pose2>| {
+        let corrected = solve(poses.to_vec(), &constraints);
+        let fits = |corrected: &Vec<Pose2>| {
             history.loops.iter().all(|constraint| {
-                let residual =
-                    constraint.residual(bent[constraint.from as usize], bent[constraint.to as usize]);
+                let residual = constraint
+                    .residual(corrected[constraint.from as usize], corrected[constraint.to as usize]);
                 residual.xy().norm() < 1.0 && residual.z.abs() < 0.2
             })
         };
-        let Some(bent) = bent.filter(fits) else {
+        let Some(corrected) = corrected.filter(fits) else {
             history.loops.truncate(ties_before);
             return None;
         };
-        let farthest = bent.iter().zip(poses).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
-        Some(LoopCorrection { poses: bent, farthest })
+        let farthest = corrected.iter().zip(poses).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
+        Some(LoopCorrection { poses: corrected, farthest })
     }
 }
 

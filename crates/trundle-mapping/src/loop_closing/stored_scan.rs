@@ -151,8 +151,8 @@ mod tests {
             assert!(a.ray == 1 && b.ray == 1 && (a.from - b.from).abs() < 1e-4 && (a.to - b.to).abs() < 1e-4);
         }
         let sigma = |shape: &ScanPoints| shape.points.iter().map(|p| p.information).collect::<Vec<_>>();
-        let (told, kept) = (sigma(&shape), sigma(&again));
-        assert!((told[0] - kept[0]).abs() < 1e-3 * told[0], "{told:?} {kept:?}");
+        let (given, kept) = (sigma(&shape), sigma(&again));
+        assert!((given[0] - kept[0]).abs() < 1e-3 * given[0], "{given:?} {kept:?}");
         assert!((0.05 / 0.255_f32.hypot(0.015)).powi(2) - kept[1] < 1e-4, "a sigma is kept up to 255 mm");
     }
 }

@@ -135,7 +135,7 @@ impl ParticleMapper {
             self.set.resample(rng.uniform());
         }
         let driven = step.motion.position().norm();
-        let bent =
+        let loop_correction_m =
             if dead_reckoning { self.loops.close_loops(&self.models, &mut self.set, driven) } else { None };
         self.loops.thin_history(&self.models, &mut self.set);
         self.updates += 1;
@@ -148,7 +148,7 @@ impl ParticleMapper {
             resampled,
             jumped: step.jumped,
             slipped: proposal.is_some_and(|p| p.slipped),
-            bent,
+            loop_correction_m,
         }
     }
 

@@ -51,5 +51,5 @@ pub struct Processed {
     /// Whether the scan showed that the odometry was wrong: slipping wheels, lost messages.
     pub slipped: bool,
     /// Largest shift of a pose, m, where a loop that was closed some scans before corrected trajectory and map.
-    pub bent: Option<f64>,
+    pub loop_correction_m: Option<f64>,
 }

@@ -200,9 +200,9 @@ impl ScanPoints {
         for k in kept {
             let hit = self.hits[k].1;
             let range = (hit - origin).norm();
-            let told = self.hits[k].2;
+            let own = self.hits[k].2;
             let usual = config.range_noise + config.range_noise_growth * range * range;
-            let range_sigma = if told > 0.0 { told } else { usual };
+            let range_sigma = if own > 0.0 { own } else { usual };
             // A cell's obstacle is known to about a fifth of the cell.
             let sigma = range_sigma.hypot(0.3 * config.map.resolution);
             let normal = self.normal(k, sigma).map_or((0.0, 0.0), |n| (n.x as f32, n.y as f32));

@@ -212,7 +212,7 @@ fn loops_of_corridors_are_closed_whatever_the_seed() {
         let mut bends = 0;
         for (odom, scan) in drive.odom.iter().zip(&drive.scans) {
             if let ScanUpdate::Processed(done) = mapper.update(*odom, scan) {
-                bends += usize::from(done.bent.is_some());
+                bends += usize::from(done.loop_correction_m.is_some());
             }
         }
         mapper.finish();

@@ -119,7 +119,7 @@ const SAFETY_HOLD_BEFORE_REPLAN_S: f64 = 1.0;
 impl Navigator {
     pub(crate) fn new(config: &RobotConfig, footprint: &Footprint) -> Result<Self, Invalid> {
         Ok(Self {
-            config: config.supervisor.validated()?,
+            config: config.mission_executor.validated()?,
             planner: Planner::new(config.planning, footprint, config.limits, config.drive)?,
             camera_fov: CameraFov::of(config)?,
             follower: Follower::new(config.control.clone(), config.drive, config.limits)?,
@@ -294,7 +294,7 @@ impl Navigator {
                 Reason::PoseUncertain { sigma }
             });
         }
-        (s.unplaced > POSE_UNKNOWN_AFTER_S).then_some(Reason::ViewContradictsMap)
+        (s.unlocated > POSE_UNKNOWN_AFTER_S).then_some(Reason::ViewContradictsMap)
     }
 
     fn stop_without_progress(&mut self, stood: f64) {

@@ -9,7 +9,7 @@ pub(crate) struct Spin {
     last: Option<f64>,
     turned: f64,
     /// The commands so far.
-    told: u32,
+    commands: u32,
 }
 
 /// Turn rate \[rad/s\]: slow enough for features to be tracked. Source: ours.
@@ -33,13 +33,14 @@ impl Spin {
     pub(crate) fn twist_towards(&mut self, side: f64, pose: Pose2) -> Twist2 {
         let last = self.last.replace(pose.theta).unwrap_or(pose.theta);
         self.turned += wrap_angle(pose.theta - last).abs();
-        self.told = self.told.saturating_add(1);
+        self.commands = self.commands.saturating_add(1);
         Twist2::new(0.0, SPIN_RATE_RAD_S.copysign(side))
     }
 
     /// Whether at least `turns` revolutions are made.
     pub(crate) fn has_turned(&self, turns: f64) -> bool {
-        self.turned.max(f64::from(self.told) * COMMAND_PERIOD_S * SPIN_RATE_RAD_S / UNMEASURED_SPIN_FACTOR)
+        self.turned
+            .max(f64::from(self.commands) * COMMAND_PERIOD_S * SPIN_RATE_RAD_S / UNMEASURED_SPIN_FACTOR)
             > turns * TAU
     }
 }

@@ -15,7 +15,7 @@ fn corridor() -> OccupancyGrid {
     OccupancyGrid::from_ascii(0.05, &(wall.clone() + &free.repeat(12) + &wall)).unwrap()
 }
 
-fn surroundings(grid: &OccupancyGrid, pose: Pose2, time: f64) -> WorldState<'_> {
+fn world(grid: &OccupancyGrid, pose: Pose2, time: f64) -> WorldState<'_> {
     let (now, twist) = (Stamp::default().after(time), Twist2::ZERO);
     let covariance = nalgebra::Matrix3::from_diagonal_element(1e-6);
     WorldState {
@@ -24,7 +24,7 @@ fn surroundings(grid: &OccupancyGrid, pose: Pose2, time: f64) -> WorldState<'_> 
         grid,
         scan: None,
         seen: None,
-        unplaced: 0.0,
+        unlocated: 0.0,
         motion: trundle_control::MotionSense::Wheels,
         dynamic_obstacles: crate::world_state::DynamicObstacles::default(),
     }
@@ -51,12 +51,12 @@ fn a_free_arc_stays_and_one_through_a_wall_is_taken_over_and_settles() {
     let (grid, mut stage) = (corridor(), stage());
     let (start, goal) = (Pose2::new(1.2, 0.32, 0.0), Pose2::new(1.5, 0.38, 0.0));
     let free = StabilizerPreview { time: Some(2.0), poses: vec![start, goal] };
-    assert!(!chosen(&mut stage, &surroundings(&grid, start, 0.0), goal, free));
+    assert!(!chosen(&mut stage, &world(&grid, start, 0.0), goal, free));
     let swinging = StabilizerPreview { time: Some(2.0), poses: vec![start, Pose2::new(1.3, 0.2, 0.0), goal] };
-    assert!(chosen(&mut stage, &surroundings(&grid, start, 0.0), goal, swinging));
+    assert!(chosen(&mut stage, &world(&grid, start, 0.0), goal, swinging));
     let (mut pose, mut settled) = (start, None);
     for i in 1..3000 {
-        match stage.step(&surroundings(&grid, pose, 0.02 * f64::from(i))) {
+        match stage.step(&world(&grid, pose, 0.02 * f64::from(i))) {
             Progress::Moving(twist) => pose = pose.advance(twist, 0.02),
             other => {
                 settled = Some(other);
@@ -80,7 +80,7 @@ fn until_given_up(
     held: bool,
 ) -> (f64, String) {
     for i in 1..20_000 {
-        let now = surroundings(grid, pose, 0.02 * f64::from(i));
+        let now = world(grid, pose, 0.02 * f64::from(i));
         match stage.step(&now) {
             Progress::Moving(_) if held => stage.interrupted(&now),
             Progress::Moving(twist) => pose = pose.advance(twist, 0.02),
@@ -118,7 +118,7 @@ fn a_robot_that_rolls_is_stopped_first() {
     let (start, goal) = (Pose2::new(1.2, 0.32, 0.0), Pose2::new(1.5, 0.38, 0.0));
     begin(&mut stage, goal);
     for i in 1..100 {
-        let mut now = surroundings(&grid, start, 0.02 * f64::from(i));
+        let mut now = world(&grid, start, 0.02 * f64::from(i));
         now.estimate.twist = Twist2::new(0.2, 0.0);
         assert_eq!(stage.step(&now), Progress::Moving(Twist2::ZERO));
     }
@@ -129,20 +129,20 @@ fn a_robot_that_rolls_is_stopped_first() {
 fn switched_off_or_far_away_it_never_takes_over() {
     let (grid, mut far) = (corridor(), stage());
     let (start, goal) = (Pose2::new(0.5, 0.35, 0.0), Pose2::new(2.5, 0.35, 0.0));
-    assert!(!far.begin_if_possible(&surroundings(&grid, start, 0.0), goal));
+    assert!(!far.begin_if_possible(&world(&grid, start, 0.0), goal));
     let config = GoalApproachConfig { enabled: false, ..GoalApproachConfig::default() };
     let mut off = GoalApproach::new(&config, &Footprint::KOBUKI).unwrap();
     let near = Pose2::new(0.8, 0.35, 0.0);
     let touching = StabilizerPreview { time: None, poses: vec![start, near] };
-    assert!(!chosen(&mut off, &surroundings(&grid, start, 0.0), near, touching));
-    assert!(!off.begin_if_possible(&surroundings(&grid, start, 0.0), near));
+    assert!(!chosen(&mut off, &world(&grid, start, 0.0), near, touching));
+    assert!(!off.begin_if_possible(&world(&grid, start, 0.0), near));
 }
 
 /// Until it has settled on an ideal base, s.
 fn settles_in(stage: &mut GoalApproach, grid: &OccupancyGrid, mut pose: Pose2, goal: Pose2) -> f64 {
     begin(stage, goal);
     for i in 1..5000 {
-        match stage.step(&surroundings(grid, pose, 0.02 * f64::from(i))) {
+        match stage.step(&world(grid, pose, 0.02 * f64::from(i))) {
             Progress::Moving(twist) => pose = pose.advance(twist, 0.02),
             Progress::Settled => return 0.02 * f64::from(i - 1),
             Progress::GivenUp(_) => break,
@@ -163,7 +163,7 @@ fn the_way_that_is_chosen_is_the_faster_one_when_both_are_driven() {
         let (grid, goal) =
             if i % 2 == 0 { (corridor(), goal) } else { (open.clone(), Pose2::new(1.5, 1.5, 0.0)) };
         let start = Pose2::new(goal.x + 0.7 * part(5), goal.y + 0.12 * part(7), 0.9 * part(11));
-        let (mut stage, s) = (stage(), surroundings(&grid, start, 0.0));
+        let (mut stage, s) = (stage(), world(&grid, start, 0.0));
         let arc = follower.preview_stabilization(start, goal);
         let manoeuvre_wins = chosen(&mut stage, &s, goal, arc.clone());
         let scene = ObstacleScene::from_grid(&grid, goal.position(), 3.0, false);
@@ -199,12 +199,12 @@ fn times_of_steps(
         times.push(ms);
         goes_on
     };
-    let s = surroundings(grid, start, 0.0);
+    let s = world(grid, start, 0.0);
     stage.consider(&s, goal, StabilizerPreview { time: None, poses: vec![start, goal] });
     while clock(&mut || !stage.takes_over(&s) && stage.choice.is_some()) {}
     begin(&mut stage, goal);
     for i in 1..400 {
-        let s = surroundings(grid, start, 0.02 * f64::from(i));
+        let s = world(grid, start, 0.02 * f64::from(i));
         clock(&mut || matches!(stage.step(&s), Progress::Moving(_)));
     }
     times
@@ -246,10 +246,10 @@ fn a_manoeuvre_that_another_decision_replaces_is_broken_off_and_an_end_stays_the
     stage.reset();
     assert_eq!(stage.report().ended, None, "nothing was begun");
     begin(&mut stage, goal);
-    stage.step(&surroundings(&grid, start, 0.02));
+    stage.step(&world(&grid, start, 0.02));
     stage.reset();
     assert_eq!(stage.report().ended, Some(ApproachEnd::BrokenOff));
-    assert_eq!(stage.step(&surroundings(&grid, start, 0.04)), Progress::GivenUp(ApproachFailure::NoGoal));
+    assert_eq!(stage.step(&world(&grid, start, 0.04)), Progress::GivenUp(ApproachFailure::NoGoal));
     assert!(settles_in(&mut stage, &grid, start, goal).is_finite());
     stage.reset();
     assert_eq!(stage.report().ended, Some(ApproachEnd::Settled));

@@ -249,7 +249,7 @@ mod tests {
     use proptest::prelude::*;
     use trundle_core::{OccupancyGrid, PoseEstimate, Twist2};
 
-    fn surroundings(grid: &OccupancyGrid) -> WorldState<'_> {
+    fn world(grid: &OccupancyGrid) -> WorldState<'_> {
         let (stamp, covariance) = (Stamp::default(), nalgebra::Matrix3::zeros());
         let estimate =
             PoseEstimate { stamp, pose: Pose2::new(0.35, 0.35, 0.0), twist: Twist2::ZERO, covariance };
@@ -259,7 +259,7 @@ mod tests {
             grid,
             scan: None,
             seen: None,
-            unplaced: 0.0,
+            unlocated: 0.0,
             motion: trundle_control::MotionSense::Wheels,
             dynamic_obstacles: crate::world_state::DynamicObstacles::default(),
         }
@@ -283,7 +283,7 @@ mod tests {
     fn goals_come_one_after_the_other_and_what_fails_comes_again_before_the_return() {
         let (grid, [a, b]) = (room(), [1.0, 2.0].map(|x| Pose2::new(x, 0.0, 0.0)));
         let mut executor = executor(&[Task::Go(a), Task::Go(b), Task::Return]);
-        let s = surroundings(&grid);
+        let s = world(&grid);
         let stopped = DriveState::Stopped { reason: Reason::MovingObstacle };
         assert!(executor.may_take_long(&s, &DriveState::Idle), "a goal is planned for at once");
         assert_eq!(executor.step(&s, &DriveState::Idle), Some(Goal::Exact(a)));
@@ -305,7 +305,7 @@ mod tests {
     fn switched_off_on_the_way_it_goes_on_and_what_was_done_stays_done() {
         let (grid, [a, b]) = (room(), [1.0, 2.0].map(|x| Pose2::new(x, 0.0, 0.0)));
         let mut first = executor(&[Task::Go(a), Task::Go(b), Task::Return]);
-        let s = surroundings(&grid);
+        let s = world(&grid);
         first.step(&s, &DriveState::Idle);
         assert_eq!(first.step(&s, &DriveState::Arrived), Some(Goal::Exact(b)));
         let mut second = executor(&[]);
@@ -323,7 +323,7 @@ mod tests {
             grid.set(trundle_core::CellIndex { col: 7, row }, trundle_core::Cell::Unknown);
         }
         let mut executor = executor(&[Task::Explore]);
-        let s = surroundings(&grid);
+        let s = world(&grid);
         assert_eq!(executor.step(&s, &DriveState::Idle), Some(Goal::Spin));
         let mut next = executor.step(&s, &DriveState::Arrived);
         let stopped = DriveState::Stopped { reason: Reason::PathOutOfView };
@@ -338,7 +338,7 @@ mod tests {
     fn a_room_that_is_all_known_is_explored_with_one_turn() {
         let grid = room();
         let mut executor = executor(&[Task::Explore]);
-        let s = surroundings(&grid);
+        let s = world(&grid);
         assert_eq!(executor.step(&s, &DriveState::Idle), Some(Goal::Spin));
         assert_eq!(executor.step(&s, &DriveState::Initializing), None);
         assert_eq!(executor.step(&s, &DriveState::Arrived), Some(Goal::Stay));
@@ -357,7 +357,7 @@ mod tests {
     /// Runs `executor` until no task is left; `fails` holds the outcome of each goal. The goals.
     fn work_off(executor: &mut MissionExecutor, fails: &[bool]) -> Vec<Goal> {
         let (grid, mut fails) = (room(), fails.iter().copied().cycle());
-        let (s, mut goals, mut state) = (surroundings(&grid), Vec::new(), DriveState::Idle);
+        let (s, mut goals, mut state) = (world(&grid), Vec::new(), DriveState::Idle);
         while let Some(goal) = executor.step(&s, &state) {
             goals.push(goal);
             let is_failure = fails.next().unwrap_or_default();
@@ -407,7 +407,7 @@ mod tests {
             letters in "[gr]{1,6}", fails in prop::collection::vec(any::<bool>(), 1..9), moment in 0..9_usize,
         ) {
             let (grid, tasks) = (room(), tasks(&letters));
-            let s = surroundings(&grid);
+            let s = world(&grid);
             let expected = work_off(&mut executor(&tasks), &fails);
             let mut first = executor(&tasks);
             let (mut state, moment) = (DriveState::Idle, moment % expected.len());
@@ -435,7 +435,7 @@ mod tests {
     #[test]
     fn a_new_mission_forgets_the_old_one_and_an_empty_one_leaves_nothing_to_do() {
         let (grid, mut executor) = (room(), executor(&tasks("gg")));
-        let s = surroundings(&grid);
+        let s = world(&grid);
         executor.step(&s, &DriveState::Idle);
         executor.step(&s, &DriveState::Arrived);
         assert_eq!((executor.records().len(), executor.task()), (1, Some(tasks("gg")[1])));

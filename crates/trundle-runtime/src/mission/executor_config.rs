@@ -33,9 +33,9 @@ impl MissionExecutorConfig {
     /// # Errors
     /// When a number is outside its range.
     pub fn validated(self) -> Result<Self, Invalid> {
-        require_in("supervisor.opening", self.opening, "s", 0.0, 60.0)?;
-        require_in("supervisor.patience", self.patience, "s", 1.0, 3600.0)?;
-        require_in("supervisor.lost_sigma", self.lost_sigma, "m", 0.1, 10.0)?;
+        require_in("mission_executor.opening", self.opening, "s", 0.0, 60.0)?;
+        require_in("mission_executor.patience", self.patience, "s", 1.0, 3600.0)?;
+        require_in("mission_executor.lost_sigma", self.lost_sigma, "m", 0.1, 10.0)?;
         self.explore.validated()?;
         Ok(self)
     }
@@ -50,10 +50,10 @@ mod tests {
         let field = |config: MissionExecutorConfig| config.validated().unwrap_err().field;
         let good = MissionExecutorConfig::default();
         assert_eq!(good.validated(), Ok(good));
-        assert_eq!(field(MissionExecutorConfig { opening: -0.1, ..good }), "supervisor.opening");
-        assert_eq!(field(MissionExecutorConfig { patience: 0.0, ..good }), "supervisor.patience");
-        assert_eq!(field(MissionExecutorConfig { patience: f64::NAN, ..good }), "supervisor.patience");
-        assert_eq!(field(MissionExecutorConfig { lost_sigma: 11.0, ..good }), "supervisor.lost_sigma");
+        assert_eq!(field(MissionExecutorConfig { opening: -0.1, ..good }), "mission_executor.opening");
+        assert_eq!(field(MissionExecutorConfig { patience: 0.0, ..good }), "mission_executor.patience");
+        assert_eq!(field(MissionExecutorConfig { patience: f64::NAN, ..good }), "mission_executor.patience");
+        assert_eq!(field(MissionExecutorConfig { lost_sigma: 11.0, ..good }), "mission_executor.lost_sigma");
     }
 
     #[test]

@@ -159,7 +159,7 @@ mod tests {
     }
 
     /// Results for scans taken at `truth` every 0.2 s by a robot with a wrong pose estimate.
-    fn told(grid: &OccupancyGrid, truth: Pose2, believed: Pose2, before: Option<f64>) -> Vec<Fit> {
+    fn judged(grid: &OccupancyGrid, truth: Pose2, believed: Pose2, before: Option<f64>) -> Vec<Fit> {
         let mut watch = ScanMapConsistency::default();
         (0..9).map(|i| watch.judge(grid, believed, &scan(truth, 0.2 * f64::from(i), before))).collect()
     }
@@ -168,9 +168,9 @@ mod tests {
     fn a_robot_that_was_carried_away_finds_out_by_what_does_not_fit() {
         let here = Pose2::new(1.0, 2.0, 0.0);
         for truth in [Pose2::new(4.8, 2.0, -2.0), Pose2::new(5.3, 3.3, 1.5), Pose2::new(1.0, 2.0, 3.0)] {
-            let told = told(&room(f64::INFINITY), truth, here, None);
-            assert_eq!(told[0], Fit::Contradicts, "{truth:?}");
-            assert_eq!(told[8], Fit::Elsewhere, "{truth:?}: {told:?}");
+            let fits = judged(&room(f64::INFINITY), truth, here, None);
+            assert_eq!(fits[0], Fit::Contradicts, "{truth:?}");
+            assert_eq!(fits[8], Fit::Elsewhere, "{truth:?}: {fits:?}");
         }
     }
 
@@ -179,12 +179,12 @@ mod tests {
         let here = Pose2::new(1.0, 2.0, 0.2);
         let off = here * Pose2::new(0.1, -0.08, 0.05);
         for (known, before) in [(9.0, None), (9.0, Some(0.8)), (2.0, None)] {
-            let told = told(&room(known), here, off, before);
-            assert!(told.iter().all(|fit| *fit == Fit::Fits), "{known} {before:?}: {told:?}");
+            let fits = judged(&room(known), here, off, before);
+            assert!(fits.iter().all(|fit| *fit == Fit::Fits), "{known} {before:?}: {fits:?}");
         }
         // In a map of nothing nothing can be contradicted.
-        let told = told(&room(-1.0), here, Pose2::new(3.0, 1.0, 2.0), None);
-        assert!(told.iter().all(|fit| *fit == Fit::Fits));
+        let fits = judged(&room(-1.0), here, Pose2::new(3.0, 1.0, 2.0), None);
+        assert!(fits.iter().all(|fit| *fit == Fit::Fits));
     }
 
     #[test]

@@ -15,27 +15,27 @@ use std::time::{Duration, Instant};
 /// are only handed out while there is time before the next wheel reading.
 #[derive(Debug)]
 pub struct Inbox<E> {
-    receiver: Receiver<Post<E>>,
+    receiver: Receiver<InboxItem<E>>,
     urgent: VecDeque<E>,
-    patient: VecDeque<Input<E>>,
-    door: InboxSender<E>,
+    deferred: VecDeque<Input<E>>,
+    sender: InboxSender<E>,
     lengths: Histogram,
 }
 
-/// Where others put in what the control thread shall get.
+/// The sending end of an inbox, for drivers and workers.
 #[derive(Debug)]
 pub struct InboxSender<E> {
-    sender: SyncSender<Post<E>>,
+    sender: SyncSender<InboxItem<E>>,
     refused: Arc<AtomicU64>,
 }
 
 /// An item for the inbox.
 #[derive(Debug)]
-pub enum Post<E> {
+pub enum InboxItem<E> {
     /// An event that control waits for: wheels, gyro, bumper.
     Urgent(E),
     /// An event that has time: an image.
-    Patient(E),
+    Deferred(E),
     /// The result of a job.
     Answer(Answer),
 }
@@ -58,8 +58,8 @@ impl<E> Clone for InboxSender<E> {
 impl<E> InboxSender<E> {
     /// Puts an item in without waiting. A full queue, which was not emptied for seconds, refuses and counts it: false. False also when the
     /// inbox is dropped.
-    pub fn put(&self, post: Post<E>) -> bool {
-        match self.sender.try_send(post) {
+    pub fn put(&self, item: InboxItem<E>) -> bool {
+        match self.sender.try_send(item) {
             Ok(()) => true,
             Err(TrySendError::Full(_)) => {
                 let refused = self.refused.fetch_add(1, Ordering::Relaxed) + 1;
@@ -71,31 +71,31 @@ impl<E> InboxSender<E> {
     }
 
     /// Puts in an item that must not be lost; waits where the queue is full.
-    pub fn hand_in(&self, post: Post<E>) -> bool {
-        self.sender.send(post).is_ok()
+    pub fn send_waiting(&self, item: InboxItem<E>) -> bool {
+        self.sender.send(item).is_ok()
     }
 }
 
 impl<E> Inbox<E> {
-    /// An empty one for at most `capacity` things.
+    /// An empty one for at most `capacity` items.
     pub fn new(capacity: usize) -> Self {
         let (sender, receiver) = sync_channel(capacity);
-        let door = InboxSender { sender, refused: Arc::default() };
+        let sender = InboxSender { sender, refused: Arc::default() };
         Self {
             receiver,
             urgent: VecDeque::new(),
-            patient: VecDeque::new(),
-            door,
+            deferred: VecDeque::new(),
+            sender,
             lengths: Histogram::default(),
         }
     }
 
     /// A sender into this inbox.
-    pub fn door(&self) -> InboxSender<E> {
-        self.door.clone()
+    pub fn sender(&self) -> InboxSender<E> {
+        self.sender.clone()
     }
 
-    /// The next thing; none when nothing has come for `patience`. Things of a kind come in the order in which they were put in.
+    /// The next item; none when nothing has come for `patience`. Items of a kind come in the order in which they were put in.
     pub fn next(&mut self, loop_timer: &LoopTimer, patience: Duration) -> Option<Input<E>> {
         let start = Instant::now();
         loop {
@@ -103,39 +103,39 @@ impl<E> Inbox<E> {
             if let Some(event) = self.urgent.pop_front() {
                 return Some(Input::Event(event));
             }
-            let wait = match (self.patient.is_empty(), loop_timer.time_for_others()) {
-                (false, None) => return self.patient.pop_front(),
+            let wait = match (self.deferred.is_empty(), loop_timer.time_for_others()) {
+                (false, None) => return self.deferred.pop_front(),
                 (false, Some(hold)) => hold,
                 (true, _) => patience.saturating_sub(start.elapsed()),
             };
             match self.receiver.recv_timeout(wait) {
-                Ok(post) => self.sort(post),
-                Err(RecvTimeoutError::Timeout) if !self.patient.is_empty() => {}
+                Ok(item) => self.sort(item),
+                Err(RecvTimeoutError::Timeout) if !self.deferred.is_empty() => {}
                 Err(RecvTimeoutError::Timeout | RecvTimeoutError::Disconnected) => return None,
             }
         }
     }
 
     /// The next result of a worker, ahead of all other items; urgent events are dropped. None when it does not come within `patience`.
-    pub fn next_answer(&mut self, helper: Worker, patience: Duration) -> Option<Answer> {
+    pub fn next_answer(&mut self, worker: Worker, patience: Duration) -> Option<Answer> {
         let start = Instant::now();
         loop {
             self.urgent.clear();
-            let is_it =
-                |input: &Input<E>| matches!(input, Input::Answer(answer) if answer.worker() == helper);
-            if let Some(at) = self.patient.iter().position(is_it)
-                && let Some(Input::Answer(answer)) = self.patient.remove(at)
+            let is_wanted =
+                |input: &Input<E>| matches!(input, Input::Answer(answer) if answer.worker() == worker);
+            if let Some(at) = self.deferred.iter().position(is_wanted)
+                && let Some(Input::Answer(answer)) = self.deferred.remove(at)
             {
                 return Some(answer);
             }
-            let post = self.receiver.recv_timeout(patience.saturating_sub(start.elapsed())).ok()?;
-            self.sort(post);
+            let item = self.receiver.recv_timeout(patience.saturating_sub(start.elapsed())).ok()?;
+            self.sort(item);
         }
     }
 
-    /// Things refused because the queue was full.
+    /// Items refused because the queue was full.
     pub fn refused(&self) -> u64 {
-        self.door.refused.load(Ordering::Relaxed)
+        self.sender.refused.load(Ordering::Relaxed)
     }
 
     /// Length of the queue at each item taken.
@@ -144,17 +144,17 @@ impl<E> Inbox<E> {
     }
 
     fn empty(&mut self) {
-        while let Ok(post) = self.receiver.try_recv() {
-            self.sort(post);
+        while let Ok(item) = self.receiver.try_recv() {
+            self.sort(item);
         }
-        self.lengths.note((self.urgent.len() + self.patient.len()) as f64);
+        self.lengths.note((self.urgent.len() + self.deferred.len()) as f64);
     }
 
-    fn sort(&mut self, post: Post<E>) {
-        match post {
-            Post::Urgent(event) => self.urgent.push_back(event),
-            Post::Patient(event) => self.patient.push_back(Input::Event(event)),
-            Post::Answer(answer) => self.patient.push_back(Input::Answer(answer)),
+    fn sort(&mut self, item: InboxItem<E>) {
+        match item {
+            InboxItem::Urgent(event) => self.urgent.push_back(event),
+            InboxItem::Deferred(event) => self.deferred.push_back(Input::Event(event)),
+            InboxItem::Answer(answer) => self.deferred.push_back(Input::Answer(answer)),
         }
     }
 }
@@ -173,11 +173,13 @@ mod tests {
     }
 
     #[test]
-    fn urgent_things_overtake_and_each_kind_keeps_its_order() {
+    fn urgent_items_overtake_and_each_kind_keeps_its_order() {
         let mut inbox = Inbox::new(8);
-        let door = inbox.door();
-        for post in [Post::Patient(1), Post::Urgent(2), Post::Patient(3), Post::Urgent(4)] {
-            assert!(door.put(post));
+        let sender = inbox.sender();
+        for item in
+            [InboxItem::Deferred(1), InboxItem::Urgent(2), InboxItem::Deferred(3), InboxItem::Urgent(4)]
+        {
+            assert!(sender.put(item));
         }
         assert_eq!(events(&mut inbox, &LoopTimer::new(LoopTimerConfig::default())), [2, 4, 1, 3]);
     }
@@ -185,8 +187,8 @@ mod tests {
     #[test]
     fn a_full_queue_refuses_and_counts() {
         let mut inbox = Inbox::new(2);
-        let door = inbox.door();
-        let put: Vec<bool> = (0..4).map(|i| door.put(Post::Urgent(i))).collect();
+        let sender = inbox.sender();
+        let put: Vec<bool> = (0..4).map(|i| sender.put(InboxItem::Urgent(i))).collect();
         assert_eq!(put, [true, true, false, false]);
         assert_eq!(inbox.refused(), 2);
         assert_eq!(events(&mut inbox, &LoopTimer::new(LoopTimerConfig::default())), [0, 1]);
@@ -198,12 +200,16 @@ mod tests {
         let mut state = 7_u32;
         for _ in 0..50 {
             let mut inbox = Inbox::new(64);
-            let door = inbox.door();
+            let sender = inbox.sender();
             let urgent: Vec<bool> = (0..40)
                 .map(|i| {
                     state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                     let is_urgent = state >> 31 == 1;
-                    assert!(door.put(if is_urgent { Post::Urgent(i) } else { Post::Patient(i) }));
+                    assert!(sender.put(if is_urgent {
+                        InboxItem::Urgent(i)
+                    } else {
+                        InboxItem::Deferred(i)
+                    }));
                     is_urgent
                 })
                 .collect();
@@ -218,7 +224,7 @@ mod tests {
     fn images_wait_while_the_next_reading_is_about_to_come() {
         let config = LoopTimerConfig { period: 0.04, reserve: 0.04, deadline: 0.1 };
         let (mut inbox, mut timer) = (Inbox::new(4), LoopTimer::new(config));
-        inbox.door().put(Post::Patient(1));
+        inbox.sender().put(InboxItem::Deferred(1));
         timer.begin();
         std::thread::sleep(Duration::from_millis(1));
         let start = Instant::now();
@@ -240,8 +246,8 @@ mod tests {
     #[test]
     fn nobody_takes_what_is_put_in_after_the_control_thread_has_gone() {
         let inbox: Inbox<u32> = Inbox::new(4);
-        let door = inbox.door();
+        let sender = inbox.sender();
         drop(inbox);
-        assert!(!door.put(Post::Urgent(1)) && !door.hand_in(Post::Patient(2)));
+        assert!(!sender.put(InboxItem::Urgent(1)) && !sender.send_waiting(InboxItem::Deferred(2)));
     }
 }

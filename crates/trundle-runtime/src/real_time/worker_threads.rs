@@ -6,15 +6,15 @@ use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
 
-/// The robot's helpers, a thread each. What they compute in parallel they compute on that one thread.
+/// The robot's workers, a thread each. What they compute in parallel they compute on that one thread.
 #[derive(Debug)]
 pub struct WorkerThreads {
-    posts: Vec<HelperPost>,
+    handles: Vec<WorkerHandle>,
 }
 
 #[derive(Debug)]
-struct HelperPost {
-    helper: Worker,
+struct WorkerHandle {
+    worker: Worker,
     jobs: SyncSender<Job>,
     /// Processor time of the thread, sent at its end.
     spent: Receiver<Duration>,
@@ -25,13 +25,13 @@ struct HelperPost {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WorkerCost {
     /// The worker.
-    pub helper: Worker,
+    pub worker: Worker,
     /// Processor time.
     pub spent: Duration,
 }
 
 impl WorkerThreads {
-    /// Starts the helpers at `place`; `report` is called in their threads with every answer.
+    /// Starts the workers at `place`; `report` is called in their threads with every answer.
     ///
     /// # Errors
     /// When the system refuses a thread.
@@ -39,37 +39,37 @@ impl WorkerThreads {
         place: ThreadPlacement,
         report: impl Fn(Answer) + Clone + Send + 'static,
     ) -> Result<Self, ThreadPoolBuildError> {
-        let post = |helper| HelperPost::start(helper, place, report.clone());
-        Ok(Self { posts: Worker::ALL.into_iter().map(post).collect::<Result<_, _>>()? })
+        let start = |worker| WorkerHandle::start(worker, place, report.clone());
+        Ok(Self { handles: Worker::ALL.into_iter().map(start).collect::<Result<_, _>>()? })
     }
 
-    /// Gives a job to its helper, who is free: a robot gives no job to one who has one.
+    /// Gives a job to its worker. The robot gives a worker its next job after the result of the last one.
     pub fn give(&self, job: Job) {
-        let post = self.posts.iter().find(|post| post.helper == job.worker());
+        let handle = self.handles.iter().find(|handle| handle.worker == job.worker());
         // A worker whose thread has ended gives no result. The robot continues without, and the safety monitor stops it on old data.
-        let _ = post.map(|post| post.jobs.try_send(job));
+        let _ = handle.map(|handle| handle.jobs.try_send(job));
     }
 
-    /// Sends the helpers home, when they have done what they are at.
-    pub fn dismiss(self) -> Vec<WorkerCost> {
-        let end = |post: HelperPost| {
-            let HelperPost { helper, jobs, spent, _pool } = post;
+    /// Waits for the jobs in progress and ends the threads; the processor time of each.
+    pub fn finish(self) -> Vec<WorkerCost> {
+        let end = |handle: WorkerHandle| {
+            let WorkerHandle { worker, jobs, spent, _pool } = handle;
             drop(jobs);
-            WorkerCost { helper, spent: spent.recv().unwrap_or_default() }
+            WorkerCost { worker, spent: spent.recv().unwrap_or_default() }
         };
-        self.posts.into_iter().map(end).collect()
+        self.handles.into_iter().map(end).collect()
     }
 }
 
-impl HelperPost {
+impl WorkerHandle {
     fn start(
-        helper: Worker,
+        worker: Worker,
         place: ThreadPlacement,
         report: impl Fn(Answer) + Send + 'static,
     ) -> Result<Self, ThreadPoolBuildError> {
         let pool = ThreadPoolBuilder::new()
             .num_threads(1)
-            .thread_name(move |_| format!("{helper:?}").to_lowercase())
+            .thread_name(move |_| format!("{worker:?}").to_lowercase())
             .build()?;
         let (jobs, inbox) = sync_channel::<Job>(1);
         let (end, spent) = sync_channel(1);
@@ -78,6 +78,6 @@ impl HelperPost {
             inbox.iter().for_each(|job| report(job.run()));
             let _ = end.send(thread_time().unwrap_or_default());
         });
-        Ok(Self { helper, jobs, spent, _pool: pool })
+        Ok(Self { worker, jobs, spent, _pool: pool })
     }
 }

@@ -30,7 +30,7 @@ impl Robot {
             event_log::correction(stamp, "global localization", before, self.localizer.estimate().pose);
             match correction {
                 Correction::Applied { .. } => {
-                    self.latest.unplaced = None;
+                    self.latest.unlocated = None;
                     self.perception.iter_mut().for_each(|perception| perception.localized_by_scans());
                 }
                 // The found pose contradicts the estimate, whatever its uncertainty: the next scan gives the pose.

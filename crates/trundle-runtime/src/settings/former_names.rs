@@ -3,7 +3,8 @@
 use serde_json::Value;
 
 /// Beginnings of former names and of the present ones, the longer first.
-const FORMER_NAMES: [(&str, &str); 6] = [
+const FORMER_NAMES: [(&str, &str); 7] = [
+    ("supervisor", "mission_executor"),
     ("least_way", "min_distance"),
     ("least_room", "min_clearance"),
     ("most_ahead", "max_lead"),
@@ -12,16 +13,16 @@ const FORMER_NAMES: [(&str, &str); 6] = [
     ("most_", "max_"),
 ];
 
-/// The present name of a setting without its table; `None` where it has no former name.
+/// The present name of a table or of a setting without its table; `None` where it has no former name.
 fn present_name(name: &str) -> Option<String> {
     FORMER_NAMES.iter().find_map(|(former, present)| Some(format!("{present}{}", name.strip_prefix(former)?)))
 }
 
 /// The present form of a dotted key; `None` where it has no former name.
 pub(super) fn present_key(key: &str) -> Option<String> {
-    let (table, name) = key.rsplit_once('.').map_or(("", key), |(table, name)| (table, name));
-    let present = present_name(name)?;
-    Some(if table.is_empty() { present } else { format!("{table}.{present}") })
+    let present = |name: &str| present_name(name).unwrap_or_else(|| name.to_owned());
+    let whole = key.split('.').map(present).collect::<Vec<_>>().join(".");
+    (whole != key).then_some(whole)
 }
 
 /// The settings of a recording with the present names of all fields.
@@ -50,6 +51,11 @@ mod tests {
         assert_eq!(present("movers.least_way_m").as_deref(), Some("movers.min_distance_m"));
         assert_eq!(present("docking.most_work").as_deref(), Some("docking.max_work"));
         assert_eq!(present("least_hits").as_deref(), Some("min_hits"));
+        assert_eq!(present("supervisor.patience_s").as_deref(), Some("mission_executor.patience_s"));
+        assert_eq!(
+            present("supervisor.explore.least_gain").as_deref(),
+            Some("mission_executor.explore.min_gain")
+        );
         assert_eq!(present("docking.max_work"), None);
         assert_eq!(present("mostly.speed"), None);
     }

@@ -27,7 +27,7 @@ impl DecisionWorker {
         Ok(Self {
             navigator: Navigator::new(config, footprint)?,
             executor: MissionExecutor::new(
-                &config.supervisor,
+                &config.mission_executor,
                 footprint.circumscribed_radius() + EXPLORATION_CLEARANCE_M,
             )?,
         })

@@ -33,7 +33,7 @@ pub(crate) struct PerceptionWorker {
     /// Odometry at the last image.
     last: Option<OdometryState>,
     /// Since when images that show enough have not been located.
-    unplaced: Option<Stamp>,
+    unlocated: Option<Stamp>,
     /// Stamp at which global localization last began in that time.
     searched: Option<Stamp>,
     /// Schedule of the checkpoints; none: never.
@@ -51,13 +51,13 @@ pub(crate) struct PerceptionResult {
     /// Pose that global localization found, while the pose is unknown.
     pub(crate) place: Option<LocalizedPose>,
     /// Since when images that show enough have not been located.
-    pub(crate) unplaced: Option<Stamp>,
+    pub(crate) unlocated: Option<Stamp>,
     /// All poses of the visual map, after a correction that tracking does not follow.
-    pub(crate) bent: Option<Vec<(Stamp, Pose3)>>,
+    pub(crate) corrected_trajectory: Option<Vec<(Stamp, Pose3)>>,
     /// Whether the robot was carried away: global localization begins.
     pub(crate) is_carried_away: bool,
     /// The visual maps, when it was time to save them.
-    pub(crate) saved: Option<Vec<u8>>,
+    pub(crate) visual_snapshot: Option<Vec<u8>>,
 }
 
 /// Correction of the visual map \[m, rad\] above which the grid is corrected. Source: ours.
@@ -82,7 +82,7 @@ impl PerceptionWorker {
             camera_health: CameraHealth::default(),
             is_placed_by_scans: false,
             last: None,
-            unplaced: None,
+            unlocated: None,
             searched: None,
             saving: None,
         })
@@ -125,16 +125,25 @@ impl PerceptionWorker {
         if is_carried_away {
             self.slam.kidnapped();
         }
-        let bent = is_bent(&track).then(|| self.slam.trajectory());
+        let corrected_trajectory = is_corrected(&track).then(|| self.slam.trajectory());
         let scan = match self.range_source {
             RangeSource::DepthCamera => Some(times.measure(Stage::Scan, || self.scanner.scan(image))),
             RangeSource::Laser => None,
         };
         let in_the_dark = track.features < MIN_FEATURES_TO_LOCATE;
         let place = scan.as_ref().and_then(|scan| self.search_pose(odom_from_base, scan, in_the_dark, times));
-        let saved = self.save(image.stamp(), times);
-        let unplaced = self.unplaced;
-        Some(PerceptionResult { odom_from_base, track, scan, place, unplaced, is_carried_away, bent, saved })
+        let visual_snapshot = self.save(image.stamp(), times);
+        let unlocated = self.unlocated;
+        Some(PerceptionResult {
+            odom_from_base,
+            track,
+            scan,
+            place,
+            unlocated,
+            is_carried_away,
+            corrected_trajectory,
+            visual_snapshot,
+        })
     }
 
     /// Poses are wanted from now on of frames whose scans may still move.
@@ -145,9 +154,9 @@ impl PerceptionWorker {
     /// The visual maps, when it is time to save them.
     fn save(&mut self, now: Stamp, times: &mut StageTimes) -> Option<Vec<u8>> {
         let saving = self.saving.as_mut().filter(|saving| saving.is_due(now))?;
-        let saved = times.measure(Stage::Checkpoint, || self.slam.save());
-        saving.saved(now, saved.len());
-        Some(saved)
+        let visual_snapshot = times.measure(Stage::Checkpoint, || self.slam.save());
+        saving.saved(now, visual_snapshot.len());
+        Some(visual_snapshot)
     }
 
     /// Searches the pose by a scan, while it is unknown.
@@ -172,7 +181,7 @@ impl PerceptionWorker {
     /// Scans gave the pose. Images that are not recognised do not make it unknown again until one is located.
     pub(crate) fn localized_by_scans(&mut self) {
         self.is_placed_by_scans = true;
-        (self.unplaced, self.searched) = (None, None);
+        (self.unlocated, self.searched) = (None, None);
     }
 
     /// `previous_camera_from_camera` by wheels and gyro.
@@ -189,12 +198,12 @@ impl PerceptionWorker {
             return false;
         }
         if track.tracking.is_located() || !shows_enough && !self.is_unplaced_for_long(track.stamp) {
-            (self.unplaced, self.searched) = (None, None);
+            (self.unlocated, self.searched) = (None, None);
         }
         if track.tracking.is_located() || !shows_enough {
             return false;
         }
-        let since = *self.unplaced.get_or_insert(track.stamp);
+        let since = *self.unlocated.get_or_insert(track.stamp);
         let is_time = track.stamp - self.searched.unwrap_or(since) > KIDNAPPED_AFTER_S;
         if is_time {
             self.searched = Some(track.stamp);
@@ -204,7 +213,7 @@ impl PerceptionWorker {
 
     /// With an unknown pose, a view without features does not restart the time.
     fn is_unplaced_for_long(&self, now: Stamp) -> bool {
-        self.unplaced.is_some_and(|since| now - since > POSE_UNKNOWN_AFTER_S)
+        self.unlocated.is_some_and(|since| now - since > POSE_UNKNOWN_AFTER_S)
     }
 }
 
@@ -217,7 +226,7 @@ fn blind_range(sight: RangeSource, scanner: &DepthScanner) -> f64 {
 }
 
 /// Whether the visual map had a correction that tracking does not follow.
-fn is_bent(track: &TrackReport) -> bool {
+fn is_corrected(track: &TrackReport) -> bool {
     let is_large = |correction: &Pose3| {
         correction.translation.norm() > GRID_CORRECTION_THRESHOLD
             || correction.log().norm() > GRID_CORRECTION_THRESHOLD
@@ -282,7 +291,7 @@ mod tests {
         let unplaced_after = |doubt: u32| {
             let mut worker = worker();
             carried_away(&mut worker, |i| if i < doubt { 1000 } else { 0 }, |_| false);
-            worker.unplaced
+            worker.unlocated
         };
         assert_eq!(unplaced_after(5), None);
         assert_eq!(unplaced_after(12), Some(Stamp::default()));
@@ -293,7 +302,7 @@ mod tests {
         let mut worker = worker();
         worker.localized_by_scans();
         assert!(carried_away(&mut worker, |_| 1000, |_| false).is_empty());
-        assert_eq!(worker.unplaced, None);
+        assert_eq!(worker.unlocated, None);
         let seconds = carried_away(&mut worker, |_| 1000, |i| i == 0);
         assert!(!seconds.is_empty(), "images count again");
     }
@@ -302,9 +311,9 @@ mod tests {
     fn only_a_correction_that_tracking_does_not_go_along_with_bends_the_map() {
         let refined = |metres: f64| {
             let moved = Pose3::from_pose2(Pose2::new(0.0, metres, 0.0));
-            is_bent(&TrackReport { refined: Some(moved), ..blank() })
+            is_corrected(&TrackReport { refined: Some(moved), ..blank() })
         };
-        assert!(!is_bent(&blank()));
+        assert!(!is_corrected(&blank()));
         assert!(!refined(0.9 * GRID_CORRECTION_THRESHOLD) && refined(1.1 * GRID_CORRECTION_THRESHOLD));
     }
 }

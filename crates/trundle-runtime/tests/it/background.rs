@@ -61,7 +61,7 @@ fn with_background_jobs() -> Robot {
     robot(GOAL).with_background_jobs()
 }
 
-/// Jobs done so long after they were given, s, by helper.
+/// Jobs done so long after they were given, s, by worker.
 fn after(look: f64, think: f64) -> impl FnMut(Stamp, Vec<Job>) -> Vec<Answer> {
     let mut open: Vec<(Stamp, Job)> = Vec::new();
     move |now, jobs| {

@@ -185,7 +185,7 @@ fn any_event() -> impl Strategy<Value = SensorEvent> {
 fn laser_robot() -> Robot {
     let mut config = RobotConfig::default();
     config.sight = RangeSource::Laser;
-    config.supervisor.opening = 0.0;
+    config.mission_executor.opening = 0.0;
     let mut robot = Robot::new(config).unwrap();
     robot.begin(
         &Mission::new(vec![Task::Explore, Task::Go(Pose2::new(1.0, 1.0, 0.0)), Task::Return]).unwrap(),

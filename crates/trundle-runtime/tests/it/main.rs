@@ -1,11 +1,11 @@
 //! The robot as a whole, fed by hand: no simulator here.
-#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+#![allow(clippy::unwrap_used, reason = "workers of tests")]
 
 mod background;
 mod checkpoint;
 mod config;
-mod crew;
 mod laws;
 mod logs;
 mod robot;
 mod states;
+mod worker_threads;

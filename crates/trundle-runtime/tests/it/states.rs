@@ -103,7 +103,7 @@ fn the_third_contact_gives_the_goal_up_and_a_new_goal_counts_anew() {
 #[test]
 fn patience_ends_with_the_reason_behind_it() {
     let mut config = RobotConfig::default();
-    config.supervisor.patience = 2.0;
+    config.mission_executor.patience = 2.0;
     let mut robot = Robot::new(config).unwrap();
     robot.begin(&Mission::new(vec![Task::Go(Pose2::new(1.0, 0.0, 0.0)), Task::Return]).unwrap());
     let reports: Vec<_> = (0..300).map(|i| robot.step(&wheels(20 * i))).collect();
@@ -116,7 +116,7 @@ fn patience_ends_with_the_reason_behind_it() {
 #[test]
 fn a_mission_is_over_when_all_tasks_are_and_tells_each_undone_one() {
     let mut config = RobotConfig::default();
-    config.supervisor.patience = 1.0;
+    config.mission_executor.patience = 1.0;
     let mut robot = Robot::new(config).unwrap();
     let far = |x| Task::Go(Pose2::new(x, 0.0, 0.0));
     robot.begin(&Mission::new(vec![far(1.0), far(2.0)]).unwrap());

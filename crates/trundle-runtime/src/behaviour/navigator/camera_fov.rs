@@ -66,7 +66,7 @@ impl CameraFov {
             if under.len() as f64 >= least {
                 let middle = middle(grid, &under);
                 let is_shown = || passed.iter().any(|from| self.shows(grid, *from, middle));
-                if unseen.was_looked_at(middle) || !is_shown() {
+                if unseen.was_observed(middle) || !is_shown() {
                     return Some(middle);
                 }
                 judged.extend(under);
@@ -130,7 +130,7 @@ mod tests {
         let ahead = floor(|at| at.x > 4.0);
         let straight = way((0..60).map(|i| Pose2::new(2.0 + 0.05 * f64::from(i), 2.0, 0.0)));
         let mut in_vain = VisibilityConstraint::default();
-        in_vain.note_look(Vector2::new(4.1, 2.0), Vector2::new(3.0, 2.0), Stamp::default());
+        in_vain.record_observation(Vector2::new(4.1, 2.0), Vector2::new(3.0, 2.0), Stamp::default());
         assert!(VIEW.first_unseen(straight.points(), &ahead, 0.2, &in_vain).is_some());
         assert_eq!(VIEW.first_unseen(straight.points(), &ahead, 0.2, &VisibilityConstraint::default()), None);
     }

@@ -36,7 +36,7 @@ impl Navigator {
         let ends = [from, goal].map(|pose| pose.position());
         let bars = self.visibility.bars();
         let best = {
-            let floor = self.walled(s.floor(), &bars, ends);
+            let floor = self.with_virtual_obstacles(s.floor(), &bars, ends);
             let floor = floor.as_ref().unwrap_or(s.floor());
             self.planner.plan_among_moving(floor, s.dynamic_obstacles.movers, from, twist, goal)
         };
@@ -44,11 +44,11 @@ impl Navigator {
         let Some(unseen) = self.first_unseen(best.trajectory.points(), s.floor()) else {
             return self.found(InView::Plan(Plan::Found(best)));
         };
-        if self.visibility.walls.is_empty() {
-            self.visibility.walls.push(unseen);
+        if self.visibility.virtual_obstacles.is_empty() {
+            self.visibility.virtual_obstacles.push(unseen);
         }
-        let walls = [bars, self.visibility.walls.clone()].concat();
-        let Some(floor) = self.walled(s.floor(), &walls, ends) else {
+        let walls = [bars, self.visibility.virtual_obstacles.clone()].concat();
+        let Some(floor) = self.with_virtual_obstacles(s.floor(), &walls, ends) else {
             return self.found(InView::Unseen(unseen, None));
         };
         let Plan::Found(plan) =
@@ -57,8 +57,8 @@ impl Navigator {
             return self.found(InView::Unseen(unseen, None));
         };
         match self.first_unseen(plan.trajectory.points(), s.floor()) {
-            Some(next) if self.visibility.walls.len() < MAX_VIRTUAL_OBSTACLES => {
-                self.visibility.walls.push(next);
+            Some(next) if self.visibility.virtual_obstacles.len() < MAX_VIRTUAL_OBSTACLES => {
+                self.visibility.virtual_obstacles.push(next);
                 InView::Asking
             }
             Some(_) => self.found(InView::Unseen(unseen, None)),
@@ -70,7 +70,7 @@ impl Navigator {
 
     /// The end of a search.
     fn found(&mut self, found: InView) -> InView {
-        self.visibility.walls.clear();
+        self.visibility.virtual_obstacles.clear();
         found
     }
 
@@ -87,12 +87,17 @@ impl Navigator {
     }
 
     /// The floor with the unknown cells about these places blocked, except under the ends of the path; none without places.
-    fn walled(&self, floor: &OccupancyGrid, places: &[Vector2], ends: [Vector2; 2]) -> Option<OccupancyGrid> {
-        let mut walled = (!places.is_empty()).then(|| floor.clone())?;
+    fn with_virtual_obstacles(
+        &self,
+        floor: &OccupancyGrid,
+        places: &[Vector2],
+        ends: [Vector2; 2],
+    ) -> Option<OccupancyGrid> {
+        let mut with_virtual_obstacles = (!places.is_empty()).then(|| floor.clone())?;
         for at in places {
-            wall_off(&mut walled, *at, ends, self.radius, self.visibility.home);
+            wall_off(&mut with_virtual_obstacles, *at, ends, self.radius, self.visibility.home);
         }
-        Some(walled)
+        Some(with_virtual_obstacles)
     }
 }
 
@@ -246,8 +251,8 @@ mod tests {
         assert!(!ends_on(&floor(|at| at.x > 5.0)), "unseen beyond the place");
         // A chair that hides its own side: the camera does not observe what is beside the robot.
         assert!(ends_on(&floor(|at| at.x < 1.6 && at.y > 2.05)));
-        let mut barred = floor(|_| false);
-        (0..80).for_each(|row| barred.set(CellIndex { col: 50, row }, Cell::Occupied));
-        assert!(ends_on(&barred));
+        let mut blocked = floor(|_| false);
+        (0..80).for_each(|row| blocked.set(CellIndex { col: 50, row }, Cell::Occupied));
+        assert!(ends_on(&blocked));
     }
 }

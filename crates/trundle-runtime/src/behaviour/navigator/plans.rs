@@ -109,7 +109,7 @@ impl Navigator {
                 if !self.starts_maneuver_if_possible(goal, s)
                     && let Some(cause) = NoPath::of(&refused)
                 {
-                    self.no_way(cause, s);
+                    self.without_path(cause, s);
                 }
                 false
             }
@@ -142,7 +142,7 @@ impl Navigator {
             // The next plan keeps off it.
             self.stop_for_path_in_view(s);
         } else if long.is_none() {
-            self.no_way(NoPath::Blocked { nearest: at }, s);
+            self.without_path(NoPath::Blocked { nearest: at }, s);
         }
         long
     }
@@ -196,7 +196,7 @@ impl Navigator {
 
     /// Without a path: stops, turns on the spot until the surroundings are observed, drives to a viewpoint of the blocked place, and
     /// waits there with the camera on that place.
-    fn no_way(&mut self, cause: NoPath, s: &WorldState<'_>) {
+    fn without_path(&mut self, cause: NoPath, s: &WorldState<'_>) {
         if matches!(self.viewpoint, Viewpoint::Going(..)) {
             self.state = DriveState::Recovering { reason: self.no_path(cause) };
             return;
@@ -238,7 +238,7 @@ impl Navigator {
 
     /// The reason for a missing path, with the floor that was kept out of the search.
     fn no_path(&self, cause: NoPath) -> Reason {
-        Reason::NoPath { cause, unseen: self.visibility.barred() }
+        Reason::NoPath { cause, unseen: self.visibility.keep_out() }
     }
 
     fn hold(&mut self, reason: Reason, now: Stamp) {

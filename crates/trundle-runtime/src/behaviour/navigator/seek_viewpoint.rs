@@ -43,7 +43,7 @@ impl Navigator {
             Viewpoint::Looking(until) if s.now < *until => return true,
             Viewpoint::Choosing(ViewTarget::UnknownFloor, _) => {}
             _ => {
-                let worth = self.visibility.is_worth_a_look(at);
+                let worth = self.visibility.is_worth_observing(at);
                 let places = if worth {
                     sights(s.floor(), s.estimate.pose, at, self.camera_fov, &self.visibility)
                 } else {
@@ -70,7 +70,7 @@ impl Navigator {
             && self.first_unseen(plan.trajectory.points(), s.floor()).is_none()
         {
             if let (ViewTarget::UnknownFloor, Some(at)) = (aim, self.blocked_at) {
-                self.visibility.note_look(at, place.position(), s.now);
+                self.visibility.record_observation(at, place.position(), s.now);
             }
             self.follower.follow(plan.trajectory.clone(), place);
             self.viewpoint = Viewpoint::Going(aim, plan.trajectory);

@@ -33,7 +33,7 @@ pub(super) fn at_rest(grid: &OccupancyGrid, now: Stamp, pose: Pose2) -> WorldSta
         grid,
         scan: None,
         seen: None,
-        unplaced: 0.0,
+        unlocated: 0.0,
         motion: MotionSense::Wheels,
         dynamic_obstacles: DynamicObstacles::default(),
     }

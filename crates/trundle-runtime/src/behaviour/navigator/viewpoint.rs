@@ -126,7 +126,7 @@ mod tests {
             let first = sights(&grid, here, at, Some(view), &unseen);
             assert!(first.len() > 2 && first.iter().all(|place| view.shows(&grid, *place, at)), "{first:?}");
             assert_eq!(first[0].position(), here.position(), "a turn is enough");
-            unseen.note_look(at, here.position(), Stamp::default());
+            unseen.record_observation(at, here.position(), Stamp::default());
             let second = sights(&grid, here, at, Some(view), &unseen);
             assert!(!second.is_empty() && second.len() < first.len());
             assert!(second.iter().all(|place| place.distance(&here) > 0.4), "{second:?}");

@@ -8,13 +8,13 @@ pub(super) struct VisibilityConstraint {
     /// Where it was set down, map frame.
     pub(super) home: Option<Vector2>,
     /// Places where the candidate paths entered unseen floor.
-    pub(super) walls: Vec<Vector2>,
+    pub(super) virtual_obstacles: Vec<Vector2>,
     /// Observations of the last 20 s.
     looks: Vec<Look>,
     /// Number of observations without result since the goal was given.
     in_vain: usize,
     /// Keep-out zones: floor that observations did not show, and when each zone began.
-    barred: Vec<(Vector2, Stamp)>,
+    keep_out: Vec<(Vector2, Stamp)>,
 }
 
 /// An observation: the floor, the viewpoint, and the time of its start or, after the arrival, of the arrival.
@@ -46,7 +46,7 @@ impl VisibilityConstraint {
     }
 
     /// Records an observation of `at` from `from`.
-    pub(super) fn note_look(&mut self, at: Vector2, from: Vector2, now: Stamp) {
+    pub(super) fn record_observation(&mut self, at: Vector2, from: Vector2, now: Stamp) {
         self.looks.push(Look { at, from, since: now, is_in_vain: true });
         self.in_vain += 1;
     }
@@ -68,11 +68,11 @@ impl VisibilityConstraint {
     /// Drops old observations: floor that was hidden then may be in view.
     pub(super) fn forget(&mut self, now: Stamp) {
         self.looks.retain(|look| now - look.since < VAIN_VIEW_RETRY_S);
-        self.barred.retain(|(_, since)| now - *since < VAIN_VIEW_RETRY_S);
+        self.keep_out.retain(|(_, since)| now - *since < VAIN_VIEW_RETRY_S);
     }
 
     /// Positions of the observations of this floor.
-    fn looks_at(&self, at: Vector2) -> impl Iterator<Item = Vector2> + '_ {
+    fn observations_of(&self, at: Vector2) -> impl Iterator<Item = Vector2> + '_ {
         self.looks
             .iter()
             .filter(move |look| (look.at - at).norm() < VIRTUAL_OBSTACLE_RADIUS_M)
@@ -80,37 +80,37 @@ impl VisibilityConstraint {
     }
 
     /// Whether this floor was observed. Floor that is unknown after that stays unknown on the path too.
-    pub(super) fn was_looked_at(&self, at: Vector2) -> bool {
-        self.looks_at(at).next().is_some()
+    pub(super) fn was_observed(&self, at: Vector2) -> bool {
+        self.observations_of(at).next().is_some()
     }
 
     /// Whether looking at `at` once more may help.
-    pub(super) fn is_worth_a_look(&self, at: Vector2) -> bool {
-        self.looks_at(at).count() < MAX_VIEWS_PER_PLACE && self.in_vain < MAX_VAIN_VIEWS
+    pub(super) fn is_worth_observing(&self, at: Vector2) -> bool {
+        self.observations_of(at).count() < MAX_VIEWS_PER_PLACE && self.in_vain < MAX_VAIN_VIEWS
     }
 
     /// Whether `from` is far enough from the earlier observations of `at`.
     pub(super) fn is_elsewhere(&self, at: Vector2, from: Vector2) -> bool {
-        self.looks_at(at).all(|old| (old - from).norm() > MIN_VIEWPOINT_SPACING_M)
+        self.observations_of(at).all(|old| (old - from).norm() > MIN_VIEWPOINT_SPACING_M)
     }
 
     /// Adds a keep-out zone; whether it is new.
     pub(super) fn bar(&mut self, at: Vector2, now: Stamp) -> bool {
-        let is_new = self.barred.iter().all(|(old, _)| (old - at).norm() > VIRTUAL_OBSTACLE_RADIUS_M / 2.0);
+        let is_new = self.keep_out.iter().all(|(old, _)| (old - at).norm() > VIRTUAL_OBSTACLE_RADIUS_M / 2.0);
         if is_new {
-            self.barred.push((at, now));
+            self.keep_out.push((at, now));
         }
         is_new
     }
 
     /// Centres of the keep-out zones.
     pub(super) fn bars(&self) -> Vec<Vector2> {
-        self.barred.iter().map(|(at, _)| *at).collect()
+        self.keep_out.iter().map(|(at, _)| *at).collect()
     }
 
     /// Centre of the newest keep-out zone.
-    pub(super) fn barred(&self) -> Option<Vector2> {
-        self.barred.last().map(|(at, _)| *at)
+    pub(super) fn keep_out(&self) -> Option<Vector2> {
+        self.keep_out.last().map(|(at, _)| *at)
     }
 }
 
@@ -123,21 +123,22 @@ mod tests {
     fn what_was_looked_at_in_vain_is_looked_at_again_after_a_while() {
         let (mut unseen, at) = (VisibilityConstraint::default(), Vector2::new(1.0, 2.0));
         let time = |s: f64| Stamp::default().after(s);
-        unseen.note_look(at, Vector2::zeros(), time(-15.0));
+        unseen.record_observation(at, Vector2::zeros(), time(-15.0));
         // The path was long.
         unseen.note_arrival(time(5.5));
         assert!(unseen.bar(at, time(7.0)) && !unseen.bar(at, time(8.0)));
         unseen.forget(time(24.0));
         assert!(
-            unseen.was_looked_at(at)
-                && unseen.barred().is_some()
+            unseen.was_observed(at)
+                && unseen.keep_out().is_some()
                 && !unseen.is_elsewhere(at, Vector2::zeros())
         );
         unseen.forget(time(28.0));
-        assert!(!unseen.was_looked_at(at) && unseen.barred().is_none() && unseen.is_worth_a_look(at));
-        (1..MAX_VAIN_VIEWS).for_each(|i| unseen.note_look(at, Vector2::zeros(), time(30.0 * i as f64)));
+        assert!(!unseen.was_observed(at) && unseen.keep_out().is_none() && unseen.is_worth_observing(at));
+        (1..MAX_VAIN_VIEWS)
+            .for_each(|i| unseen.record_observation(at, Vector2::zeros(), time(30.0 * i as f64)));
         unseen.forget(time(1000.0));
-        assert!(!unseen.is_worth_a_look(at), "not for ever");
+        assert!(!unseen.is_worth_observing(at), "not for ever");
     }
 
     #[test]
@@ -146,17 +147,17 @@ mod tests {
         let known = floor(|at| at.x > 3.0);
         for i in 0..3 * MAX_VAIN_VIEWS {
             let at = Vector2::new(0.1 * (1 + i % 20) as f64, 2.0);
-            assert!(unseen.is_worth_a_look(at), "{i}");
-            unseen.note_look(at, Vector2::zeros(), time(30.0 * i as f64));
+            assert!(unseen.is_worth_observing(at), "{i}");
+            unseen.record_observation(at, Vector2::zeros(), time(30.0 * i as f64));
             (0..2).for_each(|_| unseen.note_seen(&known));
             unseen.forget(time(30.0 * i as f64 + 25.0));
         }
         for i in 0..MAX_VAIN_VIEWS {
-            assert!(unseen.is_worth_a_look(Vector2::new(4.0, 2.0)), "{i}");
-            unseen.note_look(Vector2::new(4.0, 2.0), Vector2::zeros(), time(30.0 * i as f64));
+            assert!(unseen.is_worth_observing(Vector2::new(4.0, 2.0)), "{i}");
+            unseen.record_observation(Vector2::new(4.0, 2.0), Vector2::zeros(), time(30.0 * i as f64));
             unseen.note_seen(&known);
             unseen.forget(time(30.0 * i as f64 + 25.0));
         }
-        assert!(!unseen.is_worth_a_look(Vector2::new(4.0, 2.0)));
+        assert!(!unseen.is_worth_observing(Vector2::new(4.0, 2.0)));
     }
 }

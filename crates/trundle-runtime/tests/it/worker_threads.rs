@@ -4,7 +4,7 @@ use crate::robot::{robot, wall};
 use std::time::Duration;
 use trundle_core::{GyroRate, Pose2, RgbdImage, SensorEvent, Stamp, Twist2, WheelTicks};
 use trundle_runtime::real_time::{
-    Inbox, Input, LoopTimer, LoopTimerConfig, Post, ThreadPlacement, WorkerThreads,
+    Inbox, InboxItem, Input, LoopTimer, LoopTimerConfig, ThreadPlacement, WorkerThreads,
 };
 use trundle_runtime::{Job, LazyImage, Robot, Worker};
 
@@ -29,13 +29,14 @@ fn events(seconds: i64) -> Vec<SensorEvent> {
 /// Feeds `robot` as fast as it can be, its work in threads; what it was fed, and what it commanded.
 fn live(robot: &mut Robot) -> (Vec<Fed>, Vec<Twist2>) {
     let mut inbox: Inbox<SensorEvent> = Inbox::new(100_000);
-    let door = inbox.door();
-    let crew =
-        WorkerThreads::start(ThreadPlacement::default(), move |answer| _ = door.put(Post::Answer(answer)))
-            .unwrap();
+    let sender = inbox.sender();
+    let worker_threads = WorkerThreads::start(ThreadPlacement::default(), move |answer| {
+        _ = sender.put(InboxItem::Answer(answer))
+    })
+    .unwrap();
     for event in events(4) {
         let is_image = matches!(event, SensorEvent::Rgbd(_));
-        inbox.door().put(if is_image { Post::Patient(event) } else { Post::Urgent(event) });
+        inbox.sender().put(if is_image { InboxItem::Deferred(event) } else { InboxItem::Urgent(event) });
     }
     let loop_timer = LoopTimer::new(LoopTimerConfig::default());
     let (mut fed, mut twists) = (Vec::new(), Vec::new());
@@ -56,10 +57,10 @@ fn live(robot: &mut Robot) -> (Vec<Fed>, Vec<Twist2>) {
         };
         twists.extend(report.twist);
         while let Some(job) = robot.next_job() {
-            crew.give(job);
+            worker_threads.give(job);
         }
     }
-    assert_eq!(crew.dismiss().len(), Worker::ALL.len());
+    assert_eq!(worker_threads.finish().len(), Worker::ALL.len());
     (fed, twists)
 }
 
@@ -70,8 +71,8 @@ fn again(robot: &mut Robot, fed: Vec<Fed>) -> Vec<Twist2> {
         let report = match fed {
             Fed::Event(event) => robot.step(&event),
             Fed::Image(image) => robot.queue_image(LazyImage::from(image)),
-            Fed::Answer(helper) => {
-                let at = jobs.iter().position(|job| job.worker() == helper).unwrap();
+            Fed::Answer(worker) => {
+                let at = jobs.iter().position(|job| job.worker() == worker).unwrap();
                 robot.apply_answer(jobs.remove(at).run())
             }
         };
