@@ -34,6 +34,7 @@ pub use limiter::{Limited, Limiter};
 pub use path_tracking::path_tracker::{PathTracker, TrackingReport};
 pub use path_tracking::path_tracking_config::PathTrackingConfig;
 pub use path_tracking::tracking_error::TrackingError;
+pub use safety::hold::MotionHold;
 pub use safety::obstacles::{SafetyMemory, SafetyScan};
 pub use safety::safety_action::{SafetyAction, SlowReason, StopReason};
 pub use safety::safety_config::SafetyConfig;

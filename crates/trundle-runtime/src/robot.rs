@@ -1,6 +1,7 @@
 //! The whole robot: a sensor event in, a report out.
 
 mod background;
+mod body_state;
 mod deferred_work;
 mod event_log;
 mod pose_monitor;
@@ -28,12 +29,13 @@ use crate::{
     workers::perception_worker::{PerceptionResult, PerceptionWorker},
 };
 use background::Background;
+use body_state::BodyState;
 use event_log::DroppedImage;
 use std::sync::Arc;
 use trundle_control::{MotionSense, SafetyScan};
 use trundle_core::{
-    Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, RgbdImage, Scan,
-    SensorEvent, Stamp, Vector2, WheelTicks,
+    Battery, BodyEvent, BodyEventKind, Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3,
+    PoseEstimate, RgbdImage, Scan, SensorEvent, Stamp, Vector2, WheelTicks,
 };
 use trundle_localization::{Correction, Localizer, OdometryState, VisualPose, VisualQuality, WheelOdometry};
 use trundle_mapping::{LiveMapper, MapperConfig, ScanMatcher};
@@ -80,6 +82,8 @@ pub struct Robot {
 #[derive(Debug, Default)]
 struct Latest {
     odometry: Option<Odometry>,
+    /// Power, wheel drop, links.
+    body: BodyState,
     /// The newest scan.
     scan: Option<Scan>,
     /// `odom_from_base` when it was taken.
@@ -188,6 +192,8 @@ impl Robot {
             SensorEvent::Rgbd(image) => self.on_image(image, &mut report),
             SensorEvent::Touch(touch) => self.on_touch(touch.pressed),
             SensorEvent::Cliff(cliff) => self.on_cliff(cliff.over_edge),
+            SensorEvent::Odometry(odometry) => self.on_odometry(odometry, &mut report),
+            SensorEvent::Body(event) => self.on_body(event, &mut report),
             SensorEvent::Scan(scan) if self.range_source == RangeSource::Laser => self.on_laser(scan),
             // The grid of a robot with a depth camera ignores lasers; truth is for evaluation alone.
             _ => {}
@@ -215,17 +221,53 @@ impl Robot {
     /// A wheel reading: odometry, prediction, then navigation: a twist leaves.
     fn on_wheels(&mut self, wheels: &WheelTicks, report: &mut StepReport) {
         let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
+        self.drive_on(odometry, wheels.stamp, report);
+    }
+
+    /// Odometry that the body computed: as a reading of the wheels. Invalid odometry is dropped.
+    fn on_odometry(&mut self, odometry: &Odometry, report: &mut StepReport) {
+        let Ok(odometry) = odometry.checked() else {
+            tracing::warn!("odometry of {} s is not finite and is dropped", odometry.stamp);
+            return;
+        };
+        let now = odometry.stamp;
+        let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_odometry(&odometry));
+        self.drive_on(odometry, now, report);
+    }
+
+    /// An event of the body: a condition that begins stops the robot at once, one that ends lets it go on, and in silence time goes on.
+    fn on_body(&mut self, event: &BodyEvent, report: &mut StepReport) {
+        let before = self.latest.body.hold(self.range_source);
+        self.latest.body.update(event.kind);
+        let hold = self.latest.body.hold(self.range_source);
+        if before != hold {
+            event_log::hold(event.stamp, hold);
+        }
+        if before != hold || event.kind == BodyEventKind::Silence {
+            self.decide(event.stamp, report);
+        }
+    }
+
+    /// New odometry: prediction, then navigation.
+    fn drive_on(&mut self, odometry: Odometry, now: Stamp, report: &mut StepReport) {
         self.times.measure(Stage::Localization, || self.localizer.predict(&odometry));
         self.latest.odometry = Some(odometry);
-        self.latest.forecast_movers(&self.obstacle_tracker, wheels.stamp);
+        self.decide(now, report);
+    }
+
+    /// Navigation by the state of the world at `now`: a twist leaves.
+    fn decide(&mut self, now: Stamp, report: &mut StepReport) {
+        self.latest.forecast_movers(&self.obstacle_tracker, now);
         let world = WorldState {
-            now: wheels.stamp,
+            now,
             estimate: self.localizer.estimate(),
             grid: self.mapper.grid(),
             scan: self.latest.scan_with_odometry(),
             seen: self.latest.camera_health.seen(),
-            unlocated: self.latest.unlocated.map_or(0.0, |since| wheels.stamp - since),
-            motion: self.motion_sense(wheels.stamp),
+            unlocated: self.latest.unlocated.map_or(0.0, |since| now - since),
+            wheels: self.latest.odometry.as_ref().map(|odometry| odometry.stamp),
+            hold: self.latest.body.hold(self.range_source),
+            motion: self.motion_sense(now),
             dynamic_obstacles: DynamicObstacles {
                 movers: &self.latest.movers,
                 unconfirmed: &self.latest.unconfirmed,
@@ -407,7 +449,9 @@ impl Robot {
     /// Whether the pose is known well enough for scans to enter the grid.
     fn is_pose_known(&self, now: Stamp) -> bool {
         let is_unlocated = self.latest.unlocated.is_some_and(|since| now - since > UNLOCATED_WITH_FEATURES_S);
-        !is_unlocated && position_sigma(&self.localizer.estimate()) < self.lost_sigma
+        !is_unlocated
+            && !self.latest.body.is_lifted()
+            && position_sigma(&self.localizer.estimate()) < self.lost_sigma
     }
 
     /// Corrects the estimate by where the scan fits the map.
@@ -516,6 +560,11 @@ impl Robot {
     /// Images that were left out because they were the last one again though the robot had moved.
     pub fn frozen_images(&self) -> usize {
         self.latest.frozen
+    }
+
+    /// The battery; none where the body has not reported it.
+    pub fn battery(&self) -> Option<Battery> {
+        self.latest.body.battery()
     }
 
     /// Cost of the stages.

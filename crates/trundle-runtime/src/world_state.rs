@@ -1,6 +1,6 @@
 //! The world state: what a decision needs, by reference and as a copy for a decision that runs beside the control loop.
 
-use trundle_control::{MotionSense, SafetyScan};
+use trundle_control::{MotionHold, MotionSense, SafetyScan};
 use trundle_core::{OccupancyGrid, Pose2, PoseEstimate, Scan, Stamp, Vector2};
 use trundle_planning::MovingObstacle;
 
@@ -16,6 +16,10 @@ pub(crate) struct WorldState<'a> {
     pub(crate) seen: Option<Stamp>,
     /// For how long images that show enough have not been located, s.
     pub(crate) unlocated: f64,
+    /// Stamp of the newest reading of the wheels; none before the first.
+    pub(crate) wheels: Option<Stamp>,
+    /// A condition of the body under which no wheel may turn.
+    pub(crate) hold: Option<MotionHold>,
     /// The source that measures the robot's motion.
     pub(crate) motion: MotionSense,
     pub(crate) dynamic_obstacles: DynamicObstacles<'a>,
@@ -48,6 +52,8 @@ pub(crate) struct OwnedWorldState {
     scan: Option<(Scan, Pose2, Pose2)>,
     seen: Option<Stamp>,
     unlocated: f64,
+    wheels: Option<Stamp>,
+    hold: Option<MotionHold>,
     motion: MotionSense,
     movers: Vec<MovingObstacle>,
     unconfirmed: Vec<Vector2>,
@@ -63,6 +69,8 @@ impl From<&WorldState<'_>> for OwnedWorldState {
             scan: s.scan.map(|seen| (seen.scan.clone(), seen.odom_at_scan, seen.odom_now)),
             seen: s.seen,
             unlocated: s.unlocated,
+            wheels: s.wheels,
+            hold: s.hold,
             motion: s.motion,
             movers: s.dynamic_obstacles.movers.to_vec(),
             unconfirmed: s.dynamic_obstacles.unconfirmed.to_vec(),
@@ -89,6 +97,8 @@ impl OwnedWorldState {
             }),
             seen: self.seen,
             unlocated: self.unlocated,
+            wheels: self.wheels,
+            hold: self.hold,
             motion: self.motion,
             dynamic_obstacles: DynamicObstacles {
                 movers: &self.movers,
@@ -128,6 +138,8 @@ mod tests {
             }),
             seen: Some(Stamp::from_nanos(4)),
             unlocated: 0.4,
+            wheels: Some(Stamp::from_nanos(8)),
+            hold: Some(MotionHold::Paused),
             motion: MotionSense::Sight,
             dynamic_obstacles: DynamicObstacles {
                 movers: &[],
@@ -139,8 +151,8 @@ mod tests {
         let copy = owned.as_world_state();
         assert_eq!((copy.now, copy.estimate, copy.grid), (original.now, original.estimate, original.grid));
         assert_eq!(
-            (copy.seen, copy.unlocated, copy.motion),
-            (original.seen, original.unlocated, original.motion)
+            (copy.seen, copy.unlocated, copy.motion, copy.wheels, copy.hold),
+            (original.seen, original.unlocated, original.motion, original.wheels, original.hold)
         );
         let (carried, kept) = (copy.scan.unwrap(), original.scan.unwrap());
         assert_eq!(carried.scan, kept.scan);

@@ -8,6 +8,7 @@
 //!
 //! Reaction and braking over the free distance s: v t + v^2 / (2 a) <= s, so v = -a t + sqrt(a^2 t^2 + 2 a s).
 
+pub(crate) mod hold;
 pub(crate) mod obstacles;
 pub(crate) mod safety_action;
 pub(crate) mod safety_config;

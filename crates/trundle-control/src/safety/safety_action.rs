@@ -1,5 +1,6 @@
 //! Decision of the safety monitor about a command, and its reason.
 
+use super::hold::MotionHold;
 use std::fmt;
 use trundle_core::Vector2;
 
@@ -88,6 +89,8 @@ pub enum StopReason {
         /// Its age, s.
         age: f64,
     },
+    /// A condition of the body under which no wheel may turn.
+    Held(MotionHold),
     /// The command, or the odometry under the scan, is not a number.
     NotFinite,
 }
@@ -129,6 +132,7 @@ impl fmt::Display for StopReason {
             }
             Self::NoWheels => f.write_str("no wheel reading yet"),
             Self::StaleWheels { age } => write!(f, "the newest wheel reading is {age:.2} s old"),
+            Self::Held(hold) => hold.fmt(f),
             Self::NotFinite => f.write_str("the command is not a number"),
         }
     }

@@ -1,5 +1,6 @@
 //! The safety monitor: judges one command.
 
+use crate::safety::hold::MotionHold;
 use crate::safety::obstacles::{Obstacle, SafetyMemory, SafetyScan, collect_memory, collect_scan};
 use crate::safety::safety_action::{SafetyAction, SlowReason, StopReason};
 use crate::safety::safety_config::SafetyConfig;
@@ -32,6 +33,8 @@ pub struct SafetyInput<'a> {
     pub touched: bool,
     /// Whether a cliff sensor has no floor below it.
     pub over_edge: bool,
+    /// A condition of the body under which no wheel may turn.
+    pub hold: Option<MotionHold>,
     /// Stamp of the newest image with content.
     pub image: Option<Stamp>,
     /// Stamp of the newest wheel reading.
@@ -117,12 +120,15 @@ impl SafetyMonitor {
         )
     }
 
-    /// Why the input is unusable, if a number is not finite or wheel readings are missing.
+    /// Why no command may pass: a number is not finite, the body holds the robot, or wheel readings are missing.
     fn missing_input(&self, input: &SafetyInput<'_>) -> Option<StopReason> {
         let poses = input.scan.iter().flat_map(|s| [s.odom_at_scan, s.odom_now]);
         let mut poses = poses.chain(input.memory.iter().map(|m| m.map_from_base));
         if !input.twist.is_finite() || !poses.all(|pose| pose.is_finite()) {
             return Some(StopReason::NotFinite);
+        }
+        if let Some(hold) = input.hold {
+            return Some(StopReason::Held(hold));
         }
         let Some(wheels) = input.wheels else { return Some(StopReason::NoWheels) };
         let age = input.now - wheels;
@@ -283,6 +289,7 @@ mod tests {
             memory: None,
             touched: false,
             over_edge: false,
+            hold: None,
             image: Some(now),
             wheels: Some(now),
             motion: MotionSense::Wheels,
@@ -318,6 +325,11 @@ mod tests {
         assert_eq!(reason(SafetyInput { twist: Twist2::new(f64::NAN, 0.0), ..input }), StopReason::NotFinite);
         assert_eq!(reason(SafetyInput { touched: true, ..input }), StopReason::Touched);
         assert_eq!(reason(SafetyInput { over_edge: true, ..input }), StopReason::Cliff);
+        let hold = Some(MotionHold::WheelDrop);
+        for twist in [twist, Twist2::new(-0.1, 0.0), Twist2::new(0.0, 0.5)] {
+            let stop = reason(SafetyInput { hold, touched: true, twist, ..input });
+            assert_eq!(stop, StopReason::Held(MotionHold::WheelDrop), "neither turns nor backing out pass");
+        }
     }
 
     #[test]

@@ -92,6 +92,7 @@ fn drive(world: &World, mut plant: Plant, command: Twist2, seconds: f64, with_ma
             memory: with_map.then_some(memory),
             touched: false,
             over_edge: false,
+            hold: None,
             image: Some(scan.stamp()),
             wheels: Some(plant.now),
             motion: MotionSense::Wheels,

@@ -30,23 +30,25 @@ use trundle_core::{
 /// A reading from the past, after a gap, or of an impossible speed never makes the pose jump: see [`WheelReport`].
 #[derive(Debug, Clone)]
 pub struct WheelOdometry {
-    drive: DifferentialDrive,
-    config: OdometryConfig,
+    pub(super) drive: DifferentialDrive,
+    pub(super) config: OdometryConfig,
     integral: TurnIntegral,
     gyro_calibration: GyroCalibration,
     yaw_segments: VisualYawSegments,
     gyro_fault: GyroFault,
-    wheel_fault: WheelFault,
+    pub(super) wheel_fault: WheelFault,
     wheel_calibration: WheelCalibration,
     last_rate: Option<GyroRate>,
     last_ticks: Option<WheelTicks>,
+    /// The newest odometry that the body computed.
+    pub(super) last_given: Option<Odometry>,
     /// A rejected reading at impossible counts: a second one near it means that the counters were reset.
     suspect_ticks: Option<WheelTicks>,
     resting_since: Option<Stamp>,
     /// Length of the path, m.
-    path_length: f64,
-    odometry: Odometry,
-    reports: ReportLog,
+    pub(super) path_length: f64,
+    pub(super) odometry: Odometry,
+    pub(super) reports: ReportLog,
 }
 
 /// Distances of the two wheels between two readings, m, with the time, s.
@@ -75,6 +77,7 @@ impl WheelOdometry {
             wheel_fault: WheelFault::default(),
             last_rate: None,
             last_ticks: None,
+            last_given: None,
             suspect_ticks: None,
             resting_since: None,
             path_length: 0.0,

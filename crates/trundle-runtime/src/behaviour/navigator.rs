@@ -260,6 +260,10 @@ impl Navigator {
         let turns_count = matches!(self.state, DriveState::FinalApproach | DriveState::Maneuvering)
             || self.state == DriveState::Driving
             || self.goal == Goal::Spin && self.state == DriveState::Initializing;
+        if s.hold.is_some() {
+            // What holds the robot is no fault of its goal.
+            return self.progress.restart();
+        }
         let stood = self.progress.standing_for(s.now, s.estimate.pose, turns_count);
         if stood > self.config.patience {
             self.stop_without_progress(stood);

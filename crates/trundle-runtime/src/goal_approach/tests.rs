@@ -25,6 +25,8 @@ fn world(grid: &OccupancyGrid, pose: Pose2, time: f64) -> WorldState<'_> {
         scan: None,
         seen: None,
         unlocated: 0.0,
+        wheels: Some(now),
+        hold: None,
         motion: trundle_control::MotionSense::Wheels,
         dynamic_obstacles: crate::world_state::DynamicObstacles::default(),
     }

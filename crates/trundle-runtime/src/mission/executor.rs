@@ -260,6 +260,8 @@ mod tests {
             scan: None,
             seen: None,
             unlocated: 0.0,
+            wheels: Some(stamp),
+            hold: None,
             motion: trundle_control::MotionSense::Wheels,
             dynamic_obstacles: crate::world_state::DynamicObstacles::default(),
         }

@@ -2,7 +2,7 @@
 
 use super::no_path::NoPath;
 use serde::{Deserialize, Serialize};
-use trundle_control::StopReason;
+use trundle_control::{MotionHold, StopReason};
 
 /// The kind of a reason, without its numbers. Its name in files is the variant's in `snake_case`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -23,6 +23,18 @@ pub enum ReasonKind {
     WheelsMissing,
     /// A command is not a number.
     CommandInvalid,
+    /// A wheel hangs.
+    WheelDrop,
+    /// A wheel motor draws too much current.
+    OverCurrent,
+    /// A power supply is plugged in.
+    AdapterConnected,
+    /// The base, the camera or the laser does not answer.
+    DeviceLost,
+    /// The battery is empty.
+    BatteryEmpty,
+    /// A person paused the robot by its button.
+    Paused,
     /// The robot stops before the next plan.
     StoppingToReplan,
     /// A dynamic obstacle blocks the path.
@@ -76,7 +88,21 @@ impl ReasonKind {
             }
             StopReason::NothingTellsMotion => Self::MotionUnknown,
             StopReason::NoWheels | StopReason::StaleWheels { .. } => Self::WheelsMissing,
+            StopReason::Held(hold) => Self::of_hold(hold),
             StopReason::NotFinite => Self::CommandInvalid,
+        }
+    }
+
+    /// The kind of a hold by the body.
+    fn of_hold(hold: &MotionHold) -> Self {
+        match hold {
+            MotionHold::WheelDrop => Self::WheelDrop,
+            MotionHold::OverCurrent => Self::OverCurrent,
+            MotionHold::AdapterConnected => Self::AdapterConnected,
+            MotionHold::DeviceLost(_) => Self::DeviceLost,
+            MotionHold::BatteryEmpty => Self::BatteryEmpty,
+            MotionHold::Paused => Self::Paused,
+            _ => Self::Unknown,
         }
     }
 

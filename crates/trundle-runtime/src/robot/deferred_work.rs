@@ -71,7 +71,8 @@ impl Robot {
             }
             Outcome::Decided { decision_worker, decision, asked } => {
                 let is_newest = self.latest.odometry.is_some_and(|odometry| odometry.stamp == asked);
-                let is_current = is_newest && !self.background.knows_more();
+                let is_held = self.latest.body.hold(self.range_source).is_some();
+                let is_current = is_newest && !is_held && !self.background.knows_more();
                 report.twist = is_current.then_some(decision.twist);
                 report.twist.into_iter().for_each(|twist| self.odometry.set_command(twist));
                 self.return_decision_worker(decision_worker, report.twist);

@@ -2,6 +2,7 @@
 
 use crate::behaviour::drive_state::DriveState;
 use crate::reason::Reason;
+use trundle_control::MotionHold;
 use trundle_core::{Pose2, Stamp, difference_of_angles};
 
 /// Correction of the pose estimate \[m\] above which the correction is logged. Source: ours, the size of a grid cell.
@@ -45,6 +46,14 @@ pub(super) fn correction(at: Stamp, source: &str, old: Pose2, new: Pose2) {
     if distance > LOGGED_CORRECTION_M {
         let turn = difference_of_angles(new.theta, old.theta).to_degrees();
         tracing::info!("{:.3} s: {source} corrects the pose by {distance:.3} m, {turn:.2} deg", at.as_secs());
+    }
+}
+
+/// Logs a condition of the body that holds the robot, or its end.
+pub(super) fn hold(at: Stamp, hold: Option<MotionHold>) {
+    match hold {
+        Some(hold) => tracing::warn!("{:.3} s: no motion: {hold}", at.as_secs()),
+        None => tracing::info!("{:.3} s: motion is free again", at.as_secs()),
     }
 }
 

@@ -3,8 +3,8 @@
 use crate::robot::{Base, robot, wall};
 use proptest::prelude::*;
 use trundle_core::{
-    Beam, Cliff, DifferentialDrive, DriveLimits, GyroRate, OccupancyGrid, Pose2, RgbdImage, Scan,
-    SensorEvent, Stamp, Touch, Twist2, Vector2, WheelTicks,
+    Beam, BodyEvent, BodyEventKind, Button, Cliff, Device, DifferentialDrive, DriveLimits, GyroRate, Link,
+    OccupancyGrid, PerWheel, Pose2, RgbdImage, Scan, SensorEvent, Stamp, Touch, Twist2, Vector2, WheelTicks,
 };
 use trundle_runtime::{
     Checkpoint, DriveState, LazyImage, Mission, RangeSource, Robot, RobotConfig, StepReport, Task, TaskEnd,
@@ -178,7 +178,20 @@ fn any_event() -> impl Strategy<Value = SensorEvent> {
         (stamp(), any::<bool>()).prop_map(|(stamp, pressed)| SensorEvent::Touch(Touch { stamp, pressed })),
         (stamp(), any::<bool>())
             .prop_map(|(stamp, over_edge)| SensorEvent::Cliff(Cliff { stamp, over_edge })),
+        (stamp(), body_event()).prop_map(|(stamp, kind)| SensorEvent::Body(BodyEvent { stamp, kind })),
         scan,
+    ]
+}
+
+fn body_event() -> impl Strategy<Value = BodyEventKind> {
+    let wheels = (any::<bool>(), any::<bool>()).prop_map(|(left, right)| PerWheel { left, right });
+    let device = prop_oneof![Just(Device::Base), Just(Device::Camera), Just(Device::Laser)];
+    prop_oneof![
+        wheels.prop_map(BodyEventKind::WheelDrop),
+        (device, any::<bool>()).prop_map(|(device, is_up)| BodyEventKind::Link(Link { device, is_up })),
+        (0..3_u8, any::<bool>())
+            .prop_map(|(index, pressed)| BodyEventKind::Button(Button { index, pressed })),
+        Just(BodyEventKind::Silence),
     ]
 }
 
@@ -203,7 +216,9 @@ proptest! {
         let mut robot = laser_robot();
         for event in &events {
             let report = robot.step(event);
-            prop_assert_eq!(report.twist.is_some(), matches!(event, SensorEvent::Wheels(_)));
+            if !matches!(event, SensorEvent::Body(_)) {
+                prop_assert_eq!(report.twist.is_some(), matches!(event, SensorEvent::Wheels(_)));
+            }
             let twist = report.twist.unwrap_or_default();
             let within = DriveLimits::KOBUKI.saturate(twist, DifferentialDrive::KOBUKI.wheelbase);
             prop_assert!((within.v - twist.v).abs() + (within.omega - twist.omega).abs() < 1e-9, "{:?}", twist);

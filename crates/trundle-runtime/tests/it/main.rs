@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "workers of tests")]
 
 mod background;
+mod body_events;
 mod checkpoint;
 mod config;
 mod laws;

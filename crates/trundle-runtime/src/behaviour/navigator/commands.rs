@@ -166,8 +166,9 @@ pub(crate) fn safety_input<'a>(
         }),
         touched,
         over_edge,
+        hold: s.hold,
         image: s.seen,
-        wheels: Some(s.now),
+        wheels: s.wheels,
         motion: s.motion,
     }
 }

@@ -34,6 +34,8 @@ pub(super) fn at_rest(grid: &OccupancyGrid, now: Stamp, pose: Pose2) -> WorldSta
         scan: None,
         seen: None,
         unlocated: 0.0,
+        wheels: Some(now),
+        hold: None,
         motion: MotionSense::Wheels,
         dynamic_obstacles: DynamicObstacles::default(),
     }

@@ -1,0 +1,35 @@
+//! Conditions of the body under which no wheel may turn.
+
+use std::fmt;
+use trundle_core::Device;
+
+/// A condition of the body under which no wheel may turn. It ends when the body reports so.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MotionHold {
+    /// A wheel hangs: the robot was lifted, or stands over an edge.
+    WheelDrop,
+    /// A wheel motor draws too much current: something blocks the wheel.
+    OverCurrent,
+    /// A power supply is plugged in: the robot would tear its cable.
+    AdapterConnected,
+    /// A device that the robot drives by does not answer.
+    DeviceLost(Device),
+    /// The battery is empty.
+    BatteryEmpty,
+    /// A person paused the robot by its button.
+    Paused,
+}
+
+impl fmt::Display for MotionHold {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::WheelDrop => f.write_str("a wheel hangs: put the robot on the floor"),
+            Self::OverCurrent => f.write_str("a wheel motor draws too much current: free the wheel"),
+            Self::AdapterConnected => f.write_str("the power supply is plugged in: unplug it"),
+            Self::DeviceLost(device) => write!(f, "the {device} does not answer: check its cable and power"),
+            Self::BatteryEmpty => f.write_str("the battery is empty: charge it"),
+            Self::Paused => f.write_str("paused by the button: press it again"),
+        }
+    }
+}
