@@ -25,6 +25,7 @@
 //! ```
 
 mod best_view;
+mod body_log;
 mod checkpoint_writer;
 pub mod dock;
 mod encoded_body;
@@ -34,6 +35,7 @@ mod finished_run;
 mod free_space;
 mod input_warnings;
 pub mod laser_map;
+mod mission_file;
 pub mod plan;
 mod progress;
 pub mod real_time;
@@ -55,12 +57,14 @@ pub mod stop;
 pub mod vocabulary_file;
 
 pub use best_view::BestView;
+pub use body_log::BodyLog;
 pub use checkpoint_writer::CheckpointWriter;
 pub use encoded_body::{EncodedBody, RunInput};
 pub use error::AppError;
 pub use finished_run::{FinishedRun, RecordingCost};
 pub use free_space::{FreeSpace, MIN_FREE_BYTES};
 pub use input_warnings::{log_warnings, read_map, read_trajectory, read_two_maps};
+pub use mission_file::read_mission;
 pub use progress::Progress;
 pub use recorder::{FileRecorder, RunRecorder};
 pub use recording_content::RecordingContent;

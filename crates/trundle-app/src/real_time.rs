@@ -8,12 +8,16 @@
 //! | recorder | last | the recording |
 
 mod background_body;
+mod event_feed;
+mod live_body;
 mod memory_usage;
 mod pacer;
 mod report;
 mod threaded_body;
 
-pub use background_body::{BackgroundBody, BodyTiming, TimedEvent};
+pub use background_body::{BackgroundBody, BodyTiming, Lateness, TimedEvent};
+pub use event_feed::EventFeed;
+pub use live_body::LiveBody;
 pub use memory_usage::MemoryUsage;
 pub use pacer::RealTimePacer;
 pub use report::{QueueLength, RealTimeReport, ThreadLoad};

@@ -1,5 +1,6 @@
 //! The log of a run for evaluation and pictures: poses, truth, commands, states.
 
+use crate::BodyLog;
 use trundle_core::{Pose2, SensorEvent, Stamp, Twist2};
 use trundle_runtime::{DriveState, Reason, StepReport};
 use trundle_slam::Tracking;
@@ -25,6 +26,8 @@ pub struct RunLog {
     pub plans: usize,
     /// Images by tracking state.
     pub tracked: TrackCounts,
+    /// Power, wheel drops, losses of devices.
+    pub body: BodyLog,
     /// The newest state.
     pub state: DriveState,
     /// Each change of the state.
@@ -159,11 +162,12 @@ impl RunLog {
         self.true_contacts.map_or(self.presses, |count| count as usize)
     }
 
-    /// Logs truth (moved into the map frame) and bumper presses, for evaluation only.
+    /// Logs truth (moved into the map frame), bumper presses and events of the body, for evaluation only.
     pub fn on_event(&mut self, event: &SensorEvent, map_from_world: Pose2) {
         match event {
             SensorEvent::Truth { stamp, pose } => self.truths.push((*stamp, map_from_world * *pose)),
             SensorEvent::Touch(touch) => self.presses += usize::from(touch.pressed),
+            SensorEvent::Body(event) => self.body.on_event(event.kind),
             _ => {}
         }
     }

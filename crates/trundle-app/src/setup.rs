@@ -20,7 +20,10 @@ const SAME_HEADING_RAD: f64 = 0.0175;
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
 pub struct RunSetup {
-    /// The scene's name, for reports.
+    /// The command that made the run, for reports.
+    #[serde(default = "demo", skip_serializing_if = "is_demo")]
+    pub command: String,
+    /// The name of the scene or of the robot, for reports.
     pub scene: String,
     /// The seed of scene and noise.
     pub seed: u64,
@@ -46,11 +49,20 @@ pub struct RunSetup {
     pub vocabulary: Option<String>,
 }
 
+fn demo() -> String {
+    "demo".to_owned()
+}
+
+fn is_demo(command: &str) -> bool {
+    command == "demo"
+}
+
 impl RunSetup {
     /// A run of `robot` with `mission`, from an empty map, in the data's time, seed 1, without time limit.
     #[must_use]
     pub fn new(scene: &str, mission: Mission, robot: RobotConfig) -> Self {
         Self {
+            command: demo(),
             scene: scene.to_owned(),
             seed: 1,
             mission,
@@ -62,6 +74,12 @@ impl RunSetup {
             checkpoint: None,
             vocabulary: None,
         }
+    }
+
+    /// The same run, made by another command than `demo`.
+    #[must_use]
+    pub fn by_command(self, command: &str) -> Self {
+        Self { command: command.to_owned(), ..self }
     }
 
     /// The setup that a recording begins with, its robot checked.

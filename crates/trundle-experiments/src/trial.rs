@@ -238,6 +238,7 @@ pub(crate) mod fixtures {
             keyframes: 0,
             images_dropped: Vec::new(),
             docking: None,
+            body: trundle_app::BodyLog::default(),
             state: DriveState::Arrived,
         };
         let line = vec![Vector2::zeros(), Vector2::new(1.0, 0.0)];

@@ -23,8 +23,8 @@ pub trait BackgroundBody {
     /// Where commands go.
     fn commands(&self) -> Sender<Twist2>;
 
-    /// The count of separate contacts, in truth.
-    fn contacts(&self) -> Arc<AtomicU32>;
+    /// The count of separate contacts, in truth; `None` where only the bumper reports contacts.
+    fn contacts(&self) -> Option<Arc<AtomicU32>>;
 
     /// Ends the body's threads.
     ///
@@ -33,14 +33,23 @@ pub trait BackgroundBody {
     fn stop(self) -> Result<BodyTiming, AppError>;
 }
 
+/// Lateness of the readings of a simulated base.
+#[derive(Debug, Clone, Copy, Default, Serialize)]
+pub struct Lateness {
+    /// 99.9th percentile \[ms\].
+    #[serde(rename = "lateness_p999_ms")]
+    pub p999_ms: f64,
+    /// Maximum \[ms\].
+    #[serde(rename = "lateness_most_ms")]
+    pub max_ms: f64,
+}
+
 /// How the body kept time. Where a simulated body did not, the robot's figures are not the robot's alone.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct BodyTiming {
-    /// Lateness of the base's readings, 99.9th percentile \[ms\].
-    pub lateness_p999_ms: f64,
-    /// Lateness of the base's readings, maximum \[ms\].
-    #[serde(rename = "lateness_most_ms")]
-    pub lateness_max_ms: f64,
+    /// Lateness of the base's readings; `None` where the base is real.
+    #[serde(flatten)]
+    pub lateness: Option<Lateness>,
     /// Images that the camera had no time to take.
     pub images_not_taken: u64,
     /// Images due.

@@ -87,12 +87,14 @@ impl RealTimeReport {
         rows.push(row("events refused".to_owned(), self.refused.to_string()));
         rows.push(row("lines of the recording lost".to_owned(), self.lines_lost.to_string()));
         let body = &self.body;
-        let late = [body.lateness_p999_ms, body.lateness_max_ms];
-        rows.push(row("simulated base late: p99.9, most".to_owned(), milliseconds(&late)));
+        if let Some(late) = body.lateness {
+            let late = [late.p999_ms, late.max_ms];
+            rows.push(row("simulated base late: p99.9, most".to_owned(), milliseconds(&late)));
+        }
         let age = [body.image_age_median_ms, body.image_age_p99_ms];
         rows.push(row("age of images on arrival: median, p99".to_owned(), milliseconds(&age)));
         let images = format!("{} of {}", body.images_not_taken, body.images);
-        rows.push(row("images the simulator did not get drawn".to_owned(), images));
+        rows.push(row("images not taken".to_owned(), images));
         let half = self.memory.samples.last().map_or(0.0, |(time, _)| time / 2.0);
         if let Some(growth) = self.memory.growth_mb_an_hour(half) {
             rows.push(row("growth of memory in the second half".to_owned(), format!("{growth:.1} MB/h")));

@@ -27,8 +27,8 @@ pub struct ThreadedBody {
     /// Time from the start of a job to the use of its result \[ms\].
     waits: BTreeMap<Worker, Histogram>,
     costs: Vec<ThreadLoad>,
-    /// Separate contacts, in truth.
-    contacts: Arc<AtomicU32>,
+    /// Separate contacts, in truth; `None` where they are not known.
+    contacts: Option<Arc<AtomicU32>>,
 }
 
 /// Largest number of events that wait for the control thread: some seconds. Later events are refused. Source: ours.
@@ -54,7 +54,7 @@ impl ThreadedBody {
             busy: BTreeMap::new(),
             waits: BTreeMap::new(),
             costs: Vec::new(),
-            contacts: Arc::default(),
+            contacts: None,
         })
     }
 
@@ -63,8 +63,8 @@ impl ThreadedBody {
         self.inbox.sender()
     }
 
-    /// Sends commands to `commands` from now on, and reads the contacts from `contacts`.
-    pub fn connect(&mut self, commands: Sender<Twist2>, contacts: Arc<AtomicU32>) {
+    /// Sends commands to `commands` from now on, and reads the contacts, where they are known, from `contacts`.
+    pub fn connect(&mut self, commands: Sender<Twist2>, contacts: Option<Arc<AtomicU32>>) {
         self.commands = Some(commands);
         self.contacts = contacts;
     }
@@ -145,6 +145,6 @@ impl EncodedBody for ThreadedBody {
     }
 
     fn true_contacts(&self) -> Option<u32> {
-        Some(self.contacts.load(Ordering::Relaxed))
+        self.contacts.as_ref().map(|contacts| contacts.load(Ordering::Relaxed))
     }
 }

@@ -47,10 +47,11 @@ impl GoalOutcome {
         })
     }
 
-    /// Whether the robot truly came within these distances of the goal, m and rad. Before a restart only the estimate is recorded.
+    /// Whether the robot came within these distances of the goal, m and rad: in truth where it is known, else by its own estimate.
+    /// Before a restart only the estimate is recorded.
     pub fn is_reached(&self, distance: f64, turn: f64) -> bool {
         let near = |error: GoalError| error.distance < distance && error.dtheta.abs() < turn;
-        let error = if self.before_restart { self.believed } else { self.error };
+        let error = self.error.filter(|_| !self.before_restart).or(self.believed);
         self.end == TaskEnd::Done && error.is_some_and(near)
     }
 
@@ -67,7 +68,12 @@ impl GoalOutcome {
             if self.before_restart {
                 format!("{}, before it was switched off; believed {}", self.end, error(&self.believed))
             } else {
-                format!("{:.1} s: {}, {}", self.at_s, self.end, error(&self.error))
+                let (by, found) = if self.error.is_some() {
+                    ("", &self.error)
+                } else {
+                    ("by its own estimate ", &self.believed)
+                };
+                format!("{:.1} s: {}, {by}{}", self.at_s, self.end, error(found))
             },
         ]
     }

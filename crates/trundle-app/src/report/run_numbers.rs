@@ -2,7 +2,7 @@
 
 use super::GoalOutcome;
 use crate::real_time::RealTimeReport;
-use crate::{FinishedRun, RunSetup, TrackCounts};
+use crate::{BodyLog, FinishedRun, RunSetup, TrackCounts};
 use serde_json::{Map, Value, json};
 use trundle_eval::{GoalError, goal_error};
 use trundle_io::Summary;
@@ -38,6 +38,8 @@ pub struct RunNumbers {
     pub images_dropped: Vec<f64>,
     /// Report of turns and straight moves for the last goal with such a request; `None` without a request.
     pub docking: Option<GoalApproachReport>,
+    /// Power, wheel drops, losses of devices.
+    pub body: BodyLog,
     /// How it ended.
     pub state: DriveState,
 }
@@ -74,21 +76,27 @@ impl RunNumbers {
             keyframes: run.robot.slam().map_or(0, |slam| slam.keyframes().count()),
             images_dropped: log.seconds_of(run.robot.dropped_images()),
             docking: run.robot.docking().filter(|docking| docking.plans > 0).cloned(),
+            body: log.body.clone(),
             state: log.state.clone(),
         }
     }
 
+    /// The error against the last goal that judges the run: in truth where it is known, else of the estimate.
+    fn judged_error(&self) -> Option<GoalError> {
+        self.goal_error.or(self.believed_error)
+    }
+
     /// Whether the end is near enough to the last goal, if there is one.
     pub fn is_near(&self) -> bool {
-        self.goal_error.is_none_or(|error| error.distance < GOAL_TOLERANCE_M)
+        self.judged_error().is_none_or(|error| error.distance < GOAL_TOLERANCE_M)
     }
 
     /// Whether the heading is near enough to the last goal's, if there is one.
     pub fn is_aligned(&self) -> bool {
-        self.goal_error.is_none_or(|error| error.dtheta.abs().to_degrees() < ALIGNED_DEG)
+        self.judged_error().is_none_or(|error| error.dtheta.abs().to_degrees() < ALIGNED_DEG)
     }
 
-    /// Whether every goal was truly reached without a contact.
+    /// Whether every goal was reached without a contact, in truth where it is known.
     pub fn is_success(&self) -> bool {
         let all = self.goals_missed() == 0 && self.goals_asked.is_some();
         self.state == DriveState::Arrived && all && self.is_near() && self.is_aligned() && self.contacts == 0
@@ -116,7 +124,7 @@ impl RunNumbers {
         if self.state != DriveState::Arrived {
             faults.push(format!("the robot did not arrive ({})", self.state));
         }
-        if let Some(error) = self.goal_error.filter(|_| !(self.is_near() && self.is_aligned())) {
+        if let Some(error) = self.judged_error().filter(|_| !(self.is_near() && self.is_aligned())) {
             let (cm, deg) = (error.distance * 100.0, error.dtheta.to_degrees());
             faults.push(format!("it stands {cm:.1} cm and {deg:.1} deg off the goal"));
         }
@@ -154,6 +162,7 @@ impl RunNumbers {
         rows.extend(
             self.docking.as_ref().map(|docking| row("turns and straight moves", docking_text(docking))),
         );
+        rows.extend(self.body.rows());
         rows.push(row("images dropped", self.images_dropped.len().to_string()));
         rows.push(row("keyframes, landmarks", format!("{}, {}", self.keyframes, self.landmarks)));
         rows
@@ -171,7 +180,7 @@ impl RunNumbers {
     /// `summary.json`: the numbers of the table; the wall clock's under `wall_clock`.
     pub fn summary(&self, setup: &RunSetup, run: &FinishedRun, timing: Option<&RealTimeReport>) -> Summary {
         // A replay's summary is the run's, byte for byte, so it bears the run's name.
-        let mut summary = Summary::new("demo");
+        let mut summary = Summary::new(&setup.command);
         summary
             .set("scene", &setup.scene)
             .set("seed", setup.seed)
@@ -200,6 +209,7 @@ impl RunNumbers {
             .set("images_dropped", self.images_dropped.len())
             .set("images_dropped_at_s", &self.images_dropped)
             .set("wall_clock", wall_clock(run.seconds, run.robot.times(), timing));
+        self.body.add_to(&mut summary);
         summary.set_interrupted(run.log.is_interrupted());
         summary
     }

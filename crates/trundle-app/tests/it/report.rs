@@ -1,7 +1,7 @@
 //! The report of a run: figures, verdict, table and folder.
 
 use crate::body::{GOAL, StillBody, run_into, setup};
-use trundle_app::TrackCounts;
+use trundle_app::{BodyLog, TrackCounts};
 use trundle_app::report::{GoalOutcome, RunNumbers, mission_text, write_run};
 use trundle_core::Pose2;
 use trundle_eval::{GoalError, goal_error};
@@ -41,6 +41,7 @@ fn good() -> RunNumbers {
         keyframes: 30,
         images_dropped: vec![1.0, 2.0],
         docking: None,
+        body: BodyLog::default(),
         state: DriveState::Arrived,
     }
 }
@@ -80,7 +81,9 @@ fn a_goal_is_reached_within_distance_and_turn_and_when_the_task_is_done() {
     let reached = |end, error| goal(end, error).is_reached(0.05, 0.05);
     assert!(reached(TaskEnd::Done, off(0.04, 2.0)));
     assert!(!reached(TaskEnd::Done, off(0.06, 0.0)) && !reached(TaskEnd::Done, off(0.0, 4.0)));
-    assert!(!reached(TaskEnd::Done, None), "without truth nothing is proven");
+    assert!(reached(TaskEnd::Done, None), "without truth the estimate judges");
+    let off_by_estimate = GoalOutcome { believed: off(0.2, 0.0), ..goal(TaskEnd::Done, None) };
+    assert!(!off_by_estimate.is_reached(0.05, 0.05));
     let given_up = || TaskEnd::GivenUp { reason: Reason::MovingObstacle };
     assert!(!reached(given_up(), off(0.0, 0.0)));
     let earlier = GoalOutcome { before_restart: true, ..goal(TaskEnd::Done, None) };

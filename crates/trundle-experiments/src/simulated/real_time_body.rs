@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel};
 use std::time::{Duration, Instant};
 use trundle_app::AppError;
-use trundle_app::real_time::{BackgroundBody, BodyTiming, MemoryUsage, RealTimePacer, TimedEvent};
+use trundle_app::real_time::{BackgroundBody, BodyTiming, Lateness, MemoryUsage, RealTimePacer, TimedEvent};
 use trundle_core::{RobotBody, SensorEvent, Twist2};
 use trundle_io::EncodedEvent;
 use trundle_runtime::Histogram;
@@ -79,8 +79,8 @@ impl BackgroundBody for SimulatedRealTimeBody {
         self.commands.clone()
     }
 
-    fn contacts(&self) -> Arc<AtomicU32> {
-        Arc::clone(&self.contacts)
+    fn contacts(&self) -> Option<Arc<AtomicU32>> {
+        Some(Arc::clone(&self.contacts))
     }
 
     fn stop(self) -> Result<BodyTiming, AppError> {
@@ -130,8 +130,10 @@ fn live(
         }
     }
     Ok(BodyTiming {
-        lateness_p999_ms: lateness.quantile(0.999).unwrap_or_default(),
-        lateness_max_ms: lateness.most().unwrap_or_default(),
+        lateness: Some(Lateness {
+            p999_ms: lateness.quantile(0.999).unwrap_or_default(),
+            max_ms: lateness.most().unwrap_or_default(),
+        }),
         images_not_taken: shared.not_taken.load(Ordering::Relaxed),
         images,
         memory,

@@ -1,0 +1,136 @@
+//! Missions as TOML files.
+
+use crate::{AppError, read_toml};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+use trundle_core::Pose2;
+use trundle_io::read_places;
+use trundle_runtime::{Mission, Task};
+
+/// The form of a mission file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MissionFile {
+    /// A file of named places, beside the mission file.
+    places: Option<String>,
+    task: Vec<TaskEntry>,
+}
+
+/// A task: one of its keys stands.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TaskEntry {
+    /// Goal pose, map frame: m, m, deg.
+    go: Option<[f64; 3]>,
+    /// Name of a place.
+    place: Option<String>,
+    #[serde(default)]
+    explore: bool,
+    #[serde(default, rename = "return")]
+    back: bool,
+}
+
+/// Reads a mission.
+///
+/// ```toml
+/// places = "places.toml"   # only where a task names a place
+/// [[task]]
+/// explore = true
+/// [[task]]
+/// go = [3.0, 1.0, 90.0]    # m, m, deg, map frame
+/// [[task]]
+/// place = "desk"
+/// [[task]]
+/// return = true
+/// ```
+///
+/// # Errors
+/// Names the file and the line, or the task, and what is wrong there.
+pub fn read_mission(file: &Path) -> Result<Mission, AppError> {
+    let MissionFile { places, task: entries } = read_toml(file)?;
+    let problem = |what: String| AppError::Input(format!("{}: {what}", file.display()));
+    if entries.is_empty() {
+        return Err(problem("the mission has no task, expected at least one [[task]]".to_owned()));
+    }
+    let places = places.map(|name| read_places(&file.with_file_name(name))).transpose()?.unwrap_or_default();
+    let tasks: Result<Vec<Task>, String> = entries
+        .iter()
+        .enumerate()
+        .map(|(i, entry)| task(entry, &places).map_err(|what| format!("task {}: {what}", i + 1)))
+        .collect();
+    Mission::new(tasks.map_err(problem)?).map_err(|invalid| problem(invalid.to_string()))
+}
+
+fn task(entry: &TaskEntry, places: &BTreeMap<String, Pose2>) -> Result<Task, String> {
+    match (entry.go, &entry.place, entry.explore, entry.back) {
+        (Some([x, y, heading_deg]), None, false, false) => {
+            Ok(Task::Go(Pose2::new(x, y, heading_deg.to_radians())))
+        }
+        (None, Some(name), false, false) => places.get(name).map(|pose| Task::Go(*pose)).ok_or_else(|| {
+            let known: Vec<&str> = places.keys().map(String::as_str).collect();
+            match known.as_slice() {
+                [] => format!("no place '{name}': the mission names no file of places (places = FILE)"),
+                _ => format!("no place '{name}'; there are: {}", known.join(", ")),
+            }
+        }),
+        (None, None, true, false) => Ok(Task::Explore),
+        (None, None, false, true) => Ok(Task::Return),
+        _ => Err("expected one of go = [X, Y, DEG], place = NAME, explore = true, return = true".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Mission, String> {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("places.toml"), "[desk]\nx = 1.0\ny = 2.0\nheading_deg = 90\n")
+            .unwrap();
+        let file = folder.path().join("mission.toml");
+        std::fs::write(&file, text).unwrap();
+        let parent = format!("{}/", folder.path().display());
+        read_mission(&file).map_err(|error| error.to_string().replace(&parent, ""))
+    }
+
+    #[test]
+    fn tasks_come_in_the_order_of_the_file() {
+        let text = "places = \"places.toml\"\n[[task]]\nexplore = true\n[[task]]\ngo = [3, 1, 180]\n\
+                    [[task]]\nplace = \"desk\"\n[[task]]\nreturn = true\n";
+        let desk = Pose2::new(1.0, 2.0, 90_f64.to_radians());
+        let goal = Pose2::new(3.0, 1.0, 180_f64.to_radians());
+        assert_eq!(
+            read(text).unwrap().tasks(),
+            [Task::Explore, Task::Go(goal), Task::Go(desk), Task::Return]
+        );
+    }
+
+    #[test]
+    fn errors_name_the_task_and_what_is_expected() {
+        for (text, expected) in [
+            ("task = []\n", "mission.toml: the mission has no task, expected at least one [[task]]"),
+            (
+                "[[task]]\ngo = [1, 2, 3]\n[[task]]\nplace = \"desk\"\n",
+                "mission.toml: task 2: no place 'desk': the mission names no file of places (places = FILE)",
+            ),
+            (
+                "places = \"places.toml\"\n[[task]]\nplace = \"door\"\n",
+                "mission.toml: task 1: no place 'door'; there are: desk",
+            ),
+            (
+                "[[task]]\ngo = [1, 2, 3]\nexplore = true\n",
+                "mission.toml: task 1: expected one of go = [X, Y, DEG], place = NAME, explore = true, return = true",
+            ),
+            ("[[task]]\ngo = [1, 2]\n", "mission.toml, line 2: go has 2 values, expected a list of 3 values"),
+            (
+                "[[task]]\ngoal = 1\n",
+                "mission.toml, line 2: unknown key goal, expected one of go, place, explore, return",
+            ),
+            ("[[task]]\ngo = [1, nan, 3]\n", "mission.toml: goal of task 0 is (1, NaN, "),
+        ] {
+            let error = read(text).unwrap_err();
+            assert!(error.starts_with(expected), "{error}");
+        }
+    }
+}

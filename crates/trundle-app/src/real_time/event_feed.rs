@@ -1,0 +1,106 @@
+//! The way of events from drivers into a run.
+
+use super::{BodyTiming, MemoryUsage, TimedEvent};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+use trundle_core::{BodyEvent, BodyEventKind, SensorEvent, Stamp};
+use trundle_io::EncodedEvent;
+use trundle_runtime::Histogram;
+use trundle_runtime::real_time::{InboxItem, InboxSender};
+
+/// Time without any event after which silence is reported: five readings of a base at 50 Hz. Source: ours.
+const SILENCE: Duration = Duration::from_millis(100);
+
+/// Sends the events of drivers into a run, from any thread. Images are encoded in the thread that sends them.
+#[derive(Clone)]
+pub struct EventFeed {
+    events: InboxSender<TimedEvent>,
+    /// The instant of stamp 0.
+    origin: Instant,
+    state: Arc<Mutex<FeedState>>,
+}
+
+#[derive(Default)]
+struct FeedState {
+    /// Arrival of the newest event.
+    newest: Option<Instant>,
+    images: u64,
+    images_refused: u64,
+    /// [ms]
+    image_ages: Histogram,
+    memory: MemoryUsage,
+}
+
+impl EventFeed {
+    /// A feed into the inbox of a run. Stamps count from `origin`.
+    #[must_use]
+    pub fn new(events: InboxSender<TimedEvent>, origin: Instant) -> Self {
+        Self { events, origin, state: Arc::default() }
+    }
+
+    /// The instant of stamp 0: drivers map their clocks to it.
+    #[must_use]
+    pub fn origin(&self) -> Instant {
+        self.origin
+    }
+
+    /// Sends an event. An event that cannot be encoded is logged and dropped.
+    pub fn send(&self, event: &SensorEvent) {
+        match EncodedEvent::encode(event) {
+            Ok(encoded) => self.put(encoded),
+            Err(error) => tracing::warn!("event of {:.3} s dropped: {error}", event.stamp().as_secs()),
+        }
+    }
+
+    /// Reports silence where no event has come for long enough.
+    pub(super) fn report_silence(&self) {
+        let now = Instant::now();
+        let mut state = self.state();
+        let since = *state.newest.get_or_insert(now);
+        if now - since >= SILENCE {
+            state.newest = Some(now);
+            drop(state);
+            let event = BodyEvent { stamp: self.stamp_of(now), kind: BodyEventKind::Silence };
+            self.events.put(InboxItem::Urgent(TimedEvent { event: EncodedEvent::Body(event), at: now }));
+        }
+    }
+
+    /// How the drivers kept time.
+    pub(super) fn timing(&self) -> BodyTiming {
+        let state = self.state();
+        let age = |fraction| state.image_ages.quantile(fraction).unwrap_or_default();
+        BodyTiming {
+            lateness: None,
+            images_not_taken: state.images_refused,
+            images: state.images,
+            image_age_median_ms: age(0.5),
+            image_age_p99_ms: age(0.99),
+            memory: state.memory.clone(),
+        }
+    }
+
+    fn put(&self, event: EncodedEvent) {
+        let at = Instant::now();
+        let is_image = matches!(event, EncodedEvent::Rgbd(_));
+        let age_ms = (self.stamp_of(at) - event.stamp()) * 1e3;
+        let event = TimedEvent { event, at };
+        let is_taken =
+            self.events.put(if is_image { InboxItem::Deferred(event) } else { InboxItem::Urgent(event) });
+        let mut state = self.state();
+        state.newest = Some(at);
+        state.memory.sample((at - self.origin).as_secs_f64());
+        if is_image {
+            state.images += 1;
+            state.images_refused += u64::from(!is_taken);
+            state.image_ages.note(age_ms.max(0.0));
+        }
+    }
+
+    fn stamp_of(&self, at: Instant) -> Stamp {
+        Stamp::default().after(at.saturating_duration_since(self.origin).as_secs_f64())
+    }
+
+    fn state(&self) -> std::sync::MutexGuard<'_, FeedState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

@@ -1,0 +1,68 @@
+//! A body of drivers that run in threads of their own: base, camera, laser.
+
+use super::{BackgroundBody, BodyTiming, EventFeed};
+use crate::AppError;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
+use trundle_core::Twist2;
+
+/// Time between two checks for silence: a tenth of the silence that is reported. Source: ours.
+const SILENCE_CHECK_PERIOD: Duration = Duration::from_millis(10);
+
+/// A body of drivers: their events come by an [`EventFeed`], the base takes commands from a channel.
+pub struct LiveBody {
+    commands: Sender<Twist2>,
+    feed: EventFeed,
+    is_over: Arc<AtomicBool>,
+    watch: JoinHandle<()>,
+    stop_drivers: Box<dyn FnOnce() + Send>,
+}
+
+impl LiveBody {
+    /// The body whose drivers send events to `feed`. `commands` leads to the base; without a base, commands have no effect.
+    /// `stop_drivers` is called at the end of the run: it stops the base and joins the drivers' threads.
+    ///
+    /// # Errors
+    /// When the system refuses a thread.
+    pub fn start(
+        feed: EventFeed,
+        commands: Option<Sender<Twist2>>,
+        stop_drivers: impl FnOnce() + Send + 'static,
+    ) -> Result<Self, AppError> {
+        let is_over = Arc::<AtomicBool>::default();
+        let (watched, over) = (feed.clone(), Arc::clone(&is_over));
+        let watch = move || {
+            while !over.load(Ordering::Relaxed) {
+                std::thread::sleep(SILENCE_CHECK_PERIOD);
+                watched.report_silence();
+            }
+        };
+        let watch = std::thread::Builder::new()
+            .name("silence".to_owned())
+            .spawn(watch)
+            .map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))?;
+        let commands = commands.unwrap_or_else(|| channel().0);
+        Ok(Self { commands, feed, is_over, watch, stop_drivers: Box::new(stop_drivers) })
+    }
+}
+
+impl BackgroundBody for LiveBody {
+    fn commands(&self) -> Sender<Twist2> {
+        self.commands.clone()
+    }
+
+    fn contacts(&self) -> Option<Arc<AtomicU32>> {
+        None
+    }
+
+    fn stop(self) -> Result<BodyTiming, AppError> {
+        self.is_over.store(true, Ordering::Relaxed);
+        (self.stop_drivers)();
+        let gone = |_| AppError::Environment("the thread that watches for silence has died".to_owned());
+        self.watch.join().map_err(gone)?;
+        Ok(self.feed.timing())
+    }
+}
