@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_shortage_is_told_when_it_is_looked_for() {
+    fn a_shortage_of_disk_space_is_reported_when_checked() {
         let mut plenty = FreeSpace::new(|| Some(5_000_000), 4_000_000);
         let mut little = FreeSpace::new(|| Some(3_000_000), 4_000_000);
         let mut untold = FreeSpace::new(|| None, u64::MAX);

@@ -35,7 +35,7 @@ fn passes_by_docking(footprint: &Footprint, grid: &OccupancyGrid, start: Pose2, 
 }
 
 #[test]
-fn planning_and_docking_pass_the_same_doors() {
+fn planning_and_docking_pass_the_same_gaps() {
     let (start, goal) = (Pose2::new(1.4, 1.5, 0.0), Pose2::new(2.6, 1.5, 0.0));
     for cells in [7, 8] {
         let (grid, half) = (sender(cells), 0.025 * cells as f64);

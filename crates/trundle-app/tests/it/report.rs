@@ -1,8 +1,8 @@
 //! The report of a run: figures, verdict, table and folder.
 
 use crate::body::{GOAL, StillBody, run_into, setup};
-use trundle_app::{BodyLog, TrackCounts};
 use trundle_app::report::{GoalOutcome, RunNumbers, mission_text, write_run};
+use trundle_app::{BodyLog, TrackCounts};
 use trundle_core::Pose2;
 use trundle_eval::{GoalError, goal_error};
 use trundle_io::OutputFolder;
@@ -119,7 +119,7 @@ fn the_table_has_a_row_for_each_figure() {
 }
 
 #[test]
-fn a_mission_is_told_in_order() {
+fn the_sentences_of_a_mission_are_in_order() {
     let mission = Mission::new(vec![Task::Explore, Task::Go(GOAL), Task::Return]).unwrap();
     assert_eq!(mission_text(&mission), "explore, go to (1.00 m, 0.00 m, 0 deg), return to the start");
     assert_eq!(mission_text(&Mission::default()), "");

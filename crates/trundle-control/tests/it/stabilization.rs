@@ -54,7 +54,7 @@ fn starts() -> impl Iterator<Item = Pose2> {
 }
 
 #[test]
-fn every_near_start_settles_within_the_tolerances() {
+fn every_near_start_ends_within_the_tolerances() {
     let goal = Pose2::new(1.0, -2.0, 1.2);
     let (mut slowest, mut total, mut count) = (0.0_f64, 0.0, 0);
     for delay in [0.02, 0.04] {

@@ -12,7 +12,7 @@ use trundle_docking::{
 
 /// Solvable problems settle within 1 cm and 1 deg, and none touches anything; the benchmark does 500 of them.
 #[test]
-fn settles_under_noise() {
+fn it_reaches_the_goal_pose_under_noise() {
     let mut rng = ChaCha8Rng::seed_from_u64(77);
     let planner = DockingPlanner::new(DockingConfig { bound_boxes: 0, ..DockingConfig::default() }).unwrap();
     let (mut count, mut good, mut contacts, mut motions) = (0_u64, 0, 0, 0);
@@ -189,7 +189,7 @@ fn a_plan_through_what_has_come_meanwhile_is_not_carried_out() {
 
 /// The paper's four scenarios in closed loop, by its own method: settled within its thresholds, nothing touched.
 #[test]
-fn the_papers_method_settles_its_scenarios_under_noise() {
+fn the_method_of_hong24_reaches_its_goals_under_noise() {
     let docking = DockingConfig { method: Method::Hong24, ..DockingConfig::default() };
     for scenario in Scenario::ALL {
         let run = run(&scenario.problem(), &docking, 3);

@@ -90,7 +90,7 @@ fn a_corridor_too_narrow_to_turn_is_certified() {
 
 /// A wall with ends: no way round within the first reach, one in the wider look.
 #[test]
-fn a_way_round_a_wall_is_found_farther_off() {
+fn a_path_around_a_wall_is_found_farther_off() {
     let wall = ObstacleScene::new(&[Obstacle::Polygon(
         [(-0.05, -2.2), (0.05, -2.2), (0.05, 2.2), (-0.05, 2.2)].map(|(x, y)| at(x, y)).to_vec(),
     )])
@@ -190,7 +190,7 @@ fn hardly_any_room_takes_many_motions_and_is_solved() {
 
 /// On a map a person is told which cell is in the way, not which piece of which outline.
 #[test]
-fn on_a_map_the_cell_that_is_in_the_way_is_told() {
+fn on_a_map_the_blocking_cell_is_named() {
     let wall = "#".repeat(30) + "\n";
     let row = "...............#..........????\n";
     let grid = OccupancyGrid::from_ascii(0.1, &(wall.clone() + &row.repeat(16) + &wall)).unwrap();

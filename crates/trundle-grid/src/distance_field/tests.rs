@@ -62,7 +62,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_told_apart_is_exact(grid in any_grid(), reach in 0.4..2.0, x in -0.3..1.3, y in 0.7..2.3) {
+    fn distances_within_reach_are_exact(grid in any_grid(), reach in 0.4..2.0, x in -0.3..1.3, y in 0.7..2.3) {
         let whole = DistanceField::from_grid(&grid, UnknownIs::Free);
         let field = DistanceField::up_to(reach, &grid, UnknownIs::Free);
         for i in 0..grid.geometry().len() {

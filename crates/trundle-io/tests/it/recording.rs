@@ -106,7 +106,7 @@ fn the_mcap_library_s_own_index_finds_all() {
 }
 
 #[test]
-fn broken_files_are_named_and_told_apart() {
+fn broken_files_are_named_with_their_fault() {
     let bytes = recording();
     assert_eq!(
         read(b"hello, this is not it").unwrap_err(),

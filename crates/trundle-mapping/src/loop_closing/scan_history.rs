@@ -99,7 +99,7 @@ mod tests {
     use crate::scan_match::scan_points::ScanPoints;
 
     #[test]
-    fn thinning_keeps_the_way_and_its_loops() {
+    fn thinning_keeps_the_path_and_its_loops() {
         let step = Pose2::new(0.5, 0.1, 0.2);
         let mut history = ScanHistory::default();
         let mut way = vec![(Stamp::default(), Pose2::IDENTITY)];

@@ -135,7 +135,7 @@ mod tests {
     use nalgebra::Vector3;
 
     #[test]
-    fn a_shortcut_is_surer_than_the_way_around() {
+    fn a_shortcut_has_less_uncertainty_than_the_longer_path() {
         let poses: Vec<Pose2> = (0..11).map(|i| Pose2::new(f64::from(i), 0.0, 0.0)).collect();
         let covariance = Matrix3::from_diagonal(&Vector3::new(0.01, 0.01, 0.001));
         let constraint = |from: usize, to: usize| Constraint {

@@ -252,7 +252,7 @@ fn a_hole_in_the_floor_is_an_obstacle_of_its_own_kind() {
 }
 
 #[test]
-fn what_hangs_in_the_way_is_told_from_what_stands() {
+fn hanging_obstacles_are_distinguished_from_standing_ones() {
     let top = Solid::new([2.0, -0.5, 0.35], [2.6, 0.5, 0.39]);
     let hanging = scan(mount(0.45, 8.0), &[top, Solid::wall(5.0, 2.0)]);
     assert_eq!(hanging.obstacle(index_ahead(&hanging)), Some(ObstacleKind::Overhang));

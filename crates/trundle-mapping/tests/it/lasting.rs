@@ -144,7 +144,7 @@ fn a_kidnapped_robot_finds_itself_and_the_map_stays_as_it_was() {
 }
 
 #[test]
-fn twins_are_not_told_apart_by_guessing() {
+fn look_alike_places_are_not_distinguished_by_chance() {
     let (room, poses) = (twins(), round());
     let mapper = mapped(&room, &poses);
     let mut localizer = MapLocalizer::of(&mapper, 1);

@@ -120,7 +120,7 @@ fn what_comes_in_while_redrawing_is_not_lost() {
 }
 
 #[test]
-fn every_change_of_the_grid_is_told() {
+fn every_change_of_the_grid_is_reported() {
     let run = run();
     let mut live = LiveMapper::new(config()).unwrap();
     let mut shown: Option<OccupancyGrid> = None;

@@ -185,7 +185,7 @@ fn the_smallest_questions_have_answers() {
 }
 
 #[test]
-fn numbers_that_are_none_are_refused_at_every_door() {
+fn numbers_that_are_not_finite_are_refused_at_every_entry_point() {
     let grid = beside_a_wall();
     let (here, there) = (Pose2::new(0.5, 1.0, 0.0), Pose2::new(2.5, 1.0, 0.0));
     let nowhere = Pose2 { x: f64::NAN, ..there };

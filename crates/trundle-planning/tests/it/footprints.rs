@@ -214,7 +214,7 @@ fn an_outline_within_a_wall_is_planned_out_of_it_or_refused_with_the_depth() {
 
 /// A goal in a closed room is told quickly, however large the rest of the map is for the search over headings.
 #[test]
-fn a_closed_room_is_told_without_looking_everywhere() {
+fn a_closed_room_is_detected_without_searching_all_cells() {
     let geometry = GridGeometry::new(0.05, Vector2::zeros(), 600, 600).unwrap();
     let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
     for k in 400..=440 {

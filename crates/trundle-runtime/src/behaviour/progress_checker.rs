@@ -45,7 +45,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn turning_on_the_spot_is_no_progress_unless_it_is_the_way() {
+    fn turns_on_the_spot_count_as_progress_only_where_they_lead_to_the_goal() {
         let mut watch = ProgressChecker::default();
         let at = |i: i32| (Stamp::default().after(f64::from(i)), Pose2::new(0.0, 0.0, f64::from(i)));
         let stood: Vec<f64> = (0..5).map(|i| watch.standing_for(at(i).0, at(i).1, false)).collect();

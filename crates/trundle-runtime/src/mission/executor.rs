@@ -304,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn switched_off_on_the_way_it_goes_on_and_what_was_done_stays_done() {
+    fn after_a_restart_the_mission_continues_and_done_tasks_stay_done() {
         let (grid, [a, b]) = (room(), [1.0, 2.0].map(|x| Pose2::new(x, 0.0, 0.0)));
         let mut first = executor(&[Task::Go(a), Task::Go(b), Task::Return]);
         let s = world(&grid);

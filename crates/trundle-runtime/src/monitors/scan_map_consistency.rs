@@ -165,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_was_carried_away_finds_out_by_what_does_not_fit() {
+    fn a_robot_that_was_carried_away_detects_it_by_scans_that_contradict_the_map() {
         let here = Pose2::new(1.0, 2.0, 0.0);
         for truth in [Pose2::new(4.8, 2.0, -2.0), Pose2::new(5.3, 3.3, 1.5), Pose2::new(1.0, 2.0, 3.0)] {
             let fits = judged(&room(f64::INFINITY), truth, here, None);

@@ -287,7 +287,7 @@ mod tests {
     }
 
     #[test]
-    fn before_a_bare_wall_an_unknown_place_stays_unknown_and_a_brief_doubt_ends() {
+    fn before_a_bare_wall_an_unknown_place_stays_unknown_and_a_short_mismatch_ends() {
         let unplaced_after = |doubt: u32| {
             let mut worker = worker();
             carried_away(&mut worker, |i| if i < doubt { 1000 } else { 0 }, |_| false);

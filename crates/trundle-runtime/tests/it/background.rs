@@ -41,7 +41,7 @@ fn live(
                 }
             }
         }
-        base.tell(step.twist);
+        base.command(step.twist);
         reports.push(step);
     }
     reports
@@ -116,7 +116,7 @@ fn of_images_that_nobody_has_time_for_the_newest_is_kept() {
 }
 
 #[test]
-fn a_lookout_that_does_not_come_back_stops_the_robot() {
+fn a_perception_job_that_never_ends_stops_the_robot() {
     let mut looks = 0;
     let mut lost = Vec::new();
     let reports = live(&mut with_background_jobs(), 6.0, 6.0, |_, jobs| {
@@ -143,7 +143,7 @@ fn a_lookout_that_does_not_come_back_stops_the_robot() {
 }
 
 #[test]
-fn a_captain_who_thinks_for_long_leaves_a_robot_that_brakes_for_the_bumper() {
+fn during_a_long_decision_job_the_robot_brakes_for_the_bumper() {
     let mut lost = Vec::new();
     let mut robot = with_background_jobs();
     let drives = |report: &StepReport| report.twist.is_some_and(|twist| twist.v > 0.05);
@@ -171,7 +171,7 @@ fn a_captain_who_thinks_for_long_leaves_a_robot_that_brakes_for_the_bumper() {
 }
 
 #[test]
-fn an_image_that_is_none_is_said_to_be_none() {
+fn an_image_that_cannot_be_decoded_is_reported() {
     let mut robot = with_background_jobs();
     robot.step(&SensorEvent::Wheels(WheelTicks { stamp: Stamp::default(), left: 0, right: 0 }));
     robot.queue_image(LazyImage::new(Stamp::default(), || Err("no JPEG".to_owned())));

@@ -23,7 +23,7 @@ fn drive(robot: &mut Robot, base: &mut Base, from: f64, to: f64) -> Vec<StepRepo
         let [gyro, wheels] = base.on_wheels(stamp);
         robot.step(&gyro);
         let report = robot.step(&wheels);
-        base.tell(report.twist);
+        base.command(report.twist);
         if i % 5 == 0 {
             robot.step(&wall(stamp, base.to_wall()));
         }
@@ -84,7 +84,7 @@ fn each_hold_stops_at_once_with_its_kind_and_its_end_lets_the_robot_go_on() {
         let at_once = robot.step(&body(3.0, begin));
         assert_eq!(at_once.twist, Some(Twist2::ZERO), "{begin:?} waits for no wheel reading");
         assert_eq!(kind_of(&at_once), Some(kind), "{}", at_once.state);
-        base.tell(at_once.twist);
+        base.command(at_once.twist);
         let held = drive(&mut robot, &mut base, 3.0, 4.0);
         assert!(held.iter().all(|report| report.twist == Some(Twist2::ZERO)), "{begin:?}");
         robot.step(&body(4.0, end));
@@ -97,7 +97,7 @@ fn each_hold_stops_at_once_with_its_kind_and_its_end_lets_the_robot_go_on() {
 fn a_long_hold_is_no_lack_of_progress() {
     let (mut robot, mut base) = driving();
     let report = robot.step(&body(3.0, link(Device::Base, false)));
-    base.tell(report.twist);
+    base.command(report.twist);
     for i in 0..1200 {
         let report = robot.step(&body(3.1 + 0.1 * f64::from(i), BodyEventKind::Silence));
         assert_eq!((report.twist, kind_of(&report)), (Some(Twist2::ZERO), Some(ReasonKind::DeviceLost)));
@@ -147,7 +147,7 @@ fn a_goal_is_reached_by_the_odometry_of_the_body_alone() {
             twist: last.twist.unwrap_or_default(),
             covariance,
         }));
-        base.tell(last.twist);
+        base.command(last.twist);
         if i % 5 == 0 {
             robot.step(&wall(stamp, base.to_wall()));
         }

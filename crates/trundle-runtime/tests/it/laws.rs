@@ -36,7 +36,7 @@ fn drive(robot: &mut Robot, base: &mut Base, (from, to): (f64, f64), away: f64) 
                 report.twist = report.twist.or(twist);
             }
         }
-        base.tell(report.twist);
+        base.command(report.twist);
         report
     };
     let reports = ((from / STEP_S) as i64..(to / STEP_S) as i64).map(step).collect();
@@ -78,7 +78,7 @@ fn a_decision_for_a_mission_that_was_taken_back_is_not_sent() {
     let job = loop {
         let [gyro, wheels] = base.on_wheels(Stamp::from_nanos(i * 20_000_000));
         robot.step(&gyro);
-        base.tell(robot.step(&wheels).twist);
+        base.command(robot.step(&wheels).twist);
         match robot.next_job() {
             Some(job) => break job,
             None => i += 1,
@@ -153,7 +153,7 @@ fn a_camera_that_repeats_one_image_is_noticed_and_the_robot_stops() {
         let [gyro, wheels] = base.on_wheels(stamp);
         robot.step(&gyro);
         twist = robot.step(&wheels).twist;
-        base.tell(twist);
+        base.command(twist);
         if i % 5 == 0 {
             let again = RgbdImage::new(stamp, image.color().clone(), image.depth().clone()).unwrap();
             robot.step(&SensorEvent::Rgbd(again));

@@ -58,7 +58,7 @@ fn drive(robot: &mut Robot, seconds: f64, until: f64) {
         let stamp = Stamp::from_nanos(i * 20_000_000);
         let [gyro, wheels] = base.on_wheels(stamp);
         robot.step(&gyro);
-        base.tell(robot.step(&wheels).twist);
+        base.command(robot.step(&wheels).twist);
         if i % 5 == 0 && stamp.as_secs() < until {
             robot.step(&wall(stamp, base.to_wall()));
         }

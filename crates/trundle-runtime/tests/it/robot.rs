@@ -23,29 +23,29 @@ pub fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
     SensorEvent::Rgbd(RgbdImage::new(stamp, color, depth).unwrap())
 }
 
-/// A base that does at once what it is told.
+/// A base that follows each command at once.
 #[derive(Debug, Default)]
 pub struct Base {
-    told: Twist2,
+    command: Twist2,
     pose: Pose2,
     ways: (f64, f64),
 }
 
 impl Base {
-    /// A step of 20 ms on, to `stamp`: what gyro and wheels say.
+    /// A step of 20 ms on, to `stamp`: the readings of gyro and wheels.
     pub fn on_wheels(&mut self, stamp: Stamp) -> [SensorEvent; 2] {
         let drive = DifferentialDrive::KOBUKI;
-        let (left, right) = drive.wheel_speeds(self.told);
-        self.pose = self.pose.advance(self.told, 0.02);
+        let (left, right) = drive.wheel_speeds(self.command);
+        self.pose = self.pose.advance(self.command, 0.02);
         self.ways = (self.ways.0 + left * 0.02, self.ways.1 + right * 0.02);
         let ticks = |way: f64| ((way / drive.metres_per_tick()) as i64).rem_euclid(65_536) as u16;
         let wheels = WheelTicks { stamp, left: ticks(self.ways.0), right: ticks(self.ways.1) };
-        [SensorEvent::Gyro(GyroRate { stamp, omega: self.told.omega }), SensorEvent::Wheels(wheels)]
+        [SensorEvent::Gyro(GyroRate { stamp, omega: self.command.omega }), SensorEvent::Wheels(wheels)]
     }
 
-    /// What it is told from now on.
-    pub fn tell(&mut self, twist: Option<Twist2>) {
-        self.told = twist.unwrap_or(self.told);
+    /// The command from now on.
+    pub fn command(&mut self, twist: Option<Twist2>) {
+        self.command = twist.unwrap_or(self.command);
     }
 
     /// How far a wall is that was 3 m ahead, m.
@@ -62,7 +62,7 @@ fn drive(robot: &mut Robot, base: &mut Base, (from, to): (f64, f64), until: f64)
         let [gyro, wheels] = base.on_wheels(stamp);
         robot.step(&gyro);
         let report = robot.step(&wheels);
-        base.tell(report.twist);
+        base.command(report.twist);
         if i % 5 == 0 && stamp.as_secs() < until {
             robot.step(&wall(stamp, base.to_wall()));
         }
@@ -102,7 +102,7 @@ fn a_blind_robot_does_not_move() {
 }
 
 #[test]
-fn it_sets_out_when_the_way_is_seen_and_stops_when_the_images_stop() {
+fn it_starts_when_the_path_is_in_view_and_stops_when_images_stop() {
     let mut robot = robot(Pose2::new(1.5, 0.0, 0.0));
     let reports = drive(&mut robot, &mut Base::default(), (0.0, 5.0), 3.0);
     assert!(reports[120..150].iter().any(|report| report.twist.unwrap().v > 0.05));
@@ -216,7 +216,7 @@ fn a_camera_robot_takes_no_scan_for_sight() {
 }
 
 #[test]
-fn a_robot_that_wakes_up_knows_the_rooms_and_not_its_place_and_draws_nothing_meanwhile() {
+fn a_resumed_robot_knows_its_map_and_not_its_pose_and_maps_nothing_meanwhile() {
     let mut first = robot(Pose2::new(1.0, 0.0, 0.0)).with_checkpoints();
     let memory = (0..300)
         .filter_map(|i| {

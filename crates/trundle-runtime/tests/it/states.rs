@@ -13,7 +13,7 @@ fn drive(robot: &mut Robot, base: &mut Base, from: f64, to: f64) -> Vec<StepRepo
         let [gyro, wheels] = base.on_wheels(stamp);
         robot.step(&gyro);
         let report = robot.step(&wheels);
-        base.tell(report.twist);
+        base.command(report.twist);
         if i % 5 == 0 {
             robot.step(&wall(stamp, base.to_wall()));
         }
@@ -114,7 +114,7 @@ fn patience_ends_with_the_reason_behind_it() {
 }
 
 #[test]
-fn a_mission_is_over_when_all_tasks_are_and_tells_each_undone_one() {
+fn a_mission_is_over_when_all_tasks_are_and_names_each_undone_one() {
     let mut config = RobotConfig::default();
     config.mission_executor.patience = 1.0;
     let mut robot = Robot::new(config).unwrap();

@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn a_viewpoint_on_whose_way_the_camera_goes_blind_twice_is_given_up_and_a_goal_is_not() {
+    fn a_viewpoint_is_given_up_when_the_camera_goes_blind_twice_on_its_path_and_a_goal_is_not() {
         let (grid, ahead) = (floor(|_| false), Pose2::new(4.0, 2.0, 0.0));
         for (goal, given_up) in [(Goal::Viewpoint(ahead), true), (Goal::Exact(ahead), false)] {
             let mut navigator = navigator();

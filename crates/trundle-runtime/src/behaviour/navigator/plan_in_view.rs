@@ -162,7 +162,7 @@ mod tests {
     }
 
     #[test]
-    fn a_way_is_taken_that_shows_what_it_leads_onto() {
+    fn a_path_is_chosen_that_shows_the_floor_it_leads_onto() {
         let (grid, mut navigator) = (beside_a_bed(), navigator());
         let (from, goal) = (Pose2::new(4.45, 1.75, -1.57), Pose2::new(2.75, 0.7, 3.1));
         let s = at_rest(&grid, Stamp::default(), from);
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn where_no_way_shows_it_the_floor_is_looked_at_first_and_never_driven_on_unseen() {
+    fn where_no_path_shows_the_floor_in_time_it_is_observed_first_and_never_driven_on_unseen() {
         let (grid, mut navigator) = (unseen_bend(), navigator());
         let goal = Pose2::new(2.9, 3.2, 1.57);
         let mut pose = Pose2::new(2.6, 1.1, 0.0);
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_to_look_ends_where_it_is_barred_or_not_shown_what_it_leads_onto() {
+    fn the_path_to_a_viewpoint_ends_where_it_is_blocked_or_leads_onto_unseen_floor() {
         use super::super::viewpoint::{ViewTarget, Viewpoint};
         let ends_on = |floor_by_now: &OccupancyGrid| {
             let (grid, mut navigator) = (floor(|_| false), navigator());

@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_see_what_bars_the_way_and_are_off_it() {
+    fn viewpoints_see_the_blockage_and_are_off_the_path() {
         // A wall with a door in which a person stands.
         let rows = [".".repeat(40), "#".repeat(18) + "####" + &"#".repeat(18), ".".repeat(40)];
         let text =
