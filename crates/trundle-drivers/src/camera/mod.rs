@@ -1,1 +1,21 @@
 //! Depth cameras behind one trait.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`device`] | the trait [`DepthCamera`] |
+//! | [`info`] | what a camera says of itself: streams, intrinsics, delay |
+//! | [`frame`] | colour and depth as delivered |
+//! | [`pixels`] | pixel formats to [`trundle_core::ColorImage`] and [`trundle_core::DepthImage`] |
+
+pub mod device;
+pub mod error;
+pub mod frame;
+pub mod info;
+pub mod pixel_format;
+pub mod pixels;
+
+pub use device::DepthCamera;
+pub use error::CameraError;
+pub use frame::{CameraFrame, RawImage};
+pub use info::{CameraInfo, StreamInfo, UsbSpeed};
+pub use pixel_format::PixelFormat;

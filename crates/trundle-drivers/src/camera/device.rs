@@ -1,0 +1,22 @@
+//! The trait of a depth camera.
+
+use super::{CameraError, CameraFrame, CameraInfo};
+use std::time::Duration;
+
+/// A camera that delivers pairs of a colour and a depth image.
+pub trait DepthCamera: Send {
+    /// What the camera is and what its streams look like. It does not change while the camera is open.
+    fn info(&self) -> &CameraInfo;
+
+    /// The next frame; `None` when none came within `timeout`.
+    ///
+    /// # Errors
+    /// [`CameraError::BrokenFrame`] when one frame is damaged: the next call may succeed. Every other error means that the camera must be
+    /// opened anew.
+    fn next_frame(&mut self, timeout: Duration) -> Result<Option<CameraFrame>, CameraError>;
+
+    /// Whether no frame will ever follow. Always `false` for a live camera; `true` at the end of a recording.
+    fn has_ended(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,106 @@
+//! The errors of a depth camera.
+
+use super::UsbSpeed;
+use trundle_core::Invalid;
+
+/// Why a camera cannot be opened or read. Each sentence ends with what to do.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CameraError {
+    /// The library of the camera's maker is not installed.
+    #[error("the library {name} is not installed: {remedy}")]
+    LibraryMissing {
+        /// Name of the library, as the loader searches it.
+        name: String,
+        /// How to get it.
+        remedy: String,
+    },
+    /// The library is installed in a version that does not suit.
+    #[error("the library {name} has version {found}, expected {expected}: install that version")]
+    VersionUnsuitable {
+        /// Name of the library.
+        name: String,
+        /// Version found.
+        found: String,
+        /// Versions that suit.
+        expected: String,
+    },
+    /// No such camera is connected.
+    #[error("no camera of kind {kind} is connected: check its cable and its power supply")]
+    NoDevice {
+        /// Kind of the camera, or its serial number.
+        kind: String,
+    },
+    /// Another program uses the camera.
+    #[error("the camera {device} is in use by another program: stop that program")]
+    Busy {
+        /// The camera.
+        device: String,
+    },
+    /// The user may not open the camera.
+    #[error("no permission to open the camera {device}: {remedy}")]
+    NoPermission {
+        /// The camera.
+        device: String,
+        /// How to get the permission.
+        remedy: String,
+    },
+    /// The camera was unplugged.
+    #[error("the camera {device} is gone: check its cable and its power supply")]
+    Unplugged {
+        /// The camera.
+        device: String,
+    },
+    /// The camera hangs at a port that is too slow.
+    #[error(
+        "the camera {device} is connected by {speed}, expected USB 3: use a blue USB port and a USB 3 cable"
+    )]
+    UsbTooSlow {
+        /// The camera.
+        device: String,
+        /// Speed of the connection.
+        speed: UsbSpeed,
+    },
+    /// The camera reports no usable intrinsics.
+    #[error(
+        "the intrinsics of the {stream} camera are unusable: {problem}: calibrate the camera, or give its intrinsics in the settings"
+    )]
+    IntrinsicsUnusable {
+        /// The stream, colour or depth.
+        stream: &'static str,
+        /// The number that is wrong.
+        problem: Invalid,
+    },
+    /// The camera delivers the same frame again and again.
+    #[error("the camera delivered the same frame {frames} times: open it anew")]
+    Stuck {
+        /// Identical frames in a row.
+        frames: usize,
+    },
+    /// One frame is damaged.
+    #[error("a frame is broken: {0}: the next frame may be good")]
+    BrokenFrame(#[from] Invalid),
+    /// A stream of frames does not have the documented form.
+    #[error("the camera stream {place} has no valid header: {problem}: see docs/camera-stream.md")]
+    BadHeader {
+        /// The file, pipe or folder.
+        place: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// Reading failed.
+    #[error("the camera stream {place} cannot be read: {source}")]
+    Io {
+        /// The file, pipe or folder.
+        place: String,
+        /// The cause.
+        source: std::io::Error,
+    },
+}
+
+impl CameraError {
+    /// Whether the next frame may be good without opening the camera anew.
+    pub fn is_of_one_frame(&self) -> bool {
+        matches!(self, Self::BrokenFrame(_))
+    }
+}

@@ -1,0 +1,13 @@
+//! Pixel formats to images of [`trundle_core`].
+//!
+//! Both converters keep their image: after the first frame they allocate nothing, except inside the decoders of JPEG and PNG.
+
+mod bt601;
+mod color;
+mod compressed;
+mod depth;
+mod raw_rows;
+
+pub use bt601::rgb_from_yuv;
+pub use color::color_from_raw;
+pub use depth::{depth_from_raw, metres_from_disparity};
