@@ -6,6 +6,7 @@
 //! | [`info`] | what a camera says of itself: streams, intrinsics, delay |
 //! | [`frame`] | colour and depth as delivered |
 //! | [`pixels`] | pixel formats to [`trundle_core::ColorImage`] and [`trundle_core::DepthImage`] |
+//! | [`registration`] | depth moved into the colour camera |
 
 pub mod device;
 pub mod error;
@@ -13,6 +14,7 @@ pub mod frame;
 pub mod info;
 pub mod pixel_format;
 pub mod pixels;
+pub mod registration;
 
 pub use device::DepthCamera;
 pub use error::CameraError;

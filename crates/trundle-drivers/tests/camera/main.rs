@@ -1,3 +1,5 @@
 //! Tests of the depth cameras: conversion, registration, streams, threads, and the Kinect V2.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests")]
 
 mod pixels;
+mod registration;

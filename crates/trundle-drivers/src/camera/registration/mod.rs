@@ -1,0 +1,113 @@
+//! Depth and colour of different cameras brought into one image.
+//!
+//! **Problem.** Depth and colour come from two lenses a few centimetres apart, with different sizes, focal lengths and distortion.
+//! [`RgbdImage`] needs both pixel for pixel.
+//!
+//! **Idea.** Each depth pixel is a small square facing the depth camera. It is projected into the output camera, and the nearest square
+//! wins each output pixel (a z-buffer). Neighbours on one surface share their edges, so that no hole opens where the output has more
+//! pixels. Depth within a square follows the slope to the neighbours. Colour is sampled along the same rays; it needs no depth, since the
+//! output camera has the optical centre of the colour camera.
+//!
+//! **Cost.** One projection a depth pixel and one comparison a covered output pixel; no memory after the first frame.
+//!
+//! Source: splatting by the projected footprint, Westover 1990, "Footprint evaluation for volume rendering"; the z-buffer, Catmull 1974.
+
+mod color_map;
+mod footprints;
+mod projection;
+
+use self::{color_map::ColorMap, footprints::Footprints, projection::Projection};
+use crate::camera::CameraInfo;
+use trundle_core::{ColorImage, DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Stamp};
+
+/// Registers the depth and colour of one camera into one output camera.
+#[derive(Debug, Clone)]
+pub struct Registration {
+    output: PinholeCamera,
+    color: ColorMap,
+    depth: DepthRegistration,
+}
+
+impl Registration {
+    /// For the streams of a camera; the result looks as if the camera `output` had taken it. `output` has the optical centre and the
+    /// direction of the colour camera. `None` keeps the colour camera itself with its distortion.
+    pub fn new(info: &CameraInfo, output: Option<PinholeCamera>) -> Self {
+        let output = output.unwrap_or(info.color.camera);
+        let depth = DepthRegistration::new(info.depth.camera, info.color_from_depth, output);
+        Self { output, color: ColorMap::new(info.color.camera, output), depth }
+    }
+
+    /// The camera of the result.
+    pub fn output(&self) -> &PinholeCamera {
+        &self.output
+    }
+
+    /// The registered image, taken at `stamp`.
+    ///
+    /// # Errors
+    /// When an image has not the size of its camera.
+    pub fn register(
+        &mut self,
+        stamp: Stamp,
+        color: &ColorImage,
+        depth: &DepthImage,
+    ) -> Result<RgbdImage, Invalid> {
+        let mut colors = ColorImage::filled(self.output.width(), self.output.height(), [0; 3]);
+        let mut depths = DepthImage::filled(self.output.width(), self.output.height(), 0.0);
+        self.color.remap(color, &mut colors)?;
+        self.depth.register(depth, &mut depths)?;
+        RgbdImage::new(stamp, colors, depths)
+    }
+}
+
+/// Moves the depth image of one camera into another camera.
+#[derive(Debug, Clone)]
+pub struct DepthRegistration {
+    output: PinholeCamera,
+    /// `None` where both cameras are the same.
+    moved: Option<(Projection, Footprints)>,
+}
+
+impl DepthRegistration {
+    /// From `depth` into `output`. `output_from_depth` is the pose of the depth camera in the output camera's frame; `None` means that
+    /// both are at one place, which registered depth is.
+    pub fn new(depth: PinholeCamera, output_from_depth: Option<Pose3>, output: PinholeCamera) -> Self {
+        let is_same = output_from_depth.is_none() && is_same_lens(&depth, &output);
+        let pose = output_from_depth.unwrap_or_default();
+        let moved =
+            || (Projection::new(&depth, pose, output), Footprints::new(depth.width(), depth.height()));
+        Self { output, moved: (!is_same).then(moved) }
+    }
+
+    /// Writes the moved depth \[m\] into `moved`, which has the size of the output camera; 0 where no depth pixel lands.
+    ///
+    /// # Errors
+    /// When `depth` has not the size of the depth camera, or `moved` not that of the output camera.
+    pub fn register(&mut self, depth: &DepthImage, moved: &mut DepthImage) -> Result<(), Invalid> {
+        check_size("registered depth image", moved.width(), moved.height(), &self.output)?;
+        let Some((projection, footprints)) = &mut self.moved else {
+            check_size("depth image", depth.width(), depth.height(), &self.output)?;
+            moved.data_mut().copy_from_slice(depth.data());
+            return Ok(());
+        };
+        check_size("depth image", depth.width(), depth.height(), projection.depth_camera())?;
+        projection.project(depth, footprints);
+        footprints.splat(depth, moved);
+        Ok(())
+    }
+}
+
+/// Whether both cameras see the same rays in the same pixels; the readout time does not matter.
+fn is_same_lens(a: &PinholeCamera, b: &PinholeCamera) -> bool {
+    let lens = |c: &PinholeCamera| (c.width(), c.height(), c.fx(), c.fy(), c.cx(), c.cy(), c.distortion());
+    lens(a) == lens(b)
+}
+
+/// Refuses an image whose size is not that of its camera.
+fn check_size(place: &str, width: usize, height: usize, camera: &PinholeCamera) -> Result<(), Invalid> {
+    if (width, height) == (camera.width(), camera.height()) {
+        return Ok(());
+    }
+    let expected = format!("{} x {} as its camera", camera.width(), camera.height());
+    Err(Invalid::new(format!("size of the {place}"), format!("{width} x {height}"), "px", expected))
+}
