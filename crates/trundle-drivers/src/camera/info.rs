@@ -1,6 +1,7 @@
 //! What a camera says of itself.
 
 use super::PixelFormat;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use trundle_core::{PinholeCamera, Pose3};
 
@@ -30,7 +31,8 @@ pub struct CameraInfo {
 }
 
 /// One of the streams of a camera.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct StreamInfo {
     /// Form of the pixels.
     pub format: PixelFormat,

@@ -7,11 +7,15 @@
 //! | [`frame`] | colour and depth as delivered |
 //! | [`pixels`] | pixel formats to [`trundle_core::ColorImage`] and [`trundle_core::DepthImage`] |
 //! | [`registration`] | depth moved into the colour camera |
+//! | [`frame_monitor`] | faults found in the frames themselves |
+//! | [`pipe`] | frames from a pipe, a file or a growing folder |
 
 pub mod device;
 pub mod error;
 pub mod frame;
+pub mod frame_monitor;
 pub mod info;
+pub mod pipe;
 pub mod pixel_format;
 pub mod pixels;
 pub mod registration;
@@ -19,5 +23,6 @@ pub mod registration;
 pub use device::DepthCamera;
 pub use error::CameraError;
 pub use frame::{CameraFrame, RawImage};
+pub use frame_monitor::{CameraFault, FrameMonitor};
 pub use info::{CameraInfo, StreamInfo, UsbSpeed};
 pub use pixel_format::PixelFormat;

@@ -1,5 +1,9 @@
 //! Tests of the depth cameras: conversion, registration, streams, threads, and the Kinect V2.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests")]
 
+mod fixtures;
+mod folders;
+mod monitor;
 mod pixels;
 mod registration;
+mod streams;

@@ -1,0 +1,148 @@
+//! The header of a camera stream, which is also the file `camera.json` of a folder.
+
+use crate::camera::frame_monitor::check_intrinsics;
+use crate::camera::{CameraInfo, StreamInfo};
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, Pose3, require_in, require_positive};
+
+/// First word of the header.
+const STREAM_MAGIC: &str = "trundle-camera";
+/// Version of the form.
+const STREAM_VERSION: u32 = 1;
+/// Longest header \[bytes\]. Source: ours; a header has about 800 bytes.
+const MAX_HEADER_BYTES: usize = 65_536;
+/// Longest delay of a camera \[s\]. Source: ours; a longer one is a mistyped number.
+const MAX_DELAY_S: f64 = 1.0;
+/// Highest frame rate \[Hz\]. Source: ours; a higher one is a mistyped number.
+const MAX_RATE_HZ: f64 = 1000.0;
+/// Largest unit of whole-numbered depth \[m\]. Source: ours; 65535 units of it are 6.5 km.
+const MAX_DEPTH_UNIT_M: f64 = 0.1;
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Header {
+    magic: String,
+    version: u32,
+    #[serde(default)]
+    name: String,
+    #[serde(default)]
+    serial: String,
+    #[serde(default)]
+    firmware: String,
+    color: StreamInfo,
+    depth: StreamInfo,
+    #[serde(default = "millimetre")]
+    depth_unit_m: f64,
+    #[serde(default)]
+    color_from_depth: Option<Pose3>,
+    #[serde(default)]
+    delay_s: f64,
+    #[serde(default = "yes")]
+    live: bool,
+}
+
+fn millimetre() -> f64 {
+    0.001
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// The header of a stream as one line of JSON, with its end of line.
+///
+/// # Errors
+/// When the camera's numbers would be refused by [`parse_header`].
+pub fn header_line(info: &CameraInfo) -> Result<String, String> {
+    check(info).map_err(|error| error.to_string())?;
+    let header = Header {
+        magic: STREAM_MAGIC.into(),
+        version: STREAM_VERSION,
+        name: info.name.clone(),
+        serial: info.serial.clone(),
+        firmware: info.firmware.clone(),
+        color: info.color,
+        depth: info.depth,
+        depth_unit_m: info.depth_unit_m,
+        color_from_depth: info.color_from_depth,
+        delay_s: info.delay_s,
+        live: info.is_live,
+    };
+    let line = serde_json::to_string(&header).map_err(|error| error.to_string())?;
+    Ok(line + "\n")
+}
+
+/// The camera that a header describes.
+///
+/// # Errors
+/// A sentence that names the field: no JSON, another magic or version, or a number out of range.
+pub fn parse_header(bytes: &[u8]) -> Result<CameraInfo, String> {
+    if bytes.len() > MAX_HEADER_BYTES {
+        return Err(format!("the header has {} bytes, expected at most {MAX_HEADER_BYTES}", bytes.len()));
+    }
+    let header: Header = serde_json::from_slice(bytes).map_err(|error| error.to_string())?;
+    if header.magic != STREAM_MAGIC {
+        return Err(format!("magic is {:?}, expected {STREAM_MAGIC:?}", header.magic));
+    }
+    if header.version != STREAM_VERSION {
+        return Err(format!("version is {}, expected {STREAM_VERSION}", header.version));
+    }
+    let info = info(header);
+    check(&info).map_err(|error| error.to_string())?;
+    Ok(info)
+}
+
+/// Length of the header within `bytes`, with its end of line; `None` when the line is not yet complete.
+///
+/// # Errors
+/// When no line ends within the longest header.
+pub(super) fn header_length(bytes: &[u8]) -> Result<Option<usize>, String> {
+    match bytes.iter().take(MAX_HEADER_BYTES).position(|byte| *byte == b'\n') {
+        Some(end) => Ok(Some(end + 1)),
+        None if bytes.len() < MAX_HEADER_BYTES => Ok(None),
+        None => Err(format!("no line ends within {MAX_HEADER_BYTES} bytes")),
+    }
+}
+
+fn info(header: Header) -> CameraInfo {
+    CameraInfo {
+        name: header.name,
+        serial: header.serial,
+        firmware: header.firmware,
+        usb: None,
+        color: header.color,
+        depth: header.depth,
+        depth_unit_m: header.depth_unit_m,
+        color_from_depth: header.color_from_depth,
+        delay_s: header.delay_s,
+        is_live: header.live,
+    }
+}
+
+fn check(info: &CameraInfo) -> Result<(), Invalid> {
+    if info.color.format.is_depth() {
+        return Err(Invalid::new("color.format", info.color.format, "", "a colour format"));
+    }
+    if !info.depth.format.is_depth() {
+        return Err(Invalid::new("depth.format", info.depth.format, "", "a depth format"));
+    }
+    for (name, stream) in [("color", &info.color), ("depth", &info.depth)] {
+        let at = |error: Invalid| Invalid { field: format!("{name}.camera.{}", error.field), ..error };
+        check_intrinsics(&stream.camera).map_err(at)?;
+        let rate = format!("{name}.rate_hz");
+        require_positive(&rate, stream.rate_hz, "Hz")?;
+        require_in(&rate, stream.rate_hz, "Hz", 0.0, MAX_RATE_HZ)?;
+    }
+    require_positive("depth_unit_m", info.depth_unit_m, "m")?;
+    require_in("depth_unit_m", info.depth_unit_m, "m", 0.0, MAX_DEPTH_UNIT_M)?;
+    require_in("delay_s", info.delay_s, "s", 0.0, MAX_DELAY_S)?;
+    check_pose(info)
+}
+
+fn check_pose(info: &CameraInfo) -> Result<(), Invalid> {
+    let expected = "7 finite numbers x y z qx qy qz qw, the quaternion not zero";
+    match info.color_from_depth {
+        Some(pose) if !pose.is_finite() => Err(Invalid::new("color_from_depth", "not a pose", "", expected)),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,18 @@
+//! Any camera as frames in a pipe, a FIFO, a file, or a folder that grows.
+//!
+//! The form is described in `docs/camera-stream.md`. Another program writes it, in any language, and no library of that camera is needed
+//! here. [`StreamWriter`] writes the same form.
+
+mod camera_file;
+mod folder_camera;
+mod folder_scan;
+mod frame_parser;
+mod source;
+mod stream_camera;
+mod stream_writer;
+
+pub use camera_file::{header_line, parse_header};
+pub use folder_camera::{FolderCamera, FolderCounts};
+pub use frame_parser::{FRAME_MAGIC, FrameLimits, FrameParser, ParserCounts, StreamFrame};
+pub use stream_camera::StreamCamera;
+pub use stream_writer::StreamWriter;
