@@ -1,1 +1,24 @@
 //! Device clocks mapped to one clock, and events put in order.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`unwrap`] | counters that wrap, as time since the first one |
+//! | [`device_clock`] | device stamps on the host's clock |
+//! | [`reorder_buffer`] | events in the order of their stamps |
+//!
+//! Nothing here reads a clock: the time of arrival is an argument. [`HostClock`] is how a driver's threads are given one.
+
+pub mod device_clock;
+mod lower_hull;
+pub mod reorder_buffer;
+pub mod unwrap;
+
+pub use device_clock::{DeviceClock, DeviceClockConfig};
+pub use reorder_buffer::ReorderBuffer;
+pub use unwrap::MillisUnwrapper;
+
+use std::sync::Arc;
+use trundle_core::Stamp;
+
+/// The host's clock as drivers are given it: the stamp of now, which never runs backwards.
+pub type HostClock = Arc<dyn Fn() -> Stamp + Send + Sync>;
