@@ -4,6 +4,42 @@
 //! |---|---|
 //! | [`protocol`] | commands and feedback packets, to bytes and from bytes |
 //! | [`decoder`] | packets out of a damaged stream of bytes |
+//! | [`feedback_events`] | sensor events out of packets |
+//! | [`base`], [`base_config`], [`base_status`], [`start_error`] | the driver: threads, settings, counters, errors of the start |
+//! | [`stream_check`] | signs of two users of one port |
+//! | [`link`] | a link of bytes, and what opens it |
+//! | [`serial_port`] | a serial port of the system (Unix) |
+//! | [`emulator`] | the device's end of the protocol |
+//! | [`pseudo_terminal`] | a serial port without hardware (Unix) |
 
+pub mod base;
+pub mod base_config;
+pub mod base_status;
+mod command_schedule;
 pub mod decoder;
+pub mod emulator;
+pub mod feedback_events;
+mod io_loop;
+pub mod link;
+mod outbox;
+mod probe;
 pub mod protocol;
+#[cfg(unix)]
+pub mod pseudo_terminal;
+#[cfg(unix)]
+pub mod serial_port;
+pub mod start_error;
+pub mod stream_check;
+
+pub use base::{EventSink, KobukiBase};
+pub use base_config::KobukiBaseConfig;
+pub use base_status::{BaseCounters, Versions};
+pub use decoder::fuzz_decoder;
+pub use emulator::{EmulatedKobuki, KobukiState};
+pub use feedback_events::GyroSource;
+pub use link::{ByteLink, ConnectError, Connector};
+#[cfg(unix)]
+pub use pseudo_terminal::PseudoTerminal;
+#[cfg(unix)]
+pub use serial_port::{SerialConnector, SerialPort};
+pub use start_error::StartError;

@@ -3,8 +3,8 @@
 use super::fields::{Fields, bits, byte_of};
 use trundle_core::{PerWheel, PowerSource};
 
-/// Volts of a unit of the battery's byte: 0.1 V. Source: the protocol's "Basic Sensor Data".
-const BATTERY_UNIT_V: f64 = 0.1;
+/// Units of the battery's byte in a volt: 10. Source: the protocol's "Basic Sensor Data".
+const BATTERY_UNITS_PER_V: f64 = 10.0;
 /// Bit of the charger's byte: power comes in. Source: the five values of the protocol, 0, 2, 6, 18 and 22.
 const CHARGER_POWERED_BIT: u8 = 0b0_0010;
 /// Bit of the charger's byte: the battery is being charged. Source: as [`CHARGER_POWERED_BIT`].
@@ -100,7 +100,7 @@ pub struct CoreSensors {
 impl CoreSensors {
     /// Voltage of the battery, V.
     pub fn battery_v(&self) -> f64 {
-        f64::from(self.battery_decivolts) * BATTERY_UNIT_V
+        f64::from(self.battery_decivolts) / BATTERY_UNITS_PER_V
     }
 
     pub(super) fn decode(mut data: Fields<'_>) -> Option<Self> {

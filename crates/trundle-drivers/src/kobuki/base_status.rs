@@ -1,0 +1,66 @@
+//! What is known of a running base: counters, versions, the last packet.
+
+use super::decoder::DecoderCounters;
+use super::protocol::{Feedback, Gains, UniqueId, Version};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+/// What the base says about itself.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Versions {
+    /// Version of the hardware.
+    pub hardware: Option<Version>,
+    /// Version of the firmware.
+    pub firmware: Option<Version>,
+    /// Unique id.
+    pub unique_id: Option<UniqueId>,
+}
+
+impl Versions {
+    /// Takes what a packet says.
+    pub(super) fn update(&mut self, feedback: &Feedback) {
+        self.hardware = feedback.hardware.or(self.hardware);
+        self.firmware = feedback.firmware.or(self.firmware);
+        self.unique_id = feedback.unique_id.or(self.unique_id);
+    }
+
+    pub(super) fn is_complete(&self) -> bool {
+        self.hardware.is_some() && self.firmware.is_some() && self.unique_id.is_some()
+    }
+}
+
+/// What happened on the link to a base since the start.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct BaseCounters {
+    /// What was read and dropped.
+    pub decoder: DecoderCounters,
+    /// Speeds sent.
+    pub speeds_sent: u64,
+    /// Commands dropped because the link was lost when they came.
+    pub commands_dropped: u64,
+    /// Events dropped because the sink was too slow.
+    pub events_dropped: u64,
+    /// Lost links.
+    pub link_losses: u64,
+    /// Attempts to open the port again.
+    pub reconnects: u64,
+    /// Jumps of the base's clock, its restarts among them.
+    pub clock_jumps: u64,
+    /// Times that the stream began to look as if the port had two users.
+    pub stream_faults: u64,
+}
+
+/// What the threads of a base share.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Status {
+    pub(super) counters: BaseCounters,
+    pub(super) versions: Versions,
+    pub(super) gains: Option<Gains>,
+    pub(super) latest: Option<Feedback>,
+    pub(super) is_up: bool,
+    pub(super) is_stopping: bool,
+}
+
+/// The lock of `mutex`; a panic of another thread while it held the lock is no reason for a second one.
+pub(super) fn locked(mutex: &Mutex<Status>) -> MutexGuard<'_, Status> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

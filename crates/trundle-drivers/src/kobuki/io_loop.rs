@@ -1,0 +1,290 @@
+//! The thread that owns the link to a base: it reads, writes, and opens the port again after a loss.
+//!
+//! The port is closed as soon as the link counts as lost, so bytes from before the loss stay behind. The first bytes of a new connection
+//! are zero speed. Commands that come while the link is down are dropped.
+
+use super::base_config::KobukiBaseConfig;
+use super::base_status::{Status, locked};
+use super::command_schedule::CommandSchedule;
+use super::decoder::FeedbackDecoder;
+use super::feedback_events::FeedbackEvents;
+use super::link::{ByteLink, Connector};
+use super::outbox::Outbox;
+use super::probe::greeting;
+use super::protocol::{BaseControl, Command, Feedback, Outputs};
+use super::stream_check::StreamCheck;
+use crate::clock::HostClock;
+use std::io;
+use std::sync::mpsc::{Receiver, SyncSender};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+use trundle_core::{SensorEvent, Stamp, Twist2};
+
+/// Longest wait for bytes: 5 ms, by which a command may be late. Source: ours, a quarter of a packet's period.
+const READ_WAIT: Duration = Duration::from_millis(5);
+/// Wait between looks at the queues while the port is closed: 10 ms. Source: ours.
+const CLOSED_WAIT: Duration = Duration::from_millis(10);
+/// Time that an opened port is given to bring the first packet: 1 s. Source: ours; a base needs less after it is switched on.
+const FIRST_PACKET_LIMIT_S: f64 = 1.0;
+/// Commands taken from a queue at once: 256. Source: ours; a flood of commands must not keep packets waiting.
+const MAX_COMMANDS_AT_ONCE: usize = 256;
+/// Time that the last zero speed is given to go out: 0.2 s. Source: ours.
+const STOP_LIMIT_S: f64 = 0.2;
+
+/// The queues between a base's thread and its users.
+pub(super) struct Queues {
+    pub(super) commands: Receiver<Twist2>,
+    pub(super) accessories: Receiver<Command>,
+    pub(super) events: SyncSender<SensorEvent>,
+    pub(super) status: Arc<Mutex<Status>>,
+}
+
+/// The link's state.
+pub(super) struct IoLoop {
+    config: KobukiBaseConfig,
+    clock: HostClock,
+    connector: Box<dyn Connector>,
+    queues: Queues,
+    link: Option<Box<dyn ByteLink>>,
+    is_up: bool,
+    /// Last packet, or opening of the port, or loss.
+    since: Stamp,
+    retry_s: f64,
+    decoder: FeedbackDecoder,
+    events: FeedbackEvents,
+    schedule: CommandSchedule,
+    check: StreamCheck,
+    is_faulty: bool,
+    outbox: Outbox,
+    /// Outputs as last asked for: the base forgets them when it is switched off.
+    outputs: Option<Outputs>,
+}
+
+impl IoLoop {
+    pub(super) fn new(
+        config: KobukiBaseConfig,
+        clock: HostClock,
+        connector: Box<dyn Connector>,
+        (link, decoder): (Box<dyn ByteLink>, FeedbackDecoder),
+        queues: Queues,
+    ) -> Self {
+        Self {
+            config,
+            since: clock(),
+            clock,
+            connector,
+            queues,
+            link: Some(link),
+            is_up: false,
+            retry_s: config.min_retry_s,
+            decoder,
+            events: FeedbackEvents::new(config.gyro_source, config.transport_delay_s),
+            schedule: CommandSchedule::new(config.command_timeout_s),
+            check: StreamCheck::default(),
+            is_faulty: false,
+            outbox: Outbox::default(),
+            outputs: None,
+        }
+    }
+
+    /// Runs until the base is stopped, then sends zero speed.
+    pub(super) fn run(mut self) {
+        while !locked(&self.queues.status).is_stopping {
+            self.step();
+        }
+        self.stop();
+    }
+
+    fn step(&mut self) {
+        match self.link.take() {
+            None => self.reconnect(),
+            Some(mut link) => match self.exchange(&mut *link) {
+                Ok(()) => self.link = Some(link),
+                Err(error) => self.lose(&error),
+            },
+        }
+    }
+
+    /// Reads packets, takes commands, writes.
+    fn exchange(&mut self, link: &mut dyn ByteLink) -> io::Result<()> {
+        self.read(link)?;
+        let now = (self.clock)();
+        self.take_commands(now);
+        let limit = if self.is_up { self.config.silence_limit_s } else { FIRST_PACKET_LIMIT_S };
+        if now - self.since >= limit {
+            return Err(io::Error::new(io::ErrorKind::TimedOut, format!("no packet came for {limit} s")));
+        }
+        self.write(link, now)
+    }
+
+    fn read(&mut self, link: &mut dyn ByteLink) -> io::Result<()> {
+        let mut buffer = [0; 4096];
+        let bytes = link.read(&mut buffer, READ_WAIT)?;
+        if bytes == 0 {
+            return Ok(());
+        }
+        let arrival = (self.clock)();
+        let refused = self.decoder.counters().refused();
+        let mut packets = Vec::new();
+        self.decoder.push(&buffer[..bytes], |feedback| packets.push(feedback));
+        self.check.on_refused(self.decoder.counters().refused() - refused);
+        packets.into_iter().for_each(|feedback| self.on_feedback(feedback, arrival));
+        self.report_fault();
+        let mut status = locked(&self.queues.status);
+        status.counters.decoder = self.decoder.counters();
+        status.counters.clock_jumps = self.events.clock_jumps();
+        Ok(())
+    }
+
+    fn on_feedback(&mut self, feedback: Feedback, arrival: Stamp) {
+        if let Some(core) = feedback.core {
+            self.since = arrival;
+            self.check.on_packet(core.stamp_ms);
+            let events = if self.is_up {
+                self.events.events(&feedback, arrival)
+            } else {
+                self.link_up(arrival);
+                self.events.events_after_link_up(&feedback, arrival)
+            };
+            events.into_iter().for_each(|event| self.deliver(event));
+        }
+        self.report_identity(&feedback);
+        let mut status = locked(&self.queues.status);
+        status.versions.update(&feedback);
+        status.gains = feedback.gains.or(status.gains);
+        status.latest = Some(feedback);
+    }
+
+    /// The first packet of a connection: zero speed goes out first, then the outputs; commands from before are dropped.
+    fn link_up(&mut self, now: Stamp) {
+        self.take_commands(now);
+        (self.is_up, self.retry_s) = (true, self.config.min_retry_s);
+        self.schedule.restart();
+        self.outbox.push(&Command::BaseControl(BaseControl::STOP).encode());
+        if let Some(outputs) = self.outputs {
+            self.outbox.push(&Command::Outputs(outputs).encode());
+        }
+        locked(&self.queues.status).is_up = true;
+        tracing::info!("port {}: the base answers", self.connector.port());
+    }
+
+    fn take_commands(&mut self, now: Stamp) {
+        let mut dropped = 0;
+        for twist in self.queues.commands.try_iter().take(MAX_COMMANDS_AT_ONCE) {
+            if self.is_up {
+                self.schedule.set(twist, now);
+            } else {
+                dropped += 1;
+            }
+        }
+        for command in self.queues.accessories.try_iter().take(MAX_COMMANDS_AT_ONCE) {
+            if let Command::Outputs(outputs) = command {
+                self.outputs = Some(outputs);
+            }
+            if self.is_up {
+                self.outbox.push(&command.encode());
+            } else {
+                dropped += 1;
+            }
+        }
+        if dropped > 0 {
+            locked(&self.queues.status).counters.commands_dropped += dropped;
+        }
+    }
+
+    fn write(&mut self, link: &mut dyn ByteLink, now: Stamp) -> io::Result<()> {
+        if self.outbox.is_empty()
+            && let Some(control) = self.schedule.due(now)
+        {
+            self.outbox.push(&Command::BaseControl(control).encode());
+            locked(&self.queues.status).counters.speeds_sent += 1;
+        }
+        self.outbox.write(link, now)
+    }
+
+    fn lose(&mut self, error: &io::Error) {
+        let now = (self.clock)();
+        if self.is_up {
+            tracing::warn!(
+                "port {}: the link to the base is lost: {error}; it is opened again",
+                self.connector.port()
+            );
+            let event = self.events.link_event(false, now);
+            self.deliver(event);
+        }
+        let mut status = locked(&self.queues.status);
+        status.counters.link_losses += u64::from(self.is_up);
+        status.is_up = false;
+        drop(status);
+        (self.is_up, self.since) = (false, now);
+        self.decoder.clear();
+        self.outbox.clear();
+        self.schedule.restart();
+    }
+
+    /// Opens the port when its time has come.
+    fn reconnect(&mut self) {
+        let now = (self.clock)();
+        self.take_commands(now);
+        if now - self.since < self.retry_s {
+            return std::thread::sleep(CLOSED_WAIT);
+        }
+        (self.since, self.retry_s) = (now, (2.0 * self.retry_s).min(self.config.max_retry_s));
+        locked(&self.queues.status).counters.reconnects += 1;
+        match self.connector.connect() {
+            Ok(link) => {
+                self.outbox.push(&greeting());
+                self.link = Some(link);
+            }
+            Err(error) => tracing::debug!("{error}"),
+        }
+    }
+
+    fn deliver(&self, event: SensorEvent) {
+        if self.queues.events.try_send(event).is_err() {
+            let counters = &mut locked(&self.queues.status).counters;
+            counters.events_dropped += 1;
+            if counters.events_dropped.is_power_of_two() {
+                let dropped = counters.events_dropped;
+                tracing::warn!("{dropped} events of the base are dropped: their receiver is too slow");
+            }
+        }
+    }
+
+    /// Warns once when the stream begins to look as if the port had two users.
+    fn report_fault(&mut self) {
+        let fault = self.check.fault();
+        if let Some(fault) = fault.filter(|_| !self.is_faulty) {
+            tracing::warn!("port {}: {fault}", self.connector.port());
+            locked(&self.queues.status).counters.stream_faults += 1;
+        }
+        self.is_faulty = fault.is_some();
+    }
+
+    /// Warns of another base than the one before.
+    fn report_identity(&self, feedback: &Feedback) {
+        let known = locked(&self.queues.status).versions.unique_id;
+        if let (Some(known), Some(id)) = (known, feedback.unique_id)
+            && known != id
+        {
+            tracing::warn!(
+                "port {}: base {id} answers, expected base {known}: two bases are in use",
+                self.connector.port()
+            );
+        }
+    }
+
+    fn stop(&mut self) {
+        let Some(mut link) = self.link.take() else { return };
+        self.outbox.push(&Command::BaseControl(BaseControl::STOP).encode());
+        let start = (self.clock)();
+        while !self.outbox.is_empty() && (self.clock)() - start < STOP_LIMIT_S {
+            if let Err(error) = self.outbox.write(&mut *link, start) {
+                return tracing::warn!("port {}: the base is not stopped: {error}", self.connector.port());
+            }
+            if !self.outbox.is_empty() {
+                std::thread::sleep(READ_WAIT);
+            }
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Signs that a port has two users: stamps of two bases, or bytes that another program reads.
+
+use std::collections::VecDeque;
+use std::fmt;
+
+/// Packets and refused headers that are looked back at: 50, a second of a sound stream. Source: ours.
+const WINDOW_PACKETS: usize = 50;
+/// Step between the stamps of two packets below which they come from two bases: 15 ms. Source: ours; a base's step is 20 ms.
+const MIN_STEP_MS: i16 = 15;
+/// Such steps in the window that make a fault: 5. Source: ours; a base that restarts makes one.
+const MIN_SHORT_STEPS: usize = 5;
+/// Refused headers in the window that make a fault: 10. Source: ours; a sound line has none for minutes.
+const MIN_REFUSED: usize = 10;
+
+/// A fault of the stream of packets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StreamFault {
+    /// Stamps jump back and forth, or come twice as often as they should.
+    TwoSources {
+        /// Steps of the stamp below 15 ms in the last second.
+        short_steps: usize,
+    },
+    /// Bytes are missing or added.
+    DamagedStream {
+        /// Refused headers in the last second.
+        refused: usize,
+    },
+}
+
+impl fmt::Display for StreamFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TwoSources { short_steps } => write!(
+                f,
+                "the stamps of {short_steps} of {WINDOW_PACKETS} packets differ by less than {MIN_STEP_MS} ms from the one before, \
+                 expected 20 ms: two bases or two programs send on this port; leave one"
+            ),
+            Self::DamagedStream { refused } => write!(
+                f,
+                "{refused} of {WINDOW_PACKETS} packets are damaged: another program may read the same port (close it), \
+                 or the cable is bad (change it)"
+            ),
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Entry {
+    Sound,
+    ShortStep,
+    Refused,
+}
+
+/// Reads the stamps of packets and the refused headers between.
+#[derive(Debug, Clone, Default)]
+pub(super) struct StreamCheck {
+    last_ms: Option<u16>,
+    entries: VecDeque<Entry>,
+}
+
+impl StreamCheck {
+    /// Takes the stamp of a sound packet.
+    pub(super) fn on_packet(&mut self, stamp_ms: u16) {
+        let step = self.last_ms.map(|last| stamp_ms.wrapping_sub(last).cast_signed());
+        self.last_ms = Some(stamp_ms);
+        self.push(if step.is_some_and(|step| step < MIN_STEP_MS) { Entry::ShortStep } else { Entry::Sound });
+    }
+
+    /// Takes the number of headers refused since the last call.
+    pub(super) fn on_refused(&mut self, headers: u64) {
+        (0..headers.min(WINDOW_PACKETS as u64)).for_each(|_| self.push(Entry::Refused));
+    }
+
+    /// The fault of the last second, if there is one.
+    pub(super) fn fault(&self) -> Option<StreamFault> {
+        let count = |kind| self.entries.iter().filter(|entry| **entry == kind).count();
+        let (short_steps, refused) = (count(Entry::ShortStep), count(Entry::Refused));
+        if short_steps >= MIN_SHORT_STEPS {
+            Some(StreamFault::TwoSources { short_steps })
+        } else {
+            (refused >= MIN_REFUSED).then_some(StreamFault::DamagedStream { refused })
+        }
+    }
+
+    fn push(&mut self, entry: Entry) {
+        if self.entries.len() == WINDOW_PACKETS {
+            self.entries.pop_front();
+        }
+        self.entries.push_back(entry);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fault_of(stamps: impl Iterator<Item = u16>) -> Option<StreamFault> {
+        let mut check = StreamCheck::default();
+        stamps.for_each(|stamp| check.on_packet(stamp));
+        check.fault()
+    }
+
+    #[test]
+    fn one_base_is_sound_over_wraps_losses_and_a_restart() {
+        let steady = |i: u16| i.wrapping_mul(20).wrapping_add(65_000);
+        assert_eq!(fault_of((0..500).map(steady)), None);
+        assert_eq!(fault_of((0..500).filter(|i| i % 3 != 0).map(steady)), None);
+        assert_eq!(fault_of((0..30).map(steady).chain((0..30).map(|i| i * 20))), None);
+    }
+
+    #[test]
+    fn two_bases_are_found_whatever_their_offset() {
+        for offset in [1, 7, 10, 14, 500, 30_000, 60_000] {
+            let both = (0..20u16).flat_map(|i| [i * 20, (i * 20).wrapping_add(offset)]);
+            assert!(matches!(fault_of(both), Some(StreamFault::TwoSources { .. })), "{offset} ms");
+        }
+    }
+
+    #[test]
+    fn refused_headers_make_a_fault_that_ends() {
+        let mut check = StreamCheck::default();
+        check.on_refused(9);
+        assert_eq!(check.fault(), None);
+        check.on_refused(u64::MAX);
+        assert_eq!(check.fault(), Some(StreamFault::DamagedStream { refused: 50 }));
+        (0..45).for_each(|i| check.on_packet(i * 20));
+        assert_eq!(check.fault(), None);
+    }
+}
