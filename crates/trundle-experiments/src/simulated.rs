@@ -1,6 +1,8 @@
 //! The simulated body of a robot, and scenes by name or file.
 
 mod body;
+mod camera_server;
+mod emulated_robot;
 mod fault_file;
 mod free_start;
 mod real_time_body;
@@ -8,6 +10,7 @@ mod scene;
 mod scene_files;
 
 pub use body::{require_free, simulated_body, simulated_real_time_body, time_limit};
+pub use emulated_robot::{EmulatedRobot, EmulationCounts};
 pub use fault_file::read_faults;
 pub use real_time_body::SimulatedRealTimeBody;
 pub use scene::{MeshOptions, SceneOptions, list_scenes, load_scene};

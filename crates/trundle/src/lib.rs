@@ -35,6 +35,7 @@
 //! | plan a path | [`planning`] |
 //! | follow it | [`control`] |
 //! | settle in tight places | [`docking`] |
+//! | drive real hardware | [`drivers`] |
 //! | simulate, evaluate, draw | [`sim`], [`eval`], [`viz`] |
 //! | read and write files | [`io`] |
 //!
@@ -45,6 +46,7 @@ pub use trundle_collision as collision;
 pub use trundle_control as control;
 pub use trundle_core as core;
 pub use trundle_docking as docking;
+pub use trundle_drivers as drivers;
 pub use trundle_eval as eval;
 pub use trundle_experiments as experiments;
 pub use trundle_grid as grid;

@@ -1,0 +1,133 @@
+//! The simulator behind the wires of a real robot: a Kobuki at a pseudo terminal, a camera at a stream of frames.
+//!
+//! Any program that speaks to a Kobuki drives it. It keeps the time of the wall clock: a packet every 20 ms.
+
+use super::camera_server::CameraServer;
+use std::time::Duration;
+use trundle_app::AppError;
+use trundle_app::real_time::RealTimePacer;
+use trundle_core::{RobotBody, SensorEvent, Twist2};
+use trundle_drivers::kobuki::emulator::{EmulatedKobuki, KobukiState};
+use trundle_drivers::kobuki::link::ByteLink;
+use trundle_drivers::kobuki::pseudo_terminal::PseudoTerminal;
+use trundle_sim::Simulator;
+
+/// Bytes of commands read at once. Source: ours; a command has 10 bytes.
+const READ_BYTES: usize = 4096;
+
+/// The simulator behind the wires of a real robot.
+pub struct EmulatedRobot {
+    simulator: Simulator,
+    kobuki: EmulatedKobuki,
+    state: KobukiState,
+    terminal: PseudoTerminal,
+    camera: Option<CameraServer>,
+    /// The newest command, sent to the simulator again and again: a Kobuki keeps its speed until the next command.
+    command: Twist2,
+    counts: EmulationCounts,
+}
+
+/// What went over the wires.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct EmulationCounts {
+    /// Packets of the base.
+    pub packets: u64,
+    /// Speed commands.
+    pub commands: u64,
+    /// Images sent.
+    pub images: u64,
+    /// Images that no program took in time.
+    pub images_not_taken: u64,
+}
+
+impl EmulatedRobot {
+    /// The base of `simulator` at `terminal`, its camera at `camera_stream`, a FIFO that is made where it is not there.
+    ///
+    /// # Errors
+    /// When the FIFO cannot be made.
+    pub fn new(
+        mut simulator: Simulator,
+        terminal: PseudoTerminal,
+        camera_stream: Option<&std::path::Path>,
+    ) -> Result<Self, AppError> {
+        let info = super::camera_server::camera_info(simulator.config());
+        let camera = simulator.detach_camera();
+        let server = |path| CameraServer::start(path, info.clone());
+        let camera = camera.zip(camera_stream).map(|(camera, path)| server(path)?.with_camera(camera)).transpose()?;
+        Ok(Self {
+            simulator,
+            kobuki: EmulatedKobuki::default(),
+            state: KobukiState::default(),
+            terminal,
+            camera,
+            command: Twist2::ZERO,
+            counts: EmulationCounts::default(),
+        })
+    }
+
+    /// The simulator: truth, contacts.
+    pub fn simulator(&self) -> &Simulator {
+        &self.simulator
+    }
+
+    /// What went over the wires so far.
+    pub fn counts(&self) -> EmulationCounts {
+        let (images, images_not_taken) = self.camera.as_ref().map_or((0, 0), CameraServer::counts);
+        EmulationCounts { images, images_not_taken, ..self.counts }
+    }
+
+    /// Runs by the wall clock until `is_over` is true, which is asked every millisecond with the simulator.
+    ///
+    /// # Errors
+    /// When the pseudo terminal breaks.
+    pub fn run(&mut self, mut is_over: impl FnMut(&Simulator) -> bool) -> Result<(), AppError> {
+        let origin = std::time::Instant::now() - Duration::from_secs_f64(self.simulator.stamp().as_secs());
+        let mut pacer = RealTimePacer::start_at(origin);
+        while !is_over(&self.simulator) {
+            pacer.wait_for(self.simulator.stamp().as_secs());
+            self.step()?;
+        }
+        Ok(())
+    }
+
+    /// A millisecond: commands in, sensors out.
+    fn step(&mut self) -> Result<(), AppError> {
+        let mut bytes = [0; READ_BYTES];
+        let length = self.terminal.read(&mut bytes, Duration::ZERO).map_err(broken)?;
+        if let Some(twist) = self.kobuki.on_bytes(&bytes[..length]) {
+            self.command = twist;
+            self.counts.commands += 1;
+        }
+        self.simulator.command(self.command).map_err(AppError::input)?;
+        let mut is_due = false;
+        for event in self.simulator.advance().map_err(AppError::input)? {
+            is_due |= matches!(event, SensorEvent::Wheels(_));
+            note(&mut self.state, &event);
+        }
+        if let Some(camera) = &mut self.camera {
+            self.simulator.shots().into_iter().for_each(|shot| camera.take(shot));
+        }
+        if is_due {
+            let packet = self.kobuki.feedback(&self.state);
+            self.counts.packets += 1;
+            // A full line loses bytes, as a real one does.
+            self.terminal.write(&packet).map_err(broken)?;
+        }
+        Ok(())
+    }
+}
+
+fn broken(error: std::io::Error) -> AppError {
+    AppError::Environment(format!("the pseudo terminal of the emulated Kobuki is broken: {error}"))
+}
+
+/// Notes a reading in the state that the next packet holds.
+fn note(state: &mut KobukiState, event: &SensorEvent) {
+    match event {
+        SensorEvent::Wheels(wheels) => state.ticks = (wheels.left, wheels.right),
+        SensorEvent::Gyro(gyro) => state.gyro_rate = gyro.omega,
+        SensorEvent::Touch(touch) => state.bumper.center = touch.pressed,
+        SensorEvent::Cliff(cliff) => state.cliff.center = cliff.over_edge,
+        _ => {}
+    }
+}
