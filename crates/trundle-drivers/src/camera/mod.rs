@@ -9,7 +9,9 @@
 //! | [`registration`] | depth moved into the colour camera |
 //! | [`frame_monitor`] | faults found in the frames themselves |
 //! | [`pipe`] | frames from a pipe, a file or a growing folder |
+//! | [`camera_thread`] | a camera in a thread of its own, reopened after faults |
 
+pub mod camera_thread;
 pub mod device;
 pub mod error;
 pub mod frame;
@@ -20,6 +22,7 @@ pub mod pixel_format;
 pub mod pixels;
 pub mod registration;
 
+pub use camera_thread::{CameraCounters, CameraThread, CameraThreadConfig, CameraThreadParts};
 pub use device::DepthCamera;
 pub use error::CameraError;
 pub use frame::{CameraFrame, RawImage};

@@ -7,3 +7,4 @@ mod monitor;
 mod pixels;
 mod registration;
 mod streams;
+mod threads;

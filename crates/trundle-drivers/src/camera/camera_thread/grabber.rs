@@ -1,0 +1,142 @@
+//! The thread that reads the camera, and opens it anew when it is lost.
+
+use super::config::{CameraFactory, CameraThreadConfig, HostClock};
+use super::mailbox::{GrabbedFrame, Mailbox};
+use super::outbox::Outbox;
+use super::{StampMap, StampMapFactory};
+use crate::camera::frame_monitor::faults_of_info;
+use crate::camera::{CameraError, CameraFault, CameraFrame, CameraInfo, DepthCamera, FrameMonitor};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Longest wait for one frame \[ms\]; the thread looks for the end of the program in between. Source: ours.
+const POLL_MS: u64 = 50;
+/// Broken frames in a row after which the camera is opened anew: 30. Source: ours; 1 s at 30 Hz.
+const MAX_BROKEN_IN_ROW: u64 = 30;
+
+/// Reads the camera.
+pub(super) struct Grabber {
+    factory: CameraFactory,
+    stamps: StampMapFactory,
+    clock: HostClock,
+    mailbox: Arc<Mailbox>,
+    outbox: Arc<Outbox>,
+    config: CameraThreadConfig,
+    /// Attempts to open the camera since its last frame.
+    attempts: u32,
+}
+
+/// Why a camera is no longer read.
+enum Outcome {
+    /// The recording ended, or the program does.
+    Finished,
+    /// It must be opened anew.
+    Lost(String),
+}
+
+/// A camera that is open.
+struct OpenCamera {
+    camera: Box<dyn DepthCamera>,
+    info: Arc<CameraInfo>,
+    monitor: FrameMonitor,
+    stamps: StampMap,
+    generation: u64,
+    last_good: Instant,
+}
+
+impl Grabber {
+    pub(super) fn new(
+        factory: CameraFactory,
+        stamps: StampMapFactory,
+        clock: HostClock,
+        (mailbox, outbox): (Arc<Mailbox>, Arc<Outbox>),
+        config: CameraThreadConfig,
+    ) -> Self {
+        Self { factory, stamps, clock, mailbox, outbox, config, attempts: 0 }
+    }
+
+    pub(super) fn run(mut self) {
+        while !self.mailbox.is_stopped() {
+            let outcome = match (self.factory)() {
+                Ok(camera) => self.read(camera),
+                Err(error) => Outcome::Lost(error.to_string()),
+            };
+            match outcome {
+                Outcome::Finished => break,
+                Outcome::Lost(fault) => self.outbox.on_lost(fault),
+            }
+            let wait = reopen_wait(&self.config, self.attempts);
+            self.attempts = self.attempts.saturating_add(1);
+            self.mailbox.pause(wait);
+        }
+        self.mailbox.close();
+    }
+
+    /// Reads a camera until it is lost.
+    fn read(&mut self, camera: Box<dyn DepthCamera>) -> Outcome {
+        let mut open = self.prepare(camera);
+        while !self.mailbox.is_stopped() {
+            match open.camera.next_frame(Duration::from_millis(POLL_MS)) {
+                Ok(Some(frame)) => {
+                    if let Some(fault) = self.on_frame(&mut open, frame) {
+                        return Outcome::Lost(fault.to_string());
+                    }
+                }
+                Ok(None) if open.camera.has_ended() => return Outcome::Finished,
+                Ok(None) => {}
+                Err(error @ CameraError::BrokenFrame(_)) => self.outbox.on_broken(error.to_string()),
+                Err(error) => return Outcome::Lost(error.to_string()),
+            }
+            if let Some(fault) = self.silence(&open) {
+                return Outcome::Lost(fault);
+            }
+        }
+        Outcome::Finished
+    }
+
+    fn prepare(&mut self, camera: Box<dyn DepthCamera>) -> OpenCamera {
+        let info = Arc::new(camera.info().clone());
+        faults_of_info(&info).iter().for_each(|fault| self.outbox.on_fault(fault.to_string()));
+        let monitor = FrameMonitor::new(&info, self.config.expects_noise && info.is_live);
+        let (stamps, generation) = ((self.stamps)(&info), self.outbox.generation());
+        OpenCamera { camera, info, monitor, stamps, generation, last_good: Instant::now() }
+    }
+
+    /// Hands a frame on; a fault that ends the use of the camera.
+    fn on_frame(&mut self, open: &mut OpenCamera, frame: CameraFrame) -> Option<CameraFault> {
+        let stamp = (open.stamps)(frame.color.device_stamp, (self.clock)());
+        open.last_good = Instant::now();
+        if let Some(fault) = open.monitor.on_frame(&frame) {
+            if matches!(fault, CameraFault::Stuck { .. }) {
+                self.outbox.on_stuck();
+            }
+            if fault.needs_reopening() {
+                return Some(fault);
+            }
+            self.outbox.on_fault(fault.to_string());
+        }
+        let (info, generation) = (open.info.clone(), open.generation);
+        self.attempts = 0;
+        if self.mailbox.put(GrabbedFrame { frame, stamp, info, generation }) {
+            self.outbox.on_dropped();
+        }
+        None
+    }
+
+    /// The sentence of a live camera that was silent, or whose frames are all broken.
+    fn silence(&self, open: &OpenCamera) -> Option<String> {
+        let silent_s = open.last_good.elapsed().as_secs_f64();
+        let broken = self.outbox.broken_in_row();
+        if open.info.is_live && silent_s > self.config.max_silence_s {
+            return Some(format!("{} delivered no good frame for {silent_s:.1} s", open.info.name));
+        }
+        let is_broken = open.info.is_live && broken >= MAX_BROKEN_IN_ROW;
+        is_broken.then(|| format!("{} delivered {broken} broken frames in a row", open.info.name))
+    }
+}
+
+/// Wait before the next attempt: it doubles with each one.
+fn reopen_wait(config: &CameraThreadConfig, attempts: u32) -> Duration {
+    let wait_s = config.min_reopen_wait_s * 2.0_f64.powi(attempts.min(20) as i32);
+    Duration::from_secs_f64(wait_s.clamp(0.0, config.max_reopen_wait_s))
+}

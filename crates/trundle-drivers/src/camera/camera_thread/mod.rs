@@ -1,0 +1,76 @@
+//! A camera in threads of its own, reopened after faults.
+//!
+//! One thread reads the camera: it stamps each frame on arrival, looks for faults, and opens the camera anew when it is lost. A second
+//! thread converts and registers the newest frame, and pushes it into the sink. A frame that waits when a newer one comes is dropped, so
+//! that the delay stays below two frames; the frames of a recording wait instead.
+
+mod config;
+mod converter;
+mod grabber;
+mod mailbox;
+mod outbox;
+mod stamps;
+
+pub use config::{CameraFactory, CameraThreadConfig, CameraThreadParts, EventSink, HostClock};
+pub use outbox::CameraCounters;
+pub use stamps::{StampMap, StampMapFactory, arrival_minus_delay};
+
+use self::{converter::Converter, grabber::Grabber, mailbox::Mailbox, outbox::Outbox};
+use std::sync::Arc;
+use std::thread::{Builder, JoinHandle};
+
+/// A running camera. Its threads end with this value; that may take as long as the camera's opening.
+#[derive(Debug)]
+pub struct CameraThread {
+    mailbox: Arc<Mailbox>,
+    outbox: Arc<Outbox>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+impl CameraThread {
+    /// Starts the threads. The camera is opened there; a camera that cannot be opened is tried again until it can.
+    ///
+    /// # Errors
+    /// When the system refuses a thread.
+    pub fn start(parts: CameraThreadParts, config: CameraThreadConfig) -> std::io::Result<Self> {
+        let mailbox = Arc::new(Mailbox::default());
+        let outbox = Arc::new(Outbox::new(parts.sink, parts.clock.clone()));
+        let mut camera = Self { mailbox: mailbox.clone(), outbox: outbox.clone(), threads: Vec::new() };
+        let converter = Converter::new(mailbox.clone(), outbox.clone(), config);
+        let grabber = Grabber::new(parts.factory, parts.stamps, parts.clock, (mailbox, outbox), config);
+        camera.threads.push(Builder::new().name("camera-convert".into()).spawn(move || converter.run())?);
+        camera.threads.push(Builder::new().name("camera-grab".into()).spawn(move || grabber.run())?);
+        Ok(camera)
+    }
+
+    /// Frames counted since the start.
+    pub fn counters(&self) -> CameraCounters {
+        self.outbox.counters()
+    }
+
+    /// The sentence of the last fault; `None` when there was none.
+    pub fn last_fault(&self) -> Option<String> {
+        self.outbox.last_fault()
+    }
+
+    /// Whether the last frame came in time.
+    pub fn is_up(&self) -> bool {
+        self.outbox.is_up()
+    }
+
+    /// Whether a recording has ended and all its frames are in the sink.
+    pub fn has_ended(&self) -> bool {
+        self.threads.iter().all(JoinHandle::is_finished)
+    }
+}
+
+impl Drop for CameraThread {
+    fn drop(&mut self) {
+        self.mailbox.stop();
+        for thread in self.threads.drain(..) {
+            if thread.join().is_err() {
+                tracing::error!("a camera thread panicked");
+            }
+        }
+    }
+}

@@ -1,0 +1,15 @@
+//! Stamps of the camera mapped to the sensors' clock.
+
+use crate::camera::CameraInfo;
+use trundle_core::Stamp;
+
+/// Maps a time on the camera's clock and the arrival of that frame on the host's clock to the sensors' clock.
+pub type StampMap = Box<dyn FnMut(Stamp, Stamp) -> Stamp + Send>;
+/// Makes the map of a camera that was opened. The camera's own clock may begin anew with each opening.
+pub type StampMapFactory = Box<dyn FnMut(&CameraInfo) -> StampMap + Send>;
+
+/// The simplest map: the arrival minus the camera's delay. It carries the jitter of the arrival.
+pub fn arrival_minus_delay(info: &CameraInfo) -> StampMap {
+    let delay_s = info.delay_s;
+    Box::new(move |_, arrival| arrival.after(-delay_s))
+}
