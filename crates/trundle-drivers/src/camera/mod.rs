@@ -9,6 +9,7 @@
 //! | [`registration`] | depth moved into the colour camera |
 //! | [`frame_monitor`] | faults found in the frames themselves |
 //! | [`pipe`] | frames from a pipe, a file or a growing folder |
+//! | [`kinect2`] | depth of the Kinect V2 from its raw packets |
 //! | [`camera_thread`] | a camera in a thread of its own, reopened after faults |
 
 pub mod camera_thread;
@@ -17,6 +18,7 @@ pub mod error;
 pub mod frame;
 pub mod frame_monitor;
 pub mod info;
+pub mod kinect2;
 pub mod pipe;
 pub mod pixel_format;
 pub mod pixels;

@@ -3,6 +3,8 @@
 
 mod fixtures;
 mod folders;
+mod kinect2;
+mod kinect2_model;
 mod monitor;
 mod pixels;
 mod registration;

@@ -1,0 +1,60 @@
+//! Depth of the Kinect V2 from its raw packets.
+//!
+//! **Problem.** The Kinect V2 sends no depth. It sends ten images of 11-bit numbers: three shifted measurements at each of three modulation
+//! frequencies, and one of ambient light. The host computes depth.
+//!
+//! **Idea.** Three measurements shifted by a third of a turn give the phase and amplitude of the returning light. The phase is the distance
+//! modulo half a wavelength of the modulation. Three frequencies agree at one distance only within 18.75 m, which unwraps the phase. Two
+//! filters reduce noise: a bilateral filter on the phasors, and a filter that removes pixels that float between two surfaces.
+//!
+//! **Cost.** One pass over the pixels for each step; see the figures that the test `kinect2` prints.
+//!
+//! Sources: Lawin, Forssen, Ovren 2016, "Efficient Multi-Frequency Phase Unwrapping using Kernel Density Estimation", ECCV, arXiv
+//! 1608.05209 (frequencies, shifts, phase and amplitude, unwrapping, noise of the phase). Sell and O'Connor 2014, "The Xbox One System on a
+//! Chip and Kinect Sensor", IEEE Micro 34(2) (the sensor). Tomasi and Manduchi 1998, "Bilateral Filtering for Gray and Color Images", ICCV.
+//! Reynolds et al. 2011, "Capturing Time-of-Flight Data with Confidence", CVPR (flying pixels).
+//!
+//! | symbol in Lawin et al. | name here | unit |
+//! |---|---|---|
+//! | v_k | measurement | 1 |
+//! | p_k | shift: 0, 1/3, 2/3 of a turn | turn |
+//! | p_0 | `p0` | 1/65536 turn |
+//! | z | phasor | 1 |
+//! | a | amplitude | 1 |
+//! | phi | phase | turn |
+//! | n | wraps | 1 |
+//! | d | distance along the ray | m |
+//!
+//! # Assumptions
+//!
+//! No maker's document describes the bytes. These facts are assumed, and were not compared with a device:
+//!
+//! | fact | assumed | where |
+//! |---|---|---|
+//! | order of the bits | the first pixel in the lowest bits, 8 pixels in 11 bytes | [`packing`] |
+//! | order of the columns | four interleaved blocks of 128: columns 0, 4, 8, ..., then 1, 5, 9, ... | [`packing`] |
+//! | order of the rows | both halves from the middle outwards, the lower half first | [`packing`] |
+//! | code of a number | sign and magnitude; the magnitude in segments that double, as in ITU-T G.711 A-law | [`companding`] |
+//! | saturated measurement | the code of minus zero | [`companding`] |
+//! | order of the images | 80 MHz, 16 MHz, 120 MHz, three shifts each; then ambient | [`layout`] |
+//! | sign of the phase | a measurement is a cos(phi + p_0 + p_k) | [`phasors`] |
+//! | unit of `p0` | 65536 for one turn | [`phasors`] |
+//! | footer of a packet | see [`packets`] | [`packets`] |
+//! | unit of the time stamp | 0.125 ms | [`packets`] |
+
+pub mod companding;
+mod decoder;
+mod dump;
+mod dump_camera;
+mod edge_filter;
+pub mod layout;
+pub mod packets;
+pub mod packing;
+pub mod phasors;
+mod smoothing;
+mod unwrapping;
+
+pub use decoder::{DecoderConfig, DepthDecoder, Kinect2Calibration};
+pub use dump::{DumpReader, DumpWriter, parse_dump_header};
+pub use dump_camera::DumpCamera;
+pub use packets::{FrameAssembler, SubPacket, SubPacketParser};
