@@ -10,6 +10,7 @@ use crate::outcome::EXIT_CODES;
 use crate::plan::PlanArgs;
 use crate::replay::ReplayArgs;
 use crate::robot_file::ConfigArgs;
+use crate::run::RunArgs;
 use crate::shell_files::{CompletionsArgs, ManArgs};
 use crate::sim::SimArgs;
 use crate::slam::SlamArgs;
@@ -36,6 +37,8 @@ pub struct Cli {
 pub enum Command {
     /// Drive through a simulated room on camera, wheels and gyro alone.
     Demo(DemoArgs),
+    /// Drive a real robot: base, depth camera, mission.
+    Run(RunArgs),
     /// Run the robot again on a recording: same recording, same bytes.
     Replay(ReplayArgs),
     /// Track a recorded RGB-D sequence and draw its map.

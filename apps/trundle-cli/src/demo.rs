@@ -2,12 +2,10 @@
 
 mod args;
 
-pub use args::DemoArgs;
+pub use args::{DemoArgs, RecordArg};
 
 use crate::outcome::Outcome;
-use crate::{console, logging, run_output};
-use std::fmt::Display;
-use std::path::Path;
+use crate::{checkpoint_file, console, logging, run_output};
 use trundle::app::real_time::run_in_real_time;
 use trundle::app::report::mission_text;
 use trundle::app::vocabulary_file::read_vocabulary;
@@ -17,8 +15,8 @@ use trundle::experiments::simulated::{
     SceneOptions, SimulatedRealTimeBody, load_scene, read_faults, require_free, simulated_body,
     simulated_real_time_body, time_limit,
 };
-use trundle::io::{Expected, keep_aside};
-use trundle::runtime::{Checkpoint, Mission, Task};
+use trundle::io::keep_aside;
+use trundle::runtime::{Mission, Task};
 use trundle::sim::{Scene, Simulator};
 
 /// `trundle demo`.
@@ -28,7 +26,8 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, AppError> {
     let robot = args.robot.robot()?;
     let mut scene = load_scene(&args.scene, options)?;
     let faults = args.faults.as_deref().map(read_faults).transpose()?.unwrap_or_default();
-    let resumed = args.state.resume.and(args.state.checkpoint.as_deref()).map(read_checkpoint).transpose()?;
+    let resumed =
+        args.state.resume.and(args.state.checkpoint.as_deref()).map(checkpoint_file::read).transpose()?;
     let mission = match &resumed {
         Some((checkpoint, _)) => checkpoint.mission.left.clone(),
         None => mission(args, &scene)?,
@@ -83,18 +82,6 @@ fn drive(args: &DemoArgs, setup: &RunSetup, mut body: Simulator) -> Result<Outco
     let run = run_on_body(setup, &mut body, recorder, RunLog::default(), progress);
     line.finish_and_clear();
     run_output::write(setup, run?, None, folder, args.common.quiet)
-}
-
-/// The checkpoint in this file, and its bytes.
-fn read_checkpoint(file: &Path) -> Result<(Checkpoint, Vec<u8>), AppError> {
-    let refused = |error: &dyn Display| AppError::Input(format!("{}: {error}", file.display()));
-    Expected::Checkpoint.check(file)?;
-    let bytes = std::fs::read(file).map_err(|error| refused(&error))?;
-    let checkpoint = Checkpoint::from_bytes(&bytes).map_err(|error| refused(&error))?;
-    if checkpoint.mission.left.tasks().is_empty() {
-        return Err(refused(&"nothing is left of its mission: the run that wrote it came to its end"));
-    }
-    Ok((checkpoint, bytes))
 }
 
 /// The goals asked for, or the scene's own; before them exploration and after them the return, unless the drive is direct.

@@ -1,5 +1,6 @@
 //! The program `trundle`: command line of the crates.
 
+mod checkpoint_file;
 mod command_line;
 mod common_args;
 mod console;
@@ -15,6 +16,7 @@ mod output_args;
 mod plan;
 mod replay;
 mod robot_file;
+mod run;
 mod run_output;
 mod shell_files;
 mod sim;
@@ -34,16 +36,18 @@ fn main() -> ExitCode {
     let arguments = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
     let folders = logging::start(arguments.verbose).and_then(|()| output_args::check(&matches));
     ExitCode::from(match folders {
-        Ok(folders) => outcome::end(listen(&arguments.command).and_then(|()| run(arguments)), &folders),
+        Ok(folders) => {
+            outcome::end(listen(&arguments.command).and_then(|()| run_command(arguments)), &folders)
+        }
         Err(error) => outcome::end(Err(error), &[]),
     })
 }
 
 /// Takes Ctrl-C as a request where the command has long loops, which read it; else it ends the program.
 fn listen(command: &Command) -> Result<(), AppError> {
-    use Command::{Demo, Experiment, Map, Replay, Sim, Slam};
+    use Command::{Demo, Experiment, Map, Replay, Run, Sim, Slam};
     match command {
-        Demo(_) | Replay(_) | Slam(_) | Map(_) | Sim(_) | Experiment(_) => stop::listen(),
+        Demo(_) | Run(_) | Replay(_) | Slam(_) | Map(_) | Sim(_) | Experiment(_) => stop::listen(),
         _ => stop::end_at_once(|signal| {
             let is_ending = abandon_outputs();
             if is_ending {
@@ -62,9 +66,10 @@ fn with_negative_numbers(command: clap::Command) -> clap::Command {
     command.mut_args(takes_numbers).mut_subcommands(with_negative_numbers)
 }
 
-fn run(cli: Cli) -> Result<Outcome, AppError> {
+fn run_command(cli: Cli) -> Result<Outcome, AppError> {
     match cli.command {
         Command::Demo(args) => with_threads(&args.common, || demo::run(&args)),
+        Command::Run(args) => with_threads(&args.common, || run::run(&args)),
         Command::Replay(args) => with_threads(&args.common, || replay::run(&args)),
         Command::Slam(args) => with_threads(&args.common, || slam::run(&args)),
         Command::Map(args) => with_threads(&args.common, || map::run(&args)),

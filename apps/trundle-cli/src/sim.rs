@@ -2,6 +2,8 @@
 
 mod args;
 mod map;
+#[cfg(unix)]
+mod serve;
 mod teleop;
 
 pub use args::SimArgs;
@@ -27,6 +29,10 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
         console::print_table(&list_scenes()?);
         return Ok(Outcome::Reached);
     };
+    #[cfg(unix)]
+    if let Some(port) = &args.wires.kobuki {
+        return serve::serve(args, name, port);
+    }
     let config = args.sensors.config()?;
     let band = match args.true_map.band.as_deref() {
         Some(&[low, high]) => HeightBand::new(low, high)?,

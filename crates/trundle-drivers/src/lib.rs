@@ -5,7 +5,14 @@
 //! | [`kobuki`] | protocol, driver and emulator of the Kobuki base |
 //! | [`camera`] | depth cameras: one trait, pixel formats, registration of depth to colour |
 //! | [`clock`] | device clocks mapped to one clock, events put in order |
+//!
+//! A user names a base by a [`BaseSpec`] and a camera by a [`CameraSpec`].
 
+mod base_spec;
 pub mod camera;
+mod camera_spec;
 pub mod clock;
 pub mod kobuki;
+
+pub use base_spec::{BaseSpec, KOBUKI_UDEV_RULE, kobuki_port, serial_devices};
+pub use camera_spec::CameraSpec;

@@ -49,6 +49,9 @@ pub struct SimArgs {
     /// Sensors, their faults and their noise.
     #[command(flatten)]
     pub sensors: SensorArgs,
+    /// The wires of a real robot.
+    #[command(flatten)]
+    pub wires: WireArgs,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -69,6 +72,17 @@ pub struct TrueMapArgs {
     /// Heights between which something is in the way, m, for the map [default: the robot's]
     #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub band: Option<Vec<f64>>,
+}
+
+/// The wires behind which the simulator is a real robot.
+#[derive(Debug, Args)]
+pub struct WireArgs {
+    /// Answer as a Kobuki at a pseudo terminal, in real time, until Ctrl-C or --duration; LINK becomes a symbolic link to it.
+    #[arg(long, value_name = "LINK", conflicts_with_all = ["driver", "record", "map"])]
+    pub kobuki: Option<PathBuf>,
+    /// Write the camera's frames into this FIFO (docs/camera-stream.md); it is made where it is not there.
+    #[arg(long, value_name = "FIFO", requires = "kobuki")]
+    pub camera_stream: Option<PathBuf>,
 }
 
 /// The sensors of the simulated robot.

@@ -4,9 +4,9 @@ use rustix::fs::{CWD, FileType, Mode, OFlags, fcntl_setfl, mknodat};
 use std::fs::OpenOptions;
 use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
-use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
 use trundle_app::AppError;
@@ -163,7 +163,8 @@ fn nonblocking() -> i32 {
 fn frame(image: &RgbdImage) -> CameraFrame {
     let size = (image.color().width(), image.color().height());
     let color = image.color().data().iter().flatten().copied().collect();
-    let units = |depth: &f32| (f64::from(*depth) / DEPTH_UNIT_M).round().clamp(0.0, f64::from(u16::MAX)) as u16;
+    let units =
+        |depth: &f32| (f64::from(*depth) / DEPTH_UNIT_M).round().clamp(0.0, f64::from(u16::MAX)) as u16;
     let depth = image.depth().data().iter().flat_map(|depth| units(depth).to_le_bytes()).collect();
     let stamp = image.stamp();
     CameraFrame {

@@ -53,7 +53,8 @@ impl EmulatedRobot {
         let info = super::camera_server::camera_info(simulator.config());
         let camera = simulator.detach_camera();
         let server = |path| CameraServer::start(path, info.clone());
-        let camera = camera.zip(camera_stream).map(|(camera, path)| server(path)?.with_camera(camera)).transpose()?;
+        let camera =
+            camera.zip(camera_stream).map(|(camera, path)| server(path)?.with_camera(camera)).transpose()?;
         Ok(Self {
             simulator,
             kobuki: EmulatedKobuki::default(),

@@ -1,0 +1,19 @@
+//! Checkpoint files that a run resumes from.
+
+use std::fmt::Display;
+use std::path::Path;
+use trundle::app::AppError;
+use trundle::io::Expected;
+use trundle::runtime::Checkpoint;
+
+/// The checkpoint in this file, and its bytes.
+pub fn read(file: &Path) -> Result<(Checkpoint, Vec<u8>), AppError> {
+    let refused = |error: &dyn Display| AppError::Input(format!("{}: {error}", file.display()));
+    Expected::Checkpoint.check(file)?;
+    let bytes = std::fs::read(file).map_err(|error| refused(&error))?;
+    let checkpoint = Checkpoint::from_bytes(&bytes).map_err(|error| refused(&error))?;
+    if checkpoint.mission.left.tasks().is_empty() {
+        return Err(refused(&"nothing is left of its mission: the run that wrote it came to its end"));
+    }
+    Ok((checkpoint, bytes))
+}

@@ -1,0 +1,96 @@
+//! `trundle run`: a mission on a real robot.
+
+mod args;
+mod hardware;
+
+pub use args::RunArgs;
+
+use crate::outcome::Outcome;
+use crate::{checkpoint_file, console, logging, run_output};
+use args::{IntrinsicsArg, MissionArgs};
+use hardware::OpenCamera;
+use trundle::app::real_time::run_in_real_time;
+use trundle::app::report::mission_text;
+use trundle::app::vocabulary_file::read_vocabulary;
+use trundle::app::{AppError, RunLog, RunSetup, read_mission};
+use trundle::core::PinholeCamera;
+use trundle::io::keep_aside;
+use trundle::runtime::{Mission, RobotConfig, Task};
+
+/// `trundle run`.
+pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
+    let mut robot = args.robot.robot()?;
+    let resumed = args.mission.resume.as_deref().map(checkpoint_file::read).transpose()?;
+    let mission = match &resumed {
+        Some((checkpoint, _)) => checkpoint.mission.left.clone(),
+        None => mission(&args.mission)?,
+    };
+    let camera = OpenCamera::open(&args.camera)?;
+    robot.camera = intrinsics(args, &robot, &camera)?;
+    let mut setup = RunSetup::new(&args.base.to_string(), mission, robot).by_command("run");
+    setup.time_limit = args.time_limit.unwrap_or(f64::MAX);
+    setup.real_time = true;
+    setup.recording = args.record.content();
+    if let Some(file) = &args.vocabulary {
+        setup = setup.with_vocabulary(&read_vocabulary(file)?);
+    }
+    if let Some((_, bytes)) = &resumed {
+        setup = setup.resumed_from(bytes);
+    }
+    drive(args, &setup, camera)
+}
+
+/// Runs the robot and writes the folder.
+fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome, AppError> {
+    let folder = logging::output_folder(&args.out)?;
+    if !args.common.quiet {
+        let info = camera.info();
+        let (name, rate_hz, mission) = (&info.name, info.color.rate_hz, mission_text(&setup.mission));
+        console::print(&format!("Base {}, camera {} ({name}): {mission}.", args.base, args.camera));
+        console::print(&setup.recording.announcement(&setup.robot.camera, rate_hz, setup.time_limit));
+    }
+    let checkpoint = args.checkpoint.as_deref();
+    if resumes_from_another_file(args) {
+        checkpoint.map_or(Ok(()), keep_aside)?;
+    }
+    let (line, progress) = console::progress(args.common.quiet);
+    let start = |events, _place| hardware::start(&args.base, camera, setup.robot.camera, events);
+    let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), progress);
+    line.finish_and_clear();
+    let (run, timing) = run?;
+    run_output::write(setup, run, Some(&timing), folder, args.common.quiet)
+}
+
+/// Whether the checkpoint that is written is not the one that the run resumes from.
+fn resumes_from_another_file(args: &RunArgs) -> bool {
+    args.mission.resume.as_deref() != args.checkpoint.as_deref()
+}
+
+fn mission(args: &MissionArgs) -> Result<Mission, AppError> {
+    if let Some(file) = &args.mission {
+        return read_mission(file);
+    }
+    let tasks = if args.explore {
+        vec![Task::Explore, Task::Return]
+    } else {
+        args.goal.iter().map(|goal| Task::Go(goal.0)).collect()
+    };
+    Ok(Mission::new(tasks)?)
+}
+
+/// The camera that the robot works with.
+fn intrinsics(args: &RunArgs, robot: &RobotConfig, camera: &OpenCamera) -> Result<PinholeCamera, AppError> {
+    let device = camera.info().color.camera;
+    if args.intrinsics == IntrinsicsArg::Device {
+        return Ok(device);
+    }
+    let size = |camera: &PinholeCamera| (camera.width(), camera.height());
+    if size(&robot.camera) == size(&device) {
+        return Ok(robot.camera);
+    }
+    let ((width, height), (wanted_width, wanted_height)) = (size(&robot.camera), size(&device));
+    Err(AppError::Input(format!(
+        "camera of the robot file is {width} x {height} px, expected {wanted_width} x {wanted_height} px as {} delivers",
+        args.camera
+    )))
+}

@@ -1,0 +1,76 @@
+//! The command line of `trundle run`.
+
+use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs};
+use crate::demo::RecordArg;
+use crate::output_args::{OutputDirArg, OutputFileArg};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+use trundle::drivers::{BaseSpec, CameraSpec};
+
+/// `trundle run`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle run --base kobuki --camera stream:/tmp/camera --goal 3,1,90\n\n\
+    Ctrl-C stops the robot and ends the run. `trundle devices` lists what is plugged in.\n\
+    Exit code: 0 mission done and nothing touched, 1 otherwise, 2 bad input or a device that does not answer.")]
+pub struct RunArgs {
+    /// The base: kobuki, or kobuki:PORT.
+    #[arg(long, value_name = "BASE", default_value = "kobuki")]
+    pub base: BaseSpec,
+    /// The depth camera: stream:PATH (a pipe or FIFO of frames), folder:PATH (see docs/camera-stream.md).
+    #[arg(long, value_name = "CAMERA")]
+    pub camera: CameraSpec,
+    /// Intrinsics of the colour camera: those that the camera reports, or those of the robot file.
+    #[arg(long, value_enum, value_name = "FROM", default_value_t = IntrinsicsArg::Device)]
+    pub intrinsics: IntrinsicsArg,
+    /// The mission.
+    #[command(flatten)]
+    pub mission: MissionArgs,
+    /// Write the robot's maps and the state of its mission to FILE, every 3 to 10 s: `--resume FILE` goes on from there.
+    #[arg(long, value_name = "FILE")]
+    pub checkpoint: Option<OutputFileArg>,
+    /// What recording.mcap holds; a replay needs all. Below 1 GB of free disk the run goes on without recording.
+    #[arg(long, value_enum, value_name = "WHAT", default_value_t = RecordArg::Events)]
+    pub record: RecordArg,
+    /// Recognise places by this vocabulary, in trundle's form [default: the built-in one]
+    #[arg(long, value_name = "FILE")]
+    pub vocabulary: Option<PathBuf>,
+    /// Give the run up after this time, s [default: none]
+    #[arg(long, value_name = "S", value_parser = NumberArg::above_zero("s"), allow_negative_numbers = true)]
+    pub time_limit: Option<f64>,
+    /// The robot's settings.
+    #[command(flatten)]
+    pub robot: RobotArgs,
+    /// Folder for the results; the last run in it is kept as DIR.1
+    #[arg(long, value_name = "DIR", default_value = "out/run")]
+    pub out: OutputDirArg,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// The mission of a run: one of these.
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+pub struct MissionArgs {
+    /// Goal in the map frame, which starts at the robot: m, m, deg; may be given again for the next one.
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
+    pub goal: Vec<PoseArg>,
+    /// Explore until the map is complete, then come back to the start.
+    #[arg(long)]
+    pub explore: bool,
+    /// The tasks of a mission file (docs/formats.md).
+    #[arg(long, value_name = "FILE")]
+    pub mission: Option<PathBuf>,
+    /// Resume the mission and the maps of a checkpoint.
+    #[arg(long, value_name = "CHECKPOINT")]
+    pub resume: Option<PathBuf>,
+}
+
+/// Source of the colour camera's intrinsics.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum IntrinsicsArg {
+    /// The camera's own.
+    Device,
+    /// The table [camera] of the robot file.
+    Robot,
+}

@@ -1,0 +1,92 @@
+//! A base as a user names it.
+
+use crate::kobuki::{Connector, SerialConnector};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// Port of a Kobuki where the udev rule of [`KOBUKI_UDEV_RULE`] is installed.
+const UDEV_PORT: &str = "/dev/kobuki";
+/// Folder in which Linux names serial devices by maker and number.
+const SERIAL_BY_ID: &str = "/dev/serial/by-id";
+/// Rule of udev that gives a Kobuki's port its name and lets everyone in the group `dialout` use it. The FTDI chip of a Kobuki has a serial
+/// number that begins with `kobuki`. Source: measured by many users; the chip is an FT232 (0403:6001).
+pub const KOBUKI_UDEV_RULE: &str = "SUBSYSTEM==\"tty\", ATTRS{idVendor}==\"0403\", ATTRS{idProduct}==\"6001\", \
+    ATTRS{serial}==\"kobuki*\", ATTR{device/latency_timer}=\"1\", MODE=\"0660\", GROUP=\"dialout\", SYMLINK+=\"kobuki\"";
+
+/// A base as a user names it: `kobuki`, `kobuki:PORT`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum BaseSpec {
+    /// A Kobuki at a serial port; `None`: the port where one is found.
+    Kobuki(Option<PathBuf>),
+}
+
+impl BaseSpec {
+    /// What opens the base's port.
+    #[must_use]
+    pub fn connector(&self) -> Box<dyn Connector> {
+        let Self::Kobuki(port) = self;
+        Box::new(SerialConnector::new(port.clone().unwrap_or_else(kobuki_port)))
+    }
+}
+
+/// The port at which a Kobuki is found, or the name that the udev rule would give it.
+#[must_use]
+pub fn kobuki_port() -> PathBuf {
+    let named = Path::new(UDEV_PORT);
+    if named.exists() { named.to_owned() } else { kobuki_by_id().unwrap_or_else(|| named.to_owned()) }
+}
+
+/// The serial devices that Linux lists by maker and number, sorted.
+#[must_use]
+pub fn serial_devices() -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(SERIAL_BY_ID).into_iter().flatten().flatten();
+    let mut devices: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+    devices.sort();
+    devices
+}
+
+fn kobuki_by_id() -> Option<PathBuf> {
+    let is_kobuki = |path: &PathBuf| path.to_string_lossy().to_lowercase().contains("kobuki");
+    serial_devices().into_iter().find(is_kobuki)
+}
+
+impl FromStr for BaseSpec {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once(':') {
+            None if text == "kobuki" => Ok(Self::Kobuki(None)),
+            Some(("kobuki", port)) if !port.is_empty() => Ok(Self::Kobuki(Some(port.into()))),
+            _ => Err(format!("no base '{text}', expected kobuki or kobuki:PORT, as kobuki:/dev/ttyUSB0")),
+        }
+    }
+}
+
+impl fmt::Display for BaseSpec {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self::Kobuki(port) = self;
+        match port {
+            Some(port) => write!(f, "kobuki:{}", port.display()),
+            None => f.write_str("kobuki"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_base_is_named_by_kind_and_port() {
+        for text in ["kobuki", "kobuki:/dev/ttyUSB0", "kobuki:/tmp/a:b"] {
+            assert_eq!(text.parse::<BaseSpec>().unwrap().to_string(), text);
+        }
+        for text in ["", "roomba", "kobuki:", "Kobuki:/dev/ttyUSB0"] {
+            assert!(
+                text.parse::<BaseSpec>().unwrap_err().starts_with(&format!("no base '{text}', expected"))
+            );
+        }
+    }
+}
