@@ -2,6 +2,7 @@
 
 use crate::data::DataArgs;
 use crate::demo::DemoArgs;
+use crate::devices::DevicesArgs;
 use crate::dock::DockArgs;
 use crate::eval::EvalArgs;
 use crate::experiment::ExperimentArgs;
@@ -59,6 +60,8 @@ pub enum Command {
     Vocabulary(VocabularyArgs),
     /// Print the whole robot file with its defaults, or check one.
     Config(ConfigArgs),
+    /// List the devices that are plugged in, and what is missing.
+    Devices(DevicesArgs),
     /// The data sets of the experiments: what each is, where it comes from, its licence.
     Data(DataArgs),
     /// Print the completions of a shell: bash, zsh, fish, elvish, powershell.

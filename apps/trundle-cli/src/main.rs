@@ -6,6 +6,7 @@ mod common_args;
 mod console;
 mod data;
 mod demo;
+mod devices;
 mod dock;
 mod eval;
 mod experiment;
@@ -83,6 +84,7 @@ fn run_command(cli: Cli) -> Result<Outcome, AppError> {
             None => vocabulary::run(&args),
         },
         Command::Config(args) => robot_file::print(&args),
+        Command::Devices(args) => devices::run(&args),
         Command::Data(args) => data::run(&args),
         Command::Completions(args) => shell_files::print_completions(&args, Cli::command()),
         Command::Man(args) => shell_files::write_man_pages(&args, Cli::command()),

@@ -1,14 +1,13 @@
 //! A base as a user names it.
 
 use crate::kobuki::{Connector, SerialConnector};
+use crate::serial_devices::{SerialDevice, serial_devices};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// Port of a Kobuki where the udev rule of [`KOBUKI_UDEV_RULE`] is installed.
-const UDEV_PORT: &str = "/dev/kobuki";
-/// Folder in which Linux names serial devices by maker and number.
-const SERIAL_BY_ID: &str = "/dev/serial/by-id";
+pub const KOBUKI_UDEV_PORT: &str = "/dev/kobuki";
 /// Rule of udev that gives a Kobuki's port its name and lets everyone in the group `dialout` use it. The FTDI chip of a Kobuki has a serial
 /// number that begins with `kobuki`. Source: measured by many users; the chip is an FT232 (0403:6001).
 pub const KOBUKI_UDEV_RULE: &str = "SUBSYSTEM==\"tty\", ATTRS{idVendor}==\"0403\", ATTRS{idProduct}==\"6001\", \
@@ -34,22 +33,12 @@ impl BaseSpec {
 /// The port at which a Kobuki is found, or the name that the udev rule would give it.
 #[must_use]
 pub fn kobuki_port() -> PathBuf {
-    let named = Path::new(UDEV_PORT);
-    if named.exists() { named.to_owned() } else { kobuki_by_id().unwrap_or_else(|| named.to_owned()) }
+    let named = Path::new(KOBUKI_UDEV_PORT);
+    if named.exists() { named.to_owned() } else { listed_kobuki().unwrap_or_else(|| named.to_owned()) }
 }
 
-/// The serial devices that Linux lists by maker and number, sorted.
-#[must_use]
-pub fn serial_devices() -> Vec<PathBuf> {
-    let entries = std::fs::read_dir(SERIAL_BY_ID).into_iter().flatten().flatten();
-    let mut devices: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
-    devices.sort();
-    devices
-}
-
-fn kobuki_by_id() -> Option<PathBuf> {
-    let is_kobuki = |path: &PathBuf| path.to_string_lossy().to_lowercase().contains("kobuki");
-    serial_devices().into_iter().find(is_kobuki)
+fn listed_kobuki() -> Option<PathBuf> {
+    serial_devices().into_iter().find(SerialDevice::is_kobuki).map(|device| device.path)
 }
 
 impl FromStr for BaseSpec {

@@ -13,6 +13,8 @@ pub mod camera;
 mod camera_spec;
 pub mod clock;
 pub mod kobuki;
+mod serial_devices;
 
-pub use base_spec::{BaseSpec, KOBUKI_UDEV_RULE, kobuki_port, serial_devices};
+pub use base_spec::{BaseSpec, KOBUKI_UDEV_PORT, KOBUKI_UDEV_RULE, kobuki_port};
 pub use camera_spec::CameraSpec;
+pub use serial_devices::{PortAccess, SerialDevice, serial_devices};

@@ -12,6 +12,8 @@ mod fault_scenarios;
 mod foreign_files;
 mod help;
 mod inputs;
+#[cfg(unix)]
+mod live_run;
 mod logs;
 mod map;
 mod missions;

@@ -1,0 +1,66 @@
+//! `trundle devices`: what is plugged in, what is missing and how to get it.
+
+use crate::console;
+use crate::outcome::Outcome;
+use clap::Args;
+use std::path::Path;
+use trundle::app::AppError;
+use trundle::drivers::{KOBUKI_UDEV_PORT, KOBUKI_UDEV_RULE, PortAccess, SerialDevice, serial_devices};
+
+/// `trundle devices`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle devices --udev | sudo tee /etc/udev/rules.d/60-trundle.rules")]
+pub struct DevicesArgs {
+    /// Print the udev rules that give the devices their names and rights.
+    #[arg(long)]
+    pub udev: bool,
+}
+
+/// `trundle devices`.
+pub fn run(args: &DevicesArgs) -> Result<Outcome, AppError> {
+    if args.udev {
+        console::print(&udev_rules());
+        return Ok(Outcome::Reached);
+    }
+    console::print_table(&rows());
+    Ok(Outcome::Reached)
+}
+
+fn udev_rules() -> String {
+    format!(
+        "# Written by `trundle devices --udev`. Install: save as /etc/udev/rules.d/60-trundle.rules, then\n\
+         # sudo udevadm control --reload && sudo udevadm trigger\n\
+         # Kobuki: {KOBUKI_UDEV_PORT}\n{KOBUKI_UDEV_RULE}"
+    )
+}
+
+fn rows() -> Vec<Vec<String>> {
+    let devices = serial_devices();
+    let mut rows: Vec<Vec<String>> = devices.iter().map(serial_row).collect();
+    if !devices.iter().any(SerialDevice::is_kobuki) {
+        let what = "not found: connect its USB cable and switch it on; other serial devices may still be one";
+        rows.push(vec!["base Kobuki".to_owned(), what.to_owned()]);
+    }
+    let rule = if Path::new(KOBUKI_UDEV_PORT).exists() {
+        format!("{KOBUKI_UDEV_PORT} is there")
+    } else {
+        format!("{KOBUKI_UDEV_PORT} is not there: install the rule of `trundle devices --udev`")
+    };
+    rows.push(vec!["udev rule".to_owned(), rule]);
+    rows.push(vec![
+        "camera stream".to_owned(),
+        "any camera by --camera stream:PATH (docs/camera-stream.md)".to_owned(),
+    ]);
+    rows
+}
+
+fn serial_row(device: &SerialDevice) -> Vec<String> {
+    let access = match device.access {
+        PortAccess::Free => "can be opened",
+        PortAccess::Busy => "in use by another program",
+        PortAccess::NoRights => "no right to open it: sudo usermod -aG dialout $USER, then log in again",
+        PortAccess::Broken => "does not answer: plug it in again",
+    };
+    let kind = if device.is_kobuki() { "base Kobuki" } else { "serial device" };
+    vec![kind.to_owned(), format!("{} {}: {access}", device.path.display(), device.id)]
+}

@@ -1,0 +1,143 @@
+//! `trundle run` on a real wire: the simulator is a Kobuki at a pseudo terminal and a camera at a FIFO, in another process.
+
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+/// Longest time of one run \[s\].
+const RUN_LIMIT_S: &str = "60";
+
+/// A simulated robot in a process of its own.
+struct EmulatedRobot {
+    process: Child,
+    folder: PathBuf,
+}
+
+impl EmulatedRobot {
+    fn start(folder: &Path) -> Self {
+        let (port, camera) = (folder.join("kobuki"), folder.join("camera"));
+        let process = trundle()
+            .args(["sim", "demo", "--rate", "8", "--camera", "kinect-v2", "--kobuki"])
+            .arg(&port)
+            .arg("--camera-stream")
+            .arg(&camera)
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let begun = Instant::now();
+        while !(port.exists() && camera.exists()) {
+            assert!(begun.elapsed() < Duration::from_secs(60), "the emulated robot does not start");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        Self { process, folder: folder.to_owned() }
+    }
+
+    fn run(&self, arguments: &[&str]) -> Command {
+        let mut command = trundle();
+        command.arg("run").arg("--base").arg(format!("kobuki:{}", self.folder.join("kobuki").display()));
+        command.arg("--camera").arg(format!("stream:{}", self.folder.join("camera").display()));
+        command.args(["--time-limit", RUN_LIMIT_S, "--out"]).arg(self.folder.join("out")).args(arguments);
+        command
+    }
+
+    fn summary(&self) -> serde_json::Value {
+        serde_json::from_slice(&std::fs::read(self.folder.join("out/summary.json")).unwrap()).unwrap()
+    }
+
+    /// Ends the process; its closing lines.
+    fn stop(mut self) -> String {
+        signal(&self.process, "INT");
+        let mut text = String::new();
+        std::io::Read::read_to_string(&mut self.process.stdout.take().unwrap(), &mut text).unwrap();
+        self.process.wait().unwrap();
+        text
+    }
+}
+
+impl Drop for EmulatedRobot {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+fn trundle() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_trundle"))
+}
+
+fn signal(process: &Child, name: &str) {
+    let done = Command::new("kill").args([&format!("-{name}"), &process.id().to_string()]).status().unwrap();
+    assert!(done.success());
+}
+
+fn text(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+}
+
+/// The first number of the row with this name.
+fn first_number(table: &str, row: &str) -> f64 {
+    let line =
+        table.lines().find(|line| line.contains(row)).unwrap_or_else(|| panic!("no '{row}' in {table}"));
+    let rest = line.split_once(row).unwrap().1;
+    rest.split_whitespace().next().unwrap().trim_end_matches(',').parse().unwrap()
+}
+
+#[test]
+fn a_goal_is_reached_over_a_serial_line_and_a_camera_stream() {
+    let folder = tempfile::tempdir().unwrap();
+    let robot = EmulatedRobot::start(folder.path());
+    let output = robot.run(&["--goal", "0.6,0,0"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    let summary = robot.summary();
+    assert_eq!((summary["command"].as_str(), summary["success"].as_bool()), (Some("run"), Some(true)));
+    assert_eq!(summary["battery_end"]["voltage_v"], 16.5);
+    let truth = robot.stop();
+    assert!((first_number(&truth, "true pose from the start") - 0.6).abs() < 0.03, "{truth}");
+    assert_eq!(first_number(&truth, "true contacts"), 0.0);
+}
+
+#[test]
+fn a_robot_that_is_unplugged_stops_says_so_and_goes_on_when_it_is_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let robot = EmulatedRobot::start(folder.path());
+    let mut run = robot.run(&["--goal", "2,0,0"]);
+    let run = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_secs(6));
+    // A process that stands still is a base and a camera that are silent.
+    signal(&robot.process, "STOP");
+    std::thread::sleep(Duration::from_secs(2));
+    signal(&robot.process, "CONT");
+    let output = run.wait_with_output().unwrap();
+    let log = std::fs::read_to_string(folder.path().join("out/log.txt")).unwrap();
+    assert!(log.contains("no motion: the base does not answer"), "{log}");
+    assert!(log.contains("motion is free again"), "{log}");
+    let summary = robot.summary();
+    assert!(summary["device_losses"]["base"].as_u64() >= Some(1), "{summary}");
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+}
+
+#[test]
+fn devices_that_are_not_there_are_named_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let run = |arguments: &[&str]| {
+        let output = trundle().arg("run").args(arguments).arg("--out").arg(&out).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{}", text(&output));
+        assert!(!out.exists());
+        text(&output)
+    };
+    let camera = format!("stream:{}", folder.path().join("none").display());
+    assert!(run(&["--camera", &camera, "--goal", "1,0,0"]).contains(&camera));
+    assert!(run(&["--camera", "webcam", "--goal", "1,0,0"]).contains("no camera 'webcam', expected one of"));
+    assert!(run(&["--camera", &camera]).contains("--goal"), "a mission is needed");
+    let base = run(&["--camera", &camera, "--base", "roomba", "--explore"]);
+    assert!(base.contains("no base 'roomba', expected kobuki or kobuki:PORT"), "{base}");
+}
+
+#[test]
+fn the_udev_rules_and_the_devices_are_listed() {
+    let rules = trundle().args(["devices", "--udev"]).output().unwrap();
+    assert!(rules.status.success() && text(&rules).contains("ATTRS{idVendor}==\"0403\""), "{}", text(&rules));
+    let devices = trundle().arg("devices").output().unwrap();
+    assert!(devices.status.success() && text(&devices).contains("Kobuki"), "{}", text(&devices));
+}
