@@ -25,7 +25,7 @@ pub struct ExperimentArgs {
 #[derive(Debug, Subcommand)]
 pub enum Which {
     /// The eight start poses of Li et al.: how exactly the robot settles, on its own senses.
-    Poses(RunsArgs),
+    Poses(PosesArgs),
     /// An unknown room with obstacles, crossed while it is mapped.
     Obstacles(RunsArgs),
     /// Ten goals in six rooms of a furnished house, from an empty map.
@@ -63,6 +63,17 @@ pub struct RunsArgs {
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
+}
+
+/// `trundle experiment poses`
+#[derive(Debug, Args)]
+pub struct PosesArgs {
+    /// Drive over a serial line to an emulated Kobuki and a stream of camera frames, by the wall clock: about 15 s a run.
+    #[arg(long)]
+    pub wires: bool,
+    /// What every experiment of runs takes.
+    #[command(flatten)]
+    pub runs: RunsArgs,
 }
 
 /// `trundle experiment house`
@@ -194,9 +205,8 @@ impl ExperimentArgs {
     /// What every command takes.
     pub fn common(&self) -> &Common {
         match &self.which {
-            Which::Poses(args) | Which::Obstacles(args) | Which::Faults(args) | Which::People(args) => {
-                &args.common
-            }
+            Which::Poses(args) => &args.runs.common,
+            Which::Obstacles(args) | Which::Faults(args) | Which::People(args) => &args.common,
             Which::House(args) => &args.runs.common,
             Which::Barn(args) => &args.common,
             Which::Mrpb(args) => &args.common,
@@ -209,7 +219,9 @@ impl ExperimentArgs {
 /// Runs the experiment that was asked for.
 pub fn run(args: &ExperimentArgs) -> Result<Outcome, AppError> {
     match &args.which {
-        Which::Poses(args) => runs(args, poses::run),
+        Which::Poses(args) => runs(&args.runs, |request, progress| {
+            poses::run(&RunsRequest { over_wires: args.wires, ..request.clone() }, progress)
+        }),
         Which::Obstacles(args) => runs(args, missions::run_obstacles),
         Which::House(args) => {
             runs(&args.runs, |request, progress| missions::run_house(request, &args.mesh, progress))
@@ -229,7 +241,7 @@ fn runs<R: ExperimentReport>(
     experiment: impl FnOnce(&RunsRequest, &Progress) -> Result<R, AppError>,
 ) -> Result<Outcome, AppError> {
     let robot = args.robot.robot()?;
-    let request = RunsRequest { seeds: args.seeds, only: args.only.clone(), robot };
+    let request = RunsRequest { seeds: args.seeds, only: args.only.clone(), over_wires: false, robot };
     in_folder(&args.out, &args.common, |_, progress| experiment(&request, progress))
 }
 

@@ -1,14 +1,13 @@
 //! `trundle run`: a mission on a real robot.
 
 mod args;
-mod hardware;
 
 pub use args::RunArgs;
 
 use crate::outcome::Outcome;
 use crate::{checkpoint_file, console, logging, run_output};
 use args::{IntrinsicsArg, MissionArgs};
-use hardware::OpenCamera;
+use trundle::app::hardware::{OpenCamera, start_hardware};
 use trundle::app::real_time::run_in_real_time;
 use trundle::app::report::mission_text;
 use trundle::app::vocabulary_file::read_vocabulary;
@@ -54,7 +53,7 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
         checkpoint.map_or(Ok(()), keep_aside)?;
     }
     let (line, progress) = console::progress(args.common.quiet);
-    let start = |events, _place| hardware::start(&args.base, camera, setup.robot.camera, events);
+    let start = |events, _place| start_hardware(&args.base, camera, setup.robot.camera, events);
     let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), progress);
     line.finish_and_clear();
     let (run, timing) = run?;

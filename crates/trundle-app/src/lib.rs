@@ -33,6 +33,7 @@ mod error;
 pub mod evaluation;
 mod finished_run;
 mod free_space;
+pub mod hardware;
 mod input_warnings;
 pub mod laser_map;
 mod mission_file;

@@ -31,6 +31,8 @@ pub mod simulated;
 pub mod teleop;
 mod trial;
 pub mod vocabulary;
+#[cfg(unix)]
+mod wired_trial;
 
 pub use experiment_report::{ExperimentReport, RunsRequest};
 pub use trial::{ComputerFault, Trial, TrialPlan, run_all, run_one};

@@ -103,6 +103,11 @@ pub fn run_all(
         let problem = format!("--only {word}: no run has a name that holds this; there are '{first}'{more}");
         return Err(AppError::Input(problem));
     }
+    #[cfg(unix)]
+    if request.over_wires {
+        // Runs by the wall clock share no computer.
+        return plans.into_iter().map(crate::wired_trial::run_over_wires).collect();
+    }
     run_each(plans, "runs", progress, run_one)
 }
 
@@ -277,7 +282,7 @@ mod tests {
             TrialPlan { name: name.to_owned(), seed: 1, scene, mission, robot, faults, computer_fault: None }
         };
         let only = Some("no such run".to_owned());
-        let request = RunsRequest { seeds: 1, only, robot: RobotConfig::default() };
+        let request = RunsRequest { seeds: 1, only, over_wires: false, robot: RobotConfig::default() };
         let refused = run_all(vec![plan("one"), plan("two")], &request, &Progress::hidden());
         let text = refused.err().unwrap().to_string();
         assert!(text.contains("no such run") && text.ends_with("there are 'one', 'two'"), "{text}");

@@ -98,7 +98,7 @@ fn may_know(from: &str, to: &str) -> bool {
         "trundle-slam" => base || to == "trundle-vision",
         "trundle-runtime" => base || ALGORITHM_CRATES.contains(&to),
         "trundle-app" => {
-            let edges = ["trundle-io", "trundle-viz", "trundle-eval"];
+            let edges = ["trundle-io", "trundle-drivers", "trundle-viz", "trundle-eval"];
             base || ALGORITHM_CRATES.contains(&to) || edges.contains(&to) || to == "trundle-runtime"
         }
         "trundle-experiments" => {

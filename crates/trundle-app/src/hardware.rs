@@ -1,18 +1,18 @@
 //! The hardware of a run: base and camera in threads of their own, as one body.
 
+use crate::AppError;
+use crate::real_time::{EventFeed, LiveBody, TimedEvent};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use trundle::app::AppError;
-use trundle::app::real_time::{EventFeed, LiveBody, TimedEvent};
-use trundle::core::{PinholeCamera, SensorEvent, Stamp};
-use trundle::drivers::camera::camera_thread::{
+use trundle_core::{PinholeCamera, SensorEvent, Stamp};
+use trundle_drivers::camera::camera_thread::{
     CameraThread, CameraThreadConfig, CameraThreadParts, StampMapFactory,
 };
-use trundle::drivers::camera::{CameraError, CameraInfo, DepthCamera};
-use trundle::drivers::clock::{DeviceClock, DeviceClockConfig, HostClock};
-use trundle::drivers::kobuki::{KobukiBase, KobukiBaseConfig};
-use trundle::drivers::{BaseSpec, CameraSpec};
-use trundle::runtime::real_time::InboxSender;
+use trundle_drivers::camera::{CameraError, CameraInfo, DepthCamera};
+use trundle_drivers::clock::{DeviceClock, DeviceClockConfig, HostClock};
+use trundle_drivers::kobuki::{KobukiBase, KobukiBaseConfig};
+use trundle_drivers::{BaseSpec, CameraSpec};
+use trundle_runtime::real_time::InboxSender;
 
 /// Longest wait for a camera to open \[s\]: a stream's writer may start after us. Source: ours.
 const CAMERA_TIMEOUT: Duration = Duration::from_secs(10);
@@ -47,7 +47,7 @@ fn refused(spec: &CameraSpec, error: &CameraError) -> AppError {
 ///
 /// # Errors
 /// When the base does not answer, or the system refuses a thread.
-pub fn start(
+pub fn start_hardware(
     base: &BaseSpec,
     camera: OpenCamera,
     output: PinholeCamera,
