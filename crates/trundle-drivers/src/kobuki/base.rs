@@ -11,7 +11,7 @@ use super::base_status::{BaseCounters, Status, Versions, locked};
 use super::io_loop::{IoLoop, Queues};
 use super::link::Connector;
 use super::probe::probe;
-use super::protocol::{Command, Feedback, Gains, Outputs, SoundSequence};
+use super::protocol::{Feedback, Gains, KobukiCommand, Outputs, SoundSequence};
 use super::start_error::StartError;
 use crate::clock::HostClock;
 use std::sync::mpsc::{Receiver, Sender, channel, sync_channel};
@@ -31,7 +31,7 @@ pub type EventSink = Box<dyn FnMut(SensorEvent) + Send>;
 #[derive(Debug)]
 pub struct KobukiBase {
     commands: Sender<Twist2>,
-    accessories: Sender<Command>,
+    accessories: Sender<KobukiCommand>,
     status: Arc<Mutex<Status>>,
     threads: Vec<JoinHandle<()>>,
 }
@@ -78,17 +78,17 @@ impl KobukiBase {
 
     /// Sets all outputs: digital ones, supplies, lights. They are set again after a lost link.
     pub fn set_outputs(&self, outputs: Outputs) {
-        self.send(Command::Outputs(outputs));
+        self.send(KobukiCommand::Outputs(outputs));
     }
 
     /// Plays a melody of the firmware.
     pub fn play(&self, sequence: SoundSequence) {
-        self.send(Command::SoundSequence(sequence));
+        self.send(KobukiCommand::SoundSequence(sequence));
     }
 
     /// Plays a note of `frequency_hz` (Hz) for `duration_ms`.
     pub fn play_note(&self, frequency_hz: f64, duration_ms: u8) {
-        self.send(Command::note(frequency_hz, duration_ms));
+        self.send(KobukiCommand::note(frequency_hz, duration_ms));
     }
 
     /// Sets the gains of the wheels' speed controllers. Firmware 1.2.0 or later.
@@ -99,13 +99,13 @@ impl KobukiBase {
         for (name, gain) in [("gain p", gains.p), ("gain i", gains.i), ("gain d", gains.d)] {
             require_in(name, gain, "", 0.0, MAX_GAIN)?;
         }
-        self.send(Command::SetGains(gains));
+        self.send(KobukiCommand::SetGains(gains));
         Ok(())
     }
 
     /// Asks for the gains; [`KobukiBase::gains`] has them after the answer. Firmware 1.2.0 or later.
     pub fn request_gains(&self) {
-        self.send(Command::GetGains);
+        self.send(KobukiCommand::GetGains);
     }
 
     /// Gains as the base last told them.
@@ -138,7 +138,7 @@ impl KobukiBase {
         drop(self);
     }
 
-    fn send(&self, command: Command) {
+    fn send(&self, command: KobukiCommand) {
         if self.accessories.send(command).is_err() {
             tracing::warn!("{command:?} is not sent: the thread of the base has ended");
         }

@@ -7,7 +7,7 @@
 //! An XOR checksum cannot tell a packet that lost a byte 0xAA from a sound one when the next packet's header follows. The last byte of such
 //! a packet is the header's first byte. The decoder keeps it, so the next packet is not lost.
 
-use super::protocol::command::{Command, min_command_bytes};
+use super::protocol::command::{KobukiCommand, min_command_bytes};
 use super::protocol::feedback::{Feedback, min_feedback_bytes};
 use super::protocol::frame::{
     FRAME_HEADER, FRAME_OVERHEAD_BYTES, MAX_PAYLOAD_BYTES, MIN_PAYLOAD_BYTES, check_payload, checksum,
@@ -49,7 +49,7 @@ struct FrameDecoder {
 }
 
 /// What the beginning of the buffer is.
-enum Beginning {
+enum Candidate {
     Incomplete,
     Garbage(usize),
     WrongLength,
@@ -78,18 +78,18 @@ impl FrameDecoder {
         let mut at = 0;
         while at < self.buffer.len() {
             let rest = &self.buffer[at..];
-            let skipped = match beginning(rest, self.min_bytes) {
-                Beginning::Incomplete => break,
-                Beginning::Garbage(bytes) => bytes,
-                Beginning::WrongLength => {
+            let skipped = match candidate(rest, self.min_bytes) {
+                Candidate::Incomplete => break,
+                Candidate::Garbage(bytes) => bytes,
+                Candidate::WrongLength => {
                     self.counters.wrong_length += 1;
                     1
                 }
-                Beginning::WrongChecksum => {
+                Candidate::WrongChecksum => {
                     self.counters.wrong_checksum += 1;
                     1
                 }
-                Beginning::Frame(bytes) => {
+                Candidate::Frame(bytes) => {
                     self.counters.packets += 1;
                     on_payload(&rest[3..bytes - 1], &mut self.counters);
                     self.is_shared = rest[bytes - 1] == FRAME_HEADER[0];
@@ -112,26 +112,26 @@ impl FrameDecoder {
 }
 
 /// Reads the beginning of bytes that are not empty.
-fn beginning(bytes: &[u8], min_bytes: fn(u8) -> Option<usize>) -> Beginning {
+fn candidate(bytes: &[u8], min_bytes: fn(u8) -> Option<usize>) -> Candidate {
     if bytes[0] != FRAME_HEADER[0] {
         let header = bytes.iter().position(|byte| *byte == FRAME_HEADER[0]);
-        return Beginning::Garbage(header.unwrap_or(bytes.len()));
+        return Candidate::Garbage(header.unwrap_or(bytes.len()));
     }
     if bytes.get(1).is_some_and(|byte| *byte != FRAME_HEADER[1]) {
-        return Beginning::Garbage(1);
+        return Candidate::Garbage(1);
     }
     let Some(payload_bytes) = bytes.get(2).map(|byte| usize::from(*byte)) else {
-        return Beginning::Incomplete;
+        return Candidate::Incomplete;
     };
     let frame_bytes = payload_bytes + FRAME_OVERHEAD_BYTES;
     let received = &bytes[3..bytes.len().min(frame_bytes - 1)];
     if payload_bytes < MIN_PAYLOAD_BYTES || check_payload(received, payload_bytes, min_bytes).is_err() {
-        return Beginning::WrongLength;
+        return Candidate::WrongLength;
     }
     match bytes.get(2..frame_bytes) {
-        None => Beginning::Incomplete,
-        Some(body) if checksum(body) != 0 => Beginning::WrongChecksum,
-        Some(_) => Beginning::Frame(frame_bytes),
+        None => Candidate::Incomplete,
+        Some(body) if checksum(body) != 0 => Candidate::WrongChecksum,
+        Some(_) => Candidate::Frame(frame_bytes),
     }
 }
 
@@ -179,9 +179,9 @@ impl Default for CommandDecoder {
 
 impl CommandDecoder {
     /// Calls `on_command` for every command of the packets that end in `bytes`.
-    pub fn push(&mut self, bytes: &[u8], mut on_command: impl FnMut(Command)) {
+    pub fn push(&mut self, bytes: &[u8], mut on_command: impl FnMut(KobukiCommand)) {
         self.0.push(bytes, |payload, _| {
-            Command::decode(payload).into_iter().flatten().for_each(&mut on_command)
+            KobukiCommand::decode(payload).into_iter().flatten().for_each(&mut on_command)
         });
     }
 

@@ -5,8 +5,8 @@
 use super::decoder::CommandDecoder;
 use super::feedback_events::FEEDBACK_PERIOD_S;
 use super::protocol::{
-    Charger, CliffSignals, Command, CoreSensors, Feedback, Gains, GeneralInputs, Inertia, MotorCurrents,
-    Outputs, RawGyro, ThreeSides, UniqueId, Version,
+    Charger, CliffSignals, CoreSensors, Feedback, Gains, GeneralInputs, Inertia, KobukiCommand,
+    MotorCurrents, Outputs, RawGyro, ThreeSides, UniqueId, Version,
 };
 use trundle_core::{DockInfrared, PerWheel, Twist2};
 
@@ -79,7 +79,7 @@ pub struct EmulatedKobuki {
     unique_id: UniqueId,
     gains: Gains,
     outputs: Outputs,
-    sounds: Vec<Command>,
+    sounds: Vec<KobukiCommand>,
     /// What the next packet carries besides the sensors.
     answers: Feedback,
 }
@@ -149,26 +149,26 @@ impl EmulatedKobuki {
     }
 
     /// Takes the sounds that were asked for since the last call, at most 64.
-    pub fn take_sounds(&mut self) -> Vec<Command> {
+    pub fn take_sounds(&mut self) -> Vec<KobukiCommand> {
         std::mem::take(&mut self.sounds)
     }
 
-    fn on_command(&mut self, command: Command) -> Option<Twist2> {
+    fn on_command(&mut self, command: KobukiCommand) -> Option<Twist2> {
         match command {
-            Command::BaseControl(control) => return Some(control.twist()),
-            Command::Sound { .. } | Command::SoundSequence(_) => {
+            KobukiCommand::BaseControl(control) => return Some(control.twist()),
+            KobukiCommand::Sound { .. } | KobukiCommand::SoundSequence(_) => {
                 if self.sounds.len() < MAX_KEPT_SOUNDS {
                     self.sounds.push(command);
                 }
             }
-            Command::RequestExtra { hardware, firmware, unique_id } => {
+            KobukiCommand::RequestExtra { hardware, firmware, unique_id } => {
                 self.answers.hardware = hardware.then_some(self.hardware).or(self.answers.hardware);
                 self.answers.firmware = firmware.then_some(self.firmware).or(self.answers.firmware);
                 self.answers.unique_id = unique_id.then_some(self.unique_id).or(self.answers.unique_id);
             }
-            Command::Outputs(outputs) => self.outputs = outputs,
-            Command::SetGains(gains) => self.gains = gains,
-            Command::GetGains => self.answers.gains = Some(self.gains),
+            KobukiCommand::Outputs(outputs) => self.outputs = outputs,
+            KobukiCommand::SetGains(gains) => self.gains = gains,
+            KobukiCommand::GetGains => self.answers.gains = Some(self.gains),
         }
         None
     }
@@ -242,8 +242,8 @@ mod tests {
         let mut emulator = EmulatedKobuki::default();
         let state = KobukiState::default();
         assert_eq!(packet(&mut emulator, &state).firmware, None);
-        let request = Command::RequestExtra { hardware: true, firmware: true, unique_id: true };
-        emulator.on_bytes(&[request.encode(), Command::GetGains.encode()].concat());
+        let request = KobukiCommand::RequestExtra { hardware: true, firmware: true, unique_id: true };
+        emulator.on_bytes(&[request.encode(), KobukiCommand::GetGains.encode()].concat());
         let answer = packet(&mut emulator, &state);
         assert_eq!(
             (answer.hardware, answer.firmware),
@@ -259,10 +259,15 @@ mod tests {
         let mut emulator = EmulatedKobuki::default();
         let outputs = Outputs { power_5v: false, ..Outputs::default() };
         let gains = Gains { is_user: true, p: 50.0, i: 1.0, d: 0.5 };
-        let sound = Command::SoundSequence(SoundSequence::Error);
-        let drive = |v, omega| Command::BaseControl(BaseControl::from_twist(Twist2::new(v, omega)));
-        let commands =
-            [drive(0.3, 0.0), Command::Outputs(outputs), sound, Command::SetGains(gains), drive(0.2, 0.5)];
+        let sound = KobukiCommand::SoundSequence(SoundSequence::Error);
+        let drive = |v, omega| KobukiCommand::BaseControl(BaseControl::from_twist(Twist2::new(v, omega)));
+        let commands = [
+            drive(0.3, 0.0),
+            KobukiCommand::Outputs(outputs),
+            sound,
+            KobukiCommand::SetGains(gains),
+            drive(0.2, 0.5),
+        ];
         let bytes = commands.map(|command| command.encode()).concat();
         let twists: Vec<Twist2> = bytes.chunks(3).filter_map(|chunk| emulator.on_bytes(chunk)).collect();
         assert_eq!(twists.len(), 2);

@@ -11,7 +11,7 @@ use super::feedback_events::FeedbackEvents;
 use super::link::{ByteLink, Connector};
 use super::outbox::Outbox;
 use super::probe::greeting;
-use super::protocol::{BaseControl, Command, Feedback, Outputs};
+use super::protocol::{BaseControl, Feedback, KobukiCommand, Outputs};
 use super::stream_check::StreamCheck;
 use crate::clock::HostClock;
 use std::io;
@@ -34,7 +34,7 @@ const STOP_LIMIT_S: f64 = 0.2;
 /// The queues between a base's thread and its users.
 pub(super) struct Queues {
     pub(super) commands: Receiver<Twist2>,
-    pub(super) accessories: Receiver<Command>,
+    pub(super) accessories: Receiver<KobukiCommand>,
     pub(super) events: SyncSender<SensorEvent>,
     pub(super) status: Arc<Mutex<Status>>,
 }
@@ -160,9 +160,9 @@ impl IoLoop {
         self.take_commands(now);
         (self.is_up, self.retry_s) = (true, self.config.min_retry_s);
         self.schedule.restart();
-        self.outbox.push(&Command::BaseControl(BaseControl::STOP).encode());
+        self.outbox.push(&KobukiCommand::BaseControl(BaseControl::STOP).encode());
         if let Some(outputs) = self.outputs {
-            self.outbox.push(&Command::Outputs(outputs).encode());
+            self.outbox.push(&KobukiCommand::Outputs(outputs).encode());
         }
         locked(&self.queues.status).is_up = true;
         tracing::info!("port {}: the base answers", self.connector.port());
@@ -178,7 +178,7 @@ impl IoLoop {
             }
         }
         for command in self.queues.accessories.try_iter().take(MAX_COMMANDS_AT_ONCE) {
-            if let Command::Outputs(outputs) = command {
+            if let KobukiCommand::Outputs(outputs) = command {
                 self.outputs = Some(outputs);
             }
             if self.is_up {
@@ -196,7 +196,7 @@ impl IoLoop {
         if self.outbox.is_empty()
             && let Some(control) = self.schedule.due(now)
         {
-            self.outbox.push(&Command::BaseControl(control).encode());
+            self.outbox.push(&KobukiCommand::BaseControl(control).encode());
             locked(&self.queues.status).counters.speeds_sent += 1;
         }
         self.outbox.write(link, now)
@@ -276,7 +276,7 @@ impl IoLoop {
 
     fn stop(&mut self) {
         let Some(mut link) = self.link.take() else { return };
-        self.outbox.push(&Command::BaseControl(BaseControl::STOP).encode());
+        self.outbox.push(&KobukiCommand::BaseControl(BaseControl::STOP).encode());
         let start = (self.clock)();
         while !self.outbox.is_empty() && (self.clock)() - start < STOP_LIMIT_S {
             if let Err(error) = self.outbox.write(&mut *link, start) {

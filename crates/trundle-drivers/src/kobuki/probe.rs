@@ -4,7 +4,7 @@ use super::base_config::KobukiBaseConfig;
 use super::base_status::Versions;
 use super::decoder::FeedbackDecoder;
 use super::link::ByteLink;
-use super::protocol::{BaseControl, Command, Feedback, Version};
+use super::protocol::{BaseControl, Feedback, KobukiCommand, Version};
 use super::start_error::StartError;
 use super::stream_check::{StreamCheck, StreamFault};
 use crate::clock::HostClock;
@@ -36,8 +36,8 @@ struct Probe<'a> {
 
 /// Commands at the beginning of every connection: zero speed, and the request for versions and unique id.
 pub(super) fn greeting() -> Vec<u8> {
-    let request = Command::RequestExtra { hardware: true, firmware: true, unique_id: true };
-    [Command::BaseControl(BaseControl::STOP).encode(), request.encode()].concat()
+    let request = KobukiCommand::RequestExtra { hardware: true, firmware: true, unique_id: true };
+    [KobukiCommand::BaseControl(BaseControl::STOP).encode(), request.encode()].concat()
 }
 
 /// Stops the base, and waits until it sent packets and its versions.

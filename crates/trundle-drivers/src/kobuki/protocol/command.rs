@@ -11,12 +11,12 @@ const NOTE_PERIOD_UNIT_S: f64 = 0.000_002_75;
 /// A command to the base. Source: the protocol's "Command Packets".
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-pub enum Command {
+pub enum KobukiCommand {
     /// Speed of the wheels.
     BaseControl(BaseControl),
     /// A note.
     Sound {
-        /// Period of the note in units of 2.75e-6 s; see [`Command::note`].
+        /// Period of the note in units of 2.75e-6 s; see [`KobukiCommand::note`].
         period: u16,
         /// Duration, ms.
         duration_ms: u8,
@@ -132,7 +132,7 @@ impl Outputs {
     }
 }
 
-impl Command {
+impl KobukiCommand {
     /// A note of `frequency_hz` (Hz) that lasts `duration_ms`. The lowest possible note is 5.5 Hz; zero or not a number gives that one.
     pub fn note(frequency_hz: f64, duration_ms: u8) -> Self {
         let period = 1.0 / (frequency_hz.max(0.0) * NOTE_PERIOD_UNIT_S);
@@ -208,16 +208,16 @@ pub fn min_command_bytes(id: u8) -> Option<usize> {
 mod tests {
     use super::*;
 
-    fn all() -> Vec<Command> {
+    fn all() -> Vec<KobukiCommand> {
         let mut commands = vec![
-            Command::BaseControl(BaseControl { speed_mm_s: -300, radius_mm: 666 }),
-            Command::Sound { period: 826, duration_ms: 200 },
-            Command::RequestExtra { hardware: true, firmware: false, unique_id: true },
-            Command::Outputs(Outputs { led2: Led { red: false, green: true }, ..Outputs::default() }),
-            Command::SetGains(Gains { is_user: true, p: 100.0, i: 0.1, d: 2.0 }),
-            Command::GetGains,
+            KobukiCommand::BaseControl(BaseControl { speed_mm_s: -300, radius_mm: 666 }),
+            KobukiCommand::Sound { period: 826, duration_ms: 200 },
+            KobukiCommand::RequestExtra { hardware: true, firmware: false, unique_id: true },
+            KobukiCommand::Outputs(Outputs { led2: Led { red: false, green: true }, ..Outputs::default() }),
+            KobukiCommand::SetGains(Gains { is_user: true, p: 100.0, i: 0.1, d: 2.0 }),
+            KobukiCommand::GetGains,
         ];
-        commands.extend(SoundSequence::ALL.map(Command::SoundSequence));
+        commands.extend(SoundSequence::ALL.map(KobukiCommand::SoundSequence));
         commands
     }
 
@@ -226,18 +226,18 @@ mod tests {
         for command in all() {
             let bytes = command.encode();
             let payload = &bytes[3..bytes.len() - 1];
-            assert_eq!(Command::decode(payload), Ok(vec![command]));
+            assert_eq!(KobukiCommand::decode(payload), Ok(vec![command]));
             assert_eq!(min_command_bytes(payload[0]), Some(usize::from(payload[1])), "{command:?}");
         }
     }
 
     #[test]
     fn bytes_are_those_of_the_protocol() {
-        let stop = Command::BaseControl(BaseControl::STOP).encode();
+        let stop = KobukiCommand::BaseControl(BaseControl::STOP).encode();
         assert_eq!(stop, [0xAA, 0x55, 6, 1, 4, 0, 0, 0, 0, 3]);
-        let request = Command::RequestExtra { hardware: true, firmware: true, unique_id: true };
+        let request = KobukiCommand::RequestExtra { hardware: true, firmware: true, unique_id: true };
         assert_eq!(request.encode()[3..7], [9, 2, 0x0B, 0]);
-        assert_eq!(Command::GetGains.encode()[3..6], [14, 1, 0]);
+        assert_eq!(KobukiCommand::GetGains.encode()[3..6], [14, 1, 0]);
         assert_eq!(Outputs::default().word(), 0x00F0);
         let green2 = Outputs { led2: Led { red: false, green: true }, ..Outputs::from_word(0) };
         assert_eq!(green2.word(), 0x0800);
@@ -246,14 +246,17 @@ mod tests {
 
     #[test]
     fn a_note_is_its_period() {
-        assert_eq!(Command::note(440.0, 10), Command::Sound { period: 826, duration_ms: 10 });
-        assert_eq!(Command::note(0.0, 10), Command::Sound { period: u16::MAX, duration_ms: 10 });
+        assert_eq!(KobukiCommand::note(440.0, 10), KobukiCommand::Sound { period: 826, duration_ms: 10 });
+        assert_eq!(KobukiCommand::note(0.0, 10), KobukiCommand::Sound { period: u16::MAX, duration_ms: 10 });
     }
 
     #[test]
     fn unknown_commands_are_left_out_and_short_ones_refused() {
-        let stop = Command::BaseControl(BaseControl::STOP);
-        assert_eq!(Command::decode(&[77, 1, 0, 1, 4, 0, 0, 0, 0, 4, 1, 9]), Ok(vec![stop]));
-        assert_eq!(Command::decode(&[1, 2, 0, 0]), Err(PayloadError::Short { id: 1, bytes: 2, expected: 4 }));
+        let stop = KobukiCommand::BaseControl(BaseControl::STOP);
+        assert_eq!(KobukiCommand::decode(&[77, 1, 0, 1, 4, 0, 0, 0, 0, 4, 1, 9]), Ok(vec![stop]));
+        assert_eq!(
+            KobukiCommand::decode(&[1, 2, 0, 0]),
+            Err(PayloadError::Short { id: 1, bytes: 2, expected: 4 })
+        );
     }
 }

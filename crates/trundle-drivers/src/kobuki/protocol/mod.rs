@@ -25,7 +25,7 @@ pub mod frame;
 pub mod sensor_payloads;
 
 pub use base_control::BaseControl;
-pub use command::{Command, Led, Outputs, SoundSequence};
+pub use command::{KobukiCommand, Led, Outputs, SoundSequence};
 pub use core_sensors::{Charger, CoreSensors, ThreeSides};
 pub use device_info::{Gains, UniqueId, Version};
 pub use feedback::Feedback;
