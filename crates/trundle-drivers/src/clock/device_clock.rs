@@ -161,7 +161,8 @@ impl DeviceClock {
         if self.bins.len() > 1 { self.config.max_early_s } else { self.config.max_delay_s }
     }
 
-    fn restart(&mut self) {
+    /// Forgets the device's clock, as after a lost link: the device may have been switched off. Results stay in order.
+    pub fn restart(&mut self) {
         (self.origin, self.slope, self.intercept) = (None, 0.0, 0.0);
         self.bins.clear();
         self.late = None;

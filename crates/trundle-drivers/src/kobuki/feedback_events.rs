@@ -103,8 +103,10 @@ impl FeedbackEvents {
         body(stamp, BodyEventKind::Link(Link { device: Device::Base, is_up }))
     }
 
-    /// The first packet after a lost link: the link's event with the stamp of the first of the packet's, then these.
+    /// The first packet of a link: the link's event with the stamp of the first of the packet's, then these. The base's clock is estimated anew.
     pub fn events_after_link_up(&mut self, feedback: &Feedback, arrival: Stamp) -> Vec<SensorEvent> {
+        self.clock.restart();
+        (self.unwrapper, self.last_device) = (MillisUnwrapper::default(), None);
         let mut events = self.events(feedback, arrival);
         let stamp = events.first().map_or(arrival, SensorEvent::stamp);
         events.insert(0, body(stamp, BodyEventKind::Link(Link { device: Device::Base, is_up: true })));

@@ -107,13 +107,15 @@ impl IoLoop {
 
     /// Reads packets, takes commands, writes.
     fn exchange(&mut self, link: &mut dyn ByteLink) -> io::Result<()> {
+        let before = (self.clock)();
         self.read(link)?;
-        let now = (self.clock)();
-        self.take_commands(now);
         let limit = if self.is_up { self.config.silence_limit_s } else { FIRST_PACKET_LIMIT_S };
-        if now - self.since >= limit {
+        // Packets that waited while this thread stood still have been read: only the time before counts.
+        if before - self.since >= limit {
             return Err(io::Error::new(io::ErrorKind::TimedOut, format!("no packet came for {limit} s")));
         }
+        let now = (self.clock)();
+        self.take_commands(now);
         self.write(link, now)
     }
 
@@ -155,12 +157,10 @@ impl IoLoop {
         status.latest = Some(feedback);
     }
 
-    /// The first packet of a connection: zero speed goes out first, then the outputs; commands from before are dropped.
+    /// The first packet of a connection: commands from before are dropped, the outputs are set. Zero speed is sent since the port is open.
     fn link_up(&mut self, now: Stamp) {
         self.take_commands(now);
         (self.is_up, self.retry_s) = (true, self.config.min_retry_s);
-        self.schedule.restart();
-        self.outbox.push(&KobukiCommand::BaseControl(BaseControl::STOP).encode());
         if let Some(outputs) = self.outputs {
             self.outbox.push(&KobukiCommand::Outputs(outputs).encode());
         }

@@ -136,8 +136,13 @@ mod tests {
         let mut terminal = PseudoTerminal::open().unwrap();
         assert!(!terminal.is_connected().unwrap());
         assert_eq!(terminal.write(&[1, 2, 3]).unwrap(), 3);
-        let mut port = SerialPort::open(terminal.port()).unwrap();
+        let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK;
+        let raw = open(terminal.port(), flags, Mode::empty()).unwrap();
+        assert_eq!(rustix::io::read(&raw, &mut [0; 9]), Err(Errno::AGAIN));
         assert!(terminal.is_connected().unwrap());
+        assert_eq!(terminal.write(&[1, 2, 3]).unwrap(), 3);
+        assert!(wait_readable(&raw, LONG).unwrap().contains(PollFlags::IN), "bytes wait for a reader");
+        let mut port = SerialPort::open(terminal.port()).unwrap();
         assert_eq!(port.read(&mut [0; 9], Duration::from_millis(1)).unwrap(), 0);
         drop(terminal);
         assert!(port.read(&mut [0; 9], LONG).is_err());

@@ -56,6 +56,14 @@ fn a_silent_base_is_a_lost_link_and_comes_back() {
 }
 
 #[test]
+fn a_running_base_stays_up() {
+    let config = KobukiBaseConfig { silence_limit_s: 1.5, ..patient() };
+    let rig = Rig::with("running", Sends::Packets, config);
+    wait_for("two seconds of packets", || rig.base.counters().decoder.packets > 120);
+    assert_eq!(rig.links(), [true]);
+}
+
+#[test]
 fn pieces_and_garbage_cost_nothing() {
     let rig = Rig::start("garbage", Sends::PiecesAndGarbage);
     let ticks = || -> Vec<u16> {

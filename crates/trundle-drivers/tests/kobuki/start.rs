@@ -2,6 +2,7 @@
 
 use crate::device::{Device, Sends};
 use crate::rig::{Rig, clock, patient, start_error, wait_for};
+use trundle_core::Twist2;
 use trundle_drivers::kobuki::protocol::Version;
 use trundle_drivers::kobuki::stream_check::StreamFault;
 use trundle_drivers::kobuki::{ConnectError, KobukiBase, KobukiBaseConfig, SerialConnector, StartError};
@@ -69,6 +70,7 @@ fn a_firmware_of_another_protocol_is_refused_and_an_old_one_is_not() {
     let error = start_error(&device, 30.0);
     assert!(matches!(error, StartError::Firmware { .. }), "{error}");
     assert!(error.to_string().contains("firmware is 2.0.0, expected 1.x"), "{error}");
+    wait_for("zero speed all the same", || device.state().twists.contains(&Twist2::ZERO));
     let device = Device::plugged("old", Sends::Packets, Version::new(1, 0, 0));
     let connector = Box::new(SerialConnector::new(device.port()));
     assert!(KobukiBase::start(connector, patient(), clock(), Box::new(drop)).is_ok());

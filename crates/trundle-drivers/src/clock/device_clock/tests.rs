@@ -20,12 +20,21 @@ struct Device {
     shift_s: f64,
     last_arrival: f64,
     unwrapper: MillisUnwrapper,
+    last: Option<Stamp>,
 }
 
 impl Device {
     fn new(drift_ppm: f64, jitter_s: f64) -> Self {
         let unwrapper = MillisUnwrapper::default();
-        Self { drift: drift_ppm * 1e-6, jitter_s, rng: 7, shift_s: 3.0, last_arrival: 0.0, unwrapper }
+        Self {
+            drift: drift_ppm * 1e-6,
+            jitter_s,
+            rng: 7,
+            shift_s: 3.0,
+            last_arrival: 0.0,
+            unwrapper,
+            last: None,
+        }
     }
 
     /// Counter value and arrival of the packet of true time `t`.
@@ -38,13 +47,13 @@ impl Device {
 
 /// Largest error after `warm_up`, s, of `seconds` of packets. The smallest delay of 2 ms is configured.
 fn worst_error(device: &mut Device, clock: &mut DeviceClock, from: f64, to: f64, warm_up: f64) -> f64 {
-    let (mut worst, mut last) = (0.0f64, None);
+    let mut worst = 0.0f64;
     for i in 0..((to - from) / PERIOD_S) as u64 {
         let t = from + i as f64 * PERIOD_S;
         let (value, arrival) = device.packet(t);
         let stamp = clock.to_host(device.unwrapper.unwrap(value, arrival), arrival);
-        assert!(last.is_none_or(|last| stamp >= last) && stamp <= arrival, "at {t}");
-        last = Some(stamp);
+        assert!(device.last.is_none_or(|last| stamp >= last) && stamp <= arrival, "at {t}");
+        device.last = Some(stamp);
         if t - from > warm_up {
             worst = worst.max((stamp.as_secs() - t).abs());
         }

@@ -82,6 +82,16 @@ fn a_checksum_that_is_the_header_s_first_byte_is_used_for_both() {
     assert_eq!(stamps(&[&good[..], &[7, 7], &next].concat()).1.skipped_bytes, 2);
 }
 
+#[test]
+fn a_new_stream_does_not_end_a_packet_of_the_old_one() {
+    let (first, second) = (&captured()[..40], &captured()[40..]);
+    let (mut decoder, mut packets) = (FeedbackDecoder::default(), 0);
+    decoder.push(first, |_| packets += 1);
+    decoder.clear();
+    decoder.push(second, |_| packets += 1);
+    assert_eq!((packets, decoder.counters().skipped_bytes), (0, 81));
+}
+
 /// Every fault of one byte, at every place: the packets around it must be found.
 #[test]
 fn a_fault_of_one_byte_costs_only_the_packet_it_touches() {

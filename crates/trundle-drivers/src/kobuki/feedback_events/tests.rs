@@ -153,3 +153,11 @@ fn the_link_comes_before_the_first_packet() {
     assert_eq!((down, &up[0]), (link(at(1200), false), &link(at(1220), true)));
     assert!(matches!(up[1], SensorEvent::Wheels(_)));
 }
+
+#[test]
+fn a_base_that_was_switched_off_has_a_new_clock() {
+    let mut events = started();
+    events.link_event(false, at(1200));
+    let up = events.events_after_link_up(&packet(core(19_820)), at(21_000));
+    assert!(up.iter().all(|event| event.stamp() == at(21_000)), "280 ms late by the old clock: {up:?}");
+}
