@@ -288,3 +288,6 @@ impl IoLoop {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
