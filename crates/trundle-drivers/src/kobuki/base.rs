@@ -11,7 +11,7 @@ use super::base_status::{BaseCounters, Status, Versions, locked};
 use super::io_loop::{IoLoop, Queues};
 use super::link::Connector;
 use super::probe::probe;
-use super::protocol::{Feedback, Gains, KobukiCommand, Outputs, SoundSequence};
+use super::protocol::{Feedback, Gains, KobukiCommand, Outputs, SoundSequence, Version};
 use super::start_error::StartError;
 use crate::clock::HostClock;
 use std::sync::mpsc::{Receiver, Sender, channel, sync_channel};
@@ -23,6 +23,9 @@ use trundle_core::{Invalid, SensorEvent, Twist2, require_in};
 const MAX_WAITING_EVENTS: usize = 1024;
 /// Largest gain that the protocol's 32 bits hold in thousandths: 4294967. Source: the protocol's "Set Controller Gain".
 const MAX_GAIN: f64 = 4_294_967.0;
+
+/// Oldest firmware that knows the commands of gains: 1.2.0. Source: the vendor's driver, issue 289 of yujinrobot/kobuki.
+const GAINS_FIRMWARE: Version = Version::new(1, 2, 0);
 
 /// What receives the events of a base, on a thread of its own.
 pub type EventSink = Box<dyn FnMut(SensorEvent) + Send>;
@@ -99,12 +102,14 @@ impl KobukiBase {
         for (name, gain) in [("gain p", gains.p), ("gain i", gains.i), ("gain d", gains.d)] {
             require_in(name, gain, "", 0.0, MAX_GAIN)?;
         }
+        self.warn_of_old_firmware();
         self.send(KobukiCommand::SetGains(gains));
         Ok(())
     }
 
     /// Asks for the gains; [`KobukiBase::gains`] has them after the answer. Firmware 1.2.0 or later.
     pub fn request_gains(&self) {
+        self.warn_of_old_firmware();
         self.send(KobukiCommand::GetGains);
     }
 
@@ -136,6 +141,14 @@ impl KobukiBase {
     /// Sends zero speed, closes the port, and waits for the threads. It blocks as long as the sink does.
     pub fn stop(self) {
         drop(self);
+    }
+
+    fn warn_of_old_firmware(&self) {
+        if let Some(firmware) = self.versions().firmware.filter(|firmware| *firmware < GAINS_FIRMWARE) {
+            tracing::warn!(
+                "the base's firmware is {firmware}, expected {GAINS_FIRMWARE} or later for gains: it ignores them"
+            );
+        }
     }
 
     fn send(&self, command: KobukiCommand) {

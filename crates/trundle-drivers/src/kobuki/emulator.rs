@@ -2,7 +2,7 @@
 //!
 //! It has no clock, no noise and no inertia. A simulator supplies the state, every 20 ms, and drives with the twist that comes back.
 
-use super::decoder::CommandDecoder;
+use super::decoder::{CommandDecoder, DecoderCounters};
 use super::feedback_events::FEEDBACK_PERIOD_S;
 use super::protocol::{
     Charger, CliffSignals, CoreSensors, Feedback, Gains, GeneralInputs, Inertia, KobukiCommand,
@@ -146,6 +146,11 @@ impl EmulatedKobuki {
     /// Gains as last set.
     pub fn gains(&self) -> Gains {
         self.gains
+    }
+
+    /// What was read and dropped of the bytes of drivers.
+    pub fn command_counters(&self) -> DecoderCounters {
+        self.decoder.counters()
     }
 
     /// Takes the sounds that were asked for since the last call, at most 64.

@@ -19,6 +19,8 @@ pub enum Sends {
     PiecesAndGarbage,
     /// Packets of two bases in turn.
     TwoBases,
+    /// Packets of which every second one lacks a byte.
+    LostBytes,
     /// Ten packets at once.
     Bursts,
     /// What a satellite receiver sends.
@@ -125,6 +127,8 @@ fn pieces(state: &mut State, second: &mut EmulatedKobuki) -> Vec<Vec<u8>> {
             [garbage, &packet].concat().chunks(7).map(<[u8]>::to_vec).collect()
         }
         Sends::TwoBases => vec![packet, second.feedback(&state.sensors)],
+        Sends::LostBytes if left % 2 == 0 => vec![packet[..30].to_vec(), packet[31..].to_vec()],
+        Sends::LostBytes => vec![packet],
         Sends::Bursts => (0..9).map(|_| state.base.feedback(&state.sensors)).chain([packet]).collect(),
         Sends::OtherDevice => vec![b"$GPGGA,123519,4807.038,N\xAA\x55\r\n".to_vec()],
     }

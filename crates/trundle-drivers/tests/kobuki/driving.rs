@@ -14,6 +14,8 @@ fn speeds_arrive_and_end_with_zero() {
     rig.drive(Twist2::new(0.0, 1.0));
     wait_for("zero after the commands ceased", || rig.device.state().twists.last() == Some(&Twist2::ZERO));
     assert!(rig.base.counters().speeds_sent > 3);
+    let commands = rig.device.state().base.command_counters();
+    assert_eq!((commands.skipped_bytes, commands.refused()), (0, 0), "a damaged command");
 }
 
 #[test]

@@ -96,6 +96,17 @@ fn a_second_base_on_the_port_is_noticed() {
 }
 
 #[test]
+fn bytes_that_another_program_reads_are_noticed() {
+    let rig = Rig::start("lost", Sends::Packets);
+    wait_for("the link", || rig.base.is_up());
+    rig.device.state().sends = Sends::LostBytes;
+    wait_for("the fault", || rig.base.counters().stream_faults > 0);
+    assert_eq!(rig.links(), [true], "every second packet is sound");
+    let decoder = rig.base.counters().decoder;
+    assert!(decoder.refused() >= 10 && decoder.skipped_bytes >= 800, "{decoder:?}");
+}
+
+#[test]
 fn a_stuck_receiver_keeps_no_command_waiting() {
     let device = Device::plugged("stuck", Sends::Bursts, Version::new(1, 2, 0));
     let (release, released) = mpsc::channel::<()>();
