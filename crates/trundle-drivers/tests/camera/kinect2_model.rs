@@ -1,5 +1,6 @@
 //! A forward model of the Kinect V2: distances to noisy measurements to packed bytes. It shares no code with the decoder.
 
+use std::sync::LazyLock;
 use trundle_core::{Distortion, PinholeCamera, Vector2};
 
 pub const WIDTH: usize = 512;
@@ -24,9 +25,10 @@ impl Random {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Normal with deviation 1: twelve uniform numbers.
+    /// Normal with deviation 1, by Box and Muller 1958.
     fn normal(&mut self) -> f64 {
-        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
+        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
+        radius * (2.0 * std::f64::consts::PI * self.uniform()).cos()
     }
 }
 
@@ -58,12 +60,12 @@ pub fn packed_images(
         let distance = depth * ray.norm();
         let amplitude = WHITE_AMPLITUDE * albedo / (distance * distance);
         let noise = (25.0 + 0.3 * amplitude).sqrt();
-        for image in 0..9 {
+        for (image, packed) in images.iter_mut().enumerate().take(9) {
             let (frequency, shift) = (image / 3, (image % 3) as f64);
             let phase = 4.0 * std::f64::consts::PI * FREQUENCIES[frequency] * distance / 299_792_458.0;
             let offset = p0[frequency][y * WIDTH + x] as f64 / 65_536.0 + shift / 3.0;
             let clean = amplitude * (phase + offset * 2.0 * std::f64::consts::PI).cos();
-            put(&mut images[image], x, y, code(clean + 40.0 + noise * random.normal()));
+            put(packed, x, y, code(clean + 40.0 + noise * random.normal()));
         }
         put(&mut images[9], x, y, code(300.0));
     }
@@ -79,27 +81,25 @@ fn put(image: &mut [u8], x: usize, y: usize, code: u16) {
     }
 }
 
-/// The nearest code of a measurement: sign and magnitude.
+/// Magnitudes of the codes 0 to 1023: steps of 1 below 256, doubled with every further 128 codes.
+static MAGNITUDES: LazyLock<Vec<f64>> = LazyLock::new(|| {
+    let mut levels = vec![0.0];
+    for code in 1..1024i32 {
+        let doublings = ((code - 1) / 128 - 1).max(0);
+        levels.push(levels[levels.len() - 1] + 2.0_f64.powi(doublings));
+    }
+    levels
+});
+
+/// The nearest code of a measurement: sign and magnitude; minus zero beyond the last one.
 fn code(value: f64) -> u16 {
     let magnitude = value.abs();
-    let mut best = (0u16, 0.0f64);
-    let (mut level, mut step) = (0.0, 1.0);
-    for code in 0..1024u16 {
-        if (level - magnitude).abs() <= (best.1 - magnitude).abs() {
-            best = (code, level);
-        }
-        if code >= 256 && code % 128 == 0 {
-            step *= 2.0;
-        }
-        level += step;
-        if level > magnitude + 2.0 * step {
-            break;
-        }
+    let above = MAGNITUDES.partition_point(|level| *level < magnitude);
+    if above == MAGNITUDES.len() {
+        return 1024;
     }
-    match best.0 {
-        0 => 0,
-        1023 => 1024,
-        code if value < 0.0 => code + 1024,
-        code => code,
-    }
+    let below = above.saturating_sub(1);
+    let is_below_nearer = magnitude - MAGNITUDES[below] < MAGNITUDES[above] - magnitude;
+    let nearest = if is_below_nearer { below } else { above } as u16;
+    if value < 0.0 && nearest > 0 { nearest + 1024 } else { nearest }
 }

@@ -63,7 +63,7 @@ mod tests {
         let steps: Vec<i16> = (1..1024).map(|code| magnitude(code) - magnitude(code - 1)).collect();
         for (code, step) in steps.iter().enumerate() {
             let segment = code / 128;
-            assert_eq!(*step, 1 << segment.max(1) - 1, "from code {code}");
+            assert_eq!(*step, 1 << (segment.max(1) - 1), "from code {code}");
         }
         assert_eq!((magnitude(0), magnitude(255), magnitude(256), magnitude(1023)), (0, 255, 256, 16320));
     }

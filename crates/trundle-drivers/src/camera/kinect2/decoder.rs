@@ -2,9 +2,9 @@
 
 use super::companding::Companding;
 use super::edge_filter::remove_flying_pixels;
-use super::layout::{COLUMNS, FREQUENCY_COUNT, IMAGE_COUNT, PIXEL_COUNT, ROWS, SHIFT_COUNT};
+use super::layout::{COLUMNS, FREQUENCY_COUNT, IMAGE_COUNT, ROWS, SHIFT_COUNT};
 use super::packing::unpack;
-use super::phasors::{PhaseTables, Phasors};
+use super::phasors::{PhaseTables, PhasorImage};
 use super::smoothing::smooth;
 use super::unwrapping::Unwrapper;
 use trundle_core::{DepthImage, Image, Invalid, PinholeCamera, Vector2, require_finite, require_in};
@@ -75,8 +75,8 @@ pub struct DepthDecoder {
     /// Depth for one metre along the ray of each pixel.
     depth_per_range: Vec<f32>,
     images: [Image<i16>; FREQUENCY_COUNT * SHIFT_COUNT],
-    phasors: Vec<Phasors>,
-    smoothed: Vec<Phasors>,
+    phasors: PhasorImage,
+    smoothed: PhasorImage,
     raw_depth: DepthImage,
     depth: DepthImage,
     amplitude: Image<f32>,
@@ -99,8 +99,8 @@ impl DepthDecoder {
             unwrapper: Unwrapper::new(config.max_range_m, config.min_amplitude as f32),
             depth_per_range: depth_per_range(&calibration.camera)?,
             images: std::array::from_fn(|_| Image::filled(COLUMNS, ROWS, 0)),
-            phasors: vec![Phasors::default(); PIXEL_COUNT],
-            smoothed: vec![Phasors::default(); PIXEL_COUNT],
+            phasors: PhasorImage::empty(),
+            smoothed: PhasorImage::empty(),
             raw_depth: empty.clone(),
             depth: empty.clone(),
             amplitude: empty,
@@ -137,9 +137,9 @@ impl DepthDecoder {
 
     fn unwrap(&mut self) {
         let targets = self.raw_depth.data_mut().iter_mut().zip(self.amplitude.data_mut());
-        let pixels = self.phasors.iter().zip(&self.depth_per_range);
-        for ((depth, amplitude), (phasors, depth_per_range)) in targets.zip(pixels) {
-            let (range, found) = self.unwrapper.distance(phasors).unwrap_or_default();
+        let pixels = self.depth_per_range.iter().enumerate();
+        for ((depth, amplitude), (pixel, depth_per_range)) in targets.zip(pixels) {
+            let (range, found) = self.unwrapper.distance(&self.phasors.at(pixel)).unwrap_or_default();
             let range = range + self.range_offset_m;
             let is_valid = found > 0.0
                 && range >= self.config.min_range_m as f32

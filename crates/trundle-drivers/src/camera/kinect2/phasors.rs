@@ -15,8 +15,35 @@ const THIRD_TURN_COS: f32 = -0.5;
 /// Sine of a third of a turn.
 const THIRD_TURN_SIN: f32 = 0.866_025_4;
 
-/// The phasors of one pixel at the three frequencies: real and imaginary part. All zero where there is no measurement.
-pub type Phasors = [[f32; 2]; FREQUENCY_COUNT];
+/// Planes of a phasor image: real and imaginary part at each frequency.
+pub const PLANE_COUNT: usize = 2 * FREQUENCY_COUNT;
+
+/// The phasors of one pixel: real and imaginary part at each frequency. All zero where there is no measurement.
+pub type Phasors = [f32; PLANE_COUNT];
+
+/// The phasors of all pixels, one plane for each part, so that several pixels are computed at once.
+#[derive(Debug, Clone)]
+pub struct PhasorImage {
+    /// Rows from the top left, in the order of [`Phasors`].
+    pub planes: [Vec<f32>; PLANE_COUNT],
+}
+
+impl PhasorImage {
+    /// An image without measurements.
+    pub fn empty() -> Self {
+        Self { planes: std::array::from_fn(|_| vec![0.0; PIXEL_COUNT]) }
+    }
+
+    /// The phasors of a pixel. Panics when there is no such pixel.
+    #[inline]
+    pub fn at(&self, pixel: usize) -> Phasors {
+        std::array::from_fn(|plane| self.planes[plane][pixel])
+    }
+
+    fn set(&mut self, pixel: usize, phasors: &Phasors) {
+        self.planes.iter_mut().zip(phasors).for_each(|(plane, part)| plane[pixel] = *part);
+    }
+}
 
 /// Turns of the phasors by `p0`, for each pixel.
 #[derive(Debug, Clone)]
@@ -40,26 +67,33 @@ impl PhaseTables {
             let (sin, cos) = (TAU * (step as f32 / P0_STEPS_PER_TURN)).sin_cos();
             [cos, -sin]
         };
-        let of_pixel = |pixel: usize| std::array::from_fn(|frequency| turn(p0[frequency][pixel]));
+        let of_pixel = |pixel: usize| -> Phasors {
+            let [a, b, c] = std::array::from_fn(|frequency| turn(p0[frequency][pixel]));
+            [a[0], a[1], b[0], b[1], c[0], c[1]]
+        };
         Ok(Self { turns: (0..PIXEL_COUNT).map(of_pixel).collect() })
     }
 
     /// The phasors of all pixels from nine images of measurements, frequency by frequency.
-    pub fn phasors(&self, images: &[Image<i16>; FREQUENCY_COUNT * SHIFT_COUNT], phasors: &mut [Phasors]) {
+    pub fn phasors(&self, images: &[Image<i16>; FREQUENCY_COUNT * SHIFT_COUNT], phasors: &mut PhasorImage) {
         let rows: [&[i16]; FREQUENCY_COUNT * SHIFT_COUNT] = std::array::from_fn(|i| images[i].data());
-        for ((pixel, turns), target) in self.turns.iter().enumerate().zip(phasors) {
+        for (pixel, turns) in self.turns.iter().enumerate() {
             let values: [i16; FREQUENCY_COUNT * SHIFT_COUNT] = std::array::from_fn(|i| rows[i][pixel]);
-            *target = if values.contains(&SATURATED) { Phasors::default() } else { of_pixel(values, turns) };
+            let is_saturated = values.contains(&SATURATED);
+            phasors.set(pixel, &if is_saturated { Phasors::default() } else { of_pixel(values, turns) });
         }
     }
 }
 
 fn of_pixel(values: [i16; FREQUENCY_COUNT * SHIFT_COUNT], turns: &Phasors) -> Phasors {
-    std::array::from_fn(|frequency| {
+    let mut phasors = Phasors::default();
+    for frequency in 0..FREQUENCY_COUNT {
         let [v0, v1, v2] = std::array::from_fn(|shift| values[frequency * SHIFT_COUNT + shift] as f32);
         let re = (v0 + THIRD_TURN_COS * (v1 + v2)) * (2.0 / 3.0);
         let im = THIRD_TURN_SIN * (v2 - v1) * (2.0 / 3.0);
-        let [cos, sin] = turns[frequency];
-        [re * cos - im * sin, re * sin + im * cos]
-    })
+        let (cos, sin) = (turns[2 * frequency], turns[2 * frequency + 1]);
+        phasors[2 * frequency] = re * cos - im * sin;
+        phasors[2 * frequency + 1] = re * sin + im * cos;
+    }
+    phasors
 }

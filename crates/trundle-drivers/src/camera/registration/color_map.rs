@@ -1,6 +1,6 @@
 //! Colour sampled from the colour camera into the output camera.
 
-use super::{check_size, is_same_lens};
+use super::checks::{check_size, is_same_lens};
 use trundle_core::{ColorImage, Invalid, PinholeCamera, Vector2};
 
 /// Where the output pixels lie in the colour image.

@@ -12,10 +12,12 @@
 //!
 //! Source: splatting by the projected footprint, Westover 1990, "Footprint evaluation for volume rendering"; the z-buffer, Catmull 1974.
 
+mod checks;
 mod color_map;
 mod footprints;
 mod projection;
 
+use self::checks::{check_size, is_same_lens};
 use self::{color_map::ColorMap, footprints::Footprints, projection::Projection};
 use crate::camera::CameraInfo;
 use trundle_core::{ColorImage, DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Stamp};
@@ -95,19 +97,4 @@ impl DepthRegistration {
         footprints.splat(depth, moved);
         Ok(())
     }
-}
-
-/// Whether both cameras see the same rays in the same pixels; the readout time does not matter.
-fn is_same_lens(a: &PinholeCamera, b: &PinholeCamera) -> bool {
-    let lens = |c: &PinholeCamera| (c.width(), c.height(), c.fx(), c.fy(), c.cx(), c.cy(), c.distortion());
-    lens(a) == lens(b)
-}
-
-/// Refuses an image whose size is not that of its camera.
-fn check_size(place: &str, width: usize, height: usize, camera: &PinholeCamera) -> Result<(), Invalid> {
-    if (width, height) == (camera.width(), camera.height()) {
-        return Ok(());
-    }
-    let expected = format!("{} x {} as its camera", camera.width(), camera.height());
-    Err(Invalid::new(format!("size of the {place}"), format!("{width} x {height}"), "px", expected))
 }
