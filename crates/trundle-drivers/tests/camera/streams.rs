@@ -69,6 +69,18 @@ fn a_stream_recovers_after_garbage_and_after_lost_bytes() {
     }
 }
 
+#[test]
+fn a_reader_may_join_midway_at_a_repeated_header() {
+    let bytes = stream(&info(), &frames(70));
+    let joined = bytes[5000..].to_vec();
+    let mut camera = StreamCamera::from_reader(Box::new(std::io::Cursor::new(joined)), "x", LONG).unwrap();
+    let (found, _) = read_all(&mut camera);
+    assert_eq!(found, frames(70)[30..], "the first header after the cut comes before frame 30");
+    let all =
+        read_all(&mut StreamCamera::from_reader(Box::new(std::io::Cursor::new(bytes)), "x", LONG).unwrap());
+    assert_eq!(all.0, frames(70), "repeated headers disturb no frame");
+}
+
 #[cfg(unix)]
 fn make_fifo(path: &Path) {
     assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
@@ -133,8 +145,8 @@ fn headers_that_do_not_suit_name_the_field() {
         assert!(error.contains(expected), "{error}");
     }
     let short = StreamCamera::from_reader(Box::new(&b"{\"magic\":"[..]), "x", LONG).unwrap_err().to_string();
-    assert!(short.contains("the stream ended within it: see docs/camera-stream.md"), "{short}");
-    let long = vec![b' '; 1 << 17];
+    assert!(short.contains("the stream ended before or within it: see docs/camera-stream.md"), "{short}");
+    let long = [br#"{"magic":"trundle-camera""#.to_vec(), vec![b' '; 1 << 17]].concat();
     let error = StreamCamera::from_reader(Box::new(std::io::Cursor::new(long)), "x", LONG).unwrap_err();
     assert!(error.to_string().contains("no line ends within 65536 bytes"), "{error}");
 }

@@ -6,7 +6,8 @@ use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use trundle_core::{BodyEventKind, Device, Invalid, SensorEvent, Stamp};
-use trundle_drivers::camera::camera_thread::{StampMapFactory, arrival_minus_delay};
+use trundle_drivers::camera::camera_thread::{StampMapFactory, arrival_minus_delay, default_stamps};
+use trundle_drivers::camera::pipe::{StreamCamera, StreamWriter};
 use trundle_drivers::camera::{
     CameraError, CameraFrame, CameraInfo, CameraThread, CameraThreadConfig, CameraThreadParts, DepthCamera,
 };
@@ -250,6 +251,61 @@ fn a_camera_with_only_broken_frames_is_lost() {
     rig.wait("loss", |rig| rig.thread.counters().lost >= 1);
     assert_eq!(rig.story(), ["down"]);
     assert!(rig.thread.counters().broken >= 30);
+}
+
+/// A writer that dies is a lost camera; a new writer of the same FIFO brings it back, and so does one that paused.
+#[cfg(unix)]
+#[test]
+fn a_fifo_is_opened_anew_after_its_writer_ended_or_paused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("camera");
+    assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
+    let (opened, events) = (path.clone(), Events::default());
+    let seen = events.clone();
+    let parts = CameraThreadParts {
+        factory: Box::new(move || {
+            let camera = StreamCamera::open(&opened, Duration::from_millis(500))?;
+            Ok(Box::new(camera) as Box<dyn DepthCamera>)
+        }),
+        sink: Box::new(move |event| seen.lock().unwrap().push(event)),
+        clock: Arc::new(|| Stamp::from_nanos(0)),
+        stamps: device_stamps(),
+    };
+    let rig = Rig { events, thread: CameraThread::start(parts, quick()).unwrap() };
+    let open = || StreamWriter::new(std::fs::OpenOptions::new().write(true).open(&path).unwrap(), &info());
+    let first = Instant::now();
+    let mut stamp = 0;
+    // Frames follow until one arrives: the first of them may go to a reader that is about to end.
+    let mut write_until_up = |writer: &mut StreamWriter<std::fs::File>| {
+        while !rig.thread.is_up() {
+            assert!(first.elapsed() < Duration::from_secs(60), "{:?}", rig.thread.last_fault());
+            stamp += 1;
+            let _ = writer.write(&frame(stamp, stamp as u8));
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    };
+    let mut writer = open().unwrap();
+    write_until_up(&mut writer);
+    drop(writer);
+    rig.wait("the loss of the writer", |rig| !rig.thread.is_up());
+    let mut writer = loop {
+        if let Ok(writer) = open() {
+            break writer;
+        }
+    };
+    write_until_up(&mut writer);
+    rig.wait("the pause of the writer", |rig| !rig.thread.is_up());
+    write_until_up(&mut writer);
+    let links: Vec<String> = rig.story().into_iter().filter(|text| text == "up" || text == "down").collect();
+    let is_alternating = links.windows(2).all(|pair| pair[0] != pair[1]);
+    assert!(is_alternating && links.iter().filter(|text| *text == "up").count() >= 3, "{links:?}");
+}
+
+#[test]
+fn a_recording_keeps_its_stamps() {
+    assert_eq!(default_stamps(&recording())(Stamp::from_nanos(7), Stamp::from_nanos(100)).nanos, 7);
+    let live = default_stamps(&info())(Stamp::from_nanos(7), Stamp::from_nanos(100_000_000));
+    assert_eq!(live.nanos, 80_000_000);
 }
 
 #[test]

@@ -20,7 +20,7 @@ pub struct CameraThreadParts {
     pub sink: EventSink,
     /// The time of the host.
     pub clock: HostClock,
-    /// Maps the camera's stamps to the sensors' clock, anew for each opening of the camera. [`super::arrival_minus_delay`] is the simplest.
+    /// Maps the camera's stamps to the sensors' clock, anew for each opening of the camera. [`super::default_stamps`] is the simplest.
     pub stamps: StampMapFactory,
 }
 

@@ -13,7 +13,7 @@ mod stamps;
 
 pub use config::{CameraFactory, CameraThreadConfig, CameraThreadParts, EventSink, HostClock};
 pub use outbox::CameraCounters;
-pub use stamps::{StampMap, StampMapFactory, arrival_minus_delay};
+pub use stamps::{StampMap, StampMapFactory, arrival_minus_delay, default_stamps, recorded_stamps};
 
 use self::{converter::Converter, grabber::Grabber, mailbox::Mailbox, outbox::Outbox};
 use std::sync::Arc;

@@ -13,3 +13,13 @@ pub fn arrival_minus_delay(info: &CameraInfo) -> StampMap {
     let delay_s = info.delay_s;
     Box::new(move |_, arrival| arrival.after(-delay_s))
 }
+
+/// The stamps of the camera itself: those of a recording.
+pub fn recorded_stamps(_info: &CameraInfo) -> StampMap {
+    Box::new(|device, _| device)
+}
+
+/// [`arrival_minus_delay`] for a live camera, [`recorded_stamps`] for a recording.
+pub fn default_stamps(info: &CameraInfo) -> StampMap {
+    if info.is_live { arrival_minus_delay(info) } else { recorded_stamps(info) }
+}

@@ -11,7 +11,7 @@ const SIGN_BIT: u16 = 1 << 10;
 /// Number of codes.
 const CODE_COUNT: usize = 2048;
 /// Measurement of a saturated pixel, which no code yields otherwise.
-pub const SATURATED: i16 = i16::MAX;
+pub const SATURATED_MEASUREMENT: i16 = i16::MAX;
 
 /// The measurement of each code.
 #[derive(Debug, Clone)]
@@ -25,7 +25,7 @@ impl Companding {
         Self { values: Box::new(std::array::from_fn(|code| measurement(code as u16))) }
     }
 
-    /// The measurement of a code, -16320 to 16320, or [`SATURATED`]. Bits above the eleventh are ignored.
+    /// The measurement of a code, -16320 to 16320, or [`SATURATED_MEASUREMENT`]. Bits above the eleventh are ignored.
     #[inline]
     pub fn measurement(&self, code: u16) -> i16 {
         self.values[code as usize % CODE_COUNT]
@@ -40,7 +40,7 @@ impl Default for Companding {
 
 fn measurement(code: u16) -> i16 {
     if code == SIGN_BIT {
-        return SATURATED;
+        return SATURATED_MEASUREMENT;
     }
     let magnitude = magnitude(code % SIGN_BIT);
     if code < SIGN_BIT { magnitude } else { -magnitude }
@@ -72,7 +72,7 @@ mod tests {
     fn signs_are_symmetric_and_minus_zero_is_saturated() {
         let table = Companding::new();
         assert!((1..1024).all(|code| table.measurement(code) == -table.measurement(code + 1024)));
-        assert_eq!((table.measurement(0), table.measurement(1024)), (0, SATURATED));
+        assert_eq!((table.measurement(0), table.measurement(1024)), (0, SATURATED_MEASUREMENT));
         assert_eq!(table.measurement(2048 + 5), 5, "upper bits are ignored");
     }
 }

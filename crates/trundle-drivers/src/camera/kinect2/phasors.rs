@@ -3,7 +3,7 @@
 //! A measurement is v_k = a cos(phi + p_0 + p_k) with p_k = 0, 1/3, 2/3 of a turn. The phasor
 //! z = 2/3 sum v_k exp(-i (p_0 + p_k)) has the argument phi and the magnitude a; ambient light cancels. Source: Lawin et al. 2016, section 2.
 
-use super::companding::SATURATED;
+use super::companding::SATURATED_MEASUREMENT;
 use super::layout::{FREQUENCY_COUNT, PIXEL_COUNT, SHIFT_COUNT};
 use std::f32::consts::TAU;
 use trundle_core::{Image, Invalid};
@@ -79,7 +79,7 @@ impl PhaseTables {
         let rows: [&[i16]; FREQUENCY_COUNT * SHIFT_COUNT] = std::array::from_fn(|i| images[i].data());
         for (pixel, turns) in self.turns.iter().enumerate() {
             let values: [i16; FREQUENCY_COUNT * SHIFT_COUNT] = std::array::from_fn(|i| rows[i][pixel]);
-            let is_saturated = values.contains(&SATURATED);
+            let is_saturated = values.contains(&SATURATED_MEASUREMENT);
             phasors.set(pixel, &if is_saturated { Phasors::default() } else { of_pixel(values, turns) });
         }
     }

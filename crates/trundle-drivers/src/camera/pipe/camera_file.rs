@@ -7,6 +7,8 @@ use trundle_core::{Invalid, Pose3, require_in, require_positive};
 
 /// First word of the header.
 const STREAM_MAGIC: &str = "trundle-camera";
+/// First bytes of a header in a stream.
+const HEADER_START: &[u8] = br#"{"magic":"trundle-camera""#;
 /// Version of the form.
 const STREAM_VERSION: u32 = 1;
 /// Longest header \[bytes\]. Source: ours; a header has about 800 bytes.
@@ -92,14 +94,28 @@ pub fn parse_header(bytes: &[u8]) -> Result<CameraInfo, String> {
     Ok(info)
 }
 
-/// Length of the header within `bytes`, with its end of line; `None` when the line is not yet complete.
+/// Where a header stands in the bytes of a stream.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) enum HeaderSearch {
+    /// A whole header, with its end of line.
+    Found(std::ops::Range<usize>),
+    /// More bytes are needed; those before this place hold no header.
+    From(usize),
+}
+
+/// Looks for a header, which begins a stream and may be repeated between frames.
 ///
 /// # Errors
 /// When no line ends within the longest header.
-pub(super) fn header_length(bytes: &[u8]) -> Result<Option<usize>, String> {
-    match bytes.iter().take(MAX_HEADER_BYTES).position(|byte| *byte == b'\n') {
-        Some(end) => Ok(Some(end + 1)),
-        None if bytes.len() < MAX_HEADER_BYTES => Ok(None),
+pub(super) fn find_header(bytes: &[u8]) -> Result<HeaderSearch, String> {
+    let is_start = |window: &[u8]| HEADER_START.starts_with(&window[..window.len().min(HEADER_START.len())]);
+    let candidates = bytes.iter().enumerate().filter(|(_, byte)| **byte == HEADER_START[0]);
+    let Some(start) = candidates.map(|(at, _)| at).find(|at| is_start(&bytes[*at..])) else {
+        return Ok(HeaderSearch::From(bytes.len()));
+    };
+    match bytes[start..].iter().take(MAX_HEADER_BYTES).position(|byte| *byte == b'\n') {
+        Some(length) => Ok(HeaderSearch::Found(start..start + length + 1)),
+        None if bytes.len() - start < MAX_HEADER_BYTES => Ok(HeaderSearch::From(start)),
         None => Err(format!("no line ends within {MAX_HEADER_BYTES} bytes")),
     }
 }

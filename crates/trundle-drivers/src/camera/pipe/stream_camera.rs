@@ -1,6 +1,6 @@
 //! A camera whose frames come as a stream of bytes.
 
-use super::camera_file::{header_length, parse_header};
+use super::camera_file::{HeaderSearch, find_header, parse_header};
 use super::frame_parser::{FrameLimits, FrameParser, ParserCounts};
 use super::source;
 use crate::camera::{CameraError, CameraFrame, CameraInfo, DepthCamera};
@@ -13,6 +13,8 @@ use std::time::Duration;
 
 /// Bytes read at once. Source: ours; the largest pipe buffer of Linux without privileges.
 const READ_BYTES: usize = 1 << 20;
+/// Bytes that are searched for a header: 2^30. Source: ours; a header comes every 30 frames, and 30 frames of 1920 x 1080 px have 0.4 GB.
+const MAX_BYTES_BEFORE_HEADER: usize = 1 << 30;
 /// Frames that wait between the reading thread and the caller. Source: ours; more would be delay.
 const MAX_WAITING_FRAMES: usize = 2;
 
@@ -154,17 +156,23 @@ impl Worker {
         let _ = self.sender.send(last);
     }
 
-    /// The camera, and the bytes that were read beyond its header.
+    /// The camera, and the bytes that were read beyond its header. Bytes before it are those of a stream that was joined midway.
     fn read_header(&mut self) -> Result<(CameraInfo, Vec<u8>), Message> {
-        let mut bytes = Vec::new();
-        let mut chunk = vec![0; READ_BYTES];
+        let (mut bytes, mut chunk) = (Vec::new(), vec![0; READ_BYTES]);
+        let mut skipped = 0;
         loop {
-            if let Some(length) = header_length(&bytes).map_err(Message::BadHeader)? {
-                let info = parse_header(&bytes[..length]).map_err(Message::BadHeader)?;
-                return Ok((info, bytes.split_off(length)));
+            match find_header(&bytes).map_err(Message::BadHeader)? {
+                HeaderSearch::Found(header) => {
+                    let info = parse_header(&bytes[header.clone()]).map_err(Message::BadHeader)?;
+                    return Ok((info, bytes.split_off(header.end)));
+                }
+                HeaderSearch::From(start) => skipped += bytes.drain(..start).count(),
+            }
+            if skipped > MAX_BYTES_BEFORE_HEADER {
+                return Err(Message::BadHeader(format!("none within {skipped} bytes")));
             }
             match self.read(&mut chunk)? {
-                0 => return Err(Message::BadHeader("the stream ended within it".into())),
+                0 => return Err(Message::BadHeader("the stream ended before or within it".into())),
                 length => bytes.extend_from_slice(&chunk[..length]),
             }
         }
