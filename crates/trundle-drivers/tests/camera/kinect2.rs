@@ -132,6 +132,19 @@ fn the_filters_reduce_noise_and_flying_pixels() {
 }
 
 #[test]
+fn smoothing_keeps_edges() {
+    let two = |x: usize, _: usize| if x < 200 { (1.0, 0.8) } else { (1.4, 0.8) };
+    let plain = DecoderConfig { removes_flying_pixels: false, ..Default::default() };
+    let mut decoder = DepthDecoder::new(&calibration(), plain).unwrap();
+    let depth = decoder.decode(&packed_images(two, &p0(), 8)).unwrap();
+    for (x, truth) in [(198, 1.0), (199, 1.0), (200, 1.4), (201, 1.4)] {
+        let errors = (5..HEIGHT - 5).map(|y| (depth[(x, y)] as f64 - truth).abs()).collect();
+        let error = median(errors);
+        assert!(error < 0.002, "column {x}: {error}");
+    }
+}
+
+#[test]
 fn saturated_dark_and_near_pixels_have_no_depth() {
     let mut decoder = DepthDecoder::new(&calibration(), DecoderConfig::default()).unwrap();
     let depth = decoder.decode(&PACKED).unwrap().clone();

@@ -81,6 +81,24 @@ fn a_reader_may_join_midway_at_a_repeated_header() {
     assert_eq!(all.0, frames(70), "repeated headers disturb no frame");
 }
 
+#[test]
+fn either_length_out_of_range_is_no_frame() {
+    let whole = stream(&info(), &frames(1));
+    let good = &whole[header_line(&info()).unwrap().len()..];
+    for field in [12, 16] {
+        let mut wrong = good.to_vec();
+        wrong[field..field + 4].copy_from_slice(&u32::MAX.to_le_bytes());
+        let mut parser = FrameParser::new(FrameLimits::of(&info()));
+        parser.push(&[&wrong, good].concat());
+        let found: Vec<_> = std::iter::from_fn(|| parser.next_frame()).collect();
+        assert_eq!(
+            (found.len(), parser.counts().skipped_bytes as usize),
+            (1, good.len()),
+            "field at {field}"
+        );
+    }
+}
+
 #[cfg(unix)]
 fn make_fifo(path: &Path) {
     assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());

@@ -214,6 +214,31 @@ fn unplugging_is_reported_at_once() {
 }
 
 #[test]
+fn no_frame_of_a_lost_camera_follows_its_loss() {
+    let script =
+        |camera: i64| Some(vec![Act::Frame(camera * 10 + 1, 1), Act::Frame(camera * 10 + 2, 2), Act::Unplug]);
+    let config = CameraThreadConfig { max_silence_s: 60.0, ..quick() };
+    let rig = Rig::with_work((0..40).map(script).collect(), info(), config, Duration::from_millis(3));
+    rig.wait("all cameras", |rig| rig.thread.counters().lost > 40);
+    let (mut next_camera, mut is_up) = (0, false);
+    for event in rig.story() {
+        match event.as_str() {
+            "up" => is_up = true,
+            "down" => is_up = false,
+            stamp => {
+                let camera = stamp.parse::<i64>().unwrap() / 10;
+                assert!(is_up && camera >= next_camera, "{stamp}: {:?}", rig.story());
+                next_camera = camera;
+            }
+        }
+        if event == "down" {
+            next_camera += 1;
+        }
+    }
+    assert!(!rig.thread.is_up());
+}
+
+#[test]
 fn a_camera_that_cannot_be_opened_is_down_once() {
     let rig = Rig::new(vec![], info(), quick());
     rig.wait("attempts", |rig| rig.thread.counters().lost >= 4);
