@@ -19,6 +19,7 @@ enum Act {
     Broken,
     Silence,
     Unplug,
+    Panic,
 }
 
 /// A camera that follows a script, then stays silent or ends.
@@ -42,6 +43,7 @@ impl DepthCamera for ScriptedCamera {
             }
             Some(Act::Broken) => Err(Invalid::new("test frame", 1, "bytes", "more").into()),
             Some(Act::Unplug) => Err(CameraError::Unplugged { device: "test".into() }),
+            Some(Act::Panic) => panic!("a test driver panics on purpose"),
             Some(Act::Silence) | None if self.has_ended() => Ok(None),
             Some(Act::Silence) | None => {
                 std::thread::sleep(timeout.min(Duration::from_millis(5)));
@@ -211,6 +213,14 @@ fn unplugging_is_reported_at_once() {
     rig.wait("the second camera", |rig| rig.story().contains(&"9".into()));
     let story = rig.story();
     assert_eq!(story[story.len() - 3..], ["down", "up", "9"]);
+}
+
+#[test]
+fn a_driver_that_panics_is_a_lost_camera() {
+    let cameras = vec![Some(vec![Act::Panic]), Some(vec![Act::Frame(5, 5)])];
+    let rig = Rig::new(cameras, info(), quick());
+    rig.wait("the second camera", |rig| rig.story().contains(&"5".into()));
+    assert_eq!(rig.story()[..3], ["down", "up", "5"]);
 }
 
 #[test]

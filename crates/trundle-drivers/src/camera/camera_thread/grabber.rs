@@ -6,6 +6,7 @@ use super::outbox::Outbox;
 use super::{StampMap, StampMapFactory};
 use crate::camera::frame_monitor::faults_of_info;
 use crate::camera::{CameraError, CameraFault, CameraFrame, CameraInfo, DepthCamera, FrameMonitor};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -57,11 +58,9 @@ impl Grabber {
 
     pub(super) fn run(mut self) {
         while !self.mailbox.is_stopped() {
-            let outcome = match (self.factory)() {
-                Ok(camera) => self.read(camera),
-                Err(error) => Outcome::Lost(error.to_string()),
-            };
-            match outcome {
+            // A driver of a maker may panic; the robot has to know that the camera is lost.
+            let outcome = catch_unwind(AssertUnwindSafe(|| self.open_and_read()));
+            match outcome.unwrap_or_else(|_| Outcome::Lost("the driver of the camera panicked".into())) {
                 Outcome::Finished => break,
                 Outcome::Lost(fault) => self.outbox.on_lost(fault),
             }
@@ -70,6 +69,13 @@ impl Grabber {
             self.mailbox.pause(wait);
         }
         self.mailbox.close();
+    }
+
+    fn open_and_read(&mut self) -> Outcome {
+        match (self.factory)() {
+            Ok(camera) => self.read(camera),
+            Err(error) => Outcome::Lost(error.to_string()),
+        }
     }
 
     /// Reads a camera until it is lost.

@@ -9,7 +9,7 @@ use super::smoothing::smooth;
 use super::unwrapping::Unwrapper;
 use trundle_core::{DepthImage, Image, Invalid, PinholeCamera, Vector2, require_finite, require_in};
 
-/// Largest distance that three frequencies tell apart \[m\]: c / (2 x 8 MHz). Source: Lawin et al. 2016, section 2.
+/// Largest distance that three frequencies tell apart \[m\]: c / (2 x 8 MHz). Source: \[Lawin16\].
 const MAX_UNAMBIGUOUS_M: f64 = 18.73;
 
 /// Calibration of one device.
@@ -31,7 +31,7 @@ pub struct DecoderConfig {
     pub min_amplitude: f64,
     /// Nearest valid distance \[m\], 0 to 18.73. Default 0.4. Source: ours; nearer surfaces saturate.
     pub min_range_m: f64,
-    /// Furthest valid distance \[m\], 0 to 18.73. Default 8. Source: Lawin et al. 2016, section 1: the intended use of the sensor.
+    /// Furthest valid distance \[m\], 0 to 18.73. Default 8. Source: \[Lawin16\]: the intended use of the sensor.
     pub max_range_m: f64,
     /// Whether phasors are filtered. Default `true`.
     pub smooths_phasors: bool,

@@ -9,7 +9,7 @@ use std::io::BufReader;
 use std::path::Path;
 use std::time::Duration;
 
-/// Frames per second of the Kinect V2 \[Hz\]. Source: Sell and O'Connor 2014.
+/// Frames per second of the Kinect V2 \[Hz\]. Source: \[Sell14\].
 const FRAME_RATE_HZ: f64 = 30.0;
 /// Amplitude that is shown white \[1\]: 4096. Source: ours; a white wall at 0.9 m in the test's model.
 const WHITE_AMPLITUDE: f32 = 4096.0;

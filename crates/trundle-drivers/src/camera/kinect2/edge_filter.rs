@@ -1,7 +1,7 @@
 //! The filter of flying pixels.
 //!
 //! A pixel on an edge receives light from both surfaces. Its distance then lies between them, where nothing is. Such a pixel has few
-//! neighbours at its own depth, and is removed. Source: the principle is that of Reynolds et al. 2011, section 4.
+//! neighbours at its own depth, and is removed. Source: the principle is that of \[Reynolds11\].
 
 use super::layout::{COLUMNS, ROWS};
 use trundle_core::DepthImage;

@@ -9,12 +9,10 @@
 //!
 //! **Cost.** One pass over the pixels for each step; see the figures that the test `kinect2` prints.
 //!
-//! Sources: Lawin, Forssen, Ovren 2016, "Efficient Multi-Frequency Phase Unwrapping using Kernel Density Estimation", ECCV, arXiv
-//! 1608.05209 (frequencies, shifts, phase and amplitude, unwrapping, noise of the phase). Sell and O'Connor 2014, "The Xbox One System on a
-//! Chip and Kinect Sensor", IEEE Micro 34(2) (the sensor). Tomasi and Manduchi 1998, "Bilateral Filtering for Gray and Color Images", ICCV.
-//! Reynolds et al. 2011, "Capturing Time-of-Flight Data with Confidence", CVPR (flying pixels).
+//! Sources: \[Lawin16\] (frequencies, shifts, phase and amplitude, unwrapping, noise of the phase); \[Sell14\] (the sensor);
+//! \[Tomasi98\] (the bilateral filter); \[Reynolds11\] (flying pixels).
 //!
-//! | symbol in Lawin et al. | name here | unit |
+//! | symbol in \[Lawin16\] | name here | unit |
 //! |---|---|---|
 //! | v_k | measurement | 1 |
 //! | p_k | shift: 0, 1/3, 2/3 of a turn | turn |
@@ -34,7 +32,7 @@
 //! | order of the bits | the first pixel in the lowest bits, 8 pixels in 11 bytes | [`packing`] |
 //! | order of the columns | four interleaved blocks of 128: columns 0, 4, 8, ..., then 1, 5, 9, ... | [`packing`] |
 //! | order of the rows | both halves from the middle outwards, the lower half first | [`packing`] |
-//! | code of a number | sign and magnitude; the magnitude in segments that double, as in ITU-T G.711 A-law | [`companding`] |
+//! | code of a number | sign and magnitude; the magnitude in segments that double, as in \[G711\] A-law | [`companding`] |
 //! | saturated measurement | the code of minus zero | [`companding`] |
 //! | order of the images | 80 MHz, 16 MHz, 120 MHz, three shifts each; then ambient | [`layout`] |
 //! | sign of the phase | a measurement is a cos(phi + p_0 + p_k) | [`phasors`] |

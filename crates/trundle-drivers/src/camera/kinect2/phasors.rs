@@ -1,7 +1,7 @@
 //! Phase and amplitude from three shifted measurements.
 //!
 //! A measurement is v_k = a cos(phi + p_0 + p_k) with p_k = 0, 1/3, 2/3 of a turn. The phasor
-//! z = 2/3 sum v_k exp(-i (p_0 + p_k)) has the argument phi and the magnitude a; ambient light cancels. Source: Lawin et al. 2016, section 2.
+//! z = 2/3 sum v_k exp(-i (p_0 + p_k)) has the argument phi and the magnitude a; ambient light cancels. Source: \[Lawin16\].
 
 use super::companding::SATURATED_MEASUREMENT;
 use super::layout::{FREQUENCY_COUNT, PIXEL_COUNT, SHIFT_COUNT};

@@ -2,7 +2,7 @@
 //!
 //! Each phasor becomes the mean of the 3 x 3 phasors around it, weighted by their nearness in the image and by their likeness: phasors across
 //! an edge get no weight. Likeness is measured at all frequencies together and relative to the amplitude, since the amplitude falls with the
-//! square of the distance. Source: Tomasi and Manduchi 1998; the kernel of likeness is Tukey's, Durand and Dorsey 2002, section 3.
+//! square of the distance. Source: \[Tomasi98\]; the kernel of likeness is Tukey's, \[Durand02\].
 
 use super::layout::{COLUMNS, ROWS};
 use super::phasors::{PLANE_COUNT, PhasorImage};

@@ -2,8 +2,7 @@
 //!
 //! Each number of wraps of the highest frequency is a hypothesis of the distance. It predicts the phases of the two other frequencies; the
 //! hypothesis with the smallest weighted squares of the differences wins. Weights are inverse variances, and the variance of a phase is that
-//! of the measurements over the squared amplitude. The distance is the weighted mean over the three frequencies. Source: Lawin et al. 2016,
-//! sections 2 and 3.1.
+//! of the measurements over the squared amplitude. The distance is the weighted mean over the three frequencies. Source: \[Lawin16\].
 
 use super::layout::{FREQUENCY_COUNT, wrap_distance_m};
 use super::phasors::Phasors;
@@ -19,7 +18,7 @@ const MAX_PHASE_DIFFERENCE_TURN: f32 = 0.12;
 
 /// Number whose sum with a smaller one is whole: 1.5 x 2^23. Source: IEEE 754, 23 bits of fraction.
 const ROUNDING_SUMMAND: f32 = 12_582_912.0;
-/// Coefficients of the arctangent, of x, x^3, ..., x^9. Source: Abramowitz and Stegun 1964, equation 4.4.47.
+/// Coefficients of the arctangent, of x, x^3, ..., x^9. Source: \[Abramowitz64\], equation 4.4.47.
 const ARCTAN_COEFFICIENTS: [f32; 5] = [0.999_866, -0.330_299_5, 0.180_141, -0.085_133, 0.020_835_1];
 
 /// Unwraps pixels up to a largest distance.
@@ -96,7 +95,7 @@ fn wrapped(turns: f32) -> f32 {
     turns - ((turns + ROUNDING_SUMMAND) - ROUNDING_SUMMAND)
 }
 
-/// The angle of (x, y) in turns, -0.5 to 0.5. Its error is below 2e-6 turn, 2.5 um at 120 MHz. Source: Abramowitz and Stegun 1964,
+/// The angle of (x, y) in turns, -0.5 to 0.5. Its error is below 2e-6 turn, 2.5 um at 120 MHz. Source: \[Abramowitz64\],
 /// equation 4.4.47, for the eighth of a turn; symmetry for the rest.
 fn turn_of(y: f32, x: f32) -> f32 {
     let (a, b) = (x.abs(), y.abs());

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use trundle_core::{Invalid, Stamp};
 
-/// Wait between two looks into the folder \[ms\]. Source: ours; half of the time between frames at 30 Hz.
+/// Wait between two lists of the folder \[ms\]. Source: ours; half of the time between frames at 30 Hz.
 const SCAN_PERIOD_MS: u64 = 15;
 /// Longest wait of an image for the other one of its pair \[ms\]. Source: ours; the silence after which a camera counts as lost.
 const MAX_PAIR_WAIT_MS: u64 = 1000;
@@ -72,8 +72,8 @@ impl FolderCamera {
         Ok(CameraFrame { color, depth })
     }
 
-    /// Looks into the folder, at most once in a period.
-    fn look(&mut self) -> Result<(), CameraError> {
+    /// Lists the folder, at most once in a period.
+    fn rescan(&mut self) -> Result<(), CameraError> {
         let now = Instant::now();
         let period = Duration::from_millis(SCAN_PERIOD_MS);
         if let Some(scanned) = self.scanned {
@@ -102,7 +102,7 @@ impl DepthCamera for FolderCamera {
             if self.has_ended || Instant::now() >= deadline {
                 return Ok(None);
             }
-            self.look()?;
+            self.rescan()?;
         }
     }
 

@@ -57,7 +57,7 @@ impl FolderScan {
     pub(super) fn scan(&mut self, now: Instant) -> io::Result<()> {
         for (name, is_color) in [("color", true), ("depth", false)] {
             for entry in fs::read_dir(self.folder.join(name))? {
-                self.see(&entry?, is_color, now);
+                self.record(&entry?, is_color, now);
             }
         }
         Ok(())
@@ -98,7 +98,7 @@ impl FolderScan {
     }
 
     /// A file that vanished between listing and reading its size is ignored.
-    fn see(&mut self, entry: &fs::DirEntry, is_color: bool, now: Instant) {
+    fn record(&mut self, entry: &fs::DirEntry, is_color: bool, now: Instant) {
         let path = entry.path();
         let Some(stamp) = stamp_of(&path).filter(|stamp| self.last.is_none_or(|last| *stamp > last)) else {
             return;

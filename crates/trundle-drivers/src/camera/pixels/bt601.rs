@@ -1,6 +1,6 @@
 //! RGB from YUV by ITU-R BT.601, limited range.
 //!
-//! Y' runs from 16 to 235, Cb and Cr from 16 to 240 (ITU-R BT.601-7, section 2.5.3). The inverse is
+//! Y' runs from 16 to 235, Cb and Cr from 16 to 240 (\[BT601\]). The inverse is
 //! R = 255/219 (Y - 16) + 255/112 (1 - Kr) (Cr - 128), and so on, with Kr = 0.299 and Kb = 0.114.
 //! The weights are held in 16 bits after the point: the result is at most 1 off the rounded exact value.
 
@@ -8,7 +8,7 @@
 const FRACTION_BITS: i32 = 16;
 /// Half of the last digit, for rounding.
 const ROUNDING_HALF: i32 = 1 << (FRACTION_BITS - 1);
-/// Weight of Y' - 16: 255/219, times 2^16. Source: ITU-R BT.601-7, section 2.5.3.
+/// Weight of Y' - 16: 255/219, times 2^16. Source: \[BT601\].
 const LUMA_WEIGHT: i32 = 76_309;
 /// Weight of Cr - 128 in red: 255/112 (1 - 0.299), times 2^16. Source: ITU-R BT.601-7.
 const RED_FROM_CR: i32 = 104_597;

@@ -4,12 +4,12 @@ use super::{compressed, raw_rows};
 use crate::camera::{PixelFormat, RawImage};
 use trundle_core::{DepthImage, Invalid, require_positive};
 
-/// Slope of the inverse depth of a Kinect v1 over its raw disparity \[1/m\]. Source: OpenKinect wiki, "Imaging information":
+/// Slope of the inverse depth of a Kinect v1 over its raw disparity \[1/m\]. Source: \[OpenKinect\]:
 /// depth = 1 / (raw * -0.0030711016 + 3.3309495161).
 const DISPARITY_SLOPE: f64 = -0.003_071_101_6;
-/// Inverse depth of a Kinect v1 at raw disparity 0 \[1/m\]. Source: OpenKinect wiki, "Imaging information".
+/// Inverse depth of a Kinect v1 at raw disparity 0 \[1/m\]. Source: \[OpenKinect\].
 const DISPARITY_OFFSET: f64 = 3.330_949_516_1;
-/// Raw disparity without a measurement. Source: OpenKinect wiki, "Imaging information".
+/// Raw disparity without a measurement. Source: \[OpenKinect\].
 const NO_DISPARITY: u16 = 2047;
 /// Largest depth that a Kinect v1 measures \[m\]; beyond it the formula has a pole at raw disparity 1085. Source: ours; one step of
 /// disparity is 0.3 m there.

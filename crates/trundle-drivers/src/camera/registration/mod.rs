@@ -10,7 +10,7 @@
 //!
 //! **Cost.** One projection a depth pixel and one comparison a covered output pixel; no memory after the first frame.
 //!
-//! Source: splatting by the projected footprint, Westover 1990, "Footprint evaluation for volume rendering"; the z-buffer, Catmull 1974.
+//! Source: splatting by the projected footprint, \[Westover90\]; the z-buffer, \[Catmull74\].
 
 mod checks;
 mod color_map;
