@@ -1,0 +1,51 @@
+//! Why a recording does not yield a calibration.
+
+use thiserror::Error;
+
+/// Why a recording does not yield a calibration.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum CalibrationError {
+    /// A sensor has no or too few readings.
+    #[error("{sensor}: {found} readings, expected {expected} or more; {advice}")]
+    TooFewReadings {
+        /// The sensor.
+        sensor: &'static str,
+        /// Readings found.
+        found: usize,
+        /// Readings that are needed.
+        expected: usize,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// The motion does not show a value.
+    #[error("{what} cannot be observed: {quantity} is {found:.3} {unit}, expected {expected}; {advice}")]
+    NotObservable {
+        /// The value.
+        what: &'static str,
+        /// The quantity that decides.
+        quantity: &'static str,
+        /// Its size.
+        found: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// The accepted range.
+        expected: String,
+        /// What to do.
+        advice: &'static str,
+    },
+    /// Two sensors contradict each other.
+    #[error("{what}: {quantity} is {found:.3}, expected {expected}; {advice}")]
+    Contradiction {
+        /// The two sensors.
+        what: &'static str,
+        /// The quantity that decides.
+        quantity: &'static str,
+        /// Its size.
+        found: f64,
+        /// The accepted range.
+        expected: String,
+        /// What to do.
+        advice: &'static str,
+    },
+}
