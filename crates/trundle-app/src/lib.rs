@@ -26,6 +26,7 @@
 
 mod best_view;
 mod body_log;
+pub mod calibrate;
 mod checkpoint_writer;
 pub mod dock;
 mod encoded_body;

@@ -191,7 +191,10 @@ impl SequenceInput {
     pub fn frames(&self) -> Result<impl Iterator<Item = Result<PendingFrame<'_>, AppError>>, AppError> {
         match &self.source {
             Source::Folder(sequence) => Ok(SequenceFrames::of_folder(sequence)),
-            Source::Recording(run) => Ok(SequenceFrames::of_recording(&self.path, run.open()?, self.size())),
+            Source::Recording(run) => {
+                let delay = self.robot.image_delay;
+                Ok(SequenceFrames::of_recording(&self.path, run.open()?, self.size(), delay))
+            }
         }
     }
 

@@ -149,7 +149,9 @@ impl<'s> RunSession<'s> {
             let recorded = event.clone();
             self.recorder.write(move |file| file.record_event(&recorded));
         }
-        if let EncodedEvent::Rgbd(image) = event {
+        if let EncodedEvent::Rgbd(mut image) = event {
+            // The recording holds the stamp of the driver, so that a replay corrects the stamp once as well.
+            image.stamp = image.stamp.after(-self.setup.robot.image_delay);
             self.view.on_image(&image);
             let stamp = image.stamp;
             let load = move || image.decode().map_err(|error| error.to_string());

@@ -7,7 +7,7 @@ use crate::{
 use serde::{Deserialize, Deserializer, Serialize};
 use trundle_control::{FollowerConfig, SafetyConfig};
 use trundle_core::{
-    DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera, Vector2, footprint_corners,
+    DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera, Vector2, footprint_corners, require_in,
 };
 use trundle_localization::{LocalizerConfig, OdometryConfig};
 use trundle_mapping::{DepthScanConfig, MapperConfig, ScanMatchConfig};
@@ -34,6 +34,9 @@ pub struct RobotConfig {
     pub camera: PinholeCamera,
     /// Where the camera sits.
     pub mount: CameraMount,
+    /// Stamp of an image minus the moment at which it was taken, s, -1 to 1. A run subtracts it from the stamp of each image.
+    /// `trundle calibrate delay` measures it. Default 0.
+    pub image_delay: f64,
     /// Rates of the stages.
     pub schedule: Schedule,
     /// Wheels and gyro.
@@ -90,6 +93,7 @@ impl Default for RobotConfig {
             limits: DriveLimits::KOBUKI,
             camera: PinholeCamera::kinect_v2(),
             mount: CameraMount::default(),
+            image_delay: 0.0,
             schedule: Schedule::default(),
             odometry: OdometryConfig::default(),
             slam: SlamConfig::default(),
@@ -116,6 +120,11 @@ impl RobotConfig {
             return Err(Invalid::new("odometry.max_speed", self.odometry.max_speed, "m/s", expected));
         }
         Ok(())
+    }
+
+    /// Refuses an image delay outside -1 to 1 s: it is a mistyped number.
+    pub(crate) fn require_image_delay(&self) -> Result<(), Invalid> {
+        require_in("image_delay", self.image_delay, "s", -1.0, 1.0).map(drop)
     }
 
     /// The same robot with every seed of its random sampling drawn from `seed`.

@@ -134,6 +134,7 @@ impl Robot {
         let base_from_camera = config.mount.validated()?.base_from_camera();
         let footprint = config.footprint()?;
         config.require_believable_speeds()?;
+        config.require_image_delay()?;
         let perception = PerceptionWorker::new(&config, base_from_camera)?;
         let blind_range = perception.blind_range();
         let mapper = LiveMapper::new(MapperConfig { blind_range, ..config.mapping.clone() })?;

@@ -64,7 +64,7 @@ impl PendingFrame<'_> {
 /// The images of a folder or a recording.
 pub(super) enum SequenceFrames<'a> {
     Folder { sequence: &'a TumSequence, next: usize },
-    Recording { path: &'a Path, reader: Box<RecordingReader>, size: (usize, usize), next: usize },
+    Recording { path: &'a Path, reader: Box<RecordingReader>, size: (usize, usize), delay: f64, next: usize },
 }
 
 impl<'a> SequenceFrames<'a> {
@@ -72,8 +72,14 @@ impl<'a> SequenceFrames<'a> {
         Self::Folder { sequence, next: 0 }
     }
 
-    pub(super) fn of_recording(path: &'a Path, reader: RecordingReader, size: (usize, usize)) -> Self {
-        Self::Recording { path, reader: Box::new(reader), size, next: 0 }
+    /// `size` of the camera, px; `delay` of the images' stamps, s, which is subtracted.
+    pub(super) fn of_recording(
+        path: &'a Path,
+        reader: RecordingReader,
+        size: (usize, usize),
+        delay: f64,
+    ) -> Self {
+        Self::Recording { path, reader: Box::new(reader), size, delay, next: 0 }
     }
 }
 
@@ -87,11 +93,12 @@ impl<'a> Iterator for SequenceFrames<'a> {
                 *next += 1;
                 Some(Ok(PendingFrame { index, content: Content::Listed(sequence) }))
             }
-            Self::Recording { path, reader, size, next } => {
-                let image = match next_image(reader) {
+            Self::Recording { path, reader, size, delay, next } => {
+                let mut image = match next_image(reader) {
                     Ok(image) => image?,
                     Err(error) => return Some(Err(error)),
                 };
+                image.stamp = image.stamp.after(-*delay);
                 let frame =
                     PendingFrame { index: *next, content: Content::Recorded { path, image, size: *size } };
                 *next += 1;

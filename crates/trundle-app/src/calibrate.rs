@@ -1,0 +1,18 @@
+//! Calibration by a recording or by images of a board: camera, mount, wheels, image delay.
+//!
+//! Each function reads its input, fits, and returns a [`Calibration`]: values with standard deviations beside the values in use.
+//! [`Calibration::write`] changes exactly these keys of a robot file. See `docs/how-to/calibrate.md`.
+
+mod camera_track;
+mod delay;
+mod mount;
+mod recording;
+mod robot_file_update;
+mod values;
+mod wheels;
+
+pub use delay::calibrate_delay;
+pub use mount::calibrate_mount;
+pub use recording::CalibrationInput;
+pub use values::{CalibratedValue, Calibration};
+pub use wheels::calibrate_wheels;

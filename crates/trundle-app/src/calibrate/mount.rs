@@ -1,0 +1,161 @@
+//! `[mount]` by the floor in the depth images and by the camera's trajectory against the wheels.
+
+use super::camera_track::track_camera;
+use super::recording::CalibrationInput;
+use super::values::{CalibratedValue, Calibration};
+use crate::{AppError, StepProgress};
+use trundle_core::{RgbdImage, Vector3};
+use trundle_localization::{
+    CalibrationError, Estimate, FloorMount, FloorView, WheelCameraFit, fit_wheels_and_camera, turn_axis,
+};
+
+/// Largest number of images whose floor is fitted. Source: ours; more do not change the mean by 0.1 mm.
+const MAX_FLOOR_IMAGES: usize = 200;
+/// Smallest number of images with floor. Source: ours.
+const MIN_FLOOR_IMAGES: usize = 5;
+/// Largest standard deviation of an offset that is shown: 0.01 m. Source: ours.
+const MAX_OFFSET_SIGMA_M: f64 = 0.01;
+/// Largest standard deviation of a yaw that is shown: 1 deg. Source: ours.
+const MAX_YAW_SIGMA_DEG: f64 = 1.0;
+/// Angle of the turning axis to the floor's normal above which a note warns: 0.5 deg. Source: ours.
+const MAX_AXIS_ANGLE_DEG: f64 = 0.5;
+
+/// Pose of the camera on the base.
+///
+/// # Errors
+/// When images are missing or show no floor.
+pub fn calibrate_mount(
+    input: &CalibrationInput,
+    progress: &dyn StepProgress,
+) -> Result<Calibration, AppError> {
+    let mut floor = FloorSearch::new(input);
+    let track = track_camera(input, progress, |image| floor.add(image))?;
+    let mount = floor.mount(input)?;
+    let up = floor.up();
+    let mut calibration = Calibration::default();
+    add_floor(&mut calibration, input, &mount);
+    let axis = turn_axis(&track.poses, up);
+    calibration.notes.extend(axis.as_ref().ok().and_then(|axis| axis_warning(axis.angle(&up))));
+    let drive = &input.images.robot.drive;
+    let fit = axis.and_then(|_| fit_wheels_and_camera(&track.poses, up, &input.wheels(), drive));
+    match fit {
+        Ok(fit) => add_offsets(&mut calibration, input, &fit),
+        Err(error) => calibration.notes.push(not_shown("mount.x_m, mount.y_m, mount.yaw_deg", &error)),
+    }
+    Ok(calibration)
+}
+
+/// The floor in some of the images.
+struct FloorSearch<'a> {
+    input: &'a CalibrationInput,
+    expected_up: Vector3,
+    /// Images from one that is used to the next.
+    step: usize,
+    seen: usize,
+    tried: usize,
+    with_depth: usize,
+    views: Vec<FloorView>,
+}
+
+impl<'a> FloorSearch<'a> {
+    fn new(input: &'a CalibrationInput) -> Self {
+        let step = input.images.len().div_ceil(MAX_FLOOR_IMAGES).max(1);
+        let expected_up = input.expected_up();
+        Self { input, expected_up, step, seen: 0, tried: 0, with_depth: 0, views: Vec::new() }
+    }
+
+    fn add(&mut self, image: &RgbdImage) {
+        self.seen += 1;
+        if (self.seen - 1).is_multiple_of(self.step) {
+            self.tried += 1;
+            self.with_depth += usize::from(image.depth().data().iter().any(|depth| *depth > 0.0));
+            let camera = &self.input.images.camera.model.camera;
+            self.views.extend(FloorView::find(image.depth(), camera, self.expected_up));
+        }
+    }
+
+    fn up(&self) -> Vector3 {
+        self.views.iter().map(|view| view.up).sum::<Vector3>().normalize()
+    }
+
+    fn mount(&self, input: &CalibrationInput) -> Result<FloorMount, AppError> {
+        let mount = FloorMount::of(&self.views).filter(|mount| mount.images >= MIN_FLOOR_IMAGES);
+        mount.ok_or_else(|| {
+            let Self { tried, with_depth, views, .. } = self;
+            let cause = if *with_depth == 0 { "no image has depth" } else { "the camera sees too little of it" };
+            let found = views.len();
+            input.refused(&format!(
+                "floor in {found} of {tried} images, expected {MIN_FLOOR_IMAGES} or more: {cause}; check the depth \
+                 camera, clear 2 m of floor before the robot, and set mount.pitch_deg to within 15 deg"
+            ))
+        })
+    }
+}
+
+fn add_floor(calibration: &mut Calibration, input: &CalibrationInput, floor: &FloorMount) {
+    let before = &input.images.robot.mount;
+    let height = (floor.height.value, floor.height.sigma);
+    calibration.values.extend([
+        CalibratedValue::key("mount.z_m", height, "m", before.z, 4),
+        CalibratedValue::key("mount.pitch_deg", degrees(floor.pitch), "deg", before.pitch_deg, 3),
+        CalibratedValue::key("mount.roll_deg", degrees(floor.roll), "deg", before.roll_deg, 3),
+    ]);
+    calibration.notes.push(format!("floor seen in {} images", floor.images));
+}
+
+fn add_offsets(calibration: &mut Calibration, input: &CalibrationInput, fit: &WheelCameraFit) {
+    let before = &input.images.robot.mount;
+    let is_shown = |offset: &Estimate| offset.sigma <= MAX_OFFSET_SIGMA_M;
+    let offsets = [("mount.x_m", fit.offset_x, before.x), ("mount.y_m", fit.offset_y, before.y)];
+    for (name, offset, before) in offsets {
+        if is_shown(&offset) {
+            calibration.values.push(CalibratedValue::key(name, (offset.value, offset.sigma), "m", before, 4));
+        } else {
+            let error = not_observable("the camera's offset", offset.sigma, "m", MAX_OFFSET_SIGMA_M);
+            calibration.notes.push(not_shown(name, &error));
+        }
+    }
+    let yaw = degrees(fit.yaw);
+    if yaw.1 <= MAX_YAW_SIGMA_DEG {
+        calibration.values.push(CalibratedValue::key("mount.yaw_deg", yaw, "deg", before.yaw_deg, 3));
+    } else {
+        let error = not_observable("the camera's yaw", yaw.1, "deg", MAX_YAW_SIGMA_DEG);
+        calibration.notes.push(not_shown("mount.yaw_deg", &error));
+    }
+    calibration.notes.push(format!(
+        "{} segments of the drive, residual {:.1} mm and {:.2} mrad",
+        fit.segments,
+        fit.displacement_residual * 1e3,
+        fit.turn_residual * 1e3
+    ));
+}
+
+fn degrees(angle: Estimate) -> (f64, f64) {
+    (angle.value.to_degrees(), angle.sigma.to_degrees())
+}
+
+fn not_observable(what: &'static str, found: f64, unit: &'static str, most: f64) -> CalibrationError {
+    CalibrationError::NotObservable {
+        what,
+        quantity: "its standard deviation",
+        found,
+        unit,
+        expected: format!("{most} {unit} or less"),
+        advice: "turn on the spot by a full turn both ways and drive 1 m straight",
+    }
+}
+
+fn not_shown(keys: &str, error: &CalibrationError) -> String {
+    format!("not found: {keys}: {error}")
+}
+
+/// A warning where the robot turns about another axis than the floor's normal.
+fn axis_warning(angle: f64) -> Option<String> {
+    let degrees = angle.to_degrees();
+    (degrees > MAX_AXIS_ANGLE_DEG).then(|| {
+        format!(
+            "the robot turns about an axis {degrees:.2} deg off the floor's normal, expected {MAX_AXIS_ANGLE_DEG} deg \
+             or less: is the floor flat, the camera fixed, and the camera calibrated?"
+        )
+    })
+}
