@@ -1,6 +1,7 @@
 //! `trundle run`: a mission on a real robot.
 
 mod args;
+mod check;
 
 pub use args::RunArgs;
 
@@ -18,6 +19,9 @@ use trundle::runtime::{Mission, RobotConfig, Task};
 
 /// `trundle run`.
 pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
+    if args.mission.check {
+        return check::check(args);
+    }
     let mut robot = args.robot.robot()?;
     let resumed = args.mission.resume.as_deref().map(checkpoint_file::read).transpose()?;
     let mission = match &resumed {

@@ -12,7 +12,7 @@ mod values;
 mod wheels;
 
 pub use delay::calibrate_delay;
-pub use mount::calibrate_mount;
+pub use mount::{calibrate_mount, floor_values};
 pub use recording::CalibrationInput;
 pub use values::{CalibratedValue, Calibration};
 pub use wheels::calibrate_wheels;

@@ -25,6 +25,9 @@ pub struct RunArgs {
     /// The mission.
     #[command(flatten)]
     pub mission: MissionArgs,
+    /// Write what --check measured into this robot file; its other keys stay.
+    #[arg(long, value_name = "ROBOT.toml", requires = "check")]
+    pub write: Option<PathBuf>,
     /// Write the robot's maps and the state of its mission to FILE, every 3 to 10 s: `--resume FILE` goes on from there.
     #[arg(long, value_name = "FILE")]
     pub checkpoint: Option<OutputFileArg>,
@@ -64,6 +67,9 @@ pub struct MissionArgs {
     /// Resume the mission and the maps of a checkpoint.
     #[arg(long, value_name = "CHECKPOINT")]
     pub resume: Option<PathBuf>,
+    /// Drive nowhere: show rates, delays, image size, signs of the encoders (push the robot by hand) and tilt of the camera.
+    #[arg(long)]
+    pub check: bool,
 }
 
 /// Source of the colour camera's intrinsics.

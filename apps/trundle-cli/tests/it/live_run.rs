@@ -36,7 +36,7 @@ impl EmulatedRobot {
         let mut command = trundle();
         command.arg("run").arg("--base").arg(format!("kobuki:{}", self.folder.join("kobuki").display()));
         command.arg("--camera").arg(format!("stream:{}", self.folder.join("camera").display()));
-        command.args(["--time-limit", RUN_LIMIT_S, "--out"]).arg(self.folder.join("out")).args(arguments);
+        command.args(["--out"]).arg(self.folder.join("out")).args(arguments);
         command
     }
 
@@ -86,7 +86,7 @@ fn first_number(table: &str, row: &str) -> f64 {
 fn a_goal_is_reached_over_a_serial_line_and_a_camera_stream() {
     let folder = tempfile::tempdir().unwrap();
     let robot = EmulatedRobot::start(folder.path());
-    let output = robot.run(&["--goal", "0.6,0,0"]).output().unwrap();
+    let output = robot.run(&["--goal", "0.6,0,0", "--time-limit", RUN_LIMIT_S]).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
     let summary = robot.summary();
     assert_eq!((summary["command"].as_str(), summary["success"].as_bool()), (Some("run"), Some(true)));
@@ -100,7 +100,7 @@ fn a_goal_is_reached_over_a_serial_line_and_a_camera_stream() {
 fn a_robot_that_is_unplugged_stops_says_so_and_goes_on_when_it_is_back() {
     let folder = tempfile::tempdir().unwrap();
     let robot = EmulatedRobot::start(folder.path());
-    let mut run = robot.run(&["--goal", "2,0,0"]);
+    let mut run = robot.run(&["--goal", "2,0,0", "--time-limit", RUN_LIMIT_S]);
     let run = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     std::thread::sleep(Duration::from_secs(6));
     // A process that stands still is a base and a camera that are silent.
@@ -114,6 +114,25 @@ fn a_robot_that_is_unplugged_stops_says_so_and_goes_on_when_it_is_back() {
     let summary = robot.summary();
     assert!(summary["device_losses"]["base"].as_u64() >= Some(1), "{summary}");
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+}
+
+#[test]
+fn a_check_shows_rates_and_tilt_and_writes_the_measured_part_of_the_robot_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let robot = EmulatedRobot::start(folder.path());
+    let file = folder.path().join("robot.toml");
+    std::fs::write(&file, "# mine\n[mount]\npitch_deg = 5.0 # by eye\n").unwrap();
+    let config = ["--config", file.to_str().unwrap(), "--write", file.to_str().unwrap()];
+    let output = robot.run(&["--check"]).args(config).args(["--time-limit", "6"]).output().unwrap();
+    let table = text(&output);
+    assert_eq!(output.status.code(), Some(0), "{table}");
+    assert!((first_number(&table, "wheels: rate, longest gap") - 50.0).abs() < 5.0, "{table}");
+    assert!((first_number(&table, "images: rate, longest gap, age on arrival") - 8.0).abs() < 2.0, "{table}");
+    assert!(table.contains("signs of the encoders not checked"), "nobody pushed it: {table}");
+    assert!((first_number(&table, "mount.pitch_deg") - 8.0).abs() < 0.5, "{table}");
+    let written = std::fs::read_to_string(&file).unwrap();
+    assert!(written.starts_with("# mine") && written.contains("# by eye"), "{written}");
+    assert!(written.contains("fx_px") && written.contains("z_m = 0.4"), "{written}");
 }
 
 #[test]

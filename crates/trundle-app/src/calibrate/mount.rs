@@ -8,6 +8,7 @@ use trundle_core::{RgbdImage, Vector3};
 use trundle_localization::{
     CalibrationError, Estimate, FloorMount, FloorView, WheelCameraFit, fit_wheels_and_camera, turn_axis,
 };
+use trundle_runtime::CameraMount;
 
 /// Largest number of images whose floor is fitted. Source: ours; more do not change the mean by 0.1 mm.
 const MAX_FLOOR_IMAGES: usize = 200;
@@ -93,14 +94,19 @@ impl<'a> FloorSearch<'a> {
 }
 
 fn add_floor(calibration: &mut Calibration, input: &CalibrationInput, floor: &FloorMount) {
-    let before = &input.images.robot.mount;
+    calibration.values.extend(floor_values(floor, &input.images.robot.mount));
+    calibration.notes.push(format!("floor seen in {} images", floor.images));
+}
+
+/// The keys of the robot file that the floor shows, beside the mount in use.
+#[must_use]
+pub fn floor_values(floor: &FloorMount, before: &CameraMount) -> [CalibratedValue; 3] {
     let height = (floor.height.value, floor.height.sigma);
-    calibration.values.extend([
+    [
         CalibratedValue::key("mount.z_m", height, "m", before.z, 4),
         CalibratedValue::key("mount.pitch_deg", degrees(floor.pitch), "deg", before.pitch_deg, 3),
         CalibratedValue::key("mount.roll_deg", degrees(floor.roll), "deg", before.roll_deg, 3),
-    ]);
-    calibration.notes.push(format!("floor seen in {} images", floor.images));
+    ]
 }
 
 fn add_offsets(calibration: &mut Calibration, input: &CalibrationInput, fit: &WheelCameraFit) {

@@ -34,7 +34,7 @@ pub struct Calibration {
 
 impl CalibratedValue {
     /// A key of the robot file.
-    pub(super) fn key(
+    pub(crate) fn key(
         name: &str,
         (value, sigma): (f64, f64),
         unit: &'static str,

@@ -1,0 +1,43 @@
+//! `trundle run --check`: rates, delays, signs and tilt before the first drive.
+
+use super::RunArgs;
+use super::intrinsics;
+use crate::console;
+use crate::outcome::Outcome;
+use trundle::app::AppError;
+use trundle::app::hardware::{CheckRequest, HardwareReport, OpenCamera, check_hardware};
+
+/// Duration of a check where the user gives none \[s\]. Source: ours; time for a push by hand.
+const CHECK_S: f64 = 15.0;
+
+/// Checks base and camera, prints what was found, and writes the measured part of the robot file where that is wished.
+pub fn check(args: &RunArgs) -> Result<Outcome, AppError> {
+    let robot = args.robot.robot()?;
+    let camera = OpenCamera::open(&args.camera)?;
+    let output = intrinsics(args, &robot, &camera)?;
+    let seconds = args.time_limit.unwrap_or(CHECK_S);
+    if !args.common.quiet {
+        console::print(&format!(
+            "Listening for {seconds:.0} s; the base does not drive. Leave the robot at rest for 3 s, then push it straight ahead by 0.5 m."
+        ));
+    }
+    let report = check_hardware(CheckRequest { base: &args.base, camera, output, robot: &robot, seconds })?;
+    if !args.common.quiet {
+        print(&report);
+    }
+    if let Some(file) = args.write.as_deref() {
+        report.values.write(file)?;
+        console::print(&format!("Wrote {} values to {}", report.values.values.len(), file.display()));
+    }
+    let problems = report.problems.iter().map(|problem| format!("problem: {problem}")).collect::<Vec<_>>();
+    Ok(Outcome::unless((!problems.is_empty()).then(|| problems.join("\n"))))
+}
+
+fn print(report: &HardwareReport) {
+    console::print_table(&report.rows);
+    console::print_table(&report.values.rows());
+    report.notes.iter().for_each(|note| console::print(&format!("note: {note}")));
+    if report.problems.is_empty() {
+        console::print("No problem found.");
+    }
+}

@@ -1,0 +1,216 @@
+//! The check of base and camera before the first drive: rates, delays, signs of the encoders, the floor in the images.
+
+use super::check_log::{CheckLog, mean, rate_and_gap};
+use super::{Drivers, OpenCamera};
+use crate::calibrate::{CalibratedValue, Calibration, floor_values};
+use crate::{AppError, stop};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+use trundle_core::{PinholeCamera, Vector3};
+use trundle_drivers::BaseSpec;
+use trundle_localization::FloorMount;
+use trundle_runtime::RobotConfig;
+
+/// Time between two looks for Ctrl-C. Source: ours.
+const POLL: Duration = Duration::from_millis(50);
+/// Part of the camera's own rate below which images are too few. Source: ours.
+const MIN_RATE_PART: f64 = 0.8;
+/// Smallest rate of the wheels' readings \[Hz\]: control steps follow them. Source: half of a Kobuki's 50 Hz.
+const MIN_WHEELS_HZ: f64 = 25.0;
+/// Smallest part of the pixels with depth. Source: ours.
+const MIN_DEPTH_PART: f64 = 0.1;
+/// Distance of both wheels from which a push shows the encoders' signs \[m\]. Source: ours.
+const MIN_PUSH_M: f64 = 0.1;
+/// Turn from which wheels and gyro are compared \[rad\]: 20 deg. Source: ours.
+const MIN_TURN_RAD: f64 = 0.35;
+/// Smallest number of images that show the floor. Source: ours.
+const MIN_FLOOR_IMAGES: usize = 3;
+
+/// What is checked.
+pub struct CheckRequest<'a> {
+    /// The base.
+    pub base: &'a BaseSpec,
+    /// The camera.
+    pub camera: OpenCamera,
+    /// The camera that the robot works with.
+    pub output: PinholeCamera,
+    /// The robot.
+    pub robot: &'a RobotConfig,
+    /// Duration of the check \[s\].
+    pub seconds: f64,
+}
+
+/// The result of a check.
+#[derive(Debug, Default)]
+pub struct HardwareReport {
+    /// The table: what, value.
+    pub rows: Vec<Vec<String>>,
+    /// What must be mended before a drive, each with the remedy; empty where all is well.
+    pub problems: Vec<String>,
+    /// What was not checked, and how to check it.
+    pub notes: Vec<String>,
+    /// Values for the robot file.
+    pub values: Calibration,
+}
+
+/// Starts base and camera, which stand still, and listens to them; a person may push the robot meanwhile.
+///
+/// # Errors
+/// When base or camera cannot be started.
+pub fn check_hardware(request: CheckRequest<'_>) -> Result<HardwareReport, AppError> {
+    let CheckRequest { base, camera, output, robot, seconds } = request;
+    let (info, origin) = (camera.info().clone(), Instant::now());
+    let expected_up = robot.mount.base_from_camera().inverse().rotate(Vector3::z());
+    let log = Arc::new(Mutex::new(CheckLog::new(origin, output, robot.drive, expected_up)));
+    let sink = Arc::clone(&log);
+    let on_event = move |event| sink.lock().unwrap_or_else(PoisonError::into_inner).on_event(&event);
+    let drivers = Drivers::start(base, camera, output, origin, on_event)?;
+    let is_over = || stop::is_requested(|| format!("{:.1} s", origin.elapsed().as_secs_f64()));
+    while origin.elapsed().as_secs_f64() < seconds && !is_over() {
+        std::thread::sleep(POLL);
+    }
+    let (versions, (base_counters, camera_counters)) = (drivers.versions(), drivers.counters());
+    let fault = drivers.camera_fault();
+    drop(drivers);
+    let log = log.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut report = HardwareReport::default();
+    let text = |version: Option<_>| {
+        version.map_or("unknown".to_owned(), |v: trundle_drivers::kobuki::protocol::Version| v.to_string())
+    };
+    report.row(
+        "base",
+        format!("{base}, hardware {}, firmware {}", text(versions.hardware), text(versions.firmware)),
+    );
+    report.check_base(&log);
+    report.row("bytes skipped, packets with a wrong checksum", {
+        let decoder = base_counters.decoder;
+        format!("{}, {}", decoder.skipped_bytes, decoder.wrong_checksum)
+    });
+    let size = format!("{} x {} px", info.color.camera.width(), info.color.camera.height());
+    report.row("camera", format!("{}, {size}, {:.0} Hz", info.name, info.color.rate_hz));
+    report.check_camera(&log, info.color.rate_hz);
+    report.row("images dropped, broken, stuck", {
+        format!("{}, {}, {}", camera_counters.dropped, camera_counters.broken, camera_counters.stuck)
+    });
+    report.problems.extend(fault.map(|fault| format!("camera: {fault}")));
+    report.check_wheels(&log);
+    report.check_floor(&log, robot);
+    report.notes.extend(log.events.iter().map(|event| format!("event at {event}")));
+    report.values.values.extend(intrinsics(&info.color.camera, &robot.camera));
+    Ok(report)
+}
+
+impl HardwareReport {
+    fn row(&mut self, name: &str, value: String) {
+        self.rows.push(vec![name.to_owned(), value]);
+    }
+
+    fn check_base(&mut self, log: &CheckLog) {
+        match rate_and_gap(&log.wheels) {
+            Some((rate, gap)) => {
+                self.row("wheels: rate, longest gap", format!("{rate:.1} Hz, {gap:.0} ms"));
+                if rate < MIN_WHEELS_HZ {
+                    let problem =
+                        format!("wheel readings come at {rate:.1} Hz, expected {MIN_WHEELS_HZ} Hz or more");
+                    self.problems.push(format!("{problem}: check the cable and the load of the computer"));
+                }
+            }
+            None => self.problems.push("no wheel readings came: check the base's cable and power".to_owned()),
+        }
+        let gyro = rate_and_gap(&log.gyro).map_or("none".to_owned(), |(rate, _)| format!("{rate:.1} Hz"));
+        let bias = mean(&log.rest_rates).to_degrees();
+        self.row("gyro: rate, bias at rest", format!("{gyro}, {bias:.3} deg/s"));
+        if let Some(battery) = &log.battery {
+            let charge = battery.charge.map_or(String::new(), |charge| format!(", {:.0} %", charge * 100.0));
+            self.row("battery", format!("{:.1} V{charge}", battery.voltage_v));
+        }
+    }
+
+    fn check_camera(&mut self, log: &CheckLog, nominal_hz: f64) {
+        let Some((rate, gap)) = rate_and_gap(&log.images) else {
+            let remedy = "check its cable, its USB port and what else uses it";
+            return self.problems.push(format!("{} images came: {remedy}", log.images.len()));
+        };
+        let age = median(&log.image_ages);
+        self.row(
+            "images: rate, longest gap, age on arrival",
+            format!("{rate:.1} Hz, {gap:.0} ms, {age:.0} ms"),
+        );
+        let part = mean(&log.depth_parts);
+        self.row("pixels with depth", format!("{:.0} %", part * 100.0));
+        if rate < MIN_RATE_PART * nominal_hz {
+            let problem = format!("images come at {rate:.1} Hz, expected {nominal_hz:.0} Hz");
+            self.problems.push(format!("{problem}: use a USB 3 port, a smaller image or a lower rate"));
+        }
+        if part < MIN_DEPTH_PART {
+            let expected = "expected 10 % or more: turn the robot to something 1 to 3 m away";
+            self.problems.push(format!("only {:.1} % of the pixels have depth, {expected}", part * 100.0));
+        }
+    }
+
+    /// The signs of encoders and gyro, where the robot was pushed.
+    fn check_wheels(&mut self, log: &CheckLog) {
+        let [left, right] = log.distances;
+        let (turn, gyro) = ((right - left) / log.wheelbase(), log.gyro_turn);
+        self.row("pushed: left wheel, right wheel", format!("{left:.3} m, {right:.3} m"));
+        self.row(
+            "turned: by wheels, by gyro",
+            format!("{:.1} deg, {:.1} deg", turn.to_degrees(), gyro.to_degrees()),
+        );
+        if left.abs().min(right.abs()) < MIN_PUSH_M {
+            let how = "push the robot straight ahead by 0.5 m during the check";
+            return self.notes.push(format!("signs of the encoders not checked: {how}"));
+        }
+        let is_turn = gyro.abs() > MIN_TURN_RAD;
+        let problem = match (left > 0.0, right > 0.0) {
+            (false, false) if !is_turn => {
+                Some("both encoders count down: reverse both, or the robot was pulled back")
+            }
+            (true, false) | (false, true) if !is_turn => {
+                Some("the encoders count in opposite directions on a straight push: reverse one of them")
+            }
+            _ if is_turn && turn * gyro < 0.0 => {
+                Some("wheels and gyro turn in opposite directions: swap the encoders or reverse the gyro")
+            }
+            _ => None,
+        };
+        match problem {
+            Some(problem) => self.problems.push(problem.to_owned()),
+            None => self.row("signs of encoders and gyro", "right".to_owned()),
+        }
+    }
+
+    fn check_floor(&mut self, log: &CheckLog, robot: &RobotConfig) {
+        let Some(floor) = FloorMount::of(&log.floors).filter(|floor| floor.images >= MIN_FLOOR_IMAGES) else {
+            let how = "clear 2 m of floor before the robot, and set mount.pitch_deg to within 15 deg";
+            return self
+                .notes
+                .push(format!("camera's height and tilt not measured, no floor in sight: {how}"));
+        };
+        self.values.values.extend(floor_values(&floor, &robot.mount));
+    }
+}
+
+/// The intrinsics that the camera reports, as keys of the robot file.
+fn intrinsics(camera: &PinholeCamera, before: &PinholeCamera) -> Vec<CalibratedValue> {
+    let number = |name: &str, value: f64, before: f64, unit, decimals| CalibratedValue {
+        sigma: None,
+        ..CalibratedValue::key(name, (value, 0.0), unit, before, decimals)
+    };
+    let (size, old) =
+        ((camera.width() as f64, camera.height() as f64), (before.width() as f64, before.height() as f64));
+    vec![
+        number("camera.width_px", size.0, old.0, "px", 0),
+        number("camera.height_px", size.1, old.1, "px", 0),
+        number("camera.fx_px", camera.fx(), before.fx(), "px", 3),
+        number("camera.fy_px", camera.fy(), before.fy(), "px", 3),
+        number("camera.cx_px", camera.cx(), before.cx(), "px", 3),
+        number("camera.cy_px", camera.cy(), before.cy(), "px", 3),
+    ]
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied().unwrap_or_default()
+}

@@ -1,0 +1,143 @@
+//! What came from base and camera during a check.
+
+use std::time::Instant;
+use trundle_core::{
+    Battery, BodyEventKind, DifferentialDrive, GyroRate, PinholeCamera, RgbdImage, SensorEvent, Stamp,
+    Vector3, WheelTicks,
+};
+use trundle_localization::FloorView;
+
+/// Images from one whose floor is fitted to the next. Source: ours.
+const FLOOR_STEP_IMAGES: usize = 5;
+
+/// What came from base and camera during a check.
+#[derive(Debug)]
+pub(super) struct CheckLog {
+    origin: Instant,
+    camera: PinholeCamera,
+    expected_up: Vector3,
+    drive: DifferentialDrive,
+    /// Arrivals of readings: wheels, gyro, images \[s\].
+    pub wheels: Vec<f64>,
+    pub gyro: Vec<f64>,
+    pub images: Vec<f64>,
+    /// Age of each image on arrival \[ms\].
+    pub image_ages: Vec<f64>,
+    /// Part of the pixels with depth, 0 to 1, of each image.
+    pub depth_parts: Vec<f64>,
+    pub floors: Vec<FloorView>,
+    /// Distance of the left and the right wheel \[m\].
+    pub distances: [f64; 2],
+    /// Turn by the gyro \[rad\].
+    pub gyro_turn: f64,
+    /// Gyro rates while the wheels stood \[rad/s\].
+    pub rest_rates: Vec<f64>,
+    pub battery: Option<Battery>,
+    /// Events of the body, in words.
+    pub events: Vec<String>,
+    last_ticks: Option<WheelTicks>,
+    last_gyro: Option<GyroRate>,
+    has_rolled: bool,
+}
+
+impl CheckLog {
+    pub fn new(
+        origin: Instant,
+        camera: PinholeCamera,
+        drive: DifferentialDrive,
+        expected_up: Vector3,
+    ) -> Self {
+        Self {
+            origin,
+            camera,
+            expected_up,
+            drive,
+            wheels: Vec::new(),
+            gyro: Vec::new(),
+            images: Vec::new(),
+            image_ages: Vec::new(),
+            depth_parts: Vec::new(),
+            floors: Vec::new(),
+            distances: [0.0; 2],
+            gyro_turn: 0.0,
+            rest_rates: Vec::new(),
+            battery: None,
+            events: Vec::new(),
+            last_ticks: None,
+            last_gyro: None,
+            has_rolled: false,
+        }
+    }
+
+    /// Of the robot's drive \[m\].
+    pub fn wheelbase(&self) -> f64 {
+        self.drive.wheelbase
+    }
+
+    pub fn on_event(&mut self, event: &SensorEvent) {
+        let now = self.origin.elapsed().as_secs_f64();
+        match event {
+            SensorEvent::Wheels(ticks) => self.on_wheels(now, ticks),
+            SensorEvent::Gyro(rate) => self.on_gyro(now, rate),
+            SensorEvent::Rgbd(image) => self.on_image(now, image),
+            SensorEvent::Body(event) => match event.kind {
+                BodyEventKind::Battery(battery) => self.battery = Some(battery),
+                BodyEventKind::DockInfrared(_) | BodyEventKind::Silence => {}
+                kind => self.events.push(format!("{now:.1} s: {kind:?}")),
+            },
+            SensorEvent::Touch(touch) if touch.pressed => {
+                self.events.push(format!("{now:.1} s: bumper pressed"))
+            }
+            SensorEvent::Cliff(cliff) if cliff.over_edge => {
+                self.events.push(format!("{now:.1} s: no floor ahead"))
+            }
+            _ => {}
+        }
+    }
+
+    fn on_wheels(&mut self, now: f64, ticks: &WheelTicks) {
+        self.wheels.push(now);
+        if let Some(last) = self.last_ticks.replace(*ticks) {
+            let metres = |from: u16, to: u16| {
+                f64::from(to.wrapping_sub(from).cast_signed()) * self.drive.metres_per_tick()
+            };
+            self.distances[0] += metres(last.left, ticks.left);
+            self.distances[1] += metres(last.right, ticks.right);
+            self.has_rolled |= (last.left, last.right) != (ticks.left, ticks.right);
+        }
+    }
+
+    fn on_gyro(&mut self, now: f64, rate: &GyroRate) {
+        self.gyro.push(now);
+        if !self.has_rolled {
+            self.rest_rates.push(rate.omega);
+        }
+        if let Some(last) = self.last_gyro.replace(*rate) {
+            let dt = (rate.stamp - last.stamp).clamp(0.0, 0.1);
+            self.gyro_turn += (rate.omega - mean(&self.rest_rates)) * dt;
+        }
+    }
+
+    fn on_image(&mut self, now: f64, image: &RgbdImage) {
+        let depth = image.depth();
+        let known = depth.data().iter().filter(|depth| **depth > 0.0).count();
+        self.depth_parts.push(known as f64 / depth.data().len().max(1) as f64);
+        if self.images.len().is_multiple_of(FLOOR_STEP_IMAGES) {
+            self.floors.extend(FloorView::find(depth, &self.camera, self.expected_up));
+        }
+        self.images.push(now);
+        self.image_ages.push((Stamp::default().after(now) - image.stamp()) * 1e3);
+    }
+}
+
+/// The mean; 0 of nothing.
+pub(super) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+/// The rate of readings by their arrivals \[Hz\], and the longest gap \[ms\]; `None` of fewer than two.
+pub(super) fn rate_and_gap(arrivals: &[f64]) -> Option<(f64, f64)> {
+    let (first, last) = (arrivals.first()?, arrivals.last()?);
+    let gap = arrivals.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    (last > first).then(|| ((arrivals.len() - 1) as f64 / (last - first), gap * 1e3))
+}

@@ -1,0 +1,116 @@
+//! The drivers of base and camera, in threads of their own.
+
+use crate::AppError;
+use std::sync::Arc;
+use std::sync::mpsc::Sender;
+use std::time::{Duration, Instant};
+use trundle_core::{PinholeCamera, SensorEvent, Stamp, Twist2};
+use trundle_drivers::camera::camera_thread::{
+    CameraCounters, CameraThread, CameraThreadConfig, CameraThreadParts, StampMapFactory,
+};
+use trundle_drivers::camera::{CameraError, CameraInfo, DepthCamera};
+use trundle_drivers::clock::{DeviceClock, DeviceClockConfig, HostClock};
+use trundle_drivers::kobuki::{BaseCounters, KobukiBase, KobukiBaseConfig, Versions};
+use trundle_drivers::{BaseSpec, CameraSpec};
+
+/// Longest wait for a camera to open: a stream's writer may start after us. Source: ours.
+const CAMERA_TIMEOUT: Duration = Duration::from_secs(10);
+
+/// A camera that is open, and how to open it again.
+pub struct OpenCamera {
+    spec: CameraSpec,
+    camera: Box<dyn DepthCamera>,
+}
+
+impl OpenCamera {
+    /// Opens the camera.
+    ///
+    /// # Errors
+    /// When there is no such camera, or it cannot be used.
+    pub fn open(spec: &CameraSpec) -> Result<Self, AppError> {
+        let camera = spec.open(CAMERA_TIMEOUT).map_err(|error| refused(spec, &error))?;
+        Ok(Self { spec: spec.clone(), camera })
+    }
+
+    /// What the camera says of itself.
+    #[must_use]
+    pub fn info(&self) -> &CameraInfo {
+        self.camera.info()
+    }
+}
+
+fn refused(spec: &CameraSpec, error: &CameraError) -> AppError {
+    AppError::Input(format!("camera {spec}: {error}"))
+}
+
+/// Base and camera that run. Dropping them stops the base.
+pub struct Drivers {
+    base: KobukiBase,
+    camera: CameraThread,
+}
+
+impl Drivers {
+    /// Starts base and camera; `output` is the camera that the robot works with. Stamps count from `origin`. `send` receives the events,
+    /// from several threads.
+    ///
+    /// # Errors
+    /// When the base does not answer, or the system refuses a thread.
+    pub fn start(
+        base: &BaseSpec,
+        camera: OpenCamera,
+        output: PinholeCamera,
+        origin: Instant,
+        send: impl Fn(SensorEvent) + Clone + Send + 'static,
+    ) -> Result<Self, AppError> {
+        let clock: HostClock = Arc::new(move || Stamp::default().after(origin.elapsed().as_secs_f64()));
+        let config = KobukiBaseConfig::default();
+        let base = KobukiBase::start(base.connector(), config, Arc::clone(&clock), Box::new(send.clone()))
+            .map_err(|error| AppError::Input(format!("base {base}: {error}")))?;
+        let config = CameraThreadConfig { output: Some(output), ..CameraThreadConfig::default() };
+        let OpenCamera { spec, camera } = camera;
+        let mut first = Some(camera);
+        let factory = move || first.take().map_or_else(|| spec.open(CAMERA_TIMEOUT), Ok);
+        let parts = CameraThreadParts {
+            factory: Box::new(factory),
+            sink: Box::new(send),
+            clock,
+            stamps: stamp_maps(),
+        };
+        let camera = CameraThread::start(parts, config)
+            .map_err(|error| AppError::Environment(format!("cannot start the camera's threads: {error}")))?;
+        Ok(Self { base, camera })
+    }
+
+    /// Where commands go.
+    #[must_use]
+    pub fn commands(&self) -> Sender<Twist2> {
+        self.base.commands()
+    }
+
+    /// Versions of the base.
+    #[must_use]
+    pub fn versions(&self) -> Versions {
+        self.base.versions()
+    }
+
+    /// What was read and dropped so far.
+    #[must_use]
+    pub fn counters(&self) -> (BaseCounters, CameraCounters) {
+        (self.base.counters(), self.camera.counters())
+    }
+
+    /// The last fault of the camera, in words.
+    #[must_use]
+    pub fn camera_fault(&self) -> Option<String> {
+        self.camera.last_fault()
+    }
+}
+
+/// The camera's clock mapped to the host's by a filter, anew for each opening.
+fn stamp_maps() -> StampMapFactory {
+    Box::new(|info| {
+        let config = DeviceClockConfig { transport_delay_s: info.delay_s, ..DeviceClockConfig::default() };
+        let mut clock = DeviceClock::new(config);
+        Box::new(move |device, arrival| clock.to_host(device.nanos, arrival))
+    })
+}
