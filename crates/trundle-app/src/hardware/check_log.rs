@@ -80,11 +80,7 @@ impl CheckLog {
             SensorEvent::Wheels(ticks) => self.on_wheels(now, ticks),
             SensorEvent::Gyro(rate) => self.on_gyro(now, rate),
             SensorEvent::Rgbd(image) => self.on_image(now, image),
-            SensorEvent::Body(event) => match event.kind {
-                BodyEventKind::Battery(battery) => self.battery = Some(battery),
-                BodyEventKind::DockInfrared(_) | BodyEventKind::Silence => {}
-                kind => self.events.push(format!("{now:.1} s: {kind:?}")),
-            },
+            SensorEvent::Body(event) => self.on_body(now, event.kind),
             SensorEvent::Touch(touch) if touch.pressed => {
                 self.events.push(format!("{now:.1} s: bumper pressed"))
             }
@@ -93,6 +89,18 @@ impl CheckLog {
             }
             _ => {}
         }
+    }
+
+    fn on_body(&mut self, now: f64, kind: BodyEventKind) {
+        let what = match kind {
+            BodyEventKind::Battery(battery) => return self.battery = Some(battery),
+            BodyEventKind::Link(link) if !link.is_up => format!("the {} does not answer", link.device),
+            BodyEventKind::WheelDrop(wheels) if wheels.any() => "a wheel hangs".to_owned(),
+            BodyEventKind::OverCurrent(wheels) if wheels.any() => "a motor draws too much current".to_owned(),
+            BodyEventKind::Button(button) if button.pressed => format!("button B{} pressed", button.index),
+            _ => return,
+        };
+        self.events.push(format!("{now:.1} s: {what}"));
     }
 
     fn on_wheels(&mut self, now: f64, ticks: &WheelTicks) {
