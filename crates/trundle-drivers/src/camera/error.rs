@@ -25,6 +25,40 @@ pub enum CameraError {
         /// Versions that suit.
         expected: String,
     },
+    /// The library is installed, but the loader refuses it.
+    #[error("the library {name} cannot be loaded from {file}: {problem}: {remedy}")]
+    LibraryBroken {
+        /// Name of the library.
+        name: String,
+        /// Its file, and who named it.
+        file: String,
+        /// What the loader said.
+        problem: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// A function of the library failed for a reason without a variant of its own.
+    #[error("the library {library} failed in {function}: {message}: {remedy}")]
+    LibraryFailed {
+        /// Name of the library.
+        library: String,
+        /// Its function.
+        function: String,
+        /// Its message.
+        message: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// The camera does not offer the wanted streams.
+    #[error("the camera {device} does not offer {wanted}: {remedy}")]
+    StreamsUnavailable {
+        /// The camera.
+        device: String,
+        /// Size, rate and format of the streams.
+        wanted: String,
+        /// What to do.
+        remedy: String,
+    },
     /// No such camera is connected.
     #[error("no camera of kind {kind} is connected: check its cable and its power supply")]
     NoDevice {

@@ -6,6 +6,7 @@
 //! | [`info`] | what a camera says of itself: streams, intrinsics, delay |
 //! | [`frame`] | colour and depth as delivered |
 //! | [`pixels`] | pixel formats to [`trundle_core::ColorImage`] and [`trundle_core::DepthImage`] |
+//! | [`native`] | cameras through the libraries of their makers |
 //! | [`registration`] | depth moved into the colour camera |
 //! | [`frame_monitor`] | faults found in the frames themselves |
 //! | [`pipe`] | frames from a pipe, a file or a growing folder |
@@ -20,6 +21,7 @@ pub mod frame_monitor;
 pub mod info;
 pub mod kinect2;
 pub mod pipe;
+pub mod native;
 pub mod pixel_format;
 pub mod pixels;
 pub mod registration;

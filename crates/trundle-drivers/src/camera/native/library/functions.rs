@@ -1,0 +1,48 @@
+//! A table of the functions of a library.
+
+/// Declares a structure with a field for each function of a library, and `load`, which fills it. A function after `optional` may be
+/// missing. The declared types have to match the documentation of the library: nothing can check them.
+macro_rules! functions {
+    (
+        $(#[$meta:meta])*
+        pub struct $table:ident {
+            $(fn $name:ident($($argument:ty),* $(,)?) $(-> $result:ty)?;)*
+            $(optional fn $option:ident($($option_argument:ty),* $(,)?) $(-> $option_result:ty)?;)*
+        }
+    ) => {
+        $(#[$meta])*
+        #[derive(Debug)]
+        pub struct $table {
+            pub(super) library: $crate::camera::native::library::NativeLibrary,
+            $(pub(super) $name: unsafe extern "C" fn($($argument),*) $(-> $result)?,)*
+            $(pub(super) $option: Option<unsafe extern "C" fn($($option_argument),*) $(-> $option_result)?>,)*
+        }
+
+        impl $table {
+            /// The functions of `library`.
+            ///
+            /// # Errors
+            /// When the library lacks some; the error names all of them.
+            fn from_library(
+                library: $crate::camera::native::library::NativeLibrary,
+            ) -> Result<Self, $crate::camera::CameraError> {
+                let mut missing: Vec<&str> = Vec::new();
+                $(
+                    // SAFETY: the type is the one that the documentation of the library declares for the function.
+                    let $name = unsafe { library.function(stringify!($name)) };
+                    if $name.is_none() {
+                        missing.push(stringify!($name));
+                    }
+                )*
+                $(
+                    // SAFETY: as above.
+                    let $option = unsafe { library.function(stringify!($option)) };
+                )*
+                $(let $name = $name.ok_or_else(|| library.lacks(&missing))?;)*
+                Ok(Self { $($name,)* $($option,)* library })
+            }
+        }
+    };
+}
+
+pub(in crate::camera::native) use functions;

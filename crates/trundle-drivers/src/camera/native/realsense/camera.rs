@@ -1,0 +1,281 @@
+//! A RealSense camera.
+
+use super::RealSenseSettings;
+use super::api::RealSenseError;
+use super::constants::PLAYBACK_STATUS_STOPPED;
+use super::device_list::entry;
+use super::frames::{Content, Pairing, content, parts};
+use super::functions::{Config, Context, Device, DeviceHub, Frame, Pipeline, PipelineProfile, RealSenseApi};
+use super::handle::Handle;
+use super::motion::{GyroSample, GyroSamples};
+use super::request::{Request, device_of};
+use super::streams::{depth_unit_m, streams};
+use crate::camera::native::{DeviceEntry, Selection};
+use crate::camera::{CameraError, CameraFrame, CameraInfo, DepthCamera, UsbSpeed};
+use std::ffi::c_uint;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use trundle_core::Invalid;
+
+/// Time between two queries of the state of a recording that delivers nothing. Source: ours.
+const STATUS_PERIOD: Duration = Duration::from_millis(20);
+
+/// A RealSense camera, or a recording of one.
+#[derive(Debug)]
+pub struct RealSenseCamera {
+    info: CameraInfo,
+    running: Running,
+    pairing: Pairing,
+    gyro: GyroSamples,
+    has_ended: bool,
+}
+
+/// A started pipeline. The order of the fields is the order in which they are freed.
+#[derive(Debug)]
+struct Running {
+    pipeline: Handle<Pipeline>,
+    device: Handle<Device>,
+    hub: Option<Handle<DeviceHub>>,
+    _config: Handle<Config>,
+    _context: Handle<Context>,
+    api: Arc<RealSenseApi>,
+}
+
+impl RealSenseCamera {
+    /// Opens a camera or a recording, a file `.db3` of librealsense 2.56 or newer or `.bag` of an older one, and starts its streams.
+    ///
+    /// # Errors
+    /// When the camera is missing, in use, forbidden, too slow or without these streams, or its intrinsics are unusable.
+    pub fn open(
+        api: &Arc<RealSenseApi>,
+        selection: &Selection,
+        settings: &RealSenseSettings,
+    ) -> Result<Self, CameraError> {
+        let settings = settings.clone().checked()?;
+        let request = Request::new(api, selection, &settings)?;
+        let is_live = !matches!(selection, Selection::File(_));
+        let about = if is_live {
+            find_live(&request, selection, &settings)?
+        } else {
+            prepare_file(&request, selection)?
+        };
+        let name = format!("{} {}", about.name, about.serial);
+        let (running, started) = Running::start(request, is_live, &name)?;
+        let info = running.info(about, &started, &settings, is_live, &name)?;
+        Ok(Self {
+            info,
+            running,
+            pairing: Pairing::default(),
+            gyro: GyroSamples::default(),
+            has_ended: false,
+        })
+    }
+
+    /// The samples of the gyro since the last call, oldest first. Empty without [`RealSenseSettings::gyro`]. The library puts the newest
+    /// sample into each set of images: the rate is that of the images, too low to integrate.
+    pub fn take_gyro(&mut self) -> Vec<GyroSample> {
+        self.gyro.take()
+    }
+
+    /// The next frame that is no repetition, within `timeout`.
+    fn wait(&mut self, timeout: Duration) -> Result<Option<CameraFrame>, CameraError> {
+        let start = Instant::now();
+        loop {
+            let left = timeout.saturating_sub(start.elapsed());
+            let Some(set) = self.running.wait(left).map_err(|error| error.of(&self.name()))? else {
+                return Ok(None);
+            };
+            let contents = contents(&self.running.api, set).map_err(|error| error.of(&self.name()))?;
+            if let Some(frame) = self.take_contents(contents) {
+                return frame.map(Some).map_err(CameraError::BrokenFrame);
+            }
+        }
+    }
+
+    fn take_contents(&mut self, contents: Vec<Content>) -> Option<Result<CameraFrame, Invalid>> {
+        for content in &contents {
+            if let Content::Gyro(sample) = content {
+                self.gyro.push(*sample);
+            }
+        }
+        self.pairing.pair(contents)
+    }
+
+    fn next_recorded(&mut self, timeout: Duration) -> Result<Option<CameraFrame>, CameraError> {
+        let start = Instant::now();
+        while !self.has_ended {
+            let left = timeout.saturating_sub(start.elapsed());
+            // The state is older than the wait: a frame that came before the end is never lost.
+            let is_played = self.running.is_played().map_err(|error| error.of(&self.name()))?;
+            if let Some(frame) = self.wait(left.min(STATUS_PERIOD))? {
+                return Ok(Some(frame));
+            }
+            self.has_ended = is_played;
+            if left.is_zero() {
+                break;
+            }
+        }
+        Ok(None)
+    }
+
+    fn name(&self) -> String {
+        format!("{} {}", self.info.name, self.info.serial)
+    }
+}
+
+impl DepthCamera for RealSenseCamera {
+    fn info(&self) -> &CameraInfo {
+        &self.info
+    }
+
+    fn next_frame(&mut self, timeout: Duration) -> Result<Option<CameraFrame>, CameraError> {
+        if !self.info.is_live {
+            return self.next_recorded(timeout);
+        }
+        match self.wait(timeout)? {
+            Some(frame) => Ok(Some(frame)),
+            None if self.running.is_unplugged().map_err(|error| error.of(&self.name()))? => {
+                Err(CameraError::Unplugged { device: self.name() })
+            }
+            None => Ok(None),
+        }
+    }
+
+    fn has_ended(&self) -> bool {
+        self.has_ended
+    }
+}
+
+impl Running {
+    fn start(
+        request: Request,
+        is_live: bool,
+        name: &str,
+    ) -> Result<(Self, Handle<PipelineProfile>), CameraError> {
+        let Request { api, context, pipeline, config } = request;
+        // SAFETY: the objects are alive.
+        let started = api.owned(api.rs2_delete_pipeline_profile, |error| unsafe {
+            (api.rs2_pipeline_start_with_config)(pipeline.get(), config.get(), error)
+        });
+        let started = started.map_err(|error| error.of(name))?;
+        let device = device_of(&api, &started).map_err(|error| error.of(name))?;
+        let hub = if is_live { Some(hub(&api, &context).map_err(|error| error.of(name))?) } else { None };
+        Ok((Self { pipeline, device, hub, _config: config, _context: context, api }, started))
+    }
+
+    fn info(
+        &self,
+        about: DeviceEntry,
+        started: &Handle<PipelineProfile>,
+        settings: &RealSenseSettings,
+        is_live: bool,
+        name: &str,
+    ) -> Result<CameraInfo, CameraError> {
+        let streams = streams(&self.api, started, name)?;
+        Ok(CameraInfo {
+            name: about.name,
+            serial: about.serial,
+            firmware: about.firmware,
+            usb: about.usb,
+            color: streams.color,
+            depth: streams.depth,
+            depth_unit_m: depth_unit_m(&self.api, &self.device).map_err(|error| error.of(name))?,
+            color_from_depth: Some(streams.color_from_depth),
+            delay_s: settings.delay_s,
+            is_live,
+        })
+    }
+
+    /// The next set of frames; `None` when none came within `timeout`.
+    fn wait(&self, timeout: Duration) -> Result<Option<Handle<Frame>>, RealSenseError> {
+        let ms = c_uint::try_from(timeout.as_millis()).unwrap_or(c_uint::MAX);
+        let mut set: *mut Frame = std::ptr::null_mut();
+        // SAFETY: the pipeline is alive, and the set has a place.
+        let is_there = self.api.call(|error| unsafe {
+            (self.api.rs2_pipeline_try_wait_for_frames)(self.pipeline.get(), &mut set, ms, error)
+        })?;
+        let set = if is_there == 0 { std::ptr::null_mut() } else { set };
+        Ok(Handle::new(set, self.api.rs2_release_frame, &self.api))
+    }
+
+    fn is_unplugged(&self) -> Result<bool, RealSenseError> {
+        let Some(hub) = &self.hub else { return Ok(false) };
+        // SAFETY: both objects are alive.
+        let is_connected = self.api.call(|error| unsafe {
+            (self.api.rs2_device_hub_is_device_connected)(hub.get(), self.device.get(), error)
+        })?;
+        Ok(is_connected == 0)
+    }
+
+    fn is_played(&self) -> Result<bool, RealSenseError> {
+        // SAFETY: the device is alive and a recording.
+        let status = self.api.call(|error| unsafe {
+            (self.api.rs2_playback_device_get_current_status)(self.device.get(), error)
+        })?;
+        Ok(status == PLAYBACK_STATUS_STOPPED)
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // SAFETY: the pipeline is alive; it was started.
+        let stopped =
+            self.api.call(|error| unsafe { (self.api.rs2_pipeline_stop)(self.pipeline.get(), error) });
+        if let Err(error) = stopped {
+            tracing::warn!(?error, "a RealSense camera did not stop");
+        }
+    }
+}
+
+/// Copies of the frames in a set.
+fn contents(api: &Arc<RealSenseApi>, set: Handle<Frame>) -> Result<Vec<Content>, RealSenseError> {
+    parts(api, set)?.iter().map(|part| content(api, part)).collect()
+}
+
+fn hub(api: &Arc<RealSenseApi>, context: &Handle<Context>) -> Result<Handle<DeviceHub>, RealSenseError> {
+    // SAFETY: the context is alive.
+    api.owned(api.rs2_delete_device_hub, |error| unsafe { (api.rs2_create_device_hub)(context.get(), error) })
+}
+
+/// Finds a connected camera that offers the streams.
+fn find_live(
+    request: &Request,
+    selection: &Selection,
+    settings: &RealSenseSettings,
+) -> Result<DeviceEntry, CameraError> {
+    let devices = super::list_devices(&request.api)?;
+    let found = match selection {
+        Selection::Serial(serial) => devices.into_iter().find(|device| device.serial == *serial),
+        _ => devices.into_iter().next(),
+    };
+    let device = found.ok_or_else(|| CameraError::NoDevice { kind: selection.describe("RealSense") })?;
+    if request.can_resolve().map_err(|error| error.of(&device.name))? {
+        return Ok(device);
+    }
+    Err(unavailable(device, settings))
+}
+
+fn unavailable(device: DeviceEntry, settings: &RealSenseSettings) -> CameraError {
+    let name = format!("{} {}", device.name, device.serial);
+    match device.usb {
+        Some(speed) if speed < UsbSpeed::Super => CameraError::UsbTooSlow { device: name, speed },
+        _ => CameraError::StreamsUnavailable {
+            device: name,
+            wanted: settings.streams(),
+            remedy: "choose a size and rate that 'rs-enumerate-devices' lists".into(),
+        },
+    }
+}
+
+/// Makes a recording wait for its reader.
+fn prepare_file(request: &Request, selection: &Selection) -> Result<DeviceEntry, CameraError> {
+    let name = selection.describe("RealSense");
+    let prepared = request.resolved_device().and_then(|device| {
+        // SAFETY: the device is alive and a recording.
+        request.api.call(|error| unsafe {
+            (request.api.rs2_playback_device_set_real_time)(device.get(), 0, error)
+        })?;
+        entry(&request.api, &device)
+    });
+    prepared.map_err(|error| error.of(&name))
+}

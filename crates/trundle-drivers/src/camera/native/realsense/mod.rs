@@ -1,0 +1,38 @@
+//! RealSense cameras (D415, D435, D435i, D455) through librealsense2.
+//!
+//! Checked against version 2.59.1 with recordings of a software device. No real camera was at hand: start-up, errors and speeds of a real
+//! one follow the documentation.
+//!
+//! librealsense 2.59 counts its use in a file. It sends that file only after consent in its viewer; nothing here gives it.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`settings`] | size, rate, gyro |
+//! | [`camera`] | the camera |
+//! | [`motion`] | samples of the gyro |
+//! | [`intrinsics`] | lens models and poses |
+//! | [`functions`] | the functions of the library |
+//! | `api`, `handle`, `error` | loading, calls, objects, errors |
+//! | `device_list`, `request`, `streams` | what is connected, what is asked, what is offered |
+//! | `frames` | frames as they come |
+
+mod api;
+pub mod camera;
+mod constants;
+mod device_list;
+mod error;
+mod frames;
+pub mod functions;
+mod handle;
+pub mod intrinsics;
+pub mod motion;
+mod request;
+pub mod settings;
+mod streams;
+
+pub use api::LIBRARY;
+pub use camera::RealSenseCamera;
+pub use device_list::list_devices;
+pub use functions::RealSenseApi;
+pub use motion::GyroSample;
+pub use settings::RealSenseSettings;

@@ -1,0 +1,71 @@
+//! Which camera to open.
+
+use crate::camera::UsbSpeed;
+use std::fmt;
+use std::path::PathBuf;
+
+/// Kind of a camera, named after the library that drives it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum NativeKind {
+    /// RealSense D4xx, librealsense2.
+    RealSense,
+    /// Kinect v1, libfreenect.
+    Freenect,
+    /// Orbbec, OrbbecSDK 2.
+    Orbbec,
+    /// Xtion and Astra, OpenNI2.
+    OpenNi2,
+}
+
+impl NativeKind {
+    /// All kinds.
+    pub const ALL: [Self; 4] = [Self::RealSense, Self::Freenect, Self::Orbbec, Self::OpenNi2];
+}
+
+/// The name in settings, as `realsense`.
+impl fmt::Display for NativeKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::RealSense => "realsense",
+            Self::Freenect => "freenect",
+            Self::Orbbec => "orbbec",
+            Self::OpenNi2 => "openni2",
+        })
+    }
+}
+
+/// Which camera of a kind.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Selection {
+    /// The first that the library lists.
+    #[default]
+    First,
+    /// The one with this serial number.
+    Serial(String),
+    /// A recording.
+    File(PathBuf),
+}
+
+impl Selection {
+    /// The camera in words, for errors.
+    pub(super) fn describe(&self, kind: &str) -> String {
+        match self {
+            Self::First => kind.to_owned(),
+            Self::Serial(serial) => format!("{kind} with serial number {serial}"),
+            Self::File(file) => file.display().to_string(),
+        }
+    }
+}
+
+/// A connected camera.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DeviceEntry {
+    /// Name of the model.
+    pub name: String,
+    /// Serial number; empty where unknown.
+    pub serial: String,
+    /// Version of the firmware; empty where unknown.
+    pub firmware: String,
+    /// Speed of the USB connection; `None` where unknown or not USB.
+    pub usb: Option<UsbSpeed>,
+}

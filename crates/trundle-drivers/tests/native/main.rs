@@ -1,0 +1,9 @@
+//! Tests of the cameras through the libraries of their makers, with the real libraries.
+//!
+//! `bench/drivers/get-native-libraries.sh` gets the libraries. A test whose library is absent prints its name and is skipped; it fails instead
+//! where the environment variable `TRUNDLE_REQUIRE_NATIVE_LIBRARIES` is set.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests")]
+
+mod library;
+mod realsense;
+mod support;

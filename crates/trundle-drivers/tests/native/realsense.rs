@@ -1,0 +1,173 @@
+//! The RealSense camera: librealsense records a software device, and the camera plays the file.
+
+use crate::support::{find, folder, libusb, list, skip};
+use std::ffi::{c_float, c_int};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+use trundle_core::{PinholeCamera, Vector2, Vector3};
+use trundle_drivers::camera::native::library::NativeLibrary;
+use trundle_drivers::camera::native::realsense::{
+    LIBRARY, RealSenseApi, RealSenseCamera, RealSenseSettings, list_devices,
+};
+use trundle_drivers::camera::native::{Selection, realsense};
+use trundle_drivers::camera::{CameraError, CameraFrame, DepthCamera, PixelFormat, UsbSpeed};
+
+const TIMEOUT: Duration = Duration::from_secs(10);
+const FRAMES: usize = 5;
+
+/// The files of librealsense: libusb, libpython, the wheel.
+fn library() -> Option<PathBuf> {
+    let module = find(&folder().join("python/pyrealsense2"), "pyrealsense2.cpython", ".so")?;
+    let name = module.file_name()?.to_str()?;
+    let minor = name.split(".cpython-3").nth(1)?.split('-').next()?;
+    let files = list(&[libusb()?, format!("libpython3.{minor}.so.1.0").into(), module.clone()]);
+    NativeLibrary::load(LIBRARY, Some(&files)).ok()?;
+    Some(files)
+}
+
+fn record(file: &Path) {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/native/realsense_recording.py");
+    let usb = libusb().unwrap();
+    let output = Command::new("python3")
+        .arg(script)
+        .arg(folder().join("python"))
+        .arg(file)
+        .env("LD_LIBRARY_PATH", usb.parent().unwrap())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+fn all_frames(camera: &mut RealSenseCamera) -> Vec<CameraFrame> {
+    let start = std::time::Instant::now();
+    let mut frames = Vec::new();
+    while !camera.has_ended() {
+        assert!(start.elapsed() < TIMEOUT, "the recording does not end after {} frames", frames.len());
+        frames.extend(camera.next_frame(Duration::from_millis(100)).unwrap());
+    }
+    frames
+}
+
+#[test]
+fn a_recording_comes_back_whole() {
+    let Some(library) = library() else {
+        return skip("realsense::a_recording_comes_back_whole", "the wheel pyrealsense2 or its libpython");
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("software.db3");
+    record(&file);
+    let api = RealSenseApi::load(Some(&library)).unwrap();
+    let settings = RealSenseSettings { gyro: true, ..RealSenseSettings::default() };
+    let mut camera = RealSenseCamera::open(&api, &Selection::File(file), &settings).unwrap();
+    check_info(&camera, &library);
+    let frames = all_frames(&mut camera);
+    assert_eq!(frames.len(), FRAMES);
+    frames.iter().enumerate().for_each(|(n, frame)| check_frame(n, frame));
+    check_gyro(&mut camera);
+}
+
+fn check_info(camera: &RealSenseCamera, library: &Path) {
+    let info = camera.info();
+    assert_eq!((info.name.as_str(), info.serial.as_str()), ("Intel RealSense D435I", "012345"));
+    assert_eq!((info.firmware.as_str(), info.usb), ("5.16.0.1", Some(UsbSpeed::Super)));
+    assert!((info.depth_unit_m - 0.00025).abs() < 1e-9 && !info.is_live);
+    assert_eq!((info.color.format, info.depth.format), (PixelFormat::Rgb8, PixelFormat::Depth16));
+    let depth = info.depth.camera;
+    assert_eq!((depth.width(), depth.height(), depth.fx(), depth.fy()), (64, 48, 50.0, 51.0));
+    assert_eq!((depth.cx(), depth.cy(), info.depth.rate_hz), (31.5, 24.25, 30.0));
+    let moved = info.color_from_depth.unwrap().transform(Vector3::new(1.0, 0.0, 2.0));
+    assert!((moved - Vector3::new(0.015, 1.001, 2.002)).norm() < 1e-6, "{moved}");
+    check_lens(&info.color.camera, library);
+}
+
+/// The fitted lens undistorts as the library does.
+fn check_lens(camera: &PinholeCamera, library: &Path) {
+    type Deproject =
+        unsafe extern "C" fn(*mut c_float, *const realsense::functions::Intrinsics, *const c_float, c_float);
+    const INVERSE_BROWN_CONRADY: c_int = 2;
+    let library = NativeLibrary::load(LIBRARY, Some(library)).unwrap();
+    // SAFETY: the type is the documented one.
+    let deproject: Deproject = unsafe { library.function("rs2_deproject_pixel_to_point") }.unwrap();
+    let raw = realsense::functions::Intrinsics {
+        width: 80,
+        height: 60,
+        ppx: 39.5,
+        ppy: 30.25,
+        fx: 76.0,
+        fy: 77.0,
+        model: INVERSE_BROWN_CONRADY,
+        coeffs: [-0.054, 0.066, -0.0007, 0.0003, -0.021],
+    };
+    for pixel in [[0.0, 0.0], [79.0, 59.0], [10.0, 50.0], [39.5, 30.25]] {
+        let mut point = [0.0; 3];
+        // SAFETY: all arrays are alive and have the documented lengths.
+        unsafe { deproject(point.as_mut_ptr(), &raw, pixel.as_ptr(), 2.0) };
+        let expected = camera.project(Vector3::from(point.map(f64::from))).unwrap();
+        let found = camera.undistort(Vector2::new(f64::from(pixel[0]), f64::from(pixel[1])));
+        assert!((found - expected).norm() < 0.05, "{pixel:?}: {found} {expected}");
+    }
+    assert!(camera.distortion().k1 < -0.01, "the lens is fitted");
+}
+
+fn check_frame(n: usize, frame: &CameraFrame) {
+    let nanos = 1_000_000_000 + 33_250_000 * n as i64;
+    assert_eq!(frame.depth.device_stamp.nanos, nanos);
+    assert_eq!(frame.color.device_stamp.nanos, nanos + 500_000);
+    let depth: Vec<u16> =
+        frame.depth.bytes.chunks_exact(2).map(|two| u16::from_le_bytes([two[0], two[1]])).collect();
+    assert_eq!((depth.len(), depth[0]), (64 * 48, 7));
+    assert!(depth[1..].iter().all(|value| *value == 100 * n as u16 + 1));
+    assert_eq!((frame.color.width, frame.color.height, frame.color.bytes.len()), (80, 60, 80 * 60 * 3));
+    assert_eq!(frame.color.bytes[..3], [9, 8, 7]);
+    assert!(frame.color.bytes[3..].iter().all(|value| *value == n as u8 + 1));
+}
+
+fn check_gyro(camera: &mut RealSenseCamera) {
+    let samples = camera.take_gyro();
+    assert_eq!(samples.len(), FRAMES);
+    for (n, sample) in samples.iter().enumerate() {
+        assert!((sample.rate - Vector3::new(0.1, 0.2, 0.3 + n as f64)).norm() < 1e-6, "{sample:?}");
+        assert_eq!(sample.device_stamp.nanos, 999_000_000 + 33_250_000 * n as i64);
+    }
+    assert!(camera.take_gyro().is_empty());
+}
+
+#[test]
+fn a_recording_may_be_left_in_the_middle_and_opened_again() {
+    let Some(library) = library() else {
+        return skip("realsense::a_recording_may_be_left", "the wheel pyrealsense2 or its libpython");
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("software.db3");
+    record(&file);
+    let api = RealSenseApi::load(Some(&library)).unwrap();
+    for _ in 0..3 {
+        let selection = Selection::File(file.clone());
+        let mut camera = RealSenseCamera::open(&api, &selection, &RealSenseSettings::default()).unwrap();
+        check_frame(0, &camera.next_frame(TIMEOUT).unwrap().unwrap());
+    }
+}
+
+#[test]
+fn without_a_camera_or_a_recording_the_error_says_so() {
+    let Some(library) = library() else {
+        return skip("realsense::without_a_camera", "the wheel pyrealsense2 or its libpython");
+    };
+    let api = RealSenseApi::load(Some(&library)).unwrap();
+    assert_eq!(api.version().unwrap().major, 2);
+    assert!(api.file().display().to_string().contains("pyrealsense2"));
+    assert_eq!(list_devices(&api).unwrap(), []);
+    let open = |selection: Selection| {
+        RealSenseCamera::open(&api, &selection, &RealSenseSettings::default()).unwrap_err()
+    };
+    assert!(matches!(open(Selection::First), CameraError::NoDevice { .. }));
+    let by_serial = open(Selection::Serial("77".into()));
+    assert!(matches!(by_serial, CameraError::NoDevice { .. }) && by_serial.to_string().contains("77"));
+    assert!(matches!(open(Selection::File("/nowhere.db3".into())), CameraError::Io { .. }));
+    let folder = tempfile::tempdir().unwrap();
+    let broken = folder.path().join("broken.db3");
+    std::fs::write(&broken, b"no recording").unwrap();
+    let error = open(Selection::File(broken));
+    assert!(matches!(error, CameraError::LibraryFailed { .. }), "{error}");
+}

@@ -1,0 +1,49 @@
+//! The libraries for the tests.
+
+use std::path::{Path, PathBuf};
+
+/// The folder that `bench/drivers/get-native-libraries.sh` fills.
+pub fn folder() -> PathBuf {
+    let target = || {
+        let program = std::env::current_exe().unwrap();
+        program.ancestors().nth(3).unwrap().join("native-libraries")
+    };
+    std::env::var_os("TRUNDLE_NATIVE_LIBRARIES").map_or_else(target, PathBuf::from)
+}
+
+/// Skips the test `name`, which needs `what`.
+pub fn skip(name: &str, what: &str) {
+    let message = format!("SKIPPED {name}: {what} is absent: run bench/drivers/get-native-libraries.sh");
+    assert!(std::env::var_os("TRUNDLE_REQUIRE_NATIVE_LIBRARIES").is_none(), "{message}");
+    println!("{message}");
+}
+
+/// The first file in `folder` whose name begins and ends so.
+pub fn find(folder: &Path, prefix: &str, suffix: &str) -> Option<PathBuf> {
+    let entries = std::fs::read_dir(folder).ok()?.flatten();
+    entries.map(|entry| entry.path()).find(|path| {
+        let name = path.file_name().unwrap().to_string_lossy();
+        name.starts_with(prefix) && name.ends_with(suffix)
+    })
+}
+
+/// A library from a Debian package.
+pub fn debian(file: &str) -> Option<PathBuf> {
+    let libraries = folder().join("debian/usr/lib");
+    let machines = std::fs::read_dir(libraries).ok()?.flatten();
+    machines.map(|machine| machine.path().join(file)).find(|path| path.exists())
+}
+
+/// libusb: the one of the system, else the one from the package.
+pub fn libusb() -> Option<PathBuf> {
+    let system = ["/lib", "/usr/lib"].iter().flat_map(|folder| {
+        let machines = ["x86_64-linux-gnu", "aarch64-linux-gnu"];
+        machines.map(|machine| Path::new(folder).join(machine).join("libusb-1.0.so.0"))
+    });
+    system.into_iter().find(|path| path.exists()).or_else(|| debian("libusb-1.0.so.0"))
+}
+
+/// A list of files for a setting.
+pub fn list(files: &[PathBuf]) -> PathBuf {
+    std::env::join_paths(files).unwrap().into()
+}
