@@ -4,6 +4,7 @@
 //! where the environment variable `TRUNDLE_REQUIRE_NATIVE_LIBRARIES` is set.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests")]
 
+mod freenect;
 mod library;
 mod realsense;
 mod support;

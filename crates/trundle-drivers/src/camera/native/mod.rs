@@ -8,6 +8,7 @@
 //! | [`selection`] | which camera to open |
 
 pub mod distortion_fit;
+pub mod freenect;
 pub mod library;
 pub mod realsense;
 pub mod selection;
