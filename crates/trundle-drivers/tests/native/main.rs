@@ -6,5 +6,6 @@
 
 mod freenect;
 mod library;
+mod orbbec;
 mod realsense;
 mod support;

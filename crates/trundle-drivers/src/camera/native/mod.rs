@@ -10,6 +10,7 @@
 pub mod distortion_fit;
 pub mod freenect;
 pub mod library;
+pub mod orbbec;
 pub mod realsense;
 pub mod selection;
 

@@ -1,0 +1,21 @@
+//! Orbbec cameras (Gemini 330, Femto, Astra 2) through OrbbecSDK 2.
+//!
+//! Never met a device: loading, version, the empty device list and the errors are tested with version 2.9.3 of the library; streams,
+//! intrinsics and stamps follow its documentation.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`camera`] | the camera, its settings, the device list |
+//! | [`intrinsics`] | lens models and poses |
+//! | [`functions`] | the functions of the library |
+//! | `api` | loading, calls, objects, errors |
+//! | `frames` | frames and what they tell of their streams |
+
+mod api;
+pub mod camera;
+mod frames;
+pub mod functions;
+pub mod intrinsics;
+
+pub use camera::{OrbbecCamera, OrbbecSettings, list_devices};
+pub use functions::{LIBRARY, OrbbecApi};
