@@ -1,9 +1,8 @@
 //! The Kinect v1: fakenect plays a folder that the test writes. fakenect reads its folder from an environment variable and is loaded once per
 //! process, so each test runs itself again in a child process.
 
-use crate::support::{debian, skip};
+use crate::support::{debian, in_child, skip};
 use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::time::{Duration, Instant};
 use trundle_core::DepthImage;
 use trundle_drivers::camera::native::Selection;
@@ -19,7 +18,6 @@ const FRAMES: u32 = 4;
 const PERIOD_TICKS: u32 = 2_000_000;
 /// Ticks of the first frame: the counter starts anew after the second.
 const FIRST_TICKS: u32 = u32::MAX - 3_000_000;
-const CHILD: &str = "TRUNDLE_TEST_CHILD";
 
 fn fakenect() -> Option<PathBuf> {
     debian("fakenect/libfreenect.so.0.5")
@@ -48,24 +46,6 @@ fn raw_disparity(n: u32, pixel: u32) -> u16 {
     if pixel == 0 { 2047 } else { 800 + n as u16 }
 }
 
-/// Runs the test `name` again with the environment of fakenect; `true` in that child.
-fn in_child(name: &str, folder: Option<&Path>) -> bool {
-    if std::env::var_os(CHILD).is_some() {
-        return true;
-    }
-    let mut command = Command::new(std::env::current_exe().unwrap());
-    command.args(["--exact", name, "--nocapture"]).env(CHILD, "1").env("FAKENECT_LOOP", "0");
-    command.env_remove("FAKENECT_PATH");
-    if let Some(folder) = folder {
-        command.env("FAKENECT_PATH", folder);
-    }
-    let output = command.output().unwrap();
-    let text =
-        String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success() && text.contains("1 passed"), "{text}");
-    false
-}
-
 #[test]
 fn a_folder_comes_back_whole() {
     let Some(library) = fakenect() else {
@@ -73,7 +53,8 @@ fn a_folder_comes_back_whole() {
     };
     let folder = tempfile::tempdir().unwrap();
     write_folder(folder.path());
-    if in_child("freenect::a_folder_comes_back_whole", Some(folder.path())) {
+    let environment = [("FAKENECT_PATH", folder.path().as_os_str()), ("FAKENECT_LOOP", "0".as_ref())];
+    if in_child("freenect::a_folder_comes_back_whole", &environment) {
         play(&library);
     }
 }
@@ -112,7 +93,8 @@ fn play(library: &Path) {
 fn fakenect_without_a_folder_is_an_error_and_not_the_end_of_the_program() {
     const NAME: &str = "freenect::fakenect_without_a_folder_is_an_error_and_not_the_end_of_the_program";
     let Some(library) = fakenect() else { return skip(NAME, "the package libfreenect0.5") };
-    if in_child(NAME, None) {
+    assert!(std::env::var_os("FAKENECT_PATH").is_none(), "unset FAKENECT_PATH for this test");
+    if in_child(NAME, &[]) {
         let api = FreenectApi::load(Some(&library)).unwrap();
         let error = FreenectCamera::open(&api, &Selection::First, &FreenectSettings::default()).unwrap_err();
         assert!(error.to_string().contains("FAKENECT_PATH"), "{error}");

@@ -4,8 +4,10 @@
 //! where the environment variable `TRUNDLE_REQUIRE_NATIVE_LIBRARIES` is set.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests")]
 
+mod all_kinds;
 mod freenect;
 mod library;
+mod openni2;
 mod orbbec;
 mod realsense;
 mod support;

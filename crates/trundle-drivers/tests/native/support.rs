@@ -1,6 +1,10 @@
 //! The libraries for the tests.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const CHILD: &str = "TRUNDLE_TEST_CHILD";
 
 /// The folder that `bench/drivers/get-native-libraries.sh` fills.
 pub fn folder() -> PathBuf {
@@ -46,4 +50,18 @@ pub fn libusb() -> Option<PathBuf> {
 /// A list of files for a setting.
 pub fn list(files: &[PathBuf]) -> PathBuf {
     std::env::join_paths(files).unwrap().into()
+}
+
+/// Runs the test `name` again in a process of its own, with more variables in its environment; `true` in that process.
+pub fn in_child(name: &str, environment: &[(&str, &OsStr)]) -> bool {
+    if std::env::var_os(CHILD).is_some() {
+        return true;
+    }
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    command.args(["--exact", name, "--nocapture"]).env(CHILD, "1").envs(environment.iter().copied());
+    let output = command.output().unwrap();
+    let text =
+        String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && text.contains("1 passed"), "{} {text}", output.status);
+    false
 }

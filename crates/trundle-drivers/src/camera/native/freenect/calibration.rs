@@ -1,5 +1,6 @@
 //! Calibration of the Kinect v1. The camera stores none that libfreenect offers in a usable form: the values are assumed.
 
+use crate::camera::native::RgbdCalibration;
 use trundle_core::{Distortion, Invalid, PinholeCamera, Pose3, Vector3};
 
 /// Focal length of the depth camera \[px\]. Source: defaults of the ROS packages openni_camera and freenect_camera.
@@ -9,27 +10,18 @@ const DEPTH_CENTRE_PX: (f64, f64) = (314.5, 235.5);
 /// Distance of the depth camera to the right of the colour camera \[m\]. Source: as above.
 const BASELINE_M: f64 = 0.025;
 
-/// Intrinsics and extrinsics of a Kinect v1.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct KinectCalibration {
-    /// The colour camera.
-    pub color: PinholeCamera,
-    /// The depth camera.
-    pub depth: PinholeCamera,
-    /// Pose of the depth camera in the colour camera's frame.
-    pub color_from_depth: Pose3,
+/// Values that suit any Kinect v1 to some pixels. A calibration of the camera at hand is better.
+///
+/// # Errors
+/// Never, unless a constant is wrong.
+pub fn assumed_calibration() -> Result<RgbdCalibration, Invalid> {
+    let focal = (DEPTH_FOCAL_LENGTH_PX, DEPTH_FOCAL_LENGTH_PX);
+    let depth = PinholeCamera::new((640, 480), focal, DEPTH_CENTRE_PX, Distortion::default())?;
+    let color_from_depth = Some(depth_camera_pose());
+    Ok(RgbdCalibration { color: PinholeCamera::kinect_v1(), depth, color_from_depth })
 }
 
-impl KinectCalibration {
-    /// Values that suit any Kinect v1 to some pixels. A calibration of the camera at hand is better.
-    ///
-    /// # Errors
-    /// Never, unless a constant is wrong.
-    pub fn assumed() -> Result<Self, Invalid> {
-        let focal = (DEPTH_FOCAL_LENGTH_PX, DEPTH_FOCAL_LENGTH_PX);
-        let depth = PinholeCamera::new((640, 480), focal, DEPTH_CENTRE_PX, Distortion::default())?;
-        let moved = Vector3::new(BASELINE_M, 0.0, 0.0);
-        let color_from_depth = Pose3::new(Pose3::identity().rotation, moved);
-        Ok(Self { color: PinholeCamera::kinect_v1(), depth, color_from_depth })
-    }
+/// Pose of the depth camera in the colour camera's frame. The cameras of the Xtion and the first Astra have the same arrangement.
+pub(in crate::camera::native) fn depth_camera_pose() -> Pose3 {
+    Pose3::new(Pose3::identity().rotation, Vector3::new(BASELINE_M, 0.0, 0.0))
 }

@@ -1,10 +1,10 @@
 //! A Kinect v1.
 
-use super::calibration::KinectCalibration;
+use super::calibration::assumed_calibration;
 use super::functions::FreenectApi;
 use super::receiver::{Receiver, on_depth, on_video};
 use super::session::{KIND, OpenKinect, Session};
-use crate::camera::native::{DeviceEntry, Selection};
+use crate::camera::native::{DeviceEntry, RgbdCalibration, Selection};
 use crate::camera::{CameraError, CameraFrame, CameraInfo, DepthCamera, PixelFormat, StreamInfo};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ const DEPTH_UNIT_M: f64 = 0.001;
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreenectSettings {
     /// The calibration; `None` for the assumed one.
-    pub calibration: Option<KinectCalibration>,
+    pub calibration: Option<RgbdCalibration>,
     /// Time from the middle of the exposure to the arrival of a frame \[s\]. Default 0.05, assumed.
     pub delay_s: f64,
     /// File of the library; `None` where it is searched.
@@ -108,7 +108,7 @@ impl DepthCamera for FreenectCamera {
 }
 
 fn info(serial: String, settings: &FreenectSettings, is_live: bool) -> Result<CameraInfo, CameraError> {
-    let assumed = KinectCalibration::assumed()
+    let assumed = assumed_calibration()
         .map_err(|problem| CameraError::IntrinsicsUnusable { stream: "depth", problem })?;
     if settings.calibration.is_none() {
         tracing::info!(
@@ -125,7 +125,7 @@ fn info(serial: String, settings: &FreenectSettings, is_live: bool) -> Result<Ca
         color: stream(PixelFormat::Rgb8, calibration.color),
         depth: stream(PixelFormat::Disparity11, calibration.depth),
         depth_unit_m: DEPTH_UNIT_M,
-        color_from_depth: Some(calibration.color_from_depth),
+        color_from_depth: calibration.color_from_depth,
         delay_s: settings.delay_s,
         is_live,
     })

@@ -20,6 +20,6 @@ mod receiver;
 mod session;
 mod ticks;
 
-pub use calibration::KinectCalibration;
+pub use calibration::assumed_calibration;
 pub use camera::{FreenectCamera, FreenectSettings, list_devices};
 pub use functions::{FreenectApi, LIBRARY};

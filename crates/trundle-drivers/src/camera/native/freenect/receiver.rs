@@ -5,6 +5,7 @@
 
 use super::functions::Device;
 use super::ticks::TickClock;
+use crate::camera::native::image_pair::ImagePair;
 use crate::camera::{CameraFrame, PixelFormat, RawImage};
 use std::cell::Cell;
 use std::ffi::c_void;
@@ -12,8 +13,6 @@ use std::ptr::NonNull;
 
 /// Columns and rows of both images \[px\].
 pub(super) const SIZE_PX: (usize, usize) = (640, 480);
-/// Largest time between the images of a pair: 17 ms. Images further apart are not paired. Source: ours, half a period at 30 Hz.
-const MAX_PAIR_GAP_S: f64 = 0.017;
 
 thread_local! {
     static RECEIVER: Cell<Option<NonNull<Receiver>>> = const { Cell::new(None) };
@@ -23,8 +22,7 @@ thread_local! {
 #[derive(Debug, Default)]
 pub(super) struct Receiver {
     clock: TickClock,
-    color: Option<RawImage>,
-    depth: Option<RawImage>,
+    pair: ImagePair,
 }
 
 impl Receiver {
@@ -36,18 +34,9 @@ impl Receiver {
         result
     }
 
-    /// A pair of images of the same time; the older one of two that do not fit is dropped.
+    /// A pair of images of the same time, where there is one.
     pub(super) fn take_pair(&mut self) -> Option<CameraFrame> {
-        let gap_s = self.color.as_ref()?.device_stamp - self.depth.as_ref()?.device_stamp;
-        if gap_s.abs() <= MAX_PAIR_GAP_S {
-            return Some(CameraFrame { color: self.color.take()?, depth: self.depth.take()? });
-        }
-        if gap_s < 0.0 {
-            self.color = None
-        } else {
-            self.depth = None
-        }
-        None
+        self.pair.take()
     }
 
     fn image(&mut self, format: PixelFormat, bytes: Vec<u8>, ticks: u32) -> RawImage {
@@ -63,7 +52,7 @@ pub(super) unsafe extern "C" fn on_video(_: *mut Device, data: *mut c_void, tick
     // SAFETY: the caller vouches for the data.
     unsafe {
         receive(data, 3, |receiver, bytes| {
-            receiver.color = Some(receiver.image(PixelFormat::Rgb8, bytes, ticks))
+            receiver.pair.color = Some(receiver.image(PixelFormat::Rgb8, bytes, ticks))
         })
     };
 }
@@ -76,7 +65,7 @@ pub(super) unsafe extern "C" fn on_depth(_: *mut Device, data: *mut c_void, tick
     // SAFETY: the caller vouches for the data.
     unsafe {
         receive(data, 2, |receiver, bytes| {
-            receiver.depth = Some(receiver.image(PixelFormat::Disparity11, bytes, ticks));
+            receiver.pair.depth = Some(receiver.image(PixelFormat::Disparity11, bytes, ticks));
         });
     };
 }
@@ -92,26 +81,4 @@ unsafe fn receive(data: *mut c_void, bytes_per_pixel: usize, store: impl FnOnce(
         unsafe { std::slice::from_raw_parts(data.cast::<u8>(), SIZE_PX.0 * SIZE_PX.1 * bytes_per_pixel) };
     // SAFETY: the receiver is borrowed by `during` until the library returns, and the library calls back one image at a time.
     store(unsafe { receiver.as_mut() }, bytes.to_vec());
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use trundle_core::Stamp;
-
-    fn image(ms: i64) -> Option<RawImage> {
-        Some(RawImage::packed(PixelFormat::Gray8, (1, 1), vec![0], Stamp::from_nanos(ms * 1_000_000)))
-    }
-
-    #[test]
-    fn images_of_the_same_time_become_a_pair() {
-        let mut receiver = Receiver { color: image(10), depth: image(20), ..Receiver::default() };
-        assert!(receiver.take_pair().is_some() && receiver.color.is_none() && receiver.depth.is_none());
-    }
-
-    #[test]
-    fn the_older_image_waits_no_longer() {
-        let mut receiver = Receiver { color: image(10), depth: image(40), ..Receiver::default() };
-        assert!(receiver.take_pair().is_none() && receiver.color.is_none() && receiver.depth.is_some());
-    }
 }

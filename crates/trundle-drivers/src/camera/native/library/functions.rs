@@ -11,6 +11,7 @@ macro_rules! functions {
         }
     ) => {
         $(#[$meta])*
+        #[allow(non_snake_case, reason = "the names of the C functions")]
         #[derive(Debug)]
         pub struct $table {
             pub(super) library: $crate::camera::native::library::NativeLibrary,
@@ -18,6 +19,7 @@ macro_rules! functions {
             $(pub(super) $option: Option<unsafe extern "C" fn($($option_argument),*) $(-> $option_result)?>,)*
         }
 
+        #[allow(non_snake_case, reason = "the names of the C functions")]
         impl $table {
             /// The functions of `library`.
             ///

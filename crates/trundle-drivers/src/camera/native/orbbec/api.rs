@@ -81,10 +81,14 @@ impl OrbbecApi {
         Ok(())
     }
 
-    /// A connection to the library.
+    /// A connection to the library. It leaves the network alone: only USB cameras are found.
     pub(super) fn context(self: &Arc<Self>) -> Result<Handle<Context>, OrbbecError> {
         // SAFETY: the function takes the place of an error only.
-        self.owned(self.ob_delete_context, |error| unsafe { (self.ob_create_context)(error) })
+        let context =
+            self.owned(self.ob_delete_context, |error| unsafe { (self.ob_create_context)(error) })?;
+        // SAFETY: the context is alive.
+        self.call(|error| unsafe { (self.ob_enable_net_device_enumeration)(context.get(), false, error) })?;
+        Ok(context)
     }
 
     /// Calls a function that reports errors.

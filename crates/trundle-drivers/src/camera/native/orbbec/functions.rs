@@ -106,6 +106,7 @@ functions! {
         fn ob_set_extensions_directory(*const c_char, ErrorOut);
         fn ob_create_context(ErrorOut) -> *mut Context;
         fn ob_delete_context(*mut Context, ErrorOut);
+        fn ob_enable_net_device_enumeration(*mut Context, bool, ErrorOut);
         fn ob_query_device_list(*mut Context, ErrorOut) -> *mut DeviceList;
         fn ob_delete_device_list(*mut DeviceList, ErrorOut);
         fn ob_device_list_get_count(*const DeviceList, ErrorOut) -> u32;

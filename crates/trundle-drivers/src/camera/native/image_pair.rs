@@ -1,0 +1,54 @@
+//! Colour and depth that arrive one by one, put together by their stamps.
+
+use crate::camera::{CameraFrame, RawImage};
+
+/// Largest time between the images of a pair: 17 ms. Images further apart are not paired. Source: ours, half a period at 30 Hz.
+const MAX_PAIR_GAP_S: f64 = 0.017;
+
+/// The newest image of each kind.
+#[derive(Debug, Default)]
+pub(super) struct ImagePair {
+    /// The newest colour image.
+    pub(super) color: Option<RawImage>,
+    /// The newest depth image.
+    pub(super) depth: Option<RawImage>,
+}
+
+impl ImagePair {
+    /// A pair of images of the same time; the older one of two that do not fit is dropped.
+    pub(super) fn take(&mut self) -> Option<CameraFrame> {
+        let gap_s = self.color.as_ref()?.device_stamp - self.depth.as_ref()?.device_stamp;
+        if gap_s.abs() <= MAX_PAIR_GAP_S {
+            return Some(CameraFrame { color: self.color.take()?, depth: self.depth.take()? });
+        }
+        if gap_s < 0.0 {
+            self.color = None
+        } else {
+            self.depth = None
+        }
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::PixelFormat;
+    use trundle_core::Stamp;
+
+    fn image(ms: i64) -> Option<RawImage> {
+        Some(RawImage::packed(PixelFormat::Gray8, (1, 1), vec![0], Stamp::from_nanos(ms * 1_000_000)))
+    }
+
+    #[test]
+    fn images_of_the_same_time_become_a_pair() {
+        let mut pair = ImagePair { color: image(10), depth: image(20) };
+        assert!(pair.take().is_some() && pair.color.is_none() && pair.depth.is_none());
+    }
+
+    #[test]
+    fn the_older_image_waits_no_longer() {
+        let mut pair = ImagePair { color: image(10), depth: image(40) };
+        assert!(pair.take().is_none() && pair.color.is_none() && pair.depth.is_some());
+    }
+}

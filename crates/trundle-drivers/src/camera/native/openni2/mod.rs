@@ -1,0 +1,23 @@
+//! Xtion and the first Astra through OpenNI2.
+//!
+//! Checked with the dummy device of version 2.2.0.33. No real camera was at hand. Recordings (`.oni`) are refused: that version delivers no
+//! frame from a recording of its dummy device.
+//!
+//! The library reports an unplugged camera as silence.
+//!
+//! | module | content |
+//! |---|---|
+//! | [`camera`] | the camera and its settings |
+//! | [`serve`] | the camera in a process of its own |
+//! | [`functions`] | the functions of the library |
+//! | `session` | open device and streams |
+
+pub mod camera;
+pub mod functions;
+pub mod serve;
+mod session;
+
+pub use camera::{OpenNiCamera, OpenNiSettings};
+pub use functions::{LIBRARY, OpenNiApi};
+pub use serve::serve_openni;
+pub use session::list_devices;

@@ -1,0 +1,247 @@
+//! An open device of OpenNI2 with its two streams.
+
+use super::functions::{Device, DeviceInfo, Frame, OpenNiApi, STATUS_OK, STATUS_TIME_OUT, Stream, VideoMode};
+use crate::camera::native::DeviceEntry;
+use crate::camera::{CameraError, PixelFormat, RawImage};
+use std::ffi::{CString, c_char, c_int};
+use std::sync::Arc;
+use std::time::Duration;
+use trundle_core::{Invalid, Stamp};
+
+const SENSOR_COLOR: c_int = 2;
+const SENSOR_DEPTH: c_int = 3;
+const DEVICE_PROPERTY_REGISTRATION: c_int = 5;
+const REGISTRATION_DEPTH_TO_COLOR: c_int = 1;
+const STREAM_PROPERTY_HORIZONTAL_FOV: c_int = 1;
+const STREAM_PROPERTY_VERTICAL_FOV: c_int = 2;
+const STREAM_PROPERTY_VIDEO_MODE: c_int = 3;
+const STREAM_PROPERTY_MIRRORING: c_int = 7;
+const FORMAT_DEPTH_100_UM: c_int = 101;
+/// Nanoseconds in a microsecond.
+const NANOS_PER_US: i64 = 1000;
+
+/// Which of the two streams.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Color,
+    Depth,
+}
+
+/// An open device. It closes its streams and itself; the library stays started.
+#[derive(Debug)]
+pub(super) struct OpenDevice {
+    api: Arc<OpenNiApi>,
+    name: String,
+    device: *mut Device,
+    /// Colour and depth; null where not made.
+    streams: [*mut Stream; 2],
+}
+
+// SAFETY: the library locks its objects; they may move between threads.
+unsafe impl Send for OpenDevice {}
+
+/// The cameras that the library lists; the URI stands for the serial number.
+pub fn list_devices(api: &Arc<OpenNiApi>) -> Result<Vec<DeviceEntry>, CameraError> {
+    let (mut list, mut count) = (std::ptr::null_mut::<DeviceInfo>(), 0);
+    // SAFETY: list and count have places.
+    api.check("oniGetDeviceList", unsafe { (api.oniGetDeviceList)(&mut list, &mut count) }, "any camera")?;
+    if list.is_null() {
+        return Ok(Vec::new());
+    }
+    // SAFETY: the library made a list of `count` entries.
+    let infos = unsafe { std::slice::from_raw_parts(list, usize::try_from(count).unwrap_or(0)) };
+    let entries = infos.iter().map(entry).collect();
+    // SAFETY: the list came from the library and is not used any more.
+    unsafe { (api.oniReleaseDeviceList)(list) };
+    Ok(entries)
+}
+
+fn entry(info: &DeviceInfo) -> DeviceEntry {
+    let name = format!("{} {}", text(&info.vendor), text(&info.name));
+    DeviceEntry { name, serial: text(&info.uri), firmware: String::new(), usb: None }
+}
+
+fn text(field: &[c_char; 256]) -> String {
+    let bytes: Vec<u8> =
+        field.iter().map(|byte| byte.cast_unsigned()).take_while(|byte| *byte != 0).collect();
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+impl OpenDevice {
+    /// Opens the device with this URI and makes its streams; they are not started.
+    pub(super) fn open(api: &Arc<OpenNiApi>, uri: &str) -> Result<Self, CameraError> {
+        let no_device = || CameraError::NoDevice { kind: uri.to_owned() };
+        let text = CString::new(uri).map_err(|_| no_device())?;
+        let mut device = std::ptr::null_mut();
+        // SAFETY: the text is alive, and the device has a place.
+        api.check("oniDeviceOpen", unsafe { (api.oniDeviceOpen)(text.as_ptr(), &mut device) }, uri)?;
+        let streams = [std::ptr::null_mut(); 2];
+        let mut open = Self { api: Arc::clone(api), name: uri.to_owned(), device, streams };
+        open.make_stream(Kind::Color, SENSOR_COLOR)?;
+        open.make_stream(Kind::Depth, SENSOR_DEPTH)?;
+        Ok(open)
+    }
+
+    fn make_stream(&mut self, kind: Kind, sensor: c_int) -> Result<(), CameraError> {
+        let place = &mut self.streams[kind as usize];
+        // SAFETY: the device is alive, and the stream has a place.
+        let status = unsafe { (self.api.oniDeviceCreateStream)(self.device, sensor, place) };
+        self.api.check("oniDeviceCreateStream", status, &self.name)?;
+        let is_mirrored: c_int = 0;
+        // SAFETY: the stream is alive, and the value has the size of its type. A device without the property refuses it.
+        unsafe {
+            (self.api.oniStreamSetProperty)(
+                self.streams[kind as usize],
+                STREAM_PROPERTY_MIRRORING,
+                (&raw const is_mirrored).cast(),
+                size_of_value::<c_int>(),
+            );
+        }
+        Ok(())
+    }
+
+    /// Asks for depth registered to colour; `false` where the device does not offer it.
+    pub(super) fn register_depth(&self) -> bool {
+        let mode = REGISTRATION_DEPTH_TO_COLOR;
+        // SAFETY: the device is alive, and the value has the size of its type.
+        unsafe {
+            (self.api.oniDeviceIsImageRegistrationModeSupported)(self.device, mode) != 0
+                && (self.api.oniDeviceSetProperty)(
+                    self.device,
+                    DEVICE_PROPERTY_REGISTRATION,
+                    (&raw const mode).cast(),
+                    size_of_value::<c_int>(),
+                ) == STATUS_OK
+        }
+    }
+
+    /// What the device says of itself.
+    pub(super) fn about(&self) -> Result<DeviceEntry, CameraError> {
+        // SAFETY: all fields of the structure may be zero.
+        let mut info: DeviceInfo = unsafe { std::mem::zeroed() };
+        // SAFETY: the device is alive, and the information has a place.
+        self.api.check(
+            "oniDeviceGetInfo",
+            unsafe { (self.api.oniDeviceGetInfo)(self.device, &mut info) },
+            &self.name,
+        )?;
+        Ok(entry(&info))
+    }
+
+    /// Size, rate and format of a stream.
+    pub(super) fn mode(&self, kind: Kind) -> Result<VideoMode, CameraError> {
+        let mut mode = VideoMode::default();
+        let status = self.property(kind, STREAM_PROPERTY_VIDEO_MODE, &mut mode);
+        self.api.check("oniStreamGetProperty", status, &self.name).map(|()| mode)
+    }
+
+    /// Fields of view \[rad\]; 0 where the stream does not tell them.
+    pub(super) fn fields_of_view(&self, kind: Kind) -> (f64, f64) {
+        let (mut across, mut down) = (0_f32, 0_f32);
+        self.property(kind, STREAM_PROPERTY_HORIZONTAL_FOV, &mut across);
+        self.property(kind, STREAM_PROPERTY_VERTICAL_FOV, &mut down);
+        (f64::from(across), f64::from(down))
+    }
+
+    fn property<T: Copy>(&self, kind: Kind, number: c_int, value: &mut T) -> c_int {
+        let mut size = size_of_value::<T>();
+        let place: *mut T = value;
+        // SAFETY: the stream is alive, and the value has the size given.
+        unsafe {
+            (self.api.oniStreamGetProperty)(self.streams[kind as usize], number, place.cast(), &mut size)
+        }
+    }
+
+    /// Starts both streams.
+    pub(super) fn start(&self) -> Result<(), CameraError> {
+        self.streams.iter().try_for_each(|stream| {
+            // SAFETY: the stream is alive.
+            self.api.check("oniStreamStart", unsafe { (self.api.oniStreamStart)(*stream) }, &self.name)
+        })
+    }
+
+    /// The next image of either stream; `None` when none came within `timeout`.
+    pub(super) fn next_image(&mut self, timeout: Duration) -> Result<Option<(Kind, RawImage)>, CameraError> {
+        let ms = c_int::try_from(timeout.as_millis()).unwrap_or(c_int::MAX);
+        let mut index = -1;
+        // SAFETY: both streams are alive, and the index has a place.
+        let status = unsafe { (self.api.oniWaitForAnyStream)(self.streams.as_mut_ptr(), 2, &mut index, ms) };
+        if status == STATUS_TIME_OUT {
+            return Ok(None);
+        }
+        self.api.check("oniWaitForAnyStream", status, &self.name)?;
+        let kind = if index == 0 { Kind::Color } else { Kind::Depth };
+        let mut frame: *mut Frame = std::ptr::null_mut();
+        // SAFETY: the stream is alive and has a frame, which gets a place.
+        let status = unsafe { (self.api.oniStreamReadFrame)(self.streams[kind as usize], &mut frame) };
+        self.api.check("oniStreamReadFrame", status, &self.name)?;
+        // SAFETY: the library made the frame; it is alive until it is released.
+        let image = unsafe { image(&*frame) };
+        // SAFETY: the frame came from the library and is not used any more.
+        unsafe { (self.api.oniFrameRelease)(frame) };
+        Ok(Some((kind, image?)))
+    }
+}
+
+impl Drop for OpenDevice {
+    fn drop(&mut self) {
+        for stream in self.streams.into_iter().filter(|stream| !stream.is_null()) {
+            // SAFETY: the stream is alive; stopping a stopped stream is allowed.
+            unsafe {
+                (self.api.oniStreamStop)(stream);
+                (self.api.oniStreamDestroy)(stream);
+            }
+        }
+        // SAFETY: the device is alive and has no streams any more.
+        unsafe { (self.api.oniDeviceClose)(self.device) };
+    }
+}
+
+fn size_of_value<T>() -> c_int {
+    size_of::<T>() as c_int
+}
+
+/// The form of the pixels for a number of `OniPixelFormat`.
+pub(super) fn pixel_format(format: c_int) -> Result<PixelFormat, Invalid> {
+    Ok(match format {
+        100 | FORMAT_DEPTH_100_UM => PixelFormat::Depth16,
+        200 => PixelFormat::Rgb8,
+        201 => PixelFormat::Uyvy,
+        202 => PixelFormat::Gray8,
+        204 => PixelFormat::Mjpg,
+        205 => PixelFormat::Yuyv,
+        other => {
+            return Err(Invalid::new(
+                "pixel format of OpenNI2",
+                other,
+                "",
+                "depth in mm, RGB888, YUV422, YUYV, GRAY8 or JPEG",
+            ));
+        }
+    })
+}
+
+/// Length of one unit of depth \[m\].
+pub(super) fn depth_unit_m(mode: VideoMode) -> f64 {
+    if mode.format == FORMAT_DEPTH_100_UM { 1e-4 } else { 1e-3 }
+}
+
+/// A copy of an image.
+///
+/// # Safety
+/// The frame is alive: `data` points to `size` bytes.
+unsafe fn image(frame: &Frame) -> Result<RawImage, Invalid> {
+    let format = pixel_format(frame.mode.format)?;
+    let number = |value: c_int| usize::try_from(value).unwrap_or(0);
+    let (width, height, size) = (number(frame.width), number(frame.height), number(frame.size));
+    let bytes = if frame.data.is_null() || size == 0 {
+        Vec::new()
+    } else {
+        // SAFETY: the caller vouches for the data.
+        unsafe { std::slice::from_raw_parts(frame.data.cast::<u8>(), size) }.to_vec()
+    };
+    let is_padded = format.bytes_per_pixel().is_some_and(|bytes| bytes * width != number(frame.stride));
+    let nanos = i64::try_from(frame.micros).unwrap_or(i64::MAX).saturating_mul(NANOS_PER_US);
+    let stride = if is_padded { number(frame.stride) } else { 0 };
+    Ok(RawImage { format, width, height, stride, bytes, device_stamp: Stamp::from_nanos(nanos) })
+}
