@@ -5,17 +5,20 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`camera`] | the camera, its settings, the device list |
+//! | [`camera`] | the camera and its settings |
 //! | [`intrinsics`] | lens models and poses |
 //! | [`functions`] | the functions of the library |
 //! | `api` | loading, calls, objects, errors |
+//! | `device_list` | what is connected |
 //! | `frames` | frames and what they tell of their streams |
 
 mod api;
 pub mod camera;
+mod device_list;
 mod frames;
 pub mod functions;
 pub mod intrinsics;
 
-pub use camera::{OrbbecCamera, OrbbecSettings, list_devices};
+pub use camera::{OrbbecCamera, OrbbecSettings};
+pub use device_list::list_devices;
 pub use functions::{LIBRARY, OrbbecApi};

@@ -14,7 +14,7 @@
 //! | [`functions`] | the functions of the library |
 //! | `api`, `handle`, `error` | loading, calls, objects, errors |
 //! | `device_list`, `request`, `streams` | what is connected, what is asked, what is offered |
-//! | `frames` | frames as they come |
+//! | `running`, `frames` | a started pipeline, frames as they come |
 
 mod api;
 pub mod camera;
@@ -27,6 +27,7 @@ mod handle;
 pub mod intrinsics;
 pub mod motion;
 mod request;
+mod running;
 pub mod settings;
 mod streams;
 
