@@ -2,12 +2,14 @@
 
 use crate::camera::{CameraFrame, RawImage};
 
-/// Largest time between the images of a pair: 17 ms. Images further apart are not paired. Source: ours, half a period at 30 Hz.
-const MAX_PAIR_GAP_S: f64 = 0.017;
+/// Largest time between the images of a pair, in periods of the slower stream. Images further apart are not paired. Source: ours, half a
+/// period with 2 % for the jitter of the clocks.
+const MAX_PAIR_GAP_PERIODS: f64 = 0.51;
 
 /// The newest image of each kind.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct ImagePair {
+    max_gap_s: f64,
     /// The newest colour image.
     pub(super) color: Option<RawImage>,
     /// The newest depth image.
@@ -15,10 +17,15 @@ pub(super) struct ImagePair {
 }
 
 impl ImagePair {
+    /// No images; `rate_hz` is the rate of the slower stream \[Hz\], above 0.
+    pub(super) fn new(rate_hz: f64) -> Self {
+        Self { max_gap_s: MAX_PAIR_GAP_PERIODS / rate_hz, color: None, depth: None }
+    }
+
     /// A pair of images of the same time; the older one of two that do not fit is dropped.
     pub(super) fn take(&mut self) -> Option<CameraFrame> {
         let gap_s = self.color.as_ref()?.device_stamp - self.depth.as_ref()?.device_stamp;
-        if gap_s.abs() <= MAX_PAIR_GAP_S {
+        if gap_s.abs() <= self.max_gap_s {
             return Some(CameraFrame { color: self.color.take()?, depth: self.depth.take()? });
         }
         if gap_s < 0.0 {
@@ -42,13 +49,13 @@ mod tests {
 
     #[test]
     fn images_of_the_same_time_become_a_pair() {
-        let mut pair = ImagePair { color: image(10), depth: image(20) };
+        let mut pair = ImagePair { color: image(10), depth: image(26), ..ImagePair::new(30.0) };
         assert!(pair.take().is_some() && pair.color.is_none() && pair.depth.is_none());
     }
 
     #[test]
     fn the_older_image_waits_no_longer() {
-        let mut pair = ImagePair { color: image(10), depth: image(40) };
+        let mut pair = ImagePair { color: image(10), depth: image(28), ..ImagePair::new(30.0) };
         assert!(pair.take().is_none() && pair.color.is_none() && pair.depth.is_some());
     }
 }

@@ -65,7 +65,7 @@ impl FreenectCamera {
         let info = info(serial, settings, !api.is_fake())?;
         let kinect = session.open(selection)?;
         kinect.start(on_video, on_depth)?;
-        Ok(Self { info, kinect, receiver: Receiver::default(), has_ended: false })
+        Ok(Self { info, kinect, receiver: Receiver::new(RATE_HZ), has_ended: false })
     }
 }
 

@@ -19,13 +19,18 @@ thread_local! {
 }
 
 /// The images of one call of the library.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Receiver {
     clock: TickClock,
     pair: ImagePair,
 }
 
 impl Receiver {
+    /// A receiver without images; `rate_hz` is the rate of both streams \[Hz\].
+    pub(super) fn new(rate_hz: f64) -> Self {
+        Self { clock: TickClock::default(), pair: ImagePair::new(rate_hz) }
+    }
+
     /// Runs `call`, in which the library calls back.
     pub(super) fn during<T>(&mut self, call: impl FnOnce() -> T) -> T {
         RECEIVER.set(Some(NonNull::from(self)));

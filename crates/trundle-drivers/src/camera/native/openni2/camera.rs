@@ -56,7 +56,8 @@ impl OpenNiCamera {
         let is_registered = device.register_depth();
         let info = info(&device, settings, is_registered)?;
         device.start()?;
-        Ok(Self { info, device, pair: ImagePair::default() })
+        let pair = ImagePair::new(info.color.rate_hz.min(info.depth.rate_hz));
+        Ok(Self { info, device, pair })
     }
 }
 

@@ -3,10 +3,11 @@
 use super::RealSenseSettings;
 use super::api::RealSenseError;
 use super::device_list::entry;
-use super::frames::{Content, Pairing, content, parts};
+use super::frames::{Content, content, parts};
 use super::functions::{Frame, RealSenseApi};
 use super::handle::Handle;
 use super::motion::{GyroSample, GyroSamples};
+use super::pairing::Pairing;
 use super::request::Request;
 use super::running::Running;
 use crate::camera::native::{DeviceEntry, Selection};
@@ -15,6 +16,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_core::Invalid;
 
+/// Silence of a stopped recording that means its end: 0.5 s. The library reports a recording as stopped until its thread has started, and
+/// again while the last frames are on their way. Source: ours.
+const END_SILENCE: Duration = Duration::from_millis(500);
 /// Time between two queries of the state of a recording that delivers nothing. Source: ours.
 const STATUS_PERIOD: Duration = Duration::from_millis(20);
 
@@ -25,6 +29,7 @@ pub struct RealSenseCamera {
     running: Running,
     pairing: Pairing,
     gyro: GyroSamples,
+    quiet_since: Option<Instant>,
     has_ended: bool,
 }
 
@@ -49,13 +54,9 @@ impl RealSenseCamera {
         let name = format!("{} {}", about.name, about.serial);
         let (running, started) = Running::start(request, is_live, &name)?;
         let info = running.info(about, &started, &settings, is_live, &name)?;
-        Ok(Self {
-            info,
-            running,
-            pairing: Pairing::default(),
-            gyro: GyroSamples::default(),
-            has_ended: false,
-        })
+        let pairing = Pairing::new(info.color.rate_hz.min(info.depth.rate_hz));
+        let gyro = GyroSamples::default();
+        Ok(Self { info, running, pairing, gyro, quiet_since: None, has_ended: false })
     }
 
     /// The samples of the gyro since the last call, oldest first. Empty without [`RealSenseSettings::gyro`]. The library puts the newest
@@ -92,12 +93,13 @@ impl RealSenseCamera {
         let start = Instant::now();
         while !self.has_ended {
             let left = timeout.saturating_sub(start.elapsed());
-            // The state is older than the wait: a frame that came before the end is never lost.
-            let is_played = self.running.is_played().map_err(|error| error.of(&self.name()))?;
             if let Some(frame) = self.wait(left.min(STATUS_PERIOD))? {
+                self.quiet_since = None;
                 return Ok(Some(frame));
             }
-            self.has_ended = is_played;
+            let is_stopped = self.running.is_played().map_err(|error| error.of(&self.name()))?;
+            self.quiet_since = is_stopped.then(|| self.quiet_since.unwrap_or_else(Instant::now));
+            self.has_ended = self.quiet_since.is_some_and(|since| since.elapsed() >= END_SILENCE);
             if left.is_zero() {
                 break;
             }
@@ -168,7 +170,7 @@ fn unavailable(device: DeviceEntry, settings: &RealSenseSettings) -> CameraError
     }
 }
 
-/// Makes a recording wait for its reader.
+/// Makes a recording wait for its reader, and for the start of all its sensors: the library drops what comes before.
 fn prepare_file(request: &Request, selection: &Selection) -> Result<DeviceEntry, CameraError> {
     let name = selection.describe("RealSense");
     let prepared = request.resolved_device().and_then(|device| {
@@ -176,6 +178,8 @@ fn prepare_file(request: &Request, selection: &Selection) -> Result<DeviceEntry,
         request.api.call(|error| unsafe {
             (request.api.rs2_playback_device_set_real_time)(device.get(), 0, error)
         })?;
+        // SAFETY: as above.
+        request.api.call(|error| unsafe { (request.api.rs2_playback_device_pause)(device.get(), error) })?;
         entry(&request.api, &device)
     });
     prepared.map_err(|error| error.of(&name))

@@ -2,17 +2,16 @@
 
 use super::api::RealSenseError;
 use super::constants::{
-    DOMAIN_HARDWARE_CLOCK, EXTENSION_COMPOSITE_FRAME, EXTENSION_MOTION_FRAME, STREAM_COLOR, STREAM_DEPTH,
-    STREAM_GYRO, pixel_format,
+    EXTENSION_COMPOSITE_FRAME, EXTENSION_MOTION_FRAME, STREAM_COLOR, STREAM_DEPTH, STREAM_GYRO, pixel_format,
 };
 use super::functions::{Frame, RealSenseApi};
 use super::handle::Handle;
 use super::motion::GyroSample;
 use super::streams::profile_data;
-use crate::camera::{CameraFrame, RawImage};
+use crate::camera::RawImage;
 use std::ffi::c_int;
 use std::sync::Arc;
-use trundle_core::{Invalid, Stamp, Vector3};
+use trundle_core::{Stamp, Vector3};
 
 /// Nanoseconds in a millisecond.
 const NANOS_PER_MS: f64 = 1e6;
@@ -127,82 +126,4 @@ fn stamp(api: &RealSenseApi, frame: &Handle<Frame>) -> Result<Stamp, RealSenseEr
     // SAFETY: the frame is alive.
     let ms = api.call(|error| unsafe { (api.rs2_get_frame_timestamp)(frame.get(), error) })?;
     Ok(Stamp::from_nanos((ms * NANOS_PER_MS).round() as i64))
-}
-
-/// Puts colour and depth together. A set may repeat an image of the set before it: such sets are left out.
-#[derive(Debug, Default)]
-pub(super) struct Pairing {
-    last: Option<(u64, u64)>,
-}
-
-impl Pairing {
-    /// The frame of a set; `None` where an image is missing or was delivered in a set before.
-    ///
-    /// # Errors
-    /// When only one of the images has a stamp of the camera's own clock.
-    pub(super) fn pair(&mut self, contents: Vec<Content>) -> Option<Result<CameraFrame, Invalid>> {
-        let (mut color, mut depth) = (None, None);
-        for content in contents {
-            match content {
-                Content::Image { stream: STREAM_COLOR, image, number, domain } => {
-                    color = Some((image, number, domain))
-                }
-                Content::Image { stream: STREAM_DEPTH, image, number, domain } => {
-                    depth = Some((image, number, domain))
-                }
-                _ => {}
-            }
-        }
-        let ((color, color_number, color_domain), (depth, depth_number, depth_domain)) = (color?, depth?);
-        if self.last.is_some_and(|(color, depth)| color == color_number || depth == depth_number) {
-            return None;
-        }
-        self.last = Some((color_number, depth_number));
-        let is_own = |domain: c_int| domain == DOMAIN_HARDWARE_CLOCK;
-        if is_own(color_domain) != is_own(depth_domain) {
-            let found = format!("{color_domain} for colour, {depth_domain} for depth");
-            return Some(Err(Invalid::new(
-                "timestamp domain of librealsense",
-                found,
-                "",
-                "one clock for both",
-            )));
-        }
-        Some(Ok(CameraFrame { color, depth }))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::camera::PixelFormat;
-
-    fn image(stream: c_int, number: u64, domain: c_int) -> Content {
-        let image = RawImage::packed(PixelFormat::Gray8, (1, 1), vec![0], Stamp::from_nanos(number as i64));
-        Content::Image { stream, image, number, domain }
-    }
-
-    #[test]
-    fn a_set_that_repeats_an_image_is_left_out() {
-        let mut pairing = Pairing::default();
-        let mut pair = |color, depth| {
-            pairing
-                .pair(vec![image(STREAM_DEPTH, depth, 0), image(STREAM_COLOR, color, 0)])
-                .map(Result::unwrap)
-        };
-        assert!(pair(1, 1).is_some());
-        assert!(pair(1, 2).is_none());
-        let second = pair(2, 2).unwrap();
-        assert_eq!((second.color.device_stamp.nanos, second.depth.device_stamp.nanos), (2, 2));
-    }
-
-    #[test]
-    fn two_clocks_in_one_set_are_refused() {
-        let mut pairing = Pairing::default();
-        let mixed = vec![image(STREAM_DEPTH, 1, 0), image(STREAM_COLOR, 1, 2)];
-        assert!(pairing.pair(mixed).unwrap().is_err());
-        let host = vec![image(STREAM_DEPTH, 2, 1), image(STREAM_COLOR, 2, 2)];
-        assert!(pairing.pair(host).unwrap().is_ok());
-        assert!(pairing.pair(vec![image(STREAM_COLOR, 3, 0)]).is_none());
-    }
 }

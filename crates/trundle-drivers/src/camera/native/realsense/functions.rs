@@ -130,6 +130,8 @@ functions! {
         fn rs2_config_can_resolve(*mut Config, *mut Pipeline, ErrorOut) -> c_int;
         fn rs2_config_resolve(*mut Config, *mut Pipeline, ErrorOut) -> *mut PipelineProfile;
         fn rs2_playback_device_set_real_time(*const Device, c_int, ErrorOut);
+        fn rs2_playback_device_pause(*const Device, ErrorOut);
+        fn rs2_playback_device_resume(*const Device, ErrorOut);
         fn rs2_playback_device_get_current_status(*const Device, ErrorOut) -> c_int;
         fn rs2_release_frame(*mut Frame);
         fn rs2_is_frame_extendable_to(*const Frame, c_int, ErrorOut) -> c_int;

@@ -14,7 +14,7 @@
 //! | [`functions`] | the functions of the library |
 //! | `api`, `handle`, `error` | loading, calls, objects, errors |
 //! | `device_list`, `request`, `streams` | what is connected, what is asked, what is offered |
-//! | `running`, `frames` | a started pipeline, frames as they come |
+//! | `running`, `frames`, `pairing` | a started pipeline, frames as they come, pairs |
 
 mod api;
 pub mod camera;
@@ -26,6 +26,7 @@ pub mod functions;
 mod handle;
 pub mod intrinsics;
 pub mod motion;
+mod pairing;
 mod request;
 mod running;
 pub mod settings;

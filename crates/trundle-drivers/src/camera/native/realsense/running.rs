@@ -38,6 +38,11 @@ impl Running {
         });
         let started = started.map_err(|error| error.of(name))?;
         let device = device_of(&api, &started).map_err(|error| error.of(name))?;
+        if !is_live {
+            // SAFETY: the device is alive and a recording.
+            api.call(|error| unsafe { (api.rs2_playback_device_resume)(device.get(), error) })
+                .map_err(|error| error.of(name))?;
+        }
         let hub = if is_live { Some(hub(&api, &context).map_err(|error| error.of(name))?) } else { None };
         Ok((Self { pipeline, device, hub, _config: config, _context: context, api }, started))
     }
