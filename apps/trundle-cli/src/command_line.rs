@@ -2,7 +2,7 @@
 
 use crate::data::DataArgs;
 use crate::demo::DemoArgs;
-use crate::devices::DevicesArgs;
+use crate::devices::{DevicesArgs, ServeCameraArgs};
 use crate::dock::DockArgs;
 use crate::eval::EvalArgs;
 use crate::experiment::ExperimentArgs;
@@ -62,6 +62,9 @@ pub enum Command {
     Config(ConfigArgs),
     /// List the devices that are plugged in, and what is missing.
     Devices(DevicesArgs),
+    /// Write the frames of a camera to standard output; `run` starts it for cameras whose library may crash.
+    #[command(hide = true)]
+    ServeCamera(ServeCameraArgs),
     /// The data sets of the experiments: what each is, where it comes from, its licence.
     Data(DataArgs),
     /// Print the completions of a shell: bash, zsh, fish, elvish, powershell.

@@ -5,7 +5,10 @@ use crate::outcome::Outcome;
 use clap::Args;
 use std::path::Path;
 use trundle::app::AppError;
-use trundle::drivers::{KOBUKI_UDEV_PORT, KOBUKI_UDEV_RULE, PortAccess, SerialDevice, serial_devices};
+use trundle::drivers::camera::native::{LibraryReport, LibraryState, NativeKind, list_devices, reports};
+use trundle::drivers::{
+    CameraSpec, KOBUKI_UDEV_PORT, KOBUKI_UDEV_RULE, PortAccess, SerialDevice, serial_devices,
+};
 
 /// `trundle devices`
 #[derive(Debug, Args)]
@@ -23,6 +26,20 @@ pub fn run(args: &DevicesArgs) -> Result<Outcome, AppError> {
         return Ok(Outcome::Reached);
     }
     console::print_table(&rows());
+    Ok(Outcome::Reached)
+}
+
+/// `trundle serve-camera`: the frames of a camera on standard output, for the process that started this one.
+#[derive(Debug, Args)]
+pub struct ServeCameraArgs {
+    /// The camera.
+    pub camera: CameraSpec,
+}
+
+/// `trundle serve-camera`.
+pub fn serve(args: &ServeCameraArgs) -> Result<Outcome, AppError> {
+    let served = args.camera.serve(std::io::stdout().lock());
+    served.map_err(|error| AppError::Input(format!("camera {}: {error}", args.camera)))?;
     Ok(Outcome::Reached)
 }
 
@@ -47,11 +64,36 @@ fn rows() -> Vec<Vec<String>> {
         format!("{KOBUKI_UDEV_PORT} is not there: install the rule of `trundle devices --udev`")
     };
     rows.push(vec!["udev rule".to_owned(), rule]);
+    rows.extend(
+        NativeKind::ALL.into_iter().zip(reports()).flat_map(|(kind, report)| camera_rows(kind, &report)),
+    );
     rows.push(vec![
         "camera stream".to_owned(),
         "any camera by --camera stream:PATH (docs/camera-stream.md)".to_owned(),
     ]);
     rows
+}
+
+/// The library of a kind of camera, and the cameras that it lists.
+fn camera_rows(kind: NativeKind, report: &LibraryReport) -> Vec<Vec<String>> {
+    let name = format!("camera {kind}");
+    let row = |value: String| vec![name.clone(), value];
+    match &report.state {
+        LibraryState::Unusable { problem } => vec![row(problem.clone())],
+        LibraryState::Usable { file, version } => {
+            let version = version.map_or_else(String::new, |version| format!(" {version}"));
+            let mut rows = vec![row(format!("library{version}: {}", file.display()))];
+            match list_devices(kind) {
+                Ok(devices) if devices.is_empty() => rows.push(row("none is plugged in".to_owned())),
+                Ok(devices) => rows.extend(devices.iter().map(|device| {
+                    let usb = device.usb.map_or_else(String::new, |usb| format!(", {usb}"));
+                    row(format!("{} {}, firmware {}{usb}", device.name, device.serial, device.firmware))
+                })),
+                Err(error) => rows.push(row(error.to_string())),
+            }
+            rows
+        }
+    }
 }
 
 fn serial_row(device: &SerialDevice) -> Vec<String> {

@@ -85,6 +85,7 @@ fn run_command(cli: Cli) -> Result<Outcome, AppError> {
         },
         Command::Config(args) => robot_file::print(&args),
         Command::Devices(args) => devices::run(&args),
+        Command::ServeCamera(args) => devices::serve(&args),
         Command::Data(args) => data::run(&args),
         Command::Completions(args) => shell_files::print_completions(&args, Cli::command()),
         Command::Man(args) => shell_files::write_man_pages(&args, Cli::command()),

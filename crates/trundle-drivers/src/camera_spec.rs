@@ -1,13 +1,21 @@
 //! A camera as a user names it.
 
-use crate::camera::pipe::{FolderCamera, StreamCamera};
-use crate::camera::{CameraError, DepthCamera};
+use crate::camera::kinect2::{DecoderConfig, DumpCamera};
+use crate::camera::native::openni2::{OpenNiSettings, serve_openni};
+use crate::camera::native::{NativeKind, Selection, open};
+use crate::camera::pipe::{FolderCamera, ProcessCamera, StreamCamera, StreamWriter};
+use crate::camera::{CameraError, CameraFrame, DepthCamera};
 use std::fmt;
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::str::FromStr;
 use std::time::Duration;
 
-/// A camera as a user names it: `stream:PATH`, `folder:PATH`.
+/// Command of a program that writes the frames of a camera to its standard output: [`CameraSpec::serve`].
+pub const SERVE_COMMAND: &str = "serve-camera";
+
+/// A camera as a user names it: `stream:PATH`, `folder:PATH`, `realsense`, `realsense:SERIAL`, `realsense:FILE.db3` and so on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum CameraSpec {
@@ -15,21 +23,65 @@ pub enum CameraSpec {
     Stream(PathBuf),
     /// A folder that grows, as docs/camera-stream.md has it.
     Folder(PathBuf),
+    /// A camera, or a recording of one, through its maker's library.
+    Native(NativeKind, Selection),
+    /// A dump of the packets of a Kinect V2.
+    Kinect2Dump(PathBuf),
 }
 
 /// What the kinds of camera are called, for messages.
-const KINDS: &str = "stream:PATH, folder:PATH";
+const KINDS: &str = "realsense, freenect (Kinect v1), orbbec, openni2, stream:PATH, folder:PATH, kinect2-dump:FILE; a serial number or \
+     recording may follow, as realsense:FILE.db3";
+/// Endings of recordings of RealSense cameras. Source: librealsense's recorder.
+const RECORDING_ENDINGS: [&str; 2] = [".db3", ".bag"];
 
 impl CameraSpec {
-    /// Opens the camera; a stream's header is waited for at most `timeout`.
+    /// Opens the camera; the head of a stream is waited for at most `timeout`. `program` has a command [`SERVE_COMMAND`]: cameras whose
+    /// library may crash run in that process.
     ///
     /// # Errors
-    /// When there is no such camera, or it cannot be used.
-    pub fn open(&self, timeout: Duration) -> Result<Box<dyn DepthCamera>, CameraError> {
+    /// When there is no such camera, its library is missing, or it cannot be used.
+    pub fn open(&self, timeout: Duration, program: &Path) -> Result<Box<dyn DepthCamera>, CameraError> {
         Ok(match self {
             Self::Stream(path) => Box::new(StreamCamera::open(path, timeout)?),
             Self::Folder(path) => Box::new(FolderCamera::open(path)?),
+            Self::Kinect2Dump(file) => Box::new(DumpCamera::open(file, DecoderConfig::default())?),
+            Self::Native(NativeKind::OpenNi2, _) => {
+                let mut command = Command::new(program);
+                command.args([SERVE_COMMAND, &self.to_string()]);
+                Box::new(ProcessCamera::start(command, &self.to_string(), timeout)?)
+            }
+            Self::Native(kind, selection) => open(*kind, selection)?,
         })
+    }
+
+    /// Writes the frames of the camera to `out`, as docs/camera-stream.md has them, until that fails or the camera ends.
+    ///
+    /// # Errors
+    /// When the camera cannot be opened or read, or writing fails.
+    pub fn serve(&self, out: impl Write) -> Result<(), CameraError> {
+        let Self::Native(NativeKind::OpenNi2, selection) = self else {
+            let problem = "only a camera of kind openni2 is served".to_owned();
+            return Err(CameraError::BadHeader { place: self.to_string(), problem });
+        };
+        serve_openni(selection, &OpenNiSettings::default(), |info| {
+            let mut writer = StreamWriter::new(out, info)?;
+            Ok(move |frame: CameraFrame| writer.write(&frame))
+        })
+    }
+
+    fn native(kind: &str, which: Option<&str>) -> Option<Self> {
+        let kind = NativeKind::ALL.into_iter().find(|known| known.to_string() == kind)?;
+        let is_file =
+            |which: &str| which.contains('/') || RECORDING_ENDINGS.iter().any(|end| which.ends_with(end));
+        Some(Self::Native(
+            kind,
+            match which {
+                None => Selection::First,
+                Some(file) if is_file(file) => Selection::File(file.into()),
+                Some(serial) => Selection::Serial(serial.to_owned()),
+            },
+        ))
     }
 }
 
@@ -37,11 +89,15 @@ impl FromStr for CameraSpec {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        match text.split_once(':') {
-            Some(("stream", path)) if !path.is_empty() => Ok(Self::Stream(path.into())),
-            Some(("folder", path)) if !path.is_empty() => Ok(Self::Folder(path.into())),
-            _ => Err(format!("no camera '{text}', expected one of {KINDS}")),
-        }
+        let (kind, which) = text.split_once(':').map_or((text, None), |(kind, which)| (kind, Some(which)));
+        let camera = match (kind, which) {
+            (_, Some("")) => None,
+            ("stream", Some(path)) => Some(Self::Stream(path.into())),
+            ("folder", Some(path)) => Some(Self::Folder(path.into())),
+            ("kinect2-dump", Some(file)) => Some(Self::Kinect2Dump(file.into())),
+            _ => Self::native(kind, which),
+        };
+        camera.ok_or_else(|| format!("no camera '{text}', expected one of {KINDS}"))
     }
 }
 
@@ -50,6 +106,10 @@ impl fmt::Display for CameraSpec {
         match self {
             Self::Stream(path) => write!(f, "stream:{}", path.display()),
             Self::Folder(path) => write!(f, "folder:{}", path.display()),
+            Self::Kinect2Dump(file) => write!(f, "kinect2-dump:{}", file.display()),
+            Self::Native(kind, Selection::First) => kind.fmt(f),
+            Self::Native(kind, Selection::Serial(serial)) => write!(f, "{kind}:{serial}"),
+            Self::Native(kind, Selection::File(file)) => write!(f, "{kind}:{}", file.display()),
         }
     }
 }
@@ -60,13 +120,34 @@ mod tests {
 
     #[test]
     fn a_camera_is_named_by_kind_and_place() {
-        for text in ["stream:-", "stream:/tmp/camera", "folder:images"] {
+        for text in [
+            "stream:-",
+            "stream:/tmp/camera",
+            "folder:images",
+            "realsense",
+            "realsense:832112070255",
+            "realsense:drive.db3",
+            "freenect",
+            "orbbec",
+            "openni2",
+            "kinect2-dump:a.dump",
+        ] {
             assert_eq!(text.parse::<CameraSpec>().unwrap().to_string(), text);
         }
-        for text in ["", "stream", "folder:", "webcam"] {
+        let file = Selection::File("drive.db3".into());
+        assert_eq!("realsense:drive.db3".parse(), Ok(CameraSpec::Native(NativeKind::RealSense, file)));
+        for text in ["", "stream", "stream:", "folder:", "webcam", "realsense:", "kinect2-dump"] {
             assert!(
                 text.parse::<CameraSpec>().unwrap_err().starts_with(&format!("no camera '{text}', expected"))
             );
         }
+    }
+
+    #[test]
+    fn a_process_that_is_no_camera_is_named() {
+        let mut command = Command::new("echo");
+        command.arg("hello");
+        let error = ProcessCamera::start(command, "openni2", Duration::from_secs(5)).unwrap_err().to_string();
+        assert!(error.contains("openni2"), "{error}");
     }
 }

@@ -16,5 +16,5 @@ pub mod kobuki;
 mod serial_devices;
 
 pub use base_spec::{BaseSpec, KOBUKI_UDEV_PORT, KOBUKI_UDEV_RULE, kobuki_port};
-pub use camera_spec::CameraSpec;
+pub use camera_spec::{CameraSpec, SERVE_COMMAND};
 pub use serial_devices::{PortAccess, SerialDevice, serial_devices};

@@ -16,7 +16,7 @@ pub struct RunArgs {
     /// The base: kobuki, or kobuki:PORT.
     #[arg(long, value_name = "BASE", default_value = "kobuki")]
     pub base: BaseSpec,
-    /// The depth camera: stream:PATH (a pipe or FIFO of frames), folder:PATH (see docs/camera-stream.md).
+    /// The depth camera: realsense, freenect (Kinect v1), orbbec, openni2, stream:PATH, folder:PATH (docs/camera-stream.md), kinect2-dump:FILE; a serial number or recording may follow, as realsense:FILE.db3.
     #[arg(long, value_name = "CAMERA")]
     pub camera: CameraSpec,
     /// Intrinsics of the colour camera: those that the camera reports, or those of the robot file.

@@ -1,6 +1,7 @@
 //! The drivers of base and camera, in threads of their own.
 
 use crate::AppError;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
@@ -28,7 +29,7 @@ impl OpenCamera {
     /// # Errors
     /// When there is no such camera, or it cannot be used.
     pub fn open(spec: &CameraSpec) -> Result<Self, AppError> {
-        let camera = spec.open(CAMERA_TIMEOUT).map_err(|error| refused(spec, &error))?;
+        let camera = spec.open(CAMERA_TIMEOUT, &program()).map_err(|error| refused(spec, &error))?;
         Ok(Self { spec: spec.clone(), camera })
     }
 
@@ -37,6 +38,11 @@ impl OpenCamera {
     pub fn info(&self) -> &CameraInfo {
         self.camera.info()
     }
+}
+
+/// This program, which has the command `serve-camera`.
+fn program() -> PathBuf {
+    std::env::current_exe().unwrap_or_else(|_| "trundle".into())
 }
 
 fn refused(spec: &CameraSpec, error: &CameraError) -> AppError {
@@ -69,7 +75,7 @@ impl Drivers {
         let config = CameraThreadConfig { output: Some(output), ..CameraThreadConfig::default() };
         let OpenCamera { spec, camera } = camera;
         let mut first = Some(camera);
-        let factory = move || first.take().map_or_else(|| spec.open(CAMERA_TIMEOUT), Ok);
+        let factory = move || first.take().map_or_else(|| spec.open(CAMERA_TIMEOUT, &program()), Ok);
         let parts = CameraThreadParts {
             factory: Box::new(factory),
             sink: Box::new(send),
