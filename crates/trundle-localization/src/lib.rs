@@ -5,7 +5,7 @@
 //!   of their measurement, and yields the one [`trundle_core::PoseEstimate`] that planning and control use.
 //! - [`OdometryState`]: pose and covariance of the odometry at a stamp. With [`trundle_core::CameraMotion::of_base`] it is the
 //!   motion prior of visual tracking.
-//! - [`estimate_image_delay`], [`FloorView`], [`fit_wheels_and_camera`], [`fit_gyro`]: calibration by a recording.
+//! - [`estimate_image_delay`], [`FloorSearch`], [`fit_wheels_and_camera`], [`fit_gyro`]: calibration by a recording.
 //!
 //! ```
 //! use trundle_core::{DifferentialDrive, GyroRate, Pose3, Stamp, Vector3, WheelTicks};
@@ -35,7 +35,7 @@ mod planar;
 
 pub use calibration::batch::error::CalibrationError;
 pub use calibration::batch::estimate::Estimate;
-pub use calibration::batch::floor_plane::{FloorMount, FloorView};
+pub use calibration::batch::floor_plane::{FloorMount, FloorSearch, FloorView};
 pub use calibration::batch::gyro_angle::GyroAngle;
 pub use calibration::batch::gyro_fit::{GyroFit, fit_gyro};
 pub use calibration::batch::image_delay::{ImageDelay, estimate_image_delay};

@@ -7,6 +7,7 @@
 //! | the motion between two RGB-D frames, some pairs being wrong | [`estimate_rigid_motion`] |
 //! | the pose of a camera from points and pixels | [`estimate_pose_pnp`], [`refine_pose_by_reprojection`] |
 //! | the position of a feature to a tenth of a pixel | [`Template`] |
+//! | a camera by images of a calibration board | [`board`] |
 //! | which of thousands of images shows the same place | [`Vocabulary`], [`PlaceIndex`] |
 //!
 //! Everything is deterministic: the same input and seed give the same bits on any number of threads. Methods, sources and figures:
@@ -39,6 +40,7 @@
 //! ```
 
 mod alignment;
+pub mod board;
 mod feature_grid;
 mod features;
 mod matching;

@@ -6,7 +6,8 @@ use super::values::{CalibratedValue, Calibration};
 use crate::{AppError, StepProgress};
 use trundle_core::{RgbdImage, Vector3};
 use trundle_localization::{
-    CalibrationError, Estimate, FloorMount, FloorView, WheelCameraFit, fit_wheels_and_camera, turn_axis,
+    CalibrationError, Estimate, FloorMount, FloorSearch, FloorView, WheelCameraFit, fit_wheels_and_camera,
+    turn_axis,
 };
 use trundle_runtime::CameraMount;
 
@@ -29,12 +30,13 @@ pub fn calibrate_mount(
     input: &CalibrationInput,
     progress: &dyn StepProgress,
 ) -> Result<Calibration, AppError> {
-    let mut floor = FloorSearch::new(input);
-    let track = track_camera(input, progress, |image| floor.add(image))?;
-    let mount = floor.mount(input)?;
-    let up = floor.up();
+    let mut floor = FloorImages::new(input);
+    let track = track_camera(input, progress, |image| floor.add(image));
+    let views = floor.views()?;
+    let track = track?;
+    let up = views.iter().map(|view| view.up).sum::<Vector3>().normalize();
     let mut calibration = Calibration::default();
-    add_floor(&mut calibration, input, &mount);
+    add_floor(&mut calibration, input, &views);
     let axis = turn_axis(&track.poses, up);
     calibration.notes.extend(axis.as_ref().ok().and_then(|axis| axis_warning(axis.angle(&up))));
     let drive = &input.images.robot.drive;
@@ -47,54 +49,46 @@ pub fn calibrate_mount(
 }
 
 /// The floor in some of the images.
-struct FloorSearch<'a> {
+struct FloorImages<'a> {
     input: &'a CalibrationInput,
-    expected_up: Vector3,
+    search: FloorSearch,
     /// Images from one that is used to the next.
     step: usize,
     seen: usize,
-    tried: usize,
-    with_depth: usize,
-    views: Vec<FloorView>,
 }
 
-impl<'a> FloorSearch<'a> {
+impl<'a> FloorImages<'a> {
     fn new(input: &'a CalibrationInput) -> Self {
         let step = input.images.len().div_ceil(MAX_FLOOR_IMAGES).max(1);
-        let expected_up = input.expected_up();
-        Self { input, expected_up, step, seen: 0, tried: 0, with_depth: 0, views: Vec::new() }
+        Self { input, search: FloorSearch::new(input.expected_up()), step, seen: 0 }
     }
 
     fn add(&mut self, image: &RgbdImage) {
-        self.seen += 1;
-        if (self.seen - 1).is_multiple_of(self.step) {
-            self.tried += 1;
-            self.with_depth += usize::from(image.depth().data().iter().any(|depth| *depth > 0.0));
-            let camera = &self.input.images.camera.model.camera;
-            self.views.extend(FloorView::find(image.depth(), camera, self.expected_up));
+        if self.seen.is_multiple_of(self.step) {
+            self.search.add(image.depth(), &self.input.images.camera.model.camera);
         }
+        self.seen += 1;
     }
 
-    fn up(&self) -> Vector3 {
-        self.views.iter().map(|view| view.up).sum::<Vector3>().normalize()
-    }
-
-    fn mount(&self, input: &CalibrationInput) -> Result<FloorMount, AppError> {
-        let mount = FloorMount::of(&self.views).filter(|mount| mount.images >= MIN_FLOOR_IMAGES);
-        mount.ok_or_else(|| {
-            let Self { tried, with_depth, views, .. } = self;
-            let cause = if *with_depth == 0 { "no image has depth" } else { "the camera sees too little of it" };
-            let found = views.len();
-            input.refused(&format!(
-                "floor in {found} of {tried} images, expected {MIN_FLOOR_IMAGES} or more: {cause}; check the depth \
-                 camera, clear 2 m of floor before the robot, and set mount.pitch_deg to within 15 deg"
-            ))
-        })
+    /// The floor in each image that shows it.
+    fn views(&self) -> Result<Vec<FloorView>, AppError> {
+        let views = self.search.views();
+        if views.len() >= MIN_FLOOR_IMAGES {
+            return Ok(views);
+        }
+        let (tried, with_depth) = self.search.image_counts();
+        let cause = if with_depth == 0 { "no image has depth" } else { "the camera sees too little of it" };
+        let found = views.len();
+        Err(self.input.refused(&format!(
+            "floor in {found} of {tried} images, expected {MIN_FLOOR_IMAGES} or more: {cause}; check the depth camera, \
+             clear 2 m of floor before the robot, and set mount.pitch_deg to within 15 deg"
+        )))
     }
 }
 
-fn add_floor(calibration: &mut Calibration, input: &CalibrationInput, floor: &FloorMount) {
-    calibration.values.extend(floor_values(floor, &input.images.robot.mount));
+fn add_floor(calibration: &mut Calibration, input: &CalibrationInput, views: &[FloorView]) {
+    let Some(floor) = FloorMount::of(views) else { return };
+    calibration.values.extend(floor_values(&floor, &input.images.robot.mount));
     calibration.notes.push(format!("floor seen in {} images", floor.images));
 }
 

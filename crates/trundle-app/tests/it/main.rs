@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "workers of tests")]
 
 mod body;
+mod calibrate;
 mod checkpoint_writer;
 mod contact;
 mod files;

@@ -2,6 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "tests")]
 
+mod board;
+mod board_renderer;
 mod determinism;
 mod invariance;
 mod localisation;

@@ -1,8 +1,9 @@
 //! Height, pitch and roll of a camera from the floor in its depth images.
 //!
-//! Problem: the floor's plane in the camera frame from one depth image, with walls and objects in it. Idea: a plane `q * p = 1` gives
-//! an inverse depth `1/z = q * ray`, linear in q. Consensus of three pixels finds the floor \[Fischler81\]; reweighted least squares on
-//! the inverse depth refines it. Cost: 200 planes over some 2,000 pixels an image.
+//! Problem: the floor's plane in the camera frame from depth images with walls and objects in them. Idea: a plane `q * p = 1` gives an
+//! inverse depth `1/z = q * ray`, linear in q. Consensus of three pixels proposes a floor for each image \[Fischler81\]; the median over
+//! the images is right where most proposals are. From the median, each image's floor is refined by least squares on the inverse
+//! depth. Cost: 500 planes over some 1,000 samples an image.
 
 use super::estimate::Estimate;
 use super::planar_track::tilt_of;
@@ -37,8 +38,8 @@ pub struct FloorMount {
 const SAMPLE_STEP_PX: usize = 10;
 /// Largest depth of a sample: 4 m. Source: ours; the noise of depth grows with its square.
 const MAX_DEPTH_M: f64 = 4.0;
-/// Planes tried. Source: \[Fischler81\]: three of 20 % floor pixels are found with 80 % probability; a miss costs one image.
-const TRIALS: usize = 200;
+/// Planes tried in an image. Source: \[Fischler81\]: three of 20 % floor pixels are found with 98 % probability.
+const TRIALS: usize = 500;
 /// Distance from the plane within which a point supports it: 0.03 m. Source: ours.
 const SUPPORT_DISTANCE_M: f64 = 0.03;
 /// Fraction of the samples that must be floor: 0.1. Source: ours.
@@ -51,13 +52,67 @@ const MAX_TILT_ERROR_RAD: f64 = 0.35;
 const HEIGHT_RANGE_M: (f64, f64) = (0.05, 3.0);
 /// Rounds of the refinement. Source: ours.
 const ROUNDS: usize = 5;
+/// Largest angle of an image's floor to the median: 2 deg. Source: ours; the noise of a depth image is below 0.5 deg.
+const MAX_ANGLE_TO_MEDIAN_RAD: f64 = 0.035;
+/// Largest difference of an image's height to the median: 0.03 m. Source: ours.
+const MAX_HEIGHT_TO_MEDIAN_M: f64 = 0.03;
+
+/// The floor over the images of a recording.
+#[derive(Debug, Clone)]
+pub struct FloorSearch {
+    expected_up: Vector3,
+    /// Samples of each image, and the floor proposed by it.
+    images: Vec<(Vec<Vector3>, Option<FloorView>)>,
+}
+
+impl FloorSearch {
+    /// A search for a camera whose upward axis is about `expected_up` (camera frame), to 20 deg.
+    #[must_use]
+    pub fn new(expected_up: Vector3) -> Self {
+        Self { expected_up, images: Vec::new() }
+    }
+
+    /// Adds a depth image (m). Deterministic.
+    pub fn add(&mut self, depth: &DepthImage, camera: &PinholeCamera) {
+        let samples = samples(depth, camera);
+        let view = FloorView::propose(&samples, self.expected_up);
+        self.images.push((samples, view));
+    }
+
+    /// Number of images, and of those with enough depth.
+    #[must_use]
+    pub fn image_counts(&self) -> (usize, usize) {
+        let with_depth = self.images.iter().filter(|(samples, _)| samples.len() >= MIN_SAMPLES);
+        (self.images.len(), with_depth.count())
+    }
+
+    /// The floor in each image that shows it.
+    #[must_use]
+    pub fn views(&self) -> Vec<FloorView> {
+        let Some(median) = self.median() else { return Vec::new() };
+        let refined = |(samples, _): &(Vec<Vector3>, Option<FloorView>)| {
+            median.refined(samples).filter(|view| view.agrees(&median) && view.is_supported(samples))
+        };
+        self.images.iter().filter_map(refined).collect()
+    }
+
+    /// The median of all proposals, by component.
+    fn median(&self) -> Option<FloorView> {
+        let median = |value: &dyn Fn(&FloorView) -> f64| {
+            let mut values: Vec<f64> =
+                self.images.iter().filter_map(|(_, view)| view.as_ref()).map(value).collect();
+            values.sort_by(f64::total_cmp);
+            values.get(values.len() / 2).copied()
+        };
+        let up =
+            Vector3::new(median(&|view| view.up.x)?, median(&|view| view.up.y)?, median(&|view| view.up.z)?);
+        Some(FloorView { up: up.try_normalize(0.5)?, height: median(&|view| view.height)? })
+    }
+}
 
 impl FloorView {
-    /// The floor in a depth image (m), by a camera whose upward axis is about `expected_up`; `None` where no floor is seen.
-    /// Deterministic.
-    #[must_use]
-    pub fn find(depth: &DepthImage, camera: &PinholeCamera, expected_up: Vector3) -> Option<Self> {
-        let samples = samples(depth, camera);
+    /// The plane with the most support that lies like a floor; `None` where no floor is seen.
+    fn propose(samples: &[Vector3], expected_up: Vector3) -> Option<Self> {
         if samples.len() < MIN_SAMPLES {
             return None;
         }
@@ -65,13 +120,23 @@ impl FloorView {
         let mut draw = || samples[rng.random_range(0..samples.len())];
         let candidates = (0..TRIALS).filter_map(|_| Self::through([draw(), draw(), draw()]));
         let level = candidates.filter(|plane| plane.up.angle(&expected_up) <= MAX_TILT_ERROR_RAD);
-        let rated = level.map(|plane| (plane.support(&samples).count(), plane));
+        let rated = level.map(|plane| (plane.support(samples).count(), plane));
         let best = rated.fold(None::<(usize, Self)>, |best, next| match best {
             Some(best) if best.0 >= next.0 => Some(best),
             _ => Some(next),
         });
-        let (count, plane) = best?;
-        (count as f64 >= MIN_SUPPORT_RATIO * samples.len() as f64).then(|| plane.refined(&samples))?
+        let plane = best?.1.refined(samples)?;
+        plane.is_supported(samples).then_some(plane)
+    }
+
+    fn is_supported(&self, samples: &[Vector3]) -> bool {
+        samples.len() >= MIN_SAMPLES
+            && self.support(samples).count() as f64 >= MIN_SUPPORT_RATIO * samples.len() as f64
+    }
+
+    fn agrees(&self, other: &Self) -> bool {
+        self.up.angle(&other.up) <= MAX_ANGLE_TO_MEDIAN_RAD
+            && (self.height - other.height).abs() <= MAX_HEIGHT_TO_MEDIAN_M
     }
 
     fn through(points: [Vector3; 3]) -> Option<Self> {

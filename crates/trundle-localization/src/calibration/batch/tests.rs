@@ -2,7 +2,7 @@
 
 use super::error::CalibrationError;
 use super::estimate::Estimate;
-use super::floor_plane::{FloorMount, FloorView};
+use super::floor_plane::{FloorMount, FloorSearch};
 use super::gyro_angle::GyroAngle;
 use super::gyro_fit::fit_gyro;
 use super::image_delay::estimate_image_delay;
@@ -248,7 +248,9 @@ fn the_floor_gives_height_and_tilt_with_a_wall_in_view_and_a_wrong_mount() {
     let truth = Truth::default();
     let up = up_of(truth.base_from_camera);
     let wrong_up = (up + Vector3::new(0.1, 0.0, 0.15)).normalize();
-    let view = FloorView::find(&room(&camera, up, 0.5), &camera, wrong_up).unwrap();
+    let mut search = FloorSearch::new(wrong_up);
+    search.add(&room(&camera, up, 0.5), &camera);
+    let view = search.views()[0];
     assert!((view.height - 0.5).abs() < 0.002 && view.up.angle(&up) < 0.002, "{view:?}");
     let mount = FloorMount::of(&[view]).unwrap();
     assert!((mount.pitch.value - 0.2).abs() < 0.002 && (mount.roll.value - 0.03).abs() < 0.002, "{mount:?}");
@@ -258,9 +260,10 @@ fn the_floor_gives_height_and_tilt_with_a_wall_in_view_and_a_wrong_mount() {
 fn no_floor_is_found_without_depth_and_before_a_wall() {
     let camera = PinholeCamera::kinect_v2();
     let up = up_of(Truth::default().base_from_camera);
-    let zero = DepthImage::filled(camera.width(), camera.height(), 0.0);
-    assert_eq!(FloorView::find(&zero, &camera, up), None);
-    let wall = DepthImage::filled(camera.width(), camera.height(), 1.0);
-    assert_eq!(FloorView::find(&wall, &camera, up), None);
+    for (depth, with_depth) in [(0.0, 0), (1.0, 1)] {
+        let mut search = FloorSearch::new(up);
+        search.add(&DepthImage::filled(camera.width(), camera.height(), depth), &camera);
+        assert_eq!((search.views(), search.image_counts()), (vec![], (1, with_depth)));
+    }
     assert_eq!(FloorMount::of(&[]), None);
 }

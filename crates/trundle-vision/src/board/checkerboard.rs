@@ -1,0 +1,177 @@
+//! A checkerboard in an image.
+//!
+//! Problem: which of the saddle points of an image are the corners of the board, and which is which. Idea \[Geiger12, sec. III-B\]:
+//! from a seed and its neighbours the grid grows corner by corner, each where its neighbours predict it. Of all seeds the grid of the
+//! right size counts. Cost: O(corners^2).
+
+use super::board_view::{BoardPoint, BoardProblem, BoardView};
+use super::corner_refinement::refine_corner;
+use super::saddle_points::{SaddlePoint, saddle_points};
+use super::smooth_image::SmoothImage;
+use std::collections::BTreeMap;
+use trundle_core::{GrayImage, Vector2};
+
+/// Blur before the search, px: noise makes saddles of its own. Source: ours.
+const SEARCH_BLUR_PX: f32 = 1.5;
+/// Blur before the refinement, px. Source: ours.
+const REFINEMENT_BLUR_PX: f32 = 0.7;
+/// Seeds that are tried. Source: ours.
+const MAX_SEEDS: usize = 30;
+/// Distance of a corner from its prediction, over the side of a square. Source: ours.
+const MAX_PREDICTION_ERROR: f64 = 0.3;
+/// Radius of the refinement over the distance to the nearest corner. Source: ours; a larger one would meet the next corner.
+const REFINEMENT_RADIUS_RATIO: f64 = 0.4;
+/// Smallest and largest radius of the refinement, px. Source: ours.
+const REFINEMENT_RADIUS_PX: (f64, f64) = (3.0, 9.0);
+
+/// The corners of a checkerboard with this number of inner corners (columns, rows) and squares of `square` m.
+pub(super) fn find_checkerboard(
+    image: &GrayImage,
+    size: (usize, usize),
+    square: f64,
+) -> Result<BoardView, BoardProblem> {
+    let expected = || {
+        let (columns, rows) = size;
+        format!("a checkerboard of {columns} x {rows} inner corners")
+    };
+    let corners = saddle_points(&SmoothImage::new(image, SEARCH_BLUR_PX));
+    let mut largest: Option<Grid> = None;
+    for seed in 0..corners.len().min(MAX_SEEDS) {
+        let Some(grid) = Grid::grow(&corners, seed) else { continue };
+        if let Some(ordered) = grid.ordered(size) {
+            let smooth = SmoothImage::new(image, REFINEMENT_BLUR_PX);
+            return Ok(view(&smooth, &ordered, size, square));
+        }
+        if largest.as_ref().is_none_or(|largest| grid.cells.len() > largest.cells.len()) {
+            largest = Some(grid);
+        }
+    }
+    match largest.map(|grid| grid.size()) {
+        Some((columns, rows)) if columns > 2 && rows > 2 => {
+            Err(BoardProblem::WrongSize { columns, rows, expected: expected() })
+        }
+        _ => Err(BoardProblem::NoBoard { expected: expected() }),
+    }
+}
+
+/// The corners, refined where that is possible.
+fn view(image: &SmoothImage, pixels: &[Vector2], (columns, _): (usize, usize), square: f64) -> BoardView {
+    let nearest = |at: &Vector2| {
+        let distances = pixels.iter().map(|other| (other - at).norm()).filter(|distance| *distance > 0.0);
+        distances.fold(f64::MAX, f64::min)
+    };
+    let point = |(i, pixel): (usize, &Vector2)| {
+        let radius = REFINEMENT_RADIUS_RATIO * nearest(pixel);
+        let radius = radius.clamp(REFINEMENT_RADIUS_PX.0, REFINEMENT_RADIUS_PX.1);
+        let board = Vector2::new((i % columns) as f64, (i / columns) as f64) * square;
+        Some(BoardPoint { board, pixel: refine_corner(image, *pixel, radius)? })
+    };
+    BoardView { points: pixels.iter().enumerate().filter_map(point).collect() }
+}
+
+/// Cell of a grid: column and row, from the seed.
+type GridCell = (i32, i32);
+
+/// Steps to the four neighbours of a cell.
+const STEPS: [GridCell; 4] = [(1, 0), (0, 1), (-1, 0), (0, -1)];
+
+/// Corners in a grid.
+struct Grid {
+    cells: BTreeMap<GridCell, Vector2>,
+}
+
+impl Grid {
+    /// The grid that grows from a seed; `None` where the seed has no neighbours in two directions.
+    fn grow(corners: &[SaddlePoint], seed: usize) -> Option<Self> {
+        let origin = corners[seed].pixel;
+        let (along, across) = axes(corners, origin)?;
+        let mut grid = Self { cells: BTreeMap::from([((0, 0), origin)]) };
+        let mut open = vec![(0, 0)];
+        while let Some(cell) = open.pop() {
+            for step in STEPS {
+                let next = (cell.0 + step.0, cell.1 + step.1);
+                if grid.cells.contains_key(&next) {
+                    continue;
+                }
+                let (predicted, side) = grid.prediction(cell, step, (along, across));
+                let (distance, found) = nearest(corners, predicted)?;
+                if distance <= MAX_PREDICTION_ERROR * side
+                    && !grid.cells.values().any(|pixel| *pixel == found)
+                {
+                    grid.cells.insert(next, found);
+                    open.push(next);
+                }
+            }
+        }
+        Some(grid)
+    }
+
+    /// Where the neighbour of a cell is expected, px, and the side of a square there, px.
+    fn prediction(
+        &self,
+        cell: GridCell,
+        step: GridCell,
+        (along, across): (Vector2, Vector2),
+    ) -> (Vector2, f64) {
+        let here = self.cells[&cell];
+        let before = self.cells.get(&(cell.0 - step.0, cell.1 - step.1)).map(|before| here - before);
+        // A neighbour to the side shows the same step.
+        let side = [(step.1, step.0), (-step.1, -step.0)].into_iter().find_map(|(dx, dy)| {
+            let (from, to) = ((cell.0 + dx, cell.1 + dy), (cell.0 + dx + step.0, cell.1 + dy + step.1));
+            Some(self.cells.get(&to)? - self.cells.get(&from)?)
+        });
+        let start = along * f64::from(step.0) + across * f64::from(step.1);
+        let motion = match (side, before) {
+            (Some(side), Some(before)) => (side + before) / 2.0,
+            (Some(motion), None) | (None, Some(motion)) => motion,
+            (None, None) => start,
+        };
+        (here + motion, motion.norm())
+    }
+
+    /// Columns and rows of the bounding rectangle.
+    fn size(&self) -> (usize, usize) {
+        let span = |value: &dyn Fn(&GridCell) -> i32| {
+            let values = self.cells.keys().map(value);
+            values.clone().max().unwrap_or(0) - values.min().unwrap_or(0) + 1
+        };
+        (span(&|cell| cell.0) as usize, span(&|cell| cell.1) as usize)
+    }
+
+    /// The pixels row by row, right-handed as seen from the front; `None` where the grid is not whole or of another size.
+    fn ordered(&self, (columns, rows): (usize, usize)) -> Option<Vec<Vector2>> {
+        let turned = self.size() == (rows, columns) && rows != columns;
+        if self.cells.len() != columns * rows || !(turned || self.size() == (columns, rows)) {
+            return None;
+        }
+        let first = |value: &dyn Fn(&GridCell) -> i32| self.cells.keys().map(value).min();
+        let (x0, y0) = (first(&|cell| cell.0)?, first(&|cell| cell.1)?);
+        let at = |column: usize, row: usize| {
+            let (x, y) = if turned { (row, column) } else { (column, row) };
+            self.cells.get(&(x0 + x as i32, y0 + y as i32)).copied()
+        };
+        let is_mirrored = {
+            let (origin, right, down) = (at(0, 0)?, at(1, 0)?, at(0, 1)?);
+            (right - origin).perp(&(down - origin)) < 0.0
+        };
+        let column = |x: usize| if is_mirrored { columns - 1 - x } else { x };
+        (0..columns * rows).map(|i| at(column(i % columns), i / columns)).collect()
+    }
+}
+
+/// The steps from a corner to its nearest neighbour and to the nearest one in another direction.
+fn axes(corners: &[SaddlePoint], origin: Vector2) -> Option<(Vector2, Vector2)> {
+    let mut steps: Vec<Vector2> =
+        corners.iter().map(|corner| corner.pixel - origin).filter(|step| step.norm() > 0.0).collect();
+    steps.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
+    let along = *steps.first()?;
+    let is_across = |step: &&Vector2| step.perp(&along).abs() > 0.5 * step.norm() * along.norm();
+    let across = *steps.iter().find(is_across)?;
+    Some((along, across))
+}
+
+/// The corner nearest to a position, and its distance, px.
+fn nearest(corners: &[SaddlePoint], at: Vector2) -> Option<(f64, Vector2)> {
+    let distances = corners.iter().map(|corner| ((corner.pixel - at).norm(), corner.pixel));
+    distances.min_by(|a, b| a.0.total_cmp(&b.0))
+}

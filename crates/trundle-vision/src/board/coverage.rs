@@ -1,0 +1,71 @@
+//! How well views of a board determine a camera.
+
+use trundle_core::Vector2;
+
+/// How well views of a board cover the image and the tilts of the board.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coverage {
+    /// Views that were used.
+    pub views: usize,
+    /// Largest angle of the board to the image plane, deg.
+    pub max_tilt_deg: f64,
+    /// Fraction of the image's cells, 4 x 4, that hold corners, 0 to 1.
+    pub cells: f64,
+}
+
+/// Cells along each side of the image. Source: ours.
+const CELLS: usize = 4;
+/// Number of views below which a warning is given. Source: \[Zhang00, fig. 2\]: the error falls slowly above ten.
+const FEW_VIEWS: usize = 10;
+/// Tilt below which a warning is given, deg. Source: \[Zhang00, fig. 3\]: the error is smallest at 45 deg.
+const LOW_TILT_DEG: f64 = 25.0;
+/// Fraction of cells below which a warning is given. Source: ours.
+const FEW_CELLS: f64 = 0.7;
+
+impl Coverage {
+    pub(super) fn of(
+        views: usize,
+        tilts_deg: impl Iterator<Item = f64>,
+        pixels: impl Iterator<Item = Vector2>,
+        (width, height): (usize, usize),
+    ) -> Self {
+        let mut seen = [[false; CELLS]; CELLS];
+        let cell = |at: f64, size: usize| {
+            ((at + 0.5) / size as f64 * CELLS as f64).clamp(0.0, CELLS as f64 - 1.0) as usize
+        };
+        for pixel in pixels {
+            seen[cell(pixel.y, height)][cell(pixel.x, width)] = true;
+        }
+        let count = seen.iter().flatten().filter(|is_seen| **is_seen).count();
+        Self {
+            views,
+            max_tilt_deg: tilts_deg.fold(0.0, f64::max),
+            cells: count as f64 / (CELLS * CELLS) as f64,
+        }
+    }
+
+    /// What to improve, one sentence each; empty where nothing is missing.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let Self { views, max_tilt_deg, cells } = *self;
+        if views < FEW_VIEWS {
+            warnings.push(format!("{views} images were used, expected {FEW_VIEWS} or more: take more"));
+        }
+        if max_tilt_deg < LOW_TILT_DEG {
+            warnings.push(format!(
+                "the board is tilted by {max_tilt_deg:.0} deg at most, expected {LOW_TILT_DEG} deg or more: the focal \
+                 length is uncertain; tilt the board about both axes"
+            ));
+        }
+        if cells < FEW_CELLS {
+            warnings.push(format!(
+                "corners lie in {:.0} % of the image, expected {:.0} % or more: the lens is uncertain; move the board to \
+                 the borders",
+                cells * 100.0,
+                FEW_CELLS * 100.0
+            ));
+        }
+        warnings
+    }
+}

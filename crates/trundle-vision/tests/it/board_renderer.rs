@@ -1,0 +1,134 @@
+//! Images of a board by a known camera: anti-aliased, blurred, noisy. Shares the camera's model with no code of the calibration.
+
+use nalgebra::UnitQuaternion;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use trundle_core::{GrayImage, PinholeCamera, Pose3, Vector2, Vector3};
+
+/// Brightness on a sheet about its middle, m.
+pub struct Pattern {
+    /// Grey value at a position; `None` off the sheet.
+    paint: Box<dyn Fn(Vector2) -> Option<f64>>,
+    /// Half width and half height of the sheet, m.
+    half: Vector2,
+    /// From the middle to the first corner, m.
+    first: Vector2,
+}
+
+/// How an image is taken.
+pub struct Shot {
+    /// Standard deviation of the blur, px.
+    pub blur_px: f64,
+    /// Standard deviation of the noise, grey values.
+    pub noise: f64,
+    /// Seed of the noise.
+    pub seed: u64,
+}
+
+/// Samples along each side of a pixel.
+const SAMPLES: usize = 4;
+
+impl Pattern {
+    /// A checkerboard with this number of inner corners, a white margin of one square.
+    pub fn checkerboard((columns, rows): (usize, usize), square: f64) -> Self {
+        let cells = Vector2::new(columns as f64 + 1.0, rows as f64 + 1.0);
+        let half = (cells / 2.0 + Vector2::repeat(1.0)) * square;
+        let paint = move |at: Vector2| {
+            let cell = at / square + cells / 2.0;
+            if cell.x < -1.0 || cell.y < -1.0 || cell.x > cells.x + 1.0 || cell.y > cells.y + 1.0 {
+                return None;
+            }
+            let is_inside = cell.x >= 0.0 && cell.y >= 0.0 && cell.x < cells.x && cell.y < cells.y;
+            let is_dark = is_inside && (cell.x.floor() + cell.y.floor()) as i64 % 2 == 0;
+            Some(if is_dark { 35.0 } else { 215.0 })
+        };
+        let first = (Vector2::repeat(1.0) - cells / 2.0) * square;
+        Self { paint: Box::new(paint), half, first }
+    }
+
+    /// A pattern of other paint.
+    pub fn new(half: Vector2, first: Vector2, paint: impl Fn(Vector2) -> Option<f64> + 'static) -> Self {
+        Self { paint: Box::new(paint), half, first }
+    }
+
+    /// The board's frame at its first corner.
+    pub fn camera_from_first_corner(&self, camera_from_sheet: &Pose3) -> Pose3 {
+        let shift = Vector3::new(self.first.x, self.first.y, 0.0);
+        *camera_from_sheet * Pose3::new(UnitQuaternion::identity(), shift)
+    }
+
+    /// The board's frame at the opposite corner, turned by 180 deg: as good for a checkerboard.
+    pub fn camera_from_last_corner(&self, camera_from_sheet: &Pose3) -> Pose3 {
+        let turn = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::PI);
+        let shift = Vector3::new(-self.first.x, -self.first.y, 0.0);
+        *camera_from_sheet * Pose3::new(turn, shift)
+    }
+}
+
+/// Poses `camera_from_sheet` about the image, tilted by up to `tilt` rad about both axes.
+pub fn poses(pattern: &Pattern, tilt: f64, count: usize) -> Vec<Pose3> {
+    let pose = |i: usize| {
+        let phase = i as f64 * 2.399_963;
+        let (sin, cos) = phase.sin_cos();
+        let turn = UnitQuaternion::from_euler_angles(tilt * sin, tilt * cos, 0.25 * (1.7 * phase).sin());
+        let far = pattern.half.norm() * (2.6 + 0.5 * (0.9 * phase).cos());
+        let aside = Vector2::new((1.3 * phase).cos() * 0.32, (1.3 * phase).sin() * 0.22) * far;
+        Pose3::new(turn, Vector3::new(aside.x, aside.y, far))
+    };
+    (0..count).map(pose).collect()
+}
+
+/// The image of a sheet at `camera_from_sheet`.
+pub fn render(
+    camera: &PinholeCamera,
+    camera_from_sheet: &Pose3,
+    pattern: &Pattern,
+    shot: &Shot,
+) -> GrayImage {
+    let (width, height) = (camera.width(), camera.height());
+    let sharp: Vec<f64> = (0..width * height)
+        .map(|i| {
+            let pixel = Vector2::new((i % width) as f64, (i / width) as f64);
+            let sample = |k: usize| {
+                let offset = Vector2::new((k % SAMPLES) as f64, (k / SAMPLES) as f64);
+                let offset = (offset + Vector2::repeat(0.5)) / SAMPLES as f64 - Vector2::repeat(0.5);
+                brightness(camera, camera_from_sheet, pattern, pixel + offset)
+            };
+            (0..SAMPLES * SAMPLES).map(sample).sum::<f64>() / (SAMPLES * SAMPLES) as f64
+        })
+        .collect();
+    let blurred = blurred(&sharp, (width, height), shot.blur_px);
+    let mut rng = ChaCha8Rng::seed_from_u64(shot.seed);
+    let mut noise = || shot.noise * ((0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0);
+    let data = blurred.iter().map(|value| (value + noise()).round().clamp(0.0, 255.0) as u8).collect();
+    GrayImage::new(width, height, data).unwrap()
+}
+
+fn brightness(camera: &PinholeCamera, camera_from_sheet: &Pose3, pattern: &Pattern, pixel: Vector2) -> f64 {
+    let ray = camera.unproject(camera.undistort(pixel), 1.0);
+    let sheet_from_camera = camera_from_sheet.inverse();
+    let (from, along) = (sheet_from_camera.translation, sheet_from_camera.rotate(ray));
+    let at = from - along * (from.z / along.z);
+    // A room of mild texture behind the sheet.
+    let room = 110.0 + 25.0 * (pixel.x / 37.0).sin() * (pixel.y / 53.0).cos();
+    (pattern.paint)(Vector2::new(at.x, at.y)).unwrap_or(room)
+}
+
+fn blurred(values: &[f64], (width, height): (usize, usize), sigma: f64) -> Vec<f64> {
+    let weights: Vec<f64> = (-3..=3).map(|i| (-0.5 * (f64::from(i) / sigma).powi(2)).exp()).collect();
+    let sum: f64 = weights.iter().sum();
+    let pass = |values: &[f64], (dx, dy): (i64, i64)| -> Vec<f64> {
+        (0..width * height)
+            .map(|i| {
+                let (x, y) = ((i % width) as i64, (i / width) as i64);
+                let value = |k: i64| {
+                    let x = (x + dx * k).clamp(0, width as i64 - 1) as usize;
+                    let y = (y + dy * k).clamp(0, height as i64 - 1) as usize;
+                    values[y * width + x]
+                };
+                (-3..=3).map(|k| weights[(k + 3) as usize] * value(k)).sum::<f64>() / sum
+            })
+            .collect()
+    };
+    pass(&pass(values, (1, 0)), (0, 1))
+}
