@@ -1,5 +1,6 @@
 //! The commands of `trundle`.
 
+use crate::calibrate::CalibrateArgs;
 use crate::data::DataArgs;
 use crate::demo::DemoArgs;
 use crate::devices::{DevicesArgs, ServeCameraArgs};
@@ -46,6 +47,8 @@ pub enum Command {
     Slam(SlamArgs),
     /// Draw the map of a laser log, a ROS 2 bag or an RGB-D folder.
     Map(MapArgs),
+    /// Measure the robot's own numbers: camera, mount, wheels, image delay.
+    Calibrate(CalibrateArgs),
     /// Judge a trajectory or a map against the truth.
     Eval(EvalArgs),
     /// Plan on a map: way-points, curve and trajectory.

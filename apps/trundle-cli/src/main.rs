@@ -1,5 +1,6 @@
 //! The program `trundle`: command line of the crates.
 
+mod calibrate;
 mod checkpoint_file;
 mod command_line;
 mod common_args;
@@ -46,9 +47,11 @@ fn main() -> ExitCode {
 
 /// Takes Ctrl-C as a request where the command has long loops, which read it; else it ends the program.
 fn listen(command: &Command) -> Result<(), AppError> {
-    use Command::{Demo, Experiment, Map, Replay, Run, Sim, Slam};
+    use Command::{Calibrate, Demo, Experiment, Map, Replay, Run, Sim, Slam};
     match command {
-        Demo(_) | Run(_) | Replay(_) | Slam(_) | Map(_) | Sim(_) | Experiment(_) => stop::listen(),
+        Calibrate(_) | Demo(_) | Run(_) | Replay(_) | Slam(_) | Map(_) | Sim(_) | Experiment(_) => {
+            stop::listen()
+        }
         _ => stop::end_at_once(|signal| {
             let is_ending = abandon_outputs();
             if is_ending {
@@ -74,6 +77,7 @@ fn run_command(cli: Cli) -> Result<Outcome, AppError> {
         Command::Replay(args) => with_threads(&args.common, || replay::run(&args)),
         Command::Slam(args) => with_threads(&args.common, || slam::run(&args)),
         Command::Map(args) => with_threads(&args.common, || map::run(&args)),
+        Command::Calibrate(args) => with_threads(args.common(), || calibrate::run(&args)),
         Command::Eval(args) => with_threads(args.common(), || eval::run(&args)),
         Command::Plan(args) => with_threads(&args.common, || plan::run(&args)),
         Command::Sim(args) => with_threads(&args.common, || sim::run(&args)),

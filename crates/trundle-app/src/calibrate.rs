@@ -3,6 +3,7 @@
 //! Each function reads its input, fits, and returns a [`Calibration`]: values with standard deviations beside the values in use.
 //! [`Calibration::write`] changes exactly these keys of a robot file. See `docs/how-to/calibrate.md`.
 
+mod camera;
 mod camera_track;
 mod delay;
 mod mount;
@@ -11,6 +12,7 @@ mod robot_file_update;
 mod values;
 mod wheels;
 
+pub use camera::{BoardRequest, CameraCalibration, calibrate_board};
 pub use delay::calibrate_delay;
 pub use mount::{calibrate_mount, floor_values};
 pub use recording::CalibrationInput;

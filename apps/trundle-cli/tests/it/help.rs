@@ -3,12 +3,17 @@
 use crate::program::{refusal, trundle};
 
 /// Every command and subcommand.
-const COMMANDS: [&[&str]; 31] = [
+const COMMANDS: [&[&str]; 36] = [
     &[],
     &["demo"],
     &["replay"],
     &["slam"],
     &["map"],
+    &["calibrate"],
+    &["calibrate", "camera"],
+    &["calibrate", "mount"],
+    &["calibrate", "wheels"],
+    &["calibrate", "delay"],
     &["eval"],
     &["eval", "trajectory"],
     &["eval", "relations"],

@@ -36,8 +36,8 @@ pub fn calibrate_mount(
     let track = track?;
     let up = views.iter().map(|view| view.up).sum::<Vector3>().normalize();
     let mut calibration = Calibration::default();
-    add_floor(&mut calibration, input, &views);
     let axis = turn_axis(&track.poses, up);
+    add_floor(&mut calibration, input, &views, axis.as_ref().ok());
     calibration.notes.extend(axis.as_ref().ok().and_then(|axis| axis_warning(axis.angle(&up))));
     let drive = &input.images.robot.drive;
     let fit = axis.and_then(|_| fit_wheels_and_camera(&track.poses, up, &input.wheels(), drive));
@@ -86,8 +86,13 @@ impl<'a> FloorImages<'a> {
     }
 }
 
-fn add_floor(calibration: &mut Calibration, input: &CalibrationInput, views: &[FloorView]) {
-    let Some(floor) = FloorMount::of(views) else { return };
+fn add_floor(
+    calibration: &mut Calibration,
+    input: &CalibrationInput,
+    views: &[FloorView],
+    axis: Option<&Vector3>,
+) {
+    let Some(floor) = FloorMount::of(views, axis) else { return };
     calibration.values.extend(floor_values(&floor, &input.images.robot.mount));
     calibration.notes.push(format!("floor seen in {} images", floor.images));
 }

@@ -1,11 +1,28 @@
 //! Keys of a robot file set in place: other keys, comments and order stay.
 
-use super::values::CalibratedValue;
+use super::values::{CalibratedValue, Calibration};
 use crate::{AppError, read_text};
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, Table, Value};
 use trundle_io::replace_file;
 use trundle_runtime::settings::RobotFile;
+
+impl Calibration {
+    /// Sets the found keys in a robot file. All other keys and comments stay; a file that does not exist is created.
+    ///
+    /// # Errors
+    /// When the file is no robot file, a found value is outside the range of its key, or the file cannot be written; it is unchanged
+    /// then.
+    pub fn write(&self, file: &Path) -> Result<(), AppError> {
+        let keys: Vec<&CalibratedValue> = self.values.iter().filter(|value| value.is_key).collect();
+        if keys.is_empty() {
+            let problem =
+                format!("{}: nothing to write: the recording shows no value of a robot file", file.display());
+            return Err(AppError::Input(problem));
+        }
+        update_robot_file(file, &keys)
+    }
+}
 
 /// Sets keys of a robot file, or creates the file with them. The file is replaced whole, or stays as it is.
 pub(super) fn update_robot_file(file: &Path, values: &[&CalibratedValue]) -> Result<(), AppError> {

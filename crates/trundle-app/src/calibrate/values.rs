@@ -1,15 +1,11 @@
 //! Calibrated values beside the values in use: the table and the robot file.
 
-use super::robot_file_update::update_robot_file;
-use crate::AppError;
-use std::path::Path;
-
 /// A calibrated value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CalibratedValue {
     /// Name: for a key of the robot file the key.
     pub name: String,
-    /// Whether the name is a key of the robot file, which [`Calibration::write`] sets.
+    /// Whether the name is a key of the robot file, which `Calibration::write` sets.
     pub is_key: bool,
     /// The value.
     pub value: f64,
@@ -83,20 +79,5 @@ impl Calibration {
     pub fn rows(&self) -> Vec<Vec<String>> {
         let head = ["value of", "found", "std. dev.", "unit", "in use"].map(str::to_owned).to_vec();
         std::iter::once(head).chain(self.values.iter().map(CalibratedValue::row)).collect()
-    }
-
-    /// Sets the found keys in a robot file. All other keys and comments stay; a file that does not exist is created.
-    ///
-    /// # Errors
-    /// When the file is no robot file, a found value is outside the range of its key, or the file cannot be written; it is unchanged
-    /// then.
-    pub fn write(&self, file: &Path) -> Result<(), AppError> {
-        let keys: Vec<&CalibratedValue> = self.values.iter().filter(|value| value.is_key).collect();
-        if keys.is_empty() {
-            let problem =
-                format!("{}: nothing to write: the recording shows no value of a robot file", file.display());
-            return Err(AppError::Input(problem));
-        }
-        update_robot_file(file, &keys)
     }
 }

@@ -3,6 +3,7 @@
 
 mod body;
 mod calibrate;
+mod calibrate_camera;
 mod checkpoint_writer;
 mod contact;
 mod files;

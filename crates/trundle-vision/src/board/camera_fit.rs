@@ -13,8 +13,8 @@
 //! | R, t | `camera_from_board` | m |
 
 use super::board_view::{BoardPoint, BoardView};
-use super::camera_parameters::{CameraParameters, LensModel, PARAMETERS};
-use super::coverage::Coverage;
+use super::camera_parameters::{CameraParameters, LensModel, PARAMETER_COUNT};
+use super::coverage::BoardCoverage;
 use super::homography::homography;
 use nalgebra::{DMatrix, DVector, Matrix2, Matrix3, Matrix6, SMatrix, Vector6};
 use thiserror::Error;
@@ -26,7 +26,7 @@ pub struct CameraFit {
     /// The camera.
     pub parameters: CameraParameters,
     /// Standard deviation of each parameter; 0 where it was not estimated.
-    pub sigmas: [f64; PARAMETERS],
+    pub sigmas: [f64; PARAMETER_COUNT],
     /// Root mean square of the reprojection error over both axes, px.
     pub residual_px: f64,
     /// The same for each view, by index into the given views; `None` of a rejected view.
@@ -34,7 +34,7 @@ pub struct CameraFit {
     /// Views that were left out.
     pub rejected: Vec<RejectedView>,
     /// How well the views cover the image and the tilts of the board.
-    pub coverage: Coverage,
+    pub coverage: BoardCoverage,
 }
 
 /// A view that was left out.
@@ -79,9 +79,9 @@ const MIN_VIEWS: usize = 3;
 /// Smallest tilt of the board in the most tilted view: 10 deg. Source: ours; \[Zhang00, fig. 3\] finds errors to grow fast below it.
 const MIN_TILT_DEG: f64 = 10.0;
 /// Rounds of Levenberg-Marquardt. Source: ours.
-const ROUNDS: usize = 60;
+const MAX_STEP_COUNT: usize = 60;
 /// Relative change of the cost at which the fit has converged. Source: ours.
-const CONVERGED: f64 = 1e-10;
+const CONVERGED_RATIO: f64 = 1e-10;
 /// Largest residual of a view, over the median of all views. Source: ours.
 const MAX_RESIDUAL_RATIO: f64 = 4.0;
 /// Residual of a view that is never rejected: 0.5 px. Source: ours.
@@ -225,7 +225,7 @@ fn pose_of_plane(plane: &Matrix3<f64>, focal: Vector2, centre: Vector2) -> Optio
 /// The result of the minimisation.
 struct Optimum {
     parameters: CameraParameters,
-    sigmas: [f64; PARAMETERS],
+    sigmas: [f64; PARAMETER_COUNT],
     residual_px: f64,
 }
 
@@ -252,7 +252,7 @@ struct Reduced {
     camera: DMatrix<f64>,
     gradient: DVector<f64>,
     /// Of each view: inverse of the pose's information, gradient of the pose, coupling.
-    views: Vec<(Matrix6<f64>, Vector6<f64>, SMatrix<f64, PARAMETERS, 6>)>,
+    views: Vec<(Matrix6<f64>, Vector6<f64>, SMatrix<f64, PARAMETER_COUNT, 6>)>,
 }
 
 /// Levenberg-Marquardt over camera and poses.
@@ -262,11 +262,11 @@ fn optimized(start: CameraParameters, views: &mut [PosedView], lens: LensModel) 
         views.iter().map(|view| parameters.squares(view)).sum()
     };
     let (mut now, mut damping) = (cost(&parameters, views), 1e-3);
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_STEP_COUNT {
         let Some((next, moved)) = step(&parameters, views, lens, damping) else { break };
         let then = cost(&next, &moved);
         if then.is_finite() && then < now {
-            let is_converged = now - then < CONVERGED * now;
+            let is_converged = now - then < CONVERGED_RATIO * now;
             (parameters, now, damping) = (next, then, damping * 0.1);
             views.clone_from_slice(&moved);
             if is_converged {
@@ -308,7 +308,7 @@ fn step(
     for (value, change) in next.0.iter_mut().zip(delta.iter()) {
         *value += change;
     }
-    let full = SMatrix::<f64, PARAMETERS, 1>::from_fn(|i, _| delta.get(i).copied().unwrap_or(0.0));
+    let full = SMatrix::<f64, PARAMETER_COUNT, 1>::from_fn(|i, _| delta.get(i).copied().unwrap_or(0.0));
     let moved = views.iter().zip(&reduced.views).map(|(view, (inverse, gradient, coupling))| {
         let change = -inverse * (gradient + coupling.transpose() * full);
         PosedView { camera_from_board: view.camera_from_board * Pose3::exp(change), ..view.clone() }
@@ -323,13 +323,13 @@ fn reduced(
     lens: LensModel,
     damping: f64,
 ) -> Option<Reduced> {
-    let mut camera = SMatrix::<f64, PARAMETERS, PARAMETERS>::zeros();
-    let mut gradient = SMatrix::<f64, PARAMETERS, 1>::zeros();
+    let mut camera = SMatrix::<f64, PARAMETER_COUNT, PARAMETER_COUNT>::zeros();
+    let mut gradient = SMatrix::<f64, PARAMETER_COUNT, 1>::zeros();
     let (mut eliminated, mut eliminated_gradient) = (camera, gradient);
     let mut parts = Vec::with_capacity(views.len());
     for view in views {
         let (mut pose, mut pose_gradient) = (Matrix6::zeros(), Vector6::zeros());
-        let mut coupling = SMatrix::<f64, PARAMETERS, 6>::zeros();
+        let mut coupling = SMatrix::<f64, PARAMETER_COUNT, 6>::zeros();
         for point in &view.points {
             let error = parameters.error(&view.camera_from_board, point);
             let (by_camera, by_pose) = jacobians(parameters, &view.camera_from_board, point);
@@ -361,9 +361,9 @@ fn jacobians(
     parameters: &CameraParameters,
     pose: &Pose3,
     point: &BoardPoint,
-) -> (SMatrix<f64, 2, PARAMETERS>, SMatrix<f64, 2, 6>) {
-    let mut by_camera = SMatrix::<f64, 2, PARAMETERS>::zeros();
-    for i in 0..PARAMETERS {
+) -> (SMatrix<f64, 2, PARAMETER_COUNT>, SMatrix<f64, 2, 6>) {
+    let mut by_camera = SMatrix::<f64, 2, PARAMETER_COUNT>::zeros();
+    for i in 0..PARAMETER_COUNT {
         let h = DERIVATIVE_STEP * parameters.0[i].abs().max(1.0);
         let moved = |h: f64| {
             let mut moved = *parameters;
@@ -385,11 +385,11 @@ fn jacobians(
 }
 
 /// How well the views cover image and tilts.
-fn coverage(views: &[PosedView], size: (usize, usize)) -> Coverage {
+fn coverage(views: &[PosedView], size: (usize, usize)) -> BoardCoverage {
     let tilts = views.iter().map(|view| {
         let normal = view.camera_from_board.rotate(Vector3::z());
         normal.z.abs().clamp(0.0, 1.0).acos().to_degrees()
     });
     let pixels = views.iter().flat_map(|view| view.points.iter().map(|point| point.pixel));
-    Coverage::of(views.len(), tilts, pixels, size)
+    BoardCoverage::of(views.len(), tilts, pixels, size)
 }

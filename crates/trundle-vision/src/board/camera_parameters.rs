@@ -3,11 +3,11 @@
 use trundle_core::{Distortion, Invalid, PinholeCamera, Vector2, Vector3};
 
 /// Number of parameters of a camera.
-pub(super) const PARAMETERS: usize = 9;
+pub(super) const PARAMETER_COUNT: usize = 9;
 
 /// Intrinsics and lens: fx, fy, cx, cy (px), k1, k2, p1, p2, k3.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CameraParameters(pub [f64; PARAMETERS]);
+pub struct CameraParameters(pub [f64; PARAMETER_COUNT]);
 
 /// Coefficients of the lens that are estimated; the others are 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -23,15 +23,15 @@ impl LensModel {
     /// Number of parameters that are estimated.
     pub(super) fn parameters(self) -> usize {
         match self {
-            Self::FourCoefficients => PARAMETERS - 1,
-            Self::FiveCoefficients => PARAMETERS,
+            Self::FourCoefficients => PARAMETER_COUNT - 1,
+            Self::FiveCoefficients => PARAMETER_COUNT,
         }
     }
 }
 
 impl CameraParameters {
     /// Names, in order.
-    pub const NAMES: [&'static str; PARAMETERS] = ["fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"];
+    pub const NAMES: [&'static str; PARAMETER_COUNT] = ["fx", "fy", "cx", "cy", "k1", "k2", "p1", "p2", "k3"];
 
     /// The camera, of `width` x `height` px.
     ///

@@ -21,8 +21,10 @@ const MAX_SEEDS: usize = 30;
 const MAX_PREDICTION_ERROR: f64 = 0.3;
 /// Radius of the refinement over the distance to the nearest corner. Source: ours; a larger one would meet the next corner.
 const REFINEMENT_RADIUS_RATIO: f64 = 0.4;
-/// Smallest and largest radius of the refinement, px. Source: ours.
-const REFINEMENT_RADIUS_PX: (f64, f64) = (3.0, 9.0);
+/// Smallest radius of the refinement, px. Source: ours.
+const MIN_REFINEMENT_RADIUS_PX: f64 = 3.0;
+/// Largest radius of the refinement, px. Source: ours.
+const MAX_REFINEMENT_RADIUS_PX: f64 = 9.0;
 
 /// The corners of a checkerboard with this number of inner corners (columns, rows) and squares of `square` m.
 pub(super) fn find_checkerboard(
@@ -62,7 +64,7 @@ fn view(image: &SmoothImage, pixels: &[Vector2], (columns, _): (usize, usize), s
     };
     let point = |(i, pixel): (usize, &Vector2)| {
         let radius = REFINEMENT_RADIUS_RATIO * nearest(pixel);
-        let radius = radius.clamp(REFINEMENT_RADIUS_PX.0, REFINEMENT_RADIUS_PX.1);
+        let radius = radius.clamp(MIN_REFINEMENT_RADIUS_PX, MAX_REFINEMENT_RADIUS_PX);
         let board = Vector2::new((i % columns) as f64, (i / columns) as f64) * square;
         Some(BoardPoint { board, pixel: refine_corner(image, *pixel, radius)? })
     };

@@ -8,14 +8,14 @@ use nalgebra::Matrix2;
 use trundle_core::Vector2;
 
 /// Rounds. Source: ours; the corner moves by less than 0.001 px after ten.
-const ROUNDS: usize = 20;
+const MAX_ROUND_COUNT: usize = 20;
 /// Move below which the corner stands, px. Source: ours.
 const CONVERGED_PX: f64 = 1e-3;
 
 /// The corner near `start`, by the pixels within `radius` px; `None` where there is none within `radius` px of the start.
 pub(super) fn refine_corner(image: &SmoothImage, start: Vector2, radius: f64) -> Option<Vector2> {
     let mut corner = start;
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ROUND_COUNT {
         if !image.contains(corner, radius + 2.0) {
             return None;
         }

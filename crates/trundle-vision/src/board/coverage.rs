@@ -4,7 +4,7 @@ use trundle_core::Vector2;
 
 /// How well views of a board cover the image and the tilts of the board.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Coverage {
+pub struct BoardCoverage {
     /// Views that were used.
     pub views: usize,
     /// Largest angle of the board to the image plane, deg.
@@ -14,7 +14,7 @@ pub struct Coverage {
 }
 
 /// Cells along each side of the image. Source: ours.
-const CELLS: usize = 4;
+const CELLS_PER_SIDE: usize = 4;
 /// Number of views below which a warning is given. Source: \[Zhang00, fig. 2\]: the error falls slowly above ten.
 const FEW_VIEWS: usize = 10;
 /// Tilt below which a warning is given, deg. Source: \[Zhang00, fig. 3\]: the error is smallest at 45 deg.
@@ -22,16 +22,17 @@ const LOW_TILT_DEG: f64 = 25.0;
 /// Fraction of cells below which a warning is given. Source: ours.
 const FEW_CELLS: f64 = 0.7;
 
-impl Coverage {
+impl BoardCoverage {
     pub(super) fn of(
         views: usize,
         tilts_deg: impl Iterator<Item = f64>,
         pixels: impl Iterator<Item = Vector2>,
         (width, height): (usize, usize),
     ) -> Self {
-        let mut seen = [[false; CELLS]; CELLS];
+        let mut seen = [[false; CELLS_PER_SIDE]; CELLS_PER_SIDE];
         let cell = |at: f64, size: usize| {
-            ((at + 0.5) / size as f64 * CELLS as f64).clamp(0.0, CELLS as f64 - 1.0) as usize
+            ((at + 0.5) / size as f64 * CELLS_PER_SIDE as f64).clamp(0.0, CELLS_PER_SIDE as f64 - 1.0)
+                as usize
         };
         for pixel in pixels {
             seen[cell(pixel.y, height)][cell(pixel.x, width)] = true;
@@ -40,7 +41,7 @@ impl Coverage {
         Self {
             views,
             max_tilt_deg: tilts_deg.fold(0.0, f64::max),
-            cells: count as f64 / (CELLS * CELLS) as f64,
+            cells: count as f64 / (CELLS_PER_SIDE * CELLS_PER_SIDE) as f64,
         }
     }
 

@@ -21,4 +21,4 @@ pub use board_kind::Board;
 pub use board_view::{BoardPoint, BoardProblem, BoardView};
 pub use camera_fit::{CameraFit, CameraFitError, RejectedView, calibrate_camera};
 pub use camera_parameters::{CameraParameters, LensModel};
-pub use coverage::Coverage;
+pub use coverage::BoardCoverage;

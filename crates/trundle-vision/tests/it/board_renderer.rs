@@ -26,7 +26,7 @@ pub struct Shot {
 }
 
 /// Samples along each side of a pixel.
-const SAMPLES: usize = 4;
+const SAMPLES: usize = 3;
 
 impl Pattern {
     /// A checkerboard with this number of inner corners, a white margin of one square.
@@ -43,11 +43,6 @@ impl Pattern {
             Some(if is_dark { 35.0 } else { 215.0 })
         };
         let first = (Vector2::repeat(1.0) - cells / 2.0) * square;
-        Self { paint: Box::new(paint), half, first }
-    }
-
-    /// A pattern of other paint.
-    pub fn new(half: Vector2, first: Vector2, paint: impl Fn(Vector2) -> Option<f64> + 'static) -> Self {
         Self { paint: Box::new(paint), half, first }
     }
 
@@ -72,46 +67,52 @@ pub fn poses(pattern: &Pattern, tilt: f64, count: usize) -> Vec<Pose3> {
         let (sin, cos) = phase.sin_cos();
         let turn = UnitQuaternion::from_euler_angles(tilt * sin, tilt * cos, 0.25 * (1.7 * phase).sin());
         let far = pattern.half.norm() * (2.6 + 0.5 * (0.9 * phase).cos());
-        let aside = Vector2::new((1.3 * phase).cos() * 0.32, (1.3 * phase).sin() * 0.22) * far;
+        let aside = Vector2::new((1.3 * phase).cos() * 0.36, (1.3 * phase).sin() * 0.26) * far;
         Pose3::new(turn, Vector3::new(aside.x, aside.y, far))
     };
     (0..count).map(pose).collect()
 }
 
+/// Directions of the samples of each pixel, camera frame, z = 1: the part of an image that no pose changes.
+pub struct Rays {
+    size: (usize, usize),
+    rays: Vec<Vector3>,
+}
+
+impl Rays {
+    pub fn new(camera: &PinholeCamera) -> Self {
+        let (width, height) = (camera.width(), camera.height());
+        let ray = |i: usize| {
+            let (pixel, sample) = (i / (SAMPLES * SAMPLES), i % (SAMPLES * SAMPLES));
+            let at =
+                |pixel: usize, sample: usize| pixel as f64 + (sample as f64 + 0.5) / SAMPLES as f64 - 0.5;
+            let raw = Vector2::new(at(pixel % width, sample % SAMPLES), at(pixel / width, sample / SAMPLES));
+            camera.unproject(camera.undistort(raw), 1.0)
+        };
+        Self { size: (width, height), rays: (0..width * height * SAMPLES * SAMPLES).map(ray).collect() }
+    }
+}
+
 /// The image of a sheet at `camera_from_sheet`.
-pub fn render(
-    camera: &PinholeCamera,
-    camera_from_sheet: &Pose3,
-    pattern: &Pattern,
-    shot: &Shot,
-) -> GrayImage {
-    let (width, height) = (camera.width(), camera.height());
-    let sharp: Vec<f64> = (0..width * height)
-        .map(|i| {
-            let pixel = Vector2::new((i % width) as f64, (i / width) as f64);
-            let sample = |k: usize| {
-                let offset = Vector2::new((k % SAMPLES) as f64, (k / SAMPLES) as f64);
-                let offset = (offset + Vector2::repeat(0.5)) / SAMPLES as f64 - Vector2::repeat(0.5);
-                brightness(camera, camera_from_sheet, pattern, pixel + offset)
-            };
-            (0..SAMPLES * SAMPLES).map(sample).sum::<f64>() / (SAMPLES * SAMPLES) as f64
-        })
-        .collect();
+pub fn render(rays: &Rays, camera_from_sheet: &Pose3, pattern: &Pattern, shot: &Shot) -> GrayImage {
+    let (width, height) = rays.size;
+    let sheet_from_camera = camera_from_sheet.inverse();
+    let from = sheet_from_camera.translation;
+    let turn = sheet_from_camera.rotation_matrix();
+    let brightness = |ray: &Vector3| {
+        let along = turn * ray;
+        let at = from - along * (from.z / along.z);
+        // A room of mild texture behind the sheet.
+        let room = 110.0 + 25.0 * (ray.x * 14.0).sin() * (ray.y * 10.0).cos();
+        (pattern.paint)(Vector2::new(at.x, at.y)).unwrap_or(room)
+    };
+    let mean = |samples: &[Vector3]| samples.iter().map(brightness).sum::<f64>() / samples.len() as f64;
+    let sharp: Vec<f64> = rays.rays.chunks(SAMPLES * SAMPLES).map(mean).collect();
     let blurred = blurred(&sharp, (width, height), shot.blur_px);
     let mut rng = ChaCha8Rng::seed_from_u64(shot.seed);
     let mut noise = || shot.noise * ((0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0);
     let data = blurred.iter().map(|value| (value + noise()).round().clamp(0.0, 255.0) as u8).collect();
     GrayImage::new(width, height, data).unwrap()
-}
-
-fn brightness(camera: &PinholeCamera, camera_from_sheet: &Pose3, pattern: &Pattern, pixel: Vector2) -> f64 {
-    let ray = camera.unproject(camera.undistort(pixel), 1.0);
-    let sheet_from_camera = camera_from_sheet.inverse();
-    let (from, along) = (sheet_from_camera.translation, sheet_from_camera.rotate(ray));
-    let at = from - along * (from.z / along.z);
-    // A room of mild texture behind the sheet.
-    let room = 110.0 + 25.0 * (pixel.x / 37.0).sin() * (pixel.y / 53.0).cos();
-    (pattern.paint)(Vector2::new(at.x, at.y)).unwrap_or(room)
 }
 
 fn blurred(values: &[f64], (width, height): (usize, usize), sigma: f64) -> Vec<f64> {

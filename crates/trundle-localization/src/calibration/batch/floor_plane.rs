@@ -39,7 +39,7 @@ const SAMPLE_STEP_PX: usize = 10;
 /// Largest depth of a sample: 4 m. Source: ours; the noise of depth grows with its square.
 const MAX_DEPTH_M: f64 = 4.0;
 /// Planes tried in an image. Source: \[Fischler81\]: three of 20 % floor pixels are found with 98 % probability.
-const TRIALS: usize = 500;
+const MAX_PLANE_TRIALS: usize = 500;
 /// Distance from the plane within which a point supports it: 0.03 m. Source: ours.
 const SUPPORT_DISTANCE_M: f64 = 0.03;
 /// Fraction of the samples that must be floor: 0.1. Source: ours.
@@ -48,10 +48,16 @@ const MIN_SUPPORT_RATIO: f64 = 0.1;
 const MIN_SAMPLES: usize = 100;
 /// Largest angle of the floor to the floor by the mount in use: 20 deg. Beyond it the plane is a wall or a ramp. Source: ours.
 const MAX_TILT_ERROR_RAD: f64 = 0.35;
-/// Lowest and highest camera: 0.05 m to 3 m. Source: the range of `mount.z_m`.
-const HEIGHT_RANGE_M: (f64, f64) = (0.05, 3.0);
+/// Lowest camera: 0.05 m. Source: ours.
+const MIN_HEIGHT_M: f64 = 0.05;
+/// Highest camera: 3 m. Source: the range of `mount.z_m`.
+const MAX_HEIGHT_M: f64 = 3.0;
+/// Bias of the height that all images share (one sigma): 1 mm. Source: recordings round depth to 1 mm.
+const HEIGHT_BIAS_M: f64 = 0.001;
+/// Bias of pitch and roll that all images share (one sigma): 0.1 deg. Source: the simulated Kinect V2.
+const TILT_BIAS_RAD: f64 = 0.0017;
 /// Rounds of the refinement. Source: ours.
-const ROUNDS: usize = 5;
+const REFINEMENT_ROUNDS: usize = 5;
 /// Largest angle of an image's floor to the median: 2 deg. Source: ours; the noise of a depth image is below 0.5 deg.
 const MAX_ANGLE_TO_MEDIAN_RAD: f64 = 0.035;
 /// Largest difference of an image's height to the median: 0.03 m. Source: ours.
@@ -118,7 +124,7 @@ impl FloorView {
         }
         let mut rng = ChaCha8Rng::seed_from_u64(1);
         let mut draw = || samples[rng.random_range(0..samples.len())];
-        let candidates = (0..TRIALS).filter_map(|_| Self::through([draw(), draw(), draw()]));
+        let candidates = (0..MAX_PLANE_TRIALS).filter_map(|_| Self::through([draw(), draw(), draw()]));
         let level = candidates.filter(|plane| plane.up.angle(&expected_up) <= MAX_TILT_ERROR_RAD);
         let rated = level.map(|plane| (plane.support(samples).count(), plane));
         let best = rated.fold(None::<(usize, Self)>, |best, next| match best {
@@ -147,7 +153,7 @@ impl FloorView {
     /// The plane `q * p = 1`; `None` where it is not below a camera on a robot.
     fn of_inverse_depth(q: Vector3) -> Option<Self> {
         let height = 1.0 / q.norm();
-        (HEIGHT_RANGE_M.0..=HEIGHT_RANGE_M.1).contains(&height).then(|| Self { up: -q * height, height })
+        (MIN_HEIGHT_M..=MAX_HEIGHT_M).contains(&height).then(|| Self { up: -q * height, height })
     }
 
     fn support<'a>(&self, samples: &'a [Vector3]) -> impl Iterator<Item = &'a Vector3> {
@@ -158,7 +164,7 @@ impl FloorView {
     /// Least squares on the inverse depth of the samples near the plane.
     fn refined(self, samples: &[Vector3]) -> Option<Self> {
         let mut plane = self;
-        for _ in 0..ROUNDS {
+        for _ in 0..REFINEMENT_ROUNDS {
             let (mut information, mut vector) = (Matrix3::zeros(), Vector3::zeros());
             for point in plane.support(samples) {
                 let ray = point / point.z;
@@ -172,16 +178,24 @@ impl FloorView {
 }
 
 impl FloorMount {
-    /// The mean over images; `None` without one.
+    /// The mean over images; `None` without one. The standard deviations contain what the images share: the bias of the depth, and the
+    /// angle between the floor's normal and the `axis` about which the robot turns (camera frame), where that is known.
     #[must_use]
-    pub fn of(views: &[FloorView]) -> Option<Self> {
-        let mean = |value: &dyn Fn(&FloorView) -> f64| {
-            Estimate::mean_of(&views.iter().map(value).collect::<Vec<f64>>())
+    pub fn of(views: &[FloorView], axis: Option<&Vector3>) -> Option<Self> {
+        let mean = |value: &dyn Fn(&FloorView) -> f64, shared: &dyn Fn(f64) -> f64| {
+            let mean = Estimate::mean_of(&views.iter().map(value).collect::<Vec<f64>>())?;
+            Some(Estimate::new(mean.value, mean.sigma.hypot(shared(mean.value))))
+        };
+        let tilt = |of: &dyn Fn((f64, f64)) -> f64| {
+            mean(&|view| of(tilt_of(view.up)), &|mean| match axis {
+                Some(axis) => of(tilt_of(*axis)) - mean,
+                None => TILT_BIAS_RAD,
+            })
         };
         Some(Self {
-            height: mean(&|view| view.height)?,
-            pitch: mean(&|view| tilt_of(view.up).0)?,
-            roll: mean(&|view| tilt_of(view.up).1)?,
+            height: mean(&|view| view.height, &|_| HEIGHT_BIAS_M)?,
+            pitch: tilt(&|tilt| tilt.0)?,
+            roll: tilt(&|tilt| tilt.1)?,
             images: views.len(),
         })
     }

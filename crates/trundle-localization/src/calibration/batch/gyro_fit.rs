@@ -3,7 +3,7 @@
 use super::error::CalibrationError;
 use super::estimate::Estimate;
 use super::gyro_angle::GyroAngle;
-use super::least_squares::LinearFit;
+use super::linear_fit::LinearFit;
 use super::turn_axis::turns;
 use nalgebra::Vector2;
 use trundle_core::{Pose3, Stamp, Vector3};

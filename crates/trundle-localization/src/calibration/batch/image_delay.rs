@@ -16,7 +16,7 @@
 use super::error::CalibrationError;
 use super::estimate::Estimate;
 use super::gyro_angle::GyroAngle;
-use super::least_squares::{LinearFit, LinearSolution};
+use super::linear_fit::{LinearFit, LinearSolution};
 use super::turn_axis::{Turn, turns};
 use nalgebra::{Vector2, Vector3};
 use trundle_core::{Pose3, Stamp};
@@ -53,7 +53,7 @@ const MAX_SIGMA_S: f64 = 0.005;
 /// Smallest noise of a camera's turn from image to image: 0.05 mrad. Source: ours.
 const MIN_TURN_SIGMA_RAD: f64 = 5e-5;
 /// Rounds of Gauss-Newton. Source: ours; the delay changes by less than 0.01 ms after four.
-const ROUNDS: usize = 6;
+const NEWTON_ROUNDS: usize = 6;
 
 /// The delay by the camera's poses (`visual_from_camera`, by rising stamp), the vertical `axis` in the camera's frame
 /// ([`crate::turn_axis`]) and the gyro.
@@ -153,7 +153,7 @@ fn refined(
     let (mut delay, mut scale) = (start, 1.0);
     let mut pairs = 0;
     let mut last: Option<LinearSolution<3>> = None;
-    for _ in 0..ROUNDS {
+    for _ in 0..NEWTON_ROUNDS {
         let fit = linearized(turns, gyro, delay, scale);
         pairs = fit.1;
         require("camera and gyro together", pairs, "record both for 10 s or more")?;

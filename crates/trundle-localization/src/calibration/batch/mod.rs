@@ -12,7 +12,7 @@ pub(crate) mod floor_plane;
 pub(crate) mod gyro_angle;
 pub(crate) mod gyro_fit;
 pub(crate) mod image_delay;
-pub(crate) mod least_squares;
+pub(crate) mod linear_fit;
 pub(crate) mod planar_track;
 pub(crate) mod segments;
 #[cfg(test)]

@@ -252,7 +252,7 @@ fn the_floor_gives_height_and_tilt_with_a_wall_in_view_and_a_wrong_mount() {
     search.add(&room(&camera, up, 0.5), &camera);
     let view = search.views()[0];
     assert!((view.height - 0.5).abs() < 0.002 && view.up.angle(&up) < 0.002, "{view:?}");
-    let mount = FloorMount::of(&[view]).unwrap();
+    let mount = FloorMount::of(&[view], None).unwrap();
     assert!((mount.pitch.value - 0.2).abs() < 0.002 && (mount.roll.value - 0.03).abs() < 0.002, "{mount:?}");
 }
 
@@ -265,5 +265,5 @@ fn no_floor_is_found_without_depth_and_before_a_wall() {
         search.add(&DepthImage::filled(camera.width(), camera.height(), depth), &camera);
         assert_eq!((search.views(), search.image_counts()), (vec![], (1, with_depth)));
     }
-    assert_eq!(FloorMount::of(&[]), None);
+    assert_eq!(FloorMount::of(&[], None), None);
 }

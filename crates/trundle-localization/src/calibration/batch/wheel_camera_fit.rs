@@ -14,7 +14,7 @@
 
 use super::error::CalibrationError;
 use super::estimate::Estimate;
-use super::least_squares::{LinearFit, LinearSolution};
+use super::linear_fit::{LinearFit, LinearSolution};
 use super::planar_track::planar_track;
 use super::segments::{Segment, segments};
 use super::wheel_angles::{WheelAngles, WheelTurn};

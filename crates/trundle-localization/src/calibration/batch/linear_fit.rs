@@ -6,7 +6,7 @@ use nalgebra::{SMatrix, SVector};
 /// noise. Source: \[Huber64\].
 const HUBER_SIGMAS: f64 = 1.345;
 /// Rounds of reweighting. Source: ours; the weights change by less than 1 % after five.
-const ROUNDS: usize = 8;
+const REWEIGHTING_ROUNDS: usize = 8;
 
 /// Linear equations `row * x = right` with one noise level, and priors with known noise.
 #[derive(Debug, Clone)]
@@ -52,7 +52,7 @@ impl<const N: usize> LinearFit<N> {
         let mut weights = vec![1.0; self.rows.len()];
         let mut sigma = self.min_sigma;
         let mut solution = None;
-        for _ in 0..ROUNDS {
+        for _ in 0..REWEIGHTING_ROUNDS {
             let (x, covariance) = self.solve_weighted(&weights, sigma)?;
             let residuals: Vec<f64> =
                 self.rows.iter().zip(&self.rights).map(|(row, right)| row.dot(&x) - right).collect();

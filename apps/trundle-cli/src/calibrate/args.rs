@@ -1,0 +1,79 @@
+//! The command line of `trundle calibrate`.
+
+use crate::common_args::Common;
+use clap::{Args, Subcommand};
+use std::path::PathBuf;
+use trundle::vision::board::Board;
+
+/// `trundle calibrate`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle calibrate mount out/demo/recording.mcap --write robot.toml")]
+pub struct CalibrateArgs {
+    /// What to measure.
+    #[command(subcommand)]
+    pub command: CalibrateCommand,
+}
+
+/// What to measure.
+#[derive(Debug, Subcommand)]
+pub enum CalibrateCommand {
+    /// Intrinsics and lens of a camera, by images of a board.
+    Camera(BoardImageArgs),
+    /// Pose of the camera on the base, by a drive with turns on the spot and straight parts.
+    Mount(DriveArgs),
+    /// Radius of the wheels and distance between them, by a drive with turns and straight parts.
+    Wheels(DriveArgs),
+    /// Delay of the image stamps, by a drive that starts and stops turning.
+    Delay(DriveArgs),
+}
+
+/// A recording of a drive.
+#[derive(Debug, Args)]
+pub struct DriveArgs {
+    /// A recording of trundle with images, wheels and gyro.
+    pub recording: PathBuf,
+    /// Read a recording that is cut, as by a power failure, up to the cut.
+    #[arg(long)]
+    pub recover: bool,
+    /// Set the found keys in this robot file, which is created where there is none.
+    #[arg(long, value_name = "FILE")]
+    pub write: Option<PathBuf>,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// Images of a board.
+#[derive(Debug, Args)]
+pub struct BoardImageArgs {
+    /// Images of the board, JPEG or PNG, or folders of them.
+    #[arg(required = true)]
+    pub images: Vec<PathBuf>,
+    /// The board: checkerboard:9x6:25mm (inner corners, side of a square)
+    #[arg(long, value_name = "BOARD")]
+    pub board: Board,
+    /// Estimate the third radial coefficient as well: wide lenses
+    #[arg(long)]
+    pub k3: bool,
+    /// Write a camera file, for `trundle slam --camera`.
+    #[arg(long, value_name = "FILE")]
+    pub write_camera: Option<PathBuf>,
+    /// Set the camera in this robot file, which is created where there is none.
+    #[arg(long, value_name = "FILE")]
+    pub write: Option<PathBuf>,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+impl CalibrateArgs {
+    /// What every command takes.
+    pub fn common(&self) -> &Common {
+        match &self.command {
+            CalibrateCommand::Camera(args) => &args.common,
+            CalibrateCommand::Mount(args)
+            | CalibrateCommand::Wheels(args)
+            | CalibrateCommand::Delay(args) => &args.common,
+        }
+    }
+}
