@@ -144,3 +144,16 @@ impl RobotConfig {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mistyped_image_delay_is_refused_by_name() {
+        for image_delay in [34.0, -1.5, f64::NAN] {
+            let robot = RobotConfig { image_delay, ..RobotConfig::default() };
+            assert_eq!(robot.validated().unwrap_err().field, "image_delay");
+        }
+    }
+}

@@ -1,13 +1,15 @@
 //! Calibration of the simulated robot, whose robot file holds wrong values.
 
+use crate::body::{run_into, setup};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use trundle_app::RunSetup;
 use trundle_app::calibrate::{
     Calibration, CalibrationInput, calibrate_delay, calibrate_mount, calibrate_wheels,
 };
+use trundle_app::sequence_input::{SequenceInput, SequenceOptions};
 use trundle_core::{DepthImage, DifferentialDrive, PinholeCamera, RgbdImage, RobotBody, SensorEvent, Stamp};
-use trundle_io::{EncodedEvent, Recorder};
+use trundle_io::{EncodedEvent, OutputFolder, Recorder, RecordingReader};
 use trundle_runtime::settings::RobotFile;
 use trundle_runtime::{CameraMount, Mission, RobotConfig, Task};
 use trundle_sim::{CommandScript, KobukiConfig, Scene, SimConfig, Simulator};
@@ -24,6 +26,8 @@ const DRIVE: DifferentialDrive =
 /// 0.8 m forward and back, turns on the spot both ways with pauses, 0.8 m forward and a curve back: `t v omega`.
 const TURNS_AND_STRAIGHT: &str = "0.5 0.2 0\n4.5 0 0\n5 -0.2 0\n9 0 0\n9.5 0 0.7\n14 0 0\n14.5 0 -0.7\n19 0 0\n19.5 0 -0.7\n\
     23.5 0 0\n24 0 0.7\n28 0 0\n28.5 0.2 0\n32.5 0 0\n33 -0.2 0.2\n36 0 0\n36.5 0 0\n";
+/// Turns on the spot both ways: `t v omega`.
+const TURNS: &str = "0.5 0 0.7\n3 0 0\n3.5 0 -0.7\n6 0 0\n6.5 0 0.7\n9 0 0\n";
 /// Forward only.
 const STRAIGHT: &str = "0.5 0.2 0\n4.5 0 0\n";
 
@@ -32,10 +36,21 @@ fn record(
     file: &Path,
     config: SimConfig,
     script: &str,
+    change: impl FnMut(SensorEvent) -> Option<SensorEvent>,
+) {
+    record_with(file, &RobotConfig::default(), config, script, change);
+}
+
+/// The same with another robot file.
+fn record_with(
+    file: &Path,
+    in_use: &RobotConfig,
+    config: SimConfig,
+    script: &str,
     mut change: impl FnMut(SensorEvent) -> Option<SensorEvent>,
 ) {
     let script = CommandScript::parse(script).unwrap();
-    let mut robot = RobotConfig::default();
+    let mut robot = in_use.clone();
     robot.camera = config.camera;
     let mission = Mission::new(vec![Task::Return]).unwrap();
     let setup = RunSetup::new("room", mission, robot);
@@ -105,7 +120,6 @@ fn drive_on_time() -> CalibrationInput {
 fn assert_found(calibration: &Calibration, name: &str, truth: f64, limit: f64) {
     let found = calibration.value(name).unwrap_or_else(|| panic!("{name}: {calibration:?}"));
     let sigma = found.sigma.unwrap();
-    println!("{name}: error {:.5}, sigma {sigma:.5} {}, limit {limit}", found.value - truth, found.unit);
     assert!((found.value - truth).abs() <= limit, "{found:?}, truth {truth}");
     assert!(sigma > 0.0 && sigma <= limit, "{found:?}");
 }
@@ -125,9 +139,49 @@ fn the_delay_is_found_within_3_ms_and_written() {
 }
 
 #[test]
+fn a_delay_in_use_is_subtracted_from_the_images_and_part_of_the_delay_that_is_found() {
+    let scratch = tempfile::tempdir().unwrap();
+    let file = scratch.path().join("recording.mcap");
+    let mut in_use = RobotConfig::default();
+    in_use.image_delay = 0.03;
+    let mut first = None;
+    let keep_first = |event| {
+        let event = late(event);
+        if let SensorEvent::Rgbd(image) = &event {
+            first.get_or_insert(image.stamp());
+        }
+        Some(event)
+    };
+    record_with(&file, &in_use, robot(), TURNS, keep_first);
+    let options = SequenceOptions { path: &file, camera: None, depth_scale: None, recover: false };
+    let images = SequenceInput::open(&options).unwrap();
+    let stamp = images.frames().unwrap().next().unwrap().unwrap().stamp();
+    assert!((first.unwrap() - stamp - 0.03).abs() < 1e-9);
+    let found = calibrate_delay(&CalibrationInput::open(&file, false).unwrap(), &()).unwrap();
+    assert_found(&found, "image_delay_s", DELAY_S, 0.003);
+    assert_eq!(found.value("image_delay_s").unwrap().before, Some(0.03));
+}
+
+#[test]
+fn a_run_subtracts_the_delay_and_its_recording_keeps_the_stamps() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = OutputFolder::create(&scratch.path().join("run")).unwrap();
+    let mut setup = setup().with_time_limit(0.3);
+    setup.robot.image_delay = 0.01;
+    setup.robot.camera = robot().camera;
+    let mut body = Simulator::new(Scene::by_name("room", 1).unwrap(), robot(), 1).unwrap();
+    let run = run_into(&setup, &mut body, &folder).unwrap();
+    let (stamp, _) = run.robot.slam().unwrap().trajectory()[0];
+    assert_eq!(stamp, Stamp::default().after(-0.01));
+    let reader = RecordingReader::open(&folder.commit().unwrap().join("recording.mcap")).unwrap();
+    let is_image = |event: &EncodedEvent| matches!(event, EncodedEvent::Rgbd(_));
+    let first = reader.events().map(Result::unwrap).find(is_image).unwrap();
+    assert_eq!(first.stamp(), Stamp::default());
+}
+
+#[test]
 fn the_mount_is_found_within_3_mm_and_a_fifth_of_a_degree() {
     let found = calibrate_mount(&drive_on_time(), &()).unwrap();
-    println!("{:?}", found.notes);
     assert_found(&found, "mount.z_m", MOUNT.z, 0.003);
     assert_found(&found, "mount.pitch_deg", MOUNT.pitch_deg, 0.2);
     assert_found(&found, "mount.roll_deg", MOUNT.roll_deg, 0.2);
@@ -139,7 +193,6 @@ fn the_mount_is_found_within_3_mm_and_a_fifth_of_a_degree() {
 #[test]
 fn the_wheels_are_found_within_one_percent() {
     let found = calibrate_wheels(&drive_on_time(), &()).unwrap();
-    println!("{:?}", found.notes);
     let scene = Scene::by_name("room", 1).unwrap();
     let truth = Simulator::new(scene, robot(), 1).unwrap().true_wheels();
     let radius = (truth.left_radius + truth.right_radius) / 2.0;
