@@ -181,7 +181,9 @@ impl HardwareReport {
     }
 
     fn check_floor(&mut self, log: &CheckLog, robot: &RobotConfig) {
-        let Some(floor) = FloorMount::of(&log.floors, None).filter(|floor| floor.images >= MIN_FLOOR_IMAGES) else {
+        let Some(floor) =
+            FloorMount::of(&log.floor.views(), None).filter(|floor| floor.images >= MIN_FLOOR_IMAGES)
+        else {
             let how = "clear 2 m of floor before the robot, and set mount.pitch_deg to within 15 deg";
             return self
                 .notes

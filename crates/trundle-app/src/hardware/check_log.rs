@@ -5,7 +5,7 @@ use trundle_core::{
     Battery, BodyEventKind, DifferentialDrive, GyroRate, PinholeCamera, RgbdImage, SensorEvent, Stamp,
     Vector3, WheelTicks,
 };
-use trundle_localization::FloorView;
+use trundle_localization::FloorSearch;
 
 /// Images from one whose floor is fitted to the next. Source: ours.
 const FLOOR_STEP_IMAGES: usize = 5;
@@ -15,7 +15,6 @@ const FLOOR_STEP_IMAGES: usize = 5;
 pub(super) struct CheckLog {
     origin: Instant,
     camera: PinholeCamera,
-    expected_up: Vector3,
     drive: DifferentialDrive,
     /// Arrivals of readings: wheels, gyro, images \[s\].
     pub wheels: Vec<f64>,
@@ -25,7 +24,7 @@ pub(super) struct CheckLog {
     pub image_ages: Vec<f64>,
     /// Part of the pixels with depth, 0 to 1, of each image.
     pub depth_parts: Vec<f64>,
-    pub floors: Vec<FloorView>,
+    pub floor: FloorSearch,
     /// Distance of the left and the right wheel \[m\].
     pub distances: [f64; 2],
     /// Turn by the gyro \[rad\].
@@ -50,14 +49,13 @@ impl CheckLog {
         Self {
             origin,
             camera,
-            expected_up,
             drive,
             wheels: Vec::new(),
             gyro: Vec::new(),
             images: Vec::new(),
             image_ages: Vec::new(),
             depth_parts: Vec::new(),
-            floors: Vec::new(),
+            floor: FloorSearch::new(expected_up),
             distances: [0.0; 2],
             gyro_turn: 0.0,
             rest_rates: Vec::new(),
@@ -131,7 +129,7 @@ impl CheckLog {
         let known = depth.data().iter().filter(|depth| **depth > 0.0).count();
         self.depth_parts.push(known as f64 / depth.data().len().max(1) as f64);
         if self.images.len().is_multiple_of(FLOOR_STEP_IMAGES) {
-            self.floors.extend(FloorView::find(depth, &self.camera, self.expected_up));
+            self.floor.add(depth, &self.camera);
         }
         self.images.push(now);
         self.image_ages.push((Stamp::default().after(now) - image.stamp()) * 1e3);
