@@ -5,11 +5,11 @@ mod args;
 pub use args::{DemoArgs, RecordArg};
 
 use crate::outcome::Outcome;
-use crate::{checkpoint_file, console, logging, run_output};
+use crate::{console, logging, run_output};
 use trundle::app::real_time::run_in_real_time;
 use trundle::app::report::mission_text;
 use trundle::app::vocabulary_file::read_vocabulary;
-use trundle::app::{AppError, RunLog, RunRecorder, RunSetup, run_on_body};
+use trundle::app::{AppError, RunLog, RunRecorder, RunSetup, read_checkpoint, run_on_body};
 use trundle::core::Invalid;
 use trundle::experiments::simulated::{
     SceneOptions, SimulatedRealTimeBody, load_scene, read_faults, require_free, simulated_body,
@@ -26,8 +26,7 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, AppError> {
     let robot = args.robot.robot()?;
     let mut scene = load_scene(&args.scene, options)?;
     let faults = args.faults.as_deref().map(read_faults).transpose()?.unwrap_or_default();
-    let resumed =
-        args.state.resume.and(args.state.checkpoint.as_deref()).map(checkpoint_file::read).transpose()?;
+    let resumed = args.state.resume.and(args.state.checkpoint.as_deref()).map(read_checkpoint).transpose()?;
     let mission = match &resumed {
         Some((checkpoint, _)) => checkpoint.mission.left.clone(),
         None => mission(args, &scene)?,

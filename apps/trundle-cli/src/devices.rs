@@ -3,12 +3,9 @@
 use crate::console;
 use crate::outcome::Outcome;
 use clap::Args;
-use std::path::Path;
 use trundle::app::AppError;
-use trundle::drivers::camera::native::{LibraryReport, LibraryState, NativeKind, list_devices, reports};
-use trundle::drivers::{
-    CameraSpec, KOBUKI_UDEV_PORT, KOBUKI_UDEV_RULE, PortAccess, SerialDevice, serial_devices,
-};
+use trundle::app::hardware::{device_rows, udev_rules};
+use trundle::drivers::CameraSpec;
 
 /// `trundle devices`
 #[derive(Debug, Args)]
@@ -19,16 +16,6 @@ pub struct DevicesArgs {
     pub udev: bool,
 }
 
-/// `trundle devices`.
-pub fn run(args: &DevicesArgs) -> Result<Outcome, AppError> {
-    if args.udev {
-        console::print(&udev_rules());
-        return Ok(Outcome::Reached);
-    }
-    console::print_table(&rows());
-    Ok(Outcome::Reached)
-}
-
 /// `trundle serve-camera`: the frames of a camera on standard output, for the process that started this one.
 #[derive(Debug, Args)]
 pub struct ServeCameraArgs {
@@ -36,73 +23,19 @@ pub struct ServeCameraArgs {
     pub camera: CameraSpec,
 }
 
+/// `trundle devices`.
+pub fn run(args: &DevicesArgs) -> Outcome {
+    if args.udev {
+        console::print(&udev_rules());
+    } else {
+        console::print_table(&device_rows());
+    }
+    Outcome::Reached
+}
+
 /// `trundle serve-camera`.
 pub fn serve(args: &ServeCameraArgs) -> Result<Outcome, AppError> {
     let served = args.camera.serve(std::io::stdout().lock());
     served.map_err(|error| AppError::Input(format!("camera {}: {error}", args.camera)))?;
     Ok(Outcome::Reached)
-}
-
-fn udev_rules() -> String {
-    format!(
-        "# Written by `trundle devices --udev`. Install: save as /etc/udev/rules.d/60-trundle.rules, then\n\
-         # sudo udevadm control --reload && sudo udevadm trigger\n\
-         # Kobuki: {KOBUKI_UDEV_PORT}\n{KOBUKI_UDEV_RULE}"
-    )
-}
-
-fn rows() -> Vec<Vec<String>> {
-    let devices = serial_devices();
-    let mut rows: Vec<Vec<String>> = devices.iter().map(serial_row).collect();
-    if !devices.iter().any(SerialDevice::is_kobuki) {
-        let what = "not found: connect its USB cable and switch it on; other serial devices may still be one";
-        rows.push(vec!["base Kobuki".to_owned(), what.to_owned()]);
-    }
-    let rule = if Path::new(KOBUKI_UDEV_PORT).exists() {
-        format!("{KOBUKI_UDEV_PORT} is there")
-    } else {
-        format!("{KOBUKI_UDEV_PORT} is not there: install the rule of `trundle devices --udev`")
-    };
-    rows.push(vec!["udev rule".to_owned(), rule]);
-    rows.extend(
-        NativeKind::ALL.into_iter().zip(reports()).flat_map(|(kind, report)| camera_rows(kind, &report)),
-    );
-    rows.push(vec![
-        "camera stream".to_owned(),
-        "any camera by --camera stream:PATH (docs/camera-stream.md)".to_owned(),
-    ]);
-    rows
-}
-
-/// The library of a kind of camera, and the cameras that it lists.
-fn camera_rows(kind: NativeKind, report: &LibraryReport) -> Vec<Vec<String>> {
-    let name = format!("camera {kind}");
-    let row = |value: String| vec![name.clone(), value];
-    match &report.state {
-        LibraryState::Unusable { problem } => vec![row(problem.clone())],
-        LibraryState::Usable { file, version } => {
-            let version = version.map_or_else(String::new, |version| format!(" {version}"));
-            let mut rows = vec![row(format!("library{version}: {}", file.display()))];
-            match list_devices(kind) {
-                Ok(devices) if devices.is_empty() => rows.push(row("none is plugged in".to_owned())),
-                Ok(devices) => rows.extend(devices.iter().map(|device| {
-                    let usb = device.usb.map_or_else(String::new, |usb| format!(", {usb}"));
-                    row(format!("{} {}, firmware {}{usb}", device.name, device.serial, device.firmware))
-                })),
-                Err(error) => rows.push(row(error.to_string())),
-            }
-            rows
-        }
-    }
-}
-
-fn serial_row(device: &SerialDevice) -> Vec<String> {
-    let access = match device.access {
-        PortAccess::Free => "can be opened",
-        PortAccess::Busy => "in use by another program",
-        PortAccess::NoRights => "no right to open it: sudo usermod -aG dialout $USER, then log in again",
-        PortAccess::Broken => "does not answer: plug it in again",
-    };
-    let kind = if device.is_kobuki() { "base Kobuki" } else { "serial device" };
-    vec![kind.to_owned(), format!("{} {}: {access}", device.path.display(), device.id)]
 }

@@ -219,9 +219,8 @@ impl ExperimentArgs {
 /// Runs the experiment that was asked for.
 pub fn run(args: &ExperimentArgs) -> Result<Outcome, AppError> {
     match &args.which {
-        Which::Poses(args) => runs(&args.runs, |request, progress| {
-            poses::run(&RunsRequest { over_wires: args.wires, ..request.clone() }, progress)
-        }),
+        Which::Poses(args) if args.wires => runs(&args.runs, |request, _| poses::run_over_wires(request)),
+        Which::Poses(args) => runs(&args.runs, poses::run),
         Which::Obstacles(args) => runs(args, missions::run_obstacles),
         Which::House(args) => {
             runs(&args.runs, |request, progress| missions::run_house(request, &args.mesh, progress))
@@ -241,7 +240,7 @@ fn runs<R: ExperimentReport>(
     experiment: impl FnOnce(&RunsRequest, &Progress) -> Result<R, AppError>,
 ) -> Result<Outcome, AppError> {
     let robot = args.robot.robot()?;
-    let request = RunsRequest { seeds: args.seeds, only: args.only.clone(), over_wires: false, robot };
+    let request = RunsRequest { seeds: args.seeds, only: args.only.clone(), robot };
     in_folder(&args.out, &args.common, |_, progress| experiment(&request, progress))
 }
 

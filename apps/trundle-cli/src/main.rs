@@ -1,7 +1,6 @@
 //! The program `trundle`: command line of the crates.
 
 mod calibrate;
-mod checkpoint_file;
 mod command_line;
 mod common_args;
 mod console;
@@ -88,7 +87,7 @@ fn run_command(cli: Cli) -> Result<Outcome, AppError> {
             None => vocabulary::run(&args),
         },
         Command::Config(args) => robot_file::print(&args),
-        Command::Devices(args) => devices::run(&args),
+        Command::Devices(args) => Ok(devices::run(&args)),
         Command::ServeCamera(args) => devices::serve(&args),
         Command::Data(args) => data::run(&args),
         Command::Completions(args) => shell_files::print_completions(&args, Cli::command()),

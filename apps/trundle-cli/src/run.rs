@@ -6,16 +6,15 @@ mod check;
 pub use args::RunArgs;
 
 use crate::outcome::Outcome;
-use crate::{checkpoint_file, console, logging, run_output};
-use args::{IntrinsicsArg, MissionArgs};
+use crate::{console, logging, run_output};
+use args::MissionArgs;
 use trundle::app::hardware::{OpenCamera, start_hardware};
 use trundle::app::real_time::run_in_real_time;
 use trundle::app::report::mission_text;
 use trundle::app::vocabulary_file::read_vocabulary;
-use trundle::app::{AppError, RunLog, RunSetup, read_mission};
-use trundle::core::PinholeCamera;
+use trundle::app::{AppError, RunLog, RunSetup, read_checkpoint, read_mission};
 use trundle::io::keep_aside;
-use trundle::runtime::{Mission, RobotConfig, Task};
+use trundle::runtime::{Mission, Task};
 
 /// `trundle run`.
 pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
@@ -23,13 +22,13 @@ pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
         return check::check(args);
     }
     let mut robot = args.robot.robot()?;
-    let resumed = args.mission.resume.as_deref().map(checkpoint_file::read).transpose()?;
+    let resumed = args.mission.resume.as_deref().map(read_checkpoint).transpose()?;
     let mission = match &resumed {
         Some((checkpoint, _)) => checkpoint.mission.left.clone(),
         None => mission(&args.mission)?,
     };
     let camera = OpenCamera::open(&args.camera)?;
-    robot.camera = intrinsics(args, &robot, &camera)?;
+    robot.camera = camera.intrinsics(args.robot_camera(&robot).as_ref())?;
     let mut setup = RunSetup::new(&args.base.to_string(), mission, robot).by_command("run");
     setup.time_limit = args.time_limit.unwrap_or(f64::MAX);
     setup.real_time = true;
@@ -79,21 +78,4 @@ fn mission(args: &MissionArgs) -> Result<Mission, AppError> {
         args.goal.iter().map(|goal| Task::Go(goal.0)).collect()
     };
     Ok(Mission::new(tasks)?)
-}
-
-/// The camera that the robot works with.
-fn intrinsics(args: &RunArgs, robot: &RobotConfig, camera: &OpenCamera) -> Result<PinholeCamera, AppError> {
-    let device = camera.info().color.camera;
-    if args.intrinsics == IntrinsicsArg::Device {
-        return Ok(device);
-    }
-    let size = |camera: &PinholeCamera| (camera.width(), camera.height());
-    if size(&robot.camera) == size(&device) {
-        return Ok(robot.camera);
-    }
-    let ((width, height), (wanted_width, wanted_height)) = (size(&robot.camera), size(&device));
-    Err(AppError::Input(format!(
-        "camera of the robot file is {width} x {height} px, expected {wanted_width} x {wanted_height} px as {} delivers",
-        args.camera
-    )))
 }

@@ -2,9 +2,11 @@
 
 mod check;
 mod check_log;
+mod device_list;
 mod drivers;
 
 pub use check::{CheckRequest, HardwareReport, check_hardware};
+pub use device_list::{device_rows, udev_rules};
 pub use drivers::{Drivers, OpenCamera};
 
 use crate::AppError;

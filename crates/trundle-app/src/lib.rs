@@ -27,6 +27,7 @@
 mod best_view;
 mod body_log;
 pub mod calibrate;
+mod checkpoint_file;
 mod checkpoint_writer;
 pub mod dock;
 mod encoded_body;
@@ -60,6 +61,7 @@ pub mod vocabulary_file;
 
 pub use best_view::BestView;
 pub use body_log::BodyLog;
+pub use checkpoint_file::read_checkpoint;
 pub use checkpoint_writer::CheckpointWriter;
 pub use encoded_body::{EncodedBody, RunInput};
 pub use error::AppError;

@@ -11,8 +11,6 @@ pub struct RunsRequest {
     pub seeds: u32,
     /// Only runs whose name and seed ("lights out, seed 2") contain this.
     pub only: Option<String>,
-    /// Over a serial line and a camera stream, one run after the other, by the wall clock (`poses` only).
-    pub over_wires: bool,
     /// The robot.
     pub robot: RobotConfig,
 }

@@ -289,12 +289,7 @@ mod tests {
 
     #[test]
     fn a_house_that_is_not_there_is_named() {
-        let request = RunsRequest {
-            seeds: 1,
-            only: None,
-            over_wires: false,
-            robot: trundle_runtime::RobotConfig::default(),
-        };
+        let request = RunsRequest { seeds: 1, only: None, robot: trundle_runtime::RobotConfig::default() };
         let refused = run_house(&request, Path::new("no/house.glb"), &Progress::hidden());
         assert!(refused.err().unwrap().to_string().starts_with("no/house.glb is not there"));
     }

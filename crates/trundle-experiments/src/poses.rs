@@ -35,11 +35,7 @@ pub struct PosesOutcome {
     pub trials: Vec<Trial>,
 }
 
-/// Runs the eight start poses, with each seed.
-///
-/// # Errors
-/// When a run cannot be made, or no run has the name asked for.
-pub fn run(request: &RunsRequest, progress: &Progress) -> Result<PosesOutcome, AppError> {
+fn plans(request: &RunsRequest) -> Result<Vec<TrialPlan>, AppError> {
     let mut plans = Vec::new();
     for (i, (x, y)) in STARTS.into_iter().enumerate() {
         for seed in 1..=u64::from(request.seeds) {
@@ -57,7 +53,27 @@ pub fn run(request: &RunsRequest, progress: &Progress) -> Result<PosesOutcome, A
             });
         }
     }
-    Ok(PosesOutcome { trials: trial::run_all(plans, request, progress)? })
+    Ok(plans)
+}
+
+/// Runs the eight start poses, with each seed.
+///
+/// # Errors
+/// When a run cannot be made, or no run has the name asked for.
+pub fn run(request: &RunsRequest, progress: &Progress) -> Result<PosesOutcome, AppError> {
+    Ok(PosesOutcome { trials: trial::run_all(plans(request)?, request, progress)? })
+}
+
+/// The same over a serial line and a stream of camera frames, one run after the other, by the wall clock.
+///
+/// # Errors
+/// As [`run`].
+#[cfg(unix)]
+pub fn run_over_wires(request: &RunsRequest) -> Result<PosesOutcome, AppError> {
+    let plans = trial::selected(plans(request)?, request)?;
+    let trials: Result<Vec<Trial>, AppError> =
+        plans.into_iter().map(crate::wired_trial::run_over_wires).collect();
+    Ok(PosesOutcome { trials: trials? })
 }
 
 impl ExperimentReport for PosesOutcome {

@@ -83,15 +83,11 @@ impl Trial {
     }
 }
 
-/// Makes the runs, as many at once as there are threads; the results are in the order of the plans.
+/// The plans that the request asks for.
 ///
 /// # Errors
-/// The first plan that cannot be carried out.
-pub fn run_all(
-    mut plans: Vec<TrialPlan>,
-    request: &RunsRequest,
-    progress: &Progress,
-) -> Result<Vec<Trial>, AppError> {
+/// When there are none; names those that there are.
+pub fn selected(mut plans: Vec<TrialPlan>, request: &RunsRequest) -> Result<Vec<TrialPlan>, AppError> {
     let names: BTreeSet<String> = plans.iter().map(|plan| plan.name.clone()).collect();
     if let Some(word) = &request.only {
         plans.retain(|plan| format!("{}, seed {}", plan.name, plan.seed).contains(word.as_str()));
@@ -103,12 +99,19 @@ pub fn run_all(
         let problem = format!("--only {word}: no run has a name that holds this; there are '{first}'{more}");
         return Err(AppError::Input(problem));
     }
-    #[cfg(unix)]
-    if request.over_wires {
-        // Runs by the wall clock share no computer.
-        return plans.into_iter().map(crate::wired_trial::run_over_wires).collect();
-    }
-    run_each(plans, "runs", progress, run_one)
+    Ok(plans)
+}
+
+/// Makes the runs, as many at once as there are threads; the results are in the order of the plans.
+///
+/// # Errors
+/// The first plan that cannot be carried out.
+pub fn run_all(
+    plans: Vec<TrialPlan>,
+    request: &RunsRequest,
+    progress: &Progress,
+) -> Result<Vec<Trial>, AppError> {
+    run_each(selected(plans, request)?, "runs", progress, run_one)
 }
 
 /// Makes one run.
@@ -243,7 +246,6 @@ pub(crate) mod fixtures {
             keyframes: 0,
             images_dropped: Vec::new(),
             docking: None,
-            body: trundle_app::BodyLog::default(),
             state: DriveState::Arrived,
         };
         let line = vec![Vector2::zeros(), Vector2::new(1.0, 0.0)];
@@ -282,7 +284,7 @@ mod tests {
             TrialPlan { name: name.to_owned(), seed: 1, scene, mission, robot, faults, computer_fault: None }
         };
         let only = Some("no such run".to_owned());
-        let request = RunsRequest { seeds: 1, only, over_wires: false, robot: RobotConfig::default() };
+        let request = RunsRequest { seeds: 1, only, robot: RobotConfig::default() };
         let refused = run_all(vec![plan("one"), plan("two")], &request, &Progress::hidden());
         let text = refused.err().unwrap().to_string();
         assert!(text.contains("no such run") && text.ends_with("there are 'one', 'two'"), "{text}");

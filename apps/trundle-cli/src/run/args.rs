@@ -5,7 +5,9 @@ use crate::demo::RecordArg;
 use crate::output_args::{OutputDirArg, OutputFileArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+use trundle::core::PinholeCamera;
 use trundle::drivers::{BaseSpec, CameraSpec};
+use trundle::runtime::RobotConfig;
 
 /// `trundle run`
 #[derive(Debug, Args)]
@@ -49,6 +51,13 @@ pub struct RunArgs {
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
+}
+
+impl RunArgs {
+    /// The intrinsics of the robot file, where those are wished.
+    pub fn robot_camera(&self, robot: &RobotConfig) -> Option<PinholeCamera> {
+        (self.intrinsics == IntrinsicsArg::Robot).then_some(robot.camera)
+    }
 }
 
 /// The mission of a run: one of these.

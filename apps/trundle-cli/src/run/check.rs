@@ -1,7 +1,6 @@
 //! `trundle run --check`: rates, delays, signs and tilt before the first drive.
 
-use super::RunArgs;
-use super::intrinsics;
+use super::args::RunArgs;
 use crate::console;
 use crate::outcome::Outcome;
 use trundle::app::AppError;
@@ -14,7 +13,7 @@ const CHECK_S: f64 = 15.0;
 pub fn check(args: &RunArgs) -> Result<Outcome, AppError> {
     let robot = args.robot.robot()?;
     let camera = OpenCamera::open(&args.camera)?;
-    let output = intrinsics(args, &robot, &camera)?;
+    let output = camera.intrinsics(args.robot_camera(&robot).as_ref())?;
     let seconds = args.time_limit.unwrap_or(CHECK_S);
     if !args.common.quiet {
         console::print(&format!(

@@ -5,9 +5,7 @@ use crate::console;
 use crate::outcome::Outcome;
 use std::path::Path;
 use trundle::app::{AppError, stop};
-use trundle::core::Pose2;
-use trundle::drivers::kobuki::PseudoTerminal;
-use trundle::experiments::simulated::{EmulatedRobot, EmulationCounts, load_scene};
+use trundle::experiments::simulated::{EmulatedRobot, load_scene};
 use trundle::sim::Simulator;
 
 /// Serves base and camera until the time is over or the user interrupts; prints where the robot stands in truth.
@@ -16,11 +14,7 @@ pub fn serve(args: &SimArgs, name: &str, port: &Path) -> Result<Outcome, AppErro
     let scene = load_scene(name, args.scene_options())?;
     let simulator = Simulator::new(scene, config, args.seed)
         .map_err(|error| AppError::Input(format!("{name}: {error}")))?;
-    let start = simulator.true_pose();
-    let terminal = PseudoTerminal::open_at(port).map_err(|error| {
-        AppError::Input(format!("{}: cannot make the pseudo terminal: {error}", port.display()))
-    })?;
-    let mut robot = EmulatedRobot::new(simulator, terminal, args.wires.camera_stream.as_deref())?;
+    let mut robot = EmulatedRobot::at(simulator, port, args.wires.camera_stream.as_deref())?;
     if !args.common.quiet {
         console::print(&greeting(args, port));
     }
@@ -30,7 +24,7 @@ pub fn serve(args: &SimArgs, name: &str, port: &Path) -> Result<Outcome, AppErro
         time >= limit || stop::is_requested(|| format!("{time:.1} s of the robot's time"))
     })?;
     if !args.common.quiet {
-        console::print_table(&rows(&robot, start));
+        console::print_table(&robot.rows());
     }
     Ok(Outcome::Reached)
 }
@@ -42,20 +36,4 @@ fn greeting(args: &SimArgs, port: &Path) -> String {
         "A Kobuki answers at {port}. Drive it: trundle run --base kobuki:{port}{}",
         camera.unwrap_or_default()
     )
-}
-
-fn rows(robot: &EmulatedRobot, start: Pose2) -> Vec<Vec<String>> {
-    let row = |name: &str, value: String| vec![name.to_owned(), value];
-    let truth = start.inverse() * robot.simulator().true_pose();
-    let EmulationCounts { packets, commands, images, images_not_taken } = robot.counts();
-    vec![
-        row(
-            "true pose from the start",
-            format!("{:.3} m, {:.3} m, {:.2} deg", truth.x, truth.y, truth.theta.to_degrees()),
-        ),
-        row("true path", format!("{:.2} m", robot.simulator().path_length())),
-        row("true contacts", robot.simulator().contacts().to_string()),
-        row("packets sent, commands received", format!("{packets}, {commands}")),
-        row("images sent, not taken", format!("{images}, {images_not_taken}")),
-    ]
 }

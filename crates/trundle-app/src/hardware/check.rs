@@ -1,6 +1,6 @@
 //! The check of base and camera before the first drive: rates, delays, signs of the encoders, the floor in the images.
 
-use super::check_log::{CheckLog, mean, rate_and_gap};
+use super::check_log::{CheckLog, ImageNote, mean, rate_and_gap};
 use super::{Drivers, OpenCamera};
 use crate::calibrate::{CalibratedValue, Calibration, floor_values};
 use crate::{AppError, stop};
@@ -12,7 +12,7 @@ use trundle_localization::FloorMount;
 use trundle_runtime::RobotConfig;
 
 /// Time between two looks for Ctrl-C. Source: ours.
-const POLL: Duration = Duration::from_millis(50);
+const STOP_POLL_PERIOD: Duration = Duration::from_millis(50);
 /// Part of the camera's own rate below which images are too few. Source: ours.
 const MIN_RATE_PART: f64 = 0.8;
 /// Smallest rate of the wheels' readings \[Hz\]: control steps follow them. Source: half of a Kobuki's 50 Hz.
@@ -67,7 +67,7 @@ pub fn check_hardware(request: CheckRequest<'_>) -> Result<HardwareReport, AppEr
     let drivers = Drivers::start(base, camera, output, origin, on_event)?;
     let is_over = || stop::is_requested(|| format!("{:.1} s", origin.elapsed().as_secs_f64()));
     while origin.elapsed().as_secs_f64() < seconds && !is_over() {
-        std::thread::sleep(POLL);
+        std::thread::sleep(STOP_POLL_PERIOD);
     }
     let (versions, (base_counters, camera_counters)) = (drivers.versions(), drivers.counters());
     let fault = drivers.camera_fault();
@@ -127,16 +127,17 @@ impl HardwareReport {
     }
 
     fn check_camera(&mut self, log: &CheckLog, nominal_hz: f64) {
-        let Some((rate, gap)) = rate_and_gap(&log.images) else {
+        let column = |value: fn(&ImageNote) -> f64| log.images.iter().map(value).collect::<Vec<f64>>();
+        let Some((rate, gap)) = rate_and_gap(&column(|image| image.arrival_s)) else {
             let remedy = "check its cable, its USB port and what else uses it";
             return self.problems.push(format!("{} images came: {remedy}", log.images.len()));
         };
-        let age = median(&log.image_ages);
+        let age = median(&column(|image| image.age_ms));
         self.row(
             "images: rate, longest gap, age on arrival",
             format!("{rate:.1} Hz, {gap:.0} ms, {age:.0} ms"),
         );
-        let part = mean(&log.depth_parts);
+        let part = mean(&column(|image| image.depth_part));
         self.row("pixels with depth", format!("{:.0} %", part * 100.0));
         if rate < MIN_RATE_PART * nominal_hz {
             let problem = format!("images come at {rate:.1} Hz, expected {nominal_hz:.0} Hz");

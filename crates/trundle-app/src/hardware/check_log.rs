@@ -10,20 +10,25 @@ use trundle_localization::FloorSearch;
 /// Images from one whose floor is fitted to the next. Source: ours.
 const FLOOR_STEP_IMAGES: usize = 5;
 
+/// An image that came.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ImageNote {
+    pub arrival_s: f64,
+    pub age_ms: f64,
+    /// Part of the pixels with depth, 0 to 1.
+    pub depth_part: f64,
+}
+
 /// What came from base and camera during a check.
 #[derive(Debug)]
 pub(super) struct CheckLog {
     origin: Instant,
     camera: PinholeCamera,
     drive: DifferentialDrive,
-    /// Arrivals of readings: wheels, gyro, images \[s\].
+    /// Arrivals of readings \[s\].
     pub wheels: Vec<f64>,
     pub gyro: Vec<f64>,
-    pub images: Vec<f64>,
-    /// Age of each image on arrival \[ms\].
-    pub image_ages: Vec<f64>,
-    /// Part of the pixels with depth, 0 to 1, of each image.
-    pub depth_parts: Vec<f64>,
+    pub images: Vec<ImageNote>,
     pub floor: FloorSearch,
     /// Distance of the left and the right wheel \[m\].
     pub distances: [f64; 2],
@@ -53,8 +58,6 @@ impl CheckLog {
             wheels: Vec::new(),
             gyro: Vec::new(),
             images: Vec::new(),
-            image_ages: Vec::new(),
-            depth_parts: Vec::new(),
             floor: FloorSearch::new(expected_up),
             distances: [0.0; 2],
             gyro_turn: 0.0,
@@ -127,12 +130,14 @@ impl CheckLog {
     fn on_image(&mut self, now: f64, image: &RgbdImage) {
         let depth = image.depth();
         let known = depth.data().iter().filter(|depth| **depth > 0.0).count();
-        self.depth_parts.push(known as f64 / depth.data().len().max(1) as f64);
         if self.images.len().is_multiple_of(FLOOR_STEP_IMAGES) {
             self.floor.add(depth, &self.camera);
         }
-        self.images.push(now);
-        self.image_ages.push((Stamp::default().after(now) - image.stamp()) * 1e3);
+        self.images.push(ImageNote {
+            arrival_s: now,
+            age_ms: (Stamp::default().after(now) - image.stamp()) * 1e3,
+            depth_part: known as f64 / depth.data().len().max(1) as f64,
+        });
     }
 }
 

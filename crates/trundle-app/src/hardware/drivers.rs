@@ -33,6 +33,25 @@ impl OpenCamera {
         Ok(Self { spec: spec.clone(), camera })
     }
 
+    /// The intrinsics that the robot works with: those given, else the camera's own.
+    ///
+    /// # Errors
+    /// When those given are of another image size.
+    pub fn intrinsics(&self, given: Option<&PinholeCamera>) -> Result<PinholeCamera, AppError> {
+        let own = self.info().color.camera;
+        let size = |camera: &PinholeCamera| format!("{} x {} px", camera.width(), camera.height());
+        match given {
+            None => Ok(own),
+            Some(given) if size(given) == size(&own) => Ok(*given),
+            Some(given) => Err(AppError::Input(format!(
+                "camera of the robot file is {}, expected {} as {} delivers",
+                size(given),
+                size(&own),
+                self.spec
+            ))),
+        }
+    }
+
     /// What the camera says of itself.
     #[must_use]
     pub fn info(&self) -> &CameraInfo {

@@ -9,7 +9,7 @@ use trundle_runtime::Histogram;
 use trundle_runtime::real_time::{InboxItem, InboxSender};
 
 /// Time without any event after which silence is reported: five readings of a base at 50 Hz. Source: ours.
-const SILENCE: Duration = Duration::from_millis(100);
+const MIN_SILENCE: Duration = Duration::from_millis(100);
 
 /// Sends the events of drivers into a run, from any thread. Images are encoded in the thread that sends them.
 #[derive(Clone)]
@@ -57,7 +57,7 @@ impl EventFeed {
         let now = Instant::now();
         let mut state = self.state();
         let since = *state.newest.get_or_insert(now);
-        if now - since >= SILENCE {
+        if now - since >= MIN_SILENCE {
             state.newest = Some(now);
             drop(state);
             let event = BodyEvent { stamp: self.stamp_of(now), kind: BodyEventKind::Silence };

@@ -2,7 +2,7 @@
 
 use super::GoalOutcome;
 use crate::real_time::RealTimeReport;
-use crate::{BodyLog, FinishedRun, RunSetup, TrackCounts};
+use crate::{FinishedRun, RunSetup, TrackCounts};
 use serde_json::{Map, Value, json};
 use trundle_eval::{GoalError, goal_error};
 use trundle_io::Summary;
@@ -38,8 +38,6 @@ pub struct RunNumbers {
     pub images_dropped: Vec<f64>,
     /// Report of turns and straight moves for the last goal with such a request; `None` without a request.
     pub docking: Option<GoalApproachReport>,
-    /// Power, wheel drops, losses of devices.
-    pub body: BodyLog,
     /// How it ended.
     pub state: DriveState,
 }
@@ -76,7 +74,6 @@ impl RunNumbers {
             keyframes: run.robot.slam().map_or(0, |slam| slam.keyframes().count()),
             images_dropped: log.seconds_of(run.robot.dropped_images()),
             docking: run.robot.docking().filter(|docking| docking.plans > 0).cloned(),
-            body: log.body.clone(),
             state: log.state.clone(),
         }
     }
@@ -162,7 +159,6 @@ impl RunNumbers {
         rows.extend(
             self.docking.as_ref().map(|docking| row("turns and straight moves", docking_text(docking))),
         );
-        rows.extend(self.body.rows());
         rows.push(row("images dropped", self.images_dropped.len().to_string()));
         rows.push(row("keyframes, landmarks", format!("{}, {}", self.keyframes, self.landmarks)));
         rows
@@ -171,6 +167,7 @@ impl RunNumbers {
     /// The whole table for the terminal.
     pub fn rows(&self, run: &FinishedRun) -> Vec<Vec<String>> {
         let mut rows = self.run_rows();
+        rows.extend(run.log.body.rows());
         rows.push(vec!["wall clock".to_owned(), format!("{:.1} s", run.seconds)]);
         rows.push(["stage, ms", "median", "p99", "p99.9", "most", "runs"].map(str::to_owned).to_vec());
         rows.extend(stage_rows(run.robot.times()));
@@ -209,7 +206,7 @@ impl RunNumbers {
             .set("images_dropped", self.images_dropped.len())
             .set("images_dropped_at_s", &self.images_dropped)
             .set("wall_clock", wall_clock(run.seconds, run.robot.times(), timing));
-        self.body.add_to(&mut summary);
+        run.log.body.add_to(&mut summary);
         summary.set_interrupted(run.log.is_interrupted());
         summary
     }

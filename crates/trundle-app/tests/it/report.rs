@@ -1,8 +1,8 @@
 //! The report of a run: figures, verdict, table and folder.
 
 use crate::body::{GOAL, StillBody, run_into, setup};
+use trundle_app::TrackCounts;
 use trundle_app::report::{GoalOutcome, RunNumbers, mission_text, write_run};
-use trundle_app::{BodyLog, TrackCounts};
 use trundle_core::Pose2;
 use trundle_eval::{GoalError, goal_error};
 use trundle_io::OutputFolder;
@@ -41,7 +41,6 @@ fn good() -> RunNumbers {
         keyframes: 30,
         images_dropped: vec![1.0, 2.0],
         docking: None,
-        body: BodyLog::default(),
         state: DriveState::Arrived,
     }
 }

@@ -3,10 +3,11 @@
 //! Any program that speaks to a Kobuki drives it. It keeps the time of the wall clock: a packet every 20 ms.
 
 use super::camera_server::CameraServer;
+use std::path::Path;
 use std::time::Duration;
 use trundle_app::AppError;
 use trundle_app::real_time::RealTimePacer;
-use trundle_core::{RobotBody, SensorEvent, Twist2};
+use trundle_core::{Pose2, RobotBody, SensorEvent, Twist2};
 use trundle_drivers::kobuki::emulator::{EmulatedKobuki, KobukiState};
 use trundle_drivers::kobuki::link::ByteLink;
 use trundle_drivers::kobuki::pseudo_terminal::PseudoTerminal;
@@ -18,6 +19,8 @@ const READ_BYTES: usize = 4096;
 /// The simulator behind the wires of a real robot.
 pub struct EmulatedRobot {
     simulator: Simulator,
+    /// The true pose at the start, world frame.
+    start: Pose2,
     kobuki: EmulatedKobuki,
     state: KobukiState,
     terminal: PseudoTerminal,
@@ -48,7 +51,7 @@ impl EmulatedRobot {
     pub fn new(
         mut simulator: Simulator,
         terminal: PseudoTerminal,
-        camera_stream: Option<&std::path::Path>,
+        camera_stream: Option<&Path>,
     ) -> Result<Self, AppError> {
         let info = super::camera_server::camera_info(simulator.config());
         let camera = simulator.detach_camera();
@@ -56,6 +59,7 @@ impl EmulatedRobot {
         let camera =
             camera.zip(camera_stream).map(|(camera, path)| server(path)?.with_camera(camera)).transpose()?;
         Ok(Self {
+            start: simulator.true_pose(),
             simulator,
             kobuki: EmulatedKobuki::default(),
             state: KobukiState::default(),
@@ -64,6 +68,33 @@ impl EmulatedRobot {
             command: Twist2::ZERO,
             counts: EmulationCounts::default(),
         })
+    }
+
+    /// The same with its base at a new pseudo terminal, to which `port` becomes a symbolic link.
+    ///
+    /// # Errors
+    /// When the pseudo terminal, the link or the FIFO cannot be made.
+    pub fn at(simulator: Simulator, port: &Path, camera_stream: Option<&Path>) -> Result<Self, AppError> {
+        let terminal = PseudoTerminal::open_at(port).map_err(|error| {
+            AppError::Input(format!("{}: cannot make the pseudo terminal: {error}", port.display()))
+        })?;
+        Self::new(simulator, terminal, camera_stream)
+    }
+
+    /// What truly happened, and what went over the wires: a row each.
+    #[must_use]
+    pub fn rows(&self) -> Vec<Vec<String>> {
+        let row = |name: &str, value: String| vec![name.to_owned(), value];
+        let truth = self.start.inverse() * self.simulator.true_pose();
+        let EmulationCounts { packets, commands, images, images_not_taken } = self.counts();
+        let pose = format!("{:.3} m, {:.3} m, {:.2} deg", truth.x, truth.y, truth.theta.to_degrees());
+        vec![
+            row("true pose from the start", pose),
+            row("true path", format!("{:.2} m", self.simulator.path_length())),
+            row("true contacts", self.simulator.contacts().to_string()),
+            row("packets sent, commands received", format!("{packets}, {commands}")),
+            row("images sent, not taken", format!("{images}, {images_not_taken}")),
+        ]
     }
 
     /// The simulator: truth, contacts.

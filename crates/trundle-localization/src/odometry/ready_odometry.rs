@@ -35,13 +35,13 @@ impl WheelOdometry {
     /// Adds odometry that the body computed and returns the odometry after it, in a frame that never jumps. The body's pose, twist and
     /// covariance must be finite.
     pub fn step_odometry(&mut self, given: &Odometry) -> Odometry {
-        let report = match self.last_given.replace(*given) {
+        let report = match self.last.given.replace(*given) {
             None => {
                 self.odometry.stamp = given.stamp;
                 WheelReport::Started
             }
             Some(last) if given.stamp <= last.stamp => {
-                self.last_given = Some(last);
+                self.last.given = Some(last);
                 WheelReport::TimeWentBack { by: last.stamp - given.stamp }
             }
             Some(last) => self.add_increment(given, &Increment::between(&last, given)),

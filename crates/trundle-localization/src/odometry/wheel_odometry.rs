@@ -38,17 +38,23 @@ pub struct WheelOdometry {
     gyro_fault: GyroFault,
     pub(super) wheel_fault: WheelFault,
     wheel_calibration: WheelCalibration,
-    last_rate: Option<GyroRate>,
-    last_ticks: Option<WheelTicks>,
-    /// The newest odometry that the body computed.
-    pub(super) last_given: Option<Odometry>,
-    /// A rejected reading at impossible counts: a second one near it means that the counters were reset.
-    suspect_ticks: Option<WheelTicks>,
+    pub(super) last: LastInputs,
     resting_since: Option<Stamp>,
     /// Length of the path, m.
     pub(super) path_length: f64,
     pub(super) odometry: Odometry,
     pub(super) reports: ReportLog,
+}
+
+/// The newest input of each kind.
+#[derive(Debug, Clone, Default)]
+pub(super) struct LastInputs {
+    rate: Option<GyroRate>,
+    ticks: Option<WheelTicks>,
+    /// A rejected reading at impossible counts: a second one near it means that the counters were reset.
+    suspect_ticks: Option<WheelTicks>,
+    /// Odometry that the body computed.
+    pub(super) given: Option<Odometry>,
 }
 
 /// Distances of the two wheels between two readings, m, with the time, s.
@@ -75,10 +81,7 @@ impl WheelOdometry {
             integral: TurnIntegral::default(),
             gyro_fault: GyroFault::default(),
             wheel_fault: WheelFault::default(),
-            last_rate: None,
-            last_ticks: None,
-            last_given: None,
-            suspect_ticks: None,
+            last: LastInputs::default(),
             resting_since: None,
             path_length: 0.0,
             odometry: Odometry {
@@ -98,12 +101,12 @@ impl WheelOdometry {
             return;
         }
         self.gyro_fault.add(rate);
-        let dt = self.last_rate.map_or(0.0, |last| rate.stamp - last.stamp);
+        let dt = self.last.rate.map_or(0.0, |last| rate.stamp - last.stamp);
         self.gyro_calibration.predict(&self.config, dt);
         if self.is_at_rest(rate.stamp) && self.gyro_calibration.is_rest_rate(&self.config, rate.omega) {
             self.gyro_calibration.update_at_rest(&self.config, rate.omega);
         }
-        self.last_rate = Some(*rate);
+        self.last.rate = Some(*rate);
     }
 
     /// Sets the twist that the base is commanded to drive.
@@ -119,7 +122,7 @@ impl WheelOdometry {
     /// Adds a reading of the wheels and returns the odometry after it; [`WheelOdometry::report`] holds how the reading was used. A
     /// rejected reading leaves the pose unchanged.
     pub fn step_wheels(&mut self, ticks: &WheelTicks) -> Odometry {
-        let report = match self.last_ticks {
+        let report = match self.last.ticks {
             None => self.start(ticks),
             Some(last) if ticks.stamp <= last.stamp => {
                 WheelReport::TimeWentBack { by: last.stamp - ticks.stamp }
@@ -193,7 +196,7 @@ impl WheelOdometry {
     }
 
     fn start(&mut self, ticks: &WheelTicks) -> WheelReport {
-        self.last_ticks = Some(*ticks);
+        self.last.ticks = Some(*ticks);
         self.odometry.stamp = ticks.stamp;
         self.resting_since = None;
         self.integral.turn_until(ticks.stamp, self.config.gyro_timeout);
@@ -210,8 +213,8 @@ impl WheelOdometry {
         if speed > self.config.max_speed {
             return self.reject(ticks, wheels.dt, speed);
         }
-        self.suspect_ticks = None;
-        self.last_ticks = Some(*ticks);
+        self.last.suspect_ticks = None;
+        self.last.ticks = Some(*ticks);
         self.integrate(ticks.stamp, &wheels)
     }
 
@@ -291,7 +294,7 @@ impl WheelOdometry {
 
     /// Rejects a first reading at impossible counts as broken. A second one near it means that the counters were reset.
     fn reject(&mut self, ticks: &WheelTicks, dt: f64, speed: f64) -> WheelReport {
-        let is_confirmed = self.suspect_ticks.is_some_and(|suspect| {
+        let is_confirmed = self.last.suspect_ticks.is_some_and(|suspect| {
             let wheels = self.wheel_motion(&suspect, ticks);
             wheels.dt > 0.0 && wheels.left.abs().max(wheels.right.abs()) / wheels.dt <= self.config.max_speed
         });
@@ -299,14 +302,14 @@ impl WheelOdometry {
             self.skip_to(ticks, dt);
             return WheelReport::Restarted;
         }
-        self.suspect_ticks = Some(*ticks);
+        self.last.suspect_ticks = Some(*ticks);
         WheelReport::TooFast { speed }
     }
 
     /// Continues from `ticks` after `dt` s of unknown motion.
     fn skip_to(&mut self, ticks: &WheelTicks, dt: f64) {
-        self.last_ticks = Some(*ticks);
-        self.suspect_ticks = None;
+        self.last.ticks = Some(*ticks);
+        self.last.suspect_ticks = None;
         self.resting_since = None;
         self.wheel_calibration.interrupt();
         self.yaw_segments.interrupt(ticks.stamp);

@@ -6,7 +6,9 @@ use trundle_core::{Distortion, Invalid, PinholeCamera, Pose3, Vector3};
 /// Focal length of the depth camera \[px\]. Source: defaults of the ROS packages openni_camera and freenect_camera.
 const DEPTH_FOCAL_LENGTH_PX: f64 = 575.816;
 /// Principal point of the depth image \[px\]: the middle, less half the correlation window of 10 x 8 px. Source: as above.
-const DEPTH_CENTRE_PX: (f64, f64) = (314.5, 235.5);
+const DEPTH_CENTRE_X_PX: f64 = 314.5;
+/// The same, of the rows.
+const DEPTH_CENTRE_Y_PX: f64 = 235.5;
 /// Distance of the depth camera to the right of the colour camera \[m\]. Source: as above.
 const BASELINE_M: f64 = 0.025;
 
@@ -16,7 +18,8 @@ const BASELINE_M: f64 = 0.025;
 /// Never, unless a constant is wrong.
 pub fn assumed_calibration() -> Result<RgbdCalibration, Invalid> {
     let focal = (DEPTH_FOCAL_LENGTH_PX, DEPTH_FOCAL_LENGTH_PX);
-    let depth = PinholeCamera::new((640, 480), focal, DEPTH_CENTRE_PX, Distortion::default())?;
+    let depth =
+        PinholeCamera::new((640, 480), focal, (DEPTH_CENTRE_X_PX, DEPTH_CENTRE_Y_PX), Distortion::default())?;
     let color_from_depth = Some(depth_camera_pose());
     Ok(RgbdCalibration { color: PinholeCamera::kinect_v1(), depth, color_from_depth })
 }

@@ -28,7 +28,7 @@ pub struct Context {
 /// `freenect_device`.
 #[repr(C)]
 #[derive(Debug)]
-pub struct Device {
+pub struct FreenectDevice {
     _private: [u8; 0],
 }
 
@@ -62,7 +62,7 @@ pub struct Attributes {
 }
 
 /// A function that receives images: device, data, ticks.
-pub(super) type ImageCallback = unsafe extern "C" fn(*mut Device, *mut c_void, u32);
+pub(super) type ImageCallback = unsafe extern "C" fn(*mut FreenectDevice, *mut c_void, u32);
 
 functions! {
     /// The functions of libfreenect.
@@ -72,19 +72,19 @@ functions! {
         fn freenect_set_log_level(*mut Context, c_int);
         fn freenect_select_subdevices(*mut Context, c_int);
         fn freenect_num_devices(*mut Context) -> c_int;
-        fn freenect_open_device(*mut Context, *mut *mut Device, c_int) -> c_int;
-        fn freenect_open_device_by_camera_serial(*mut Context, *mut *mut Device, *const c_char) -> c_int;
-        fn freenect_close_device(*mut Device) -> c_int;
-        fn freenect_set_depth_callback(*mut Device, ImageCallback);
-        fn freenect_set_video_callback(*mut Device, ImageCallback);
+        fn freenect_open_device(*mut Context, *mut *mut FreenectDevice, c_int) -> c_int;
+        fn freenect_open_device_by_camera_serial(*mut Context, *mut *mut FreenectDevice, *const c_char) -> c_int;
+        fn freenect_close_device(*mut FreenectDevice) -> c_int;
+        fn freenect_set_depth_callback(*mut FreenectDevice, ImageCallback);
+        fn freenect_set_video_callback(*mut FreenectDevice, ImageCallback);
         fn freenect_find_depth_mode(c_int, c_int) -> FrameMode;
         fn freenect_find_video_mode(c_int, c_int) -> FrameMode;
-        fn freenect_set_depth_mode(*mut Device, FrameMode) -> c_int;
-        fn freenect_set_video_mode(*mut Device, FrameMode) -> c_int;
-        fn freenect_start_depth(*mut Device) -> c_int;
-        fn freenect_start_video(*mut Device) -> c_int;
-        fn freenect_stop_depth(*mut Device) -> c_int;
-        fn freenect_stop_video(*mut Device) -> c_int;
+        fn freenect_set_depth_mode(*mut FreenectDevice, FrameMode) -> c_int;
+        fn freenect_set_video_mode(*mut FreenectDevice, FrameMode) -> c_int;
+        fn freenect_start_depth(*mut FreenectDevice) -> c_int;
+        fn freenect_start_video(*mut FreenectDevice) -> c_int;
+        fn freenect_stop_depth(*mut FreenectDevice) -> c_int;
+        fn freenect_stop_video(*mut FreenectDevice) -> c_int;
         fn freenect_process_events_timeout(*mut Context, *mut libc::timeval) -> c_int;
         optional fn freenect_list_device_attributes(*mut Context, *mut *mut Attributes) -> c_int;
         optional fn freenect_free_device_attributes(*mut Attributes);

@@ -3,7 +3,7 @@
 //! The library calls back inside `freenect_process_events_timeout`, in the thread that called it. A variable of that thread leads the
 //! callbacks to their receiver.
 
-use super::functions::Device;
+use super::functions::FreenectDevice;
 use super::ticks::TickClock;
 use crate::camera::native::image_pair::ImagePair;
 use crate::camera::{CameraFrame, PixelFormat, RawImage};
@@ -53,7 +53,7 @@ impl Receiver {
 ///
 /// # Safety
 /// `data` points to 640 x 480 pixels of 3 bytes.
-pub(super) unsafe extern "C" fn on_video(_: *mut Device, data: *mut c_void, ticks: u32) {
+pub(super) unsafe extern "C" fn on_video(_: *mut FreenectDevice, data: *mut c_void, ticks: u32) {
     // SAFETY: the caller vouches for the data.
     unsafe {
         receive(data, 3, |receiver, bytes| {
@@ -66,7 +66,7 @@ pub(super) unsafe extern "C" fn on_video(_: *mut Device, data: *mut c_void, tick
 ///
 /// # Safety
 /// `data` points to 640 x 480 pixels of 2 bytes.
-pub(super) unsafe extern "C" fn on_depth(_: *mut Device, data: *mut c_void, ticks: u32) {
+pub(super) unsafe extern "C" fn on_depth(_: *mut FreenectDevice, data: *mut c_void, ticks: u32) {
     // SAFETY: the caller vouches for the data.
     unsafe {
         receive(data, 2, |receiver, bytes| {

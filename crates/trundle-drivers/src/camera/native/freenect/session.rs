@@ -1,6 +1,6 @@
 //! A connection to libfreenect, and an open Kinect.
 
-use super::functions::{Attributes, Context, Device, FreenectApi, ImageCallback, LIBRARY};
+use super::functions::{Attributes, Context, FreenectApi, FreenectDevice, ImageCallback, LIBRARY};
 use crate::camera::native::Selection;
 use crate::camera::{CameraError, native::DeviceEntry};
 use std::ffi::{CStr, CString, c_int};
@@ -96,7 +96,7 @@ impl Session {
         if self.devices().is_empty() {
             return Err(CameraError::NoDevice { kind: name });
         }
-        let mut device: *mut Device = std::ptr::null_mut();
+        let mut device: *mut FreenectDevice = std::ptr::null_mut();
         let code = match selection {
             Selection::Serial(serial) => {
                 let text = CString::new(serial.as_str())
@@ -139,7 +139,7 @@ impl Drop for Session {
 #[derive(Debug)]
 pub(super) struct OpenKinect {
     session: Session,
-    device: NonNull<Device>,
+    device: NonNull<FreenectDevice>,
 }
 
 // SAFETY: as for the session.

@@ -20,6 +20,7 @@
 //! | `functions` | a table of its functions |
 //! | `wheel` | libraries inside Python wheels |
 
+mod candidate;
 pub(super) mod functions;
 pub mod native_library;
 pub mod report;

@@ -1,6 +1,7 @@
 //! A loaded library.
 
-use super::search::{Candidate, candidates};
+use super::candidate::Candidate;
+use super::search::candidates;
 use super::{LibrarySpec, LibraryVersion};
 use crate::camera::CameraError;
 use libloading::os::unix::{Library, RTLD_GLOBAL, RTLD_LOCAL, RTLD_NOW};

@@ -1,5 +1,6 @@
 //! The files to try for a library.
 
+use super::candidate::Candidate;
 use super::{LibrarySpec, wheel};
 use std::path::{Path, PathBuf};
 
@@ -13,15 +14,6 @@ const WELL_KNOWN_FOLDERS: &[&str] = &[
     "/opt/ros/humble/lib/x86_64-linux-gnu",
     "/opt/ros/humble/lib/aarch64-linux-gnu",
 ];
-
-/// A file to try, and the files to load before it.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Candidate {
-    /// Files to load first, with their symbols visible to `file`.
-    pub preloaded: Vec<PathBuf>,
-    /// The library: a path, or a soname for the loader.
-    pub file: PathBuf,
-}
 
 /// The files to try for a library, first to last.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -2,7 +2,7 @@
 //!
 //! A wheel's extension module calls functions of Python: `libpython` has to be loaded first. The interpreter is never started.
 
-use super::search::Candidate;
+use super::candidate::Candidate;
 use super::{LibrarySpec, WheelFile};
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -27,7 +27,7 @@ pub(super) const STATUS_TIME_OUT: c_int = 102;
 /// An open device.
 #[repr(C)]
 #[derive(Debug)]
-pub struct Device {
+pub struct OpenNiDevice {
     _private: [u8; 0],
 }
 
@@ -99,12 +99,12 @@ functions! {
         fn oniGetExtendedError() -> *const c_char;
         fn oniGetDeviceList(*mut *mut DeviceInfo, *mut c_int) -> c_int;
         fn oniReleaseDeviceList(*mut DeviceInfo) -> c_int;
-        fn oniDeviceOpen(*const c_char, *mut *mut Device) -> c_int;
-        fn oniDeviceClose(*mut Device) -> c_int;
-        fn oniDeviceGetInfo(*mut Device, *mut DeviceInfo) -> c_int;
-        fn oniDeviceSetProperty(*mut Device, c_int, *const c_void, c_int) -> c_int;
-        fn oniDeviceIsImageRegistrationModeSupported(*mut Device, c_int) -> c_int;
-        fn oniDeviceCreateStream(*mut Device, c_int, *mut *mut Stream) -> c_int;
+        fn oniDeviceOpen(*const c_char, *mut *mut OpenNiDevice) -> c_int;
+        fn oniDeviceClose(*mut OpenNiDevice) -> c_int;
+        fn oniDeviceGetInfo(*mut OpenNiDevice, *mut DeviceInfo) -> c_int;
+        fn oniDeviceSetProperty(*mut OpenNiDevice, c_int, *const c_void, c_int) -> c_int;
+        fn oniDeviceIsImageRegistrationModeSupported(*mut OpenNiDevice, c_int) -> c_int;
+        fn oniDeviceCreateStream(*mut OpenNiDevice, c_int, *mut *mut Stream) -> c_int;
         fn oniStreamDestroy(*mut Stream);
         fn oniStreamStart(*mut Stream) -> c_int;
         fn oniStreamStop(*mut Stream);

@@ -1,6 +1,8 @@
 //! An open device of OpenNI2 with its two streams.
 
-use super::functions::{Device, DeviceInfo, Frame, OpenNiApi, STATUS_OK, STATUS_TIME_OUT, Stream, VideoMode};
+use super::functions::{
+    DeviceInfo, Frame, OpenNiApi, OpenNiDevice, STATUS_OK, STATUS_TIME_OUT, Stream, VideoMode,
+};
 use crate::camera::native::DeviceEntry;
 use crate::camera::{CameraError, PixelFormat, RawImage};
 use std::ffi::{CString, c_char, c_int};
@@ -32,7 +34,7 @@ pub(super) enum Kind {
 pub(super) struct OpenDevice {
     api: Arc<OpenNiApi>,
     name: String,
-    device: *mut Device,
+    device: *mut OpenNiDevice,
     /// Colour and depth; null where not made.
     streams: [*mut Stream; 2],
 }

@@ -1,13 +1,16 @@
 //! Checkpoint files that a run resumes from.
 
+use crate::AppError;
 use std::fmt::Display;
 use std::path::Path;
-use trundle::app::AppError;
-use trundle::io::Expected;
-use trundle::runtime::Checkpoint;
+use trundle_io::Expected;
+use trundle_runtime::Checkpoint;
 
 /// The checkpoint in this file, and its bytes.
-pub fn read(file: &Path) -> Result<(Checkpoint, Vec<u8>), AppError> {
+///
+/// # Errors
+/// When the file cannot be read, is no checkpoint, or nothing is left of its mission. Names the file.
+pub fn read_checkpoint(file: &Path) -> Result<(Checkpoint, Vec<u8>), AppError> {
     let refused = |error: &dyn Display| AppError::Input(format!("{}: {error}", file.display()));
     Expected::Checkpoint.check(file)?;
     let bytes = std::fs::read(file).map_err(|error| refused(&error))?;

@@ -1,0 +1,73 @@
+//! What is plugged in, what is missing and how to get it.
+
+use std::path::Path;
+use trundle_drivers::camera::native::{LibraryReport, LibraryState, NativeKind, list_devices, reports};
+use trundle_drivers::{KOBUKI_UDEV_PORT, KOBUKI_UDEV_RULE, PortAccess, SerialDevice, serial_devices};
+
+/// The udev rules that give the devices their names and rights.
+#[must_use]
+pub fn udev_rules() -> String {
+    format!(
+        "# Written by `trundle devices --udev`. Install: save as /etc/udev/rules.d/60-trundle.rules, then\n\
+         # sudo udevadm control --reload && sudo udevadm trigger\n\
+         # Kobuki: {KOBUKI_UDEV_PORT}\n{KOBUKI_UDEV_RULE}"
+    )
+}
+
+/// The devices and libraries, a row each: kind, state.
+#[must_use]
+pub fn device_rows() -> Vec<Vec<String>> {
+    let devices = serial_devices();
+    let mut rows: Vec<Vec<String>> = devices.iter().map(serial_row).collect();
+    if !devices.iter().any(SerialDevice::is_kobuki) {
+        let what = "not found: connect its USB cable and switch it on; other serial devices may still be one";
+        rows.push(vec!["base Kobuki".to_owned(), what.to_owned()]);
+    }
+    let rule = if Path::new(KOBUKI_UDEV_PORT).exists() {
+        format!("{KOBUKI_UDEV_PORT} is there")
+    } else {
+        format!("{KOBUKI_UDEV_PORT} is not there: install the rule of `trundle devices --udev`")
+    };
+    rows.push(vec!["udev rule".to_owned(), rule]);
+    rows.extend(
+        NativeKind::ALL.into_iter().zip(reports()).flat_map(|(kind, report)| camera_rows(kind, &report)),
+    );
+    let any = "any camera by --camera stream:PATH (docs/camera-stream.md)".to_owned();
+    rows.push(vec!["camera stream".to_owned(), any]);
+    let kinect = "its USB transfer is not built in; packets from a file by --camera kinect2-dump:FILE; no device was met".to_owned();
+    rows.push(vec!["camera Kinect V2".to_owned(), kinect]);
+    rows
+}
+
+/// The library of a kind of camera, and the cameras that it lists.
+fn camera_rows(kind: NativeKind, report: &LibraryReport) -> Vec<Vec<String>> {
+    let name = format!("camera {kind}");
+    let row = |value: String| vec![name.clone(), value];
+    match &report.state {
+        LibraryState::Unusable { problem } => vec![row(problem.clone())],
+        LibraryState::Usable { file, version } => {
+            let version = version.map_or_else(String::new, |version| format!(" {version}"));
+            let mut rows = vec![row(format!("library{version}: {}", file.display()))];
+            match list_devices(kind) {
+                Ok(devices) if devices.is_empty() => rows.push(row("none is plugged in".to_owned())),
+                Ok(devices) => rows.extend(devices.iter().map(|device| {
+                    let usb = device.usb.map_or_else(String::new, |usb| format!(", {usb}"));
+                    row(format!("{} {}, firmware {}{usb}", device.name, device.serial, device.firmware))
+                })),
+                Err(error) => rows.push(row(error.to_string())),
+            }
+            rows
+        }
+    }
+}
+
+fn serial_row(device: &SerialDevice) -> Vec<String> {
+    let access = match device.access {
+        PortAccess::Free => "can be opened",
+        PortAccess::Busy => "in use by another program",
+        PortAccess::NoRights => "no right to open it: sudo usermod -aG dialout $USER, then log in again",
+        PortAccess::Broken => "does not answer: plug it in again",
+    };
+    let kind = if device.is_kobuki() { "base Kobuki" } else { "serial device" };
+    vec![kind.to_owned(), format!("{} {}: {access}", device.path.display(), device.id)]
+}
