@@ -105,10 +105,13 @@ pub fn encode_color(image: &ColorImage, quality: u8) -> Result<Vec<u8>, CodecErr
     Ok(bytes)
 }
 
+/// Bits of a pixel of a colour image. Source: three channels of 8 bits.
+const COLOR_BITS_PER_PIXEL: usize = 24;
+
 /// A colour image from the bytes of a JPEG or PNG; grey ones become grey colours, alpha is dropped.
 ///
 /// # Errors
-/// When the bytes are neither, end too early, or hold an image above 16,384 px a side or 67 Mpx.
+/// When the bytes are neither, end too early, claim more pixels than they can hold, or hold an image above 16,384 px a side or 67 Mpx.
 pub fn decode_color(bytes: &[u8]) -> Result<ColorImage, CodecError> {
     let failed = |problem: &str| CodecError::decode("colour", problem);
     let format = image::guess_format(bytes).map_err(|_| failed("neither JPEG nor PNG"))?;
@@ -120,6 +123,9 @@ pub fn decode_color(bytes: &[u8]) -> Result<ColorImage, CodecError> {
             return Err(failed(&format!("this is {found}, expected JPEG or PNG; save it as PNG")));
         }
     }
+    let size = ImageReader::with_format(Cursor::new(bytes), format).into_dimensions();
+    let (width, height) = size.map_err(|error| CodecError::decode("colour", error))?;
+    claim::check_size("colour", (width as usize, height as usize), COLOR_BITS_PER_PIXEL, bytes.len())?;
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     let mut limits = Limits::default();
     limits.max_image_width = Some(MAX_SIDE);

@@ -86,7 +86,8 @@ fn first_number(table: &str, row: &str) -> f64 {
 fn a_goal_is_reached_over_a_serial_line_and_a_camera_stream() {
     let folder = tempfile::tempdir().unwrap();
     let robot = EmulatedRobot::start(folder.path());
-    let output = robot.run(&["--goal", "0.6,0,0", "--time-limit", RUN_LIMIT_S]).output().unwrap();
+    let arguments = ["--goal", "0.6,0,0", "--time-limit", RUN_LIMIT_S, "--record", "all"];
+    let output = robot.run(&arguments).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
     let summary = robot.summary();
     assert_eq!((summary["command"].as_str(), summary["success"].as_bool()), (Some("run"), Some(true)));
@@ -94,6 +95,19 @@ fn a_goal_is_reached_over_a_serial_line_and_a_camera_stream() {
     let truth = robot.stop();
     assert!((first_number(&truth, "true pose from the start") - 0.6).abs() < 0.03, "{truth}");
     assert_eq!(first_number(&truth, "true contacts"), 0.0);
+    assert!(!folder.path().join("out/groundtruth.txt").exists(), "a real robot knows no truth");
+    replayed_alike(folder.path());
+}
+
+/// A replay of the recording gives the map and the trajectory of the run, byte for byte.
+fn replayed_alike(folder: &Path) {
+    let (recording, again) = (folder.join("out/recording.mcap"), folder.join("again"));
+    let replay = trundle().arg("replay").arg(&recording).arg("--out").arg(&again).output().unwrap();
+    assert_eq!(replay.status.code(), Some(0), "{}", text(&replay));
+    for name in ["map.pgm", "map.yaml", "trajectory.txt"] {
+        let read = |folder: &Path| std::fs::read(folder.join(name)).unwrap();
+        assert!(read(&folder.join("out")) == read(&again), "{name} differs");
+    }
 }
 
 #[test]

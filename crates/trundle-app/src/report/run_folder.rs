@@ -37,7 +37,9 @@ pub fn write_run(
     let numbers = RunNumbers::of(setup, run);
     write_map(&folder, "map", run.robot.grid())?;
     folder.write("trajectory.txt", trajectory_text_from_planar(&run.log.estimates).as_bytes())?;
-    folder.write("groundtruth.txt", trajectory_text_from_planar(&run.log.truths).as_bytes())?;
+    if !run.log.truths.is_empty() {
+        folder.write("groundtruth.txt", trajectory_text_from_planar(&run.log.truths).as_bytes())?;
+    }
     let report = report(setup, run, &numbers);
     folder.write("map.png", &report.map.to_png())?;
     folder.write("report.html", report.to_html().as_bytes())?;
