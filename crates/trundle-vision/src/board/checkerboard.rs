@@ -19,6 +19,8 @@ const REFINEMENT_BLUR_PX: f32 = 0.7;
 const MAX_SEEDS: usize = 30;
 /// Distance of a corner from its prediction, over the side of a square. Source: ours.
 const MAX_PREDICTION_ERROR: f64 = 0.3;
+/// Fraction of the board's corners that must be found: 0.8. The outer ones must show the size of the board. Source: ours.
+const MIN_CORNER_RATIO: f64 = 0.8;
 /// Radius of the refinement over the distance to the nearest corner. Source: ours; a larger one would meet the next corner.
 const REFINEMENT_RADIUS_RATIO: f64 = 0.4;
 /// Smallest radius of the refinement, px. Source: ours.
@@ -57,18 +59,24 @@ pub(super) fn find_checkerboard(
 }
 
 /// The corners, refined where that is possible.
-fn view(image: &SmoothImage, pixels: &[Vector2], (columns, _): (usize, usize), square: f64) -> BoardView {
+fn view(
+    image: &SmoothImage,
+    corners: &[(usize, Vector2)],
+    (columns, _): (usize, usize),
+    square: f64,
+) -> BoardView {
     let nearest = |at: &Vector2| {
-        let distances = pixels.iter().map(|other| (other - at).norm()).filter(|distance| *distance > 0.0);
+        let distances =
+            corners.iter().map(|(_, other)| (other - at).norm()).filter(|distance| *distance > 0.0);
         distances.fold(f64::MAX, f64::min)
     };
-    let point = |(i, pixel): (usize, &Vector2)| {
+    let point = |(i, pixel): &(usize, Vector2)| {
         let radius = REFINEMENT_RADIUS_RATIO * nearest(pixel);
         let radius = radius.clamp(MIN_REFINEMENT_RADIUS_PX, MAX_REFINEMENT_RADIUS_PX);
         let board = Vector2::new((i % columns) as f64, (i / columns) as f64) * square;
         Some(BoardPoint { board, pixel: refine_corner(image, *pixel, radius)? })
     };
-    BoardView { points: pixels.iter().enumerate().filter_map(point).collect() }
+    BoardView { points: corners.iter().filter_map(point).collect() }
 }
 
 /// Cell of a grid: column and row, from the seed.
@@ -140,24 +148,36 @@ impl Grid {
         (span(&|cell| cell.0) as usize, span(&|cell| cell.1) as usize)
     }
 
-    /// The pixels row by row, right-handed as seen from the front; `None` where the grid is not whole or of another size.
-    fn ordered(&self, (columns, rows): (usize, usize)) -> Option<Vec<Vector2>> {
-        let turned = self.size() == (rows, columns) && rows != columns;
-        if self.cells.len() != columns * rows || !(turned || self.size() == (columns, rows)) {
+    /// The pixels with their number, row by row, right-handed as seen from the front; `None` of a grid of another size, and of one
+    /// with too many gaps.
+    fn ordered(&self, (columns, rows): (usize, usize)) -> Option<Vec<(usize, Vector2)>> {
+        let is_turned = self.size() == (rows, columns) && rows != columns;
+        let is_whole = self.cells.len() as f64 >= MIN_CORNER_RATIO * (columns * rows) as f64;
+        if !is_whole || !(is_turned || self.size() == (columns, rows)) {
             return None;
         }
         let first = |value: &dyn Fn(&GridCell) -> i32| self.cells.keys().map(value).min();
         let (x0, y0) = (first(&|cell| cell.0)?, first(&|cell| cell.1)?);
-        let at = |column: usize, row: usize| {
-            let (x, y) = if turned { (row, column) } else { (column, row) };
-            self.cells.get(&(x0 + x as i32, y0 + y as i32)).copied()
+        // A turned grid is mirrored by the exchange of its axes.
+        let is_mirrored = self.is_mirrored()? != is_turned;
+        let number = |cell: &GridCell| {
+            let (x, y) = ((cell.0 - x0) as usize, (cell.1 - y0) as usize);
+            let (column, row) = if is_turned { (y, x) } else { (x, y) };
+            row * columns + if is_mirrored { columns - 1 - column } else { column }
         };
-        let is_mirrored = {
-            let (origin, right, down) = (at(0, 0)?, at(1, 0)?, at(0, 1)?);
-            (right - origin).perp(&(down - origin)) < 0.0
-        };
-        let column = |x: usize| if is_mirrored { columns - 1 - x } else { x };
-        (0..columns * rows).map(|i| at(column(i % columns), i / columns)).collect()
+        let mut ordered: Vec<(usize, Vector2)> =
+            self.cells.iter().map(|(cell, pixel)| (number(cell), *pixel)).collect();
+        ordered.sort_by_key(|(number, _)| *number);
+        Some(ordered)
+    }
+
+    /// Whether the grid is left-handed in the image; `None` where no corner has neighbours in both directions.
+    fn is_mirrored(&self) -> Option<bool> {
+        self.cells.iter().find_map(|(cell, here)| {
+            let right = self.cells.get(&(cell.0 + 1, cell.1))? - here;
+            let down = self.cells.get(&(cell.0, cell.1 + 1))? - here;
+            Some(right.perp(&down) < 0.0)
+        })
     }
 }
 

