@@ -59,7 +59,10 @@ pub fn calibrate_board(
         progress.advance();
     }
     progress.end();
-    let size = found.size.ok_or_else(|| AppError::input("no image can be read; expected JPEG or PNG"))?;
+    let size = found.size.ok_or_else(|| {
+        let cause = found.rejected.first().map_or("the folders hold none", String::as_str);
+        AppError::Input(format!("no image can be read, expected JPEG or PNG: {cause}"))
+    })?;
     let fit = calibrate_camera(&found.views, size, request.lens).map_err(|error| {
         let causes: Vec<String> = found.rejected.iter().take(3).cloned().collect();
         AppError::Input(
