@@ -102,7 +102,17 @@ pub struct DockInfrared {
     pub right: DockBeams,
 }
 
-/// Beams of a charging station that one receiver sees. Left and right are those of a robot that faces the station.
+impl DockInfrared {
+    /// Whether any receiver sees any sector.
+    #[must_use]
+    pub fn is_any(&self) -> bool {
+        *self != Self::default()
+    }
+}
+
+/// Beams of a charging station that one receiver sees. Left and right are the station's own, which looks out of its front: the left
+/// sector is at the right hand of a robot that faces the station. Source: the vendor's dock drive, which turns a robot in the right
+/// sector clockwise until its left receiver sees the station, and then drives ahead to the middle.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DockBeams {
     /// The left sector, near the station.

@@ -1,6 +1,7 @@
 //! Configuration of the simulated robot: body, sensors, noise and faults.
 
 use crate::camera::{ColorNoise, DepthNoise};
+use crate::charging_station::StationConfig;
 use crate::faults::FaultSchedule;
 use crate::kobuki::KobukiConfig;
 use crate::laser::LaserConfig;
@@ -35,6 +36,8 @@ pub struct SimConfig {
     pub laser: Option<LaserConfig>,
     /// Faults and their times. Default none.
     pub faults: FaultSchedule,
+    /// Light and contacts of the charging station, for a scene that has one.
+    pub station: StationConfig,
 }
 
 impl Default for SimConfig {
@@ -51,6 +54,7 @@ impl Default for SimConfig {
             color_noise: ColorNoise::default(),
             laser: None,
             faults: FaultSchedule::default(),
+            station: StationConfig::default(),
         }
     }
 }
@@ -78,6 +82,7 @@ impl SimConfig {
             depth_noise: DepthNoise::none(),
             color_noise: ColorNoise::none(),
             laser: self.laser.map(LaserConfig::without_noise),
+            station: self.station.without_noise(),
             ..self
         }
     }
@@ -101,6 +106,7 @@ impl SimConfig {
             color_noise: self.color_noise.validated()?,
             laser: self.laser.map(LaserConfig::validated).transpose()?,
             faults: self.faults.validated()?,
+            station: self.station.validated()?,
             ..self
         })
     }

@@ -16,6 +16,7 @@
 //! ```
 
 mod camera;
+mod charging_station;
 mod config;
 mod drive;
 mod faults;
@@ -31,6 +32,7 @@ mod solid;
 mod world;
 
 pub use camera::{ColorNoise, DepthNoise, Exposure, Renderer, RgbdSensor, View, blend};
+pub use charging_station::StationConfig;
 pub use config::{SimConfig, camera_mount};
 pub use drive::{CommandScript, Following, TimedCommand, WaypointFollower, WaypointFollowerConfig};
 pub use faults::{Fault, FaultKind, FaultSchedule, WheelSide};

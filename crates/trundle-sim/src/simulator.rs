@@ -7,6 +7,7 @@ mod error;
 mod latency_queue;
 mod track;
 
+use crate::charging_station::StationSensing;
 use crate::config::SimConfig;
 use crate::faults::Faults;
 use crate::kobuki::{ContactScene, Kobuki, STEP_S, TrueWheels};
@@ -23,7 +24,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 use track::Track;
 use trundle_core::{
-    Cliff, PinholeCamera, Pose2, RobotBody, SensorEvent, Stamp, Touch, Twist2, require_finite,
+    BodyEvent, Cliff, PinholeCamera, Pose2, RobotBody, SensorEvent, Stamp, Touch, Twist2, require_finite,
 };
 
 /// Between these heights, m, people need room to walk.
@@ -31,7 +32,7 @@ const PERSON_HEIGHT_BAND_M: (f64, f64) = (0.05, 1.75);
 
 /// A Kobuki with an RGB-D camera and, if wished, a laser in a scene, behind the trait that hardware is behind.
 ///
-/// Events come in the order of their stamps, at equal stamps wheels, gyro, touch, cliff, truth, scan, image; only an image
+/// Events come in the order of their stamps, at equal stamps wheels, gyro, touch, cliff, station, truth, scan, image; only an image
 /// that a fault makes late comes after things that happened after it. The first set is of time 0. Truth comes with every
 /// wheel reading, scan and image, dropped ones too. It never ends by itself. The same scene, configuration, seed and commands
 /// give the same bytes on any number of threads.
@@ -47,6 +48,8 @@ pub struct Simulator {
     /// What the camera aside has not taken yet.
     shots: Vec<Shot>,
     laser: Option<Laser>,
+    /// None in a scene without a charging station.
+    station: Option<StationSensing>,
     faults: Faults,
     track: Track,
     /// Steps of 1 ms since the start.
@@ -112,6 +115,7 @@ impl Simulator {
             rig: Some(CameraRig::new(&config, seed)?),
             shots: Vec::new(),
             laser: config.laser.clone().map(|laser| Laser::new(laser, seed)),
+            station: scene.station.map(|station| StationSensing::new(config.station, station, seed)),
             faults: Faults::new(config.faults.clone(), seed),
             track: Track::new(scene.start, config.memory()),
             now: 0,
@@ -229,6 +233,9 @@ impl Simulator {
         {
             self.queue.push_back(SensorEvent::Cliff(Cliff { stamp, over_edge }));
         }
+        if wheels.is_some() {
+            self.read_station(stamp);
+        }
         if wheels.or(scan).or(image).is_some() {
             self.queue.push_back(SensorEvent::Truth { stamp, pose: self.body.pose() });
         }
@@ -266,6 +273,17 @@ impl Simulator {
             self.last_readings.is_pressed = pressed;
             self.queue.push_back(SensorEvent::Touch(Touch { stamp, pressed }));
         }
+    }
+
+    /// Light and charger; nothing in a scene without a station.
+    fn read_station(&mut self, stamp: Stamp) {
+        let Some(station) = &mut self.station else { return };
+        let movers = self.crowd.movers();
+        let snapshot =
+            SceneSnapshot { world: &self.scene.world, movers: &movers, lights: &self.scene.lights };
+        let kinds = station.read(self.body.pose(), self.body.footprint(), &snapshot);
+        let event = |kind| SensorEvent::Body(BodyEvent { stamp, kind });
+        self.queue.extend(kinds.into_iter().map(event));
     }
 
     fn read_laser(&mut self, stamp: Stamp, scan: u64) -> Result<(), SimError> {

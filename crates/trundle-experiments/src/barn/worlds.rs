@@ -53,6 +53,7 @@ impl BarnWorld {
             people: Vec::new(),
             start: Self::start(),
             goal: Self::goal(),
+            station: None,
         })
     }
 }

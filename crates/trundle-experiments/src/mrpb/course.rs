@@ -97,6 +97,7 @@ impl Course {
             people: self.people.clone(),
             start: self.start,
             goal: self.goal,
+            station: None,
         })
     }
 }

@@ -118,5 +118,5 @@ fn bare(args: SceneOptions, file: &Path, world: World) -> Result<Scene, AppError
     };
     let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let lights = Lights::default();
-    Ok(Scene { name, world, lights, people: Vec::new(), start, goal: start })
+    Ok(Scene { name, world, lights, people: Vec::new(), start, goal: start, station: None })
 }

@@ -58,6 +58,7 @@ pub fn corridor(kind: Corridor, seed: u64) -> Result<Scene, Invalid> {
         people: Vec::new(),
         start: Pose2::new(-x, 0.0, FRAC_PI_2),
         goal: Pose2::new(x, -back, FRAC_PI_2),
+        station: None,
     })
 }
 

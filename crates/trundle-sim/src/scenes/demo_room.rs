@@ -46,6 +46,7 @@ pub fn demo_room(seed: u64) -> Result<Scene, Invalid> {
         people: Vec::new(),
         start: Pose2::new(0.9, 1.1, 0.35),
         goal: Pose2::new(6.9, 1.5, -FRAC_PI_2),
+        station: None,
     })
 }
 

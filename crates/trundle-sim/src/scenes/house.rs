@@ -57,6 +57,7 @@ pub fn house(seed: u64) -> Result<Scene, Invalid> {
         people: Vec::new(),
         start: Pose2::new(0.7, 4.4, 0.0),
         goal: Pose2::new(7.4, 6.4, FRAC_PI_2),
+        station: None,
     })
 }
 

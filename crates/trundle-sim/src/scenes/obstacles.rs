@@ -40,6 +40,7 @@ pub fn obstacles(seed: u64) -> Result<Scene, Invalid> {
         people: Vec::new(),
         start: Pose2::new(0.7, 0.7, FRAC_PI_4),
         goal: Pose2::new(5.3, 5.2, FRAC_PI_2),
+        station: None,
     })
 }
 

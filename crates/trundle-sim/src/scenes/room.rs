@@ -37,5 +37,6 @@ pub fn room(seed: u64) -> Result<Scene, Invalid> {
         people: Vec::new(),
         start: Pose2::new(-2.4, 2.4, 0.0),
         goal: Pose2::new(0.0, 0.0, FRAC_PI_2),
+        station: None,
     })
 }

@@ -19,6 +19,8 @@ pub struct Scene {
     pub start: Pose2,
     /// Where the robot shall go, `world_from_base`.
     pub goal: Pose2,
+    /// A charging station, `world_from_station`: see [`Scene::with_station`].
+    pub station: Option<Pose2>,
 }
 
 impl Scene {

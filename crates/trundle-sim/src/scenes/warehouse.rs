@@ -58,6 +58,7 @@ pub fn warehouse(seed: u64) -> Result<Scene, Invalid> {
         people: Vec::new(),
         start: Pose2::new(1.4, 2.4, FRAC_PI_2),
         goal: Pose2::new(26.4, 26.6, 0.0),
+        station: None,
     })
 }
 

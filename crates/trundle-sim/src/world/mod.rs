@@ -86,6 +86,12 @@ impl World {
         Ok(Self { seed, solids, meshes, outlines, bounds, bvh, forms, triangles, paintings, pictures })
     }
 
+    /// The same world with one more solid; the looks of the others stay.
+    pub(crate) fn with_solid(self, solid: Solid) -> Result<Self, Invalid> {
+        let solids = self.solids.into_iter().chain([solid]).collect();
+        Self::with_meshes(solids, self.meshes, self.seed)
+    }
+
     /// The solids.
     pub fn solids(&self) -> &[Solid] {
         &self.solids

@@ -37,6 +37,7 @@ fn hall(start: Pose2) -> Scene {
         people: Vec::new(),
         start,
         goal: Pose2::IDENTITY,
+        station: None,
     }
 }
 

@@ -93,6 +93,7 @@ impl SceneFile {
             people: base.people,
             start,
             goal,
+            station: None,
         })
     }
 }

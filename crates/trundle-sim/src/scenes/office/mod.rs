@@ -44,5 +44,6 @@ pub fn office(seed: u64) -> Result<Scene, Invalid> {
         people: Vec::new(),
         start: Pose2::new(2.0, OFFICE_RING[0][1], 0.0),
         goal: Pose2::new(5.0 + DOOR_CENTRE_X_M, NORTH_ROOMS_Y_M + 1.2, PI),
+        station: None,
     })
 }
