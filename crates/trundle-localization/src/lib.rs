@@ -3,6 +3,7 @@
 //! - [`WheelOdometry`]: encoder ticks and gyro to a continuous pose that drifts, with its covariance.
 //! - [`Localizer`]: an extended Kalman filter on SE(2). It corrects that odometry by visual poses and scan matches at the stamps
 //!   of their measurement, and yields the one [`trundle_core::PoseEstimate`] that planning and control use.
+//! - [`StationEstimator`]: the pose of a charging station from its infrared light.
 //! - [`OdometryState`]: pose and covariance of the odometry at a stamp. With [`trundle_core::CameraMotion::of_base`] it is the
 //!   motion prior of visual tracking.
 //! - [`estimate_image_delay`], [`FloorSearch`], [`fit_wheels_and_camera`], [`fit_gyro`]: calibration by a recording.
@@ -26,6 +27,7 @@
 //! ```
 
 mod calibration;
+mod charging_station;
 mod faults;
 mod fusion;
 mod odometry;
@@ -42,6 +44,7 @@ pub use calibration::batch::image_delay::{ImageDelay, estimate_image_delay};
 pub use calibration::batch::turn_axis::turn_axis;
 pub use calibration::batch::wheel_angles::WheelAngles;
 pub use calibration::batch::wheel_camera_fit::{WheelCameraFit, fit_wheels_and_camera};
+pub use charging_station::{StationEstimate, StationEstimator, StationLightConfig};
 pub use fusion::config::LocalizerConfig;
 pub use fusion::correction::{Correction, Prediction, VisualPose, VisualQuality};
 pub use fusion::localizer::Localizer;
