@@ -4,6 +4,7 @@ mod args;
 
 pub use args::{DemoArgs, RecordArg};
 
+use crate::common_args::PoseArg;
 use crate::outcome::Outcome;
 use crate::{console, logging, run_output};
 use trundle::app::real_time::run_in_real_time;
@@ -21,8 +22,9 @@ use trundle::sim::{Scene, Simulator};
 
 /// `trundle demo`.
 pub fn run(args: &DemoArgs) -> Result<Outcome, AppError> {
-    let options =
-        SceneOptions { seed: args.seed, mesh: args.mesh.options(), start: args.start.map(|start| start.0) };
+    let pose = |arg: Option<PoseArg>| arg.map(|pose| pose.0);
+    let (start, station) = (pose(args.start), pose(args.station));
+    let options = SceneOptions { seed: args.seed, mesh: args.mesh.options(), start, station };
     let robot = args.robot.robot()?;
     let mut scene = load_scene(&args.scene, options)?;
     let faults = args.faults.as_deref().map(read_faults).transpose()?.unwrap_or_default();
@@ -86,11 +88,14 @@ fn drive(args: &DemoArgs, setup: &RunSetup, mut body: Simulator) -> Result<Outco
 /// The goals asked for, or the scene's own; before them exploration and after them the return, unless the drive is direct.
 fn mission(args: &DemoArgs, scene: &Scene) -> Result<Mission, Invalid> {
     let mut goals: Vec<Task> = args.goal.iter().map(|goal| Task::Go(goal.0)).collect();
-    if goals.is_empty() {
+    let dock = if args.dock { vec![Task::Dock] } else { vec![] };
+    if goals.is_empty() && !(args.direct && args.dock) {
         goals.push(Task::Go(scene.start_from_goal()));
     }
     if args.direct {
-        return Mission::new(goals);
+        return Mission::new([goals, dock].concat());
     }
-    Mission::new([vec![Task::Explore], goals, vec![Task::Return]].concat())
+    // The station is the better place to end at than the start.
+    let end = if args.dock { dock } else { vec![Task::Return] };
+    Mission::new([vec![Task::Explore], goals, end].concat())
 }

@@ -72,10 +72,11 @@ fn mission(args: &MissionArgs) -> Result<Mission, AppError> {
     if let Some(file) = &args.mission {
         return read_mission(file);
     }
-    let tasks = if args.explore {
-        vec![Task::Explore, Task::Return]
-    } else {
-        args.goal.iter().map(|goal| Task::Go(goal.0)).collect()
-    };
+    let mut tasks: Vec<Task> = args.goal.iter().map(|goal| Task::Go(goal.0)).collect();
+    if args.explore {
+        // The station is the better place to end at than the start.
+        tasks = if args.dock { vec![Task::Explore] } else { vec![Task::Explore, Task::Return] };
+    }
+    tasks.extend(args.dock.then_some(Task::Dock));
     Ok(Mission::new(tasks)?)
 }

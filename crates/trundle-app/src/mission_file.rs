@@ -29,6 +29,8 @@ struct TaskEntry {
     explore: bool,
     #[serde(default, rename = "return")]
     back: bool,
+    #[serde(default)]
+    dock: bool,
 }
 
 /// Reads a mission.
@@ -43,6 +45,8 @@ struct TaskEntry {
 /// place = "desk"
 /// [[task]]
 /// return = true
+/// [[task]]
+/// dock = true              # drive onto the charging station
 /// ```
 ///
 /// # Errors
@@ -63,20 +67,26 @@ pub fn read_mission(file: &Path) -> Result<Mission, AppError> {
 }
 
 fn task(entry: &TaskEntry, places: &BTreeMap<String, Pose2>) -> Result<Task, String> {
-    match (entry.go, &entry.place, entry.explore, entry.back) {
-        (Some([x, y, heading_deg]), None, false, false) => {
+    match (entry.go, &entry.place, entry.explore, entry.back, entry.dock) {
+        (Some([x, y, heading_deg]), None, false, false, false) => {
             Ok(Task::Go(Pose2::new(x, y, heading_deg.to_radians())))
         }
-        (None, Some(name), false, false) => places.get(name).map(|pose| Task::Go(*pose)).ok_or_else(|| {
-            let known: Vec<&str> = places.keys().map(String::as_str).collect();
-            match known.as_slice() {
-                [] => format!("no place '{name}': the mission names no file of places (places = FILE)"),
-                _ => format!("no place '{name}'; there are: {}", known.join(", ")),
-            }
-        }),
-        (None, None, true, false) => Ok(Task::Explore),
-        (None, None, false, true) => Ok(Task::Return),
-        _ => Err("expected one of go = [X, Y, DEG], place = NAME, explore = true, return = true".to_owned()),
+        (None, Some(name), false, false, false) => {
+            places.get(name).map(|pose| Task::Go(*pose)).ok_or_else(|| {
+                let known: Vec<&str> = places.keys().map(String::as_str).collect();
+                match known.as_slice() {
+                    [] => format!("no place '{name}': the mission names no file of places (places = FILE)"),
+                    _ => format!("no place '{name}'; there are: {}", known.join(", ")),
+                }
+            })
+        }
+        (None, None, true, false, false) => Ok(Task::Explore),
+        (None, None, false, true, false) => Ok(Task::Return),
+        (None, None, false, false, true) => Ok(Task::Dock),
+        _ => {
+            Err("expected one of go = [X, Y, DEG], place = NAME, explore = true, return = true, dock = true"
+                .to_owned())
+        }
     }
 }
 
@@ -97,12 +107,12 @@ mod tests {
     #[test]
     fn tasks_come_in_the_order_of_the_file() {
         let text = "places = \"places.toml\"\n[[task]]\nexplore = true\n[[task]]\ngo = [3, 1, 180]\n\
-                    [[task]]\nplace = \"desk\"\n[[task]]\nreturn = true\n";
+                    [[task]]\nplace = \"desk\"\n[[task]]\nreturn = true\n[[task]]\ndock = true\n";
         let desk = Pose2::new(1.0, 2.0, 90_f64.to_radians());
         let goal = Pose2::new(3.0, 1.0, 180_f64.to_radians());
         assert_eq!(
             read(text).unwrap().tasks(),
-            [Task::Explore, Task::Go(goal), Task::Go(desk), Task::Return]
+            [Task::Explore, Task::Go(goal), Task::Go(desk), Task::Return, Task::Dock]
         );
     }
 
@@ -120,12 +130,12 @@ mod tests {
             ),
             (
                 "[[task]]\ngo = [1, 2, 3]\nexplore = true\n",
-                "mission.toml: task 1: expected one of go = [X, Y, DEG], place = NAME, explore = true, return = true",
+                "mission.toml: task 1: expected one of go = [X, Y, DEG], place = NAME, explore = true, return = true, dock = true",
             ),
             ("[[task]]\ngo = [1, 2]\n", "mission.toml, line 2: go has 2 values, expected a list of 3 values"),
             (
                 "[[task]]\ngoal = 1\n",
-                "mission.toml, line 2: unknown key goal, expected one of go, place, explore, return",
+                "mission.toml, line 2: unknown key goal, expected one of go, place, explore, return, dock",
             ),
             ("[[task]]\ngo = [1, nan, 3]\n", "mission.toml: goal of task 0 is (1, NaN, "),
         ] {

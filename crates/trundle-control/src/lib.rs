@@ -39,6 +39,7 @@ pub use safety::obstacles::{SafetyMemory, SafetyScan};
 pub use safety::safety_action::{SafetyAction, SlowReason, StopReason};
 pub use safety::safety_config::SafetyConfig;
 pub use safety::safety_monitor::{MotionSense, SafetyInput, SafetyMonitor, SafetyReport};
+pub use safety::station_motion::StationMotion;
 pub use stabilization::stabilizer::{Stabilizer, StabilizerPhase, StabilizerReport};
 pub use stabilization::stabilizer_config::StabilizerConfig;
 pub use stabilization::stabilizer_preview::StabilizerPreview;

@@ -17,6 +17,7 @@ pub mod corridor;
 mod cpu_clock;
 mod csv_rows;
 pub mod data_sets;
+pub mod docking_station;
 mod experiment_report;
 pub mod fault_scenarios;
 mod laser_run;

@@ -93,6 +93,7 @@ pub fn run_house(
             seed,
             mesh: MeshOptions { up: UpAxis::Z, ..MeshOptions::default() },
             start: Some(start),
+            station: None,
         };
         let scene = load_scene(&mesh.display().to_string(), options)?;
         for goal in HOUSE_GOALS {

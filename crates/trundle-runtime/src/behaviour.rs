@@ -5,3 +5,4 @@ pub(crate) mod navigator;
 pub(crate) mod progress_checker;
 pub(crate) mod sight_recovery;
 pub(crate) mod spin;
+pub(crate) mod station_drive;

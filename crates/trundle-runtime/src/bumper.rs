@@ -21,6 +21,11 @@ pub(crate) fn ahead_of(footprint: &Footprint) -> Vec<Vector2> {
     bearings.map(point).collect()
 }
 
+/// Distance from the base's origin to the front of the outline, m.
+pub(crate) fn front_of(footprint: &Footprint) -> f64 {
+    way_out(footprint, Vector2::new(1.0, 0.0))
+}
+
 /// How far the outline reaches from the base's origin in a direction, m.
 fn way_out(footprint: &Footprint, direction: Vector2) -> f64 {
     match footprint {

@@ -6,7 +6,7 @@ use crate::mission::MissionState;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, Vector2};
-use trundle_localization::VisualAnchor;
+use trundle_localization::{StationEstimate, VisualAnchor};
 use trundle_slam::MapFileError;
 
 /// State of a robot across a restart: its maps, their poses, and the state of its mission.
@@ -23,6 +23,8 @@ pub struct Checkpoint {
     pub grid: OccupancyGrid,
     /// Finished tasks, and remaining tasks.
     pub mission: MissionState,
+    /// The charging station, where the robot knows one.
+    pub station: Option<StationEstimate>,
 }
 
 /// Why a checkpoint is refused.
@@ -61,6 +63,8 @@ pub enum CheckpointError {
 struct Notes {
     visual_maps: BTreeMap<u32, VisualAnchor>,
     mission: MissionState,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    station: Option<StationEstimate>,
     /// Of the floor map, m.
     resolution: f64,
     /// Lower left corner of the floor map, map frame, m.
@@ -80,6 +84,7 @@ impl Checkpoint {
         let notes = Notes {
             visual_maps: self.visual_maps.clone(),
             mission: self.mission.clone(),
+            station: self.station,
             resolution,
             origin: origin.into(),
             cells: [width, height],
@@ -112,12 +117,14 @@ impl Checkpoint {
         let geometry = GridGeometry::new(notes.resolution, Vector2::from(notes.origin), width, height)?;
         let (cells, visual) = split(rest, geometry.len())?;
         let cells = cells.iter().map(|code| cell(*code)).collect::<Result<Vec<_>, _>>()?;
+        require(notes.station.is_none_or(|station| station.is_finite()), "the station lies nowhere")?;
         require(notes.visual_maps.values().all(VisualAnchor::is_valid), "a visual map lies nowhere")?;
         Ok(Self {
             visual: visual.to_vec(),
             visual_maps: notes.visual_maps,
             grid: OccupancyGrid::new(geometry, cells)?,
             mission: notes.mission.validated()?,
+            station: notes.station,
         })
     }
 }
@@ -182,6 +189,7 @@ mod tests {
             visual_maps: BTreeMap::from([(0, anchor(0.0)), (3, anchor(1e-4))]),
             grid: OccupancyGrid::from_ascii(0.05, "#.#\n?..\n").unwrap(),
             mission: MissionState { places: vec![0, 2, 3], ended: vec![ended], ..mission },
+            station: Some(StationEstimate { pose: Pose2::new(1.0, 2.0, 0.5), covariance: [[0.25; 3]; 3] }),
         }
     }
 

@@ -9,7 +9,7 @@ use trundle_control::{FollowerConfig, SafetyConfig};
 use trundle_core::{
     DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera, Vector2, footprint_corners, require_in,
 };
-use trundle_localization::{LocalizerConfig, OdometryConfig};
+use trundle_localization::{LocalizerConfig, OdometryConfig, StationLightConfig};
 use trundle_mapping::{DepthScanConfig, MapperConfig, ScanMatchConfig};
 use trundle_planning::{ObstacleTrackerConfig, PlannerConfig};
 use trundle_slam::SlamConfig;
@@ -63,6 +63,8 @@ pub struct RobotConfig {
     pub safety: SafetyConfig,
     /// Missions, exploration, patience.
     pub mission_executor: MissionExecutorConfig,
+    /// Light of the charging station.
+    pub station: StationLightConfig,
 }
 
 /// Corners as a list, or as the text that Nav2's costmaps take.
@@ -107,6 +109,7 @@ impl Default for RobotConfig {
             docking: GoalApproachConfig::default(),
             safety: SafetyConfig::default(),
             mission_executor: MissionExecutorConfig::default(),
+            station: StationLightConfig::default(),
         }
     }
 }

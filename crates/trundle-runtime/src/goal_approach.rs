@@ -171,6 +171,15 @@ impl GoalApproach {
         self.takes_over(s)
     }
 
+    /// Begins turns and straight moves onto a goal without a comparison with an arc; whether it could.
+    pub(crate) fn begin_at(&mut self, goal: Pose2) -> bool {
+        if self.goal != Some(goal) {
+            (self.goal, self.notes) = (Some(goal), Notes::default());
+        }
+        self.notes.report.plans += 1;
+        self.begin()
+    }
+
     fn look_into(&mut self, choice: ApproachSelection, goal: Pose2) {
         if self.goal != Some(goal) {
             (self.goal, self.notes) = (Some(goal), Notes::default());

@@ -37,7 +37,7 @@ pub use histogram::Histogram;
 pub use lazy_image::LazyImage;
 pub use level_map::{LevelMap, level_from_first_camera};
 pub use mission::executor_config::MissionExecutorConfig;
-pub use mission::{Mission, MissionState, Task, TaskEnd, TaskRecord};
+pub use mission::{DockFailure, Mission, MissionState, Task, TaskEnd, TaskRecord};
 pub use range_source::RangeSource;
 pub use reason::{NoPath, Reason, ReasonKind, TaskFailure};
 pub use report::StepReport;

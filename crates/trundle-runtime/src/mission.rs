@@ -1,10 +1,13 @@
 //! Missions: tasks in order, and how they ended.
 
+pub(crate) mod dock_failure;
+pub(crate) mod dock_task;
 pub(crate) mod executor;
 pub(crate) mod executor_config;
 pub(crate) mod task;
 
 use crate::reason::Reason;
+pub use dock_failure::DockFailure;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 pub use task::Task;
@@ -147,6 +150,7 @@ mod tests {
             (go, "go to (1.00 m, -2.00 m, 90 deg)", "go"),
             (Task::Explore, "explore", "explore"),
             (Task::Return, "return to the start", "return"),
+            (Task::Dock, "dock at the charging station", "dock"),
         ];
         for (task, text, name) in tasks {
             assert_eq!(task.to_string(), text);

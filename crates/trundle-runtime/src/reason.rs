@@ -5,6 +5,7 @@ mod no_path;
 mod recorded;
 
 use crate::goal_approach::ApproachFailure;
+use crate::mission::dock_failure::DockFailure;
 use crate::mission::task::Task;
 pub use kind::ReasonKind;
 pub use no_path::NoPath;
@@ -73,6 +74,8 @@ pub enum Reason {
     },
     /// The final approach by turns and straight moves fails.
     FinalApproach(ApproachFailure),
+    /// The robot is not on its charging station.
+    Docking(DockFailure),
     /// The mission is over, and these tasks are undone.
     TasksFailed(Vec<TaskFailure>),
     /// The user ended the run.
@@ -137,6 +140,7 @@ impl Reason {
             Self::NoSightOnPath => ReasonKind::NoSightOnPath,
             Self::NoProgress { .. } => ReasonKind::NoProgress,
             Self::FinalApproach(_) => ReasonKind::FinalApproach,
+            Self::Docking(failure) => ReasonKind::of_docking(*failure),
             Self::TasksFailed(_) => ReasonKind::TasksFailed,
             Self::Interrupted => ReasonKind::Interrupted,
             Self::Restored { kinds, .. } => kinds.first().copied().unwrap_or(ReasonKind::Unknown),
@@ -181,6 +185,7 @@ impl fmt::Display for Reason {
                 write!(f, "no progress for {time:.0} s: {state}")
             }
             Self::FinalApproach(failure) => failure.fmt(f),
+            Self::Docking(failure) => failure.fmt(f),
             Self::TasksFailed(failures) => {
                 let texts: Vec<String> = failures.iter().map(ToString::to_string).collect();
                 f.write_str(&texts.join("; "))

@@ -10,7 +10,7 @@ mod restore;
 mod tests;
 mod validation;
 
-use crate::world_state::{DynamicObstacles, WorldState};
+use crate::world_state::{DynamicObstacles, StationState, WorldState};
 use crate::{
     behaviour::drive_state::DriveState,
     behaviour::navigator::position_sigma,
@@ -37,7 +37,10 @@ use trundle_core::{
     Battery, BodyEvent, BodyEventKind, Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3,
     PoseEstimate, RgbdImage, Scan, SensorEvent, Stamp, Vector2, WheelTicks,
 };
-use trundle_localization::{Correction, Localizer, OdometryState, VisualPose, VisualQuality, WheelOdometry};
+use trundle_localization::{
+    Correction, Localizer, OdometryState, StationEstimate, StationEstimator, VisualPose, VisualQuality,
+    WheelOdometry,
+};
 use trundle_mapping::{LiveMapper, MapperConfig, ScanMatcher};
 use trundle_planning::{MovingObstacle, MovingObstacleTracker, PlanResult};
 use trundle_slam::{RgbdSlam, TrackReport, Tracking};
@@ -66,6 +69,10 @@ pub struct Robot {
     matcher: ScanMatcher,
     obstacle_tracker: MovingObstacleTracker,
     localizer: Localizer,
+    /// Pose of the charging station.
+    station: StationEstimator,
+    /// `base_from_station` of a robot on the contacts.
+    docked: Pose2,
     mapper: LiveMapper,
     scan_poses: ScanPoseLog,
     /// Commands within which a corrected grid is redrawn.
@@ -124,6 +131,8 @@ const MAX_TRACK_AGE_S: f64 = 1.0;
 const MIN_REDRAWN_CELLS: usize = 60_000;
 /// Number of commands over which the rest of a corrected grid is redrawn: 1.8 s. Source: ours.
 const REDRAW_COMMANDS: usize = 90;
+/// Seed of the candidates of the station's pose. Source: ours; any.
+const STATION_SEED: u64 = 1;
 
 impl Robot {
     /// A robot that has just been switched on: where it stands is the map's origin.
@@ -150,6 +159,8 @@ impl Robot {
             obstacle_tracker: MovingObstacleTracker::new(config.movers)?,
             localizer: Localizer::new(config.localization.clone(), base_from_camera)?,
             map_due: Ticker::new(config.schedule.validated()?.map_hz),
+            station: StationEstimator::new(config.station, STATION_SEED)?,
+            docked: Pose2::new(bumper::front_of(&footprint), 0.0, std::f64::consts::PI),
             mapper,
             scan_poses: ScanPoseLog::default(),
             redrawn_within: REDRAW_COMMANDS,
@@ -241,6 +252,9 @@ impl Robot {
         let before = self.latest.body.hold(self.range_source);
         self.latest.body.update(event.kind);
         let hold = self.latest.body.hold(self.range_source);
+        if matches!(event.kind, BodyEventKind::Battery(_)) && self.latest.body.is_docked() {
+            self.station.add_contact(self.localizer.estimate().pose * self.docked);
+        }
         if before != hold {
             event_log::hold(event.stamp, hold);
         }
@@ -253,7 +267,16 @@ impl Robot {
     fn drive_on(&mut self, odometry: Odometry, now: Stamp, report: &mut StepReport) {
         self.times.measure(Stage::Localization, || self.localizer.predict(&odometry));
         self.latest.odometry = Some(odometry);
+        self.add_station_light(now);
         self.decide(now, report);
+    }
+
+    /// The light of the charging station at the present pose.
+    fn add_station_light(&mut self, now: Stamp) {
+        let light = self.latest.body.station_light();
+        if self.is_pose_known(now) {
+            self.station.add_light(self.localizer.estimate().pose, &light);
+        }
     }
 
     /// Navigation by the state of the world at `now`: a twist leaves.
@@ -273,6 +296,10 @@ impl Robot {
                 movers: &self.latest.movers,
                 unconfirmed: &self.latest.unconfirmed,
                 static_grid: self.latest.static_grid.as_ref(),
+            },
+            station: StationState {
+                estimate: self.station.estimate(),
+                is_docked: self.latest.body.is_docked(),
             },
         };
         match self.decision_worker.take() {
@@ -566,6 +593,11 @@ impl Robot {
     /// The battery; none where the body has not reported it.
     pub fn battery(&self) -> Option<Battery> {
         self.latest.body.battery()
+    }
+
+    /// The charging station; none before its light was seen.
+    pub fn station(&self) -> Option<StationEstimate> {
+        self.station.estimate()
     }
 
     /// Cost of the stages.

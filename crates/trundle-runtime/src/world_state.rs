@@ -2,6 +2,7 @@
 
 use trundle_control::{MotionHold, MotionSense, SafetyScan};
 use trundle_core::{OccupancyGrid, Pose2, PoseEstimate, Scan, Stamp, Vector2};
+use trundle_localization::StationEstimate;
 use trundle_planning::MovingObstacle;
 
 /// State of robot and surroundings at a decision.
@@ -23,6 +24,16 @@ pub(crate) struct WorldState<'a> {
     /// The source that measures the robot's motion.
     pub(crate) motion: MotionSense,
     pub(crate) dynamic_obstacles: DynamicObstacles<'a>,
+    pub(crate) station: StationState,
+}
+
+/// The charging station, as far as the robot knows it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct StationState {
+    /// Its pose; none before its light was seen.
+    pub(crate) estimate: Option<StationEstimate>,
+    /// Whether the robot stands on its contacts.
+    pub(crate) is_docked: bool,
 }
 
 /// Moving and new obstacles near by.
@@ -58,6 +69,7 @@ pub(crate) struct OwnedWorldState {
     movers: Vec<MovingObstacle>,
     unconfirmed: Vec<Vector2>,
     static_grid: Option<OccupancyGrid>,
+    station: StationState,
 }
 
 impl From<&WorldState<'_>> for OwnedWorldState {
@@ -75,6 +87,7 @@ impl From<&WorldState<'_>> for OwnedWorldState {
             movers: s.dynamic_obstacles.movers.to_vec(),
             unconfirmed: s.dynamic_obstacles.unconfirmed.to_vec(),
             static_grid: s.dynamic_obstacles.static_grid.cloned(),
+            station: s.station,
         }
     }
 }
@@ -105,6 +118,7 @@ impl OwnedWorldState {
                 unconfirmed: &self.unconfirmed,
                 static_grid: self.static_grid.as_ref(),
             },
+            station: self.station,
         }
     }
 }
@@ -146,6 +160,7 @@ mod tests {
                 unconfirmed: &hits,
                 static_grid: Some(&still),
             },
+            station: StationState { estimate: None, is_docked: true },
         };
         let owned = OwnedWorldState::from(&original);
         let copy = owned.as_world_state();
@@ -161,7 +176,7 @@ mod tests {
             (copy.dynamic_obstacles.unconfirmed, copy.dynamic_obstacles.static_grid),
             (&hits[..], Some(&still))
         );
-        assert_eq!(owned.now(), original.now);
+        assert_eq!((owned.now(), copy.station), (original.now, original.station));
         assert_eq!(copy.floor(), &still, "plans are made without what moves");
         let alone = WorldState { dynamic_obstacles: DynamicObstacles::default(), ..copy };
         assert_eq!(alone.floor(), &grid);

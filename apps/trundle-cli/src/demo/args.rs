@@ -20,6 +20,9 @@ pub struct DemoArgs {
     /// Where the robot starts in the room: m, m, deg [default: the room's own]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     pub start: Option<PoseArg>,
+    /// A charging station in the room: the middle of its front on the floor, x out of the front: m, m, deg [default: none]
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
+    pub station: Option<PoseArg>,
     /// Axis, scale and floor of a mesh.
     #[command(flatten)]
     pub mesh: MeshArgs,
@@ -29,6 +32,9 @@ pub struct DemoArgs {
     /// Drive straight to the goal: the map is drawn on the way [default: explore until the map is complete, do the goals, come back]
     #[arg(long)]
     pub direct: bool,
+    /// Drive onto the charging station at the end: with --direct and without --goal that alone.
+    #[arg(long)]
+    pub dock: bool,
     /// By the clock on the wall: simulator and robot in threads of their own, camera at 30 Hz; Ctrl-C stops the robot and ends the run.
     #[arg(long)]
     pub real_time: bool,

@@ -60,24 +60,27 @@ impl RunArgs {
     }
 }
 
-/// The mission of a run: one of these.
+/// The mission of a run: one of these, and the charging station at its end.
 #[derive(Debug, Args)]
-#[group(required = true, multiple = false)]
+#[group(required = true, multiple = true)]
 pub struct MissionArgs {
     /// Goal in the map frame, which starts at the robot: m, m, deg; may be given again for the next one.
-    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true, conflicts_with_all = ["explore", "mission", "resume"])]
     pub goal: Vec<PoseArg>,
     /// Explore until the map is complete, then come back to the start.
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["mission", "resume"])]
     pub explore: bool,
+    /// Drive onto the charging station, alone or after the goals, and stop when the battery charges.
+    #[arg(long, conflicts_with_all = ["mission", "resume"])]
+    pub dock: bool,
     /// The tasks of a mission file (docs/formats.md).
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with = "resume")]
     pub mission: Option<PathBuf>,
     /// Resume the mission and the maps of a checkpoint.
     #[arg(long, value_name = "CHECKPOINT")]
     pub resume: Option<PathBuf>,
     /// Drive nowhere: show rates, delays, image size, signs of the encoders (push the robot by hand) and tilt of the camera.
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["goal", "explore", "dock", "mission", "resume"])]
     pub check: bool,
 }
 

@@ -25,6 +25,9 @@ pub struct SimArgs {
     /// Where the robot starts, world frame: m, m, deg [default: the scene's, or where there is room]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     pub start: Option<PoseArg>,
+    /// A charging station, world frame: the middle of its front on the floor, x out of the front: m, m, deg [default: none]
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
+    pub station: Option<PoseArg>,
     /// Axis, scale and floor of a mesh.
     #[command(flatten)]
     pub mesh: MeshArgs,
@@ -172,7 +175,12 @@ impl LaserArg {
 impl SimArgs {
     /// How the scene is made.
     pub fn scene_options(&self) -> SceneOptions {
-        SceneOptions { seed: self.seed, mesh: self.mesh.options(), start: self.start.map(|start| start.0) }
+        SceneOptions {
+            seed: self.seed,
+            mesh: self.mesh.options(),
+            start: self.start.map(|start| start.0),
+            station: self.station.map(|station| station.0),
+        }
     }
 }
 

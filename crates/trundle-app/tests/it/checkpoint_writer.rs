@@ -13,6 +13,7 @@ fn checkpoint(number: u8) -> Checkpoint {
         visual_maps: BTreeMap::new(),
         grid: OccupancyGrid::from_ascii(0.05, "#.#\n").unwrap(),
         mission: MissionState::new(Mission::new(vec![Task::Explore]).unwrap()),
+        station: None,
     }
 }
 

@@ -13,3 +13,4 @@ pub(crate) mod obstacles;
 pub(crate) mod safety_action;
 pub(crate) mod safety_config;
 pub(crate) mod safety_monitor;
+pub(crate) mod station_motion;

@@ -4,6 +4,7 @@ use crate::safety::hold::MotionHold;
 use crate::safety::obstacles::{Obstacle, SafetyMemory, SafetyScan, collect_memory, collect_scan};
 use crate::safety::safety_action::{SafetyAction, SlowReason, StopReason};
 use crate::safety::safety_config::SafetyConfig;
+use crate::safety::station_motion::StationMotion;
 use trundle_collision::{RoundedHull, arc_contact};
 use trundle_core::{Footprint, Invalid, Stamp, Twist2, Vector2};
 
@@ -41,6 +42,15 @@ pub struct SafetyInput<'a> {
     pub wheels: Option<Stamp>,
     /// The source that measures the robot's motion.
     pub motion: MotionSense,
+    /// The intended motion at a charging station; none anywhere else.
+    pub station: Option<StationMotion>,
+}
+
+impl SafetyInput<'_> {
+    /// The motion at a charging station, where the command is one.
+    fn station_motion(&self) -> Option<StationMotion> {
+        self.station.filter(|motion| motion.permits(self.twist))
+    }
 }
 
 /// Sensor of the motion since the scan.
@@ -95,7 +105,8 @@ impl SafetyMonitor {
             return stop(reason);
         }
         // The camera does not cover the area behind, so an old image does not forbid to back out of a contact.
-        if self.must_back_out(input) && input.image.is_some() {
+        let station = input.station_motion();
+        if self.must_back_out(input) && (input.image.is_some() || station.is_some()) {
             return self.back_out(input);
         }
         if let Some(reason) = self.lost_perception(input) {
@@ -107,9 +118,13 @@ impl SafetyMonitor {
         if input.twist.v == 0.0 && self.needs_no_turn_check(input.twist) {
             return SafetyReport { twist: input.twist, action: SafetyAction::Pass };
         }
-        let age = input.image.map_or(0.0, |image| input.now - image);
+        // Near a station the camera may be blind; the bumper and the map watch there.
+        let age = input.image.filter(|_| station.is_none()).map_or(0.0, |image| input.now - image);
         self.latency = self.config.latency_for(age);
         self.collect_obstacles(input);
+        if let Some(station) = station {
+            self.obstacles.retain(|obstacle| !station.is_station(obstacle.at));
+        }
         if input.twist.v == 0.0 {
             return self.limited_by_free_turn(input.twist);
         }
@@ -137,6 +152,10 @@ impl SafetyMonitor {
 
     /// Why perception is lost, if images are missing or nothing measures the motion.
     fn lost_perception(&self, input: &SafetyInput<'_>) -> Option<StopReason> {
+        let nothing = (input.motion == MotionSense::Nothing).then_some(StopReason::NothingTellsMotion);
+        if input.station_motion().is_some() {
+            return nothing;
+        }
         let Some(image) = input.image else {
             return Some(if input.scan.is_some() { StopReason::NothingSeen } else { StopReason::NoImage });
         };
@@ -144,7 +163,7 @@ impl SafetyMonitor {
         if age > self.config.image_timeout {
             return Some(StopReason::StaleImage { age });
         }
-        (input.motion == MotionSense::Nothing).then_some(StopReason::NothingTellsMotion)
+        nothing
     }
 
     /// Limits the speed of a robot whose wheels count nothing.
@@ -293,6 +312,7 @@ mod tests {
             image: Some(now),
             wheels: Some(now),
             motion: MotionSense::Wheels,
+            station: None,
         }
     }
 
@@ -330,6 +350,51 @@ mod tests {
             let stop = reason(SafetyInput { hold, touched: true, twist, ..input });
             assert_eq!(stop, StopReason::Held(MotionHold::WheelDrop), "neither turns nor backing out pass");
         }
+    }
+
+    #[test]
+    fn contact_with_a_station_is_permitted_and_with_anything_else_is_not() {
+        let (creep, now) = (Twist2::new(0.05, 0.0), Stamp::default().after(10.0));
+        let wall = |range: f64| scan(-0.2, 0.05, &[range; 9]);
+        let base_from_station = Pose2::new(0.2, 0.0, std::f64::consts::PI);
+        let docking = Some(StationMotion::Docking { base_from_station });
+        let near = wall(0.2);
+        let input = SafetyInput { scan: seen(&near), now, wheels: Some(now), ..fresh(creep) };
+        assert_eq!(monitor().check(&SafetyInput { image: Some(now), ..input }).twist.v, 0.0);
+        let docked = SafetyInput { station: docking, ..input };
+        assert_eq!(monitor().check(&docked).twist, creep, "the image is 10 s old, and the station is ahead");
+        assert_eq!(monitor().check(&SafetyInput { image: None, ..docked }).twist, creep);
+        // Another speed, another obstacle, a pressed bumper, a cliff: as anywhere else.
+        let fast = SafetyInput { twist: Twist2::new(0.2, 0.0), ..docked };
+        assert_eq!(monitor().check(&fast).twist.v, 0.0);
+        let far =
+            Some(StationMotion::Docking { base_from_station: Pose2::new(0.5, 0.0, std::f64::consts::PI) });
+        assert_eq!(
+            monitor().check(&SafetyInput { station: far, ..input }).twist.v,
+            0.0,
+            "before the station"
+        );
+        for blocked in [SafetyInput { touched: true, ..docked }, SafetyInput { over_edge: true, ..docked }] {
+            assert_eq!(monitor().check(&blocked).twist, Twist2::ZERO);
+        }
+        let nothing = SafetyInput { motion: MotionSense::Nothing, ..docked };
+        assert_eq!(monitor().check(&nothing).twist, Twist2::ZERO);
+    }
+
+    #[test]
+    fn a_robot_leaves_its_station_backward_though_its_camera_sees_nothing() {
+        let back = SafetyInput {
+            image: None,
+            station: Some(StationMotion::Undocking),
+            ..fresh(Twist2::new(-0.1, 0.0))
+        };
+        assert_eq!(monitor().check(&back).twist.v, -0.1);
+        assert_eq!(monitor().check(&SafetyInput { touched: true, ..back }).twist.v, -0.05);
+        assert_eq!(monitor().check(&SafetyInput { station: None, ..back }).twist, Twist2::ZERO);
+        assert_eq!(
+            monitor().check(&SafetyInput { twist: Twist2::new(0.1, 0.0), ..back }).twist,
+            Twist2::ZERO
+        );
     }
 
     #[test]

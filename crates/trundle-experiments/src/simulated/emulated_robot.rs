@@ -7,9 +7,10 @@ use std::path::Path;
 use std::time::Duration;
 use trundle_app::AppError;
 use trundle_app::real_time::RealTimePacer;
-use trundle_core::{Pose2, RobotBody, SensorEvent, Twist2};
+use trundle_core::{BodyEvent, BodyEventKind, Pose2, RobotBody, SensorEvent, Twist2};
 use trundle_drivers::kobuki::emulator::{EmulatedKobuki, KobukiState};
 use trundle_drivers::kobuki::link::ByteLink;
+use trundle_drivers::kobuki::protocol::Charger;
 use trundle_drivers::kobuki::pseudo_terminal::PseudoTerminal;
 use trundle_sim::Simulator;
 
@@ -159,6 +160,11 @@ fn note(state: &mut KobukiState, event: &SensorEvent) {
         SensorEvent::Wheels(wheels) => state.ticks = (wheels.left, wheels.right),
         SensorEvent::Gyro(gyro) => state.gyro_rate = gyro.omega,
         SensorEvent::Touch(touch) => state.bumper.center = touch.pressed,
+        SensorEvent::Body(BodyEvent { kind: BodyEventKind::DockInfrared(light), .. }) => state.dock = *light,
+        SensorEvent::Body(BodyEvent { kind: BodyEventKind::Battery(battery), .. }) => {
+            state.charger = Charger { source: battery.source, is_charging: battery.is_charging };
+            state.battery_v = battery.voltage_v;
+        }
         SensorEvent::Cliff(cliff) => state.cliff.center = cliff.over_edge,
         _ => {}
     }

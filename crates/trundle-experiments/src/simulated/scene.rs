@@ -22,6 +22,8 @@ pub struct SceneOptions {
     pub mesh: MeshOptions,
     /// Start of the robot, world frame, in place of the scene's.
     pub start: Option<Pose2>,
+    /// A charging station, world frame: the middle of its front, x out of the front.
+    pub station: Option<Pose2>,
 }
 
 /// How a mesh becomes a scene.
@@ -67,7 +69,10 @@ pub fn load_scene(name: &str, args: SceneOptions) -> Result<Scene, AppError> {
     if let Some(start) = args.start {
         scene.start = start;
     }
-    Ok(scene)
+    Ok(match args.station {
+        Some(station) => scene.with_station(station)?,
+        None => scene,
+    })
 }
 
 /// The kind of the file that a scene's name stands for; `None` for a name that is no file.

@@ -22,6 +22,8 @@ use crate::{
     behaviour::progress_checker::ProgressChecker,
     behaviour::sight_recovery::SightRecovery,
     behaviour::spin::Spin,
+    behaviour::station_drive::{StationDrive, StationGoal},
+    bumper,
     config::RobotConfig,
     goal_approach::{GoalApproach, GoalApproachReport},
     mission::executor_config::MissionExecutorConfig,
@@ -51,6 +53,10 @@ pub(crate) enum Goal {
     Exact(Pose2),
     /// A viewpoint: it need not be reached exactly, and is given up where it is blocked.
     Viewpoint(Pose2),
+    /// Turns and straight moves onto this pose from near by.
+    Align(Pose2),
+    /// A motion at a charging station.
+    Station(StationGoal),
     /// Turn on the spot once.
     Spin,
     /// Stand where you are.
@@ -60,8 +66,8 @@ pub(crate) enum Goal {
 impl Goal {
     fn pose(self) -> Option<Pose2> {
         match self {
-            Self::Exact(pose) | Self::Viewpoint(pose) => Some(pose),
-            Self::Spin | Self::Stay => None,
+            Self::Exact(pose) | Self::Viewpoint(pose) | Self::Align(pose) => Some(pose),
+            Self::Station(_) | Self::Spin | Self::Stay => None,
         }
     }
 }
@@ -105,6 +111,9 @@ pub(crate) struct Navigator {
     image_timeout: f64,
     /// Of the disc about the robot, m.
     radius: f64,
+    /// Distance from the base's origin to its front, m.
+    reach: f64,
+    station_drive: StationDrive,
     /// Twist of the last step before the safety monitor.
     wanted: Twist2,
 }
@@ -146,13 +155,16 @@ impl Navigator {
             progress: ProgressChecker::default(),
             image_timeout: config.safety.image_timeout,
             radius: footprint.circumscribed_radius(),
+            reach: bumper::front_of(footprint),
+            station_drive: StationDrive::default(),
             wanted: Twist2::ZERO,
         })
     }
 
     /// Sets the goal. A robot that follows a trajectory continues to the new goal without a stop.
     pub(crate) fn set_goal(&mut self, goal: Goal) {
-        let rolls_on = self.state == DriveState::Driving && goal.pose().is_some();
+        let is_maneuver = matches!(goal, Goal::Align(_) | Goal::Station(_));
+        let rolls_on = self.state == DriveState::Driving && goal.pose().is_some() && !is_maneuver;
         self.goal = goal;
         self.plan = None;
         self.held_since = None;
@@ -164,6 +176,7 @@ impl Navigator {
         self.sight_recovery = SightRecovery::default();
         self.spin = Spin::default();
         self.goal_approach.reset();
+        self.station_drive = StationDrive::default();
         self.progress.restart();
         self.check_due.hurry();
         if !rolls_on {
@@ -172,6 +185,8 @@ impl Navigator {
         self.state = match goal {
             Goal::Stay => DriveState::Idle,
             Goal::Exact(_) | Goal::Viewpoint(_) if rolls_on => DriveState::Driving,
+            Goal::Align(pose) if self.goal_approach.begin_at(pose) => DriveState::Maneuvering,
+            Goal::Station(_) => DriveState::Maneuvering,
             _ => DriveState::Initializing,
         };
     }
@@ -311,7 +326,7 @@ impl Navigator {
     /// At the end of the trajectory: an arc, or turns and straight moves; or it is near enough.
     fn begin_final_approach(&mut self, s: &WorldState<'_>) {
         self.state = DriveState::FinalApproach;
-        let Goal::Exact(goal) = self.goal else {
+        let (Goal::Exact(goal) | Goal::Align(goal)) = self.goal else {
             self.follower.halt();
             return;
         };

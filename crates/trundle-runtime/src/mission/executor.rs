@@ -4,6 +4,8 @@ use crate::world_state::WorldState;
 use crate::{
     behaviour::drive_state::DriveState,
     behaviour::navigator::Goal,
+    behaviour::station_drive::StationGoal,
+    mission::dock_task::{DockStep, DockTask},
     mission::executor_config::MissionExecutorConfig,
     mission::{Mission, MissionState, Task, TaskEnd, TaskRecord},
     reason::{Reason, TaskFailure},
@@ -19,6 +21,9 @@ use trundle_planning::{Exploration, Explorer, Frontier};
 /// |---|---|---|
 /// | go, return | the goal | it has arrived, or given up |
 /// | explore | a turn on the spot, then viewpoint after viewpoint | no frontier is left |
+/// | dock | a search for light, a survey of the station's axis, a straight move onto its contacts | the battery charges, or given up |
+///
+/// A robot on its charging station first backs off it, before any task but docking.
 #[derive(Debug)]
 pub(crate) struct MissionExecutor {
     explore: trundle_planning::ExploreConfig,
@@ -48,6 +53,10 @@ struct Current {
 /// Progress of the task.
 #[derive(Debug)]
 enum Work {
+    /// Backing off the charging station before the task.
+    Undocking,
+    /// Driving onto the charging station.
+    Docking(Box<DockTask>),
     /// Driving to its goal.
     Going,
     /// Turns on the spot, or drives to a viewpoint.
@@ -62,6 +71,8 @@ enum Work {
     },
 }
 
+/// Distance of backing off the charging station before a task \[m\]: the robot can then turn. Source: ours.
+const UNDOCK_DISTANCE_M: f64 = 0.4;
 /// Rate at which exploration checks whether its target is still unknown \[1/s\]. Source: ours.
 const FRONTIER_CHECK_RATE_HZ: f64 = 1.0;
 
@@ -123,6 +134,7 @@ impl MissionExecutor {
     /// Whether the next step may search frontiers, or give a goal that is planned for at once.
     pub(crate) fn may_take_long(&self, s: &WorldState<'_>, state: &DriveState) -> bool {
         let explores = matches!(&self.current, Some(Current { work: Work::Exploring { .. }, .. }));
+        let explores = explores || matches!(&self.current, Some(Current { work: Work::Docking(_), .. }));
         let driving = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
         state.is_over() && !self.is_idle()
             || explores && driving && self.frontier_check_due.will_be_due(s.now)
@@ -130,7 +142,12 @@ impl MissionExecutor {
 
     /// The next goal of the navigator, which is in `state`; `None` while the present one is kept.
     pub(crate) fn step(&mut self, s: &WorldState<'_>, state: &DriveState) -> Option<Goal> {
+        if let Some(Current { work: Work::Docking(task), .. }) = &mut self.current {
+            let step = task.step(s, state);
+            return self.on_dock_step(step, s);
+        }
         match state {
+            DriveState::Arrived if self.is_undocking() => return self.begin_current_task(s),
             DriveState::Arrived => self.on_arrived(s),
             DriveState::Stopped { reason } => self.on_stopped(reason, s),
             _ => {}
@@ -144,18 +161,53 @@ impl MissionExecutor {
     /// Begins the next task.
     fn start_next_task(&mut self, s: &WorldState<'_>) -> Option<Goal> {
         let entry = self.queue.pop_front()?;
-        let (work, goal) = match entry.task {
+        self.current = Some(Current { entry, from: s.now, work: Work::Undocking });
+        if s.station.is_docked && entry.task != Task::Dock {
+            return Some(Goal::Station(StationGoal::BackOff(UNDOCK_DISTANCE_M)));
+        }
+        self.begin_current_task(s)
+    }
+
+    /// Begins the work of the present task.
+    fn begin_current_task(&mut self, s: &WorldState<'_>) -> Option<Goal> {
+        let explorer = self.explorer();
+        let current = self.current.as_mut()?;
+        let (work, goal) = match current.entry.task {
             Task::Go(pose) => (Work::Going, Goal::Exact(pose)),
             Task::Return => (Work::Going, Goal::Exact(Pose2::IDENTITY)),
             Task::Explore => {
-                let explorer = Explorer::new(self.explore, self.radius)
-                    .expect("invariant: the same settings were checked when the executor was made");
-                let explorer = Box::new(explorer);
                 (Work::Exploring { explorer, frontier: None, views: 0, failure: None }, Goal::Spin)
             }
+            Task::Dock => {
+                let mut task = Box::new(DockTask::new(explorer));
+                let step = task.step(s, &DriveState::Idle);
+                current.work = Work::Docking(task);
+                return self.on_dock_step(step, s);
+            }
         };
-        self.current = Some(Current { entry, from: s.now, work });
+        current.work = work;
         Some(goal)
+    }
+
+    fn explorer(&self) -> Box<Explorer> {
+        let explorer = Explorer::new(self.explore, self.radius)
+            .expect("invariant: the same settings were checked when the executor was made");
+        Box::new(explorer)
+    }
+
+    fn is_undocking(&self) -> bool {
+        matches!(&self.current, Some(Current { work: Work::Undocking, .. }))
+    }
+
+    /// Carries out what the dock task asks for.
+    fn on_dock_step(&mut self, step: DockStep, s: &WorldState<'_>) -> Option<Goal> {
+        match step {
+            DockStep::Keep => return None,
+            DockStep::Goal(goal) => return Some(goal),
+            DockStep::Done => self.end(TaskEnd::Done, s),
+            DockStep::GivenUp(reason) => self.end(TaskEnd::GivenUp { reason }, s),
+        }
+        self.start_next_task(s).or(Some(Goal::Stay))
     }
 
     /// The next viewpoint of the exploration, where the present one has been observed or given up.
@@ -264,6 +316,7 @@ mod tests {
             hold: None,
             motion: trundle_control::MotionSense::Wheels,
             dynamic_obstacles: crate::world_state::DynamicObstacles::default(),
+            station: crate::world_state::StationState::default(),
         }
     }
 

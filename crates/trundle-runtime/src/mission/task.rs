@@ -15,6 +15,8 @@ pub enum Task {
     Explore,
     /// Drive back to the pose at power-on and stop there.
     Return,
+    /// Drive onto the charging station, until the battery charges.
+    Dock,
 }
 
 impl fmt::Display for Task {
@@ -25,6 +27,7 @@ impl fmt::Display for Task {
             }
             Self::Explore => f.write_str("explore"),
             Self::Return => f.write_str("return to the start"),
+            Self::Dock => f.write_str("dock at the charging station"),
         }
     }
 }

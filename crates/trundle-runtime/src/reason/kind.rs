@@ -1,6 +1,7 @@
 //! The kinds of reasons: what a program judges by, without the numbers.
 
 use super::no_path::NoPath;
+use crate::mission::dock_failure::DockFailure;
 use serde::{Deserialize, Serialize};
 use trundle_control::{MotionHold, StopReason};
 
@@ -67,6 +68,16 @@ pub enum ReasonKind {
     NoProgress,
     /// The final approach fails.
     FinalApproach,
+    /// No light of a charging station was seen.
+    NoStationLight,
+    /// The light of the charging station was lost.
+    StationLightLost,
+    /// The axis of the charging station is too uncertain.
+    StationUncertain,
+    /// Nothing charges at the charging station.
+    NoCharging,
+    /// An obstacle stops the straight move at the charging station.
+    StationBlocked,
     /// Tasks of the mission are undone.
     TasksFailed,
     /// The user ended the run.
@@ -90,6 +101,17 @@ impl ReasonKind {
             StopReason::NoWheels | StopReason::StaleWheels { .. } => Self::WheelsMissing,
             StopReason::Held(hold) => Self::of_hold(hold),
             StopReason::NotFinite => Self::CommandInvalid,
+        }
+    }
+
+    /// The kind of a failure at the charging station.
+    pub(super) fn of_docking(failure: DockFailure) -> Self {
+        match failure {
+            DockFailure::NoLight => Self::NoStationLight,
+            DockFailure::LightLost => Self::StationLightLost,
+            DockFailure::AxisUncertain { .. } => Self::StationUncertain,
+            DockFailure::NoCharging { .. } => Self::NoCharging,
+            DockFailure::Held => Self::StationBlocked,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::range_source::RangeSource;
 use trundle_control::MotionHold;
-use trundle_core::{Battery, BodyEventKind, Button, Device, Link, PerWheel, PowerSource};
+use trundle_core::{Battery, BodyEventKind, Button, Device, DockInfrared, Link, PerWheel, PowerSource};
 
 /// Charge at which the robot stops for an empty battery, 0 to 1: the motors of a Kobuki fail soon below it. Source: ours.
 const EMPTY_CHARGE: f64 = 0.02;
@@ -15,6 +15,7 @@ pub(super) struct BodyState {
     wheel_drop: PerWheel,
     over_current: PerWheel,
     battery: Option<Battery>,
+    station_light: DockInfrared,
     lost: Vec<Device>,
     is_paused: bool,
 }
@@ -26,6 +27,7 @@ impl BodyState {
             BodyEventKind::WheelDrop(wheels) => self.wheel_drop = wheels,
             BodyEventKind::OverCurrent(wheels) => self.over_current = wheels,
             BodyEventKind::Battery(battery) => self.battery = Some(battery),
+            BodyEventKind::DockInfrared(light) => self.station_light = light,
             BodyEventKind::Button(Button { index: PAUSE_BUTTON, pressed: true }) => {
                 self.is_paused = !self.is_paused;
             }
@@ -37,6 +39,16 @@ impl BodyState {
     /// The battery, where the body has reported it.
     pub(super) fn battery(&self) -> Option<Battery> {
         self.battery
+    }
+
+    /// The light of a charging station, as last reported.
+    pub(super) fn station_light(&self) -> DockInfrared {
+        self.station_light
+    }
+
+    /// Whether the robot stands on the contacts of a charging station.
+    pub(super) fn is_docked(&self) -> bool {
+        self.battery.is_some_and(|battery| battery.source == PowerSource::ChargingStation)
     }
 
     /// Whether a wheel hangs: where the robot is then set down, no odometry knows.

@@ -26,6 +26,7 @@ impl Robot {
         robot.set_map(&config, &checkpoint.grid)?;
         robot.localizer = Localizer::new(config.localization, robot.base_from_camera)?
             .resumed(checkpoint.visual_maps.clone());
+        checkpoint.station.iter().for_each(|station| robot.station.restore(station));
         robot.restore_mission(checkpoint.mission.clone().after_restart());
         Ok(robot)
     }
@@ -90,6 +91,7 @@ impl Robot {
             visual_maps,
             grid: self.mapper.grid().clone(),
             mission: self.latest.mission.clone(),
+            station: self.station.estimate(),
         }
     }
 }

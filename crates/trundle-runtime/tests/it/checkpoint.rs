@@ -35,6 +35,7 @@ fn checkpoint() -> Checkpoint {
         visual_maps: BTreeMap::new(),
         grid: OccupancyGrid::from_ascii(0.05, "#.#\n?..\n").unwrap(),
         mission: MissionState { left, places: vec![1, 3], ended },
+        station: None,
     }
 }
 

@@ -5,6 +5,7 @@ use crate::world_state::WorldState;
 use crate::{
     behaviour::drive_state::DriveState,
     behaviour::spin::{SPIN_TURNS, face, turn_to},
+    behaviour::station_drive::{StationGoal, StationProgress},
     goal_approach::Progress,
     reason::Reason,
     stage::{Stage, StageTimes},
@@ -48,6 +49,7 @@ impl Navigator {
             },
             DriveState::FinalApproach if matches!(self.goal, Goal::Viewpoint(_)) => self.turn_to_view(s),
             DriveState::FinalApproach if self.goal_approach.holds() => Twist2::ZERO,
+            DriveState::Maneuvering if self.station_goal().is_some() => self.drive_at_station(s),
             DriveState::Maneuvering if self.is_blind(s) => Twist2::ZERO,
             DriveState::Maneuvering => times.measure(Stage::Control, || self.maneuver(s)),
             _ => follow.twist,
@@ -109,9 +111,33 @@ impl Navigator {
         Twist2::ZERO
     }
 
+    fn station_goal(&self) -> Option<StationGoal> {
+        match self.goal {
+            Goal::Station(goal) if self.state == DriveState::Maneuvering => Some(goal),
+            _ => None,
+        }
+    }
+
+    /// One step of a motion at a charging station. The gyro's bias is measured at rest, before the first one.
+    fn drive_at_station(&mut self, s: &WorldState<'_>) -> Twist2 {
+        let is_rested = self.started.is_some_and(|started| s.now - started >= self.config.opening);
+        let Some(goal) = self.station_goal().filter(|_| is_rested) else { return Twist2::ZERO };
+        match self.station_drive.step(&goal, s, self.touched, self.reach) {
+            StationProgress::Moving(twist) => return twist,
+            StationProgress::Done => self.state = DriveState::Arrived,
+            StationProgress::Failed(failure) => {
+                self.state = DriveState::Stopped { reason: Reason::Docking(failure) };
+            }
+        }
+        Twist2::ZERO
+    }
+
     /// Safety's word on a command.
     pub(super) fn guard(&mut self, twist: Twist2, s: &WorldState<'_>) -> Twist2 {
-        let report = self.safety.check(&safety_input(s, twist, self.touched, self.over_edge));
+        let goal = self.station_goal();
+        let station = goal.and_then(|goal| self.station_drive.permission(&goal, s.estimate.pose));
+        let input = SafetyInput { station, ..safety_input(s, twist, self.touched, self.over_edge) };
+        let report = self.safety.check(&input);
         match (report.action, &self.state) {
             (
                 SafetyAction::Stop(reason),
@@ -170,6 +196,7 @@ pub(crate) fn safety_input<'a>(
         image: s.seen,
         wheels: s.wheels,
         motion: s.motion,
+        station: None,
     }
 }
 

@@ -38,5 +38,6 @@ pub(super) fn at_rest(grid: &OccupancyGrid, now: Stamp, pose: Pose2) -> WorldSta
         hold: None,
         motion: MotionSense::Wheels,
         dynamic_obstacles: DynamicObstacles::default(),
+        station: crate::world_state::StationState::default(),
     }
 }

@@ -1,0 +1,198 @@
+//! Motions at a charging station: a sweep of the heading, the last straight move onto the contacts, and straight back.
+
+use crate::behaviour::spin::turn_to;
+use crate::mission::dock_failure::DockFailure;
+use crate::world_state::WorldState;
+use std::f64::consts::PI;
+use trundle_control::StationMotion;
+use trundle_core::{Pose2, Stamp, Twist2, difference_of_angles};
+use trundle_localization::StationEstimate;
+
+/// A motion at a charging station.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum StationGoal {
+    /// Turn to both sides of the station and back, so that the receivers cross the edges of its light.
+    Sweep(Pose2),
+    /// Straight onto the contacts, until the battery charges.
+    Approach(StationEstimate),
+    /// Straight back by a distance, m.
+    BackOff(f64),
+}
+
+/// Progress of a motion at a charging station.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum StationProgress {
+    Moving(Twist2),
+    Done,
+    Failed(DockFailure),
+}
+
+/// Angle of a sweep to either side of the station \[rad\]: beyond the edges of the middle receiver's field of view. Source: ours.
+const SWEEP_ANGLE_RAD: f64 = 1.2;
+/// Speed of the last straight move \[m/s\]. Faster: the robot pushes the station before it stops. Source: ours.
+const APPROACH_SPEED_M_S: f64 = 0.05;
+/// Speed of backing off \[m/s\]. Source: ours, the highest that the safety monitor permits.
+const BACK_OFF_SPEED_M_S: f64 = 0.1;
+/// Heading per distance from the axis on the last straight move \[rad/m\]: a third is left after 0.25 m. Source: ours.
+const HEADING_PER_DISTANCE: f64 = 4.0;
+/// Largest heading off the axis on the last straight move \[rad\]. Source: ours.
+const MAX_HEADING_OFF_AXIS_RAD: f64 = 0.12;
+/// Turn rate per heading error \[1/s\]. Source: that of the positioner's straight moves.
+const HEADING_GAIN: f64 = 1.5;
+/// Largest turn rate of a straight move \[rad/s\]. Source: ours, below what the safety monitor permits.
+const MAX_HEADING_RATE_RAD_S: f64 = 0.1;
+/// Distance beyond the expected contact after which nothing is expected any more \[m\]; the station's own uncertainty comes on top.
+/// Source: ours.
+const OVERRUN_M: f64 = 0.03;
+/// Largest addition for an uncertain distance of the station \[m\]. Source: ours.
+const MAX_OVERRUN_M: f64 = 0.1;
+/// Distance of the receivers from the station below which the estimate no longer changes the course \[m\]. Source: ours.
+const FROZEN_GAP_M: f64 = 0.12;
+/// Time on a pressed bumper in which the charger may still report \[s\]. Source: ours.
+const CHARGER_TIME_S: f64 = 1.0;
+/// Time without motion after which a straight move is given up \[s\]. Source: ours.
+const HELD_TIME_S: f64 = 5.0;
+/// Progress that counts as motion \[m\]. Source: ours.
+const MOTION_M: f64 = 0.01;
+/// Sides of the station to which a sweep turns, in order. Source: ours.
+const SWEEP_SIDES: [f64; 3] = [1.0, -1.0, 0.0];
+
+/// Carries out one motion at a charging station.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct StationDrive {
+    start: Option<Pose2>,
+    /// Where and when the robot last got on.
+    last: Option<(Stamp, Pose2)>,
+    /// Sides of the sweep that are done.
+    sides: usize,
+    touched: Option<Stamp>,
+    /// The station as the last straight move takes it.
+    station: Option<StationEstimate>,
+}
+
+impl StationDrive {
+    /// One control step; `touched` is the bumper, `reach` the distance from the base's origin to its front, m.
+    pub(crate) fn step(
+        &mut self,
+        goal: &StationGoal,
+        s: &WorldState<'_>,
+        touched: bool,
+        reach: f64,
+    ) -> StationProgress {
+        let pose = s.estimate.pose;
+        let start = *self.start.get_or_insert(pose);
+        match goal {
+            StationGoal::Sweep(station) => self.sweep(s.station.estimate.map_or(*station, |e| e.pose), pose),
+            StationGoal::Approach(first) => self.approach(*first, s, touched, reach),
+            StationGoal::BackOff(distance) => self.back_off(*distance, start, s),
+        }
+    }
+
+    /// The motion that the safety monitor shall permit.
+    pub(crate) fn permission(&self, goal: &StationGoal, pose: Pose2) -> Option<StationMotion> {
+        match goal {
+            StationGoal::Sweep(_) => None,
+            StationGoal::Approach(first) => {
+                let station = self.station.unwrap_or(*first).pose;
+                Some(StationMotion::Docking { base_from_station: pose.inverse() * station })
+            }
+            StationGoal::BackOff(_) => Some(StationMotion::Undocking),
+        }
+    }
+
+    fn sweep(&mut self, station: Pose2, pose: Pose2) -> StationProgress {
+        let Some(side) = SWEEP_SIDES.get(self.sides) else { return StationProgress::Done };
+        let to_station = station.position() - pose.position();
+        let twist = turn_to(pose, to_station.y.atan2(to_station.x) + side * SWEEP_ANGLE_RAD);
+        self.sides += usize::from(twist == Twist2::ZERO);
+        StationProgress::Moving(twist)
+    }
+
+    fn approach(
+        &mut self,
+        first: StationEstimate,
+        s: &WorldState<'_>,
+        touched: bool,
+        reach: f64,
+    ) -> StationProgress {
+        if s.station.is_docked {
+            return StationProgress::Done;
+        }
+        let station = self.station_of(first, s, reach);
+        let at = station.pose.inverse() * s.estimate.pose;
+        let overrun = OVERRUN_M + (2.0 * station.distance_sigma()).min(MAX_OVERRUN_M);
+        if at.x < reach - overrun {
+            return self.wait_for_charger(s.now);
+        }
+        if touched {
+            return self.wait_for_charger(s.now);
+        }
+        if self.is_held(s) {
+            return StationProgress::Failed(DockFailure::Held);
+        }
+        StationProgress::Moving(Twist2::new(APPROACH_SPEED_M_S, heading_rate(at)))
+    }
+
+    /// The newest estimate until the robot is near; then the last one.
+    fn station_of(&mut self, first: StationEstimate, s: &WorldState<'_>, reach: f64) -> StationEstimate {
+        let last = self.station.unwrap_or(first);
+        let gap = (last.pose.inverse() * s.estimate.pose).x - reach;
+        let newest = s.station.estimate.filter(|_| gap > FROZEN_GAP_M);
+        *self.station.insert(newest.unwrap_or(last))
+    }
+
+    fn wait_for_charger(&mut self, now: Stamp) -> StationProgress {
+        let since = *self.touched.get_or_insert(now);
+        if now - since > CHARGER_TIME_S {
+            StationProgress::Failed(DockFailure::NoCharging { attempts: 1 })
+        } else {
+            StationProgress::Moving(Twist2::ZERO)
+        }
+    }
+
+    fn back_off(&mut self, distance: f64, start: Pose2, s: &WorldState<'_>) -> StationProgress {
+        if start.distance(&s.estimate.pose) >= distance {
+            return StationProgress::Done;
+        }
+        if self.is_held(s) {
+            return StationProgress::Failed(DockFailure::Held);
+        }
+        let off = difference_of_angles(start.theta, s.estimate.pose.theta);
+        StationProgress::Moving(Twist2::new(-BACK_OFF_SPEED_M_S, limited(HEADING_GAIN * off)))
+    }
+
+    fn is_held(&mut self, s: &WorldState<'_>) -> bool {
+        let (since, at) = *self.last.get_or_insert((s.now, s.estimate.pose));
+        if at.distance(&s.estimate.pose) > MOTION_M {
+            self.last = Some((s.now, s.estimate.pose));
+        }
+        s.now - since > HELD_TIME_S
+    }
+}
+
+/// Turn rate that brings a robot at `station_from_base` onto the axis, facing the station.
+fn heading_rate(at: Pose2) -> f64 {
+    let off_axis = (HEADING_PER_DISTANCE * at.y).clamp(-MAX_HEADING_OFF_AXIS_RAD, MAX_HEADING_OFF_AXIS_RAD);
+    limited(HEADING_GAIN * difference_of_angles(PI + off_axis, at.theta))
+}
+
+fn limited(rate: f64) -> f64 {
+    rate.clamp(-MAX_HEADING_RATE_RAD_S, MAX_HEADING_RATE_RAD_S)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_straight_move_ends_on_the_axis_facing_the_station() {
+        for (y, deg) in [(0.01, 0.0), (-0.015, 1.0), (0.0, -2.0), (0.02, 2.0)] {
+            let mut at = Pose2::new(0.7, y, PI + f64::to_radians(deg));
+            while at.x > 0.18 {
+                at = at.advance(Twist2::new(APPROACH_SPEED_M_S, heading_rate(at)), 0.02);
+            }
+            let heading = difference_of_angles(at.theta, PI).to_degrees();
+            assert!(at.y.abs() < 0.004 && heading.abs() < 1.5, "from {y} m: {at:?}");
+        }
+    }
+}

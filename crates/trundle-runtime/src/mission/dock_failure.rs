@@ -1,0 +1,61 @@
+//! Why a robot is not on its charging station.
+
+use std::fmt;
+
+/// Why a robot is not on its charging station.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum DockFailure {
+    /// No receiver saw light of a station, wherever the robot could go.
+    NoLight,
+    /// The light was seen, and lost again and again.
+    LightLost,
+    /// The axis of the station stays too uncertain.
+    AxisUncertain {
+        /// Standard deviation of the lateral position at the contacts \[m\].
+        sigma: f64,
+    },
+    /// The robot drove as far as the station should be, or into it, and nothing charges.
+    NoCharging {
+        /// Attempts made.
+        attempts: u32,
+    },
+    /// Something stops the robot on its last straight move, or behind it.
+    Held,
+}
+
+impl fmt::Display for DockFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoLight => f.write_str("no light of a charging station was seen"),
+            Self::LightLost => f.write_str("the light of the charging station was lost again and again"),
+            Self::AxisUncertain { sigma } => {
+                write!(f, "the axis of the charging station is uncertain: standard deviation {sigma:.3} m")
+            }
+            Self::NoCharging { attempts } => {
+                write!(f, "nothing charges at the charging station after {attempts} attempts")
+            }
+            Self::Held => f.write_str("an obstacle stops the straight move at the charging station"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_failure_has_a_text_of_its_own() {
+        let failures = [
+            DockFailure::NoLight,
+            DockFailure::LightLost,
+            DockFailure::AxisUncertain { sigma: 0.05 },
+            DockFailure::NoCharging { attempts: 3 },
+            DockFailure::Held,
+        ];
+        let texts: std::collections::BTreeSet<_> = failures.iter().map(ToString::to_string).collect();
+        assert_eq!(texts.len(), failures.len());
+        assert_eq!(failures[0].to_string(), "no light of a charging station was seen");
+        assert!(failures[3].to_string().contains("3 attempts"));
+    }
+}

@@ -1,0 +1,251 @@
+//! The task of driving onto the charging station: search its light, survey its axis, drive onto the contacts.
+
+use crate::behaviour::drive_state::DriveState;
+use crate::behaviour::navigator::Goal;
+use crate::behaviour::station_drive::StationGoal;
+use crate::mission::dock_failure::DockFailure;
+use crate::reason::Reason;
+use crate::schedule::Ticker;
+use crate::world_state::WorldState;
+use std::f64::consts::PI;
+use trundle_core::Pose2;
+use trundle_localization::StationEstimate;
+use trundle_planning::{Exploration, Explorer, Frontier};
+
+/// Poses from which the axis is surveyed, station frame \[m, m, rad\]: paths between them cross the edges of the light. Source: ours.
+const SURVEY_POSES: [[f64; 3]; 3] = [[1.2, 0.3, PI], [1.0, -0.3, PI], [0.9, 0.2, PI]];
+/// Distance of the base from the station before the last straight move \[m\]: the camera still measures there. Source: ours.
+const STAGING_DISTANCE_M: f64 = 0.7;
+/// Distance from the staging pose up to which turns and straight moves lead there \[m\]. Source: ours.
+const ALIGN_DISTANCE_M: f64 = 0.5;
+/// Largest standard deviation of the axis at the contacts, across \[m\] and heading \[rad\]. Source: ours, the plates' tolerances.
+const MAX_LATERAL_SIGMA_M: f64 = 0.012;
+const MAX_HEADING_SIGMA_RAD: f64 = 0.03;
+/// Distance of a docked base from the station \[m\], for that. Source: the Kobuki's radius.
+const DOCKED_DISTANCE_M: f64 = 0.18;
+/// Rounds of the survey after which the axis is too uncertain. Source: ours.
+const MAX_SURVEYS: u32 = 3;
+/// Last straight moves without charging after which the task is given up. Source: ours.
+const MAX_ATTEMPTS: u32 = 3;
+/// Times that the light may be lost. Source: ours.
+const MAX_LOSSES: u32 = 3;
+/// Distance of backing off after an attempt \[m\]. Source: ours.
+const BACK_OFF_M: f64 = 0.5;
+/// Change of the estimate after which the present goal is given anew \[m\]. Source: ours.
+const MOVED_GOAL_M: f64 = 0.25;
+/// Rate at which that is checked \[1/s\]. Source: ours.
+const CHECK_RATE_HZ: f64 = 1.0;
+
+/// What a step of the task asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum DockStep {
+    Keep,
+    Goal(Goal),
+    Done,
+    GivenUp(Reason),
+}
+
+/// Progress of the task.
+#[derive(Debug)]
+enum Phase {
+    /// At its beginning.
+    Begin,
+    /// Turns on the spot.
+    Spinning,
+    /// On the way to a viewpoint of unknown floor.
+    Exploring(Option<Frontier>),
+    /// On the way to a pose of the survey.
+    Surveying {
+        next: usize,
+        at: Pose2,
+    },
+    /// On the way to the staging pose.
+    Staging {
+        at: Pose2,
+    },
+    Sweeping,
+    Aligning,
+    Closing,
+    BackingOff,
+}
+
+/// The task of driving onto the charging station.
+#[derive(Debug)]
+pub(crate) struct DockTask {
+    explorer: Box<Explorer>,
+    phase: Phase,
+    surveys: u32,
+    attempts: u32,
+    losses: u32,
+    check_due: Ticker,
+}
+
+impl DockTask {
+    /// A task that searches by `explorer`.
+    pub(crate) fn new(explorer: Box<Explorer>) -> Self {
+        let check_due = Ticker::new(CHECK_RATE_HZ);
+        Self { explorer, phase: Phase::Begin, surveys: 0, attempts: 0, losses: 0, check_due }
+    }
+
+    /// The next step; the navigator is in `state`.
+    pub(crate) fn step(&mut self, s: &WorldState<'_>, state: &DriveState) -> DockStep {
+        if s.station.is_docked && (state.is_over() || matches!(self.phase, Phase::Begin)) {
+            return DockStep::Done;
+        }
+        match self.phase {
+            Phase::Begin => self.begin(s),
+            _ if state.is_over() => self.on_over(s, state),
+            _ => self.on_way(s, state),
+        }
+    }
+
+    fn begin(&mut self, s: &WorldState<'_>) -> DockStep {
+        match s.station.estimate {
+            Some(station) => self.go_on(station),
+            None => self.spin(),
+        }
+    }
+
+    fn spin(&mut self) -> DockStep {
+        self.phase = Phase::Spinning;
+        DockStep::Goal(Goal::Spin)
+    }
+
+    /// On the way: the light was seen, or the station is elsewhere than it was believed.
+    fn on_way(&mut self, s: &WorldState<'_>, state: &DriveState) -> DockStep {
+        let drives = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
+        if !drives || !self.check_due.due(s.now) {
+            return DockStep::Keep;
+        }
+        match (&self.phase, s.station.estimate) {
+            (Phase::Exploring(_), Some(station)) => self.go_on(station),
+            (Phase::Surveying { next, at }, Some(station)) => {
+                let (next, moved) = (*next, survey_pose(&station, *next));
+                if moved.distance(at) > MOVED_GOAL_M { self.survey(station, next) } else { DockStep::Keep }
+            }
+            (Phase::Staging { at }, Some(station)) if staging_pose(&station).distance(at) > MOVED_GOAL_M => {
+                self.go_on(station)
+            }
+            _ => DockStep::Keep,
+        }
+    }
+
+    /// The navigator has ended its goal.
+    fn on_over(&mut self, s: &WorldState<'_>, state: &DriveState) -> DockStep {
+        let failure = match state {
+            DriveState::Stopped { reason } => Some(reason),
+            _ => None,
+        };
+        if let (Phase::Exploring(Some(frontier)), None) = (&self.phase, s.station.estimate) {
+            self.explorer.mark_viewed(frontier);
+            // Behind the robot no receiver sees.
+            return if failure.is_some() { self.explore(s) } else { self.spin() };
+        }
+        let Some(station) = s.station.estimate else {
+            return if matches!(self.phase, Phase::Spinning) { self.explore(s) } else { self.lost() };
+        };
+        match (&self.phase, failure) {
+            (Phase::Surveying { next, .. }, _) => self.after_survey_pose(station, *next),
+            (Phase::Staging { .. } | Phase::Aligning, Some(reason)) => DockStep::GivenUp(reason.clone()),
+            (Phase::Staging { .. }, None) => self.sweep(station),
+            (Phase::Sweeping, _) => self.after_sweep(station, s),
+            (Phase::Aligning, None) => self.to(Phase::Closing, StationGoal::Approach(station)),
+            (Phase::Closing, _) => self.after_attempt(),
+            (Phase::BackingOff, _) => self.go_on(station),
+            _ => self.go_on(station),
+        }
+    }
+
+    /// The next part for a known station: the survey of its axis, or the staging pose.
+    fn go_on(&mut self, station: StationEstimate) -> DockStep {
+        if is_precise(&station) { self.stage(station) } else { self.survey(station, 0) }
+    }
+
+    fn survey(&mut self, station: StationEstimate, next: usize) -> DockStep {
+        let at = survey_pose(&station, next);
+        self.phase = Phase::Surveying { next, at };
+        DockStep::Goal(Goal::Viewpoint(at))
+    }
+
+    fn after_survey_pose(&mut self, station: StationEstimate, done: usize) -> DockStep {
+        if is_precise(&station) || done + 1 >= SURVEY_POSES.len() {
+            return self.stage(station);
+        }
+        self.survey(station, done + 1)
+    }
+
+    fn stage(&mut self, station: StationEstimate) -> DockStep {
+        let at = staging_pose(&station);
+        self.phase = Phase::Staging { at };
+        DockStep::Goal(Goal::Exact(at))
+    }
+
+    fn sweep(&mut self, station: StationEstimate) -> DockStep {
+        self.to(Phase::Sweeping, StationGoal::Sweep(station.pose))
+    }
+
+    fn after_sweep(&mut self, station: StationEstimate, s: &WorldState<'_>) -> DockStep {
+        if is_precise(&station) {
+            let at = staging_pose(&station);
+            if at.distance(&s.estimate.pose) > ALIGN_DISTANCE_M {
+                return self.stage(station);
+            }
+            self.phase = Phase::Aligning;
+            return DockStep::Goal(Goal::Align(at));
+        }
+        self.surveys += 1;
+        if self.surveys >= MAX_SURVEYS {
+            let sigma = station.lateral_sigma(DOCKED_DISTANCE_M);
+            return DockStep::GivenUp(Reason::Docking(DockFailure::AxisUncertain { sigma }));
+        }
+        self.survey(station, 0)
+    }
+
+    fn after_attempt(&mut self) -> DockStep {
+        self.attempts += 1;
+        if self.attempts >= MAX_ATTEMPTS {
+            let attempts = self.attempts;
+            return DockStep::GivenUp(Reason::Docking(DockFailure::NoCharging { attempts }));
+        }
+        self.to(Phase::BackingOff, StationGoal::BackOff(BACK_OFF_M))
+    }
+
+    fn to(&mut self, phase: Phase, goal: StationGoal) -> DockStep {
+        self.phase = phase;
+        DockStep::Goal(Goal::Station(goal))
+    }
+
+    /// The next viewpoint of unknown floor, from which light may be seen.
+    fn explore(&mut self, s: &WorldState<'_>) -> DockStep {
+        match self.explorer.next(s.grid, s.estimate.pose) {
+            Exploration::Next(view) => {
+                self.phase = Phase::Exploring(Some(view.frontier));
+                DockStep::Goal(Goal::Viewpoint(view.pose))
+            }
+            Exploration::Complete { .. } => DockStep::GivenUp(Reason::Docking(DockFailure::NoLight)),
+        }
+    }
+
+    /// The readings contradict what was believed of the station: it is searched anew.
+    fn lost(&mut self) -> DockStep {
+        self.losses += 1;
+        if self.losses > MAX_LOSSES {
+            return DockStep::GivenUp(Reason::Docking(DockFailure::LightLost));
+        }
+        self.spin()
+    }
+}
+
+fn is_precise(station: &StationEstimate) -> bool {
+    station.lateral_sigma(DOCKED_DISTANCE_M) <= MAX_LATERAL_SIGMA_M
+        && station.heading_sigma() <= MAX_HEADING_SIGMA_RAD
+}
+
+fn survey_pose(station: &StationEstimate, index: usize) -> Pose2 {
+    let [x, y, heading] = SURVEY_POSES[index.min(SURVEY_POSES.len() - 1)];
+    station.pose * Pose2::new(x, y, heading)
+}
+
+fn staging_pose(station: &StationEstimate) -> Pose2 {
+    station.pose * Pose2::new(STAGING_DISTANCE_M, 0.0, PI)
+}
