@@ -2,6 +2,7 @@
 
 mod args;
 
+use args::DemoMissionArgs;
 pub use args::{DemoArgs, RecordArg};
 
 use crate::common_args::PoseArg;
@@ -31,7 +32,7 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, AppError> {
     let resumed = args.state.resume.and(args.state.checkpoint.as_deref()).map(read_checkpoint).transpose()?;
     let mission = match &resumed {
         Some((checkpoint, _)) => checkpoint.mission.left.clone(),
-        None => mission(args, &scene)?,
+        None => mission(&args.mission, &scene)?,
     };
     let mut setup = RunSetup::new(&scene.name, mission, robot.with_seed(args.seed));
     setup.seed = args.seed;
@@ -86,7 +87,7 @@ fn drive(args: &DemoArgs, setup: &RunSetup, mut body: Simulator) -> Result<Outco
 }
 
 /// The goals asked for, or the scene's own; before them exploration and after them the return, unless the drive is direct.
-fn mission(args: &DemoArgs, scene: &Scene) -> Result<Mission, Invalid> {
+fn mission(args: &DemoMissionArgs, scene: &Scene) -> Result<Mission, Invalid> {
     let mut goals: Vec<Task> = args.goal.iter().map(|goal| Task::Go(goal.0)).collect();
     let dock = if args.dock { vec![Task::Dock] } else { vec![] };
     if goals.is_empty() && !(args.direct && args.dock) {

@@ -4,6 +4,7 @@ pub(crate) mod dock_failure;
 pub(crate) mod dock_task;
 pub(crate) mod executor;
 pub(crate) mod executor_config;
+pub(crate) mod light_search;
 pub(crate) mod task;
 
 use crate::reason::Reason;

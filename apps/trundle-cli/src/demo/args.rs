@@ -26,15 +26,9 @@ pub struct DemoArgs {
     /// Axis, scale and floor of a mesh.
     #[command(flatten)]
     pub mesh: MeshArgs,
-    /// Goal in the map frame, which starts at the robot: m, m, deg; may be said again for the next one [default: the room's own]
-    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
-    pub goal: Vec<PoseArg>,
-    /// Drive straight to the goal: the map is drawn on the way [default: explore until the map is complete, do the goals, come back]
-    #[arg(long)]
-    pub direct: bool,
-    /// Drive onto the charging station at the end: with --direct and without --goal that alone.
-    #[arg(long)]
-    pub dock: bool,
+    /// The mission.
+    #[command(flatten)]
+    pub mission: DemoMissionArgs,
     /// By the clock on the wall: simulator and robot in threads of their own, camera at 30 Hz; Ctrl-C stops the robot and ends the run.
     #[arg(long)]
     pub real_time: bool,
@@ -62,6 +56,20 @@ pub struct DemoArgs {
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
+}
+
+/// The mission of a demo.
+#[derive(Debug, Args)]
+pub struct DemoMissionArgs {
+    /// Goal in the map frame, which starts at the robot: m, m, deg; may be said again for the next one [default: the room's own]
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
+    pub goal: Vec<PoseArg>,
+    /// Drive straight to the goal: the map is drawn on the way [default: explore until the map is complete, do the goals, come back]
+    #[arg(long)]
+    pub direct: bool,
+    /// Drive onto the charging station at the end: with --direct and without --goal that alone.
+    #[arg(long)]
+    pub dock: bool,
 }
 
 /// The state of a robot, written and read.

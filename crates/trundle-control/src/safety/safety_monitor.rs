@@ -357,7 +357,7 @@ mod tests {
         let (creep, now) = (Twist2::new(0.05, 0.0), Stamp::default().after(10.0));
         let wall = |range: f64| scan(-0.2, 0.05, &[range; 9]);
         let base_from_station = Pose2::new(0.2, 0.0, std::f64::consts::PI);
-        let docking = Some(StationMotion::Docking { base_from_station });
+        let docking = Some(StationMotion::Docking { base_from_station, distance_error: 0.0 });
         let near = wall(0.2);
         let input = SafetyInput { scan: seen(&near), now, wheels: Some(now), ..fresh(creep) };
         assert_eq!(monitor().check(&SafetyInput { image: Some(now), ..input }).twist.v, 0.0);
@@ -367,8 +367,8 @@ mod tests {
         // Another speed, another obstacle, a pressed bumper, a cliff: as anywhere else.
         let fast = SafetyInput { twist: Twist2::new(0.2, 0.0), ..docked };
         assert_eq!(monitor().check(&fast).twist.v, 0.0);
-        let far =
-            Some(StationMotion::Docking { base_from_station: Pose2::new(0.5, 0.0, std::f64::consts::PI) });
+        let base_from_station = Pose2::new(0.5, 0.0, std::f64::consts::PI);
+        let far = Some(StationMotion::Docking { base_from_station, distance_error: 0.0 });
         assert_eq!(
             monitor().check(&SafetyInput { station: far, ..input }).twist.v,
             0.0,

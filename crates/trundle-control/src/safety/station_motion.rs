@@ -9,6 +9,8 @@ const MAX_TURN_RATE_RAD_S: f64 = 0.12;
 /// Outline of a station: depth and half of the width \[m\]. Source: ours, the size of the Kobuki's station.
 const STATION_DEPTH_M: f64 = 0.1;
 const STATION_HALF_WIDTH_M: f64 = 0.13;
+/// Largest error of the station's distance that is permitted \[m\]. Source: ours.
+const MAX_DISTANCE_ERROR_M: f64 = 0.2;
 /// Margin about the outline within which an obstacle belongs to the station \[m\]: a cell of the map. Source: ours.
 const OUTLINE_MARGIN_M: f64 = 0.05;
 
@@ -20,6 +22,8 @@ pub enum StationMotion {
     Docking {
         /// The station in the base frame: the middle of its front, x out of the front.
         base_from_station: Pose2,
+        /// Distance along its axis by which the station may be nearer or farther, m, up to 0.2.
+        distance_error: f64,
     },
     /// Back off the station, over the floor that the robot came over.
     Undocking,
@@ -37,10 +41,11 @@ impl StationMotion {
 
     /// Whether an obstacle (base frame, m) belongs to the station.
     pub(super) fn is_station(&self, obstacle: Vector2) -> bool {
-        let Self::Docking { base_from_station } = self else { return false };
+        let Self::Docking { base_from_station, distance_error } = self else { return false };
         let at = base_from_station.inverse().transform(obstacle);
-        at.x <= OUTLINE_MARGIN_M
-            && at.x >= -STATION_DEPTH_M - OUTLINE_MARGIN_M
+        let along = OUTLINE_MARGIN_M + distance_error.clamp(0.0, MAX_DISTANCE_ERROR_M);
+        at.x <= along
+            && at.x >= -STATION_DEPTH_M - along
             && at.y.abs() <= STATION_HALF_WIDTH_M + OUTLINE_MARGIN_M
     }
 }
@@ -51,7 +56,7 @@ mod tests {
     use std::f64::consts::PI;
 
     fn docking() -> StationMotion {
-        StationMotion::Docking { base_from_station: Pose2::new(0.3, 0.0, PI) }
+        StationMotion::Docking { base_from_station: Pose2::new(0.3, 0.0, PI), distance_error: 0.0 }
     }
 
     #[test]
@@ -73,6 +78,10 @@ mod tests {
         assert!(!is_station(0.22, 0.0), "before it");
         assert!(!is_station(0.3, 0.2), "beside it");
         assert!(!is_station(0.5, 0.0), "behind it");
+        let base_from_station = Pose2::new(0.3, 0.0, PI);
+        let uncertain = |distance_error| StationMotion::Docking { base_from_station, distance_error };
+        assert!(uncertain(0.1).is_station(Vector2::new(0.5, 0.0)));
+        assert!(!uncertain(9.0).is_station(Vector2::new(0.7, 0.0)), "no error makes it larger than that");
         assert!(!StationMotion::Undocking.is_station(Vector2::new(0.3, 0.0)));
     }
 }

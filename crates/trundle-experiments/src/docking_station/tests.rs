@@ -1,17 +1,17 @@
-//! The robot drives onto its station, closed loop with noise.
+//! The robot drives onto its station, closed loop with noise; the laser in place of the camera makes a run a few seconds long.
 
 use super::*;
+use trundle_core::{Vector2, Vector3};
+use trundle_runtime::ReasonKind;
+use trundle_sim::{Cuboid, Finish, Paint, Shape, Solid, World};
 
-/// The station of the tests at the east wall of the room: x out of its front.
-const STATION: (f64, f64, f64) = (2.9, 0.4, PI);
-
+/// The station at the east wall of the room, x out of its front.
 fn station() -> Pose2 {
-    Pose2::new(STATION.0, STATION.1, STATION.2)
+    Pose2::new(2.9, 0.4, PI)
 }
 
 fn room(start: Pose2) -> Scene {
-    let scene = Scene::by_name("room", 1).unwrap();
-    Scene { start, ..scene }.with_station(station()).unwrap()
+    Scene { start, ..Scene::by_name("room", 1).unwrap() }
 }
 
 fn plan(scene: Scene, seed: u64) -> DockPlan {
@@ -19,42 +19,96 @@ fn plan(scene: Scene, seed: u64) -> DockPlan {
     DockPlan { scene, robot, body, mission: docking_alone().unwrap(), seed }
 }
 
+/// Checks that a run ended on the contacts and touched nothing.
+fn assert_docked(trial: &DockTrial) {
+    let (lateral, heading) = (trial.lateral_error(), trial.heading_error().to_degrees());
+    eprintln!("{} after {:.0} s, {:.1} mm, {heading:.2} deg", trial.state, trial.time, lateral * 1e3);
+    assert!(trial.is_docked(), "{}", trial.state);
+    assert_eq!(trial.contacts, 0, "the plates are ahead of the bumper");
+    assert!(lateral.abs() < 0.01 && heading.abs() < 3.0, "{lateral} m, {heading} deg");
+}
+
+/// Kinds of the reason for which a run ended without a dock.
+fn kinds(trial: &DockTrial) -> Vec<ReasonKind> {
+    assert!(!trial.is_docked());
+    trial.state.reason().unwrap().kinds()
+}
+
 #[test]
-fn it_docks_from_several_starts() {
-    let starts = [(0.0, 0.0, 0.0), (-2.0, -2.0, 1.0), (1.5, 2.0, -2.0), (2.3, -1.5, 3.0)];
+fn it_finds_its_station_and_docks_from_several_starts() {
+    let starts = [(0.0, 0.0, 0.0), (1.5, 2.0, -2.0), (2.3, -1.5, 3.0), (-2.4, -1.0, -2.2)];
     for (seed, (x, y, theta)) in (1..).zip(starts) {
-        let trial = dock(plan(room(Pose2::new(x, y, theta)), seed)).unwrap();
-        let (lateral, heading) = (trial.lateral_error(), trial.heading_error().to_degrees());
-        eprintln!(
-            "start {seed}: {} after {:.0} s, {:.1} mm, {heading:.2} deg, x {:.3}, {} contacts",
-            trial.state,
-            trial.time,
-            lateral * 1e3,
-            trial.station_from_base.x,
-            trial.contacts
-        );
-        if std::env::var_os("TRACE").is_some() {
-            for m in trial.run.moments.iter().step_by(25) {
-                let at = station().inverse() * m.pose;
-                eprintln!(
-                    "{:.1} {:.3} {:.3} {:.1} v {:.2} {:.2}",
-                    m.time,
-                    at.x,
-                    at.y,
-                    at.theta.to_degrees(),
-                    m.twist.v,
-                    m.twist.omega
-                );
-            }
-            let e = trial.run.robot.station().map(|e| {
-                (
-                    Pose2::new(0.0, 0.0, 0.0),
-                    e.lateral_sigma(0.18),
-                    e.heading_sigma(),
-                    (station().inverse() * Pose2::new(x, y, theta) * e.pose),
-                )
-            });
-            eprintln!("{e:?}");
-        }
+        let scene = room(Pose2::new(x, y, theta)).with_station(station()).unwrap();
+        assert_docked(&dock(plan(scene, seed)).unwrap());
     }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_dock() {
+    let run = || {
+        let scene = room(Pose2::new(1.0, 0.6, 0.5)).with_station(station()).unwrap();
+        dock(plan(scene, 3)).unwrap()
+    };
+    let (first, second) = (run(), run());
+    assert_docked(&first);
+    assert_eq!((first.station_from_base, first.time), (second.station_from_base, second.time));
+}
+
+#[test]
+fn a_robot_that_starts_on_its_station_backs_off_first_and_knows_the_way_back() {
+    let start = station() * Pose2::new(0.18, 0.0, PI);
+    let scene = room(start).with_station(station()).unwrap();
+    let tasks = vec![Task::Go(Pose2::new(-1.5, 0.5, 0.0)), Task::Dock];
+    let trial = dock(DockPlan { mission: Mission::new(tasks).unwrap(), ..plan(scene, 5) }).unwrap();
+    assert_docked(&trial);
+    let ends: Vec<_> = trial.run.robot.tasks_ended().iter().map(|record| record.end.to_string()).collect();
+    assert_eq!(ends, ["done", "done"]);
+    let is_near = |pose: Pose2| pose.distance(&start) < 0.3;
+    let turns = |moment: &&crate::laser_run::Moment| moment.twist.omega.abs() > 0.13;
+    let first_turn = trial.run.moments.iter().find(turns).unwrap();
+    assert!(!is_near(first_turn.pose), "it turns on the station: {:?}", first_turn.pose);
+    assert!(trial.time < 120.0, "it searches what it knows: {} s", trial.time);
+}
+
+#[test]
+fn without_a_station_it_says_that_there_was_no_light() {
+    let trial = dock(plan(room(Pose2::IDENTITY), 1)).unwrap();
+    assert_eq!(kinds(&trial), [ReasonKind::TasksFailed, ReasonKind::NoStationLight]);
+    assert_eq!(trial.contacts, 0);
+    assert!(trial.state.to_string().contains("no light of a charging station was seen"), "{}", trial.state);
+}
+
+#[test]
+fn plates_that_do_not_charge_are_tried_three_times() {
+    let scene = room(Pose2::new(1.5, 0.2, 0.0)).with_station(station()).unwrap();
+    let mut plan = plan(scene, 2);
+    plan.body.station.charges = false;
+    let trial = dock(plan).unwrap();
+    assert_eq!(kinds(&trial), [ReasonKind::TasksFailed, ReasonKind::NoCharging]);
+    assert!(trial.state.to_string().contains("after 3 attempts"), "{}", trial.state);
+    // It pushes the station, gently, and nothing else.
+    assert!((1..=3).contains(&trial.contacts), "{} contacts", trial.contacts);
+    let fastest =
+        trial.run.moments.iter().filter(|m| m.clearance < 0.05).map(|m| m.twist.v.abs()).fold(0.0, f64::max);
+    assert!(fastest <= 0.1, "{fastest} m/s near the station");
+}
+
+/// The room with a box of 0.5 x 0.3 x 0.5 m, its middle this far in front of the station, m.
+fn blocked(start: Pose2, distance: f64) -> Scene {
+    let scene = room(start);
+    let middle = station().transform(Vector2::new(distance, 0.0));
+    let center = Vector3::new(middle.x, middle.y, 0.25);
+    let shape = Shape::Cuboid(Cuboid { center, size: Vector3::new(0.3, 0.5, 0.5), yaw: 0.0 });
+    let solid = Solid { shape, finish: Finish::all(Paint::Flat { color: [120; 3] }) };
+    let solids = scene.world.solids().iter().cloned().chain([solid]).collect();
+    Scene { world: World::new(solids, 1).unwrap(), ..scene }.with_station(station()).unwrap()
+}
+
+#[test]
+fn a_station_behind_a_box_is_given_up_with_a_reason_and_nothing_is_touched() {
+    let trial = dock(plan(blocked(Pose2::new(1.2, 1.8, 0.0), 0.45), 4)).unwrap();
+    let kinds = kinds(&trial);
+    eprintln!("{} after {:.0} s", trial.state, trial.time);
+    assert_eq!((kinds[0], trial.contacts), (ReasonKind::TasksFailed, 0), "{}", trial.state);
+    assert!(kinds.len() > 1 && !kinds.contains(&ReasonKind::Unknown), "{kinds:?}");
 }

@@ -54,11 +54,11 @@ const MIN_MOTION_M: f64 = 0.01;
 /// Turn between readings that count \[rad\]. Source: ours.
 const MIN_TURN_RAD: f64 = 0.026;
 /// Exponent of a reading's likelihood: readings of neighbouring places depend on each other. Source: ours.
-const LIKELIHOOD_EXPONENT: f64 = 0.5;
-/// Growth of the standard deviation with the root of the driven distance: across and along \[m/sqrt(m)\], and heading \[rad/sqrt(m)\].
-/// The robot's own pose drifts and is corrected. Source: ours.
-const DRIFT_M: f64 = 0.004;
-const DRIFT_RAD: f64 = 0.003;
+const LIKELIHOOD_EXPONENT: f64 = 0.3;
+/// Growth of the standard deviation with the root of the path of the receivers: position \[m/sqrt(m)\] and heading \[rad/sqrt(m)\]. The
+/// robot's own pose drifts and is corrected, and the light is not quite that of the model. Source: ours.
+const DRIFT_M: f64 = 0.006;
+const DRIFT_RAD: f64 = 0.006;
 /// Mean likelihood of a reading below which it contradicts the distribution. Source: ours.
 const MIN_MEAN_LIKELIHOOD: f64 = 0.003;
 /// Contradictions in a row after which the estimate starts anew. Source: ours.
@@ -135,12 +135,13 @@ impl StationEstimator {
         Some(StationEstimate { pose, covariance: covariance.into() })
     }
 
-    /// Distance since the last reading that counted, m; none where the reading adds nothing.
+    /// Path of the receivers since the last reading that counted, m; none where the reading adds nothing.
     fn motion_since_last(&self, pose: Pose2, light: &DockInfrared) -> Option<f64> {
         let Some((last, before)) = &self.last else { return Some(0.0) };
         let distance = last.distance(&pose);
-        let has_turned = difference_of_angles(pose.theta, last.theta).abs() >= MIN_TURN_RAD;
-        (distance >= MIN_MOTION_M || has_turned || before != light).then_some(distance)
+        let turn = difference_of_angles(pose.theta, last.theta).abs();
+        let moved = distance >= MIN_MOTION_M || turn >= MIN_TURN_RAD || before != light;
+        moved.then(|| distance + turn * self.model.receiver_radius())
     }
 
     fn start(&mut self, pose: Pose2, light: &DockInfrared) {

@@ -31,7 +31,7 @@ pub struct StationLightConfig {
     pub range_edge: f64,
     /// Probability that a field is missed, or seen where it is not, 0.001 to 0.5. Default 0.02 (ours).
     pub outlier_probability: f64,
-    /// Smallest likelihood of a dark receiver, 0.001 to 1: something may stand between. Default 0.2 (ours).
+    /// Smallest probability of a dark receiver, 0.001 to 1: something may stand between. Default 0.2 (ours).
     pub dark_likelihood: f64,
 }
 

@@ -28,6 +28,11 @@ impl LightModel {
         Self { config, receivers }
     }
 
+    /// Distance of the receivers from the base's origin, m.
+    pub(super) fn receiver_radius(&self) -> f64 {
+        self.config.receiver_radius
+    }
+
     /// Likelihood of a reading at `station_from_base`: the product over the receivers.
     pub(super) fn likelihood(&self, reading: &DockInfrared, station_from_base: Pose2) -> f64 {
         let seen = [reading.left, reading.center, reading.right];
@@ -39,8 +44,8 @@ impl LightModel {
     fn likelihood_at(&self, beams: &DockBeams, receiver: Pose2) -> f64 {
         let outlier = self.config.outlier_probability;
         let expected = self.visibility(receiver).map(|v| outlier + (1.0 - 2.0 * outlier) * v);
-        let chance = |(is_seen, p): (bool, f64)| if is_seen { p } else { 1.0 - p };
-        let likelihood = bits(beams).into_iter().zip(expected).map(chance).product::<f64>();
+        let factor = |(is_seen, p): (bool, f64)| if is_seen { p } else { 1.0 - p };
+        let likelihood = bits(beams).into_iter().zip(expected).map(factor).product::<f64>();
         if *beams == DockBeams::default() { likelihood.max(self.config.dark_likelihood) } else { likelihood }
     }
 

@@ -15,7 +15,7 @@
 //! |---|---|---|
 //! | theta | `Particle::map_from_station` | m, m, rad |
 //! | w | `Particle::weight` | |
-//! | a | `SHRINKAGE` | |
+//! | a | `SHRINKAGE_FACTOR` | |
 //! | N_eff | `effective_size` | |
 
 mod estimator;

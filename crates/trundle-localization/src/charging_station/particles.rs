@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 use trundle_core::{Pose2, difference_of_angles};
 
 /// Shrinkage towards the mean when the set is drawn anew: the kernel then keeps mean and covariance. Source: Liu and West 2001.
-const SHRINKAGE: f64 = 0.95;
+const SHRINKAGE_FACTOR: f64 = 0.95;
 /// Part of the particles that count below which the set is drawn anew. Source: the usual half.
 const MIN_EFFECTIVE_PART: f64 = 0.5;
 
@@ -52,7 +52,7 @@ impl Particles {
     /// Draws `count` particles by weight (low variance), shrunk towards the mean and spread by the kernel.
     pub(super) fn resample(&mut self, count: usize, random: &mut Random) {
         let (mean, covariance) = self.moments();
-        let spread = factor(&covariance) * (1.0 - SHRINKAGE * SHRINKAGE).sqrt();
+        let spread = factor(&covariance) * (1.0 - SHRINKAGE_FACTOR * SHRINKAGE_FACTOR).sqrt();
         let step = 1.0 / count as f64;
         let (mut at, mut sum, mut i) = (step * random.unit(), self.0[0].weight, 0);
         let mut drawn = Vec::with_capacity(count);
@@ -62,7 +62,7 @@ impl Particles {
                 sum += self.0[i].weight;
             }
             at += step;
-            let off = offset(mean, self.0[i].map_from_station) * SHRINKAGE;
+            let off = offset(mean, self.0[i].map_from_station) * SHRINKAGE_FACTOR;
             let off = off + spread * Vector3::from(random.normal3());
             drawn.push(Particle { map_from_station: moved(mean, off), weight: step });
         }

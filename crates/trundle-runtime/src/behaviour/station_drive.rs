@@ -13,6 +13,8 @@ use trundle_localization::StationEstimate;
 pub(crate) enum StationGoal {
     /// Turn to both sides of the station and back, so that the receivers cross the edges of its light.
     Sweep(Pose2),
+    /// Straight along the axis to a distance of the base from the station, m.
+    Advance(StationEstimate, f64),
     /// Straight onto the contacts, until the battery charges.
     Approach(StationEstimate),
     /// Straight back by a distance, m.
@@ -41,11 +43,13 @@ const MAX_HEADING_OFF_AXIS_RAD: f64 = 0.12;
 const HEADING_GAIN: f64 = 1.5;
 /// Largest turn rate of a straight move \[rad/s\]. Source: ours, below what the safety monitor permits.
 const MAX_HEADING_RATE_RAD_S: f64 = 0.1;
-/// Distance beyond the expected contact after which nothing is expected any more \[m\]; the station's own uncertainty comes on top.
-/// Source: ours.
-const OVERRUN_M: f64 = 0.03;
-/// Largest addition for an uncertain distance of the station \[m\]. Source: ours.
-const MAX_OVERRUN_M: f64 = 0.1;
+/// Distance beyond the expected contact after which nothing is expected any more \[m\]: the light shows the distance worse than the
+/// axis. Source: ours.
+const OVERRUN_M: f64 = 0.1;
+/// Standard deviations of the distance that are added. Source: ours.
+const OVERRUN_SIGMAS: f64 = 2.0;
+/// Largest addition for an uncertain distance \[m\]. Source: ours.
+const MAX_ADDED_OVERRUN_M: f64 = 0.1;
 /// Distance of the receivers from the station below which the estimate no longer changes the course \[m\]. Source: ours.
 const FROZEN_GAP_M: f64 = 0.12;
 /// Time on a pressed bumper in which the charger may still report \[s\]. Source: ours.
@@ -83,6 +87,7 @@ impl StationDrive {
         let start = *self.start.get_or_insert(pose);
         match goal {
             StationGoal::Sweep(station) => self.sweep(s.station.estimate.map_or(*station, |e| e.pose), pose),
+            StationGoal::Advance(first, distance) => self.advance(*first, *distance, s, touched, reach),
             StationGoal::Approach(first) => self.approach(*first, s, touched, reach),
             StationGoal::BackOff(distance) => self.back_off(*distance, start, s),
         }
@@ -92,9 +97,10 @@ impl StationDrive {
     pub(crate) fn permission(&self, goal: &StationGoal, pose: Pose2) -> Option<StationMotion> {
         match goal {
             StationGoal::Sweep(_) => None,
-            StationGoal::Approach(first) => {
-                let station = self.station.unwrap_or(*first).pose;
-                Some(StationMotion::Docking { base_from_station: pose.inverse() * station })
+            StationGoal::Advance(first, _) | StationGoal::Approach(first) => {
+                let station = self.station.unwrap_or(*first);
+                let base_from_station = pose.inverse() * station.pose;
+                Some(StationMotion::Docking { base_from_station, distance_error: overrun(&station) })
             }
             StationGoal::BackOff(_) => Some(StationMotion::Undocking),
         }
@@ -106,6 +112,24 @@ impl StationDrive {
         let twist = turn_to(pose, to_station.y.atan2(to_station.x) + side * SWEEP_ANGLE_RAD);
         self.sides += usize::from(twist == Twist2::ZERO);
         StationProgress::Moving(twist)
+    }
+
+    fn advance(
+        &mut self,
+        first: StationEstimate,
+        distance: f64,
+        s: &WorldState<'_>,
+        touched: bool,
+        reach: f64,
+    ) -> StationProgress {
+        let at = self.station_of(first, s, reach).pose.inverse() * s.estimate.pose;
+        if at.x <= distance || touched || s.station.is_docked {
+            return StationProgress::Done;
+        }
+        if self.is_held(s) {
+            return StationProgress::Failed(DockFailure::Held);
+        }
+        StationProgress::Moving(Twist2::new(APPROACH_SPEED_M_S, heading_rate(at)))
     }
 
     fn approach(
@@ -120,11 +144,7 @@ impl StationDrive {
         }
         let station = self.station_of(first, s, reach);
         let at = station.pose.inverse() * s.estimate.pose;
-        let overrun = OVERRUN_M + (2.0 * station.distance_sigma()).min(MAX_OVERRUN_M);
-        if at.x < reach - overrun {
-            return self.wait_for_charger(s.now);
-        }
-        if touched {
+        if touched || at.x < reach - overrun(&station) {
             return self.wait_for_charger(s.now);
         }
         if self.is_held(s) {
@@ -168,6 +188,11 @@ impl StationDrive {
         }
         s.now - since > HELD_TIME_S
     }
+}
+
+/// Distance beyond the expected contact up to which contact may still come, m.
+fn overrun(station: &StationEstimate) -> f64 {
+    OVERRUN_M + (OVERRUN_SIGMAS * station.distance_sigma()).min(MAX_ADDED_OVERRUN_M)
 }
 
 /// Turn rate that brings a robot at `station_from_base` onto the axis, facing the station.

@@ -33,7 +33,8 @@ impl fmt::Display for DockFailure {
                 write!(f, "the axis of the charging station is uncertain: standard deviation {sigma:.3} m")
             }
             Self::NoCharging { attempts } => {
-                write!(f, "nothing charges at the charging station after {attempts} attempts")
+                let plural = if *attempts == 1 { "" } else { "s" };
+                write!(f, "nothing charges at the charging station after {attempts} attempt{plural}")
             }
             Self::Held => f.write_str("an obstacle stops the straight move at the charging station"),
         }
@@ -56,6 +57,7 @@ mod tests {
         let texts: std::collections::BTreeSet<_> = failures.iter().map(ToString::to_string).collect();
         assert_eq!(texts.len(), failures.len());
         assert_eq!(failures[0].to_string(), "no light of a charging station was seen");
-        assert!(failures[3].to_string().contains("3 attempts"));
+        assert!(failures[3].to_string().ends_with("after 3 attempts"));
+        assert!(DockFailure::NoCharging { attempts: 1 }.to_string().ends_with("after 1 attempt"));
     }
 }

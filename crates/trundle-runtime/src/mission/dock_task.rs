@@ -4,6 +4,7 @@ use crate::behaviour::drive_state::DriveState;
 use crate::behaviour::navigator::Goal;
 use crate::behaviour::station_drive::StationGoal;
 use crate::mission::dock_failure::DockFailure;
+use crate::mission::light_search::LightSearch;
 use crate::reason::Reason;
 use crate::schedule::Ticker;
 use crate::world_state::WorldState;
@@ -16,6 +17,8 @@ use trundle_planning::{Exploration, Explorer, Frontier};
 const SURVEY_POSES: [[f64; 3]; 3] = [[1.2, 0.3, PI], [1.0, -0.3, PI], [0.9, 0.2, PI]];
 /// Distance of the base from the station before the last straight move \[m\]: the camera still measures there. Source: ours.
 const STAGING_DISTANCE_M: f64 = 0.7;
+/// Distance of the base from the station at the second sweep \[m\]: a degree of the light is 5 mm there. Source: ours.
+const NEAR_DISTANCE_M: f64 = 0.45;
 /// Distance from the staging pose up to which turns and straight moves lead there \[m\]. Source: ours.
 const ALIGN_DISTANCE_M: f64 = 0.5;
 /// Largest standard deviation of the axis at the contacts, across \[m\] and heading \[rad\]. Source: ours, the plates' tolerances.
@@ -52,8 +55,8 @@ enum Phase {
     Begin,
     /// Turns on the spot.
     Spinning,
-    /// On the way to a viewpoint of unknown floor.
-    Exploring(Option<Frontier>),
+    /// On the way to a place from which light may be seen; the frontier, where that is unknown floor.
+    Searching(Option<Frontier>),
     /// On the way to a pose of the survey.
     Surveying {
         next: usize,
@@ -65,6 +68,10 @@ enum Phase {
     },
     Sweeping,
     Aligning,
+    /// On the axis, nearer to the station.
+    Advancing,
+    /// The second sweep, near the station.
+    NearSweeping,
     Closing,
     BackingOff,
 }
@@ -73,6 +80,7 @@ enum Phase {
 #[derive(Debug)]
 pub(crate) struct DockTask {
     explorer: Box<Explorer>,
+    search: LightSearch,
     phase: Phase,
     surveys: u32,
     attempts: u32,
@@ -84,7 +92,8 @@ impl DockTask {
     /// A task that searches by `explorer`.
     pub(crate) fn new(explorer: Box<Explorer>) -> Self {
         let check_due = Ticker::new(CHECK_RATE_HZ);
-        Self { explorer, phase: Phase::Begin, surveys: 0, attempts: 0, losses: 0, check_due }
+        let search = LightSearch::default();
+        Self { explorer, search, phase: Phase::Begin, surveys: 0, attempts: 0, losses: 0, check_due }
     }
 
     /// The next step; the navigator is in `state`.
@@ -118,7 +127,7 @@ impl DockTask {
             return DockStep::Keep;
         }
         match (&self.phase, s.station.estimate) {
-            (Phase::Exploring(_), Some(station)) => self.go_on(station),
+            (Phase::Searching(_), Some(station)) => self.go_on(station),
             (Phase::Surveying { next, at }, Some(station)) => {
                 let (next, moved) = (*next, survey_pose(&station, *next));
                 if moved.distance(at) > MOVED_GOAL_M { self.survey(station, next) } else { DockStep::Keep }
@@ -136,20 +145,19 @@ impl DockTask {
             DriveState::Stopped { reason } => Some(reason),
             _ => None,
         };
-        if let (Phase::Exploring(Some(frontier)), None) = (&self.phase, s.station.estimate) {
-            self.explorer.mark_viewed(frontier);
-            // Behind the robot no receiver sees.
-            return if failure.is_some() { self.explore(s) } else { self.spin() };
-        }
-        let Some(station) = s.station.estimate else {
-            return if matches!(self.phase, Phase::Spinning) { self.explore(s) } else { self.lost() };
-        };
+        let Some(station) = s.station.estimate else { return self.without_light(s, failure.is_some()) };
         match (&self.phase, failure) {
             (Phase::Surveying { next, .. }, _) => self.after_survey_pose(station, *next),
-            (Phase::Staging { .. } | Phase::Aligning, Some(reason)) => DockStep::GivenUp(reason.clone()),
+            (Phase::Staging { .. } | Phase::Aligning | Phase::Advancing, Some(reason)) => {
+                DockStep::GivenUp(reason.clone())
+            }
             (Phase::Staging { .. }, None) => self.sweep(station),
             (Phase::Sweeping, _) => self.after_sweep(station, s),
-            (Phase::Aligning, None) => self.to(Phase::Closing, StationGoal::Approach(station)),
+            (Phase::Aligning, None) => {
+                self.to(Phase::Advancing, StationGoal::Advance(station, NEAR_DISTANCE_M))
+            }
+            (Phase::Advancing, None) => self.to(Phase::NearSweeping, StationGoal::Sweep(station.pose)),
+            (Phase::NearSweeping, _) => self.to(Phase::Closing, StationGoal::Approach(station)),
             (Phase::Closing, _) => self.after_attempt(),
             (Phase::BackingOff, _) => self.go_on(station),
             _ => self.go_on(station),
@@ -215,11 +223,32 @@ impl DockTask {
         DockStep::Goal(Goal::Station(goal))
     }
 
-    /// The next viewpoint of unknown floor, from which light may be seen.
-    fn explore(&mut self, s: &WorldState<'_>) -> DockStep {
+    /// A goal of the search is over, or the light is lost.
+    fn without_light(&mut self, s: &WorldState<'_>, has_failed: bool) -> DockStep {
+        match &self.phase {
+            Phase::Spinning => {
+                self.search.mark_searched(s.estimate.pose.position());
+                self.search_on(s)
+            }
+            Phase::Searching(frontier) => {
+                frontier.iter().for_each(|frontier| self.explorer.mark_viewed(frontier));
+                self.search.end_place(has_failed);
+                // Behind the robot no receiver sees.
+                if has_failed { self.search_on(s) } else { self.spin() }
+            }
+            _ => self.lost(),
+        }
+    }
+
+    /// The next place of known floor where light was not yet looked for; else the next viewpoint of unknown floor.
+    fn search_on(&mut self, s: &WorldState<'_>) -> DockStep {
+        if let Some(place) = self.search.next_place(s.grid, s.estimate.pose) {
+            self.phase = Phase::Searching(None);
+            return DockStep::Goal(Goal::Viewpoint(place));
+        }
         match self.explorer.next(s.grid, s.estimate.pose) {
             Exploration::Next(view) => {
-                self.phase = Phase::Exploring(Some(view.frontier));
+                self.phase = Phase::Searching(Some(view.frontier));
                 DockStep::Goal(Goal::Viewpoint(view.pose))
             }
             Exploration::Complete { .. } => DockStep::GivenUp(Reason::Docking(DockFailure::NoLight)),

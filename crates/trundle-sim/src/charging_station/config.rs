@@ -13,9 +13,9 @@ pub struct StationConfig {
     pub side_bound_deg: f64,
     /// Angle by which neighbouring sectors overlap, deg, 0 to 10. Default 3 (ours; the sources say that fields overlap).
     pub overlap_deg: f64,
-    /// Distance up to which the near code is received, m, 0.1 to 5. Default 1 (the brief of this feature; ours).
+    /// Distance up to which the near code is received, m, 0.1 to 5. Default 1 (ours).
     pub near_range: f64,
-    /// Distance up to which the far code is received, m, 0.2 to 10. Default 3 (as above).
+    /// Distance up to which the far code is received, m, 0.2 to 10. Default 3 (ours).
     pub far_range: f64,
     /// Radius of the circle about the base's origin on which the receivers sit, m, 0 to 2. Default 0.15 (ours).
     pub receiver_radius: f64,
@@ -33,7 +33,7 @@ pub struct StationConfig {
     pub contact_gap: f64,
     /// Heading error up to which the plates touch, deg, 0.1 to 45. Default 3 (ours).
     pub contact_heading_deg: f64,
-    /// Whether the station is under power: without it there is light and no charging. Default true.
+    /// Whether the plates charge; the light is on in any case. Default true.
     pub charges: bool,
 }
 

@@ -11,5 +11,6 @@ mod contacts;
 mod light;
 mod sensing;
 
+pub(crate) use body::station_box;
 pub use config::StationConfig;
 pub(crate) use sensing::StationSensing;

@@ -10,9 +10,9 @@ use trundle_core::{Battery, BodyEventKind, DockBeams, DockInfrared, Footprint, P
 /// Voltage of the simulated battery \[V\]: nearly full. Source: the emulated Kobuki's default.
 const BATTERY_V: f64 = 16.5;
 /// Number of receivers.
-const RECEIVERS: u64 = 3;
+const RECEIVER_COUNT: u64 = 3;
 /// Draws of a receiver in a reading.
-const DRAWS: u64 = 2;
+const DRAWS_PER_RECEIVER: u64 = 2;
 
 /// The body's receivers and charger near the station of the scene.
 #[derive(Debug)]
@@ -61,7 +61,8 @@ impl StationSensing {
         self.readings += 1;
         let [left, center, right] = [0, 1, 2].map(|which: usize| {
             let receiver = pose * self.receivers[which];
-            let draw = |k: u64| hash(self.seed, (reading * RECEIVERS + which as u64) * DRAWS + k);
+            let draw =
+                |k: u64| hash(self.seed, (reading * RECEIVER_COUNT + which as u64) * DRAWS_PER_RECEIVER + k);
             let error = self.config.edge_noise_deg.to_radians() * normal(draw(0));
             let is_missed = unit(draw(1)) < self.config.miss_probability;
             let seen = beams(&self.config, self.station.inverse() * receiver, error);

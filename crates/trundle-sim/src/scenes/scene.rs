@@ -1,8 +1,9 @@
 //! A scene: a world with lights, people, start and goal.
 
+use crate::charging_station::station_box;
 use crate::people::Person;
 use crate::world::{Lights, SceneSnapshot, World};
-use trundle_core::Pose2;
+use trundle_core::{Invalid, Pose2};
 
 /// A world with a task in it.
 #[derive(Debug)]
@@ -27,6 +28,15 @@ impl Scene {
     /// The scene for a camera while nothing moves.
     pub fn snapshot(&self) -> SceneSnapshot<'_> {
         SceneSnapshot { world: &self.world, movers: &[], lights: &self.lights }
+    }
+
+    /// The scene with a charging station, `world_from_station`: on the floor at the middle of its front, x out of the front.
+    ///
+    /// # Errors
+    /// When the pose is not finite.
+    pub fn with_station(self, station: Pose2) -> Result<Self, Invalid> {
+        let world = self.world.with_solid(station_box(station))?;
+        Ok(Self { world, station: Some(station), ..self })
     }
 
     /// The goal as the robot is given it, in a frame that starts at the robot: `start_from_goal`.
