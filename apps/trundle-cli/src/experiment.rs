@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use trundle::app::{AppError, Progress, stop};
 use trundle::experiments::{
-    ExperimentReport, RunsRequest, barn, corridor, fault_scenarios, missions, mrpb, people, poses, real_time,
+    ExperimentReport, RunsRequest, barn, corridor, docking_station, fault_scenarios, missions, mrpb, people,
+    poses, real_time,
 };
 use trundle::io::OutputFolder;
 
@@ -34,6 +35,8 @@ pub enum Which {
     Faults(RunsArgs),
     /// Somebody steps into the robot's way a metre before it, one a run.
     People(RunsArgs),
+    /// Drives onto a charging station by its infrared light, from a start for each seed.
+    DockingStation(RunsArgs),
     /// The worlds of the BARN challenge, crossed at up to 2 m/s with a 2-D laser.
     Barn(BarnArgs),
     /// The courses of the local-planning benchmark MRPB 1.0, with and without people, with a 2-D laser.
@@ -206,7 +209,10 @@ impl ExperimentArgs {
     pub fn common(&self) -> &Common {
         match &self.which {
             Which::Poses(args) => &args.runs.common,
-            Which::Obstacles(args) | Which::Faults(args) | Which::People(args) => &args.common,
+            Which::Obstacles(args)
+            | Which::Faults(args)
+            | Which::People(args)
+            | Which::DockingStation(args) => &args.common,
             Which::House(args) => &args.runs.common,
             Which::Barn(args) => &args.common,
             Which::Mrpb(args) => &args.common,
@@ -227,6 +233,7 @@ pub fn run(args: &ExperimentArgs) -> Result<Outcome, AppError> {
         }
         Which::Faults(args) => runs(args, fault_scenarios::run),
         Which::People(args) => runs(args, people::run),
+        Which::DockingStation(args) => runs(args, docking_station::run),
         Which::Barn(args) => run_barn(args),
         Which::Mrpb(args) => run_mrpb(args),
         Which::RealTime(args) => run_real_time(args),

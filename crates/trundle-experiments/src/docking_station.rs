@@ -2,106 +2,144 @@
 
 #[cfg(test)]
 mod tests;
+mod trial;
 
-use crate::laser_run::{LaserPlan, LaserRun, drive, hokuyo};
-use crate::simulated::simulated_body;
-use std::f64::consts::PI;
-use trundle_app::AppError;
-use trundle_core::{OccupancyGrid, Pose2, difference_of_angles};
-use trundle_runtime::{DriveState, Mission, RangeSource, RobotConfig, Task};
-use trundle_sim::{FaultSchedule, Scene, SimConfig};
+pub use trial::{DockPlan, DockTrial, body_of, dock, docking_alone};
 
-/// Time of the robot after which a run is given up \[s\]. Source: ours.
-const TIME_LIMIT_S: f64 = 600.0;
+use crate::run_each::run_each;
+use crate::{ExperimentReport, RunsRequest};
+use std::f64::consts::{PI, TAU};
+use trundle_app::{AppError, Progress};
+use trundle_core::Pose2;
+use trundle_io::{OutputFolder, Summary, table_csv};
+use trundle_sim::Scene;
+use trundle_viz::{Report, Table, Verdict};
 
-/// A run that shall end on the charging station.
-pub struct DockPlan {
-    /// The place with its station, if there is one, and the robot's start.
-    pub scene: Scene,
-    /// The robot.
-    pub robot: RobotConfig,
-    /// Its simulated body.
-    pub body: SimConfig,
-    /// The mission, map frame.
-    pub mission: Mission,
-    /// Of all noise.
-    pub seed: u64,
+/// Half of the side of the square of starts \[m\]. Source: the room of 6 x 6 m.
+const START_HALF_SIDE_M: f64 = 2.5;
+/// Smallest distance of a start from the station \[m\]: the robot and the station's box have room. Source: ours.
+const MIN_START_DISTANCE_M: f64 = 0.5;
+/// Steps of the sequence of starts (Roberts 2018, three dimensions): it fills the space evenly.
+const START_STEPS: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
+/// Limits of the pose at contact: those of the station's plates.
+const MAX_LATERAL_ERROR_M: f64 = 0.01;
+
+/// The docks, one for each start.
+pub struct DocksOutcome {
+    /// In the order of the starts.
+    pub trials: Vec<(Pose2, DockTrial)>,
 }
 
-/// Result of a run.
-pub struct DockTrial {
-    /// Pose of the base in the station's frame at the end, in truth; identity where there is no station.
-    pub station_from_base: Pose2,
-    /// Separate touches: a dock touches nothing, the plates are ahead of the bumper.
-    pub contacts: u32,
-    /// Time, s.
-    pub time: f64,
-    /// State at the end.
-    pub state: DriveState,
-    /// The run.
-    pub run: LaserRun,
-}
-
-impl DockTrial {
-    /// Whether the robot is on its station.
-    #[must_use]
-    pub fn is_docked(&self) -> bool {
-        self.state == DriveState::Arrived
-            && self.run.robot.battery().is_some_and(|battery| battery.is_charging)
-    }
-
-    /// Lateral distance from the station's axis, m.
-    #[must_use]
-    pub fn lateral_error(&self) -> f64 {
-        self.station_from_base.y
-    }
-
-    /// Heading error, rad.
-    #[must_use]
-    pub fn heading_error(&self) -> f64 {
-        difference_of_angles(self.station_from_base.theta, PI)
-    }
-}
-
-/// A Kobuki with a camera, or with a laser in place of it, and its simulated body.
+/// Docks from as many starts as there are seeds, in the room with a station at its east wall.
 ///
 /// # Errors
 /// When a number of the robot is outside its range.
-pub fn robot_and_body(source: RangeSource) -> Result<(RobotConfig, SimConfig), AppError> {
-    let mut robot = RobotConfig::default();
-    robot.sight = source;
-    let mut body = simulated_body(&robot, FaultSchedule::default())?;
-    if source == RangeSource::Laser {
-        body.has_camera = false;
-        body.laser = Some(hokuyo(0.0));
+pub fn run(request: &RunsRequest, progress: &Progress) -> Result<DocksOutcome, AppError> {
+    let seeds: Vec<u64> = (1..=u64::from(request.seeds)).collect();
+    let dock_from = |seed: u64| {
+        let start = start_of(seed);
+        let scene = Scene { start, ..Scene::by_name("room", seed)? }.with_station(station())?;
+        let (robot, mission) = (request.robot.clone(), docking_alone()?);
+        let body = body_of(&robot)?;
+        Ok((start, dock(DockPlan { scene, robot, body, mission, seed })?))
+    };
+    Ok(DocksOutcome { trials: run_each(seeds, "docks", progress, dock_from)? })
+}
+
+/// The station at the east wall of the room, x out of its front.
+fn station() -> Pose2 {
+    Pose2::new(2.9, 0.4, PI)
+}
+
+/// The start of a seed: evenly over the room, in any heading.
+fn start_of(seed: u64) -> Pose2 {
+    let at = |i: u64| {
+        let [x, y, turn] = START_STEPS.map(|step| (0.5 + i as f64 * step).fract());
+        let coordinate = |part: f64| START_HALF_SIDE_M * (2.0 * part - 1.0);
+        Pose2::new(coordinate(x), coordinate(y), TAU * turn)
+    };
+    // A start too near to the station is replaced by one far beyond the others in the sequence.
+    let places = (0..).map(|k| at(seed + 100_000 * k));
+    places
+        .into_iter()
+        .find(|pose| pose.distance(&station()) >= MIN_START_DISTANCE_M)
+        .unwrap_or(Pose2::IDENTITY)
+}
+
+const HEADER: [&str; 7] =
+    ["start, m, deg", "end", "time, s", "across, mm", "heading, deg", "contacts", "path, m"];
+
+impl DocksOutcome {
+    fn docked(&self) -> impl Iterator<Item = &DockTrial> {
+        self.trials.iter().map(|(_, trial)| trial).filter(|trial| trial.is_docked())
     }
-    Ok((robot, body))
+
+    fn rows(&self) -> Vec<Vec<String>> {
+        self.trials.iter().map(|(start, trial)| row(start, trial)).collect()
+    }
+
+    /// Root of the mean square over the docks that succeeded.
+    fn rms(&self, of: impl Fn(&DockTrial) -> f64) -> f64 {
+        let squares: Vec<f64> = self.docked().map(|trial| of(trial).powi(2)).collect();
+        (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+    }
 }
 
-/// Makes a run.
-///
-/// # Errors
-/// When a number of the plan is outside its range, or the start is not free.
-pub fn dock(plan: DockPlan) -> Result<DockTrial, AppError> {
-    let DockPlan { scene, robot, body, mission, seed } = plan;
-    let station = scene.station;
-    let known: Option<OccupancyGrid> = None;
-    let run =
-        drive(LaserPlan { robot, body, scene, mission, known, seed, time_limit: TIME_LIMIT_S }, |_| false)?;
-    let end = *run.end();
-    Ok(DockTrial {
-        station_from_base: station.map_or(Pose2::IDENTITY, |station| station.inverse() * end.pose),
-        contacts: end.contacts,
-        time: end.time,
-        state: run.state.clone(),
-        run,
-    })
+fn row(start: &Pose2, trial: &DockTrial) -> Vec<String> {
+    vec![
+        format!("({:.2}, {:.2}, {:.0})", start.x, start.y, start.theta.to_degrees()),
+        if trial.is_docked() { "docked".to_owned() } else { trial.state.to_string() },
+        format!("{:.0}", trial.time),
+        format!("{:.1}", trial.lateral_error() * 1e3),
+        format!("{:.2}", trial.heading_error().to_degrees()),
+        trial.contacts.to_string(),
+        format!("{:.1}", trial.run.path_length()),
+    ]
 }
 
-/// The mission of docking alone.
-///
-/// # Errors
-/// Never: the task has no goal.
-pub fn docking_alone() -> Result<Mission, AppError> {
-    Ok(Mission::new(vec![Task::Dock])?)
+impl ExperimentReport for DocksOutcome {
+    fn is_success(&self) -> bool {
+        let is_good =
+            |trial: &DockTrial| trial.contacts == 0 && trial.lateral_error().abs() <= MAX_LATERAL_ERROR_M;
+        !self.trials.is_empty() && self.docked().filter(|trial| is_good(trial)).count() == self.trials.len()
+    }
+
+    fn table(&self) -> Vec<Vec<String>> {
+        std::iter::once(HEADER.map(str::to_owned).to_vec()).chain(self.rows()).collect()
+    }
+
+    fn verdict(&self) -> String {
+        let (docked, all) = (self.docked().count(), self.trials.len());
+        let (across, heading) = (self.rms(DockTrial::lateral_error), self.rms(DockTrial::heading_error));
+        let contacts: u32 = self.trials.iter().map(|(_, trial)| trial.contacts).sum();
+        format!(
+            "{docked} of {all} docks; at contact {:.1} mm across and {:.2} deg (root mean square); {contacts} contacts.",
+            across * 1e3,
+            heading.to_degrees()
+        )
+    }
+
+    fn write(&self, folder: &OutputFolder) -> Result<(), AppError> {
+        let text = self.verdict();
+        let verdict = if self.is_success() { Verdict::Ok(text) } else { Verdict::Failed(text) };
+        let table = self.rows().into_iter().fold(Table::new("Docks", HEADER), Table::row);
+        let report = Report::new("Docking at a charging station").verdict(verdict).table(table.wide());
+        let numbers = |(start, trial): &(Pose2, DockTrial)| {
+            let docked = f64::from(u8::from(trial.is_docked()));
+            let (across, heading) = (trial.lateral_error(), trial.heading_error());
+            [start.x, start.y, start.theta, docked, trial.time, across, heading, f64::from(trial.contacts)]
+        };
+        let header = ["x_m", "y_m", "theta_rad", "docked", "time_s", "across_m", "heading_rad", "contacts"];
+        let mut summary = Summary::new("experiment docking-station");
+        summary
+            .set("success", self.is_success())
+            .set("docks", self.trials.len())
+            .set("docked", self.docked().count())
+            .set("across_rms_m", self.rms(DockTrial::lateral_error))
+            .set("heading_rms_rad", self.rms(DockTrial::heading_error));
+        folder.write("docks.csv", table_csv(header, self.trials.iter().map(numbers)).as_bytes())?;
+        folder.write("report.html", report.to_html().as_bytes())?;
+        folder.write("summary.json", summary.to_json().as_bytes())?;
+        Ok(())
+    }
 }

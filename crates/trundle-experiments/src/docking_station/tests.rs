@@ -2,30 +2,35 @@
 
 use super::*;
 use trundle_core::{Vector2, Vector3};
-use trundle_runtime::ReasonKind;
+use trundle_runtime::{Mission, RangeSource, ReasonKind, RobotConfig, Task};
 use trundle_sim::{Cuboid, Finish, Paint, Shape, Solid, World};
-
-/// The station at the east wall of the room, x out of its front.
-fn station() -> Pose2 {
-    Pose2::new(2.9, 0.4, PI)
-}
 
 fn room(start: Pose2) -> Scene {
     Scene { start, ..Scene::by_name("room", 1).unwrap() }
 }
 
 fn plan(scene: Scene, seed: u64) -> DockPlan {
-    let (robot, body) = robot_and_body(RangeSource::Laser).unwrap();
+    let mut robot = RobotConfig::default();
+    robot.sight = RangeSource::Laser;
+    let body = body_of(&robot).unwrap();
     DockPlan { scene, robot, body, mission: docking_alone().unwrap(), seed }
 }
 
-/// Checks that a run ended on the contacts and touched nothing.
+/// Checks that a run ended on the contacts and touched nothing but the station.
 fn assert_docked(trial: &DockTrial) {
     let (lateral, heading) = (trial.lateral_error(), trial.heading_error().to_degrees());
     eprintln!("{} after {:.0} s, {:.1} mm, {heading:.2} deg", trial.state, trial.time, lateral * 1e3);
     assert!(trial.is_docked(), "{}", trial.state);
-    assert_eq!(trial.contacts, 0, "the plates are ahead of the bumper");
+    assert_touched_only_the_station(trial);
     assert!(lateral.abs() < 0.01 && heading.abs() < 3.0, "{lateral} m, {heading} deg");
+}
+
+/// Checks where each contact began: an attempt that misses the plates ends at the front of the station.
+fn assert_touched_only_the_station(trial: &DockTrial) {
+    for pair in trial.run.moments.windows(2).filter(|pair| pair[1].contacts > pair[0].contacts) {
+        let at = station().inverse() * pair[1].pose;
+        assert!(at.x < 0.2 && at.y.abs() < 0.13, "contact away from the station: {at:?}");
+    }
 }
 
 /// Kinds of the reason for which a run ended without a dock.
@@ -87,6 +92,7 @@ fn plates_that_do_not_charge_are_tried_three_times() {
     assert_eq!(kinds(&trial), [ReasonKind::TasksFailed, ReasonKind::NoCharging]);
     assert!(trial.state.to_string().contains("after 3 attempts"), "{}", trial.state);
     // It pushes the station, gently, and nothing else.
+    assert_touched_only_the_station(&trial);
     assert!((1..=3).contains(&trial.contacts), "{} contacts", trial.contacts);
     let fastest =
         trial.run.moments.iter().filter(|m| m.clearance < 0.05).map(|m| m.twist.v.abs()).fold(0.0, f64::max);
@@ -111,4 +117,31 @@ fn a_station_behind_a_box_is_given_up_with_a_reason_and_nothing_is_touched() {
     eprintln!("{} after {:.0} s", trial.state, trial.time);
     assert_eq!((kinds[0], trial.contacts), (ReasonKind::TasksFailed, 0), "{}", trial.state);
     assert!(kinds.len() > 1 && !kinds.contains(&ReasonKind::Unknown), "{kinds:?}");
+}
+
+#[test]
+fn starts_differ_and_have_room() {
+    let starts: Vec<Pose2> = (1..=200).map(start_of).collect();
+    assert!(starts.iter().all(|start| start.distance(&station()) >= MIN_START_DISTANCE_M));
+    assert!(
+        starts.iter().all(|start| start.x.abs() <= START_HALF_SIDE_M && start.y.abs() <= START_HALF_SIDE_M)
+    );
+    let pairs = starts.iter().enumerate().flat_map(|(i, a)| starts[..i].iter().map(move |b| a.distance(b)));
+    assert!(pairs.fold(f64::INFINITY, f64::min) > 1e-3);
+}
+
+#[test]
+fn the_verdict_counts_the_docks() {
+    let none = DocksOutcome { trials: Vec::new() };
+    assert!(!none.is_success() && none.verdict().starts_with("0 of 0 docks"));
+    let start = Pose2::new(1.6, 0.5, 0.0);
+    let outcome = |charges| {
+        let mut plan = plan(room(start).with_station(station()).unwrap(), 6);
+        plan.body.station.charges = charges;
+        DocksOutcome { trials: vec![(start, dock(plan).unwrap())] }
+    };
+    let (good, bad) = (outcome(true), outcome(false));
+    assert!(good.is_success() && good.verdict().starts_with("1 of 1 docks"), "{}", good.verdict());
+    assert!(!bad.is_success() && bad.verdict().starts_with("0 of 1 docks"), "{}", bad.verdict());
+    assert_eq!(good.table()[1][1], "docked");
 }

@@ -1,0 +1,103 @@
+//! One run that shall end on the charging station.
+
+use crate::laser_run::{LaserPlan, LaserRun, drive, hokuyo};
+use crate::simulated::simulated_body;
+use std::f64::consts::PI;
+use trundle_app::AppError;
+use trundle_core::{Pose2, difference_of_angles};
+use trundle_runtime::{DriveState, Mission, RangeSource, RobotConfig, Task};
+use trundle_sim::{FaultSchedule, Scene, SimConfig};
+
+/// Time of the robot after which a run is given up \[s\]. Source: ours.
+const TIME_LIMIT_S: f64 = 600.0;
+
+/// A run that shall end on the charging station.
+pub struct DockPlan {
+    /// The place with its station, if there is one, and the robot's start.
+    pub scene: Scene,
+    /// The robot.
+    pub robot: RobotConfig,
+    /// Its simulated body.
+    pub body: SimConfig,
+    /// The mission, map frame.
+    pub mission: Mission,
+    /// Of all noise.
+    pub seed: u64,
+}
+
+/// Result of a run.
+pub struct DockTrial {
+    /// Pose of the base in the station's frame at the end, in truth; identity where there is no station.
+    pub station_from_base: Pose2,
+    /// Separate touches: a dock touches nothing, the plates are ahead of the bumper.
+    pub contacts: u32,
+    /// Time, s.
+    pub time: f64,
+    /// State at the end.
+    pub state: DriveState,
+    /// The run.
+    pub run: LaserRun,
+}
+
+impl DockTrial {
+    /// Whether the robot is on its station.
+    #[must_use]
+    pub fn is_docked(&self) -> bool {
+        self.state == DriveState::Arrived
+            && self.run.robot.battery().is_some_and(|battery| battery.is_charging)
+    }
+
+    /// Lateral distance from the station's axis, m.
+    #[must_use]
+    pub fn lateral_error(&self) -> f64 {
+        self.station_from_base.y
+    }
+
+    /// Heading error, rad.
+    #[must_use]
+    pub fn heading_error(&self) -> f64 {
+        difference_of_angles(self.station_from_base.theta, PI)
+    }
+}
+
+/// The simulated body of a robot: with a camera, or with a laser in place of it where that is its range source.
+///
+/// # Errors
+/// When a number of the robot is outside its range.
+pub fn body_of(robot: &RobotConfig) -> Result<SimConfig, AppError> {
+    let mut body = simulated_body(robot, FaultSchedule::default())?;
+    if robot.sight == RangeSource::Laser {
+        body.has_camera = false;
+        body.laser = Some(hokuyo(0.0));
+    }
+    Ok(body)
+}
+
+/// Makes a run.
+///
+/// # Errors
+/// When a number of the plan is outside its range, or the start is not free.
+pub fn dock(plan: DockPlan) -> Result<DockTrial, AppError> {
+    let DockPlan { scene, robot, body, mission, seed } = plan;
+    let station = scene.station;
+    let run = drive(
+        LaserPlan { robot, body, scene, mission, known: None, seed, time_limit: TIME_LIMIT_S },
+        |_| false,
+    )?;
+    let end = *run.end();
+    Ok(DockTrial {
+        station_from_base: station.map_or(Pose2::IDENTITY, |station| station.inverse() * end.pose),
+        contacts: end.contacts,
+        time: end.time,
+        state: run.state.clone(),
+        run,
+    })
+}
+
+/// The mission of docking alone.
+///
+/// # Errors
+/// Never: the task has no goal.
+pub fn docking_alone() -> Result<Mission, AppError> {
+    Ok(Mission::new(vec![Task::Dock])?)
+}
