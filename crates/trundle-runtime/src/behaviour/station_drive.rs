@@ -208,6 +208,117 @@ fn limited(rate: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::world_state::{DynamicObstacles, StationState};
+    use trundle_core::{OccupancyGrid, PoseEstimate};
+
+    const REACH: f64 = 0.18;
+
+    fn station() -> StationEstimate {
+        StationEstimate { pose: Pose2::IDENTITY, covariance: [[0.0; 3]; 3] }
+    }
+
+    fn world(grid: &OccupancyGrid, pose: Pose2, time: f64, is_docked: bool) -> WorldState<'_> {
+        let (now, covariance) = (Stamp::default().after(time), nalgebra::Matrix3::zeros());
+        WorldState {
+            now,
+            estimate: PoseEstimate { stamp: now, pose, twist: Twist2::ZERO, covariance },
+            grid,
+            scan: None,
+            seen: None,
+            unlocated: 0.0,
+            wheels: Some(now),
+            hold: None,
+            motion: trundle_control::MotionSense::Wheels,
+            dynamic_obstacles: DynamicObstacles::default(),
+            station: StationState { estimate: Some(station()), is_docked },
+        }
+    }
+
+    /// Drives until the motion is over; `is_free` is false where an obstacle holds the robot, `docks_at` and `touches_at` are distances
+    /// from the station, m.
+    fn drive(
+        goal: StationGoal,
+        start: Pose2,
+        is_free: bool,
+        docks_at: f64,
+        touches_at: f64,
+    ) -> (Pose2, StationProgress) {
+        let grid = OccupancyGrid::from_ascii(0.1, "..\n..\n").unwrap();
+        let (mut drive, mut pose) = (StationDrive::default(), start);
+        for i in 0..3000 {
+            let s = world(&grid, pose, 0.02 * f64::from(i), pose.x <= docks_at);
+            match drive.step(&goal, &s, pose.x <= touches_at, REACH) {
+                StationProgress::Moving(twist) if is_free => pose = pose.advance(twist, 0.02),
+                StationProgress::Moving(_) => {}
+                end => return (pose, end),
+            }
+        }
+        panic!("it does not end: {pose:?}");
+    }
+
+    #[test]
+    fn a_straight_move_ends_at_the_contacts_or_with_a_reason() {
+        let (goal, start) = (StationGoal::Approach(station()), Pose2::new(0.45, 0.0, PI));
+        let no_charging = StationProgress::Failed(DockFailure::NoCharging { attempts: 1 });
+        let (at, end) = drive(goal, start, true, 0.185, 0.17);
+        assert_eq!(end, StationProgress::Done);
+        assert!((at.x - 0.185).abs() < 0.002, "{at:?}");
+        let (at, end) = drive(goal, start, true, -1.0, 0.17);
+        assert_eq!(end, no_charging);
+        assert!((at.x - 0.17).abs() < 0.002, "it stays where the bumper is pressed: {at:?}");
+        let (at, end) = drive(goal, start, true, -1.0, -1.0);
+        assert_eq!(end, no_charging, "nothing is there");
+        assert!(at.x > REACH - OVERRUN_M - 0.01, "{at:?}");
+        assert_eq!(drive(goal, start, false, -1.0, -1.0).1, StationProgress::Failed(DockFailure::Held));
+        let advance = StationGoal::Advance(station(), 0.45);
+        let (at, end) = drive(advance, Pose2::new(0.7, 0.01, PI), true, -1.0, -1.0);
+        assert_eq!(end, StationProgress::Done);
+        assert!((at.x - 0.45).abs() < 0.002 && at.y.abs() < 0.006, "{at:?}");
+    }
+
+    #[test]
+    fn backing_off_is_straight_and_ends_at_its_distance_or_where_something_stands() {
+        let start = Pose2::new(0.18, 0.0, PI);
+        let (at, end) = drive(StationGoal::BackOff(0.4), start, true, 0.19, -1.0);
+        assert_eq!(end, StationProgress::Done);
+        assert!((at.x - 0.58).abs() < 0.01 && at.y.abs() < 1e-6, "{at:?}");
+        let held = drive(StationGoal::BackOff(0.4), start, false, 0.19, -1.0).1;
+        assert_eq!(held, StationProgress::Failed(DockFailure::Held));
+    }
+
+    #[test]
+    fn a_sweep_turns_to_both_sides_and_ends_at_the_station() {
+        let grid = OccupancyGrid::from_ascii(0.1, "..\n..\n").unwrap();
+        let (mut drive, mut pose, mut turned) =
+            (StationDrive::default(), Pose2::new(0.7, 0.0, PI), (0.0_f64, 0.0_f64));
+        let goal = StationGoal::Sweep(Pose2::IDENTITY);
+        for i in 0..3000 {
+            match drive.step(&goal, &world(&grid, pose, 0.02 * f64::from(i), false), false, REACH) {
+                StationProgress::Moving(twist) => pose = pose.advance(twist, 0.02),
+                end => {
+                    assert_eq!(end, StationProgress::Done);
+                    break;
+                }
+            }
+            let off = difference_of_angles(pose.theta, PI);
+            turned = (turned.0.min(off), turned.1.max(off));
+        }
+        assert!(turned.0 < -1.1 && turned.1 > 1.1, "{turned:?}");
+        assert!(difference_of_angles(pose.theta, PI).abs() < 0.06 && pose.x == 0.7);
+    }
+
+    #[test]
+    fn only_straight_moves_have_a_permission() {
+        let permission = |goal| StationDrive::default().permission(&goal, Pose2::new(0.5, 0.0, PI));
+        assert_eq!(permission(StationGoal::Sweep(Pose2::IDENTITY)), None);
+        assert_eq!(permission(StationGoal::BackOff(0.4)), Some(StationMotion::Undocking));
+        let Some(StationMotion::Docking { base_from_station, distance_error }) =
+            permission(StationGoal::Approach(station()))
+        else {
+            panic!("a permission to dock");
+        };
+        assert!((base_from_station.x - 0.5).abs() < 1e-9 && distance_error == OVERRUN_M);
+    }
 
     #[test]
     fn the_straight_move_ends_on_the_axis_facing_the_station() {

@@ -73,6 +73,8 @@ enum Work {
 
 /// Distance of backing off the charging station before a task \[m\]: the robot can then turn. Source: ours.
 const UNDOCK_DISTANCE_M: f64 = 0.4;
+/// The goal of backing off the charging station.
+const UNDOCK: Goal = Goal::Station(StationGoal::BackOff(UNDOCK_DISTANCE_M));
 /// Rate at which exploration checks whether its target is still unknown \[1/s\]. Source: ours.
 const FRONTIER_CHECK_RATE_HZ: f64 = 1.0;
 
@@ -146,6 +148,9 @@ impl MissionExecutor {
             let step = task.step(s, state);
             return self.on_dock_step(step, s);
         }
+        if let Some(undock) = self.undock_first(s) {
+            return Some(undock);
+        }
         match state {
             DriveState::Arrived if self.is_undocking() => return self.begin_current_task(s),
             DriveState::Arrived => self.on_arrived(s),
@@ -163,9 +168,19 @@ impl MissionExecutor {
         let entry = self.queue.pop_front()?;
         self.current = Some(Current { entry, from: s.now, work: Work::Undocking });
         if s.station.is_docked && entry.task != Task::Dock {
-            return Some(Goal::Station(StationGoal::BackOff(UNDOCK_DISTANCE_M)));
+            return Some(UNDOCK);
         }
         self.begin_current_task(s)
+    }
+
+    /// Puts the present task off until the robot is off its charging station: the base may report that after the task began.
+    fn undock_first(&mut self, s: &WorldState<'_>) -> Option<Goal> {
+        let current = self.current.as_mut().filter(|_| s.station.is_docked)?;
+        let is_on_its_way = matches!(current.work, Work::Going | Work::Exploring { .. });
+        is_on_its_way.then(|| {
+            current.work = Work::Undocking;
+            UNDOCK
+        })
     }
 
     /// Begins the work of the present task.
@@ -398,6 +413,39 @@ mod tests {
         assert_eq!(executor.step(&s, &DriveState::Initializing), None);
         assert_eq!(executor.step(&s, &DriveState::Arrived), Some(Goal::Stay));
         assert!(executor.is_idle() && executor.failure().is_none());
+    }
+
+    /// The same world on the contacts of a charging station.
+    fn docked(grid: &OccupancyGrid) -> WorldState<'_> {
+        let station = crate::world_state::StationState { is_docked: true, ..Default::default() };
+        WorldState { station, ..world(grid) }
+    }
+
+    #[test]
+    fn on_its_charging_station_a_robot_backs_off_before_any_task_and_a_dock_is_done() {
+        let (grid, goal) = (room(), Pose2::new(1.0, 0.0, 0.0));
+        let (on, off) = (docked(&grid), world(&grid));
+        let mut early = executor(&[Task::Go(goal), Task::Dock]);
+        assert_eq!(early.step(&on, &DriveState::Idle), Some(UNDOCK));
+        assert_eq!(early.step(&on, &DriveState::Maneuvering), None);
+        assert_eq!(early.step(&off, &DriveState::Arrived), Some(Goal::Exact(goal)));
+        assert_eq!(early.step(&on, &DriveState::Arrived), Some(UNDOCK), "still on the contacts");
+        // The base reports its charger after the task began.
+        let mut late = executor(&[Task::Go(goal)]);
+        assert_eq!(late.step(&off, &DriveState::Idle), Some(Goal::Exact(goal)));
+        assert_eq!(late.step(&on, &DriveState::Initializing), Some(UNDOCK));
+        let mut dock = executor(&[Task::Dock]);
+        assert_eq!(dock.step(&on, &DriveState::Idle), Some(Goal::Stay));
+        assert_eq!(dock.records()[0].end, TaskEnd::Done);
+    }
+
+    #[test]
+    fn a_dock_without_light_turns_and_is_given_up_where_all_is_searched() {
+        let grid = room();
+        let (s, mut executor) = (world(&grid), executor(&[Task::Dock]));
+        assert_eq!(executor.step(&s, &DriveState::Idle), Some(Goal::Spin));
+        assert_eq!(executor.step(&s, &DriveState::Arrived), Some(Goal::Stay), "the room is small");
+        assert!(executor.failure().unwrap().is_due_to(ReasonKind::NoStationLight));
     }
 
     /// A task for each letter: `g` to a place of its own, `r` back to the start.
