@@ -1,7 +1,9 @@
 //! Encoding and decoding of colour and depth images: JPEG and PNG.
 
 mod claim;
+mod color;
 mod depth_file;
+mod error;
 mod event;
 mod exr_depth;
 mod png_color;
@@ -12,81 +14,20 @@ mod raw_depth;
 mod tiff_depth;
 
 pub(crate) use claim::can_hold;
+pub use color::decode_color;
 pub(crate) use depth_file::{decode_depth_file, is_depth_image};
+pub use error::CodecError;
 pub use event::{EncodedEvent, EncodedRgbd};
 pub use png_color::encode_color_png;
 pub(crate) use png_depth::encode_grey16;
 pub use png_depth::{decode_depth, decode_raw_depth, encode_depth};
 pub(crate) use png_grey::encode_grey8;
 
-use crate::FileKind;
-use image::{ImageFormat, ImageReader, Limits};
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
-use std::io::Cursor;
-use thiserror::Error;
-use trundle_core::{ColorImage, Invalid};
+use trundle_core::ColorImage;
 
 /// JPEG quality of recorded colour images, 1 to 100: 90 leaves corners where they are at a tenth of the raw size.
 pub const JPEG_QUALITY: u8 = 90;
-
-/// Longest side of an image that is read, px: bounds what a broken header can ask for.
-const MAX_SIDE: u32 = 16_384;
-/// Most pixels of an image that is read.
-const MAX_PIXELS: usize = 1 << 26;
-
-/// Why an image cannot be decoded or encoded.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum CodecError {
-    /// The bytes are not an image, or not a whole one.
-    #[error("{kind} image cannot be decoded: {problem}")]
-    Decode {
-        /// `colour` or `depth`.
-        kind: &'static str,
-        /// The decoder's message.
-        problem: String,
-    },
-    /// The image cannot be encoded.
-    #[error("{kind} image cannot be encoded: {problem}")]
-    Encode {
-        /// `colour` or `depth`.
-        kind: &'static str,
-        /// The encoder's message.
-        problem: String,
-    },
-    /// A depth image in another pixel format.
-    #[error(
-        "depth image has {found} pixels, expected 16-bit grey ones (PNG, TIFF, PGM) or 32-bit floats in metres (TIFF, OpenEXR){}",
-        coarse(found)
-    )]
-    DepthFormat {
-        /// For example `8-bit RGB`.
-        found: String,
-    },
-    /// A kind of event that recordings do not hold.
-    #[error("the event of {:.3} s is of a kind that recordings do not hold", stamp.as_secs())]
-    UnknownEvent {
-        /// Stamp of the event.
-        stamp: trundle_core::Stamp,
-    },
-    /// Colour and depth do not fit together, or a size is not accepted.
-    #[error(transparent)]
-    Invalid(#[from] Invalid),
-}
-
-/// Why a format of few bits is refused.
-fn coarse(found: &str) -> &'static str {
-    if found.starts_with("8-bit ") { ": 8 bits are too coarse for a depth" } else { "" }
-}
-
-impl CodecError {
-    pub(crate) fn decode(kind: &'static str, problem: impl ToString) -> Self {
-        Self::Decode { kind, problem: problem.to_string() }
-    }
-
-    pub(crate) fn encode(kind: &'static str, problem: impl ToString) -> Self {
-        Self::Encode { kind, problem: problem.to_string() }
-    }
-}
 
 /// A colour image as JPEG of a quality from 1 to 100, chroma halved across (4:2:2): features live on luminance.
 ///
@@ -105,48 +46,12 @@ pub fn encode_color(image: &ColorImage, quality: u8) -> Result<Vec<u8>, CodecErr
     Ok(bytes)
 }
 
-/// Bits of a pixel of a colour image. Source: three channels of 8 bits.
-const COLOR_BITS_PER_PIXEL: usize = 24;
-
-/// A colour image from the bytes of a JPEG or PNG; grey ones become grey colours, alpha is dropped.
-///
-/// # Errors
-/// When the bytes are neither, end too early, claim more pixels than they can hold, or hold an image above 16,384 px a side or 67 Mpx.
-pub fn decode_color(bytes: &[u8]) -> Result<ColorImage, CodecError> {
-    let failed = |problem: &str| CodecError::decode("colour", problem);
-    let format = image::guess_format(bytes).map_err(|_| failed("neither JPEG nor PNG"))?;
-    match format {
-        ImageFormat::Jpeg if !jpeg_is_whole(bytes) => return Err(failed("the JPEG is truncated")),
-        ImageFormat::Jpeg | ImageFormat::Png => {}
-        _ => {
-            let found = FileKind::of_bytes(bytes, bytes.len() as u64);
-            return Err(failed(&format!("this is {found}, expected JPEG or PNG; save it as PNG")));
-        }
-    }
-    let size = ImageReader::with_format(Cursor::new(bytes), format).into_dimensions();
-    let (width, height) = size.map_err(|error| CodecError::decode("colour", error))?;
-    claim::check_size("colour", (width as usize, height as usize), COLOR_BITS_PER_PIXEL, bytes.len())?;
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
-    let mut limits = Limits::default();
-    limits.max_image_width = Some(MAX_SIDE);
-    limits.max_image_height = Some(MAX_SIDE);
-    reader.limits(limits);
-    let image = reader.decode().map_err(|error| CodecError::decode("colour", error))?.into_rgb8();
-    let (width, height) = (image.width() as usize, image.height() as usize);
-    let pixels = image.into_raw().chunks_exact(3).map(|p| [p[0], p[1], p[2]]).collect();
-    Ok(ColorImage::new(width, height, pixels)?)
-}
-
-/// Whether the end marker is there: the decoder fills the missing part of a truncated JPEG with grey, silently.
-fn jpeg_is_whole(bytes: &[u8]) -> bool {
-    let padding = bytes.iter().rev().take_while(|&&byte| byte == 0 || byte == b'\n').count();
-    bytes[..bytes.len() - padding].ends_with(&[0xff, 0xd9])
-}
-
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
+    use image::ImageFormat;
     use proptest::prelude::*;
+    use std::io::Cursor;
 
     pub(crate) fn test_image(width: usize, height: usize) -> ColorImage {
         let wave =

@@ -2,16 +2,16 @@
 
 use super::args::{AlignArg, DeltaUnit, TrajectoryArgs};
 use super::named_error::named_error;
-use super::relations::trajectory;
 use crate::outcome::Outcome;
 use crate::{console, logging};
 use trundle::app::AppError;
-use trundle::app::evaluation::{TrajectoryEvaluation, write_evaluation};
+use trundle::app::evaluation::{TrajectoryEvaluation, unrounded_trajectory, write_evaluation};
 use trundle::eval::{AbsoluteConfig, Alignment, Delta, RelativeConfig};
 
 /// `trundle eval trajectory`.
 pub fn run(args: &TrajectoryArgs) -> Result<Outcome, AppError> {
-    let (reference, estimate) = (trajectory(&args.reference)?, trajectory(&args.estimate)?);
+    let (reference, estimate) =
+        (unrounded_trajectory(&args.reference)?, unrounded_trajectory(&args.estimate)?);
     let found = TrajectoryEvaluation::of(&reference, &estimate, &args.absolute(), &args.relative()?)
         .map_err(|error| named_error(&error, &args.reference, &args.estimate))?;
     let place = match &args.out {

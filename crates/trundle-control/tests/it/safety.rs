@@ -96,6 +96,7 @@ fn drive(world: &World, mut plant: Plant, command: Twist2, seconds: f64, with_ma
             image: Some(scan.stamp()),
             wheels: Some(plant.now),
             motion: MotionSense::Wheels,
+            station: None,
         });
         plant.drive(last.twist);
         min_clearance = min_clearance.min(world.clearance(plant.pose));

@@ -37,7 +37,10 @@ pub fn checkpoint() -> Vec<Vec<u8>> {
     let mission = Mission::new(vec![Task::Explore, Task::Go(Pose2::new(1.5, -2.0, 0.25)), Task::Return]);
     let grid = OccupancyGrid::from_ascii(0.05, "###\n#.#\n#??").expect("invariant: the map is valid");
     let mission = MissionState::new(mission.expect("invariant: the goals are finite"));
-    vec![Checkpoint { visual: Vec::new(), visual_maps: BTreeMap::new(), grid, mission, station: None }.to_bytes()]
+    vec![
+        Checkpoint { visual: Vec::new(), visual_maps: BTreeMap::new(), grid, mission, station: None }
+            .to_bytes(),
+    ]
 }
 
 /// A vocabulary of a few words.

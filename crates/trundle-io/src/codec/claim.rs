@@ -1,7 +1,11 @@
 //! Check of the size that an image claims against the bytes that are there.
 
-use super::{CodecError, MAX_PIXELS};
+use super::error::CodecError;
 
+/// Longest side of an image that is read \[px\]: bounds what a broken header can ask for. Source: ours.
+pub(super) const MAX_SIDE: u32 = 16_384;
+/// Largest number of pixels of an image that is read. Source: ours.
+pub(super) const MAX_PIXELS: usize = 1 << 26;
 /// Greatest factor by which the compressions of images shrink: deflate's 1032. A larger claim is false. Source: \[RFC 1951\].
 const MAX_COMPRESSION: usize = 1100;
 

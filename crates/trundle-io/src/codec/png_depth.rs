@@ -1,8 +1,9 @@
 //! Depth images as 16-bit grey PNG in millimetres.
 
+use super::CodecError;
+use super::claim::MAX_PIXELS;
 use super::claim::check_size;
 use super::png_writer::{PngFormat, encode_png};
-use super::{CodecError, MAX_PIXELS};
 use png::{BitDepth, ColorType, Decoder, Filter, Limits};
 use std::io::Cursor;
 use trundle_core::{DepthImage, Image};
