@@ -1,6 +1,7 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | golden | results | replay-check | fuzz | fault-scenarios | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | golden | results | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
+mod aarch64;
 mod ci;
 mod compare;
 mod fault_scenarios;
@@ -9,6 +10,7 @@ mod golden;
 mod program;
 mod replay_check;
 mod results;
+mod robot_memory;
 mod seeds;
 mod settings;
 mod tidy;
@@ -72,6 +74,14 @@ enum Chore {
     Fuzz(fuzz::Options),
     /// Failing sensors, slipping wheels, people in the way: each run must end as its scenario expects.
     FaultScenarios,
+    /// Kernels and short runs on aarch64, under qemu: the same bytes as here. Skipped where tools are missing.
+    Aarch64,
+    /// Resident memory of `trundle run` while it explores a simulated office, the simulator in another process.
+    RobotMemory {
+        /// How long it explores.
+        #[arg(long, default_value_t = 10.0)]
+        minutes: f64,
+    },
     /// Run the demo on many seeds and print a table of their summaries.
     DemoSeeds {
         /// How many seeds, from the first on.
@@ -100,6 +110,8 @@ fn main() -> ExitCode {
         Chore::ReplayCheck { seed } => replay_check::run(&root, seed),
         Chore::Fuzz(options) => fuzz::run(&root, &options),
         Chore::FaultScenarios => fault_scenarios::run(&root),
+        Chore::Aarch64 => aarch64::run(&root),
+        Chore::RobotMemory { minutes } => robot_memory::run(&root, minutes),
         Chore::DemoSeeds { seeds, first, explore } => {
             seeds::run(&root, first..first.saturating_add(seeds), explore)
         }

@@ -1,7 +1,7 @@
 //! Smooths an image by a Gaussian.
 
-#[cfg(target_arch = "x86_64")]
-use super::avx2::{self, BLOCK_PX, block, block_mut, starts};
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+use super::vector::{self, BLOCK_PX, Bytes, block, block_mut, starts};
 use trundle_core::GrayImage;
 
 /// Weights of a Gaussian of standard deviation 2 px over 7 px, in 1/256: middle first. BRIEF compares single pixels, so
@@ -35,10 +35,10 @@ impl Blur {
 
 /// The weighted mean of seven slices, element by element.
 fn smooth(from: [&[u8]; 2 * KERNEL_RADIUS_PX + 1], to: &mut [u8]) {
-    #[cfg(target_arch = "x86_64")]
-    if to.len() >= 2 * BLOCK_PX && std::arch::is_x86_feature_detected!("avx2") {
+    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+    if to.len() >= 2 * BLOCK_PX && vector::is_available() {
         // SAFETY: the processor has the one feature that the function is compiled for.
-        return unsafe { smooth_by_avx2(from, to) };
+        return unsafe { smooth_by_blocks(from, to) };
     }
     smooth_plainly(from, to);
 }
@@ -54,15 +54,12 @@ fn smooth_plainly([a, b, c, d, e, f, g]: [&[u8]; 2 * KERNEL_RADIUS_PX + 1], to: 
     }
 }
 
-/// [`smooth_plainly`] of two [`BLOCK_PX`]s of pixels or more. No sum of two products exceeds 15 bits, nor that of all 16.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn smooth_by_avx2(from: [&[u8]; 2 * KERNEL_RADIUS_PX + 1], to: &mut [u8]) {
-    use std::arch::x86_64::*;
-    let both = |weight: u32| _mm256_set1_epi8(weight as i8);
-    let (next, second, third) = (both(KERNEL[1]), both(KERNEL[2]), both(KERNEL[3]));
-    // The middle is paired with twos: 64 of these make the half that rounds.
-    let (twos, middle) = (both(2), _mm256_set1_epi16(64 << 8 | KERNEL[0] as i16));
+/// [`smooth_plainly`] of two [`BLOCK_PX`]s of pixels or more.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2"))]
+#[cfg_attr(target_arch = "aarch64", target_feature(enable = "neon"))]
+fn smooth_by_blocks(from: [&[u8]; 2 * KERNEL_RADIUS_PX + 1], to: &mut [u8]) {
+    const WEIGHTS: [u8; KERNEL.len()] = [KERNEL[0] as u8, KERNEL[1] as u8, KERNEL[2] as u8, KERNEL[3] as u8];
     for x in starts(to.len(), 2 * BLOCK_PX) {
         let mut windows = [&[0; 2 * BLOCK_PX]; 2 * KERNEL_RADIUS_PX + 1];
         for (window, slice) in windows.iter_mut().zip(from) {
@@ -70,16 +67,8 @@ fn smooth_by_avx2(from: [&[u8]; 2 * KERNEL_RADIUS_PX + 1], to: &mut [u8]) {
         }
         let out: &mut [u8; 2 * BLOCK_PX] = block_mut(to, x);
         for part in [0, BLOCK_PX] {
-            let at = |k: usize| avx2::load(block(windows[k], part));
-            let pairs =
-                [(at(3), twos, middle), (at(2), at(4), next), (at(1), at(5), second), (at(0), at(6), third)];
-            let (mut low, mut high) = (_mm256_setzero_si256(), _mm256_setzero_si256());
-            for (p, q, weights) in pairs {
-                low = _mm256_add_epi16(low, _mm256_maddubs_epi16(_mm256_unpacklo_epi8(p, q), weights));
-                high = _mm256_add_epi16(high, _mm256_maddubs_epi16(_mm256_unpackhi_epi8(p, q), weights));
-            }
-            let means = _mm256_packus_epi16(_mm256_srli_epi16::<8>(low), _mm256_srli_epi16::<8>(high));
-            avx2::store(block_mut(out, part), means);
+            let pixels = windows.map(|window| Bytes::load(block(window, part)));
+            Bytes::mean_of_seven(pixels, &WEIGHTS).store(block_mut(out, part));
         }
     }
 }

@@ -1,13 +1,13 @@
 //! FAST-9 by exact scores: a pixel is a corner if nine contiguous ones of the sixteen on a circle of radius 3 around it
 //! are all brighter, or all darker, than it by more than a threshold \[Rosten06\]. The score is the highest threshold
-//! below which that holds. It comes from minima and maxima alone, so that 32 pixels are done at a time, and
+//! below which that holds. It comes from minima and maxima alone, so that a register of pixels is done at a time, and
 //! serves both thresholds and the suppression of non-maxima.
 
 use super::OrbConfig;
-#[cfg(target_arch = "x86_64")]
-use super::avx2::{self, BLOCK_PX, block, block_mut, starts};
 use super::corner::Corner;
 use super::patch::BORDER_PX;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+use super::vector::{self, BLOCK_PX, Bytes, block, block_mut, starts};
 use trundle_core::GrayImage;
 
 /// Radius of the circle: 3 px. Source: \[Rosten06\].
@@ -137,10 +137,10 @@ macro_rules! best_arc {
 /// Scores a row of pixels, from the seven rows around it, each 2 * [`CIRCLE_RADIUS_PX`] longer than `scores`. What does not exceed
 /// `threshold` becomes 0.
 fn score_row(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, scores: &mut [u8]) {
-    #[cfg(target_arch = "x86_64")]
-    if scores.len() >= BLOCK_PX && std::arch::is_x86_feature_detected!("avx2") {
+    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+    if scores.len() >= BLOCK_PX && vector::is_available() {
         // SAFETY: the processor has the one feature that the function is compiled for.
-        return unsafe { score_row_by_avx2(rows, threshold, scores) };
+        return unsafe { score_row_by_blocks(rows, threshold, scores) };
     }
     score_row_plainly(rows, threshold, scores);
 }
@@ -157,38 +157,36 @@ fn score_row_plainly(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, sco
 ///
 /// An arc of nine holds one of the topmost and the lowest pixel of the circle, and one of the leftmost and the rightmost. These four
 /// alone show for most of an image that a block has no corner; then no other pixel is read.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn score_row_by_avx2(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, scores: &mut [u8]) {
-    use std::arch::x86_64::*;
-    let least = _mm256_set1_epi8(threshold.saturating_add(1) as i8);
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2"))]
+#[cfg_attr(target_arch = "aarch64", target_feature(enable = "neon"))]
+fn score_row_by_blocks(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, scores: &mut [u8]) {
+    let least = Bytes::splat(threshold.saturating_add(1));
     for x in starts(scores.len(), BLOCK_PX) {
         let mut windows = [&[0; BLOCK_PX + 2 * CIRCLE_RADIUS_PX]; 2 * CIRCLE_RADIUS_PX + 1];
         for (window, row) in windows.iter_mut().zip(rows) {
             *window = block(row, x);
         }
-        let at = |(dx, dy): (usize, usize)| avx2::load(block(windows[dy], dx));
+        let at = |(dx, dy): (usize, usize)| Bytes::load(block(windows[dy], dx));
         let middle = at((CIRCLE_RADIUS_PX, CIRCLE_RADIUS_PX));
-        let beyond = |bright, dark| {
-            let difference =
-                _mm256_max_epu8(_mm256_subs_epu8(bright, middle), _mm256_subs_epu8(middle, dark));
-            let keep = _mm256_cmpeq_epi8(_mm256_max_epu8(difference, least), difference);
-            _mm256_and_si256(difference, keep)
+        let beyond = |bright: Bytes, dark: Bytes| {
+            let difference = bright.saturating_sub(middle).max(middle.saturating_sub(dark));
+            difference.and(difference.at_least(least))
         };
         let [top, right, low, left] = [at(CIRCLE[0]), at(CIRCLE[4]), at(CIRCLE[8]), at(CIRCLE[12])];
-        let bright = _mm256_min_epu8(_mm256_max_epu8(top, low), _mm256_max_epu8(left, right));
-        let dark = _mm256_max_epu8(_mm256_min_epu8(top, low), _mm256_min_epu8(left, right));
+        let bright = top.max(low).min(left.max(right));
+        let dark = top.min(low).max(left.min(right));
         let mut score = beyond(bright, dark);
-        if _mm256_testz_si256(score, score) == 0 {
+        if !score.is_zero() {
             let mut circle = [middle; CIRCLE.len()];
             for (pixels, offset) in circle.iter_mut().zip(CIRCLE) {
                 *pixels = at(offset);
             }
-            let bright = best_arc!(circle, |a, b| _mm256_min_epu8(a, b), |a, b| _mm256_max_epu8(a, b));
-            let dark = best_arc!(circle, |a, b| _mm256_max_epu8(a, b), |a, b| _mm256_min_epu8(a, b));
+            let bright = best_arc!(circle, |a: Bytes, b| a.min(b), |a: Bytes, b| a.max(b));
+            let dark = best_arc!(circle, |a: Bytes, b| a.max(b), |a: Bytes, b| a.min(b));
             score = beyond(bright, dark);
         }
-        avx2::store(block_mut(scores, x), score);
+        score.store(block_mut(scores, x));
     }
 }
 
@@ -202,10 +200,10 @@ fn score(circle: [u8; 16], middle: u8) -> u8 {
 /// Keeps the scores that none of the eight neighbours exceeds, and of equal neighbours the first; the others become 0. The
 /// rows are those above, of and below `maxima`, each one longer at either end.
 fn suppress_row(rows: [&[u8]; 3], maxima: &mut [u8]) {
-    #[cfg(target_arch = "x86_64")]
-    if maxima.len() >= BLOCK_PX && std::arch::is_x86_feature_detected!("avx2") {
+    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+    if maxima.len() >= BLOCK_PX && vector::is_available() {
         // SAFETY: the processor has the one feature that the function is compiled for.
-        return unsafe { suppress_row_by_avx2(rows, maxima) };
+        return unsafe { suppress_row_by_blocks(rows, maxima) };
     }
     suppress_row_plainly(rows, maxima);
 }
@@ -219,23 +217,20 @@ fn suppress_row_plainly([above, own, below]: [&[u8]; 3], maxima: &mut [u8]) {
 }
 
 /// [`suppress_row_plainly`] of [`BLOCK_PX`] pixels or more, a block at a time.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn suppress_row_by_avx2(rows: [&[u8]; 3], maxima: &mut [u8]) {
-    use std::arch::x86_64::*;
-    let max = |a, b| _mm256_max_epu8(a, b);
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2"))]
+#[cfg_attr(target_arch = "aarch64", target_feature(enable = "neon"))]
+fn suppress_row_by_blocks(rows: [&[u8]; 3], maxima: &mut [u8]) {
     for x in starts(maxima.len(), BLOCK_PX) {
-        let at = |row: usize, dx: usize| avx2::load(block(rows[row], x + dx));
+        let at = |row: usize, dx: usize| Bytes::load(block(rows[row], x + dx));
         let own = at(1, 1);
         let mut kept = own;
-        if _mm256_testz_si256(own, own) == 0 {
-            let before = max(max(at(0, 0), at(0, 1)), max(at(0, 2), at(1, 0)));
-            let after = max(max(at(1, 2), at(2, 0)), max(at(2, 1), at(2, 2)));
-            let beaten = _mm256_cmpeq_epi8(max(before, own), before);
-            let level = _mm256_cmpeq_epi8(max(after, own), own);
-            kept = _mm256_and_si256(own, _mm256_andnot_si256(beaten, level));
+        if !own.is_zero() {
+            let before = at(0, 0).max(at(0, 1)).max(at(0, 2).max(at(1, 0)));
+            let after = at(1, 2).max(at(2, 0)).max(at(2, 1).max(at(2, 2)));
+            kept = own.and(own.at_least(after).and_not(before.at_least(own)));
         }
-        avx2::store(block_mut(maxima, x), kept);
+        kept.store(block_mut(maxima, x));
     }
 }
 

@@ -12,8 +12,6 @@
 //! | theta = atan2(m_01, m_10) | `Keypoint::angle` | rad |
 //! | S_theta = R_theta S | `PATTERN` turned in `describe` | px of the level |
 
-#[cfg(target_arch = "x86_64")]
-mod avx2;
 mod blur;
 mod brief;
 mod config;
@@ -28,6 +26,8 @@ mod patch;
 mod resize;
 mod subpixel;
 mod texture;
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+mod vector;
 
 pub use config::OrbConfig;
 

@@ -1,7 +1,7 @@
 //! Shrinks an image.
 
-#[cfg(target_arch = "x86_64")]
-use super::avx2::{self, block, block_mut, starts};
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+use super::vector::{self, block, block_mut, starts};
 use trundle_core::GrayImage;
 
 /// Bilinear shrinking in fixed point, pixel areas aligned: the corners of both images coincide.
@@ -23,13 +23,16 @@ struct Tap {
     weight: u16,
 }
 
-/// Samples of 16 bits in half a register of AVX2.
+/// Samples of 16 bits in 16 bytes: a register of NEON, half of one of AVX2.
 const SAMPLES_PER_REGISTER: usize = 8;
 
 /// Four neighbouring columns: from [`SAMPLES_PER_REGISTER`] samples on from `first`, which bytes make the pairs of samples between which each
 /// is interpolated, and their weights.
 #[derive(Debug, Clone, Copy)]
-#[cfg_attr(not(target_arch = "x86_64"), expect(dead_code, reason = "only AVX2 takes four at a time"))]
+#[cfg_attr(
+    not(any(target_arch = "x86_64", target_arch = "aarch64")),
+    expect(dead_code, reason = "only vectors take four at a time")
+)]
 struct Quad {
     first: u32,
     bytes: [u8; 16],
@@ -91,10 +94,10 @@ fn quad(columns: &[Tap; 4]) -> Option<Quad> {
 
 /// Interpolates between two rows, in 1/128.
 fn mix_rows(upper: &[u8], lower: &[u8], weight: u16, row: &mut [i16]) {
-    #[cfg(target_arch = "x86_64")]
-    if row.len() >= 16 && std::arch::is_x86_feature_detected!("avx2") {
+    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+    if row.len() >= 16 && vector::is_available() {
         // SAFETY: the processor has the one feature that the function is compiled for.
-        return unsafe { mix_rows_by_avx2(upper, lower, weight, row) };
+        return unsafe { mix_rows_by_blocks(upper, lower, weight, row) };
     }
     mix_rows_plainly(upper, lower, weight, row);
 }
@@ -107,27 +110,23 @@ fn mix_rows_plainly(upper: &[u8], lower: &[u8], weight: u16, row: &mut [i16]) {
 }
 
 /// [`mix_rows_plainly`] of 16 pixels or more.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn mix_rows_by_avx2(upper: &[u8], lower: &[u8], weight: u16, row: &mut [i16]) {
-    use std::arch::x86_64::*;
-    let (of_upper, of_lower) = (_mm256_set1_epi16((256 - weight) as i16), _mm256_set1_epi16(weight as i16));
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2"))]
+#[cfg_attr(target_arch = "aarch64", target_feature(enable = "neon"))]
+fn mix_rows_by_blocks(upper: &[u8], lower: &[u8], weight: u16, row: &mut [i16]) {
     for x in starts(row.len(), 16) {
-        let a = _mm256_cvtepu8_epi16(avx2::load_half(block(upper, x)));
-        let b = _mm256_cvtepu8_epi16(avx2::load_half(block(lower, x)));
-        let sum = _mm256_add_epi16(_mm256_mullo_epi16(a, of_upper), _mm256_mullo_epi16(b, of_lower));
-        avx2::store_words(block_mut(row, x), _mm256_srli_epi16::<1>(sum));
+        vector::mix_16(block(upper, x), block(lower, x), weight, block_mut(row, x));
     }
 }
 
 /// Interpolates within a row and leaves the fractions.
 fn shrink_row(row: &[i16], columns: &[Tap], quads: &[Quad], to: &mut [u8]) {
-    #[cfg(not(target_arch = "x86_64"))]
+    #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
     let _ = quads;
-    #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
+    #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+    if vector::is_available() {
         // SAFETY: the processor has the one feature that the function is compiled for.
-        unsafe { shrink_quads_by_avx2(row, quads, to) };
+        unsafe { shrink_quads(row, quads, to) };
         let done = quads.len() / 2 * 8;
         return shrink_row_plainly(row, &columns[done..], &mut to[done..]);
     }
@@ -143,22 +142,13 @@ fn shrink_row_plainly(row: &[i16], columns: &[Tap], to: &mut [u8]) {
 }
 
 /// [`shrink_row_plainly`] of the first columns, two quads of them at a time.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn shrink_quads_by_avx2(row: &[i16], quads: &[Quad], to: &mut [u8]) {
-    use std::arch::x86_64::*;
-    let half = _mm256_set1_epi32(1 << 14);
-    // The lowest byte of each sum, four to either half.
-    let lowest = _mm256_set1_epi32(0x0c08_0400);
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+#[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2"))]
+#[cfg_attr(target_arch = "aarch64", target_feature(enable = "neon"))]
+fn shrink_quads(row: &[i16], quads: &[Quad], to: &mut [u8]) {
     for ([p, q], out) in quads.as_chunks().0.iter().zip(to.as_chunks_mut().0) {
-        let samples = |quad: &Quad| avx2::load_half_words(block(row, quad.first as usize));
-        let bytes = _mm256_set_m128i(avx2::load_half(&q.bytes), avx2::load_half(&p.bytes));
-        let weights = _mm256_set_m128i(avx2::load_half(&q.weights), avx2::load_half(&p.weights));
-        let pairs = _mm256_shuffle_epi8(_mm256_set_m128i(samples(q), samples(p)), bytes);
-        let sums = _mm256_srli_epi32::<15>(_mm256_add_epi32(_mm256_madd_epi16(pairs, weights), half));
-        let packed = _mm256_shuffle_epi8(sums, lowest);
-        let [low, high] = [_mm256_extract_epi32::<0>(packed), _mm256_extract_epi32::<4>(packed)];
-        *out = (low as u32 as u64 | (high as u32 as u64) << 32).to_le_bytes();
+        let samples = [p, q].map(|quad| block(row, quad.first as usize));
+        *out = vector::shrink_8(samples, [&p.bytes, &q.bytes], [&p.weights, &q.weights]);
     }
 }
 

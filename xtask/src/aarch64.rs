@@ -1,0 +1,176 @@
+//! The program for small computers: built for aarch64, its kernels tested and a few runs compared with this computer's, under qemu.
+//!
+//! The tests compare the kernels that are written for NEON with plain code. Other kernels are plain code that the compiler turns into
+//! vectors of each family of processors. For those, the runs show that aarch64 and this computer write the same bytes.
+
+use crate::workspace::Verdict;
+use crate::{compare::compare_folders, program};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+const TARGET: &str = "aarch64-unknown-linux-gnu";
+const LINKER: &str = "aarch64-linux-gnu-gcc";
+/// Names of the emulator of single programs: Debian's static one, and others'.
+const EMULATORS: [&str; 2] = ["qemu-aarch64-static", "qemu-aarch64"];
+/// Where Debian's and Ubuntu's `libc6-arm64-cross` puts the C library of aarch64.
+const LIBRARIES: &str = "/usr/aarch64-linux-gnu";
+
+/// Crates with kernels, and the tests of these.
+const KERNELS: [(&str, &[&str]); 5] = [
+    ("trundle-vision", &["orb", "alignment::template", "vocabulary::hamming", "matching"]),
+    ("trundle-mapping", &["depth_scan::pixel_row", "scan_match"]),
+    ("trundle-grid", &["tiles"]),
+    ("trundle-optim", &["bundle_system", "block_cholesky"]),
+    ("trundle-sim", &["world::ray", "camera::band"]),
+];
+
+/// Runs, `{out}` being a folder of this computer's or the emulator's, `{data}` that of the golden net. Each begins with its name.
+const RUNS: [(&str, &str); 4] = [
+    (
+        "recorded",
+        "sim room --drive {data}/twists.txt --duration 2 --rate 5 --laser urg-04lx --record {out}/recorded",
+    ),
+    ("slam", "slam {out}/recorded --height 0.45 --tilt 8 --out {out}/slam"),
+    ("map", "map {out}/recorded/laser.log --out {out}/map"),
+    ("demo", "demo --direct --config {data}/small_camera.toml --time-limit 3 --out {out}/demo"),
+];
+
+/// What the step needs of this computer.
+struct Tools {
+    emulator: &'static str,
+}
+
+impl Tools {
+    /// The tools, or what is missing and how to get it.
+    fn find() -> Result<Self, Vec<String>> {
+        let mut missing = Vec::new();
+        if !has_standard_library() {
+            missing.push(format!("Rust's standard library of {TARGET}: rustup target add {TARGET}"));
+        }
+        if !answers(LINKER) {
+            missing.push(format!("{LINKER}: apt-get install gcc-aarch64-linux-gnu libc6-dev-arm64-cross"));
+        }
+        let emulator = EMULATORS.into_iter().find(|name| answers(name));
+        if emulator.is_none() {
+            missing.push(format!("{}: apt-get install qemu-user-static", EMULATORS[0]));
+        }
+        if !Path::new(LIBRARIES).is_dir() {
+            missing.push(format!("{LIBRARIES}: apt-get install libc6-arm64-cross"));
+        }
+        emulator.filter(|_| missing.is_empty()).map(|emulator| Self { emulator }).ok_or(missing)
+    }
+
+    /// `cargo` for aarch64.
+    fn cargo(&self, root: &Path, args: &[&str]) -> Verdict {
+        let runner = format!("{} -L {LIBRARIES}", self.emulator);
+        let env = [
+            ("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER", LINKER),
+            ("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER", &runner),
+        ];
+        program::cargo(root, args, &env)
+    }
+}
+
+/// Tests the kernels under qemu and compares the runs; skipped by name where tools are missing.
+pub fn run(root: &Path) -> Verdict {
+    let tools = match Tools::find() {
+        Ok(tools) => tools,
+        Err(missing) => {
+            println!("  skipped: aarch64 needs");
+            missing.iter().for_each(|tool| println!("    {tool}"));
+            return Ok(true);
+        }
+    };
+    for (package, tests) in KERNELS {
+        let mut args = vec!["test", "--target", TARGET, "--package", package, "--lib", "--"];
+        args.extend(tests);
+        if !tools.cargo(root, &args)? {
+            println!("the kernels of {package} fail on aarch64");
+            return Ok(false);
+        }
+    }
+    if !tools.cargo(root, &["build", "--release", "--target", TARGET, "--package", "trundle-cli"])? {
+        return Err(format!("the program does not build for {TARGET}"));
+    }
+    compare(root, &tools)
+}
+
+/// Runs the program on this computer and under qemu; whether the folders hold the same bytes.
+fn compare(root: &Path, tools: &Tools) -> Verdict {
+    let scratch = program::scratch(root, "aarch64-runs")?;
+    let own = program::release_trundle(root)?;
+    let other = program::target(root)?.join(TARGET).join("release").join("trundle");
+    let emulated: [PathBuf; 4] = [tools.emulator.into(), "-L".into(), LIBRARIES.into(), other];
+    let mut same = true;
+    for (name, command) in RUNS {
+        for (folder, program) in [("here", &[own.clone()][..]), ("aarch64", &emulated)] {
+            let out = scratch.join(folder);
+            if !ends(root, program, command, &out)? {
+                println!("{name} does not end well: {}", program[program.len() - 1].display());
+                return Ok(false);
+            }
+        }
+        let differences =
+            compare_folders(&scratch.join("here").join(name), &scratch.join("aarch64").join(name))?;
+        for difference in &differences {
+            println!("{name} differs on aarch64: {difference}");
+        }
+        same &= differences.is_empty();
+    }
+    println!("{}", if same { "same bytes on aarch64" } else { "not the same bytes" });
+    Ok(same)
+}
+
+/// Runs a command of `trundle` into a folder; whether it ended as a run does: with 0, or 1 where its aim was missed.
+fn ends(root: &Path, program: &[PathBuf], command: &str, out: &Path) -> Verdict {
+    let data = root.join("data/golden").display().to_string();
+    let words = command.split_whitespace();
+    let words = words.map(|word| word.replace("{out}", &out.display().to_string()).replace("{data}", &data));
+    let mut process = Command::new(&program[0]);
+    process.args(&program[1..]).args(words).arg("--quiet").current_dir(root).stdin(Stdio::null());
+    let status = process.status().map_err(|e| format!("cannot start {}: {e}", program[0].display()))?;
+    Ok(matches!(status.code(), Some(0 | 1)))
+}
+
+/// Whether the compiler has the standard library of aarch64.
+fn has_standard_library() -> bool {
+    let mut process = Command::new("rustc");
+    let output = process.args(["--print", "target-libdir", "--target", TARGET]).stdin(Stdio::null()).output();
+    output.is_ok_and(|output| Path::new(String::from_utf8_lossy(&output.stdout).trim()).is_dir())
+}
+
+/// Whether a program can be started.
+fn answers(program: &str) -> bool {
+    let mut process = Command::new(program);
+    process.arg("--version").stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    process.status().is_ok_and(|status| status.success())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_missing_is_not_found() {
+        assert!(answers("cargo") && !answers("no-such-program-of-trundle"));
+    }
+
+    /// A filter that matches no test would pass.
+    #[test]
+    fn every_filter_names_a_module_with_tests() {
+        let root = crate::workspace::root();
+        for (package, modules) in KERNELS {
+            for module in modules {
+                let path = root.join("crates").join(package).join("src").join(module.replace("::", "/"));
+                let sources = if path.is_dir() {
+                    let entries = std::fs::read_dir(&path).unwrap();
+                    entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_file()).collect()
+                } else {
+                    vec![path.with_extension("rs")]
+                };
+                let has_tests = |path: &PathBuf| std::fs::read_to_string(path).unwrap().contains("#[test]");
+                assert!(sources.iter().any(has_tests), "{package}, {module}");
+            }
+        }
+    }
+}
