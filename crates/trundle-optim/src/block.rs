@@ -15,13 +15,16 @@ pub(crate) fn subtract_outer<const N: usize, const K: usize>(
     left: &[Column<N>; K],
     right: &[Column<N>; K],
 ) {
-    for (column, sum) in block.iter_mut().enumerate() {
+    for (column, stored) in block.iter_mut().enumerate() {
+        // A copy: with sums in memory, the compiler must expect `left` to change with them, and leaves them single on aarch64.
+        let mut sums = *stored;
         for k in 0..K {
             let factor = right[k][column];
-            for (sum, value) in sum.iter_mut().zip(&left[k]) {
+            for (sum, value) in sums.iter_mut().zip(&left[k]) {
                 *sum -= value * factor;
             }
         }
+        *stored = sums;
     }
 }
 
