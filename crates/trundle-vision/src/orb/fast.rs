@@ -222,7 +222,8 @@ fn suppress_row_plainly([above, own, below]: [&[u8]; 3], maxima: &mut [u8]) {
 #[cfg_attr(target_arch = "aarch64", target_feature(enable = "neon"))]
 fn suppress_row_by_blocks(rows: [&[u8]; 3], maxima: &mut [u8]) {
     for x in starts(maxima.len(), BLOCK_PX) {
-        let at = |row: usize, dx: usize| Bytes::load(block(rows[row], x + dx));
+        let windows: [&[u8; BLOCK_PX + 2]; 3] = rows.map(|row| block(row, x));
+        let at = |row: usize, dx: usize| Bytes::load(block(windows[row], dx));
         let own = at(1, 1);
         let mut kept = own;
         if !own.is_zero() {

@@ -10,7 +10,7 @@ mod neon;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx2::{BLOCK_PX, Bytes, mix_16, shrink_8};
 #[cfg(target_arch = "aarch64")]
-pub(crate) use neon::{BLOCK_PX, Bytes, mix_16, shrink_8};
+pub(crate) use neon::{BLOCK_PX, Bytes, shrink_8};
 
 /// Whether this processor has what the kernels are compiled for.
 #[inline(always)]

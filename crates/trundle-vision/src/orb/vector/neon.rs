@@ -91,23 +91,6 @@ impl Bytes {
     }
 }
 
-/// 16 pixels interpolated between two rows, in 1/128; `weight` is that of the lower one, in 1/256, less than 256.
-#[inline]
-#[target_feature(enable = "neon")]
-pub(crate) fn mix_16(upper: &[u8; 16], lower: &[u8; 16], weight: u16, to: &mut [i16; 16]) {
-    let weight = vdupq_n_u8(weight as u8);
-    let (a, b) = (load_16(upper), load_16(lower));
-    // 256 a - weight a + weight b: a weight of 256 does not fit a byte.
-    let low = vmlsl_u8(vshll_n_u8::<8>(vget_low_u8(a)), vget_low_u8(a), vget_low_u8(weight));
-    let high = vmlsl_high_u8(vshll_high_n_u8::<8>(a), a, weight);
-    let (low, high) = (vmlal_u8(low, vget_low_u8(b), vget_low_u8(weight)), vmlal_high_u8(high, b, weight));
-    let (first, last) = to.split_at_mut(8);
-    for (to, sum) in [(first, low), (last, high)] {
-        // SAFETY: either half has 16 bytes to be written, which need no alignment.
-        unsafe { vst1q_s16(to.as_mut_ptr(), vreinterpretq_s16_u16(vshrq_n_u16::<1>(sum))) }
-    }
-}
-
 /// Eight pixels interpolated within a row, four from either eight samples: `bytes` picks the pairs of samples, `weights` are theirs,
 /// words in 1/256. The sums of products are rounded to 1/2^15.
 #[inline]
