@@ -39,15 +39,15 @@ enum Equality {
 /// Source: ours.
 const MAX_POSE_DIFFERENCE: f64 = 1e-6;
 
-/// Runs: the name of the folder below `{out}`, a folder of this computer's or the emulator's; `{data}` is that of the golden net.
+/// Runs, in a folder of this computer's or the emulator's: the name of the results' folder in it; `{data}` is that of the golden net.
 const RUNS: [(&str, Equality, &str); 3] = [
     (
         "recorded",
         Equality::Bytes,
-        "sim room --drive {data}/twists.txt --duration 2 --rate 5 --laser urg-04lx --record {out}/recorded",
+        "sim room --drive {data}/twists.txt --duration 2 --rate 5 --laser urg-04lx --record recorded",
     ),
-    ("map", Equality::Bytes, "map {out}/recorded/laser.log --out {out}/map"),
-    ("slam", Equality::Poses, "slam {out}/recorded --height 0.45 --tilt 8 --out {out}/slam"),
+    ("map", Equality::Bytes, "map recorded/laser.log --out map"),
+    ("slam", Equality::Poses, "slam recorded --height 0.45 --tilt 8 --out slam"),
 ];
 
 /// What the step needs of this computer.
@@ -174,13 +174,14 @@ fn largest_difference(a: &str, b: &str) -> Option<f64> {
     largest.filter(|_| a.len() == b.len())
 }
 
-/// Runs a command of `trundle` into a folder; whether it ended as a run does: with 0, or 1 where its aim was missed.
-fn ends(root: &Path, program: &[PathBuf], command: &str, out: &Path) -> Verdict {
+/// Runs a command of `trundle` in a folder; whether it ended as a run does: with 0, or 1 where its aim was missed. The paths of its results
+/// are relative, so that both computers' are the same.
+fn ends(root: &Path, program: &[PathBuf], command: &str, folder: &Path) -> Verdict {
+    std::fs::create_dir_all(folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
     let data = root.join("data/golden").display().to_string();
-    let words = command.split_whitespace();
-    let words = words.map(|word| word.replace("{out}", &out.display().to_string()).replace("{data}", &data));
+    let words = command.split_whitespace().map(|word| word.replace("{data}", &data));
     let mut process = Command::new(&program[0]);
-    process.args(&program[1..]).args(words).arg("--quiet").current_dir(root).stdin(Stdio::null());
+    process.args(&program[1..]).args(words).arg("--quiet").current_dir(folder).stdin(Stdio::null());
     let status = process.status().map_err(|e| format!("cannot start {}: {e}", program[0].display()))?;
     Ok(matches!(status.code(), Some(0 | 1)))
 }
