@@ -78,10 +78,10 @@ fn a_recording_gives_back_every_bit_in_order() {
     let reader = RecordingReader::open(file.path()).unwrap();
     assert_eq!(reader.config(), Some(&json!({"seed": 3, "rate": 0.1})));
     let all: Vec<_> = reader.map(Result::unwrap).collect();
-    assert_eq!(all.len(), 14);
+    assert_eq!(all.len(), 20);
     let back: Vec<_> = RecordingReader::open(file.path()).unwrap().events().map(Result::unwrap).collect();
     assert_eq!(back, events());
-    assert!(matches!(back[6], EncodedEvent::Truth { pose, .. } if pose.y.is_sign_negative()));
+    assert!(matches!(back[9], EncodedEvent::Truth { pose, .. } if pose.y.is_sign_negative()));
     let RecordedMessage::Json { topic, schema, stamp: at, value } = &all[1] else { panic!("{:?}", all[1]) };
     assert_eq!((topic.as_str(), schema.as_str(), *at), ("/pose", PoseInFrame::SCHEMA, stamp(0)));
     let pose: PoseInFrame = serde_json::from_value(value.clone()).unwrap();
@@ -98,11 +98,11 @@ fn the_mcap_library_s_own_index_finds_all() {
     let bytes = recording();
     let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
     let stats = summary.stats.unwrap();
-    assert_eq!((stats.message_count, stats.channel_count), (16, 10));
+    assert_eq!((stats.message_count, stats.channel_count), (22, 12));
     assert_eq!(stats.message_start_time, stamp(0).nanos as u64);
     let schemas: Vec<_> = summary.schemas.values().map(|s| (s.name.clone(), s.encoding.clone())).collect();
     assert!(schemas.contains(&("sensor_msgs/msg/CompressedImage".to_owned(), "ros2msg".to_owned())));
-    assert_eq!(mcap::MessageStream::new(&bytes).unwrap().count(), 16);
+    assert_eq!(mcap::MessageStream::new(&bytes).unwrap().count(), 22);
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn a_recording_in_an_output_folder_appears_at_commit() {
     recorder.finish().unwrap();
     assert!(!target.exists());
     let folder = out.commit().unwrap();
-    assert_eq!(RecordingReader::open(&folder.join("recording.mcap")).unwrap().events().count(), 7);
+    assert_eq!(RecordingReader::open(&folder.join("recording.mcap")).unwrap().events().count(), 10);
 }
 
 /// The least of many times, ms: what the work costs when nobody disturbs.
