@@ -3,7 +3,7 @@
 use crate::{BestView, RunLog};
 use std::time::Duration;
 use trundle_io::IoError;
-use trundle_runtime::{Histogram, Robot};
+use trundle_runtime::{Histogram, Robot, TaskRecord};
 
 /// A run that has ended.
 pub struct FinishedRun {
@@ -11,12 +11,21 @@ pub struct FinishedRun {
     pub robot: Robot,
     /// The log.
     pub log: RunLog,
+    /// The tasks that ended in missions that an operator replaced, in order.
+    pub earlier_tasks: Vec<TaskRecord>,
     /// The view with the largest number of tracked features.
     pub view: BestView,
     /// Wall-clock time of the run \[s\].
     pub seconds: f64,
     /// The cost of recording.
     pub recording: RecordingCost,
+}
+
+impl FinishedRun {
+    /// The tasks that ended, in order.
+    pub fn tasks(&self) -> impl Iterator<Item = &TaskRecord> {
+        self.earlier_tasks.iter().chain(self.robot.tasks_ended())
+    }
 }
 
 /// The cost of recording a run.

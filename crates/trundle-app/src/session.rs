@@ -10,7 +10,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_core::{FrameId, Pose2, Stamp, Twist2};
 use trundle_io::{EncodedEvent, PoseInFrame, PosesInFrame};
-use trundle_runtime::{Answer, DriveState, LazyImage, Reason, Robot, Stage, StepReport, Worker};
+use trundle_runtime::{
+    Answer, DriveState, LazyImage, OperatorCommand, Reason, Robot, Stage, StepReport, TaskRecord, Worker,
+};
 
 /// A run in progress: feeds the robot and records each input and output.
 pub struct RunSession<'s> {
@@ -22,6 +24,8 @@ pub struct RunSession<'s> {
     overload: OverloadWatch,
     progress: Progress,
     operator: Option<OperatorLink>,
+    /// Tasks of missions that the operator replaced.
+    earlier_tasks: Vec<TaskRecord>,
     start: Instant,
     is_interrupted: bool,
 }
@@ -59,6 +63,7 @@ impl<'s> RunSession<'s> {
             overload,
             progress,
             operator,
+            earlier_tasks: Vec::new(),
             start,
             is_interrupted: false,
         })
@@ -166,7 +171,8 @@ impl<'s> RunSession<'s> {
         };
         let recording = RecordingCost { queue_lengths, lines_lost, cpu_time, error, checkpoint_error };
         let seconds = self.start.elapsed().as_secs_f64();
-        Ok(FinishedRun { robot: self.robot, log: self.log, view: self.view, seconds, recording })
+        let Self { robot, log, view, earlier_tasks, .. } = self;
+        Ok(FinishedRun { robot, log, earlier_tasks, view, seconds, recording })
     }
 
     fn on_event(&mut self, event: EncodedEvent) -> Result<StepReport, AppError> {
@@ -201,6 +207,9 @@ impl<'s> RunSession<'s> {
         self.record_mark(RunMark::Operator(request.clone()));
         if let Some(link) = &mut self.operator {
             link.note_request(&request);
+        }
+        if matches!(request.command, OperatorCommand::Begin(_)) {
+            self.earlier_tasks.extend_from_slice(self.robot.tasks_ended());
         }
         Ok(self.robot.obey(request.command)?)
     }

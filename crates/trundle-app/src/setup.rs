@@ -107,6 +107,12 @@ impl RunSetup {
         Self { time_limit, ..self }
     }
 
+    /// The same run, which goes on after its mission for the requests of an operator.
+    #[must_use]
+    pub fn operated(self) -> Self {
+        Self { is_operated: true, ..self }
+    }
+
     /// The same run, resumed from the bytes of a checkpoint.
     #[must_use]
     pub fn resumed_from(self, checkpoint: &[u8]) -> Self {

@@ -205,6 +205,7 @@ fn run_unrecorded(
     Ok(FinishedRun {
         robot,
         log,
+        earlier_tasks: Vec::new(),
         view: BestView::default(),
         seconds: start.elapsed().as_secs_f64(),
         recording: RecordingCost::default(),

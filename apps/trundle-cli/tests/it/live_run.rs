@@ -131,6 +131,44 @@ fn a_robot_that_is_unplugged_stops_says_so_and_goes_on_when_it_is_back() {
 }
 
 #[test]
+fn a_run_that_is_killed_or_loses_its_terminal_leaves_a_base_at_rest() {
+    for (name, code) in [("KILL", None), ("HUP", Some(129))] {
+        let folder = tempfile::tempdir().unwrap();
+        let robot = EmulatedRobot::start(folder.path());
+        let mut run = robot.run(&["--goal", "2,0,0", "--time-limit", RUN_LIMIT_S]);
+        let mut run = run.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(Duration::from_secs(7));
+        signal(&run, name);
+        assert_eq!(run.wait().unwrap().code(), code, "{name}");
+        std::thread::sleep(Duration::from_secs(1));
+        assert_eq!(folder.path().join("out/summary.json").exists(), code.is_some());
+        let truth = robot.stop();
+        assert!(first_number(&truth, "true path") > 0.05, "{name}: it drove: {truth}");
+        assert_eq!(first_number(&truth, "last command received"), 0.0, "{name}: {truth}");
+    }
+}
+
+#[test]
+fn a_recording_does_not_drive_a_base() {
+    let folder = tempfile::tempdir().unwrap();
+    let robot = EmulatedRobot::start(folder.path());
+    let file = folder.path().join("recorded");
+    // A file of the camera's header is a recording without frames.
+    let mut stream = std::fs::File::open(folder.path().join("camera")).unwrap();
+    let mut head = vec![0; 4096];
+    std::io::Read::read_exact(&mut stream, &mut head).unwrap();
+    std::fs::write(&file, head).unwrap();
+    let arguments = ["--camera", &format!("stream:{}", file.display()), "--goal", "1,0,0"];
+    let mut run = trundle();
+    run.args(["run", "--base", &format!("kobuki:{}", folder.path().join("kobuki").display())])
+        .args(arguments);
+    let output = run.arg("--out").arg(folder.path().join("out")).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output));
+    assert!(text(&output).contains("is a recording, expected a live camera"), "{}", text(&output));
+    assert_eq!(first_number(&robot.stop(), "true path"), 0.0);
+}
+
+#[test]
 fn a_check_shows_rates_and_tilt_and_writes_the_measured_part_of_the_robot_file() {
     let folder = tempfile::tempdir().unwrap();
     let robot = EmulatedRobot::start(folder.path());

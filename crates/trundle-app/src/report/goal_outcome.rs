@@ -28,7 +28,7 @@ pub struct GoalOutcome {
 impl GoalOutcome {
     /// The outcomes of a run, in the order in which they came.
     pub fn all(run: &FinishedRun) -> Vec<Self> {
-        run.robot.tasks_ended().iter().filter_map(|record| Self::of(record, run)).collect()
+        run.tasks().filter_map(|record| Self::of(record, run)).collect()
     }
 
     fn of(record: &TaskRecord, run: &FinishedRun) -> Option<Self> {

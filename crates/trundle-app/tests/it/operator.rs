@@ -9,7 +9,7 @@ use trundle_io::OutputFolder;
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, PoseGuess, Task};
 
 fn operated() -> RunSetup {
-    RunSetup { is_operated: true, mission: Mission::default(), ..setup() }
+    RunSetup::new("nowhere", Mission::default(), setup().robot).operated()
 }
 
 /// Runs a body at rest for 4 s with requests that wait from the start.

@@ -85,7 +85,7 @@ fn a_recorder_that_failed_takes_no_more_lines() {
     };
     recorder.write(move |_| Err(fail()));
     recorder.write(|_| panic!("a line after the failure"));
-    let error = recorder.finish(None).unwrap_err().to_string();
+    let error = recorder.finish().unwrap_err().to_string();
     assert!(error.contains("no space left"), "{error}");
 }
 
@@ -102,7 +102,7 @@ fn files_that_are_no_recording_of_a_run_are_refused_by_name() {
     let folder = OutputFolder::create(&scratch.path().join("other")).unwrap();
     let mut recorder = RunRecorder::to_folder(&folder).unwrap();
     recorder.write(|file| file.record_json("/note", "note", Stamp::default(), &1));
-    recorder.finish(None).unwrap();
+    recorder.finish().unwrap();
     let other = folder.commit().unwrap().join("recording.mcap");
     assert!(refusal(&other).contains("no trundle.Config message comes first"), "{}", refusal(&other));
 }

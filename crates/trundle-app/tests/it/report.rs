@@ -42,6 +42,7 @@ fn good() -> RunNumbers {
         images_dropped: vec![1.0, 2.0],
         docking: None,
         state: DriveState::Arrived,
+        is_operated: false,
         out_of_time: None,
     }
 }

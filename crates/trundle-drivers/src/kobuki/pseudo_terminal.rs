@@ -162,10 +162,19 @@ mod tests {
     fn a_link_is_made_replaced_and_removed() {
         let link = std::env::temp_dir().join(format!("trundle-pty-{}", std::process::id()));
         let first = PseudoTerminal::open_at(&link).unwrap();
-        let second = PseudoTerminal::open_at(&link).unwrap();
+        let refusal = PseudoTerminal::open_at(&link).unwrap_err().to_string();
+        assert!(refusal.contains("another simulator may use it"), "{refusal}");
         drop(first);
+        assert!(!link.is_symlink());
+        // The link of a simulator that was killed.
+        std::os::unix::fs::symlink("/dev/pts/no-such-port", &link).unwrap();
+        let second = PseudoTerminal::open_at(&link).unwrap();
         assert_eq!(std::fs::read_link(&link).unwrap(), second.path);
         drop(second);
         assert!(!link.is_symlink());
+        std::fs::write(&link, "a file").unwrap();
+        let refusal = PseudoTerminal::open_at(&link).unwrap_err().to_string();
+        std::fs::remove_file(&link).unwrap();
+        assert!(refusal.contains("is a file; remove it"), "{refusal}");
     }
 }

@@ -93,6 +93,10 @@ impl EmulatedRobot {
             row("true pose from the start", pose),
             row("true path", format!("{:.2} m", self.simulator.path_length())),
             row("true contacts", self.simulator.contacts().to_string()),
+            row(
+                "last command received",
+                format!("{:.3} m/s, {:.3} rad/s", self.command.v, self.command.omega),
+            ),
             row("packets sent, commands received", format!("{packets}, {commands}")),
             row("images sent, not taken", format!("{images}, {images_not_taken}")),
         ]

@@ -69,8 +69,9 @@ fn scripted(reads: Vec<Vec<u8>>, taken_per_write: usize) -> (Scripted, Arc<Mutex
 
 #[test]
 fn half_a_frame_from_before_a_loss_is_not_ended_on_the_new_connection() {
-    let packet = EmulatedKobuki::default().feedback(&KobukiState::default());
-    let (first, _) = scripted(vec![packet.clone()], 3);
+    let mut base = EmulatedKobuki::default();
+    let (first, packet) = (base.feedback(&KobukiState::default()), base.feedback(&KobukiState::default()));
+    let (first, _) = scripted(vec![first], 3);
     let (second, written) = scripted(vec![Vec::new(), packet[..40].to_vec(), packet[40..].to_vec()], 1000);
     let (mut io_loop, commands, millis) = looped(first, second);
     commands.send(Twist2::new(0.3, 0.0)).unwrap();
@@ -84,6 +85,22 @@ fn half_a_frame_from_before_a_loss_is_not_ended_on_the_new_connection() {
     assert!(io_loop.is_up);
     let zero = KobukiCommand::BaseControl(BaseControl::STOP).encode();
     assert_eq!(*written.lock().unwrap(), [greeting(), zero].concat(), "zero speed and the request alone");
+}
+
+#[test]
+fn a_base_whose_clock_stands_still_is_lost_and_does_not_come_back_by_opening() {
+    let packet = EmulatedKobuki::default().feedback(&KobukiState::default());
+    let (first, _) = scripted(vec![packet.clone(), packet.clone()], 1000);
+    let (second, _) = scripted(vec![packet.clone(), packet], 1000);
+    let (mut io_loop, _commands, millis) = looped(first, second);
+    io_loop.step();
+    assert!(io_loop.is_up);
+    millis.store(101, Ordering::SeqCst);
+    io_loop.step();
+    assert!(!io_loop.is_up && io_loop.link.is_none(), "the second packet says nothing new");
+    millis.store(1000, Ordering::SeqCst);
+    (0..3).for_each(|_| io_loop.step());
+    assert!(!io_loop.is_up);
 }
 
 #[test]
