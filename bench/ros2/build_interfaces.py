@@ -21,7 +21,11 @@ SHARE = PREFIX / "share"
 SITE = pathlib.Path(sysconfig.get_paths()["platlib"])
 # Runtime libraries that generated code calls.
 RUNTIME = ["rosidl_runtime_c", "rcutils", "rosidl_typesupport_c", "rosidl_typesupport_fastrtps_c",
-           "rosidl_typesupport_fastrtps_cpp", "fastcdr", "rmw"]
+           "rosidl_typesupport_fastrtps_cpp", "rosidl_typesupport_introspection_c", "fastcdr", "rmw"]
+# Type supports that rmw_fastrtps_cpp asks for: one serialises, one describes the type to DDS.
+SUPPORTS = ["rosidl_typesupport_fastrtps_c", "rosidl_typesupport_introspection_c"]
+# Generators whose output is compiled.
+COMPILED = ["rosidl_generator_c", *SUPPORTS, "rosidl_typesupport_c", "rosidl_generator_py"]
 
 
 def run(arguments, **options):
@@ -50,8 +54,11 @@ def dependency_idls():
 
 
 def number_parts(text):
-    """A comment at the head of each part: the generators mix up two equal constants of one action unless a comment tells them apart."""
-    return "---\n".join(f"# part {number}\n{part}" for number, part in enumerate(text.split("---\n")))
+    """A comment on the first line of each part: the generators mix up two equal constants of one action unless a comment tells them apart.
+
+    The comment block before the first empty line counts as one of the file, so there are two.
+    """
+    return "---\n".join(f"# file\n\n# part {number}\n{part}" for number, part in enumerate(text.split("---\n")))
 
 
 class Build:
@@ -100,15 +107,15 @@ class Build:
         self.generate("rosidl_generator_type_description", include_paths=paths)
         described = self.path("rosidl_generator_type_description")
         tuples = [f"{f.parent.name}/{f.stem}.idl:{f}" for f in sorted(described.glob("*/*.json"))]
-        self.generate("rosidl_generator_c", "--disable-description-codegen", type_description_tuples=tuples)
-        self.generate("rosidl_typesupport_fastrtps_c")
-        self.generate("rosidl_typesupport_c", "--typesupports", "rosidl_typesupport_fastrtps_c")
+        self.generate("rosidl_generator_c", type_description_tuples=tuples)
+        for support in SUPPORTS:
+            self.generate(support)
+        self.generate("rosidl_typesupport_c", "--typesupports", *SUPPORTS)
         self.generate("rosidl_generator_py", "--typesupport-impls", "rosidl_typesupport_c")
 
     def includes(self):
         import numpy
-        folders = [self.path(g).parent for g in
-                   ("rosidl_generator_c", "rosidl_typesupport_fastrtps_c", "rosidl_typesupport_c", "rosidl_generator_py")]
+        folders = [self.path(g).parent for g in COMPILED]
         folders += [f for f in (PREFIX / "include").iterdir() if f.is_dir()] + [PREFIX / "include"]
         folders += [sysconfig.get_paths()["include"], numpy.get_include()]
         return [f"-I{f}" for f in folders]
@@ -145,11 +152,11 @@ class Build:
 
     def install(self):
         """Compile the libraries and copy the Python package and the interface files."""
-        sources = {g: sorted(self.path(g).rglob("*.c")) + sorted(self.path(g).rglob("*.cpp")) for g in
-                   ("rosidl_generator_c", "rosidl_typesupport_fastrtps_c", "rosidl_typesupport_c", "rosidl_generator_py")}
+        sources = {g: sorted(self.path(g).rglob("*.c")) + sorted(self.path(g).rglob("*.cpp")) for g in COMPILED}
         structs = self.library("rosidl_generator_c", sources["rosidl_generator_c"], [])
-        cdr = self.library("rosidl_typesupport_fastrtps_c", sources["rosidl_typesupport_fastrtps_c"], [structs])
-        dispatch = self.library("rosidl_typesupport_c", sources["rosidl_typesupport_c"], [structs, cdr])
+        for support in SUPPORTS:
+            self.library(support, sources[support], [structs])
+        dispatch = self.library("rosidl_typesupport_c", sources["rosidl_typesupport_c"], [structs])
         python = self.path("rosidl_generator_py")
         (python / "__init__.py").touch()
         extension = python / f"{self.package}_s__rosidl_typesupport_c.so"
