@@ -47,7 +47,7 @@ class Gyro:
 class DepthNoise:
     """Metres to whole millimetres: noise that grows with the square of the range, no reading outside the range."""
 
-    BASE_M, SQUARE_1_M, NEAREST_M, FARTHEST_M = 0.0015, 0.0012, 0.5, 4.5
+    BASE_M, SQUARE_1_M, NEAREST_M, FARTHEST_M = 0.0015, 0.0012, 0.5, 8.0
 
     def __init__(self, seed, noisy=True):
         self.rng = np.random.default_rng(5000 + seed)

@@ -116,16 +116,16 @@ def shelf(rng):
 
 
 def wood(rng):
-    """Furniture board with a printed label here and there."""
+    """Furniture board with printed labels."""
     tone = int(rng.integers(-30, 40))
     image = Image.new("RGB", (SIZE_PX, SIZE_PX), (140 + tone, 104 + tone, 70 + tone))
     draw = ImageDraw.Draw(image)
     for _ in range(160):
         x, y = rng.integers(0, SIZE_PX, 2)
         draw.line([x, y, x + int(rng.integers(20, 120)), y + int(rng.integers(-3, 3))], fill=(110 + tone, 78 + tone, 50 + tone), width=2)
-    for _ in range(30):
+    for _ in range(140):
         x, y = rng.integers(0, SIZE_PX, 2)
-        draw.rectangle([x, y, x + int(rng.integers(5, 26)), y + int(rng.integers(4, 14))], fill=color(rng, 30, 250))
+        draw.rectangle([x, y, x + int(rng.integers(3, 20)), y + int(rng.integers(3, 12))], fill=color(rng, 30, 250))
     return grain(image, rng, 5)
 
 
