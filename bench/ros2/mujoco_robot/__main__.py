@@ -44,9 +44,8 @@ def main():
     robot = simulation.Simulation(worlds.build(options.world, options.seed), options.seed, options.noisy, options.images != "none")
     print(f"mujoco_robot: world {options.world}, seed {options.seed}, ready", flush=True)
     cpu = time.process_time()
-    wall = 0.0
     try:
-        wall = bridge.run(node, bridge.Bridge(node, robot, options), options)
+        bridge.run(node, bridge.Bridge(node, robot, options), options)
     except (KeyboardInterrupt, rclpy.executors.ExternalShutdownException):
         pass
     simulated = robot.now_ms / 1000
