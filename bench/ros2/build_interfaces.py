@@ -189,6 +189,7 @@ def main():
         build.generate_all()
         build.install()
         stamp.write_text(wanted)
+        shutil.rmtree(build.folder)
         print(f"{package}: built {len(build.idl_tuples)} interfaces")
 
 
