@@ -15,6 +15,7 @@ os.environ.setdefault("ROS_DOMAIN_ID", "71")
 
 import rclpy  # noqa: E402
 from rclpy.executors import SingleThreadedExecutor  # noqa: E402
+from rclpy.signals import SignalHandlerOptions  # noqa: E402
 
 
 class Process:
@@ -81,7 +82,9 @@ class Listener:
 
     def __init__(self, name):
         if not rclpy.ok():
-            rclpy.init()
+            # Signals end this program by an exception, so that the programs it started are ended too.
+            rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
+            signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
         self.node = rclpy.create_node(name)
         self.executor = SingleThreadedExecutor()
         self.executor.add_node(self.node)
