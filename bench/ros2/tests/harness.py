@@ -85,7 +85,7 @@ class Listener:
             # Signals end this program by an exception, so that the programs it started are ended too.
             rclpy.init(signal_handler_options=SignalHandlerOptions.NO)
             signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))
-        self.node = rclpy.create_node(name)
+        self.node = rclpy.create_node(name, enable_rosout=False)
         self.executor = SingleThreadedExecutor()
         self.executor.add_node(self.node)
         self.kept, self.last = {}, {}
