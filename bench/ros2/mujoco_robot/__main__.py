@@ -25,10 +25,17 @@ def at_least_zero(text):
     return value
 
 
+def whole(text):
+    """A whole number from 0 on."""
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"is {text}, expected a whole number from 0 on")
+    return int(text)
+
+
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="mujoco_robot", description="MuJoCo as robot and world behind ROS 2.")
     parser.add_argument("--world", choices=worlds.NAMES, default="flat")
-    parser.add_argument("--seed", type=int, choices=range(1_000_000), metavar="0..999999", default=0, help="textures, furniture and noise")
+    parser.add_argument("--seed", type=whole, default=0, help="textures, furniture and noise")
     parser.add_argument("--duration", type=at_least_zero, default=math.inf, help="simulated time, s")
     parser.add_argument("--real-time-factor", type=at_least_zero, default=1.0, help="0: as fast as the machine can")
     parser.add_argument("--lock-step", type=at_least_zero, default=0.0, metavar="S",
