@@ -1,0 +1,1 @@
+"""MuJoCo as robot and world, offered to ROS 2 by rclpy."""

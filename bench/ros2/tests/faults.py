@@ -1,0 +1,205 @@
+"""Trundle in MuJoCo when things break: either side killed and started again, floods, wrong types, clocks, two networks.
+
+faults.py --trundle PATH [--only restart_trundle ...]. Each part starts its own robot and trundle. Exit 0: all checks hold.
+"""
+import argparse
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+import goals
+import rclpy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import PoseStamped
+from harness import Checks, Process, start_robot
+from nav2_user import ACTIONS, User, outcome, status
+from nav_msgs.msg import Odometry
+from sensor_msgs.msg import CameraInfo
+from std_msgs.msg import String
+from user import FAR, NEAR, is_moving
+
+# Longest silence of commands after which the simulated base stands, s: its timeout and the ramp down.
+STOP_S = 1.2
+# Goals that one participant sends in a second.
+FLOOD = 10_000
+
+
+def environment(options, folder, world="flat"):
+    """Robot, trundle and a user that hears diagnostics."""
+    processes = goals.start(options, folder, world, 0)
+    user = User()
+    user.listen(DiagnosticArray, "/diagnostics", 100, keep=True)
+    return processes, user
+
+
+def named(user, *words):
+    """Texts of diagnostics of level WARN or above that hold one of the words."""
+    found = []
+    for array in user.kept.get("/diagnostics", []):
+        for entry in array.status:
+            text = f"{entry.name}: {entry.message} " + " ".join(f"{v.key}={v.value}" for v in entry.values)
+            if entry.level >= DiagnosticStatus.WARN and any(w in text for w in words):
+                found.append(text)
+    return found
+
+
+def kill(process):
+    process.child.kill()
+    process.child.wait()
+
+
+def restart_trundle(checks, options, folder):
+    """Trundle is killed in mid-drive: the base stops by itself; a new one takes goals."""
+    processes, user = environment(options, folder)
+    try:
+        checks.check("trundle is active", user.wait_until_active())
+        user.go(FAR)
+        checks.check("the robot drives", user.until(lambda: is_moving(user), 60))
+        kill(processes[1])
+        user.wait_simulated(STOP_S)
+        checks.check("the base stops when trundle dies", not is_moving(user), f"{user.speed():.3f} m/s")
+        processes[1] = Process("trundle-again", [os.path.abspath(options.trundle), *options.trundle_arguments.split()], folder)
+        user.spin(2.0)
+        checks.check("a new trundle is active", user.wait_until_active())
+        result = user.go(NEAR).wait()
+        checks.check("the new trundle reaches a goal", status(result) == "SUCCEEDED", outcome(result))
+    finally:
+        end(processes, user)
+
+
+def restart_robot(checks, options, folder):
+    """The robot is killed in mid-drive and comes back with its clock at zero: trundle lives, says what is silent, and does not drive blind."""
+    processes, user = environment(options, folder)
+    try:
+        checks.check("trundle is active", user.wait_until_active())
+        user.go(FAR)
+        user.until(lambda: is_moving(user), 60)
+        kill(processes[0])
+        found = user.until(lambda: named(user, "odom", "clock", "camera"), 20)
+        checks.check("diagnostics name the silent topic", found, "; ".join(named(user, "odom", "clock", "camera")[:1]))
+        processes[0] = start_robot(folder, "--world", "flat", "--lock-step", str(options.lock_step))
+        user.spin(5.0)
+        checks.check("trundle lives", processes[1].child.poll() is None)
+        checks.check("no contact after the restart", user.contacts() == 0, str(user.contacts()))
+        checks.check("trundle is active again, or says why not", user.wait_until_active(60) or named(user, "clock", "time"))
+    finally:
+        end(processes, user)
+
+
+def flood(checks, options, folder):
+    """10,000 goals in a second by topic and 200 by action: trundle lives, and the next goal succeeds."""
+    processes, user = environment(options, folder)
+    try:
+        checks.check("trundle is active", user.wait_until_active())
+        publisher = user.node.create_publisher(PoseStamped, "goal_pose", 1)
+        user.until(lambda: publisher.get_subscription_count() > 0, 20)
+        begin, pose = time.monotonic(), user.map_pose(NEAR)
+        for _ in range(FLOOD):
+            publisher.publish(pose)
+        print(f"     {FLOOD} goals in {time.monotonic() - begin:.2f} s", flush=True)
+        client = user.clients["navigate_to_pose"]
+        asked = [client.send_goal_async(ACTIONS["navigate_to_pose"].Goal(pose=pose)) for _ in range(200)]
+        answered = user.until(lambda: all(f.done() for f in asked), 60)
+        checks.check("every goal of 200 is answered", answered, f"{sum(f.done() for f in asked)} answers")
+        checks.check("trundle lives", processes[1].child.poll() is None)
+        result = user.go(NEAR).wait()
+        checks.check("a goal after the flood succeeds", status(result) == "SUCCEEDED", outcome(result))
+    finally:
+        end(processes, user)
+
+
+def wrong_messages(checks, options, folder):
+    """Another type under a known name, garbage numbers, and an odometry a year ahead: named in diagnostics, and the robot stands."""
+    processes, user = environment(options, folder)
+    try:
+        checks.check("trundle is active", user.wait_until_active())
+        # One participant may not have two types under a name: the wrong one comes from another.
+        context = rclpy.context.Context()
+        rclpy.init(context=context)
+        stranger = rclpy.create_node("stranger", context=context)
+        text = stranger.create_publisher(String, "camera/color/camera_info", 10)
+        info = user.node.create_publisher(CameraInfo, "camera/color/camera_info", 10)
+        odom = user.node.create_publisher(Odometry, "odom", 10)
+        future = Odometry()
+        future.header.stamp.sec = user.last["/clock"].clock.sec + 31_536_000
+        future.header.frame_id, future.child_frame_id, future.pose.pose.position.x = "odom", "base_link", math.nan
+        for _ in range(20):
+            text.publish(String(data="not a camera"))
+            info.publish(CameraInfo(width=3, height=1))
+            odom.publish(future)
+            user.spin(0.1)
+        stranger.destroy_node()
+        rclpy.shutdown(context=context)
+        checks.check("trundle lives", processes[1].child.poll() is None)
+        for words in (("camera_info",), ("odom",)):
+            checks.check(f"diagnostics name {words[0]}", bool(named(user, *words)), "; ".join(named(user, *words)[:1]))
+        checks.check("no contact", user.contacts() == 0, str(user.contacts()))
+    finally:
+        end(processes, user)
+
+
+def networks(checks, options, folder):
+    """A network namespace with loopback only, and one with a second interface: goals work, and no stream stalls at 128 samples."""
+    for name, second in (("trundle-lo", False), ("trundle-two", True)):
+        made = subprocess.run(["ip", "netns", "add", name], capture_output=True, text=True)
+        if made.returncode != 0:
+            print(f"skipped: networks: cannot make a network namespace: {made.stderr.strip()}")
+            return
+        try:
+            inside = ["ip", "netns", "exec", name]
+            subprocess.run([*inside, "ip", "link", "set", "lo", "up"], check=True)
+            if second and not add_interface(inside):
+                print("skipped: networks: the kernel makes no dummy, veth or tap interface")
+                continue
+            drive = [*inside, sys.executable, pathlib.Path(__file__).with_name("user.py"), "--trundle", options.trundle,
+                     "--trundle-arguments", options.trundle_arguments, "--only", "goal", "transforms", "--out", folder / name]
+            done = subprocess.run([str(a) for a in drive], capture_output=True, text=True)
+            failed = [line for line in done.stdout.splitlines() if line.startswith("FAIL")]
+            checks.check(f"goal and 30 s of TF in a namespace with {'two interfaces' if second else 'loopback only'}",
+                         done.returncode == 0, "; ".join(failed) or done.stderr[-200:] if done.returncode else "")
+        finally:
+            subprocess.run(["ip", "netns", "del", name])
+
+
+def add_interface(inside):
+    """A second interface with an address, of the first kind that the kernel knows."""
+    kinds = (["ip", "link", "add", "other", "type", "dummy"], ["ip", "link", "add", "other", "type", "veth", "peer", "name", "far"],
+             ["ip", "tuntap", "add", "dev", "other", "mode", "tap"])
+    if not any(subprocess.run([*inside, *kind], capture_output=True).returncode == 0 for kind in kinds):
+        return False
+    subprocess.run([*inside, "ip", "addr", "add", "10.77.0.1/24", "dev", "other"], check=True)
+    subprocess.run([*inside, "ip", "link", "set", "other", "up", "multicast", "on"], check=True)
+    return True
+
+
+def end(processes, user):
+    for process in reversed(processes):
+        process.end()
+    user.node.destroy_node()
+
+
+PARTS = [restart_trundle, restart_robot, flood, wrong_messages, networks]
+
+
+def main():
+    parser = goals.options_of(argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter))
+    parser.add_argument("--only", nargs="+", choices=[p.__name__ for p in PARTS])
+    options = parser.parse_args()
+    out = options.out or pathlib.Path(tempfile.mkdtemp(prefix="faults-"))
+    checks = Checks("faults")
+    for part in [p for p in PARTS if not options.only or p.__name__ in options.only]:
+        print(f"-- {part.__name__}", flush=True)
+        try:
+            part(checks, options, out / part.__name__)
+        except Exception as error:
+            checks.check(part.__name__, False, f"{type(error).__name__}: {error}")
+    print(f"logs: {out}")
+    return checks.report()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
