@@ -123,7 +123,8 @@ impl RosClock {
         } else {
             return Ok(run);
         };
-        let clock = if matches!(self.source, Source::System { .. }) { "this computer's clock" } else { "/clock" };
+        let clock =
+            if matches!(self.source, Source::System { .. }) { "this computer's clock" } else { "/clock" };
         let remedy = "synchronise the clocks (chrony), or set use_sim_time where a simulator gives /clock";
         Err(Invalid::new("stamp", format!("{value} {clock}"), "", format!("{expected} it: {remedy}")))
     }

@@ -13,7 +13,9 @@ pub enum Ros2Error {
         problem: String,
     },
     /// An unknown ROS argument.
-    #[error("'{argument}' after --ros-args is unknown; expected `-r FROM:=TO`, `-r __ns:=/NS`, `-r __node:=NAME` or `-p NAME:=VALUE`")]
+    #[error(
+        "'{argument}' after --ros-args is unknown; expected `-r FROM:=TO`, `-r __ns:=/NS`, `-r __node:=NAME` or `-p NAME:=VALUE`"
+    )]
     Argument {
         /// The argument.
         argument: String,
@@ -40,7 +42,9 @@ pub enum Ros2Error {
     #[error("cannot start the thread of the ROS 2 node: {0}")]
     Thread(#[from] std::io::Error),
     /// A topic that is needed to begin stayed silent.
-    #[error("no usable message came on {topics} within {seconds:.0} s{reason}; `ros2 topic list` shows what is there, --ros-interface and ROS_DOMAIN_ID which network and domain are used")]
+    #[error(
+        "no usable message came on {topics} within {seconds:.0} s{reason}; `ros2 topic list` shows what is there, --ros-interface and ROS_DOMAIN_ID which network and domain are used"
+    )]
     Silent {
         /// The topics.
         topics: String,

@@ -66,7 +66,9 @@ impl Shared {
         let pose = lock(&self.frames).pose(base, &header.frame_id);
         if pose.is_none() && header.frame_id != base {
             let frame = &header.frame_id;
-            let message = format!("no transform from {base} to its frame '{frame}' on /tf_static: start robot_state_publisher or static_transform_publisher");
+            let message = format!(
+                "no transform from {base} to its frame '{frame}' on /tf_static: start robot_state_publisher or static_transform_publisher"
+            );
             self.diagnostics.warn(topic, message);
         }
         pose.or_else(|| (header.frame_id == base).then(Pose3::identity))
@@ -90,19 +92,30 @@ pub struct BaseMonitors {
 ///
 /// # Errors
 /// When a topic cannot be made.
-pub fn subscribe(node: &mut RosNode, settings: &BodySettings, drive: DifferentialDrive, shared: &Arc<Shared>) -> Result<BaseMonitors, Ros2Error> {
+pub fn subscribe(
+    node: &mut RosNode,
+    settings: &BodySettings,
+    drive: DifferentialDrive,
+    shared: &Arc<Shared>,
+) -> Result<BaseMonitors, Ros2Error> {
     let odom = subscribe_odometry(node, settings, drive, shared)?;
     if let Some(topic) = &settings.imu {
         subscribe_imu(node, topic, &settings.base_frame, shared)?;
     }
-    let scan = settings.scan.as_deref().map(|topic| subscribe_scan(node, topic, &settings.base_frame, shared));
+    let scan =
+        settings.scan.as_deref().map(|topic| subscribe_scan(node, topic, &settings.base_frame, shared));
     if let Some(topic) = &settings.battery {
         subscribe_battery(node, topic, shared)?;
     }
     Ok(BaseMonitors { odom, scan: scan.transpose()? })
 }
 
-fn subscribe_odometry(node: &mut RosNode, settings: &BodySettings, drive: DifferentialDrive, shared: &Arc<Shared>) -> Result<Arc<TopicMonitor>, Ros2Error> {
+fn subscribe_odometry(
+    node: &mut RosNode,
+    settings: &BodySettings,
+    drive: DifferentialDrive,
+    shared: &Arc<Shared>,
+) -> Result<Arc<TopicMonitor>, Ros2Error> {
     let (shared, name) = (Arc::clone(shared), node.names().resolve(&settings.odom));
     let mut wheels = settings.imu.is_some().then(|| WheelsFromOdometry::new(drive));
     let base = settings.base_frame.clone();
@@ -144,7 +157,12 @@ fn subscribe_imu(node: &mut RosNode, topic: &str, base: &str, shared: &Arc<Share
     node.subscribe(topic, &qos::sensor(10), Some(MAX_ODOM_SILENCE), on_imu).map(drop)
 }
 
-fn subscribe_scan(node: &mut RosNode, topic: &str, base: &str, shared: &Arc<Shared>) -> Result<Arc<TopicMonitor>, Ros2Error> {
+fn subscribe_scan(
+    node: &mut RosNode,
+    topic: &str,
+    base: &str,
+    shared: &Arc<Shared>,
+) -> Result<Arc<TopicMonitor>, Ros2Error> {
     let (shared, name, base) = (Arc::clone(shared), node.names().resolve(topic), base.to_owned());
     let on_scan = move |message: LaserScan| {
         let Some(at) = shared.stamp(&name, &message.header.stamp) else { return };

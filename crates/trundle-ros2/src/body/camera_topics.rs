@@ -19,7 +19,12 @@ const MAX_IMAGE_SILENCE: Duration = Duration::from_secs(1);
 ///
 /// # Errors
 /// When a topic cannot be made.
-pub fn subscribe(node: &mut RosNode, settings: &BodySettings, shared: &Arc<Shared>, inbox: &Arc<ImageInbox>) -> Result<(), Ros2Error> {
+pub fn subscribe(
+    node: &mut RosNode,
+    settings: &BodySettings,
+    shared: &Arc<Shared>,
+    inbox: &Arc<ImageInbox>,
+) -> Result<(), Ros2Error> {
     if settings.is_color_compressed() {
         images::<CompressedImage>(node, &settings.color, shared, inbox, ImageInbox::on_color)?;
     } else {
@@ -31,7 +36,9 @@ pub fn subscribe(node: &mut RosNode, settings: &BodySettings, shared: &Arc<Share
         images::<Image>(node, &settings.depth, shared, inbox, ImageInbox::on_depth)?;
     }
     let own = Arc::clone(inbox);
-    node.subscribe(&settings.camera_info, &qos::sensor(1), None, move |info: CameraInfo| own.on_color_info(info))?;
+    node.subscribe(&settings.camera_info, &qos::sensor(1), None, move |info: CameraInfo| {
+        own.on_color_info(info)
+    })?;
     if let Some(topic) = &settings.depth_info {
         let own = Arc::clone(inbox);
         node.subscribe(topic, &qos::sensor(1), None, move |info: CameraInfo| own.on_depth_info(info))?;

@@ -56,7 +56,9 @@ impl CommandPublisher {
                 let message = twist::stamped(command, self.clock.ros_now(), &self.base_frame);
                 publisher.publish(message).err().map(|error| format!("{error:?}"))
             }
-            Form::Plain(publisher) => publisher.publish(twist::to_ros(command)).err().map(|error| format!("{error:?}")),
+            Form::Plain(publisher) => {
+                publisher.publish(twist::to_ros(command)).err().map(|error| format!("{error:?}"))
+            }
         };
         if let Some(failure) = failure {
             self.diagnostics.report(&self.name, Level::Error, format!("a command was not sent: {failure}"));

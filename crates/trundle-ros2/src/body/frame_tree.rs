@@ -24,10 +24,18 @@ impl FrameTree {
     /// When its numbers are not finite, its rotation was never set, or there are too many frames.
     pub fn add(&mut self, stamped: &TransformStamped) -> Result<(), Invalid> {
         let (parent, child) = (bare(&stamped.header.frame_id), bare(&stamped.child_frame_id));
-        let named = |error: Invalid| Invalid { field: format!("{} of the transform {parent} -> {child}", error.field), ..error };
+        let named = |error: Invalid| Invalid {
+            field: format!("{} of the transform {parent} -> {child}", error.field),
+            ..error
+        };
         let pose = transform::from_ros(&stamped.transform).map_err(named)?;
         if self.parents.len() >= MAX_FRAMES && !self.parents.contains_key(child) {
-            return Err(Invalid::new("number of frames", self.parents.len() + 1, "", format!("at most {MAX_FRAMES}")));
+            return Err(Invalid::new(
+                "number of frames",
+                self.parents.len() + 1,
+                "",
+                format!("at most {MAX_FRAMES}"),
+            ));
         }
         self.parents.insert(child.to_owned(), (parent.to_owned(), pose));
         Ok(())
@@ -71,7 +79,11 @@ mod tests {
     #[test]
     fn poses_go_through_common_parents() {
         let mut tree = FrameTree::default();
-        for (parent, child, x) in [("base_footprint", "base_link", 0.5), ("base_link", "camera", 0.25), ("base_footprint", "laser", 1.0)] {
+        for (parent, child, x) in [
+            ("base_footprint", "base_link", 0.5),
+            ("base_link", "camera", 0.25),
+            ("base_footprint", "laser", 1.0),
+        ] {
             tree.add(&link(parent, child, x)).unwrap();
         }
         assert_eq!(tree.pose("base_link", "camera").unwrap().translation.x, 0.25);

@@ -114,7 +114,9 @@ impl ImageInbox {
     fn put(&self, state: &mut State, pair: Option<ImagePair>) {
         if let Some(gap) = state.pairs.smallest_gap() {
             let (gap, max) = (gap * 1e3, MAX_PAIR_GAP_S * 1e3);
-            let message = format!("stamps of colour and depth differ by {gap:.0} ms or more, expected at most {max:.0} ms: synchronise both streams in the camera's driver");
+            let message = format!(
+                "stamps of colour and depth differ by {gap:.0} ms or more, expected at most {max:.0} ms: synchronise both streams in the camera's driver"
+            );
             self.diagnostics.warn("camera", message);
         }
         if pair.is_some() {

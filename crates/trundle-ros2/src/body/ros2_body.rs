@@ -11,14 +11,15 @@ use crate::clock::RosClock;
 use crate::convert::stamp;
 use crate::generated::rosgraph_msgs::Clock;
 use crate::generated::tf2_msgs::TFMessage;
-use crate::node::{Diagnostics, Level, NodeThread, RosNode, TopicMonitor, qos};
+use crate::node::{Level, NodeThread, RosNode, TopicMonitor, qos};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use trundle_app::AppError;
 use trundle_app::real_time::{EventFeed, LiveBody, TimedEvent};
 use trundle_core::{
-    BodyEvent, BodyEventKind, Device, DifferentialDrive, Link, Odometry, PinholeCamera, Pose3, SensorEvent, Stamp,
+    BodyEvent, BodyEventKind, Device, DifferentialDrive, Link, Odometry, PinholeCamera, Pose3, SensorEvent,
+    Stamp,
 };
 use trundle_drivers::camera::camera_thread::{CameraThread, CameraThreadConfig, CameraThreadParts};
 use trundle_runtime::real_time::InboxSender;
@@ -55,7 +56,11 @@ impl Ros2Body {
     ///
     /// # Errors
     /// When a topic cannot be made.
-    pub fn new(node: &mut RosNode, settings: BodySettings, drive: DifferentialDrive) -> Result<Self, Ros2Error> {
+    pub fn new(
+        node: &mut RosNode,
+        settings: BodySettings,
+        drive: DifferentialDrive,
+    ) -> Result<Self, Ros2Error> {
         let clock = if settings.use_sim_time { RosClock::simulated() } else { RosClock::system() };
         let diagnostics = node.diagnostics();
         let shared = Arc::new(Shared {
@@ -93,7 +98,11 @@ impl Ros2Body {
     ///
     /// # Errors
     /// Names the topics on which nothing usable came within `timeout`, and why it was not usable.
-    pub fn wait(&self, timeout: Duration, is_cancelled: impl Fn() -> bool) -> Result<BodyDescription, Ros2Error> {
+    pub fn wait(
+        &self,
+        timeout: Duration,
+        is_cancelled: impl Fn() -> bool,
+    ) -> Result<BodyDescription, Ros2Error> {
         let end = Instant::now() + timeout;
         let mut camera = None;
         while Instant::now() < end {
@@ -103,7 +112,9 @@ impl Ros2Body {
             let source = self.camera_source(None);
             camera = camera.or_else(|| source.open(Duration::from_millis(100)).ok());
             if camera.is_some() && !lock(&self.shared.odometry).is_empty() {
-                return Ok(self.description(source.cameras().map_err(|error| self.silent(error.to_string(), timeout))?.0));
+                return Ok(self.description(
+                    source.cameras().map_err(|error| self.silent(error.to_string(), timeout))?.0,
+                ));
             }
             std::thread::sleep(Duration::from_millis(20));
         }
@@ -131,8 +142,10 @@ impl Ros2Body {
         loop {
             let (color, depth) = self.inbox.frames();
             let frames = lock(&self.shared.frames);
-            let base_from_camera = color.as_deref().and_then(|frame| frames.pose(&self.settings.base_frame, frame));
-            let color_from_depth = color.as_deref().zip(depth.as_deref()).and_then(|(color, depth)| frames.pose(color, depth));
+            let base_from_camera =
+                color.as_deref().and_then(|frame| frames.pose(&self.settings.base_frame, frame));
+            let color_from_depth =
+                color.as_deref().zip(depth.as_deref()).and_then(|(color, depth)| frames.pose(color, depth));
             drop(frames);
             if base_from_camera.is_some() || Instant::now() >= end {
                 let color_from_depth = color_from_depth.filter(|_| self.settings.depth_info.is_some());
@@ -182,7 +195,12 @@ impl Ros2Body {
         })
     }
 
-    fn start_camera(&self, output: PinholeCamera, described: &BodyDescription, feed: &EventFeed) -> Result<CameraThread, AppError> {
+    fn start_camera(
+        &self,
+        output: PinholeCamera,
+        described: &BodyDescription,
+        feed: &EventFeed,
+    ) -> Result<CameraThread, AppError> {
         let source = self.camera_source(described.color_from_depth);
         let (sink, clock, stamps) = (feed.clone(), self.clock(), self.clock());
         let parts = CameraThreadParts {
@@ -195,7 +213,11 @@ impl Ros2Body {
             }),
         };
         // A simulator's images may be equal for long.
-        let config = CameraThreadConfig { output: Some(output), expects_noise: false, ..CameraThreadConfig::default() };
+        let config = CameraThreadConfig {
+            output: Some(output),
+            expects_noise: false,
+            ..CameraThreadConfig::default()
+        };
         CameraThread::start(parts, config)
             .map_err(|error| AppError::Environment(format!("cannot start the camera's threads: {error}")))
     }
@@ -287,7 +309,9 @@ impl WatchedLink {
     }
 
     fn check(&mut self, shared: &Shared, node: &NodeThread) {
-        let death = node.is_dead().then(|| "the thread of the ROS 2 node has died: start the program anew".to_owned());
+        let death = node
+            .is_dead()
+            .then(|| "the thread of the ROS 2 node has died: start the program anew".to_owned());
         let problem = death.or_else(|| self.monitor.stall(Instant::now()));
         let is_up = problem.is_none();
         if let Some(problem) = problem {

@@ -51,7 +51,11 @@ impl RosCameraSource {
             let Some(pair) = self.inbox.take(left.min(Duration::from_millis(50))) else {
                 if left.is_zero() {
                     let has_info = self.inbox.infos().0.is_some();
-                    return Err(no_device(if has_info { &self.settings.color } else { &self.settings.camera_info }));
+                    return Err(no_device(if has_info {
+                        &self.settings.color
+                    } else {
+                        &self.settings.camera_info
+                    }));
                 }
                 continue;
             };
@@ -62,7 +66,8 @@ impl RosCameraSource {
             }
         };
         let (color, depth) = self.cameras()?;
-        let stream = |image: &RawImage, camera| StreamInfo { format: image.format, camera, rate_hz: ASSUMED_RATE_HZ };
+        let stream =
+            |image: &RawImage, camera| StreamInfo { format: image.format, camera, rate_hz: ASSUMED_RATE_HZ };
         let info = CameraInfo {
             name: format!("ROS 2 camera {}", self.settings.color),
             serial: String::new(),
@@ -102,7 +107,8 @@ impl RosCameraSource {
             let topic = &self.settings.camera_info;
             return Err(self.named(topic, Invalid::new("camera_info", "missing", "", expected(topic))));
         };
-        let size = |info: &crate::generated::sensor_msgs::CameraInfo| (info.width as usize, info.height as usize);
+        let size =
+            |info: &crate::generated::sensor_msgs::CameraInfo| (info.width as usize, info.height as usize);
         let color_size = size(&color_info);
         let depth_size = depth_info.as_ref().map_or(color_size, size);
         let color = match color {
@@ -152,7 +158,8 @@ impl DepthCamera for RosCamera {
             return Err(CameraError::StreamsUnavailable {
                 device: self.info.name.clone(),
                 wanted: format!("{} with the intrinsics of the start", known[0]),
-                remedy: "the publisher changed the images' size or form, and the camera is opened anew".to_owned(),
+                remedy: "the publisher changed the images' size or form, and the camera is opened anew"
+                    .to_owned(),
             });
         }
         Ok(Some(frame))
@@ -204,7 +211,10 @@ mod tests {
         assert_eq!((frame.color.width, frame.depth.device_stamp.nanos), (4, 2));
         put_images(&source, 6, 3);
         let error = camera_of_ros.next_frame(Duration::ZERO).unwrap_err().to_string();
-        assert!(error.contains("image size of camera/color/image_raw/compressed is 6 x 2 px, expected 4 x 2"), "{error}");
+        assert!(
+            error.contains("image size of camera/color/image_raw/compressed is 6 x 2 px, expected 4 x 2"),
+            "{error}"
+        );
         source.inbox.on_color_info(camera_info::to_ros(&camera(6), Stamp::default(), "camera"));
         put_images(&source, 6, 4);
         assert!(!camera_of_ros.next_frame(Duration::ZERO).unwrap_err().is_of_one_frame());

@@ -48,7 +48,12 @@ mod tests {
     #[test]
     fn an_arc_there_and_back_leaves_the_counters_as_they_were() {
         let mut wheels = WheelsFromOdometry::new(DifferentialDrive::KOBUKI);
-        let odometry = |pose| Odometry { stamp: Stamp::default(), pose, twist: Twist2::ZERO, covariance: Matrix3::zeros() };
+        let odometry = |pose| Odometry {
+            stamp: Stamp::default(),
+            pose,
+            twist: Twist2::ZERO,
+            covariance: Matrix3::zeros(),
+        };
         wheels.add(&odometry(Pose2::IDENTITY));
         let drive = DifferentialDrive::KOBUKI;
         let pose = Pose2::IDENTITY.advance(Twist2::new(0.3, 0.8), 0.5);

@@ -49,7 +49,12 @@ mod tests {
 
     #[test]
     fn batteries_go_there_and_back() {
-        let own = Battery { voltage_v: 14.5, charge: Some(0.5), source: PowerSource::ChargingStation, is_charging: true };
+        let own = Battery {
+            voltage_v: 14.5,
+            charge: Some(0.5),
+            source: PowerSource::ChargingStation,
+            is_charging: true,
+        };
         let mut message = to_ros(&own, Stamp::default(), "base_link");
         assert_eq!(from_ros(&message).unwrap(), own);
         message.percentage = 55.0;

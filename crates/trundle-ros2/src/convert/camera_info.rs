@@ -53,7 +53,12 @@ fn distortion(info: &CameraInfo) -> Result<Distortion, Invalid> {
     let is_flat = info.d.iter().all(|value| *value == 0.0);
     if !is_known && !is_flat {
         let value = format!("'{}'", info.distortion_model);
-        return Err(Invalid::new("distortion_model", value, "", "plumb_bob: use rectified images (image_rect)"));
+        return Err(Invalid::new(
+            "distortion_model",
+            value,
+            "",
+            "plumb_bob: use rectified images (image_rect)",
+        ));
     }
     if info.d.iter().skip(5).any(|value| *value != 0.0) {
         let expected = "0 from the sixth on: use rectified images (image_rect)";
@@ -96,7 +101,9 @@ mod tests {
     #[test]
     fn cameras_that_were_never_calibrated_and_fish_eyes_are_refused() {
         let refused = |info: &CameraInfo| from_ros(info, Rectification::Raw).unwrap_err().to_string();
-        assert!(refused(&CameraInfo { width: 640, height: 480, ..CameraInfo::default() }).starts_with("k is 0"));
+        assert!(
+            refused(&CameraInfo { width: 640, height: 480, ..CameraInfo::default() }).starts_with("k is 0")
+        );
         let mut message = to_ros(&PinholeCamera::kinect_v1(), Stamp::default(), "camera");
         message.d[0] = 0.1;
         message.distortion_model = "equidistant".to_owned();

@@ -52,7 +52,12 @@ pub fn value(cell: Cell) -> i8 {
 
 /// The cells that differ between two grids of one geometry, as the rectangle around them; `None` where none does.
 #[must_use]
-pub fn update(old: &OccupancyGrid, new: &OccupancyGrid, at: Stamp, frame: &str) -> Option<OccupancyGridUpdate> {
+pub fn update(
+    old: &OccupancyGrid,
+    new: &OccupancyGrid,
+    at: Stamp,
+    frame: &str,
+) -> Option<OccupancyGridUpdate> {
     let geometry = new.geometry();
     let pairs = old.cells().iter().zip(new.cells()).enumerate();
     let mut bounds: Option<[usize; 4]> = None;

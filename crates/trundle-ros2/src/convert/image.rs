@@ -23,11 +23,8 @@ const COLORS: [(&str, PixelFormat); 9] = [
     ("yuv422", PixelFormat::Uyvy),
 ];
 /// Encodings of depth images \[REP 118\]: millimetres, or metres.
-const DEPTHS: [(&str, PixelFormat); 3] = [
-    ("16UC1", PixelFormat::Depth16),
-    ("mono16", PixelFormat::Depth16),
-    ("32FC1", PixelFormat::DepthF32),
-];
+const DEPTHS: [(&str, PixelFormat); 3] =
+    [("16UC1", PixelFormat::Depth16), ("mono16", PixelFormat::Depth16), ("32FC1", PixelFormat::DepthF32)];
 /// The first bytes of a JPEG file.
 const JPEG_MAGIC: [u8; 3] = [0xFF, 0xD8, 0xFF];
 
@@ -64,7 +61,12 @@ fn raw_from_ros(image: Image, known: &[(&str, PixelFormat)], expected: &str) -> 
         return Err(Invalid::new("step", stride, "bytes", format!("at least {bytes_per_row}")));
     }
     if stride.checked_mul(height) != Some(image.data.0.len()) {
-        return Err(Invalid::new("number of bytes", image.data.0.len(), "", format!("step x height, {stride} x {height}")));
+        return Err(Invalid::new(
+            "number of bytes",
+            image.data.0.len(),
+            "",
+            format!("step x height, {stride} x {height}"),
+        ));
     }
     let device_stamp = stamp::from_ros(&image.header.stamp)?;
     Ok(RawImage { format: *format, width, height, stride, bytes: image.data.0, device_stamp })
@@ -100,7 +102,8 @@ pub fn color_to_ros(image: &ColorImage, at: Stamp, frame: &str) -> Image {
 /// A depth image as a message in millimetres.
 #[must_use]
 pub fn depth_to_ros(image: &DepthImage, at: Stamp, frame: &str) -> Image {
-    let millimetres = |depth: &f32| ((depth * 1000.0).round().clamp(0.0, f32::from(u16::MAX)) as u16).to_le_bytes();
+    let millimetres =
+        |depth: &f32| ((depth * 1000.0).round().clamp(0.0, f32::from(u16::MAX)) as u16).to_le_bytes();
     Image {
         header: stamp::header(at, frame),
         height: image.height() as u32,
@@ -131,7 +134,10 @@ mod tests {
     fn images_go_there_and_back() {
         let color = ColorImage::new(1, 2, vec![[1, 2, 3], [4, 5, 6]]).unwrap();
         let raw = color_from_ros(color_to_ros(&color, Stamp::from_nanos(7), "camera")).unwrap();
-        assert_eq!((raw.bytes, raw.format, raw.device_stamp.nanos), (vec![1, 2, 3, 4, 5, 6], PixelFormat::Rgb8, 7));
+        assert_eq!(
+            (raw.bytes, raw.format, raw.device_stamp.nanos),
+            (vec![1, 2, 3, 4, 5, 6], PixelFormat::Rgb8, 7)
+        );
         let raw = depth_from_ros(depth_to_ros(&depth(), Stamp::default(), "camera")).unwrap();
         assert_eq!((raw.bytes, raw.format), (vec![0xDC, 0x05, 0, 0], PixelFormat::Depth16));
     }
@@ -139,7 +145,12 @@ mod tests {
     #[test]
     fn wrong_encodings_and_sizes_are_refused() {
         let image = || depth_to_ros(&depth(), Stamp::default(), "camera");
-        assert!(color_from_ros(image()).unwrap_err().to_string().starts_with("encoding is '16UC1', expected rgb8"));
+        assert!(
+            color_from_ros(image())
+                .unwrap_err()
+                .to_string()
+                .starts_with("encoding is '16UC1', expected rgb8")
+        );
         let refused = |image| depth_from_ros(image).unwrap_err().to_string();
         assert!(refused(Image { encoding: "bayer_rggb8".into(), ..image() }).contains("bayer_rggb8"));
         assert!(refused(Image { height: u32::MAX, ..image() }).starts_with("number of bytes is 4"));
@@ -147,6 +158,8 @@ mod tests {
         assert!(refused(Image { width: 0, ..image() }).starts_with("image size is 0 x 1"));
         assert!(refused(Image { is_bigendian: 1, ..image() }).starts_with("is_bigendian"));
         let png = CompressedImage { format: "png".into(), ..CompressedImage::default() };
-        assert!(compressed_color_from_ros(png, (1, 1)).unwrap_err().to_string().starts_with("format is 'png'"));
+        assert!(
+            compressed_color_from_ros(png, (1, 1)).unwrap_err().to_string().starts_with("format is 'png'")
+        );
     }
 }

@@ -16,9 +16,16 @@ const NOT_MEASURED: f64 = -1.0;
 pub fn from_ros(imu: &Imu, stamp: Stamp, base_from_imu: &UnitQuaternion<f64>) -> Result<GyroRate, Invalid> {
     let rate = &imu.angular_velocity;
     if imu.angular_velocity_covariance[0] == NOT_MEASURED {
-        return Err(Invalid::new("angular_velocity_covariance[0]", NOT_MEASURED, "", "0 or above: a measured turn rate"));
+        return Err(Invalid::new(
+            "angular_velocity_covariance[0]",
+            NOT_MEASURED,
+            "",
+            "0 or above: a measured turn rate",
+        ));
     }
-    for (name, value) in [("angular_velocity.x", rate.x), ("angular_velocity.y", rate.y), ("angular_velocity.z", rate.z)] {
+    for (name, value) in
+        [("angular_velocity.x", rate.x), ("angular_velocity.y", rate.y), ("angular_velocity.z", rate.z)]
+    {
         require_finite(name, value, "rad/s")?;
     }
     let turned = base_from_imu * Vector3::new(rate.x, rate.y, rate.z);

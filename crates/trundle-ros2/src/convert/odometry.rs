@@ -53,7 +53,8 @@ mod tests {
             twist: Twist2::new(0.2, 0.1),
             covariance: Matrix3::from_diagonal_element(0.01),
         };
-        let mut message = to_ros(&own, Stamp::from_nanos(7), OdometryFrames { odom: "odom", base: "base_link" });
+        let mut message =
+            to_ros(&own, Stamp::from_nanos(7), OdometryFrames { odom: "odom", base: "base_link" });
         let back = from_ros(&message, own.stamp).unwrap();
         assert!(back.pose.distance(&own.pose) < 1e-12 && (back.covariance - own.covariance).norm() < 1e-12);
         assert_eq!((back.twist, back.stamp), (own.twist, own.stamp));

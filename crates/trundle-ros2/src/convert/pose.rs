@@ -17,7 +17,12 @@ pub fn rotation(q: &Quaternion) -> Result<UnitQuaternion<f64>, Invalid> {
     let numbers = Numbers::new(q.w, q.x, q.y, q.z);
     let length = require_finite("length of the orientation", numbers.norm(), "")?;
     if (length - 1.0).abs() > MAX_LENGTH_DEVIATION {
-        return Err(Invalid::new("length of the orientation", length, "", "1: set x, y, z, w of the quaternion"));
+        return Err(Invalid::new(
+            "length of the orientation",
+            length,
+            "",
+            "1: set x, y, z, w of the quaternion",
+        ));
     }
     Ok(UnitQuaternion::from_quaternion(numbers))
 }
@@ -48,7 +53,12 @@ pub fn pose2(pose: &Pose) -> Result<Pose2, Invalid> {
     let pose = pose3(pose)?;
     let tilt = pose.rotate(Vector3::z()).z.clamp(-1.0, 1.0).acos();
     if tilt > MAX_TILT_RAD {
-        return Err(Invalid::new("tilt of the pose", format!("{:.1}", tilt.to_degrees()), "deg", "at most 15 deg"));
+        return Err(Invalid::new(
+            "tilt of the pose",
+            format!("{:.1}", tilt.to_degrees()),
+            "deg",
+            "at most 15 deg",
+        ));
     }
     let ahead = pose.rotate(Vector3::x());
     Ok(Pose2::new(pose.translation.x, pose.translation.y, ahead.y.atan2(ahead.x)))

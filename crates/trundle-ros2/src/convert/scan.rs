@@ -63,7 +63,13 @@ mod tests {
 
     fn message(ranges: &[f32], increment: f32) -> LaserScan {
         let (angle_min, range_max) = (-0.5, 5.0);
-        LaserScan { angle_min, angle_increment: increment, range_max, ranges: ranges.to_vec(), ..LaserScan::default() }
+        LaserScan {
+            angle_min,
+            angle_increment: increment,
+            range_max,
+            ranges: ranges.to_vec(),
+            ..LaserScan::default()
+        }
     }
 
     #[test]
@@ -71,7 +77,8 @@ mod tests {
         let ranges = [1.0, f32::INFINITY, f32::NAN, 9.0, f32::NEG_INFINITY];
         let on_base = Pose2::new(0.1, 0.0, std::f64::consts::PI);
         let scan = from_ros(&message(&ranges, 0.25), Stamp::default(), &on_base).unwrap();
-        let expected = [Beam::Hit { range: 1.0 }, Beam::Free { range: 5.0 }, Beam::Unseen, Beam::Unseen, Beam::Unseen];
+        let expected =
+            [Beam::Hit { range: 1.0 }, Beam::Free { range: 5.0 }, Beam::Unseen, Beam::Unseen, Beam::Unseen];
         assert_eq!(scan.beams(), expected);
         assert!((scan.angle(0) - (std::f64::consts::PI - 0.5)).abs() < 1e-7);
         let falling = from_ros(&message(&ranges, -0.25), Stamp::default(), &Pose2::IDENTITY).unwrap();
@@ -81,16 +88,25 @@ mod tests {
 
     #[test]
     fn broken_sweeps_are_refused() {
-        let refused = |message: LaserScan| from_ros(&message, Stamp::default(), &Pose2::IDENTITY).unwrap_err().to_string();
+        let refused = |message: LaserScan| {
+            from_ros(&message, Stamp::default(), &Pose2::IDENTITY).unwrap_err().to_string()
+        };
         assert!(refused(message(&[], 0.1)).starts_with("number of ranges is 0"));
         assert!(refused(message(&[1.0], f32::NAN)).starts_with("angle_increment is NaN"));
-        assert!(refused(LaserScan { range_max: f32::NAN, ..message(&[1.0], 0.1) }).starts_with("range_max is NaN"));
+        assert!(
+            refused(LaserScan { range_max: f32::NAN, ..message(&[1.0], 0.1) })
+                .starts_with("range_max is NaN")
+        );
     }
 
     #[test]
     fn a_scan_goes_there_and_back() {
-        let scan = from_ros(&message(&[1.0, f32::INFINITY, f32::NAN], 0.25), Stamp::default(), &Pose2::IDENTITY).unwrap();
-        let back = from_ros(&to_ros(&scan, Stamp::default(), "base_scan", 5.0), Stamp::default(), &Pose2::IDENTITY).unwrap();
+        let scan =
+            from_ros(&message(&[1.0, f32::INFINITY, f32::NAN], 0.25), Stamp::default(), &Pose2::IDENTITY)
+                .unwrap();
+        let back =
+            from_ros(&to_ros(&scan, Stamp::default(), "base_scan", 5.0), Stamp::default(), &Pose2::IDENTITY)
+                .unwrap();
         assert_eq!(back.beams(), scan.beams());
     }
 }

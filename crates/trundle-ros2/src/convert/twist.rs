@@ -18,12 +18,8 @@ pub fn from_ros(twist: &Twist) -> Result<Twist2, Invalid> {
             return Err(Invalid::new(name, value, unit, "-10 to 10"));
         }
     }
-    let others = [
-        ("linear.y", linear.y),
-        ("linear.z", linear.z),
-        ("angular.x", angular.x),
-        ("angular.y", angular.y),
-    ];
+    let others =
+        [("linear.y", linear.y), ("linear.z", linear.z), ("angular.x", angular.x), ("angular.y", angular.y)];
     match others.into_iter().find(|(_, value)| *value != 0.0) {
         Some((name, value)) => Err(Invalid::new(name, value, "", "0: the base drives ahead and turns")),
         None => Ok(Twist2::new(linear.x, angular.z)),

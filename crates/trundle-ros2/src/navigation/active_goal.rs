@@ -84,13 +84,22 @@ impl ActiveGoal {
     ///
     /// # Errors
     /// Why the goal is refused.
-    pub fn begin(&self, tasks: Vec<Task>, goal: Box<dyn RunningGoal>, time_limit: Option<Duration>) -> Result<(), String> {
-        let Some(view) = self.view() else { return Err("the robot has not begun: wait for its first images".to_owned()) };
+    pub fn begin(
+        &self,
+        tasks: Vec<Task>,
+        goal: Box<dyn RunningGoal>,
+        time_limit: Option<Duration>,
+    ) -> Result<(), String> {
+        let Some(view) = self.view() else {
+            return Err("the robot has not begun: wait for its first images".to_owned());
+        };
         let mission = Mission::new(tasks).map_err(|error| error.to_string())?;
-        let request = self.operator.send(OperatorCommand::Begin(mission)).map_err(|error| error.to_string())?;
+        let request =
+            self.operator.send(OperatorCommand::Begin(mission)).map_err(|error| error.to_string())?;
         let now = Instant::now();
         let start = view.estimate.pose;
-        let active = Active { goal, request, since: now, start, time_limit, stopping: None, feedback_due: now };
+        let active =
+            Active { goal, request, since: now, start, time_limit, stopping: None, feedback_due: now };
         if let Some(old) = self.lock().replace(active) {
             old.goal.end(GoalEnd::Aborted, &GoalOutcome::replaced());
         }
@@ -136,7 +145,8 @@ impl ActiveGoal {
         }
         if view.mission.id < active.request {
             let is_late = now - active.since > START_TIMEOUT;
-            return is_late.then(|| (GoalEnd::Aborted, GoalOutcome::failed("the run did not take the goal up")));
+            return is_late
+                .then(|| (GoalEnd::Aborted, GoalOutcome::failed("the run did not take the goal up")));
         }
         if let Some((since, end, outcome)) = &active.stopping {
             let is_over = is_standing(view) || now - *since > STANDSTILL_TIMEOUT;

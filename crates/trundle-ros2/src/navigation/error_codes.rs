@@ -35,10 +35,18 @@ fn of_kind(kind: ReasonKind) -> Option<u16> {
         ReasonKind::PathBlocked => ComputePathToPoseResult::NO_VALID_PATH,
         ReasonKind::TooLittleRoom => ComputePathToPoseResult::GOAL_OCCUPIED,
         ReasonKind::OffTheMap => ComputePathToPoseResult::GOAL_OUTSIDE_MAP,
-        ReasonKind::PoseUnknown | ReasonKind::PoseUncertain | ReasonKind::ViewContradictsMap => FollowPathResult::TF_ERROR,
-        ReasonKind::Obstacle | ReasonKind::Contact | ReasonKind::Cliff | ReasonKind::MovingObstacle => FollowPathResult::NO_VALID_CONTROL,
-        ReasonKind::NoProgress | ReasonKind::FinalApproach | ReasonKind::RepeatedContact => FollowPathResult::FAILED_TO_MAKE_PROGRESS,
-        ReasonKind::ImageMissing | ReasonKind::WheelsMissing | ReasonKind::DeviceLost => FollowPathResult::PATIENCE_EXCEEDED,
+        ReasonKind::PoseUnknown | ReasonKind::PoseUncertain | ReasonKind::ViewContradictsMap => {
+            FollowPathResult::TF_ERROR
+        }
+        ReasonKind::Obstacle | ReasonKind::Contact | ReasonKind::Cliff | ReasonKind::MovingObstacle => {
+            FollowPathResult::NO_VALID_CONTROL
+        }
+        ReasonKind::NoProgress | ReasonKind::FinalApproach | ReasonKind::RepeatedContact => {
+            FollowPathResult::FAILED_TO_MAKE_PROGRESS
+        }
+        ReasonKind::ImageMissing | ReasonKind::WheelsMissing | ReasonKind::DeviceLost => {
+            FollowPathResult::PATIENCE_EXCEEDED
+        }
         _ => return None,
     })
 }
@@ -47,9 +55,13 @@ fn of_kind(kind: ReasonKind) -> Option<u16> {
 #[must_use]
 pub fn of_docking(reason: &Reason) -> u16 {
     let code = |kind: &ReasonKind| match kind {
-        ReasonKind::NoStationLight | ReasonKind::StationLightLost | ReasonKind::StationUncertain => Some(DockRobotResult::FAILED_TO_DETECT_DOCK),
+        ReasonKind::NoStationLight | ReasonKind::StationLightLost | ReasonKind::StationUncertain => {
+            Some(DockRobotResult::FAILED_TO_DETECT_DOCK)
+        }
         ReasonKind::NoCharging => Some(DockRobotResult::FAILED_TO_CHARGE),
-        ReasonKind::StationBlocked | ReasonKind::Obstacle | ReasonKind::Contact => Some(DockRobotResult::FAILED_TO_CONTROL),
+        ReasonKind::StationBlocked | ReasonKind::Obstacle | ReasonKind::Contact => {
+            Some(DockRobotResult::FAILED_TO_CONTROL)
+        }
         _ => None,
     };
     reason.kinds().iter().find_map(code).unwrap_or(DockRobotResult::UNKNOWN)

@@ -19,7 +19,11 @@ pub enum GoalPoseError {
 ///
 /// # Errors
 /// When a number is not finite, the rotation was never set, or the frame is none of these.
-pub fn in_map(goal: &PoseStamped, frames: &FrameNames, view: Option<&RunView>) -> Result<Pose2, GoalPoseError> {
+pub fn in_map(
+    goal: &PoseStamped,
+    frames: &FrameNames,
+    view: Option<&RunView>,
+) -> Result<Pose2, GoalPoseError> {
     let pose = pose::pose2(&goal.pose).map_err(GoalPoseError::Invalid)?;
     let frame = goal.header.frame_id.trim_start_matches('/');
     if frame == frames.map {

@@ -3,7 +3,9 @@
 use super::active_goal::ActiveGoal;
 use crate::Ros2Error;
 use crate::generated::lifecycle_msgs::{GetState, GetStateResponse, State};
-use crate::generated::nav2_msgs::{ManageLifecycleNodes, ManageLifecycleNodesRequest, ManageLifecycleNodesResponse};
+use crate::generated::nav2_msgs::{
+    ManageLifecycleNodes, ManageLifecycleNodesRequest, ManageLifecycleNodesResponse,
+};
 use crate::generated::std_srvs::{Trigger, TriggerResponse};
 use crate::node::RosNode;
 use trundle_runtime::OperatorCommand;
@@ -31,7 +33,9 @@ const MANAGERS: [&str; 2] = ["lifecycle_manager_navigation", "lifecycle_manager_
 pub fn offer(node: &mut RosNode, active: &ActiveGoal) -> Result<(), Ros2Error> {
     for server in SERVERS {
         let view = active.clone();
-        node.serve::<GetState>(&format!("{server}/get_state"), move |_| GetStateResponse { current_state: state(&view) })?;
+        node.serve::<GetState>(&format!("{server}/get_state"), move |_| GetStateResponse {
+            current_state: state(&view),
+        })?;
     }
     for manager in MANAGERS {
         let managed = active.clone();
@@ -63,9 +67,9 @@ fn manage(active: &ActiveGoal, command: u8) -> bool {
         ManageLifecycleNodesRequest::PAUSE => OperatorCommand::Pause,
         ManageLifecycleNodesRequest::RESUME => OperatorCommand::Continue,
         // The process goes on: it stops the robot and waits for goals.
-        ManageLifecycleNodesRequest::RESET | ManageLifecycleNodesRequest::SHUTDOWN | ManageLifecycleNodesRequest::CLEANUP => {
-            OperatorCommand::cancel()
-        }
+        ManageLifecycleNodesRequest::RESET
+        | ManageLifecycleNodesRequest::SHUTDOWN
+        | ManageLifecycleNodesRequest::CLEANUP => OperatorCommand::cancel(),
         _ => return false,
     };
     active.send(command).is_ok()

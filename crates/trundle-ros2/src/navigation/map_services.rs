@@ -5,8 +5,9 @@ use crate::Ros2Error;
 use crate::convert::grid;
 use crate::generated::nav_msgs::{GetMap, GetMapResponse};
 use crate::generated::nav2_msgs::{
-    ClearCostmapAroundRobot, ClearCostmapAroundRobotResponse, ClearCostmapExceptRegion, ClearCostmapExceptRegionResponse,
-    ClearEntireCostmap, ClearEntireCostmapResponse, LoadMap, LoadMapResponse, SaveMap, SaveMapRequest, SaveMapResponse,
+    ClearCostmapAroundRobot, ClearCostmapAroundRobotResponse, ClearCostmapExceptRegion,
+    ClearCostmapExceptRegionResponse, ClearEntireCostmap, ClearEntireCostmapResponse, LoadMap,
+    LoadMapResponse, SaveMap, SaveMapRequest, SaveMapResponse,
 };
 use crate::node::{Diagnostics, RosNode};
 use crate::outputs::FrameNames;
@@ -33,15 +34,23 @@ pub fn offer(node: &mut RosNode, active: &ActiveGoal, frames: &FrameNames) -> Re
     for costmap in ["global_costmap", "local_costmap"] {
         // The costs follow the map at each second: there is nothing to clear.
         let clear = |service: &str| format!("{costmap}/{service}_{costmap}");
-        node.serve::<ClearEntireCostmap>(&clear("clear_entirely"), |_| ClearEntireCostmapResponse::default())?;
-        node.serve::<ClearCostmapAroundRobot>(&clear("clear_around"), |_| ClearCostmapAroundRobotResponse::default())?;
-        node.serve::<ClearCostmapExceptRegion>(&clear("clear_except"), |_| ClearCostmapExceptRegionResponse::default())?;
+        node.serve::<ClearEntireCostmap>(&clear("clear_entirely"), |_| {
+            ClearEntireCostmapResponse::default()
+        })?;
+        node.serve::<ClearCostmapAroundRobot>(&clear("clear_around"), |_| {
+            ClearCostmapAroundRobotResponse::default()
+        })?;
+        node.serve::<ClearCostmapExceptRegion>(&clear("clear_except"), |_| {
+            ClearCostmapExceptRegionResponse::default()
+        })?;
     }
     Ok(())
 }
 
 /// The newest map, and its time on the ROS clock.
-fn newest(active: &ActiveGoal) -> Option<(std::sync::Arc<trundle_app::operator::MapView>, trundle_core::Stamp)> {
+fn newest(
+    active: &ActiveGoal,
+) -> Option<(std::sync::Arc<trundle_app::operator::MapView>, trundle_core::Stamp)> {
     let view = active.view()?;
     let at = active.clock().to_ros(view.stamp);
     Some((view.map.clone()?, at))
@@ -51,7 +60,8 @@ fn newest(active: &ActiveGoal) -> Option<(std::sync::Arc<trundle_app::operator::
 fn save(request: &SaveMapRequest, active: &ActiveGoal) -> Result<(), String> {
     let url = Path::new(request.map_url.trim_start_matches("file://"));
     let name = url.file_name().and_then(|name| name.to_str());
-    let name = name.ok_or_else(|| format!("map_url is '{}', expected a path without extension", request.map_url))?;
+    let name =
+        name.ok_or_else(|| format!("map_url is '{}', expected a path without extension", request.map_url))?;
     let image = match request.image_format.as_str() {
         "" | "pgm" => MapImage::Pgm,
         "png" => MapImage::Png,
@@ -64,7 +74,8 @@ fn save(request: &SaveMapRequest, active: &ActiveGoal) -> Result<(), String> {
     let (file, bytes) = map_picture(name, &map.grid, image).map_err(|error| error.to_string())?;
     replace_file(&url.with_file_name(&file), &bytes).map_err(|error| error.to_string())?;
     let yaml = map_yaml(&map.grid, &file);
-    replace_file(&url.with_file_name(format!("{name}.yaml")), yaml.as_bytes()).map_err(|error| error.to_string())
+    replace_file(&url.with_file_name(format!("{name}.yaml")), yaml.as_bytes())
+        .map_err(|error| error.to_string())
 }
 
 fn refuse_load(diagnostics: &Diagnostics) -> LoadMapResponse {

@@ -19,7 +19,8 @@ pub use parameters::Parameters;
 
 use crate::Ros2Error;
 use crate::generated::nav2_msgs::{
-    BackUp, DockRobot, DriveOnHeading, FollowWaypoints, NavigateThroughPoses, NavigateToPose, Spin, UndockRobot,
+    BackUp, DockRobot, DriveOnHeading, FollowWaypoints, NavigateThroughPoses, NavigateToPose, Spin,
+    UndockRobot,
 };
 use crate::node::RosNode;
 use crate::outputs::FrameNames;

@@ -42,7 +42,12 @@ pub trait NavigationAction: ActionType<Result: Default> + 'static {
     }
 
     /// Feedback.
-    fn feedback(goal: &Self::Goal, view: &RunView, progress: &GoalProgress, frames: &FrameNames) -> Self::Feedback;
+    fn feedback(
+        goal: &Self::Goal,
+        view: &RunView,
+        progress: &GoalProgress,
+        frames: &FrameNames,
+    ) -> Self::Feedback;
 
     /// The result, after `time_s` seconds.
     fn result(goal: &Self::Goal, outcome: &GoalOutcome, time_s: f64) -> Self::Result;
@@ -52,10 +57,16 @@ pub trait NavigationAction: ActionType<Result: Default> + 'static {
 ///
 /// # Errors
 /// When the action cannot be made.
-pub fn offer<A: NavigationAction>(node: &mut RosNode, name: &str, active: &ActiveGoal, frames: &FrameNames) -> Result<(), Ros2Error> {
+pub fn offer<A: NavigationAction>(
+    node: &mut RosNode,
+    name: &str,
+    active: &ActiveGoal,
+    frames: &FrameNames,
+) -> Result<(), Ros2Error> {
     let (active, frames) = (active.clone(), frames.clone());
     let clock = active.clock();
-    ActionHandle::<A>::offer(node, name, clock, |handle| Box::new(Handler { handle, active, frames })).map(drop)
+    ActionHandle::<A>::offer(node, name, clock, |handle| Box::new(Handler { handle, active, frames }))
+        .map(drop)
 }
 
 /// The result of a goal whose pose cannot be taken up; `failed` makes it of the message.

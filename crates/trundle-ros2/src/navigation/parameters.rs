@@ -2,10 +2,10 @@
 
 use crate::Ros2Error;
 use crate::generated::rcl_interfaces::{
-    DescribeParameters, DescribeParametersResponse, GetParameterTypes, GetParameterTypesResponse, GetParameters,
-    GetParametersResponse, ListParameters, ListParametersRequest, ListParametersResponse, ListParametersResult,
-    ParameterDescriptor, ParameterType, ParameterValue, SetParameters, SetParametersAtomically,
-    SetParametersAtomicallyResponse, SetParametersResponse, SetParametersResult,
+    DescribeParameters, DescribeParametersResponse, GetParameterTypes, GetParameterTypesResponse,
+    GetParameters, GetParametersResponse, ListParameters, ListParametersRequest, ListParametersResponse,
+    ListParametersResult, ParameterDescriptor, ParameterType, ParameterValue, SetParameters,
+    SetParametersAtomically, SetParametersAtomicallyResponse, SetParametersResponse, SetParametersResult,
 };
 use crate::node::RosNode;
 use crate::wire::Bytes;
@@ -16,7 +16,8 @@ use trundle_runtime::RobotConfig;
 use trundle_runtime::settings::reference;
 
 /// Why a parameter is not set.
-const READ_ONLY: &str = "settings of a running robot cannot change: set them in the robot file and start trundle anew";
+const READ_ONLY: &str =
+    "settings of a running robot cannot change: set them in the robot file and start trundle anew";
 
 /// A parameter.
 #[derive(Debug, Clone)]
@@ -37,8 +38,15 @@ impl Parameters {
         let root = serde_json::to_value(robot).unwrap_or_default();
         let parameter = |setting: &trundle_runtime::settings::Setting| {
             let value = value_of(root.pointer(&format!("/{}", setting.path.replace('.', "/")))?);
-            let constraints = if setting.kind.contains('|') { format!("one of {}", setting.kind.replace('|', ", ")) } else { String::new() };
-            Some((setting.key.to_owned(), Parameter { value, description: setting.doc.to_owned(), constraints }))
+            let constraints = if setting.kind.contains('|') {
+                format!("one of {}", setting.kind.replace('|', ", "))
+            } else {
+                String::new()
+            };
+            Some((
+                setting.key.to_owned(),
+                Parameter { value, description: setting.doc.to_owned(), constraints },
+            ))
         };
         let mut parameters: BTreeMap<String, Parameter> = reference().iter().filter_map(parameter).collect();
         let sim_time = Parameter {
@@ -69,17 +77,27 @@ impl Parameters {
     fn list(&self, request: &ListParametersRequest) -> ListParametersResult {
         let has_depth = |rest: &str| request.depth == 0 || rest.split('.').count() as u64 <= request.depth;
         let is_asked = |name: &str| {
-            let below = |prefix: &String| name == prefix || name.strip_prefix(prefix.as_str()).is_some_and(|rest| rest.starts_with('.') && has_depth(&rest[1..]));
+            let below = |prefix: &String| {
+                name == prefix
+                    || name
+                        .strip_prefix(prefix.as_str())
+                        .is_some_and(|rest| rest.starts_with('.') && has_depth(&rest[1..]))
+            };
             if request.prefixes.is_empty() { has_depth(name) } else { request.prefixes.iter().any(below) }
         };
         let names: Vec<String> = self.0.keys().filter(|name| is_asked(name)).cloned().collect();
-        let mut prefixes: Vec<String> = names.iter().filter_map(|name| Some(name.rsplit_once('.')?.0.to_owned())).collect();
+        let mut prefixes: Vec<String> =
+            names.iter().filter_map(|name| Some(name.rsplit_once('.')?.0.to_owned())).collect();
         prefixes.dedup();
         ListParametersResult { names, prefixes }
     }
 
     fn refuse(&self, name: &str) -> SetParametersResult {
-        let reason = if self.0.contains_key(name) { READ_ONLY.to_owned() } else { format!("there is no parameter {name}") };
+        let reason = if self.0.contains_key(name) {
+            READ_ONLY.to_owned()
+        } else {
+            format!("there is no parameter {name}")
+        };
         SetParametersResult { successful: false, reason }
     }
 
@@ -97,11 +115,15 @@ impl Parameters {
             types: Bytes(request.names.iter().map(|name| own.value(name).r#type).collect()),
         })?;
         let own = self.clone();
-        node.serve::<DescribeParameters>("~/describe_parameters", move |request| DescribeParametersResponse {
-            descriptors: request.names.iter().map(|name| own.describe(name)).collect(),
+        node.serve::<DescribeParameters>("~/describe_parameters", move |request| {
+            DescribeParametersResponse {
+                descriptors: request.names.iter().map(|name| own.describe(name)).collect(),
+            }
         })?;
         let own = self.clone();
-        node.serve::<ListParameters>("~/list_parameters", move |request| ListParametersResponse { result: own.list(&request) })?;
+        node.serve::<ListParameters>("~/list_parameters", move |request| ListParametersResponse {
+            result: own.list(&request),
+        })?;
         let own = self.clone();
         node.serve::<SetParameters>("~/set_parameters", move |request| SetParametersResponse {
             results: request.parameters.iter().map(|parameter| own.refuse(&parameter.name)).collect(),
@@ -122,10 +144,17 @@ fn value_of(value: &Value) -> ParameterValue {
         Value::Bool(flag) => (own.r#type, own.bool_value) = (ParameterType::PARAMETER_BOOL, *flag),
         Value::Number(number) => match number.as_i64() {
             Some(integer) => (own.r#type, own.integer_value) = (ParameterType::PARAMETER_INTEGER, integer),
-            None => (own.r#type, own.double_value) = (ParameterType::PARAMETER_DOUBLE, number.as_f64().unwrap_or_default()),
+            None => {
+                (own.r#type, own.double_value) =
+                    (ParameterType::PARAMETER_DOUBLE, number.as_f64().unwrap_or_default())
+            }
         },
-        Value::String(text) => (own.r#type, own.string_value) = (ParameterType::PARAMETER_STRING, text.clone()),
-        Value::Array(_) | Value::Object(_) => (own.r#type, own.string_value) = (ParameterType::PARAMETER_STRING, value.to_string()),
+        Value::String(text) => {
+            (own.r#type, own.string_value) = (ParameterType::PARAMETER_STRING, text.clone())
+        }
+        Value::Array(_) | Value::Object(_) => {
+            (own.r#type, own.string_value) = (ParameterType::PARAMETER_STRING, value.to_string())
+        }
     }
     own
 }
@@ -142,7 +171,10 @@ mod tests {
         let described = parameters.describe("drive.wheel_radius_m");
         assert!(described.read_only && !described.description.is_empty());
         assert_eq!(described.r#type, ParameterType::PARAMETER_DOUBLE);
-        assert_eq!(parameters.value("drive.wheel_radius_m").double_value, RobotConfig::default().drive.wheel_radius);
+        assert_eq!(
+            parameters.value("drive.wheel_radius_m").double_value,
+            RobotConfig::default().drive.wheel_radius
+        );
         assert!(parameters.value("use_sim_time").bool_value);
         assert_eq!(parameters.value("no.such").r#type, ParameterType::PARAMETER_NOT_SET);
         assert!(parameters.refuse("no.such").reason.contains("no.such"));

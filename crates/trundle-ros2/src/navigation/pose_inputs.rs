@@ -33,7 +33,8 @@ pub fn offer(node: &mut RosNode, active: &ActiveGoal, frames: &FrameNames) -> Re
         begun.unwrap_or_else(|why| diagnostics.warn("goal_pose", why));
     })?;
     let (guesses, own, diagnostics) = (active.clone(), frames.clone(), node.diagnostics());
-    let on_guess = move |guess: PoseWithCovarianceStamped| set_pose(&guesses, &guess, &own, "initialpose", &diagnostics);
+    let on_guess =
+        move |guess: PoseWithCovarianceStamped| set_pose(&guesses, &guess, &own, "initialpose", &diagnostics);
     node.subscribe("initialpose", &qos::reliable(1), None, on_guess)?;
     let (guesses, own, diagnostics) = (active.clone(), frames.clone(), node.diagnostics());
     node.serve::<SetInitialPose>("set_initial_pose", move |request| {
@@ -53,13 +54,20 @@ fn begin(active: &ActiveGoal, goal: &PoseStamped, frames: &FrameNames) -> Result
 }
 
 /// Tells the robot where it stands.
-fn set_pose(active: &ActiveGoal, message: &PoseWithCovarianceStamped, frames: &FrameNames, name: &str, diagnostics: &Diagnostics) {
+fn set_pose(
+    active: &ActiveGoal,
+    message: &PoseWithCovarianceStamped,
+    frames: &FrameNames,
+    name: &str,
+    diagnostics: &Diagnostics,
+) {
     let guess = if message.header.frame_id.trim_start_matches('/') == frames.map {
         guess(message).map_err(|error| error.to_string())
     } else {
         Err(format!("frame of the pose is '{}', expected {}", message.header.frame_id, frames.map))
     };
-    let sent = guess.and_then(|guess| active.send(OperatorCommand::SetPose(guess)).map_err(|error| error.to_string()));
+    let sent = guess
+        .and_then(|guess| active.send(OperatorCommand::SetPose(guess)).map_err(|error| error.to_string()));
     sent.map_or_else(|why| diagnostics.warn(name, why), drop);
 }
 

@@ -22,7 +22,8 @@ use std::time::Instant;
 /// Requests that are taken from a queue at once. Source: ours.
 const MAX_TAKEN_AT_ONCE: usize = 1000;
 
-type Server<A> = ActionServer<<A as ActionType>::Goal, <A as ActionType>::Result, <A as ActionType>::Feedback>;
+type Server<A> =
+    ActionServer<<A as ActionType>::Goal, <A as ActionType>::Result, <A as ActionType>::Feedback>;
 
 /// Decides about the goals of an action. Called in the node's thread.
 pub trait GoalHandler<A: ActionType>: Send {
@@ -81,7 +82,9 @@ where
     /// Ends a goal with its result. A goal that has ended stays as it is.
     pub fn end(&self, id: &GoalId, end: GoalEnd, result: A::Result) {
         let mut inner = self.lock();
-        let Some((waiting, status)) = inner.goals.end(id, end, result.clone(), Instant::now()) else { return };
+        let Some((waiting, status)) = inner.goals.end(id, end, result.clone(), Instant::now()) else {
+            return;
+        };
         for request in waiting {
             inner.send_result(request, status, result.clone());
         }
@@ -122,7 +125,8 @@ where
 
     fn publish_statuses(&mut self) {
         let statuses = self.goals.statuses();
-        self.ids.retain(|id, _| statuses.status_list.iter().any(|status| status.goal_info.goal_id.uuid == *id));
+        self.ids
+            .retain(|id, _| statuses.status_list.iter().any(|status| status.goal_info.goal_id.uuid == *id));
         let sent = in_form_of(&statuses).map(|statuses| self.server.send_goal_statuses(statuses));
         if !matches!(sent, Some(Ok(()))) {
             tracing::debug!("the states of the goals of {} were not sent", self.name);
@@ -225,7 +229,8 @@ where
                 return self.on_unreadable("request for a result", &error);
             }
         };
-        if let ResultAnswer::Now(status, result) = inner.goals.result(asked.goal_id.uuid.as_bytes(), request) {
+        if let ResultAnswer::Now(status, result) = inner.goals.result(asked.goal_id.uuid.as_bytes(), request)
+        {
             inner.send_result(request, status, result);
         }
         true
@@ -233,7 +238,8 @@ where
 
     fn on_unreadable(&self, what: &str, error: &dyn std::fmt::Debug) -> bool {
         let inner = self.handle.lock();
-        let message = format!("a {what} cannot be read ({error:?}): its sender uses another definition of the action");
+        let message =
+            format!("a {what} cannot be read ({error:?}): its sender uses another definition of the action");
         inner.diagnostics.warn(&inner.name, message);
         true
     }

@@ -34,7 +34,9 @@ impl<M: Message + Send + 'static, F: FnMut(M) + Send> Endpoint for Subscribed<M,
                 }
                 Ok(None) => return,
                 Err(error) => {
-                    let message = format!("a message cannot be read ({error:?}): its sender uses another definition of the type");
+                    let message = format!(
+                        "a message cannot be read ({error:?}): its sender uses another definition of the type"
+                    );
                     self.diagnostics.warn(&self.name, message);
                 }
             }
@@ -87,7 +89,9 @@ where
                 Ok(Some((id, request))) => (self.handler)(id, request),
                 Ok(None) => return,
                 Err(error) => {
-                    let message = format!("a request cannot be read ({error:?}): its sender uses another definition of the service");
+                    let message = format!(
+                        "a request cannot be read ({error:?}): its sender uses another definition of the service"
+                    );
                     self.diagnostics.warn(&self.name, message);
                 }
             }

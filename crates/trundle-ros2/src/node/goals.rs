@@ -1,6 +1,8 @@
 //! The goals of an action server: their states, who waits for their results, and the limits against a flood.
 
-use crate::generated::action_msgs::{CancelGoalRequest, CancelGoalResponse, GoalInfo, GoalStatus, GoalStatusArray};
+use crate::generated::action_msgs::{
+    CancelGoalRequest, CancelGoalResponse, GoalInfo, GoalStatus, GoalStatusArray,
+};
 use crate::generated::unique_identifier_msgs::UUID;
 use ros2_client::RmwRequestId;
 use std::collections::{BTreeMap, VecDeque};
@@ -93,7 +95,13 @@ impl<R: Clone + Default> Goals<R> {
             return Err(format!("{MAX_GOALS} goals without an end; the rest is refused"));
         }
         self.arrivals.push_back(now);
-        let goal = Goal { stamp, status: GoalStatus::STATUS_EXECUTING, result: None, ended: None, waiting: Vec::new() };
+        let goal = Goal {
+            stamp,
+            status: GoalStatus::STATUS_EXECUTING,
+            result: None,
+            ended: None,
+            waiting: Vec::new(),
+        };
         self.goals.insert(id, goal);
         Ok(())
     }
@@ -108,11 +116,16 @@ impl<R: Clone + Default> Goals<R> {
         let GoalInfo { goal_id, stamp } = &request.goal_info;
         let (id, before) = (goal_id.uuid, i64::from(stamp.sec) * 1_000_000_000 + i64::from(stamp.nanosec));
         let is_all = id == GoalId::default() && before == 0;
-        let is_asked = |own: &GoalId, goal: &Goal<R>| is_all || *own == id || (before != 0 && goal.stamp <= before);
+        let is_asked =
+            |own: &GoalId, goal: &Goal<R>| is_all || *own == id || (before != 0 && goal.stamp <= before);
         let is_running = |goal: &Goal<R>| goal.ended.is_none();
-        let asked: Vec<GoalId> =
-            self.goals.iter().filter(|(own, goal)| is_asked(own, goal) && is_running(goal)).map(|(own, _)| *own).collect();
-        let known = self.goals.get(&id);
+        let asked: Vec<GoalId> = self
+            .goals
+            .iter()
+            .filter(|(own, goal)| is_asked(own, goal) && is_running(goal))
+            .map(|(own, _)| *own)
+            .collect();
+        let is_known = self.goals.contains_key(&id);
         let mut response = CancelGoalResponse::default();
         for id in &asked {
             if let Some(goal) = self.goals.get_mut(id) {
@@ -120,17 +133,23 @@ impl<R: Clone + Default> Goals<R> {
                 response.goals_canceling.push(info(id, goal.stamp));
             }
         }
-        response.return_code = match (asked.is_empty(), known) {
+        response.return_code = match (asked.is_empty(), is_known) {
             (false, _) => CancelGoalResponse::ERROR_NONE,
-            (true, Some(_)) => CancelGoalResponse::ERROR_GOAL_TERMINATED,
-            (true, None) if id != GoalId::default() => CancelGoalResponse::ERROR_UNKNOWN_GOAL_ID,
-            (true, None) => CancelGoalResponse::ERROR_REJECTED,
+            (true, true) => CancelGoalResponse::ERROR_GOAL_TERMINATED,
+            (true, false) if id != GoalId::default() => CancelGoalResponse::ERROR_UNKNOWN_GOAL_ID,
+            (true, false) => CancelGoalResponse::ERROR_REJECTED,
         };
         (response, asked)
     }
 
     /// Ends a goal; those who wait for its result, and its status. `None` where it is unknown or has ended.
-    pub fn end(&mut self, id: &GoalId, end: GoalEnd, result: R, now: Instant) -> Option<(Vec<RmwRequestId>, i8)> {
+    pub fn end(
+        &mut self,
+        id: &GoalId,
+        end: GoalEnd,
+        result: R,
+        now: Instant,
+    ) -> Option<(Vec<RmwRequestId>, i8)> {
         let goal = self.goals.get_mut(id).filter(|goal| goal.ended.is_none())?;
         goal.status = end.status();
         goal.result = Some(result);
@@ -159,7 +178,10 @@ impl<R: Clone + Default> Goals<R> {
     /// The states of all goals.
     #[must_use]
     pub fn statuses(&self) -> GoalStatusArray {
-        let status = |(id, goal): (&GoalId, &Goal<R>)| GoalStatus { goal_info: info(id, goal.stamp), status: goal.status };
+        let status = |(id, goal): (&GoalId, &Goal<R>)| GoalStatus {
+            goal_info: info(id, goal.stamp),
+            status: goal.status,
+        };
         GoalStatusArray { status_list: self.goals.iter().map(status).collect() }
     }
 

@@ -27,7 +27,9 @@ impl RosArguments {
                 ("-p" | "--param", Some((name, value))) => {
                     parsed.parameters.push((name.to_owned(), value.to_owned()));
                 }
-                _ => return Err(Ros2Error::Argument { argument: format!("{flag} {value}").trim().to_owned() }),
+                _ => {
+                    return Err(Ros2Error::Argument { argument: format!("{flag} {value}").trim().to_owned() });
+                }
             }
         }
         Ok(parsed)
@@ -59,7 +61,10 @@ mod tests {
 
     #[test]
     fn rules_and_parameters_are_read() {
-        let read = parse("--ros-args -r odom:=wheel/odom -r __ns:=/robot1 --remap __node:=nav -p use_sim_time:=true").unwrap();
+        let read = parse(
+            "--ros-args -r odom:=wheel/odom -r __ns:=/robot1 --remap __node:=nav -p use_sim_time:=true",
+        )
+        .unwrap();
         assert_eq!(read.names.resolve("odom"), "/robot1/wheel/odom");
         assert_eq!((read.names.node.as_str(), read.parameter("use_sim_time")), ("nav", Some("true")));
         for bad in ["-r odom", "-q x:=y", "-r", "-r odom:="] {

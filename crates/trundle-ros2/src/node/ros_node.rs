@@ -55,7 +55,8 @@ impl RosNode {
             let value = domain.to_string();
             return Err(Ros2Error::Parameter { name: "domain id".into(), value, expected: "0 to 232" });
         }
-        let mut builder = DomainParticipantBuilder::new(*domain).socket_receive_buffer_size(RECEIVE_BUFFER_BYTES);
+        let mut builder =
+            DomainParticipantBuilder::new(*domain).socket_receive_buffer_size(RECEIVE_BUFFER_BYTES);
         if let Some(addresses) = networks.addresses() {
             builder = builder.with_only_networks(addresses);
         }
@@ -93,9 +94,13 @@ impl RosNode {
     ///
     /// # Errors
     /// When the name is not allowed or the topic cannot be made.
-    pub fn publisher<M: MessageType>(&mut self, topic: &str, qos: &QosProfile) -> Result<Publisher<M>, Ros2Error> {
+    pub fn publisher<M: MessageType>(
+        &mut self,
+        topic: &str,
+        qos: &QosProfile,
+    ) -> Result<Publisher<M>, Ros2Error> {
+        let name = self.names.resolve(topic);
         let topic = self.topic::<M>(topic, qos)?;
-        let name = topic.name();
         self.node.create_publisher(&topic, Some(qos.clone())).map_err(|error| Ros2Error::create(name, error))
     }
 
@@ -115,10 +120,15 @@ impl RosNode {
         let topic = self.topic::<M>(topic, qos)?;
         let subscription = self.node.create_subscription(&topic, Some(qos.clone()));
         let subscription = subscription.map_err(|error| Ros2Error::create(&name, error))?;
-        let monitor = Arc::new(TopicMonitor::new(name.clone(), MessageTypeName::new(M::PACKAGE, M::NAME).dds_msg_type(), limit));
+        let monitor = Arc::new(TopicMonitor::new(
+            name.clone(),
+            MessageTypeName::new(M::PACKAGE, M::NAME).dds_msg_type(),
+            limit,
+        ));
         self.monitors.push(Arc::clone(&monitor));
         let diagnostics = self.diagnostics.clone();
-        let subscribed = Subscribed { subscription, handler, name, monitor: Arc::clone(&monitor), diagnostics };
+        let subscribed =
+            Subscribed { subscription, handler, name, monitor: Arc::clone(&monitor), diagnostics };
         self.endpoints.push(Box::new(subscribed));
         Ok(monitor)
     }
@@ -189,7 +199,11 @@ impl RosNode {
         NodeThread::start(endpoints, tickers, (node, context))
     }
 
-    fn topic<M: MessageType>(&self, topic: &str, qos: &QosProfile) -> Result<ros2_client::dds::rustdds::Topic, Ros2Error> {
+    fn topic<M: MessageType>(
+        &self,
+        topic: &str,
+        qos: &QosProfile,
+    ) -> Result<ros2_client::dds::rustdds::Topic, Ros2Error> {
         let (name, full) = (self.names.parsed(topic)?, self.names.resolve(topic));
         self.node
             .create_topic(&name, MessageTypeName::new(M::PACKAGE, M::NAME), qos)
@@ -208,9 +222,11 @@ fn check_topics(context: &Context, monitors: &[Arc<TopicMonitor>], diagnostics: 
     for writer in writers.iter().map(|writer| &writer.publication_topic_data) {
         let name = writer.topic_name().strip_prefix("rt").unwrap_or_default();
         let found = monitors.iter().find(|monitor| monitor.name == name);
-        if let Some(monitor) = found.filter(|monitor| monitor.type_name != *writer.type_name()) {
-            let (own, other) = (&monitor.type_name, writer.type_name());
-            let message = format!("somebody publishes {other} here, expected {own}: give the topic of the right type by -r {name}:=TOPIC");
+        if let Some(monitor) = found.filter(|monitor| monitor.type_name != writer.type_name) {
+            let (own, other) = (&monitor.type_name, &writer.type_name);
+            let message = format!(
+                "somebody publishes {other} here, expected {own}: give the topic of the right type by -r {name}:=TOPIC"
+            );
             diagnostics.report(name, Level::Error, message);
         }
     }

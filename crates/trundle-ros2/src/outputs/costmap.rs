@@ -1,7 +1,7 @@
 //! Views of the map as Nav2's costmaps: what the robot's body may not enter, for people who look at them.
 
 use trundle_core::{Cell, GridGeometry, OccupancyGrid, Pose2, Vector2};
-use trundle_grid::distance_field::{DistanceField, UnknownIs};
+use trundle_grid::{DistanceField, UnknownIs};
 
 /// Distance beyond the body within which a cell costs something \[m\]. Source: Nav2's default `inflation_radius`, 0.55 m.
 const INFLATION_M: f64 = 0.55;
@@ -38,11 +38,20 @@ pub fn local(geometry: &GridGeometry, costs: &[i8], robot: &Pose2) -> Option<(Gr
     let index = |value: f64, origin: f64, count: usize| {
         (((value - origin) / geometry.resolution).floor().max(0.0) as usize).min(count)
     };
-    let (left, right) = (index(robot.x - half, geometry.origin.x, geometry.width), index(robot.x + half, geometry.origin.x, geometry.width));
-    let (low, high) = (index(robot.y - half, geometry.origin.y, geometry.height), index(robot.y + half, geometry.origin.y, geometry.height));
+    let (left, right) = (
+        index(robot.x - half, geometry.origin.x, geometry.width),
+        index(robot.x + half, geometry.origin.x, geometry.width),
+    );
+    let (low, high) = (
+        index(robot.y - half, geometry.origin.y, geometry.height),
+        index(robot.y + half, geometry.origin.y, geometry.height),
+    );
     let corner = geometry.origin + Vector2::new(left as f64, low as f64) * geometry.resolution;
-    let part = GridGeometry::new(geometry.resolution, corner, right.checked_sub(left)?, high.checked_sub(low)?).ok()?;
-    let row = |row: usize| costs.get(row * geometry.width + left..row * geometry.width + right).unwrap_or_default();
+    let part =
+        GridGeometry::new(geometry.resolution, corner, right.checked_sub(left)?, high.checked_sub(low)?)
+            .ok()?;
+    let row =
+        |row: usize| costs.get(row * geometry.width + left..row * geometry.width + right).unwrap_or_default();
     Some((part, (low..high).flat_map(row).copied().collect()))
 }
 

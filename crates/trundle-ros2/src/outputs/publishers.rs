@@ -10,7 +10,7 @@ use crate::generated::sensor_msgs::{BatteryState, LaserScan};
 use crate::generated::tf2_msgs::TFMessage;
 use crate::interface::MessageType;
 use crate::node::{Diagnostics, RosNode, qos};
-use ros2_client::Publisher;
+use ros2_client::{Publisher, WriteError};
 use ros2_client::qos::QosProfile;
 
 /// A topic that is published.
@@ -33,14 +33,18 @@ impl<M: MessageType> OutputTopic<M> {
     /// Publishes a message. A message that is not sent is reported, not waited for.
     pub fn publish(&self, message: M) {
         if let Err(error) = self.publisher.publish(message) {
-            self.diagnostics.warn(&self.name, format!("a message was not sent: {}", kind(&format!("{error:?}"))));
+            self.diagnostics
+                .warn(&self.name, format!("a message was not sent: {}", kind(&format!("{error:?}"))));
         }
     }
 }
 
-/// The name of an error without the message that it carries.
-fn kind(error: &str) -> &str {
-    error.split(['(', '{', ' ']).next().unwrap_or_default()
+/// Why a message was not sent, without the message.
+fn cause<M>(error: &WriteError<M>) -> &'static str {
+    match error {
+        WriteError::WouldBlock { .. } => "a subscriber does not take messages as fast as they come",
+        _ => "the middleware refused it",
+    }
 }
 
 /// The topics that a robot publishes.
@@ -80,7 +84,8 @@ impl RobotTopics {
         let own = settings.has_own_body;
         let battery = own.then(|| OutputTopic::new(node, "battery_state", &qos::reliable(1))).transpose()?;
         let odom = own.then(|| OutputTopic::new(node, "odom", &qos::reliable(10))).transpose()?;
-        let scan = settings.publishes_scan.then(|| OutputTopic::new(node, "scan", &qos::reliable(5))).transpose()?;
+        let scan =
+            settings.publishes_scan.then(|| OutputTopic::new(node, "scan", &qos::reliable(5))).transpose()?;
         Ok(Self {
             tf: OutputTopic::new(node, "/tf", &qos::reliable(100))?,
             tf_static: OutputTopic::new(node, "/tf_static", &qos::latched())?,

@@ -53,7 +53,11 @@ impl RobotOutputs {
     ///
     /// # Errors
     /// When the system refuses a thread.
-    pub fn start(topics: RobotTopics, settings: OutputSettings, sources: OutputSources) -> Result<Self, Ros2Error> {
+    pub fn start(
+        topics: RobotTopics,
+        settings: OutputSettings,
+        sources: OutputSources,
+    ) -> Result<Self, Ros2Error> {
         let is_over = Arc::<AtomicBool>::default();
         let over = Arc::clone(&is_over);
         let mut loop_state = OutputLoop::new(topics, settings, sources);
@@ -168,7 +172,12 @@ impl OutputLoop {
         let at = self.sources.clock.to_ros(view.stamp);
         let mut transforms = Vec::new();
         if self.settings.has_own_body {
-            transforms.push(transform::to_ros(&self.sources.base_from_camera, at, &frames.base, &frames.camera));
+            transforms.push(transform::to_ros(
+                &self.sources.base_from_camera,
+                at,
+                &frames.base,
+                &frames.camera,
+            ));
         }
         if self.topics.scan.is_some() {
             let Some(scan) = &view.scan else { return };
@@ -211,7 +220,9 @@ impl OutputLoop {
         let has_changed = self.map.as_ref().is_none_or(|(revision, _)| *revision != map.revision);
         let is_same_place = self.map.as_ref().is_some_and(|(_, old)| old.geometry() == map.grid.geometry());
         if has_changed && let (true, Some((_, old))) = (is_same_place, &self.map) {
-            grid::update(old, &map.grid, at, frame).into_iter().for_each(|update| self.topics.map_updates.publish(update));
+            grid::update(old, &map.grid, at, frame)
+                .into_iter()
+                .for_each(|update| self.topics.map_updates.publish(update));
         }
         if (is_slowest || !is_same_place) && self.whole != Some(map.revision) {
             self.whole = Some(map.revision);
@@ -259,7 +270,13 @@ fn condition_of(view: Option<&RunView>) -> Condition {
     let Some(view) = view else {
         return Condition { level: Level::Warning, message: "the robot has not begun".to_owned(), count: 1 };
     };
-    let level = if view.hold.is_some() { Level::Error } else if view.state.reason().is_some() { Level::Warning } else { Level::Ok };
+    let level = if view.hold.is_some() {
+        Level::Error
+    } else if view.state.reason().is_some() {
+        Level::Warning
+    } else {
+        Level::Ok
+    };
     let message = view.hold.map_or_else(|| view.state.to_string(), |hold| hold.to_string());
     Condition { level, message, count: 1 }
 }

@@ -1,7 +1,7 @@
 //! A body offered as a ROS 2 robot: its sensors are published, commands come by `cmd_vel`.
 
-use super::image_publisher::ImagePublisher;
 use super::ServerSettings;
+use super::image_publisher::ImagePublisher;
 use crate::Ros2Error;
 use crate::convert::odometry::OdometryFrames;
 use crate::convert::{battery, imu, odometry, scan, stamp, transform, twist};
@@ -17,8 +17,8 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use trundle_app::real_time::RealTimePacer;
 use trundle_core::{
-    BodyEventKind, DifferentialDrive, Odometry, PinholeCamera, Pose2, Pose3, RobotBody, SensorEvent, Stamp, Twist2,
-    WheelTicks,
+    BodyEventKind, DifferentialDrive, Odometry, PinholeCamera, Pose2, Pose3, RobotBody, SensorEvent, Stamp,
+    Twist2, WheelTicks,
 };
 use trundle_localization::{OdometryConfig, WheelOdometry};
 
@@ -69,7 +69,8 @@ impl BodyServer {
     /// When a topic cannot be made.
     pub fn new(node: &mut RosNode, settings: ServerSettings, body: OfferedBody) -> Result<Self, Ros2Error> {
         let config = OdometryConfig::default();
-        let odometry = WheelOdometry::new(body.drive, config).map_err(|error| Ros2Error::create("odometry", error))?;
+        let odometry =
+            WheelOdometry::new(body.drive, config).map_err(|error| Ros2Error::create("odometry", error))?;
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         Ok(Self {
             odom: OutputTopic::new(node, "odom", &qos::reliable(10))?,
@@ -96,7 +97,11 @@ impl BodyServer {
     ///
     /// # Errors
     /// When the body fails.
-    pub fn run<B: RobotBody>(&mut self, body: &mut B, mut is_over: impl FnMut(Stamp) -> bool) -> Result<(), B::Error> {
+    pub fn run<B: RobotBody>(
+        &mut self,
+        body: &mut B,
+        mut is_over: impl FnMut(Stamp) -> bool,
+    ) -> Result<(), B::Error> {
         self.publish_static();
         let mut pacer = RealTimePacer::start();
         while let Some(event) = body.next_event()? {
@@ -139,7 +144,9 @@ impl BodyServer {
             }
             SensorEvent::Odometry(odometry) => self.publish_odometry(&odometry, at),
             SensorEvent::Rgbd(image) => self.images.publish(image, at),
-            SensorEvent::Scan(sweep) => self.scan.publish(scan::to_ros(&sweep, at, &frames.scan, LASER_RANGE_M)),
+            SensorEvent::Scan(sweep) => {
+                self.scan.publish(scan::to_ros(&sweep, at, &frames.scan, LASER_RANGE_M))
+            }
             SensorEvent::Body(event) => {
                 if let BodyEventKind::Battery(own) = event.kind {
                     self.battery.publish(battery::to_ros(&own, at, &frames.base));
@@ -179,15 +186,22 @@ impl BodyServer {
 }
 
 /// Keeps the newest command; one that is not usable is reported and stops the base.
-fn subscribe_commands(node: &mut RosNode, stamped: bool) -> Result<Arc<Mutex<Option<(Twist2, Instant)>>>, Ros2Error> {
+fn subscribe_commands(
+    node: &mut RosNode,
+    stamped: bool,
+) -> Result<Arc<Mutex<Option<(Twist2, Instant)>>>, Ros2Error> {
     let command = Arc::<Mutex<Option<(Twist2, Instant)>>>::default();
-    let (kept, diagnostics, name) = (Arc::clone(&command), node.diagnostics(), node.names().resolve("cmd_vel"));
+    let (kept, diagnostics, name) =
+        (Arc::clone(&command), node.diagnostics(), node.names().resolve("cmd_vel"));
     let keep = move |message: &Twist| {
         let usable = twist::from_ros(message).map_err(|error| diagnostics.warn(&name, error.to_string()));
-        *kept.lock().unwrap_or_else(PoisonError::into_inner) = Some((usable.unwrap_or_default(), Instant::now()));
+        *kept.lock().unwrap_or_else(PoisonError::into_inner) =
+            Some((usable.unwrap_or_default(), Instant::now()));
     };
     if stamped {
-        node.subscribe("cmd_vel", &qos::reliable(1), None, move |message: TwistStamped| keep(&message.twist))?;
+        node.subscribe("cmd_vel", &qos::reliable(1), None, move |message: TwistStamped| {
+            keep(&message.twist)
+        })?;
     } else {
         node.subscribe("cmd_vel", &qos::reliable(1), None, move |message: Twist| keep(&message))?;
     }
@@ -206,7 +220,8 @@ impl Wheels {
     fn joints(&mut self, ticks: &WheelTicks, drive: &DifferentialDrive, at: Stamp) -> JointState {
         let last = self.last.replace(*ticks).unwrap_or(*ticks);
         let turned = [ticks.left.wrapping_sub(last.left), ticks.right.wrapping_sub(last.right)];
-        let steps = turned.map(|ticks| f64::from(ticks as i16) * std::f64::consts::TAU / drive.ticks_per_turn);
+        let steps =
+            turned.map(|ticks| f64::from(ticks as i16) * std::f64::consts::TAU / drive.ticks_per_turn);
         let dt = ticks.stamp - last.stamp;
         self.angles.iter_mut().zip(steps).for_each(|(angle, step)| *angle += step);
         JointState {
@@ -230,6 +245,8 @@ mod tests {
         wheels.joints(&ticks(0, u16::MAX), &DifferentialDrive::KOBUKI, Stamp::default());
         let joints = wheels.joints(&ticks(1_000_000_000, 9), &DifferentialDrive::KOBUKI, Stamp::default());
         let expected = 10.0 * std::f64::consts::TAU / DifferentialDrive::KOBUKI.ticks_per_turn;
-        assert!((joints.position[0] - expected).abs() < 1e-12 && (joints.velocity[0] - expected).abs() < 1e-12);
+        assert!(
+            (joints.position[0] - expected).abs() < 1e-12 && (joints.velocity[0] - expected).abs() < 1e-12
+        );
     }
 }

@@ -2,15 +2,15 @@
 
 use super::ServerSettings;
 use crate::Ros2Error;
-use crate::convert::image::{color_to_ros, compressed_depth_to_ros, depth_to_ros, jpeg_to_ros};
 use crate::convert::camera_info;
+use crate::convert::image::{color_to_ros, compressed_depth_to_ros, depth_to_ros, jpeg_to_ros};
 use crate::generated::sensor_msgs::{CameraInfo, CompressedImage, Image};
 use crate::node::{RosNode, qos};
 use crate::outputs::OutputTopic;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
 use trundle_core::{PinholeCamera, RgbdImage, Stamp};
-use trundle_io::{encode_color, encode_depth};
+use trundle_io::{JPEG_QUALITY, encode_color, encode_depth};
 
 /// The topics of a camera.
 struct CameraTopics {
@@ -39,7 +39,11 @@ impl ImagePublisher {
     ///
     /// # Errors
     /// When a topic cannot be made or the system refuses a thread.
-    pub fn start(node: &mut RosNode, settings: &ServerSettings, camera: PinholeCamera) -> Result<Self, Ros2Error> {
+    pub fn start(
+        node: &mut RosNode,
+        settings: &ServerSettings,
+        camera: PinholeCamera,
+    ) -> Result<Self, Ros2Error> {
         let (color, depth) = ("camera/color/image_raw", "camera/depth/image_raw");
         let qos = qos::sensor(2);
         let form = if settings.raw_images {
@@ -88,13 +92,17 @@ impl CameraTopics {
                     color.publish(color_to_ros(image.color(), at, &self.frame));
                     depth.publish(depth_to_ros(image.depth(), at, &self.frame));
                 }
-                Form::Compressed(color, depth) => match (encode_color(image.color()), encode_depth(image.depth())) {
-                    (Ok(jpeg), Ok(png)) => {
-                        color.publish(jpeg_to_ros(jpeg, at, &self.frame));
-                        depth.publish(compressed_depth_to_ros(&png, at, &self.frame));
+                Form::Compressed(color, depth) => {
+                    match (encode_color(image.color(), JPEG_QUALITY), encode_depth(image.depth())) {
+                        (Ok(jpeg), Ok(png)) => {
+                            color.publish(jpeg_to_ros(jpeg, at, &self.frame));
+                            depth.publish(compressed_depth_to_ros(&png, at, &self.frame));
+                        }
+                        (Err(error), _) | (_, Err(error)) => {
+                            tracing::warn!("an image was not published: {error}")
+                        }
                     }
-                    (Err(error), _) | (_, Err(error)) => tracing::warn!("an image was not published: {error}"),
-                },
+                }
             }
         }
     }

@@ -22,13 +22,19 @@ pub fn compressed_depth_from_ros(image: CompressedImage, size: (usize, usize)) -
     let start = if has_head { HEAD } else { 0 };
     if !data.get(start..).is_some_and(|png| png.starts_with(&PNG_MAGIC)) {
         let value = format!("'{}' of {} bytes", image.format, data.len());
-        return Err(Invalid::new("format", value, "", "a PNG file: set the publisher's compressedDepth format to png"));
+        return Err(Invalid::new(
+            "format",
+            value,
+            "",
+            "a PNG file: set the publisher's compressedDepth format to png",
+        ));
     }
     let png = data[start..].to_vec();
     if !image.format.starts_with("32FC1") {
         return Ok(RawImage::packed(PixelFormat::DepthPng16, size, png, device_stamp));
     }
-    let number = |at: usize| data.get(at..at + 4).and_then(|b| b.try_into().ok()).map_or(0.0, f32::from_le_bytes);
+    let number =
+        |at: usize| data.get(at..at + 4).and_then(|b| b.try_into().ok()).map_or(0.0, f32::from_le_bytes);
     let (scale, offset) = if has_head { (number(4), number(8)) } else { (0.0, 0.0) };
     let bytes = metres(&png, size, scale, offset)?;
     Ok(RawImage::packed(PixelFormat::DepthF32, size, bytes, device_stamp))
@@ -36,10 +42,16 @@ pub fn compressed_depth_from_ros(image: CompressedImage, size: (usize, usize)) -
 
 /// Depths \[m\] as bytes of 32-bit floats: scale / (value - offset), 0 where the value is 0.
 fn metres(png: &[u8], (width, height): (usize, usize), scale: f32, offset: f32) -> Result<Vec<u8>, Invalid> {
-    let values = trundle_io::decode_raw_depth(png).map_err(|error| Invalid::new("PNG file", error, "", "a whole file"))?;
+    let values = trundle_io::decode_raw_depth(png)
+        .map_err(|error| Invalid::new("PNG file", error, "", "a whole file"))?;
     if (values.width(), values.height()) != (width, height) {
         let value = format!("{} x {}", values.width(), values.height());
-        return Err(Invalid::new("depth image size", value, "px", format!("{width} x {height} as camera_info")));
+        return Err(Invalid::new(
+            "depth image size",
+            value,
+            "px",
+            format!("{width} x {height} as camera_info"),
+        ));
     }
     let depth = |value: &u16| if *value == 0 { 0.0 } else { scale / (f32::from(*value) - offset) };
     Ok(values.data().iter().flat_map(|value| depth(value).to_le_bytes()).collect())
@@ -65,7 +77,11 @@ mod tests {
         let raw = compressed_depth_from_ros(message.clone(), (4, 2)).unwrap();
         assert_eq!((raw.bytes.as_slice(), raw.format), (&png[..], PixelFormat::DepthPng16));
         for data in [vec![], vec![0; 40]] {
-            let rvl = CompressedImage { format: "16UC1; compressedDepth rvl".into(), data: Bytes(data), ..message.clone() };
+            let rvl = CompressedImage {
+                format: "16UC1; compressedDepth rvl".into(),
+                data: Bytes(data),
+                ..message.clone()
+            };
             assert!(compressed_depth_from_ros(rvl, (4, 2)).unwrap_err().to_string().contains("rvl"));
         }
         let broken = CompressedImage { format: "32FC1; compressedDepth png".into(), ..message };

@@ -2,8 +2,8 @@
 
 use super::duration;
 use crate::generated::nav2_msgs::{
-    DockRobot, DockRobotFeedback, DockRobotGoal, DockRobotResult, UndockRobot, UndockRobotFeedback, UndockRobotGoal,
-    UndockRobotResult,
+    DockRobot, DockRobotFeedback, DockRobotGoal, DockRobotResult, UndockRobot, UndockRobotFeedback,
+    UndockRobotGoal, UndockRobotResult,
 };
 use crate::navigation::active_goal::GoalProgress;
 use crate::navigation::error_codes::of_docking;
@@ -25,13 +25,21 @@ fn limit(seconds: f32) -> Option<Duration> {
 }
 
 impl NavigationAction for DockRobot {
-    fn tasks(goal: &DockRobotGoal, context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<DockRobotResult>> {
-        let failed = |error_msg| DockRobotResult { error_code: DockRobotResult::DOCK_NOT_VALID, error_msg, ..DockRobotResult::default() };
+    fn tasks(
+        goal: &DockRobotGoal,
+        context: &GoalContext<'_>,
+    ) -> Result<Vec<Task>, GoalError<DockRobotResult>> {
+        let failed = |error_msg| DockRobotResult {
+            error_code: DockRobotResult::DOCK_NOT_VALID,
+            error_msg,
+            ..DockRobotResult::default()
+        };
         // A dock by its id is the one whose light the base sees: there is no table of docks.
         if goal.use_dock_id || !goal.navigate_to_staging_pose {
             return Ok(vec![Task::Dock]);
         }
-        let dock = in_map(&goal.dock_pose, context.frames, context.view).map_err(|error| pose_error(error, failed))?;
+        let dock = in_map(&goal.dock_pose, context.frames, context.view)
+            .map_err(|error| pose_error(error, failed))?;
         Ok(vec![Task::Go(dock * Pose2::new(-STAGING_M, 0.0, 0.0)), Task::Dock])
     }
 
@@ -39,21 +47,35 @@ impl NavigationAction for DockRobot {
         limit(goal.max_staging_time)
     }
 
-    fn feedback(_goal: &DockRobotGoal, view: &RunView, progress: &GoalProgress, _frames: &FrameNames) -> DockRobotFeedback {
+    fn feedback(
+        _goal: &DockRobotGoal,
+        view: &RunView,
+        progress: &GoalProgress,
+        _frames: &FrameNames,
+    ) -> DockRobotFeedback {
         let is_docking = matches!(view.mission.task, Some(Task::Dock));
-        let state = if is_docking { DockRobotFeedback::CONTROLLING } else { DockRobotFeedback::NAV_TO_STAGING_POSE };
+        let state =
+            if is_docking { DockRobotFeedback::CONTROLLING } else { DockRobotFeedback::NAV_TO_STAGING_POSE };
         DockRobotFeedback { state, docking_time: duration(progress.time_s), num_retries: 0 }
     }
 
     fn result(_goal: &DockRobotGoal, outcome: &GoalOutcome, _time_s: f64) -> DockRobotResult {
         let error_code = outcome.code(DockRobotResult::TIMEOUT, of_docking, DockRobotResult::UNKNOWN);
-        DockRobotResult { success: error_code == 0, error_code, num_retries: 0, error_msg: outcome.message.clone() }
+        DockRobotResult {
+            success: error_code == 0,
+            error_code,
+            num_retries: 0,
+            error_msg: outcome.message.clone(),
+        }
     }
 }
 
 impl NavigationAction for UndockRobot {
     /// A robot on its station backs off it before any task: here before a turn by nothing.
-    fn tasks(_goal: &UndockRobotGoal, _context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<UndockRobotResult>> {
+    fn tasks(
+        _goal: &UndockRobotGoal,
+        _context: &GoalContext<'_>,
+    ) -> Result<Vec<Task>, GoalError<UndockRobotResult>> {
         Ok(vec![Task::Turn { angle: 0.0 }])
     }
 
@@ -61,7 +83,12 @@ impl NavigationAction for UndockRobot {
         limit(goal.max_undocking_time)
     }
 
-    fn feedback(_goal: &UndockRobotGoal, _view: &RunView, _progress: &GoalProgress, _frames: &FrameNames) -> UndockRobotFeedback {
+    fn feedback(
+        _goal: &UndockRobotGoal,
+        _view: &RunView,
+        _progress: &GoalProgress,
+        _frames: &FrameNames,
+    ) -> UndockRobotFeedback {
         UndockRobotFeedback::default()
     }
 

@@ -23,7 +23,8 @@ impl NavigationAction for NavigateThroughPoses {
         }
         let task = |pose| {
             let pose = in_map(pose, context.frames, context.view);
-            pose.map(Task::Go).map_err(|error| pose_error(error, |message| failed(Outcome::TF_ERROR, message)))
+            pose.map(Task::Go)
+                .map_err(|error| pose_error(error, |message| failed(Outcome::TF_ERROR, message)))
         };
         goal.poses.goals.iter().map(task).collect()
     }
@@ -34,14 +35,23 @@ impl NavigationAction for NavigateThroughPoses {
         let next = poses.get(done).and_then(|pose| in_map(pose, frames, Some(view)).ok());
         let (distance_remaining, estimated_time_remaining) = left(view, &next.unwrap_or(view.estimate.pose));
         let status = |(i, pose): (usize, &crate::generated::geometry_msgs::PoseStamped)| {
-            let end = view.mission.ended.iter().rev().find(|record| record.index == i).map(|record| &record.end);
+            let end =
+                view.mission.ended.iter().rev().find(|record| record.index == i).map(|record| &record.end);
             let (waypoint_status, error_code, error_msg) = match end {
                 None => (WaypointStatus::PENDING, 0, String::new()),
-                Some(TaskEnd::GivenUp { reason }) => (WaypointStatus::FAILED, of_reason(reason), reason.to_string()),
+                Some(TaskEnd::GivenUp { reason }) => {
+                    (WaypointStatus::FAILED, of_reason(reason), reason.to_string())
+                }
                 Some(TaskEnd::PutOff { .. }) => (WaypointStatus::PENDING, 0, String::new()),
                 Some(_) => (WaypointStatus::COMPLETED, 0, String::new()),
             };
-            WaypointStatus { waypoint_status, waypoint_index: i as u32, waypoint_pose: pose.clone(), error_code, error_msg }
+            WaypointStatus {
+                waypoint_status,
+                waypoint_index: i as u32,
+                waypoint_pose: pose.clone(),
+                error_code,
+                error_msg,
+            }
         };
         Feedback {
             current_pose: current_pose(view, frames),

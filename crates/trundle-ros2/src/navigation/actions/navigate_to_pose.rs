@@ -2,7 +2,8 @@
 
 use super::{current_pose, duration, left};
 use crate::generated::nav2_msgs::{
-    NavigateToPose, NavigateToPoseFeedback as Feedback, NavigateToPoseGoal as Goal, NavigateToPoseResult as Outcome,
+    NavigateToPose, NavigateToPoseFeedback as Feedback, NavigateToPoseGoal as Goal,
+    NavigateToPoseResult as Outcome,
 };
 use crate::navigation::active_goal::GoalProgress;
 use crate::navigation::error_codes::of_reason;
@@ -16,12 +17,16 @@ use trundle_runtime::Task;
 impl NavigationAction for NavigateToPose {
     fn tasks(goal: &Goal, context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<Outcome>> {
         if !goal.behavior_tree.is_empty() {
-            let error_msg = format!("behavior_tree is '{}', expected none: trundle has no behavior trees", goal.behavior_tree);
+            let error_msg = format!(
+                "behavior_tree is '{}', expected none: trundle has no behavior trees",
+                goal.behavior_tree
+            );
             let error_code = Outcome::FAILED_TO_LOAD_BEHAVIOR_TREE;
             return Err(GoalError::Failed(Outcome { error_code, error_msg }));
         }
         let failed = |error_msg| Outcome { error_code: Outcome::TF_ERROR, error_msg };
-        let pose = in_map(&goal.pose, context.frames, context.view).map_err(|error| pose_error(error, failed))?;
+        let pose =
+            in_map(&goal.pose, context.frames, context.view).map_err(|error| pose_error(error, failed))?;
         Ok(vec![Task::Go(pose)])
     }
 
@@ -59,9 +64,14 @@ mod tests {
         };
         let tasks = NavigateToPose::tasks(&goal(1.0, "map"), &context).unwrap();
         assert!(matches!(tasks[..], [Task::Go(pose)] if (pose.theta - 1.0).abs() < 1e-12));
-        let Err(GoalError::Failed(result)) = NavigateToPose::tasks(&goal(1.0, "moon"), &context) else { panic!() };
+        let Err(GoalError::Failed(result)) = NavigateToPose::tasks(&goal(1.0, "moon"), &context) else {
+            panic!()
+        };
         assert_eq!(result.error_code, Outcome::TF_ERROR);
         assert!(result.error_msg.contains("'moon', expected map, odom or base_link"));
-        assert!(matches!(NavigateToPose::tasks(&goal(f64::NAN, "map"), &context), Err(GoalError::Refused(_))));
+        assert!(matches!(
+            NavigateToPose::tasks(&goal(f64::NAN, "map"), &context),
+            Err(GoalError::Refused(_))
+        ));
     }
 }

@@ -5,8 +5,8 @@ use crate::convert::stamp;
 use crate::generated::builtin_interfaces::Duration as Allowance;
 use crate::generated::geometry_msgs::Point;
 use crate::generated::nav2_msgs::{
-    BackUp, BackUpFeedback, BackUpGoal, BackUpResult, DriveOnHeading, DriveOnHeadingFeedback, DriveOnHeadingGoal,
-    DriveOnHeadingResult, Spin, SpinFeedback, SpinGoal, SpinResult,
+    BackUp, BackUpFeedback, BackUpGoal, BackUpResult, DriveOnHeading, DriveOnHeadingFeedback,
+    DriveOnHeadingGoal, DriveOnHeadingResult, Spin, SpinFeedback, SpinGoal, SpinResult,
 };
 use crate::navigation::active_goal::GoalProgress;
 use crate::navigation::goal_outcome::GoalOutcome;
@@ -30,7 +30,9 @@ fn straight(target: &Point, speed: f32, ahead: f64) -> Result<Vec<Task>, String>
     }
     let (distance, speed) = (target.x, f64::from(speed));
     if !(distance.is_finite() && speed.is_finite()) || speed == 0.0 {
-        return Err(format!("target.x is {distance} m and speed {speed} m/s, expected finite numbers, the speed not 0"));
+        return Err(format!(
+            "target.x is {distance} m and speed {speed} m/s, expected finite numbers, the speed not 0"
+        ));
     }
     Ok(vec![Task::Straight { distance: ahead * distance.abs(), speed: speed.abs() }])
 }
@@ -38,7 +40,10 @@ fn straight(target: &Point, speed: f32, ahead: f64) -> Result<Vec<Task>, String>
 impl NavigationAction for Spin {
     fn tasks(goal: &SpinGoal, _context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<SpinResult>> {
         if !goal.target_yaw.is_finite() {
-            return Err(GoalError::Refused(format!("target_yaw is {} rad, expected a finite number", goal.target_yaw)));
+            return Err(GoalError::Refused(format!(
+                "target_yaw is {} rad, expected a finite number",
+                goal.target_yaw
+            )));
         }
         Ok(vec![Task::Turn { angle: f64::from(goal.target_yaw) }])
     }
@@ -47,19 +52,31 @@ impl NavigationAction for Spin {
         allowance(&goal.time_allowance)
     }
 
-    fn feedback(_goal: &SpinGoal, view: &RunView, progress: &GoalProgress, _frames: &FrameNames) -> SpinFeedback {
-        SpinFeedback { angular_distance_traveled: wrap_angle(view.estimate.pose.theta - progress.start.theta) as f32 }
+    fn feedback(
+        _goal: &SpinGoal,
+        view: &RunView,
+        progress: &GoalProgress,
+        _frames: &FrameNames,
+    ) -> SpinFeedback {
+        SpinFeedback {
+            angular_distance_traveled: wrap_angle(view.estimate.pose.theta - progress.start.theta) as f32,
+        }
     }
 
     fn result(_goal: &SpinGoal, outcome: &GoalOutcome, time_s: f64) -> SpinResult {
-        let error_code = outcome.code(SpinResult::TIMEOUT, |_| SpinResult::COLLISION_AHEAD, SpinResult::UNKNOWN);
+        let error_code =
+            outcome.code(SpinResult::TIMEOUT, |_| SpinResult::COLLISION_AHEAD, SpinResult::UNKNOWN);
         SpinResult { total_elapsed_time: duration(time_s), error_code, error_msg: outcome.message.clone() }
     }
 }
 
 impl NavigationAction for BackUp {
     fn tasks(goal: &BackUpGoal, _context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<BackUpResult>> {
-        let failed = |error_msg| BackUpResult { error_code: BackUpResult::INVALID_INPUT, error_msg, ..BackUpResult::default() };
+        let failed = |error_msg| BackUpResult {
+            error_code: BackUpResult::INVALID_INPUT,
+            error_msg,
+            ..BackUpResult::default()
+        };
         straight(&goal.target, goal.speed, -1.0).map_err(|message| GoalError::Failed(failed(message)))
     }
 
@@ -67,21 +84,35 @@ impl NavigationAction for BackUp {
         allowance(&goal.time_allowance)
     }
 
-    fn feedback(_goal: &BackUpGoal, view: &RunView, progress: &GoalProgress, _frames: &FrameNames) -> BackUpFeedback {
+    fn feedback(
+        _goal: &BackUpGoal,
+        view: &RunView,
+        progress: &GoalProgress,
+        _frames: &FrameNames,
+    ) -> BackUpFeedback {
         BackUpFeedback { distance_traveled: view.estimate.pose.distance(&progress.start) as f32 }
     }
 
     fn result(_goal: &BackUpGoal, outcome: &GoalOutcome, time_s: f64) -> BackUpResult {
-        let error_code = outcome.code(BackUpResult::TIMEOUT, |_| BackUpResult::COLLISION_AHEAD, BackUpResult::UNKNOWN);
+        let error_code =
+            outcome.code(BackUpResult::TIMEOUT, |_| BackUpResult::COLLISION_AHEAD, BackUpResult::UNKNOWN);
         BackUpResult { total_elapsed_time: duration(time_s), error_code, error_msg: outcome.message.clone() }
     }
 }
 
 impl NavigationAction for DriveOnHeading {
-    fn tasks(goal: &DriveOnHeadingGoal, _context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<DriveOnHeadingResult>> {
-        let failed = |error_msg| DriveOnHeadingResult { error_code: DriveOnHeadingResult::INVALID_INPUT, error_msg, ..DriveOnHeadingResult::default() };
+    fn tasks(
+        goal: &DriveOnHeadingGoal,
+        _context: &GoalContext<'_>,
+    ) -> Result<Vec<Task>, GoalError<DriveOnHeadingResult>> {
+        let failed = |error_msg| DriveOnHeadingResult {
+            error_code: DriveOnHeadingResult::INVALID_INPUT,
+            error_msg,
+            ..DriveOnHeadingResult::default()
+        };
         if goal.target.x * f64::from(goal.speed) < 0.0 {
-            let message = format!("target.x is {} m and speed {} m/s, expected equal signs", goal.target.x, goal.speed);
+            let message =
+                format!("target.x is {} m and speed {} m/s, expected equal signs", goal.target.x, goal.speed);
             return Err(GoalError::Failed(failed(message)));
         }
         let ahead = if goal.target.x < 0.0 { -1.0 } else { 1.0 };
@@ -92,14 +123,23 @@ impl NavigationAction for DriveOnHeading {
         allowance(&goal.time_allowance)
     }
 
-    fn feedback(_goal: &DriveOnHeadingGoal, view: &RunView, progress: &GoalProgress, _frames: &FrameNames) -> DriveOnHeadingFeedback {
+    fn feedback(
+        _goal: &DriveOnHeadingGoal,
+        view: &RunView,
+        progress: &GoalProgress,
+        _frames: &FrameNames,
+    ) -> DriveOnHeadingFeedback {
         DriveOnHeadingFeedback { distance_traveled: view.estimate.pose.distance(&progress.start) as f32 }
     }
 
     fn result(_goal: &DriveOnHeadingGoal, outcome: &GoalOutcome, time_s: f64) -> DriveOnHeadingResult {
         let blocked = |_: &trundle_runtime::Reason| DriveOnHeadingResult::COLLISION_AHEAD;
         let error_code = outcome.code(DriveOnHeadingResult::TIMEOUT, blocked, DriveOnHeadingResult::UNKNOWN);
-        DriveOnHeadingResult { total_elapsed_time: duration(time_s), error_code, error_msg: outcome.message.clone() }
+        DriveOnHeadingResult {
+            total_elapsed_time: duration(time_s),
+            error_code,
+            error_msg: outcome.message.clone(),
+        }
     }
 }
 
@@ -111,11 +151,14 @@ mod tests {
     fn backing_up_goes_back_and_broken_targets_fail_with_nav2s_code() {
         let frames = FrameNames::default();
         let context = GoalContext { frames: &frames, view: None };
-        let goal = |x, y, speed| BackUpGoal { target: Point { x, y, z: 0.0 }, speed, ..BackUpGoal::default() };
+        let goal =
+            |x, y, speed| BackUpGoal { target: Point { x, y, z: 0.0 }, speed, ..BackUpGoal::default() };
         let tasks = BackUp::tasks(&goal(0.25, 0.0, 0.5), &context).unwrap();
         assert_eq!(tasks, [Task::Straight { distance: -0.25, speed: 0.5 }]);
         for broken in [goal(0.25, 0.1, 0.5), goal(f64::NAN, 0.0, 0.5), goal(0.25, 0.0, 0.0)] {
-            let Err(GoalError::Failed(result)) = BackUp::tasks(&broken, &context) else { panic!("{broken:?}") };
+            let Err(GoalError::Failed(result)) = BackUp::tasks(&broken, &context) else {
+                panic!("{broken:?}")
+            };
             assert_eq!(result.error_code, BackUpResult::INVALID_INPUT);
         }
         let spin = SpinGoal { target_yaw: f32::NAN, ..SpinGoal::default() };

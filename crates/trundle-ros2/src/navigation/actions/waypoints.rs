@@ -1,8 +1,8 @@
 //! `FollowWaypoints`: poses in loops; missed ones are listed.
 
 use crate::generated::nav2_msgs::{
-    FollowWaypoints, FollowWaypointsFeedback as Feedback, FollowWaypointsGoal as Goal, FollowWaypointsResult as Outcome,
-    WaypointStatus,
+    FollowWaypoints, FollowWaypointsFeedback as Feedback, FollowWaypointsGoal as Goal,
+    FollowWaypointsResult as Outcome, WaypointStatus,
 };
 use crate::navigation::active_goal::GoalProgress;
 use crate::navigation::error_codes::of_reason;
@@ -18,14 +18,22 @@ const MAX_WAYPOINTS: usize = 10_000;
 
 impl NavigationAction for FollowWaypoints {
     fn tasks(goal: &Goal, context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<Outcome>> {
-        let failed = |error_msg| Outcome { error_code: Outcome::NO_VALID_WAYPOINTS, error_msg, ..Outcome::default() };
+        let failed =
+            |error_msg| Outcome { error_code: Outcome::NO_VALID_WAYPOINTS, error_msg, ..Outcome::default() };
         let loops = 1 + goal.number_of_loops as usize;
         let count = goal.poses.len().saturating_mul(loops);
         if count == 0 || count > MAX_WAYPOINTS || goal.goal_index as usize >= goal.poses.len() {
-            let message = format!("{count} way-points from index {}, expected 1 to {MAX_WAYPOINTS} and an index among them", goal.goal_index);
+            let message = format!(
+                "{count} way-points from index {}, expected 1 to {MAX_WAYPOINTS} and an index among them",
+                goal.goal_index
+            );
             return Err(GoalError::Failed(failed(message)));
         }
-        let task = |pose| in_map(pose, context.frames, context.view).map(Task::Go).map_err(|error| pose_error(error, failed));
+        let task = |pose| {
+            in_map(pose, context.frames, context.view)
+                .map(Task::Go)
+                .map_err(|error| pose_error(error, failed))
+        };
         let once = goal.poses.iter().map(task).collect::<Result<Vec<_>, _>>()?;
         Ok(once.iter().cycle().take(count).skip(goal.goal_index as usize).copied().collect())
     }
@@ -46,7 +54,12 @@ impl NavigationAction for FollowWaypoints {
                 error_msg: reason.to_string(),
             }
         };
-        let error_code = outcome.code(Outcome::UNKNOWN, |_| Outcome::STOP_ON_MISSED_WAYPOINT, Outcome::UNKNOWN);
-        Outcome { missed_waypoints: outcome.missed.iter().map(missed).collect(), error_code, error_msg: outcome.message.clone() }
+        let error_code =
+            outcome.code(Outcome::UNKNOWN, |_| Outcome::STOP_ON_MISSED_WAYPOINT, Outcome::UNKNOWN);
+        Outcome {
+            missed_waypoints: outcome.missed.iter().map(missed).collect(),
+            error_code,
+            error_msg: outcome.message.clone(),
+        }
     }
 }
