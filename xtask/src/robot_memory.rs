@@ -12,7 +12,7 @@ const SCENE: &str = "office";
 const SAMPLE_PERIOD: Duration = Duration::from_secs(5);
 /// Longest time until the simulator answers.
 const START_LIMIT: Duration = Duration::from_secs(20);
-/// Largest resident memory at the end [MB]. A computer of 1 GB keeps most of its memory for other programs. Source: ours.
+/// Largest resident memory at the end \[MB\]. A computer of 1 GB keeps most of its memory for other programs. Source: ours.
 const MAX_RESIDENT_MB: f64 = 300.0;
 
 /// Memory of a process, MB.

@@ -68,6 +68,9 @@ pub enum Command {
     /// Write the frames of a camera to standard output; `run` starts it for cameras whose library may crash.
     #[command(hide = true)]
     ServeCamera(ServeCameraArgs),
+    /// Stop the base at the end of standard input; for `run`.
+    #[command(hide = true)]
+    GuardBase,
     /// The data sets of the experiments: what each is, where it comes from, its licence.
     Data(DataArgs),
     /// Print the completions of a shell: bash, zsh, fish, elvish, powershell.

@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use std::str::FromStr;
 use trundle::app::{AppError, load_robot};
-use trundle::core::Pose2;
+use trundle::core::{MAX_COORDINATE_M, Pose2};
 use trundle::experiments::simulated::MeshOptions;
 use trundle::io::MapImage;
 use trundle::runtime::RobotConfig;
@@ -66,8 +66,8 @@ impl FromStr for PoseArg {
         let [x, y, degrees] = parts[..] else {
             return Err(format!("{} numbers, expected 3: X,Y,DEG (m, m, deg)", parts.len()));
         };
-        let x = coordinate("X", x, "m", 1e6)?;
-        let y = coordinate("Y", y, "m", 1e6)?;
+        let x = coordinate("X", x, "m", MAX_COORDINATE_M)?;
+        let y = coordinate("Y", y, "m", MAX_COORDINATE_M)?;
         let degrees = coordinate("DEG", degrees, "deg", 1e6)?;
         Ok(Self(Pose2::new(x, y, degrees.to_radians())))
     }

@@ -4,7 +4,7 @@ use crate::console;
 use crate::outcome::Outcome;
 use clap::Args;
 use trundle::app::AppError;
-use trundle::app::hardware::{device_rows, udev_rules};
+use trundle::app::hardware::{device_rows, guard_base, udev_rules};
 use trundle::drivers::CameraSpec;
 
 /// `trundle devices`
@@ -37,5 +37,11 @@ pub fn run(args: &DevicesArgs) -> Outcome {
 pub fn serve(args: &ServeCameraArgs) -> Result<Outcome, AppError> {
     let served = args.camera.serve(std::io::stdout().lock());
     served.map_err(|error| AppError::Input(format!("camera {}: {error}", args.camera)))?;
+    Ok(Outcome::Reached)
+}
+
+/// `trundle guard-base`.
+pub fn guard() -> Result<Outcome, AppError> {
+    guard_base()?;
     Ok(Outcome::Reached)
 }

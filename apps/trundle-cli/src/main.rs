@@ -46,11 +46,13 @@ fn main() -> ExitCode {
 
 /// Takes Ctrl-C as a request where the command has long loops, which read it; else it ends the program.
 fn listen(command: &Command) -> Result<(), AppError> {
-    use Command::{Calibrate, Demo, Experiment, Map, Replay, Run, Sim, Slam};
+    use Command::{Calibrate, Demo, Experiment, GuardBase, Map, Replay, Run, Sim, Slam};
     match command {
         Calibrate(_) | Demo(_) | Run(_) | Replay(_) | Slam(_) | Map(_) | Sim(_) | Experiment(_) => {
             stop::listen()
         }
+        // A guard outlives the program that it guards.
+        GuardBase => stop::ignore(),
         _ => stop::end_at_once(|signal| {
             let is_ending = abandon_outputs();
             if is_ending {
@@ -89,6 +91,7 @@ fn run_command(cli: Cli) -> Result<Outcome, AppError> {
         Command::Config(args) => robot_file::print(&args),
         Command::Devices(args) => Ok(devices::run(&args)),
         Command::ServeCamera(args) => devices::serve(&args),
+        Command::GuardBase => devices::guard(),
         Command::Data(args) => data::run(&args),
         Command::Completions(args) => shell_files::print_completions(&args, Cli::command()),
         Command::Man(args) => shell_files::write_man_pages(&args, Cli::command()),

@@ -16,6 +16,24 @@ pub struct OutputDirArg(PathBuf);
 #[derive(Debug, Clone)]
 pub struct OutputFileArg(PathBuf);
 
+/// A file that a command reads at its start and may replace later: its own earlier result.
+#[derive(Debug, Clone)]
+pub struct ContinuedFileArg(PathBuf);
+
+impl From<OsString> for ContinuedFileArg {
+    fn from(text: OsString) -> Self {
+        Self(text.into())
+    }
+}
+
+impl Deref for ContinuedFileArg {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        &self.0
+    }
+}
+
 impl From<OsString> for OutputDirArg {
     fn from(text: OsString) -> Self {
         Self(text.into())
@@ -60,7 +78,8 @@ pub fn check(matches: &ArgMatches) -> Result<Vec<PathBuf>, AppError> {
     let inputs = InputFiles::new(values::<PathBuf>(leaf).chain(texts));
     let files: Vec<PathBuf> = values::<OutputFileArg>(leaf).map(|file| file.0).collect();
     files.iter().try_for_each(|file| OutputFile::check(&inputs, file))?;
-    let inputs = INPUTS.get_or_init(|| inputs).clone().and(files);
+    let continued = values::<ContinuedFileArg>(leaf).map(|file| file.0);
+    let inputs = INPUTS.get_or_init(|| inputs).clone().and(files).and(continued);
     let folders: Vec<PathBuf> = values::<OutputDirArg>(leaf).map(|folder| folder.0).collect();
     folders.iter().try_for_each(|folder| OutputFolder::check(&inputs, folder))?;
     Ok(folders)

@@ -12,7 +12,7 @@ use trundle::app::hardware::{OpenCamera, start_hardware};
 use trundle::app::real_time::run_in_real_time;
 use trundle::app::report::mission_text;
 use trundle::app::vocabulary_file::read_vocabulary;
-use trundle::app::{AppError, RunLog, RunSetup, read_checkpoint, read_mission};
+use trundle::app::{AppError, RUN_COMMAND, RunLog, RunSetup, read_checkpoint, read_mission};
 use trundle::io::keep_aside;
 use trundle::runtime::{Mission, Task};
 
@@ -28,8 +28,9 @@ pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
         None => mission(&args.mission)?,
     };
     let camera = OpenCamera::open(&args.camera)?;
+    camera.require_live()?;
     robot.camera = camera.intrinsics(args.robot_camera(&robot).as_ref())?;
-    let mut setup = RunSetup::new(&args.base.to_string(), mission, robot).by_command("run");
+    let mut setup = RunSetup::new(&args.base.to_string(), mission, robot).by_command(RUN_COMMAND);
     setup.time_limit = args.time_limit.unwrap_or(f64::MAX);
     setup.real_time = true;
     setup.recording = args.record.content();
@@ -52,11 +53,15 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
         console::print(&setup.recording.announcement(&setup.robot.camera, rate_hz, setup.time_limit));
     }
     let checkpoint = args.checkpoint.as_deref();
-    if resumes_from_another_file(args) {
-        checkpoint.map_or(Ok(()), keep_aside)?;
-    }
     let (line, progress) = console::progress(args.common.quiet);
-    let start = |events, _place| start_hardware(&args.base, camera, setup.robot.camera, events);
+    let start = |events, _place| {
+        let body = start_hardware(&args.base, camera, setup.robot.camera, events)?;
+        // A run that is refused leaves the checkpoint where it is.
+        if resumes_from_another_file(args) {
+            checkpoint.map_or(Ok(()), keep_aside)?;
+        }
+        Ok(body)
+    };
     let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), progress);
     line.finish_and_clear();
     let (run, timing) = run?;

@@ -1,6 +1,6 @@
 //! A body whose events arrive encoded, as a recording holds them: any [`RobotBody`], a recording, or live hardware.
 
-use crate::AppError;
+use crate::{AppError, operator::OperatorRequest};
 use trundle_core::{RobotBody, Twist2};
 use trundle_io::EncodedEvent;
 use trundle_runtime::{Answer, Job, Worker};
@@ -12,6 +12,8 @@ pub enum RunInput {
     Event(EncodedEvent),
     /// The result of a background job.
     Answer(Answer),
+    /// A command of an operator.
+    Operator(OperatorRequest),
     /// The user ends the run.
     Interrupted,
 }

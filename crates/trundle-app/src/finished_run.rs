@@ -30,4 +30,6 @@ pub struct RecordingCost {
     pub cpu_time: Duration,
     /// Why the recording is not whole, if it is not.
     pub error: Option<IoError>,
+    /// Why the last checkpoint is not written, if it is not.
+    pub checkpoint_error: Option<IoError>,
 }

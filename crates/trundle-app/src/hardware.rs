@@ -16,6 +16,24 @@ use trundle_core::PinholeCamera;
 use trundle_drivers::BaseSpec;
 use trundle_runtime::real_time::InboxSender;
 
+/// Waits until standard input ends, then stops the base at the port that is standard output: the guard of a program that may die.
+///
+/// # Errors
+/// When the port takes nothing, as where the base was unplugged.
+#[cfg(unix)]
+pub fn guard_base() -> Result<(), AppError> {
+    trundle_drivers::kobuki::base_guard::guard_base(std::io::stdin().lock(), std::io::stdout())
+        .map_err(|error| AppError::Environment(format!("the base cannot be stopped: {error}")))
+}
+
+/// Elsewhere no serial port can be guarded.
+#[cfg(not(unix))]
+pub fn guard_base() -> Result<(), AppError> {
+    Err(AppError::Environment(
+        "no serial port can be guarded on this system, expected Linux or macOS".to_owned(),
+    ))
+}
+
 /// Starts base and camera as the body of a run; `output` is the camera that the robot works with. Events go to `events`.
 ///
 /// # Errors

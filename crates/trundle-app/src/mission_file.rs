@@ -4,7 +4,7 @@ use crate::{AppError, read_toml};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
-use trundle_core::Pose2;
+use trundle_core::{Pose2, number_list};
 use trundle_io::read_places;
 use trundle_runtime::{Mission, Task};
 
@@ -22,7 +22,12 @@ struct MissionFile {
 #[serde(deny_unknown_fields)]
 struct TaskEntry {
     /// Goal pose, map frame: m, m, deg.
+    #[serde(default, deserialize_with = "number_list")]
     go: Option<[f64; 3]>,
+    /// Turn on the spot, positive to the left \[deg\].
+    turn_deg: Option<f64>,
+    /// Straight drive, back where it is negative \[m\].
+    straight_m: Option<f64>,
     /// Name of a place.
     place: Option<String>,
     #[serde(default)]
@@ -46,6 +51,10 @@ struct TaskEntry {
 /// [[task]]
 /// return = true
 /// [[task]]
+/// turn_deg = 90            # turn on the spot, to the left
+/// [[task]]
+/// straight_m = -0.5        # drive straight, here back
+/// [[task]]
 /// dock = true              # drive onto the charging station
 /// ```
 ///
@@ -66,28 +75,34 @@ pub fn read_mission(file: &Path) -> Result<Mission, AppError> {
     Mission::new(tasks.map_err(problem)?).map_err(|invalid| problem(invalid.to_string()))
 }
 
+/// Speed of a straight drive of a mission file \[m/s\]. Source: ours.
+const STRAIGHT_SPEED_M_S: f64 = 0.2;
+/// What a task may be.
+const TASK_FORMS: &str = "expected one of go = [X, Y, DEG], place = NAME, explore = true, turn_deg = DEG, straight_m = M, return = true, dock = true";
+
 fn task(entry: &TaskEntry, places: &BTreeMap<String, Pose2>) -> Result<Task, String> {
-    match (entry.go, &entry.place, entry.explore, entry.back, entry.dock) {
-        (Some([x, y, heading_deg]), None, false, false, false) => {
-            Ok(Task::Go(Pose2::new(x, y, heading_deg.to_radians())))
-        }
-        (None, Some(name), false, false, false) => {
-            places.get(name).map(|pose| Task::Go(*pose)).ok_or_else(|| {
-                let known: Vec<&str> = places.keys().map(String::as_str).collect();
-                match known.as_slice() {
-                    [] => format!("no place '{name}': the mission names no file of places (places = FILE)"),
-                    _ => format!("no place '{name}'; there are: {}", known.join(", ")),
-                }
-            })
-        }
-        (None, None, true, false, false) => Ok(Task::Explore),
-        (None, None, false, true, false) => Ok(Task::Return),
-        (None, None, false, false, true) => Ok(Task::Dock),
-        _ => {
-            Err("expected one of go = [X, Y, DEG], place = NAME, explore = true, return = true, dock = true"
-                .to_owned())
-        }
+    let go = entry.go.map(|[x, y, heading_deg]| Ok(Task::Go(Pose2::new(x, y, heading_deg.to_radians()))));
+    let turn = entry.turn_deg.map(|angle| Ok(Task::Turn { angle: angle.to_radians() }));
+    let straight =
+        entry.straight_m.map(|distance| Ok(Task::Straight { distance, speed: STRAIGHT_SPEED_M_S }));
+    let place = entry.place.as_ref().map(|name| place(name, places));
+    let words = [(entry.explore, Task::Explore), (entry.back, Task::Return), (entry.dock, Task::Dock)];
+    let words = words.into_iter().filter_map(|(stands, task)| stands.then_some(Ok(task)));
+    let mut forms = [go, turn, straight, place].into_iter().flatten().chain(words);
+    match (forms.next(), forms.next()) {
+        (Some(task), None) => task,
+        _ => Err(TASK_FORMS.to_owned()),
     }
+}
+
+fn place(name: &str, places: &BTreeMap<String, Pose2>) -> Result<Task, String> {
+    places.get(name).map(|pose| Task::Go(*pose)).ok_or_else(|| {
+        let known: Vec<&str> = places.keys().map(String::as_str).collect();
+        match known.as_slice() {
+            [] => format!("no place '{name}': the mission names no file of places (places = FILE)"),
+            _ => format!("no place '{name}'; there are: {}", known.join(", ")),
+        }
+    })
 }
 
 #[cfg(test)]
@@ -107,12 +122,21 @@ mod tests {
     #[test]
     fn tasks_come_in_the_order_of_the_file() {
         let text = "places = \"places.toml\"\n[[task]]\nexplore = true\n[[task]]\ngo = [3, 1, 180]\n\
-                    [[task]]\nplace = \"desk\"\n[[task]]\nreturn = true\n[[task]]\ndock = true\n";
+                    [[task]]\nplace = \"desk\"\n[[task]]\nreturn = true\n[[task]]\ndock = true\n\
+                    [[task]]\nturn_deg = -90\n[[task]]\nstraight_m = -0.5\n";
         let desk = Pose2::new(1.0, 2.0, 90_f64.to_radians());
         let goal = Pose2::new(3.0, 1.0, 180_f64.to_radians());
         assert_eq!(
             read(text).unwrap().tasks(),
-            [Task::Explore, Task::Go(goal), Task::Go(desk), Task::Return, Task::Dock]
+            [
+                Task::Explore,
+                Task::Go(goal),
+                Task::Go(desk),
+                Task::Return,
+                Task::Dock,
+                Task::Turn { angle: -90_f64.to_radians() },
+                Task::Straight { distance: -0.5, speed: STRAIGHT_SPEED_M_S },
+            ]
         );
     }
 
@@ -130,14 +154,22 @@ mod tests {
             ),
             (
                 "[[task]]\ngo = [1, 2, 3]\nexplore = true\n",
-                "mission.toml: task 1: expected one of go = [X, Y, DEG], place = NAME, explore = true, return = true, dock = true",
+                "mission.toml: task 1: expected one of go = [X, Y, DEG], place = NAME, explore = true, turn_deg = DEG, ",
             ),
             ("[[task]]\ngo = [1, 2]\n", "mission.toml, line 2: go has 2 values, expected a list of 3 values"),
             (
                 "[[task]]\ngoal = 1\n",
-                "mission.toml, line 2: unknown key goal, expected one of go, place, explore, return, dock",
+                "mission.toml, line 2: unknown key goal, expected one of go, turn_deg, straight_m, place, explore, return, dock",
             ),
-            ("[[task]]\ngo = [1, nan, 3]\n", "mission.toml: goal of task 0 is (1, NaN, "),
+            ("[[task]]\ngo = [1, nan, 3]\n", "mission.toml: y of the goal of task 1 is NaN m, expected "),
+            (
+                "[[task]]\ngo = [1, 2, 3, 4]\n",
+                "mission.toml, line 2: go has 4 values, expected a list of 3 values",
+            ),
+            (
+                "[[task]]\nstraight_m = 1e3\n",
+                "mission.toml: distance of task 1 is 1000 m, expected -100 to 100",
+            ),
         ] {
             let error = read(text).unwrap_err();
             assert!(error.starts_with(expected), "{error}");

@@ -22,7 +22,8 @@ pub use memory_usage::MemoryUsage;
 pub use pacer::RealTimePacer;
 pub use report::{QueueLength, RealTimeReport, ThreadLoad};
 
-use crate::{AppError, FinishedRun, Progress, RunLog, RunRecorder, RunSetup, run_on_body};
+use crate::operator::FrontEnd;
+use crate::{AppError, FinishedRun, RunLog, RunRecorder, RunSetup, run_on_body};
 use rayon::ThreadPoolBuilder;
 use std::path::Path;
 use threaded_body::ThreadedBody;
@@ -49,7 +50,7 @@ pub fn run_in_real_time<B: BackgroundBody>(
     folder: &OutputFolder,
     checkpoint_file: Option<&Path>,
     log: RunLog,
-    progress: Progress,
+    front_end: impl Into<FrontEnd> + Send,
 ) -> Result<(FinishedRun, RealTimeReport), AppError> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let (outside, inside) = if cores > 1 { (Some(0), Some(cores - 1)) } else { (None, None) };
@@ -68,7 +69,7 @@ pub fn run_in_real_time<B: BackgroundBody>(
             start_body(live.event_sender(), ThreadPlacement { core: outside, ..ThreadPlacement::default() })?;
         live.connect(body.commands(), body.contacts());
         let before = thread_time().unwrap_or_default();
-        let result = run_on_body(setup, &mut live, recorder, log, progress);
+        let result = run_on_body(setup, &mut live, recorder, log, front_end);
         let control = thread_time().unwrap_or_default().saturating_sub(before);
         let body = body.stop();
         let run = result?;

@@ -161,14 +161,19 @@ impl RunRecorder {
         }
     }
 
-    /// Ends the recording and writes the last checkpoint; the processor time of the recorder's thread, 0 without one.
+    /// Writes the last checkpoint, where a file for them is given.
+    ///
+    /// # Errors
+    /// When it could not be written.
+    pub fn finish_checkpoints(&mut self, last: Option<Checkpoint>) -> Result<(), IoError> {
+        self.checkpoints.take().map_or(Ok(()), |writer| writer.finish(last))
+    }
+
+    /// Ends the recording; the processor time of the recorder's thread, 0 without one.
     ///
     /// # Errors
     /// When the recording could not be written to its end.
-    pub fn finish(self, last: Option<Checkpoint>) -> Result<Duration, IoError> {
-        if let Some(writer) = self.checkpoints {
-            writer.finish(last);
-        }
+    pub fn finish(self) -> Result<Duration, IoError> {
         match self.sink {
             Sink::Inline(file) => file.finish().map(|()| Duration::ZERO),
             Sink::Threaded { lines, thread, .. } => {

@@ -27,7 +27,7 @@ const BYTES_PER_MB: f64 = 1e6;
 impl RecordingContent {
     /// The refusal of a recording without images.
     pub(crate) const NO_IMAGES: &str =
-        "the recording holds no images (demo --record events), expected one of a run with --record all";
+        "the recording holds no images (--record events), expected one of a run with --record all";
 
     /// Whether this is all, which setups of recordings do not name.
     pub(crate) fn is_all(&self) -> bool {
@@ -45,20 +45,25 @@ impl RecordingContent {
         }
     }
 
-    /// Size of the recording of a run of at most `limit` s with images of `camera` at `rate_hz`, in a sentence.
+    /// Size of the recording of a run of at most `limit` s, `f64::MAX` without a limit, with images of `camera` at `rate_hz`, in a
+    /// sentence.
     #[must_use]
     pub fn announcement(self, camera: &PinholeCamera, rate_hz: f64, limit: f64) -> String {
         let rate = self.bytes_per_second(camera, rate_hz) / BYTES_PER_MB;
         let total = rate * limit;
-        let total = if total < 1.0 { "less than 1 MB".to_owned() } else { format!("at most {total:.0} MB") };
+        let total = match total {
+            _ if limit == f64::MAX => String::new(),
+            _ if total < 1.0 => format!(", less than 1 MB in {limit:.0} s"),
+            _ => format!(", at most {total:.0} MB in {limit:.0} s"),
+        };
         match self {
             Self::None => "Nothing is recorded.".to_owned(),
             Self::Events => format!(
-                "Records events without images, about {rate:.2} MB a second of the robot's time, {total} in {limit:.0} s."
+                "Records events without images, about {rate:.2} MB a second of the robot's time{total}."
             ),
-            Self::All => format!(
-                "Records events and images, about {rate:.1} MB a second of the robot's time, {total} in {limit:.0} s."
-            ),
+            Self::All => {
+                format!("Records events and images, about {rate:.1} MB a second of the robot's time{total}.")
+            }
         }
     }
 }
@@ -77,5 +82,7 @@ mod tests {
         assert!(text(RecordingContent::All).contains("MB a second"));
         let short = RecordingContent::Events.announcement(&camera, 15.0, 6.0);
         assert!(short.contains("less than 1 MB in 6 s"), "{short}");
+        let endless = RecordingContent::Events.announcement(&camera, 15.0, f64::MAX);
+        assert_eq!(endless, "Records events without images, about 0.08 MB a second of the robot's time.");
     }
 }

@@ -91,6 +91,7 @@ impl RunReplayer {
                     match Self::read_mark(value)? {
                         RunMark::Contacts(count) => self.contacts = Some(count),
                         RunMark::Applied(worker) => return self.run_job(worker),
+                        RunMark::Operator(request) => return Ok(Some(RunInput::Operator(request))),
                         RunMark::Interrupted => return Ok(Some(RunInput::Interrupted)),
                         RunMark::End => return Ok(None),
                     }

@@ -1,12 +1,14 @@
 //! A run from its setup to its end.
 
 use crate::encoded_body::{EncodedBody, RunInput};
-use crate::{AppError, FinishedRun, Progress, RunLog, RunRecorder, RunSession, RunSetup, stop};
+use crate::operator::FrontEnd;
+use crate::{AppError, FinishedRun, RunLog, RunRecorder, RunSession, RunSetup, stop};
 
 /// Time that a run goes on after the robot has arrived \[s\]. A longer roll is not seen. Source: ours.
 pub const AFTER_ARRIVAL_S: f64 = 0.5;
 
-/// Runs the robot of `setup` on `body` until its mission is over, its time is over or the user interrupts; records everything.
+/// Runs the robot of `setup` on `body` until its mission is over, its time is over or the user interrupts; records everything. An
+/// operated run goes on after its mission.
 ///
 /// # Errors
 /// When the robot or the checkpoint cannot be accepted, or the body failed.
@@ -15,14 +17,15 @@ pub fn run_on_body(
     body: &mut dyn EncodedBody,
     recorder: RunRecorder,
     log: RunLog,
-    progress: Progress,
+    front_end: impl Into<FrontEnd>,
 ) -> Result<FinishedRun, AppError> {
-    let mut session = RunSession::new(setup, recorder, log, progress)?;
+    let mut session = RunSession::new(setup, recorder, log, front_end.into())?;
     let mut finished = None;
-    while let Some(input) = next_input(body, session.log())? {
+    while let Some(input) = next_input(body, &session)? {
         let is_finished = session.step(input, body)?;
         let now = session.log().now;
-        let is_over = is_finished && now - *finished.get_or_insert(now) >= AFTER_ARRIVAL_S;
+        let is_over =
+            is_finished && !setup.is_operated && now - *finished.get_or_insert(now) >= AFTER_ARRIVAL_S;
         if is_over || session.is_interrupted() || session.log().elapsed() > setup.time_limit {
             break;
         }
@@ -30,10 +33,13 @@ pub fn run_on_body(
     session.finish(body)
 }
 
-/// The body's next input, or the user's request to stop.
-fn next_input(body: &mut dyn EncodedBody, log: &RunLog) -> Result<Option<RunInput>, AppError> {
-    if stop::is_requested(|| format!("{:.1} s of the robot's time", log.elapsed())) {
+/// The user's request to stop, an operator's request, or the body's next input.
+fn next_input(body: &mut dyn EncodedBody, session: &RunSession<'_>) -> Result<Option<RunInput>, AppError> {
+    if stop::is_requested(|| format!("{:.1} s of the robot's time", session.log().elapsed())) {
         return Ok(Some(RunInput::Interrupted));
+    }
+    if let Some(request) = session.next_request() {
+        return Ok(Some(RunInput::Operator(request)));
     }
     body.next_input()
 }

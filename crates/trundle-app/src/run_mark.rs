@@ -1,10 +1,11 @@
 //! Marks that a recording holds between the events, so that a replay feeds the robot in the same order.
 
+use crate::operator::OperatorRequest;
 use serde::{Deserialize, Serialize};
 use trundle_runtime::Worker;
 
 /// A mark of a recording, between the events.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum RunMark {
@@ -13,6 +14,8 @@ pub enum RunMark {
     Applied(Worker),
     /// Separate contacts so far, in truth, before the event that follows.
     Contacts(u32),
+    /// The robot obeyed this request here.
+    Operator(OperatorRequest),
     /// The user ended the run.
     Interrupted,
     /// The run was over; the following jobs were still running.
@@ -27,7 +30,7 @@ impl RunMark {
 }
 
 /// A mark as it is recorded.
-#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct RunMarkMessage {
     /// The mark.
     pub mark: RunMark,

@@ -1,6 +1,8 @@
 //! A run in progress: feeds the robot and records each input and output.
 
 use crate::encoded_body::{EncodedBody, RunInput};
+use crate::operator::{FrontEnd, OperatorLink, OperatorRequest};
+use crate::overload_watch::OverloadWatch;
 use crate::run_mark::{RunMark, RunMarkMessage};
 use crate::setup::mission_text;
 use crate::{AppError, BestView, FinishedRun, Progress, RecordingCost, RunLog, RunRecorder, RunSetup};
@@ -17,7 +19,9 @@ pub struct RunSession<'s> {
     recorder: RunRecorder,
     log: RunLog,
     view: BestView,
+    overload: OverloadWatch,
     progress: Progress,
+    operator: Option<OperatorLink>,
     start: Instant,
     is_interrupted: bool,
 }
@@ -31,7 +35,7 @@ impl<'s> RunSession<'s> {
         setup: &'s RunSetup,
         mut recorder: RunRecorder,
         log: RunLog,
-        progress: Progress,
+        front_end: FrontEnd,
     ) -> Result<Self, AppError> {
         let mut robot = setup.start_robot()?;
         if setup.real_time {
@@ -43,9 +47,21 @@ impl<'s> RunSession<'s> {
         let config = setup.clone();
         recorder.write(move |file| file.record_json("/config", "trundle.Config", Stamp::default(), &config));
         tracing::info!("run in '{}', seed {}: {}", setup.scene, setup.seed, mission_text(&setup.mission));
-        let view = BestView::default();
+        let (view, overload) = (BestView::default(), OverloadWatch::default());
         let start = Instant::now();
-        Ok(Self { setup, robot, recorder, log, view, progress, start, is_interrupted: false })
+        let FrontEnd { progress, operator } = front_end;
+        Ok(Self {
+            setup,
+            robot,
+            recorder,
+            log,
+            view,
+            overload,
+            progress,
+            operator,
+            start,
+            is_interrupted: false,
+        })
     }
 
     /// The log so far.
@@ -60,6 +76,11 @@ impl<'s> RunSession<'s> {
         self.is_interrupted
     }
 
+    /// The operator's next request, where one waits.
+    pub(crate) fn next_request(&self) -> Option<OperatorRequest> {
+        self.operator.as_ref()?.next_request()
+    }
+
     /// Feeds the robot one input; whether its mission is over.
     ///
     /// # Errors
@@ -69,6 +90,7 @@ impl<'s> RunSession<'s> {
         let (stamp, report) = match input {
             RunInput::Event(event) => (event.stamp(), self.on_event(event)?),
             RunInput::Answer(answer) => (self.log.now, self.apply_answer(answer)),
+            RunInput::Operator(request) => (self.log.now, self.obey(request)?),
             RunInput::Interrupted => return self.interrupt(body),
         };
         if let Some(twist) = report.twist {
@@ -80,6 +102,9 @@ impl<'s> RunSession<'s> {
         }
         self.record(stamp, &report);
         self.log.on_report(stamp, &report);
+        if let Some(link) = &mut self.operator {
+            link.publish(stamp, &self.robot, &report);
+        }
         if let Some(checkpoint) = &report.checkpoint {
             self.recorder.write_checkpoint(Arc::clone(checkpoint));
         }
@@ -134,11 +159,12 @@ impl<'s> RunSession<'s> {
         tracing::info!("run over after {:.1} s: {}", self.log.elapsed(), self.log.state);
         let (queue_lengths, lines_lost) = (self.recorder.queue_lengths.clone(), self.recorder.lines_lost);
         let last = if self.recorder.writes_checkpoints() { self.robot.checkpoint() } else { None };
-        let (cpu_time, error) = match self.recorder.finish(last) {
+        let checkpoint_error = self.recorder.finish_checkpoints(last).err();
+        let (cpu_time, error) = match self.recorder.finish() {
             Ok(spent) => (spent, None),
             Err(error) => (Duration::ZERO, Some(error)),
         };
-        let recording = RecordingCost { queue_lengths, lines_lost, cpu_time, error };
+        let recording = RecordingCost { queue_lengths, lines_lost, cpu_time, error, checkpoint_error };
         let seconds = self.start.elapsed().as_secs_f64();
         Ok(FinishedRun { robot: self.robot, log: self.log, view: self.view, seconds, recording })
     }
@@ -154,6 +180,9 @@ impl<'s> RunSession<'s> {
             image.stamp = image.stamp.after(-self.setup.robot.image_delay);
             self.view.on_image(&image);
             let stamp = image.stamp;
+            if let Some(sentence) = self.overload.on_image(stamp, self.robot.dropped_images().len()) {
+                tracing::warn!("{:.3} s: {sentence}", stamp.as_secs());
+            }
             let load = move || image.decode().map_err(|error| error.to_string());
             return Ok(self.robot.queue_image(LazyImage::new(stamp, load)));
         }
@@ -165,6 +194,15 @@ impl<'s> RunSession<'s> {
     fn apply_answer(&mut self, answer: Answer) -> StepReport {
         self.record_mark(RunMark::Applied(answer.worker()));
         self.robot.apply_answer(answer)
+    }
+
+    /// The robot obeys an operator from here on.
+    fn obey(&mut self, request: OperatorRequest) -> Result<StepReport, AppError> {
+        self.record_mark(RunMark::Operator(request.clone()));
+        if let Some(link) = &mut self.operator {
+            link.note_request(&request);
+        }
+        Ok(self.robot.obey(request.command)?)
     }
 
     fn record_mark(&mut self, mark: RunMark) {

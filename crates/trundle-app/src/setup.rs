@@ -15,6 +15,9 @@ const SAME_PLACE_M: f64 = 0.01;
 /// The same for the heading \[rad\]: 1 deg. Source: ours.
 const SAME_HEADING_RAD: f64 = 0.0175;
 
+/// The command that drives hardware.
+pub const RUN_COMMAND: &str = "run";
+
 /// The setup of a run: recorded first, and all that a replay needs besides the events.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -38,6 +41,9 @@ pub struct RunSetup {
     /// Whether the robot's long work runs in threads beside the control loop.
     #[serde(default)]
     pub real_time: bool,
+    /// Whether the run goes on after its mission, for the next request of an operator.
+    #[serde(default, rename = "operated", skip_serializing_if = "std::ops::Not::not")]
+    pub is_operated: bool,
     /// Content of the recording.
     #[serde(default, skip_serializing_if = "RecordingContent::is_all")]
     pub recording: RecordingContent,
@@ -70,6 +76,7 @@ impl RunSetup {
             time_limit: f64::MAX,
             robot,
             real_time: false,
+            is_operated: false,
             recording: RecordingContent::All,
             checkpoint: None,
             vocabulary: None,
@@ -135,6 +142,12 @@ impl RunSetup {
         let bytes = BASE64_STANDARD.decode(checkpoint).map_err(|error| unusable(error.to_string()))?;
         let checkpoint = Checkpoint::from_bytes(&bytes).map_err(|error| unusable(error.to_string()))?;
         Robot::resume(self.robot.clone(), &checkpoint).map_err(|error| unusable(error.to_string()))
+    }
+
+    /// Whether the run is of a robot of hardware, not of the simulator.
+    #[must_use]
+    pub fn is_on_hardware(&self) -> bool {
+        self.command == RUN_COMMAND
     }
 
     /// The goal of a task, map frame; `None` for a task without a goal.

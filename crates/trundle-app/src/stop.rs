@@ -15,13 +15,15 @@ static STOPPED_AFTER: Mutex<Option<String>> = Mutex::new(None);
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StopSignal(usize);
 
+/// Number of the signal of a terminal that is closed.
+const SIGHUP_NUMBER: usize = 1;
 /// Number of the signal of Ctrl-C.
 const SIGINT_NUMBER: usize = 2;
 /// Exit code of a program that a signal has ended, less the signal's number. Source: POSIX shells.
 const SIGNAL_EXIT_CODE: u8 = 128;
 
 impl StopSignal {
-    /// The exit code: 130 for Ctrl-C, 143 for SIGTERM.
+    /// The exit code: 130 for Ctrl-C, 143 for SIGTERM, 129 for a closed terminal.
     #[must_use]
     pub fn exit_code(self) -> u8 {
         SIGNAL_EXIT_CODE + u8::try_from(self.0).unwrap_or_default()
@@ -30,7 +32,11 @@ impl StopSignal {
     /// Its name for a person.
     #[must_use]
     pub fn name(self) -> &'static str {
-        if self.0 == SIGINT_NUMBER { "Ctrl-C" } else { "SIGTERM" }
+        match self.0 {
+            SIGINT_NUMBER => "Ctrl-C",
+            SIGHUP_NUMBER => "SIGHUP (the terminal was closed)",
+            _ => "SIGTERM",
+        }
     }
 }
 
@@ -70,19 +76,18 @@ fn read_json(file: &Path) -> Result<serde_json::Value, AppError> {
     serde_json::from_slice(&bytes).map_err(AppError::input)
 }
 
-/// Takes Ctrl-C and SIGTERM as requests, which the loops of the running command read. The second signal ends the program
-/// at once.
+/// Takes Ctrl-C, SIGTERM and a closed terminal as requests, which the loops of the running command read. The second signal ends the
+/// program at once.
 ///
 /// # Errors
 /// When the system refuses.
 #[cfg(unix)]
 pub fn listen() -> Result<(), AppError> {
-    use signal_hook::consts::{SIGINT, SIGTERM};
     use signal_hook::flag;
     use std::sync::Arc;
     use std::sync::atomic::AtomicBool;
     let is_second = Arc::<AtomicBool>::default();
-    for signal in [SIGINT, SIGTERM] {
+    for signal in ending_signals() {
         let number = usize::try_from(signal).unwrap_or_default();
         let code = i32::from(StopSignal(number).exit_code());
         // In this order: the second signal finds the flag set.
@@ -90,6 +95,31 @@ pub fn listen() -> Result<(), AppError> {
         flag::register(signal, Arc::clone(&is_second)).map_err(refused)?;
     }
     on_signal(|signal| _ = SIGNAL.compare_exchange(0, signal.0, Ordering::Relaxed, Ordering::Relaxed))
+}
+
+/// Ignores the signals that ask a program to end.
+///
+/// # Errors
+/// When the system refuses.
+#[cfg(unix)]
+pub fn ignore() -> Result<(), AppError> {
+    on_signal(|_| {})
+}
+
+/// The signals that ask this program to end. A program that was started by `nohup` goes on without its terminal.
+#[cfg(unix)]
+fn ending_signals() -> Vec<i32> {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    if ignores_closed_terminal(&status) { vec![SIGINT, SIGTERM] } else { vec![SIGINT, SIGTERM, SIGHUP] }
+}
+
+/// Whether the status of a process, as Linux has it in /proc, shows that SIGHUP is ignored.
+#[cfg(unix)]
+fn ignores_closed_terminal(status: &str) -> bool {
+    let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_some_and(|mask| mask >> (SIGHUP_NUMBER - 1) & 1 == 1)
 }
 
 /// Ends the program at Ctrl-C or SIGTERM where `prepare` returns true: for commands that have written nothing until their end. Where it
@@ -108,8 +138,7 @@ pub fn end_at_once(prepare: impl Fn(StopSignal) -> bool + Send + 'static) -> Res
 
 #[cfg(unix)]
 fn on_signal(act: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppError> {
-    use signal_hook::consts::{SIGINT, SIGTERM};
-    let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM]).map_err(refused)?;
+    let mut signals = signal_hook::iterator::Signals::new(ending_signals()).map_err(refused)?;
     let wait = move || {
         signals.forever().for_each(|signal| act(StopSignal(usize::try_from(signal).unwrap_or_default())));
     };
@@ -128,6 +157,12 @@ pub fn listen() -> Result<(), AppError> {
     Ok(())
 }
 
+/// Elsewhere no signal is ignored.
+#[cfg(not(unix))]
+pub fn ignore() -> Result<(), AppError> {
+    Ok(())
+}
+
 /// Elsewhere Ctrl-C ends the program at once.
 #[cfg(not(unix))]
 pub fn end_at_once(_prepare: impl Fn(StopSignal) -> bool + Send + 'static) -> Result<(), AppError> {
@@ -143,6 +178,14 @@ mod tests {
         let [interrupt, terminate] = [2, 15].map(StopSignal);
         assert_eq!((interrupt.exit_code(), interrupt.name()), (130, "Ctrl-C"));
         assert_eq!((terminate.exit_code(), terminate.name()), (143, "SIGTERM"));
+        assert_eq!(StopSignal(1).exit_code(), 129);
+    }
+
+    #[test]
+    fn a_program_under_nohup_goes_on_without_its_terminal() {
+        assert!(ignores_closed_terminal("Name:\ttrundle\nSigIgn:\t0000000000001001\n"));
+        assert!(!ignores_closed_terminal("Name:\ttrundle\nSigIgn:\t0000000000001000\n"));
+        assert!(!ignores_closed_terminal(""));
     }
 
     #[test]

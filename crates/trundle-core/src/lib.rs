@@ -45,12 +45,12 @@ pub use image::{ColorImage, DepthImage, GrayImage, Image, gray_from_color};
 pub use invalid::{Invalid, require_finite, require_in, require_positive};
 pub use odometry::{GyroRate, Odometry, WheelTicks};
 pub use path::Path;
-pub use pose2::Pose2;
+pub use pose2::{MAX_COORDINATE_M, Pose2};
 pub use pose3::Pose3;
 pub use rgbd::RgbdImage;
 pub use scan::{Beam, FreeSpan, ObstacleKind, Scan, ScanParts};
 pub use stamp::Stamp;
-pub use toml_words::{TomlProblem, toml_problem};
+pub use toml_words::{TomlProblem, number_list, toml_problem};
 pub use trajectory::{Trajectory, TrajectoryPoint};
 pub use twist::Twist2;
 

@@ -4,6 +4,9 @@ use crate::{Twist2, Vector2, Vector3, wrap_angle};
 use serde::{Deserialize, Serialize};
 use std::ops::Mul;
 
+/// Largest coordinate of a pose that a user gives \[m\]. Beyond it a cell of a grid has no index. Source: ours.
+pub const MAX_COORDINATE_M: f64 = 1e6;
+
 /// A pose in the plane, an element of SE(2): `a_from_b` maps points of frame b into frame a.
 ///
 /// Names cancel: `map_from_base * base_from_goal` is `map_from_goal`.

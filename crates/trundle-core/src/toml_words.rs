@@ -1,7 +1,22 @@
 //! The problems of TOML files in plain words: the parser and serde speak of types of Rust.
 
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer};
+
 /// Characters of a line that a message repeats. Source: ours.
 const MAX_EXCERPT_CHARS: usize = 40;
+
+/// Reads a list of exactly `N` numbers, or nothing. The TOML reader itself ignores what follows in a longer list.
+///
+/// # Errors
+/// When the list has another length.
+pub fn number_list<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result<Option<[f64; N]>, D::Error> {
+    let Some(list) = Option::<Vec<f64>>::deserialize(from)? else { return Ok(None) };
+    let length = list.len();
+    let exact = <[f64; N]>::try_from(list).ok();
+    let expected = format!("an array of length {N}");
+    exact.map(Some).ok_or_else(|| D::Error::invalid_length(length, &expected.as_str()))
+}
 
 /// What is wrong with a TOML file.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -22,11 +22,12 @@ pub enum BaseSpec {
 }
 
 impl BaseSpec {
-    /// What opens the base's port.
+    /// What opens the base's port. `program` has the command [`crate::kobuki::base_guard::GUARD_COMMAND`]: a process of it stops the base
+    /// where this program dies.
     #[must_use]
-    pub fn connector(&self) -> Box<dyn Connector> {
+    pub fn connector(&self, program: &Path) -> Box<dyn Connector> {
         let Self::Kobuki(port) = self;
-        Box::new(SerialConnector::new(port.clone().unwrap_or_else(kobuki_port)))
+        Box::new(SerialConnector::new(port.clone().unwrap_or_else(kobuki_port)).guarded_by(program))
     }
 }
 

@@ -72,7 +72,7 @@ pub use recording::{
     FeatureMarks, KeyframeGraph, LandmarkCloud, PoseInFrame, PosesInFrame, RecordedMessage, Recorder,
     RecordingCut, RecordingReader,
 };
-pub use replace::replace_file;
+pub use replace::{replace_file, require_replaceable};
 pub use ros::{read_laser_log, read_ros_bag};
 pub use sequence_camera::SequenceCamera;
 pub use stamp_text::parse_stamp;

@@ -3,6 +3,7 @@
 pub(crate) mod drive_state;
 pub(crate) mod navigator;
 pub(crate) mod progress_checker;
+pub(crate) mod relative_motion;
 pub(crate) mod sight_recovery;
 pub(crate) mod spin;
 pub(crate) mod station_drive;

@@ -7,7 +7,8 @@ use crate::{
 use serde::{Deserialize, Deserializer, Serialize};
 use trundle_control::{FollowerConfig, SafetyConfig};
 use trundle_core::{
-    DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera, Vector2, footprint_corners, require_in,
+    DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera, Vector2, footprint_corners,
+    number_list, require_in,
 };
 use trundle_localization::{LocalizerConfig, OdometryConfig, StationLightConfig};
 use trundle_mapping::{DepthScanConfig, MapperConfig, ScanMatchConfig};
@@ -34,7 +35,8 @@ pub struct RobotConfig {
     pub camera: PinholeCamera,
     /// Where the camera sits.
     pub mount: CameraMount,
-    /// Stamp of an image minus the moment at which it was taken, s, -1 to 1. A run subtracts it from the stamp of each image.
+    /// Stamp of an image minus the moment at which it was taken, s, -1 to 1. A run subtracts it from the stamp of each image, beside
+    /// the delay that the camera's driver reports itself.
     /// `trundle calibrate delay` measures it. Default 0.
     pub image_delay: f64,
     /// Rates of the stages.
@@ -70,14 +72,18 @@ pub struct RobotConfig {
 /// Corners as a list, or as the text that Nav2's costmaps take.
 fn corners<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<[f64; 2]>>, D::Error> {
     #[derive(Deserialize)]
+    struct Corner(#[serde(deserialize_with = "number_list")] Option<[f64; 2]>);
+    #[derive(Deserialize)]
     #[serde(untagged)]
     enum Corners {
-        List(Vec<[f64; 2]>),
+        List(Vec<Corner>),
         Text(String),
     }
     match Option::<Corners>::deserialize(deserializer)? {
         None => Ok(None),
-        Some(Corners::List(corners)) => Ok(Some(corners)),
+        Some(Corners::List(corners)) => {
+            Ok(Some(corners.into_iter().filter_map(|Corner(corner)| corner).collect()))
+        }
         Some(Corners::Text(text)) => {
             let corners = footprint_corners(&text).map_err(serde::de::Error::custom)?;
             Ok(Some(corners.iter().map(|corner| [corner.x, corner.y]).collect()))

@@ -29,12 +29,7 @@ impl Mission {
     /// When a goal is not finite; names it by its place.
     pub fn new(tasks: Vec<Task>) -> Result<Self, Invalid> {
         for (i, task) in tasks.iter().enumerate() {
-            if let Task::Go(pose) = task
-                && !pose.is_finite()
-            {
-                let value = format!("({}, {}, {})", pose.x, pose.y, pose.theta);
-                return Err(Invalid::new(format!("goal of task {i}"), value, "m, m, rad", "finite numbers"));
-            }
+            task.require_usable(i)?;
         }
         Ok(Self { tasks })
     }
@@ -141,7 +136,7 @@ mod tests {
     #[test]
     fn a_goal_that_is_no_number_is_refused_by_its_place() {
         let error = Mission::new(vec![Task::Explore, Task::Go(Pose2::new(f64::NAN, 0.0, 0.0))]).unwrap_err();
-        assert_eq!(error.field, "goal of task 1");
+        assert_eq!(error.field, "x of the goal of task 2");
     }
 
     #[test]
@@ -177,7 +172,7 @@ mod tests {
         let missing = MissionState { places: Vec::new(), ..new(vec![Task::Explore]) };
         assert_eq!(missing.validated().unwrap_err().field, "places of tasks");
         let infinite = new(vec![Task::Go(Pose2::new(f64::INFINITY, 0.0, 0.0))]);
-        assert_eq!(infinite.validated().unwrap_err().field, "goal of task 0");
+        assert_eq!(infinite.validated().unwrap_err().field, "x of the goal of task 1");
     }
 
     #[test]

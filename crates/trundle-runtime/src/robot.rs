@@ -4,11 +4,17 @@ mod background;
 mod body_state;
 mod deferred_work;
 mod event_log;
+mod obey;
 mod pose_monitor;
 mod restore;
+mod scans;
+mod sensor_watch;
 #[cfg(test)]
 mod tests;
 mod validation;
+mod views;
+
+pub use views::MissionProgress;
 
 use crate::world_state::{DynamicObstacles, StationState, WorldState};
 use crate::{
@@ -16,8 +22,7 @@ use crate::{
     behaviour::navigator::position_sigma,
     bumper,
     config::RobotConfig,
-    goal_approach::GoalApproachReport,
-    mission::{Mission, MissionState, Task, TaskRecord},
+    mission::{Mission, MissionState, Task},
     monitors::camera_health::CameraHealth,
     monitors::scan_map_consistency::ScanMapConsistency,
     range_source::RangeSource,
@@ -31,19 +36,19 @@ use crate::{
 use background::Background;
 use body_state::BodyState;
 use event_log::DroppedImage;
+use sensor_watch::SensorWatch;
 use std::sync::Arc;
-use trundle_control::{MotionSense, SafetyScan};
+use trundle_control::{MotionHold, MotionSense, SafetyScan};
 use trundle_core::{
-    Battery, BodyEvent, BodyEventKind, Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3,
-    PoseEstimate, RgbdImage, Scan, SensorEvent, Stamp, Vector2, WheelTicks,
+    BodyEvent, BodyEventKind, Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, RgbdImage,
+    Scan, SensorEvent, Stamp, Vector2, WheelTicks,
 };
 use trundle_localization::{
-    Correction, Localizer, OdometryState, StationEstimate, StationEstimator, VisualPose, VisualQuality,
-    WheelOdometry,
+    Correction, Localizer, OdometryState, StationEstimator, VisualPose, VisualQuality, WheelOdometry,
 };
 use trundle_mapping::{LiveMapper, MapperConfig, ScanMatcher};
-use trundle_planning::{MovingObstacle, MovingObstacleTracker, PlanResult};
-use trundle_slam::{RgbdSlam, TrackReport, Tracking};
+use trundle_planning::{MovingObstacle, MovingObstacleTracker};
+use trundle_slam::{TrackReport, Tracking};
 
 /// The whole robot: sensor events in; pose, map, plan and twist out.
 ///
@@ -91,6 +96,7 @@ struct Latest {
     odometry: Option<Odometry>,
     /// Power, wheel drop, links.
     body: BodyState,
+    sensors: SensorWatch,
     /// The newest scan.
     scan: Option<Scan>,
     /// `odom_from_base` when it was taken.
@@ -227,12 +233,15 @@ impl Robot {
 
     /// A gyro reading: into the odometry.
     fn on_gyro(&mut self, gyro: &GyroRate) {
+        self.latest.sensors.on_gyro(gyro.stamp);
         self.times.measure(Stage::Odometry, || self.odometry.step_gyro(gyro));
     }
 
     /// A wheel reading: odometry, prediction, then navigation: a twist leaves.
     fn on_wheels(&mut self, wheels: &WheelTicks, report: &mut StepReport) {
         let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
+        let changes = self.latest.sensors.on_wheels(wheels.stamp, self.odometry.wheels_are_unresponsive());
+        changes.for_each(|change| event_log::sensor_change(wheels.stamp, change));
         self.drive_on(odometry, wheels.stamp, report);
     }
 
@@ -251,15 +260,21 @@ impl Robot {
     fn on_body(&mut self, event: &BodyEvent, report: &mut StepReport) {
         let before = self.latest.body.hold(self.range_source);
         self.latest.body.update(event.kind);
-        let hold = self.latest.body.hold(self.range_source);
         if matches!(event.kind, BodyEventKind::Battery(_)) && self.latest.body.is_docked() {
             self.station.add_contact(self.localizer.estimate().pose * self.docked);
         }
-        if before != hold {
-            event_log::hold(event.stamp, hold);
-        }
-        if before != hold || event.kind == BodyEventKind::Silence {
+        self.on_hold(before, event.stamp, report);
+        if report.twist.is_none() && event.kind == BodyEventKind::Silence {
             self.decide(event.stamp, report);
+        }
+    }
+
+    /// Acts at once on a change of what holds the robot.
+    fn on_hold(&mut self, before: Option<MotionHold>, now: Stamp, report: &mut StepReport) {
+        let hold = self.latest.body.hold(self.range_source);
+        if before != hold {
+            event_log::hold(now, hold);
+            self.decide(now, report);
         }
     }
 
@@ -436,72 +451,12 @@ impl Robot {
         self.latest.clear_movers();
     }
 
-    /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each. Whether it was drawn.
-    fn on_scan(&mut self, scan: Scan) -> bool {
-        let is_due = self.map_due.due(scan.stamp()) && self.is_pose_known(scan.stamp());
-        let is_due = is_due && self.is_consistent_with_map(&scan);
-        if is_due {
-            self.correct_by_scan(&scan);
-            self.integrate_scan(&scan);
-        }
-        self.track_dynamic_obstacles(&scan);
-        // A scan without content does not replace the last one for the safety monitor.
-        if self.latest.camera_health.note(&scan) || self.latest.camera_health.seen().is_none() {
-            self.latest.scan_odometry = self.odometry_at(scan.stamp()).map(|odometer| odometer.pose);
-            self.latest.scan = Some(scan);
-        }
-        is_due
-    }
-
-    /// Tracks dynamic obstacles with the newest scan.
-    fn track_dynamic_obstacles(&mut self, scan: &Scan) {
-        let now = scan.stamp();
-        if !self.is_pose_known(now) {
-            // Hits of unconfirmed obstacles are in the map frame; they expire.
-            let here = self.localizer.estimate().pose.position();
-            self.latest.unconfirmed = self.obstacle_tracker.unconfirmed_hits(now, here, NEARBY_OBSTACLE_M);
-            return self.latest.clear_movers();
-        }
-        let Ok(pose) = self.localizer.pose_at(now) else { return };
-        let (times, obstacle_tracker, latest) =
-            (&mut self.times, &mut self.obstacle_tracker, &mut self.latest);
-        times.measure(Stage::DynamicObstacles, || {
-            obstacle_tracker.add_scan(pose, scan);
-            latest.movers = obstacle_tracker.moving_obstacles(now);
-            latest.unconfirmed = obstacle_tracker.unconfirmed_hits(now, pose.position(), NEARBY_OBSTACLE_M);
-            latest.static_grid =
-                (!latest.movers.is_empty()).then(|| obstacle_tracker.static_grid(self.mapper.grid()));
-        });
-    }
-
     /// Whether the pose is known well enough for scans to enter the grid.
     fn is_pose_known(&self, now: Stamp) -> bool {
         let is_unlocated = self.latest.unlocated.is_some_and(|since| now - since > UNLOCATED_WITH_FEATURES_S);
         !is_unlocated
             && !self.latest.body.is_lifted()
             && position_sigma(&self.localizer.estimate()) < self.lost_sigma
-    }
-
-    /// Corrects the estimate by where the scan fits the map.
-    fn correct_by_scan(&mut self, scan: &Scan) {
-        let Ok(guess) = self.localizer.pose_at(scan.stamp()) else { return };
-        let found =
-            self.times.measure(Stage::ScanMatch, || self.matcher.refine(self.mapper.mapper(), scan, guess));
-        if let Some(found) = found {
-            let before = self.localizer.estimate().pose;
-            self.localizer.correct_scan(scan.stamp(), found.pose, &found.covariance);
-            event_log::correction(scan.stamp(), "the scan match", before, self.localizer.estimate().pose);
-        }
-    }
-
-    /// Draws the scan, and the floor that the robot stands on, into the map; not when no pose is known for its time.
-    fn integrate_scan(&mut self, scan: &Scan) {
-        let Ok(pose) = self.localizer.pose_at(scan.stamp()) else { return };
-        let (mapper, radius) = (&mut self.mapper, self.inscribed_radius);
-        self.times.measure(Stage::Mapping, || {
-            mapper.insert(pose, scan);
-            mapper.mark_free_disc(pose, radius);
-        });
     }
 
     /// The base, map frame, of a camera pose in the visual map.
@@ -537,72 +492,6 @@ impl Robot {
             })
         };
         self.localizer.odometry_at(stamp).ok().or_else(newest)
-    }
-
-    /// The pose estimate.
-    pub fn estimate(&self) -> PoseEstimate {
-        self.localizer.estimate()
-    }
-
-    /// The map.
-    pub fn grid(&self) -> &OccupancyGrid {
-        self.mapper.grid()
-    }
-
-    /// The visual tracker with its landmark map; none while a perception job runs.
-    pub fn slam(&self) -> Option<&RgbdSlam> {
-        self.perception.as_ref().map(|perception| perception.slam())
-    }
-
-    /// The visual tracker's frame in the map.
-    pub fn map_from_visual(&self) -> Option<Pose3> {
-        self.localizer.map_from_visual()
-    }
-
-    /// The tasks of the mission that have ended; empty while a decision job runs.
-    pub fn tasks_ended(&self) -> &[TaskRecord] {
-        self.decision_worker.as_ref().map_or(&[], |decision_worker| decision_worker.executor.records())
-    }
-
-    /// Report of turns and straight moves for the present goal, or for the last goal with such a request; none while a decision job
-    /// runs.
-    pub fn docking(&self) -> Option<&GoalApproachReport> {
-        Some(self.decision_worker.as_ref()?.navigator.docking())
-    }
-
-    /// The present task; none while a decision job runs.
-    pub fn task(&self) -> Option<Task> {
-        self.decision_worker.as_ref()?.executor.task()
-    }
-
-    /// The newest plan; none while a decision is made in the background.
-    pub fn plan(&self) -> Option<&PlanResult> {
-        self.decision_worker.as_ref()?.navigator.plan()
-    }
-
-    /// The newest scan.
-    pub fn scan(&self) -> Option<&Scan> {
-        self.latest.scan.as_ref()
-    }
-
-    /// Images that were left out because they were the last one again though the robot had moved.
-    pub fn frozen_images(&self) -> usize {
-        self.latest.frozen
-    }
-
-    /// The battery; none where the body has not reported it.
-    pub fn battery(&self) -> Option<Battery> {
-        self.latest.body.battery()
-    }
-
-    /// The charging station; none before its light was seen.
-    pub fn station(&self) -> Option<StationEstimate> {
-        self.station.estimate()
-    }
-
-    /// Cost of the stages.
-    pub fn times(&self) -> &StageTimes {
-        &self.times
     }
 }
 

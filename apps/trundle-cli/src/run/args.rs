@@ -2,7 +2,7 @@
 
 use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs};
 use crate::demo::RecordArg;
-use crate::output_args::{OutputDirArg, OutputFileArg};
+use crate::output_args::{ContinuedFileArg, OutputDirArg, OutputFileArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use trundle::core::PinholeCamera;
@@ -28,7 +28,7 @@ pub struct RunArgs {
     #[command(flatten)]
     pub mission: MissionArgs,
     /// Write what --check measured into this robot file; its other keys stay.
-    #[arg(long, value_name = "ROBOT.toml", requires = "check")]
+    #[arg(long, value_name = "ROBOT.toml", requires = "check", conflicts_with_all = ["goal", "explore", "dock", "mission", "resume"])]
     pub write: Option<PathBuf>,
     /// Write the robot's maps and the state of its mission to FILE, every 3 to 10 s: `--resume FILE` goes on from there.
     #[arg(long, value_name = "FILE")]
@@ -78,7 +78,7 @@ pub struct MissionArgs {
     pub mission: Option<PathBuf>,
     /// Resume the mission and the maps of a checkpoint.
     #[arg(long, value_name = "CHECKPOINT")]
-    pub resume: Option<PathBuf>,
+    pub resume: Option<ContinuedFileArg>,
     /// Drive nowhere: show rates, delays, image size, signs of the encoders (push the robot by hand) and tilt of the camera.
     #[arg(long, conflicts_with_all = ["goal", "explore", "dock", "mission", "resume"])]
     pub check: bool,

@@ -4,6 +4,7 @@ use super::values::{CalibratedValue, Calibration};
 use crate::{AppError, read_text};
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, Table, Value};
+use trundle_core::{TomlProblem, toml_problem};
 use trundle_io::replace_file;
 use trundle_runtime::settings::RobotFile;
 
@@ -36,7 +37,11 @@ pub(super) fn update_robot_file(file: &Path, values: &[&CalibratedValue]) -> Res
 
 /// The text with the values set.
 fn updated(text: &str, values: &[&CalibratedValue]) -> Result<String, String> {
-    let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| error.to_string())?;
+    let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
+        let at = error.span().map(|span| span.start);
+        let TomlProblem { line, message } = toml_problem(text, at, error.message());
+        format!("line {line}: {message}")
+    })?;
     for value in values {
         set(document.as_table_mut(), &value.name, value)?;
     }

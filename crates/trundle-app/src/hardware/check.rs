@@ -17,6 +17,8 @@ const STOP_POLL_PERIOD: Duration = Duration::from_millis(50);
 const MIN_RATE_PART: f64 = 0.8;
 /// Smallest rate of the wheels' readings \[Hz\]: control steps follow them. Source: half of a Kobuki's 50 Hz.
 const MIN_WHEELS_HZ: f64 = 25.0;
+/// Smallest rate of the gyro's readings \[Hz\]. Source: as the wheels'.
+const MIN_GYRO_HZ: f64 = 25.0;
 /// Smallest part of the pixels with depth. Source: ours.
 const MIN_DEPTH_PART: f64 = 0.1;
 /// Distance of both wheels from which a push shows the encoders' signs \[m\]. Source: ours.
@@ -65,8 +67,10 @@ pub fn check_hardware(request: CheckRequest<'_>) -> Result<HardwareReport, AppEr
     let sink = Arc::clone(&log);
     let on_event = move |event| sink.lock().unwrap_or_else(PoisonError::into_inner).on_event(&event);
     let drivers = Drivers::start(base, camera, output, origin, on_event)?;
-    let is_over = || stop::is_requested(|| format!("{:.1} s", origin.elapsed().as_secs_f64()));
-    while origin.elapsed().as_secs_f64() < seconds && !is_over() {
+    // The probe of the base takes a part of the time since the origin.
+    let start = Instant::now();
+    let is_over = || stop::is_requested(|| format!("{:.1} s", start.elapsed().as_secs_f64()));
+    while start.elapsed().as_secs_f64() < seconds && !is_over() {
         std::thread::sleep(STOP_POLL_PERIOD);
     }
     let (versions, (base_counters, camera_counters)) = (drivers.versions(), drivers.counters());
@@ -117,9 +121,17 @@ impl HardwareReport {
             }
             None => self.problems.push("no wheel readings came: check the base's cable and power".to_owned()),
         }
-        let gyro = rate_and_gap(&log.gyro).map_or("none".to_owned(), |(rate, _)| format!("{rate:.1} Hz"));
-        let bias = mean(&log.rest_rates).to_degrees();
-        self.row("gyro: rate, bias at rest", format!("{gyro}, {bias:.3} deg/s"));
+        let gyro_rate = rate_and_gap(&log.gyro).map(|(rate, _)| rate);
+        if let Some(rate) = gyro_rate {
+            let bias = mean(&log.rest_rates).to_degrees();
+            self.row("gyro: rate, bias at rest", format!("{rate:.1} Hz, {bias:.3} deg/s"));
+        }
+        if gyro_rate.is_none_or(|rate| rate < MIN_GYRO_HZ) {
+            let rate = gyro_rate.map_or("do not come".to_owned(), |rate| format!("come at {rate:.1} Hz"));
+            self.problems.push(format!(
+                "readings of the gyro {rate}, expected {MIN_GYRO_HZ} Hz or more: update the base's firmware, or check its cable"
+            ));
+        }
         if let Some(battery) = &log.battery {
             let charge = battery.charge.map_or(String::new(), |charge| format!(", {:.0} %", charge * 100.0));
             self.row("battery", format!("{:.1} V{charge}", battery.voltage_v));

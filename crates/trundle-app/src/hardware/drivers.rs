@@ -1,9 +1,9 @@
 //! The drivers of base and camera, in threads of their own.
 
-use crate::AppError;
+use crate::{AppError, stop};
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::Sender;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 use trundle_core::{PinholeCamera, SensorEvent, Stamp, Twist2};
 use trundle_drivers::camera::camera_thread::{
@@ -17,6 +17,14 @@ use trundle_drivers::{BaseSpec, CameraSpec};
 /// Longest wait for a camera to open: a stream's writer may start after us. Source: ours.
 const CAMERA_TIMEOUT: Duration = Duration::from_secs(10);
 
+/// Name of the program of the command line.
+const PROGRAM_NAME: &str = "trundle";
+
+/// Longest wait for a lost camera to open again: the driver's threads look for the end of the run in between. Source: ours.
+const REOPEN_TIMEOUT: Duration = Duration::from_secs(1);
+/// Time between two looks for the user's wish to stop. Source: ours.
+const STOP_POLL_PERIOD: Duration = Duration::from_millis(50);
+
 /// A camera that is open, and how to open it again.
 pub struct OpenCamera {
     spec: CameraSpec,
@@ -27,10 +35,43 @@ impl OpenCamera {
     /// Opens the camera.
     ///
     /// # Errors
-    /// When there is no such camera, or it cannot be used.
+    /// When there is no such camera, it cannot be used, or the user asked to stop.
     pub fn open(spec: &CameraSpec) -> Result<Self, AppError> {
-        let camera = spec.open(CAMERA_TIMEOUT, &program()).map_err(|error| refused(spec, &error))?;
+        let (sender, opened) = channel();
+        let asked = spec.clone();
+        let open = move || _ = sender.send(asked.open(CAMERA_TIMEOUT, &helper_program()));
+        std::thread::Builder::new()
+            .name("open-camera".to_owned())
+            .spawn(open)
+            .map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))?;
+        let camera = loop {
+            match opened.recv_timeout(STOP_POLL_PERIOD) {
+                Ok(camera) => break camera.map_err(|error| refused(spec, &error))?,
+                Err(RecvTimeoutError::Timeout) if stop::is_requested(|| "nothing".to_owned()) => {
+                    return Err(AppError::Stopped);
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(AppError::Environment(format!("camera {spec}: its driver panicked")));
+                }
+            }
+        };
         Ok(Self { spec: spec.clone(), camera })
+    }
+
+    /// Refuses a recording: a base must not drive by old images.
+    ///
+    /// # Errors
+    /// When the camera is a recording.
+    pub fn require_live(&self) -> Result<(), AppError> {
+        if self.info().is_live {
+            return Ok(());
+        }
+        Err(AppError::Input(format!(
+            "camera {} is a recording, expected a live camera: the robot would drive by old images; `trundle slam` and `trundle run --check` \
+             take recordings",
+            self.spec
+        )))
     }
 
     /// The intrinsics that the robot works with: those given, else the camera's own.
@@ -59,9 +100,11 @@ impl OpenCamera {
     }
 }
 
-/// This program, which has the command `serve-camera`.
-fn program() -> PathBuf {
-    std::env::current_exe().unwrap_or_else(|_| "trundle".into())
+/// The program `trundle`, whose commands `serve-camera` and `guard-base` are processes beside a run: this program where it is that one,
+/// else the one in the search path.
+fn helper_program() -> PathBuf {
+    let is_trundle = |program: &PathBuf| program.file_stem().is_some_and(|name| name == PROGRAM_NAME);
+    std::env::current_exe().ok().filter(is_trundle).unwrap_or_else(|| PROGRAM_NAME.into())
 }
 
 fn refused(spec: &CameraSpec, error: &CameraError) -> AppError {
@@ -89,12 +132,17 @@ impl Drivers {
     ) -> Result<Self, AppError> {
         let clock: HostClock = Arc::new(move || Stamp::default().after(origin.elapsed().as_secs_f64()));
         let config = KobukiBaseConfig::default();
-        let base = KobukiBase::start(base.connector(), config, Arc::clone(&clock), Box::new(send.clone()))
-            .map_err(|error| AppError::Input(format!("base {base}: {error}")))?;
+        let base = KobukiBase::start(
+            base.connector(&helper_program()),
+            config,
+            Arc::clone(&clock),
+            Box::new(send.clone()),
+        )
+        .map_err(|error| AppError::Input(format!("base {base}: {error}")))?;
         let config = CameraThreadConfig { output: Some(output), ..CameraThreadConfig::default() };
         let OpenCamera { spec, camera } = camera;
         let mut first = Some(camera);
-        let factory = move || first.take().map_or_else(|| spec.open(CAMERA_TIMEOUT, &program()), Ok);
+        let factory = move || first.take().map_or_else(|| spec.open(REOPEN_TIMEOUT, &helper_program()), Ok);
         let parts = CameraThreadParts {
             factory: Box::new(factory),
             sink: Box::new(send),

@@ -33,6 +33,7 @@ pub fn write_run(
         _ = std::fs::remove_file(folder.staged("recording.mcap"));
         folder.leave_out(error);
     }
+    run.recording.checkpoint_error.take().into_iter().for_each(|error| folder.leave_out(error));
     let run = &*run;
     let numbers = RunNumbers::of(setup, run);
     write_map(&folder, "map", run.robot.grid())?;
@@ -63,13 +64,8 @@ fn report(setup: &RunSetup, run: &FinishedRun, numbers: &RunNumbers) -> RunRepor
     let curve = plan.map(|plan| plan.trajectory.points().iter().map(|p| p.pose.position()).collect());
     let pose = robot.estimate().pose;
     RunReport {
-        title: format!("trundle in the room '{}'", setup.scene),
-        subtitle: format!(
-            "Seed {}. A simulated Kobuki with a Kinect V2 started with an empty map and did its mission ({}) on its \
-             camera, wheels and gyro alone.",
-            setup.seed,
-            mission_text(&setup.mission)
-        ),
+        title: title(setup),
+        subtitle: subtitle(setup),
         verdict: Some(if numbers.is_success() { Verdict::Ok(verdict) } else { Verdict::Failed(verdict) }),
         cards: cards(numbers),
         map: RunMap {
@@ -86,10 +82,37 @@ fn report(setup: &RunSetup, run: &FinishedRun, numbers: &RunNumbers) -> RunRepor
         },
         camera: image.as_ref().map(|image| camera_view(image, &run.view.features)),
         depth: image.as_ref().map(|image| image.depth().clone()),
-        charts: vec![error_chart(run), speed_chart(run)],
+        charts: run
+            .log
+            .truths
+            .first()
+            .map(|_| error_chart(run))
+            .into_iter()
+            .chain([speed_chart(run)])
+            .collect(),
         figures: Vec::new(),
         tables: vec![table(numbers)],
     }
+}
+
+fn title(setup: &RunSetup) -> String {
+    if setup.is_on_hardware() {
+        format!("trundle on the base {}", setup.scene)
+    } else {
+        format!("trundle in the room '{}'", setup.scene)
+    }
+}
+
+fn subtitle(setup: &RunSetup) -> String {
+    let robot = if setup.is_on_hardware() {
+        "The robot".to_owned()
+    } else {
+        format!("Seed {}. A simulated robot", setup.seed)
+    };
+    let map = if setup.checkpoint.is_some() { "with the maps of a checkpoint" } else { "with an empty map" };
+    let mission = mission_text(&setup.mission);
+    let mission = if mission.is_empty() { "the missions of its operator".to_owned() } else { mission };
+    format!("{robot} started {map} and did its mission ({mission}) on its camera, wheels and gyro alone.")
 }
 
 fn cards(numbers: &RunNumbers) -> Vec<Card> {

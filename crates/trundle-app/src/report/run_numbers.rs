@@ -40,6 +40,8 @@ pub struct RunNumbers {
     pub docking: Option<GoalApproachReport>,
     /// How it ended.
     pub state: DriveState,
+    /// The time limit that ended the run \[s\], where one did.
+    pub out_of_time: Option<f64>,
 }
 
 fn docking_text(docking: &GoalApproachReport) -> String {
@@ -75,6 +77,7 @@ impl RunNumbers {
             images_dropped: log.seconds_of(run.robot.dropped_images()),
             docking: run.robot.docking().filter(|docking| docking.plans > 0).cloned(),
             state: log.state.clone(),
+            out_of_time: (log.elapsed() > setup.time_limit).then_some(setup.time_limit),
         }
     }
 
@@ -119,9 +122,13 @@ impl RunNumbers {
             faults.push("the goal is the start, so the robot had nothing to do".to_owned());
         }
         if self.state != DriveState::Arrived {
-            faults.push(format!("the robot did not arrive ({})", self.state));
+            faults.push(self.why_not_arrived());
         }
-        if let Some(error) = self.judged_error().filter(|_| !(self.is_near() && self.is_aligned())) {
+        // A run that was ended early had not come to its last goal.
+        let is_cut =
+            self.out_of_time.is_some() || self.state == DriveState::Stopped { reason: Reason::Interrupted };
+        let is_off = !(is_cut || self.is_near() && self.is_aligned());
+        if let Some(error) = self.judged_error().filter(|_| is_off) {
             let (cm, deg) = (error.distance * 100.0, error.dtheta.to_degrees());
             faults.push(format!("it stands {cm:.1} cm and {deg:.1} deg off the goal"));
         }
@@ -132,6 +139,13 @@ impl RunNumbers {
             faults.push(format!("{} contacts with obstacles", self.contacts));
         }
         format!("Failed: {}.", faults.join("; "))
+    }
+
+    fn why_not_arrived(&self) -> String {
+        match self.out_of_time {
+            Some(limit) => format!("the time limit of {limit:.0} s ended the run ({})", self.state),
+            None => format!("the robot did not arrive ({})", self.state),
+        }
     }
 
     /// The table without the wall clock's part.

@@ -23,7 +23,7 @@ fn the_last_checkpoint_is_in_the_file() {
     let file = scratch.path().join("robot.checkpoint");
     let writer = CheckpointWriter::new(&file).unwrap();
     (0..20).for_each(|number| writer.write(Arc::new(checkpoint(number))));
-    writer.finish(Some(checkpoint(99)));
+    writer.finish(Some(checkpoint(99))).unwrap();
     assert_eq!(Checkpoint::from_bytes(&std::fs::read(&file).unwrap()).unwrap(), checkpoint(99));
     let files = std::fs::read_dir(scratch.path()).unwrap().count();
     assert_eq!(files, 1, "no temporary file is left");
@@ -34,17 +34,22 @@ fn a_writer_without_checkpoints_leaves_the_file_as_it_was() {
     let scratch = tempfile::tempdir().unwrap();
     let file = scratch.path().join("robot.checkpoint");
     std::fs::write(&file, "an earlier run").unwrap();
-    CheckpointWriter::new(&file).unwrap().finish(None);
+    CheckpointWriter::new(&file).unwrap().finish(None).unwrap();
     assert_eq!(std::fs::read_to_string(&file).unwrap(), "an earlier run");
 }
 
 #[test]
-fn a_place_that_cannot_be_written_does_not_stop_the_robot() {
+fn a_place_that_cannot_be_written_is_refused_at_once_and_a_lost_one_is_named_at_the_end() {
     let scratch = tempfile::tempdir().unwrap();
     std::fs::write(scratch.path().join("blocked"), "a file, no folder").unwrap();
     let file = scratch.path().join("blocked").join("robot.checkpoint");
+    let refusal = CheckpointWriter::new(&file).err().unwrap().to_string();
+    assert!(refusal.contains("robot.checkpoint"), "{refusal}");
+    let folder = scratch.path().join("later");
+    let file = folder.join("robot.checkpoint");
     let writer = CheckpointWriter::new(&file).unwrap();
-    (0..3).for_each(|number| writer.write(Arc::new(checkpoint(number))));
-    writer.finish(Some(checkpoint(9)));
-    assert!(!file.exists());
+    std::fs::remove_dir(&folder).unwrap();
+    std::fs::write(&folder, "a file, no folder").unwrap();
+    writer.write(Arc::new(checkpoint(1)));
+    assert!(writer.finish(Some(checkpoint(9))).unwrap_err().to_string().contains("robot.checkpoint"));
 }

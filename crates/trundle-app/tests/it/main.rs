@@ -7,6 +7,7 @@ mod calibrate_camera;
 mod checkpoint_writer;
 mod contact;
 mod files;
+mod operator;
 mod recorded_sequence;
 mod recording;
 mod report;

@@ -42,6 +42,7 @@ fn good() -> RunNumbers {
         images_dropped: vec![1.0, 2.0],
         docking: None,
         state: DriveState::Arrived,
+        out_of_time: None,
     }
 }
 

@@ -17,7 +17,7 @@ pub enum MotionHold {
     DeviceLost(Device),
     /// The battery is empty.
     BatteryEmpty,
-    /// A person paused the robot by its button.
+    /// A person paused the robot.
     Paused,
 }
 
@@ -29,7 +29,9 @@ impl fmt::Display for MotionHold {
             Self::AdapterConnected => f.write_str("the power supply is plugged in: unplug it"),
             Self::DeviceLost(device) => write!(f, "the {device} does not answer: check its cable and power"),
             Self::BatteryEmpty => f.write_str("the battery is empty: charge it"),
-            Self::Paused => f.write_str("paused by the button: press it again"),
+            Self::Paused => {
+                f.write_str("paused by a person: the button or the command that paused it lets it go on")
+            }
         }
     }
 }

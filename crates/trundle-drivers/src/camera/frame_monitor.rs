@@ -129,6 +129,22 @@ impl FrameMonitor {
         }
     }
 
+    /// The same, after another opening of the camera whose last frame had these stamps: it may begin with that frame again.
+    #[must_use]
+    pub fn following(self, last_stamps: Option<(Stamp, Stamp)>) -> Self {
+        Self { last_stamps, ..self }
+    }
+
+    /// Stamps of the newest frame.
+    pub fn last_stamps(&self) -> Option<(Stamp, Stamp)> {
+        self.last_stamps
+    }
+
+    /// Whether the newest frame has the stamps of the one before.
+    pub fn is_repeated(&self) -> bool {
+        self.same_stamps > 0
+    }
+
     /// Takes a frame as delivered; a fault if it shows one. A fault that lasts is reported once for each limit's worth of frames.
     pub fn on_frame(&mut self, frame: &CameraFrame) -> Option<CameraFault> {
         let size = size_fault("colour", &frame.color, &self.color);

@@ -58,6 +58,8 @@ pub(super) struct IoLoop {
     outbox: Outbox,
     /// Outputs as last asked for: the base forgets them when it is switched off.
     outputs: Option<Outputs>,
+    /// Stamp of the newest packet \[ms\], of this connection or the one before.
+    last_ms: Option<u16>,
 }
 
 impl IoLoop {
@@ -84,6 +86,7 @@ impl IoLoop {
             is_faulty: false,
             outbox: Outbox::default(),
             outputs: None,
+            last_ms: None,
         }
     }
 
@@ -112,7 +115,7 @@ impl IoLoop {
         let limit = if self.is_up { self.config.silence_limit_s } else { FIRST_PACKET_LIMIT_S };
         // Packets that waited while this thread stood still have been read: only the time before counts.
         if before - self.since >= limit {
-            return Err(io::Error::new(io::ErrorKind::TimedOut, format!("no packet came for {limit} s")));
+            return Err(io::Error::new(io::ErrorKind::TimedOut, format!("no new packet came for {limit} s")));
         }
         let now = (self.clock)();
         self.take_commands(now);
@@ -140,8 +143,12 @@ impl IoLoop {
 
     fn on_feedback(&mut self, feedback: Feedback, arrival: Stamp) {
         if let Some(core) = feedback.core {
-            self.since = arrival;
             self.check.on_packet(core.stamp_ms);
+        }
+        // A packet with the stamp of the one before it says nothing new.
+        let stamp_ms = feedback.core.map(|core| core.stamp_ms);
+        if stamp_ms.is_some() && std::mem::replace(&mut self.last_ms, stamp_ms) != stamp_ms {
+            self.since = arrival;
             let events = if self.is_up {
                 self.events.events(&feedback, arrival)
             } else {

@@ -6,6 +6,7 @@
 //! | [`decoder`] | packets out of a damaged stream of bytes |
 //! | [`feedback_events`] | sensor events out of packets |
 //! | [`base`], [`base_config`], [`base_status`], [`start_error`] | the driver: threads, settings, counters, errors of the start |
+//! | [`base_guard`] | a process that stops the base where this one dies (Unix) |
 //! | [`stream_check`] | signs of two users of one port |
 //! | [`link`] | a link of bytes, and what opens it |
 //! | [`serial_port`] | a serial port of the system (Unix) |
@@ -14,6 +15,8 @@
 
 pub mod base;
 pub mod base_config;
+#[cfg(unix)]
+pub mod base_guard;
 pub mod base_status;
 mod command_schedule;
 pub mod decoder;

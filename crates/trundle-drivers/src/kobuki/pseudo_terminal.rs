@@ -42,12 +42,22 @@ impl PseudoTerminal {
         Ok(Self { device, path, link: None })
     }
 
-    /// The same, with a symbolic link to the port at `link`. A symbolic link that is there is replaced; the link is removed at the end.
+    /// The same, with a symbolic link to the port at `link`. A link to a port that is gone is replaced; the link is removed at the end.
     ///
     /// # Errors
-    /// When the system has no terminal left, or the link cannot be made: its folder is missing, or a file is there.
+    /// When the system has no terminal left, or the link cannot be made: its folder is missing, a file is there, or a link to a port that
+    /// exists.
     pub fn open_at(link: &Path) -> io::Result<Self> {
         let mut terminal = Self::open()?;
+        if link.exists() {
+            let what = if link.is_symlink() {
+                "a link to a port that exists: another simulator may use it"
+            } else {
+                "a file"
+            };
+            let problem = format!("{} is {what}; remove it, or choose another name", link.display());
+            return Err(io::Error::new(io::ErrorKind::AlreadyExists, problem));
+        }
         if link.is_symlink() {
             std::fs::remove_file(link)?;
         }

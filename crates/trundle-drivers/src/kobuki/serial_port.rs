@@ -3,6 +3,7 @@
 //! The port is locked twice. TIOCEXCL keeps other programs from opening it, unless they run as root. An exclusive lock of the file keeps
 //! other users of this crate away, root too.
 
+use super::base_guard::BaseGuard;
 use super::link::{ByteLink, ConnectError, Connector};
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::fd::OwnedFd;
@@ -13,6 +14,7 @@ use rustix::termios::{
     tcsetattr,
 };
 use std::io;
+use std::os::fd::AsFd;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -23,18 +25,30 @@ const LINE_SPEED_BAUD: u32 = 115_200;
 #[derive(Debug, Clone)]
 pub struct SerialConnector {
     path: PathBuf,
+    guard_program: Option<PathBuf>,
 }
 
 impl SerialConnector {
     /// For the port at `path`, as /dev/ttyUSB0.
     pub fn new(path: impl Into<PathBuf>) -> Self {
-        Self { path: path.into() }
+        Self { path: path.into(), guard_program: None }
+    }
+
+    /// The same, with each open port guarded by a process of `program`, which has the command
+    /// [`GUARD_COMMAND`](super::base_guard::GUARD_COMMAND): it stops the base where this program dies.
+    #[must_use]
+    pub fn guarded_by(self, program: &Path) -> Self {
+        Self { guard_program: Some(program.to_owned()), ..self }
     }
 }
 
 impl Connector for SerialConnector {
     fn connect(&mut self) -> Result<Box<dyn ByteLink>, ConnectError> {
-        Ok(Box::new(SerialPort::open(&self.path)?))
+        let mut port = SerialPort::open(&self.path)?;
+        if let Some(program) = &self.guard_program {
+            port.start_guard(program);
+        }
+        Ok(Box::new(port))
     }
 
     fn port(&self) -> String {
@@ -46,6 +60,8 @@ impl Connector for SerialConnector {
 #[derive(Debug)]
 pub struct SerialPort {
     fd: OwnedFd,
+    /// Dropped before the port is released.
+    guard: Option<BaseGuard>,
 }
 
 impl SerialPort {
@@ -56,9 +72,20 @@ impl SerialPort {
     pub fn open(path: &Path) -> Result<Self, ConnectError> {
         let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::NONBLOCK | OFlags::CLOEXEC;
         let fd = open(path, flags, Mode::empty()).map_err(|errno| connect_error(path, errno))?;
-        let port = Self { fd };
+        let port = Self { fd, guard: None };
         port.lock().and_then(|()| port.set_line()).map_err(|errno| connect_error(path, errno))?;
         Ok(port)
+    }
+
+    /// Starts a guard. Without one the base keeps its last command where this program is killed.
+    fn start_guard(&mut self, program: &Path) {
+        match BaseGuard::start(program, self.fd.as_fd()) {
+            Ok(guard) => self.guard = Some(guard),
+            Err(error) => tracing::warn!(
+                "no guard of the base: {} cannot be started: {error}; if this program is killed, the base drives on",
+                program.display()
+            ),
+        }
     }
 
     fn lock(&self) -> Result<(), Errno> {
@@ -79,6 +106,7 @@ impl SerialPort {
 
 impl Drop for SerialPort {
     fn drop(&mut self) {
+        drop(self.guard.take());
         if let Err(errno) = ioctl_tiocnxcl(&self.fd) {
             tracing::debug!("the lock of a lost port cannot be released: {errno}");
         }

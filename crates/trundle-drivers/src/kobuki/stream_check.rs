@@ -20,6 +20,11 @@ pub enum StreamFault {
         /// Steps of the stamp below 15 ms in the last second.
         short_steps: usize,
     },
+    /// The stamp stays the same.
+    FrozenClock {
+        /// Such packets in the last second.
+        packets: usize,
+    },
     /// Bytes are missing or added.
     DamagedStream {
         /// Refused headers in the last second.
@@ -35,6 +40,11 @@ impl fmt::Display for StreamFault {
                 "the stamps of {short_steps} of {WINDOW_PACKETS} packets differ by less than {MIN_STEP_MS} ms from the one before, \
                  expected 20 ms: two bases or two programs send on this port; leave one"
             ),
+            Self::FrozenClock { packets } => write!(
+                f,
+                "{packets} of {WINDOW_PACKETS} packets have the stamp of the one before, expected 20 ms more: the clock of the base stands \
+                 still; switch the base off and on"
+            ),
             Self::DamagedStream { refused } => write!(
                 f,
                 "{refused} of {WINDOW_PACKETS} packets are damaged: another program may read the same port (close it), \
@@ -48,6 +58,7 @@ impl fmt::Display for StreamFault {
 enum Entry {
     Sound,
     ShortStep,
+    NoStep,
     Refused,
 }
 
@@ -63,7 +74,11 @@ impl StreamCheck {
     pub(super) fn on_packet(&mut self, stamp_ms: u16) {
         let step = self.last_ms.map(|last| stamp_ms.wrapping_sub(last).cast_signed());
         self.last_ms = Some(stamp_ms);
-        self.push(if step.is_some_and(|step| step < MIN_STEP_MS) { Entry::ShortStep } else { Entry::Sound });
+        self.push(match step {
+            Some(0) => Entry::NoStep,
+            Some(step) if step < MIN_STEP_MS => Entry::ShortStep,
+            _ => Entry::Sound,
+        });
     }
 
     /// Takes the number of headers refused since the last call.
@@ -75,7 +90,10 @@ impl StreamCheck {
     pub(super) fn fault(&self) -> Option<StreamFault> {
         let count = |kind| self.entries.iter().filter(|entry| **entry == kind).count();
         let (short_steps, refused) = (count(Entry::ShortStep), count(Entry::Refused));
-        if short_steps >= MIN_SHORT_STEPS {
+        let packets = count(Entry::NoStep);
+        if packets >= MIN_SHORT_STEPS && short_steps < MIN_SHORT_STEPS {
+            Some(StreamFault::FrozenClock { packets })
+        } else if short_steps >= MIN_SHORT_STEPS {
             Some(StreamFault::TwoSources { short_steps })
         } else {
             (refused >= MIN_REFUSED).then_some(StreamFault::DamagedStream { refused })
@@ -114,6 +132,12 @@ mod tests {
             let both = (0..20u16).flat_map(|i| [i * 20, (i * 20).wrapping_add(offset)]);
             assert!(matches!(fault_of(both), Some(StreamFault::TwoSources { .. })), "{offset} ms");
         }
+    }
+
+    #[test]
+    fn a_clock_that_stands_still_is_no_second_base() {
+        let frozen = (0..40u16).map(|i| i.min(20) * 20);
+        assert_eq!(fault_of(frozen), Some(StreamFault::FrozenClock { packets: 19 }));
     }
 
     #[test]

@@ -139,7 +139,7 @@ impl Expected {
             Self::FilterMap => "a saved filter (filter.map of `trundle map`)",
             Self::LocalizationMap => "a saved filter (filter.map of `trundle map`) or a map's YAML file",
             Self::VisualMap => "a visual map (visual.map of `trundle slam`)",
-            Self::Checkpoint => "a checkpoint of `trundle demo`",
+            Self::Checkpoint => "a checkpoint (--checkpoint of run or demo)",
             Self::Vocabulary => "a visual vocabulary (of `trundle vocabulary train` or `import`)",
             Self::Dbow2Vocabulary => "a vocabulary in the text form of DBoW2",
         }

@@ -66,7 +66,7 @@ const WORDS: &[(FileKind, &str, &str)] = &[
     (K::VisualMap, "a visual map of `trundle slam`", "it goes with `trundle slam --map`"),
     (K::Vocabulary, "a visual vocabulary", "it goes with --vocabulary"),
     (K::Dbow2Vocabulary, "a vocabulary in the text form of DBoW2", "`trundle vocabulary import` reads it"),
-    (K::Checkpoint, "a checkpoint of `trundle demo`", "it goes with `trundle demo --checkpoint`"),
+    (K::Checkpoint, "a checkpoint of a run", "it goes with --resume of `trundle run` and `trundle demo`"),
     (K::Executable, "a program", ""),
     (K::Document, "a PDF document", ""),
     (K::Hdf5, "an HDF5 file", ""),

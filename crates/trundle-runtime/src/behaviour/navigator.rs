@@ -20,6 +20,7 @@ use crate::world_state::WorldState;
 use crate::{
     behaviour::drive_state::DriveState,
     behaviour::progress_checker::ProgressChecker,
+    behaviour::relative_motion::{RelativeMotion, RelativeMotionDrive},
     behaviour::sight_recovery::SightRecovery,
     behaviour::spin::Spin,
     behaviour::station_drive::{StationDrive, StationGoal},
@@ -57,6 +58,8 @@ pub(crate) enum Goal {
     Align(Pose2),
     /// A motion at a charging station.
     Station(StationGoal),
+    /// A motion relative to where the robot stands.
+    Relative(RelativeMotion),
     /// Turn on the spot once.
     Spin,
     /// Stand where you are.
@@ -67,7 +70,7 @@ impl Goal {
     fn pose(self) -> Option<Pose2> {
         match self {
             Self::Exact(pose) | Self::Viewpoint(pose) | Self::Align(pose) => Some(pose),
-            Self::Station(_) | Self::Spin | Self::Stay => None,
+            Self::Station(_) | Self::Relative(_) | Self::Spin | Self::Stay => None,
         }
     }
 }
@@ -114,6 +117,7 @@ pub(crate) struct Navigator {
     /// Distance from the base's origin to its front, m.
     reach: f64,
     station_drive: StationDrive,
+    relative_drive: RelativeMotionDrive,
     /// Twist of the last step before the safety monitor.
     wanted: Twist2,
 }
@@ -157,13 +161,14 @@ impl Navigator {
             radius: footprint.circumscribed_radius(),
             reach: bumper::front_of(footprint),
             station_drive: StationDrive::default(),
+            relative_drive: RelativeMotionDrive::default(),
             wanted: Twist2::ZERO,
         })
     }
 
     /// Sets the goal. A robot that follows a trajectory continues to the new goal without a stop.
     pub(crate) fn set_goal(&mut self, goal: Goal) {
-        let is_maneuver = matches!(goal, Goal::Align(_) | Goal::Station(_));
+        let is_maneuver = matches!(goal, Goal::Align(_) | Goal::Station(_) | Goal::Relative(_));
         let rolls_on = self.state == DriveState::Driving && goal.pose().is_some() && !is_maneuver;
         self.goal = goal;
         self.plan = None;
@@ -177,6 +182,7 @@ impl Navigator {
         self.spin = Spin::default();
         self.goal_approach.reset();
         self.station_drive = StationDrive::default();
+        self.relative_drive = RelativeMotionDrive::default();
         self.progress.restart();
         self.check_due.hurry();
         if !rolls_on {
@@ -186,7 +192,7 @@ impl Navigator {
             Goal::Stay => DriveState::Idle,
             Goal::Exact(_) | Goal::Viewpoint(_) if rolls_on => DriveState::Driving,
             Goal::Align(pose) if self.goal_approach.begin_at(pose) => DriveState::Maneuvering,
-            Goal::Station(_) => DriveState::Maneuvering,
+            Goal::Station(_) | Goal::Relative(_) => DriveState::Maneuvering,
             _ => DriveState::Initializing,
         };
     }

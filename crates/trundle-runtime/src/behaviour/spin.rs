@@ -13,7 +13,7 @@ pub(crate) struct Spin {
 }
 
 /// Turn rate \[rad/s\]: slow enough for features to be tracked. Source: ours.
-const SPIN_RATE_RAD_S: f64 = 0.6;
+pub(crate) const SPIN_RATE_RAD_S: f64 = 0.6;
 /// Length of a spin in turns: a little more than one, so that the views overlap. Source: ours.
 pub(crate) const SPIN_TURNS: f64 = 1.02;
 /// A spin that no sensor measures ends after this multiple of the commands that it needs. Source: ours.

@@ -4,6 +4,7 @@ use crate::world_state::WorldState;
 use crate::{
     behaviour::drive_state::DriveState,
     behaviour::navigator::Goal,
+    behaviour::relative_motion::RelativeMotion,
     behaviour::station_drive::StationGoal,
     mission::dock_task::{DockStep, DockTask},
     mission::executor_config::MissionExecutorConfig,
@@ -20,6 +21,7 @@ use trundle_planning::{Exploration, Explorer, Frontier};
 /// | task | what it gives the navigator | ends when |
 /// |---|---|---|
 /// | go, return | the goal | it has arrived, or given up |
+/// | turn, straight | the motion | it is done, or safety stops it for 5 s |
 /// | explore | a turn on the spot, then viewpoint after viewpoint | no frontier is left |
 /// | dock | a search for light, a survey of the station's axis, a straight move onto its contacts | the battery charges, or given up |
 ///
@@ -190,6 +192,10 @@ impl MissionExecutor {
         let (work, goal) = match current.entry.task {
             Task::Go(pose) => (Work::Going, Goal::Exact(pose)),
             Task::Return => (Work::Going, Goal::Exact(Pose2::IDENTITY)),
+            Task::Turn { angle } => (Work::Going, Goal::Relative(RelativeMotion::Turn { angle })),
+            Task::Straight { distance, speed } => {
+                (Work::Going, Goal::Relative(RelativeMotion::Straight { distance, speed }))
+            }
             Task::Explore => {
                 (Work::Exploring { explorer, frontier: None, views: 0, failure: None }, Goal::Spin)
             }

@@ -1,8 +1,9 @@
 //! A task of a mission.
 
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 use std::fmt;
-use trundle_core::Pose2;
+use trundle_core::{Invalid, MAX_COORDINATE_M, Pose2, require_finite, require_in};
 
 /// A task of a mission.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -15,8 +16,58 @@ pub enum Task {
     Explore,
     /// Drive back to the pose at power-on and stop there.
     Return,
+    /// Turn on the spot by an angle, positive to the left \[rad\].
+    Turn {
+        /// \[rad\]
+        angle: f64,
+    },
+    /// Drive straight by a distance, ahead where it is positive.
+    Straight {
+        /// \[m\]
+        distance: f64,
+        /// \[m/s\]
+        speed: f64,
+    },
     /// Drive onto the charging station, until the battery charges.
     Dock,
+}
+
+/// Largest angle of a turn \[rad\]: ten revolutions. Source: ours.
+const MAX_TURN_RAD: f64 = 20.0 * PI;
+/// Largest distance of a straight drive \[m\]. Source: ours.
+const MAX_STRAIGHT_M: f64 = 100.0;
+/// Range of the speed of a straight drive \[m/s\]. The base's limits apply as well. Source: ours.
+const STRAIGHT_SPEED_RANGE_M_S: (f64, f64) = (0.01, 2.0);
+
+impl Task {
+    /// Checks the numbers of the task at `index` of a mission, from 0; messages count from 1.
+    pub(super) fn require_usable(&self, index: usize) -> Result<(), Invalid> {
+        let number = index + 1;
+        match *self {
+            Self::Go(pose) => {
+                let (max, of) = (MAX_COORDINATE_M, format!("of the goal of task {number}"));
+                require_in(&format!("x {of}"), pose.x, "m", -max, max)?;
+                require_in(&format!("y {of}"), pose.y, "m", -max, max)?;
+                require_finite(&format!("heading {of}"), pose.theta, "rad").map(drop)
+            }
+            Self::Turn { angle } => {
+                require_in(&format!("angle of task {number}"), angle, "rad", -MAX_TURN_RAD, MAX_TURN_RAD)
+                    .map(drop)
+            }
+            Self::Straight { distance, speed } => {
+                let (min, max) = STRAIGHT_SPEED_RANGE_M_S;
+                require_in(
+                    &format!("distance of task {number}"),
+                    distance,
+                    "m",
+                    -MAX_STRAIGHT_M,
+                    MAX_STRAIGHT_M,
+                )?;
+                require_in(&format!("speed of task {number}"), speed, "m/s", min, max).map(drop)
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 impl fmt::Display for Task {
@@ -25,6 +76,9 @@ impl fmt::Display for Task {
             Self::Go(pose) => {
                 write!(f, "go to ({:.2} m, {:.2} m, {:.0} deg)", pose.x, pose.y, pose.theta.to_degrees())
             }
+            Self::Turn { angle } => write!(f, "turn by {:.0} deg", angle.to_degrees()),
+            Self::Straight { distance, .. } if *distance < 0.0 => write!(f, "drive {:.2} m back", -distance),
+            Self::Straight { distance, .. } => write!(f, "drive {distance:.2} m ahead"),
             Self::Explore => f.write_str("explore"),
             Self::Return => f.write_str("return to the start"),
             Self::Dock => f.write_str("dock at the charging station"),

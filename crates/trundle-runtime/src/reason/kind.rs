@@ -34,7 +34,7 @@ pub enum ReasonKind {
     DeviceLost,
     /// The battery is empty.
     BatteryEmpty,
-    /// A person paused the robot by its button.
+    /// A person paused the robot.
     Paused,
     /// The robot stops before the next plan.
     StoppingToReplan,

@@ -36,6 +36,11 @@ impl BodyState {
         }
     }
 
+    /// A person pauses the robot, or lets it go on.
+    pub(super) fn set_paused(&mut self, is_paused: bool) {
+        self.is_paused = is_paused;
+    }
+
     /// The battery, where the body has reported it.
     pub(super) fn battery(&self) -> Option<Battery> {
         self.battery

@@ -1,6 +1,8 @@
 //! Log events of the robot: changes of state, corrections of the pose, dropped images. Times are those of the data.
 
+use super::sensor_watch::SensorChange;
 use crate::behaviour::drive_state::DriveState;
+use crate::operator::PoseGuess;
 use crate::reason::Reason;
 use trundle_control::MotionHold;
 use trundle_core::{Pose2, Stamp, difference_of_angles};
@@ -30,6 +32,22 @@ impl DroppedImage {
             Self::RunOver => "the run is over",
         }
     }
+}
+
+/// Logs a silent fault of wheels or gyro, or its end.
+pub(super) fn sensor_change(at: Stamp, change: SensorChange) {
+    tracing::warn!("{:.3} s: {}", at.as_secs(), change.text());
+}
+
+/// Logs a pose that an operator gives.
+pub(super) fn pose_given(at: Stamp, guess: &PoseGuess) {
+    let (at, pose, sigma) = (at.as_secs(), guess.pose, guess.position_sigma);
+    let heading = pose.theta.to_degrees();
+    tracing::info!(
+        "{at:.3} s: the operator gives the pose ({:.2} m, {:.2} m, {heading:.0} deg), standard deviation {sigma:.2} m",
+        pose.x,
+        pose.y
+    );
 }
 
 /// Logs a state that differs from the last one, or has a reason of another kind.

@@ -136,8 +136,9 @@ fn a_mission_is_over_when_all_tasks_are_and_names_each_undone_one() {
 #[test]
 fn goals_that_are_no_numbers_are_refused() {
     let mut robot = Robot::new(RobotConfig::default()).unwrap();
-    for goal in [Pose2::new(f64::NAN, 0.0, 0.0), Pose2::new(0.0, f64::INFINITY, 0.0)] {
-        assert_eq!(robot.drive_to(goal).unwrap_err().field, "goal of task 0");
+    for (goal, field) in [(Pose2::new(f64::NAN, 0.0, 0.0), "x"), (Pose2::new(0.0, f64::INFINITY, 0.0), "y")] {
+        let refusal = robot.drive_to(goal).unwrap_err();
+        assert_eq!(refusal.field, format!("{field} of the goal of task 1"));
     }
     assert_eq!(robot.step(&wheels(0)).state, DriveState::Idle, "a refused goal changes nothing");
 }

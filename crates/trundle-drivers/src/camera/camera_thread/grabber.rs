@@ -9,6 +9,7 @@ use crate::camera::{CameraError, CameraFault, CameraFrame, CameraInfo, DepthCame
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+use trundle_core::Stamp;
 
 /// Longest wait for one frame \[ms\]; the thread looks for the end of the program in between. Source: ours.
 const POLL_MS: u64 = 50;
@@ -25,6 +26,8 @@ pub(super) struct Grabber {
     config: CameraThreadConfig,
     /// Attempts to open the camera since its last frame.
     attempts: u32,
+    /// Stamps of the last frame of the camera that was lost.
+    last_stamps: Option<(Stamp, Stamp)>,
 }
 
 /// Why a camera is no longer read.
@@ -53,7 +56,7 @@ impl Grabber {
         (mailbox, outbox): (Arc<Mailbox>, Arc<Outbox>),
         config: CameraThreadConfig,
     ) -> Self {
-        Self { factory, stamps, clock, mailbox, outbox, config, attempts: 0 }
+        Self { factory, stamps, clock, mailbox, outbox, config, attempts: 0, last_stamps: None }
     }
 
     pub(super) fn run(mut self) {
@@ -103,7 +106,8 @@ impl Grabber {
     fn prepare(&mut self, camera: Box<dyn DepthCamera>) -> OpenCamera {
         let info = Arc::new(camera.info().clone());
         faults_of_info(&info).iter().for_each(|fault| self.outbox.on_fault(fault.to_string()));
-        let monitor = FrameMonitor::new(&info, self.config.expects_noise && info.is_live);
+        let monitor =
+            FrameMonitor::new(&info, self.config.expects_noise && info.is_live).following(self.last_stamps);
         let (stamps, generation) = ((self.stamps)(&info), self.outbox.generation());
         OpenCamera { camera, info, monitor, stamps, generation, last_good: Instant::now() }
     }
@@ -111,8 +115,9 @@ impl Grabber {
     /// Hands a frame on; a fault that ends the use of the camera.
     fn on_frame(&mut self, open: &mut OpenCamera, frame: CameraFrame) -> Option<CameraFault> {
         let stamp = (open.stamps)(frame.color.device_stamp, (self.clock)());
-        open.last_good = Instant::now();
-        if let Some(fault) = open.monitor.on_frame(&frame) {
+        let fault = open.monitor.on_frame(&frame);
+        self.last_stamps = open.monitor.last_stamps();
+        if let Some(fault) = fault {
             if matches!(fault, CameraFault::Stuck { .. }) {
                 self.outbox.on_stuck();
             }
@@ -121,7 +126,12 @@ impl Grabber {
             }
             self.outbox.on_fault(fault.to_string());
         }
+        if open.monitor.is_repeated() {
+            // The robot has this frame.
+            return None;
+        }
         let (info, generation) = (open.info.clone(), open.generation);
+        open.last_good = Instant::now();
         self.attempts = 0;
         if self.mailbox.put(GrabbedFrame { frame, stamp, info, generation }) {
             self.outbox.on_dropped();
@@ -134,10 +144,20 @@ impl Grabber {
         let silent_s = open.last_good.elapsed().as_secs_f64();
         let broken = self.outbox.broken_in_row();
         if open.info.is_live && silent_s > self.config.max_silence_s {
-            return Some(format!("{} delivered no good frame for {silent_s:.1} s", open.info.name));
+            let silence = format!("{} delivered no good frame for {silent_s:.1} s", open.info.name);
+            return Some(if broken > 0 { self.with_cause(&silence) } else { silence });
         }
         let is_broken = open.info.is_live && broken >= MAX_BROKEN_IN_ROW;
-        is_broken.then(|| format!("{} delivered {broken} broken frames in a row", open.info.name))
+        is_broken.then(|| {
+            self.with_cause(&format!("{} delivered {broken} broken frames in a row", open.info.name))
+        })
+    }
+
+    /// A sentence, and what was wrong with the last broken frame.
+    fn with_cause(&self, sentence: &str) -> String {
+        self.outbox
+            .last_fault()
+            .map_or_else(|| sentence.to_owned(), |cause| format!("{sentence}; the last one: {cause}"))
     }
 }
 

@@ -75,6 +75,9 @@ impl Outbox {
     pub(super) fn on_broken(&self, fault: String) {
         let mut state = self.lock();
         state.counters.broken += 1;
+        if state.broken_in_row == 0 {
+            tracing::warn!("camera: a frame is broken: {fault}");
+        }
         state.broken_in_row += 1;
         state.last_fault = Some(fault);
     }

@@ -5,7 +5,7 @@
 //! memory.
 
 use crate::camera::{CameraFrame, CameraInfo, PixelFormat, RawImage, StreamInfo};
-use trundle_core::Stamp;
+use trundle_core::{Invalid, Stamp};
 
 /// First bytes of each frame.
 pub const FRAME_MAGIC: [u8; 4] = *b"TRFR";
@@ -68,6 +68,8 @@ pub struct ParserCounts {
     pub frames: u64,
     /// Bytes that belong to no frame.
     pub skipped_bytes: u64,
+    /// Frames with images of another length than the stream's header promises.
+    pub wrong_lengths: u64,
 }
 
 /// Cuts frames out of a stream of bytes. It holds at most one frame and one push.
@@ -77,6 +79,8 @@ pub struct FrameParser {
     bytes: Vec<u8>,
     start: usize,
     counts: ParserCounts,
+    /// Lengths of colour and depth of the last frame that was refused for them.
+    refused: Option<(usize, usize)>,
 }
 
 /// What the front of the bytes is.
@@ -85,6 +89,8 @@ enum Front {
     Frame(Stamp, usize, usize),
     /// Too few bytes to decide.
     Incomplete,
+    /// A frame's header with lengths that the stream cannot have.
+    WrongLengths(usize, usize),
     /// No frame.
     Foreign,
 }
@@ -92,7 +98,7 @@ enum Front {
 impl FrameParser {
     /// For frames within `limits`.
     pub fn new(limits: FrameLimits) -> Self {
-        Self { limits, bytes: Vec::new(), start: 0, counts: ParserCounts::default() }
+        Self { limits, bytes: Vec::new(), start: 0, counts: ParserCounts::default(), refused: None }
     }
 
     /// Appends bytes of the stream. Call [`FrameParser::next_frame`] until it gives `None` before the next push.
@@ -110,6 +116,11 @@ impl FrameParser {
             match self.front() {
                 Front::Incomplete => return None,
                 Front::Foreign => self.skip(),
+                Front::WrongLengths(color, depth) => {
+                    self.counts.wrong_lengths += 1;
+                    self.refused = Some((color, depth));
+                    self.skip();
+                }
                 Front::Frame(stamp, color, depth) => {
                     let images = self.bytes.get(self.start + FRAME_HEADER_BYTES..)?;
                     let images = images.get(..color + depth)?;
@@ -126,6 +137,25 @@ impl FrameParser {
     /// What was found and skipped so far.
     pub fn counts(&self) -> ParserCounts {
         self.counts
+    }
+
+    /// What is wrong with the last frame of wrong lengths, once.
+    pub fn take_refusal(&mut self) -> Option<Invalid> {
+        let (color, depth) = self.refused.take()?;
+        let expected = |(low, high): (usize, usize)| {
+            if low == high { low.to_string() } else { format!("{low} to {high}") }
+        };
+        let expected = format!(
+            "{} and {}, as the header of the stream has it: start the stream anew with a header of the new size",
+            expected(self.limits.color),
+            expected(self.limits.depth)
+        );
+        Some(Invalid::new(
+            "length of colour and depth of a frame",
+            format!("{color} and {depth}"),
+            "bytes",
+            expected,
+        ))
     }
 
     /// Bytes held.
@@ -145,7 +175,7 @@ impl FrameParser {
         if is_within(color, self.limits.color) && is_within(depth, self.limits.depth) {
             Front::Frame(stamp, color, depth)
         } else {
-            Front::Foreign
+            Front::WrongLengths(color, depth)
         }
     }
 

@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
+use trundle_core::Invalid;
 
 /// Bytes read at once. Source: ours; the largest pipe buffer of Linux without privileges.
 const READ_BYTES: usize = 1 << 20;
@@ -35,6 +36,7 @@ pub struct StreamCamera {
 enum Message {
     Info(Box<CameraInfo>),
     Frame(Box<CameraFrame>),
+    Broken(Invalid),
     BadHeader(String),
     Failed(std::io::Error),
     End,
@@ -118,6 +120,7 @@ impl DepthCamera for StreamCamera {
     fn next_frame(&mut self, timeout: Duration) -> Result<Option<CameraFrame>, CameraError> {
         match self.messages.recv_timeout(timeout) {
             Ok(Message::Frame(frame)) => Ok(Some(*frame)),
+            Ok(Message::Broken(problem)) => Err(CameraError::BrokenFrame(problem)),
             Err(RecvTimeoutError::Timeout) => Ok(None),
             Ok(Message::Failed(source)) => Err(CameraError::Io { place: self.place.clone(), source }),
             Ok(_) | Err(RecvTimeoutError::Disconnected) if self.info.is_live => {
@@ -191,6 +194,11 @@ impl Worker {
                 }
             }
             *self.counts.lock().unwrap_or_else(PoisonError::into_inner) = parser.counts();
+            if let Some(problem) = parser.take_refusal()
+                && self.sender.send(Message::Broken(problem)).is_err()
+            {
+                return Message::End;
+            }
             match self.read(&mut chunk) {
                 Ok(0) => return Message::End,
                 Ok(length) => parser.push(&chunk[..length]),

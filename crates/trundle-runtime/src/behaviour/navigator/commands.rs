@@ -4,6 +4,7 @@ use super::{Goal, Navigator, SAFETY_HOLD_BEFORE_REPLAN_S, known_floor::cells_abo
 use crate::world_state::WorldState;
 use crate::{
     behaviour::drive_state::DriveState,
+    behaviour::relative_motion::RelativeMotion,
     behaviour::spin::{SPIN_TURNS, face, turn_to},
     behaviour::station_drive::{StationGoal, StationProgress},
     goal_approach::Progress,
@@ -50,6 +51,7 @@ impl Navigator {
             DriveState::FinalApproach if matches!(self.goal, Goal::Viewpoint(_)) => self.turn_to_view(s),
             DriveState::FinalApproach if self.goal_approach.holds() => Twist2::ZERO,
             DriveState::Maneuvering if self.station_goal().is_some() => self.drive_at_station(s),
+            DriveState::Maneuvering if self.relative_motion().is_some() => self.drive_relative(s),
             DriveState::Maneuvering if self.is_blind(s) => Twist2::ZERO,
             DriveState::Maneuvering => times.measure(Stage::Control, || self.maneuver(s)),
             _ => follow.twist,
@@ -111,6 +113,28 @@ impl Navigator {
         Twist2::ZERO
     }
 
+    fn relative_motion(&self) -> Option<RelativeMotion> {
+        match self.goal {
+            Goal::Relative(motion) if self.state == DriveState::Maneuvering => Some(motion),
+            _ => None,
+        }
+    }
+
+    /// One step of a relative motion.
+    fn drive_relative(&mut self, s: &WorldState<'_>) -> Twist2 {
+        let Some(motion) = self.relative_motion().filter(|_| self.is_rested(s)) else { return Twist2::ZERO };
+        let twist = self.relative_drive.step(motion, s.estimate.pose);
+        if twist.is_none() {
+            self.state = DriveState::Arrived;
+        }
+        twist.unwrap_or_default()
+    }
+
+    /// Whether the robot has stood since it was switched on for long enough to measure the gyro's bias.
+    fn is_rested(&self, s: &WorldState<'_>) -> bool {
+        self.started.is_some_and(|started| s.now - started >= self.config.opening)
+    }
+
     fn station_goal(&self) -> Option<StationGoal> {
         match self.goal {
             Goal::Station(goal) if self.state == DriveState::Maneuvering => Some(goal),
@@ -118,10 +142,9 @@ impl Navigator {
         }
     }
 
-    /// One step of a motion at a charging station. The gyro's bias is measured at rest, before the first one.
+    /// One step of a motion at a charging station.
     fn drive_at_station(&mut self, s: &WorldState<'_>) -> Twist2 {
-        let is_rested = self.started.is_some_and(|started| s.now - started >= self.config.opening);
-        let Some(goal) = self.station_goal().filter(|_| is_rested) else { return Twist2::ZERO };
+        let Some(goal) = self.station_goal().filter(|_| self.is_rested(s)) else { return Twist2::ZERO };
         match self.station_drive.step(&goal, s, self.touched, self.reach) {
             StationProgress::Moving(twist) => return twist,
             StationProgress::Done => self.state = DriveState::Arrived,
@@ -138,6 +161,18 @@ impl Navigator {
         let station = goal.and_then(|goal| self.station_drive.permission(&goal, s.estimate.pose));
         let input = SafetyInput { station, ..safety_input(s, twist, self.touched, self.over_edge) };
         let report = self.safety.check(&input);
+        if self.relative_motion().is_some() {
+            let stop = match report.action {
+                SafetyAction::Stop(reason) if s.hold.is_none() => Some(reason),
+                _ => None,
+            };
+            if self.relative_drive.is_blocked(stop.is_some(), s.now) {
+                self.state = stop.map_or(DriveState::Arrived, |reason| DriveState::Stopped {
+                    reason: Reason::Safety(reason),
+                });
+            }
+            return report.twist;
+        }
         match (report.action, &self.state) {
             (
                 SafetyAction::Stop(reason),

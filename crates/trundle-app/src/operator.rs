@@ -1,0 +1,29 @@
+//! The link between a run and its front ends: requests of an operator go in, views of the run come out.
+//!
+//! A front end (a page, ROS 2) keeps an [`Operator`], the run an [`OperatorLink`]. Requests are recorded at the place at which the robot
+//! obeys them, so a replay obeys them there too. Views cost the robot a few copies at each control step; a slow reader misses views.
+
+mod link;
+mod request;
+mod run_view;
+mod view_feed;
+
+pub use link::{Operator, OperatorError, OperatorLink, operator_link};
+pub use request::OperatorRequest;
+pub use run_view::{MapView, MissionView, RunView};
+
+use crate::Progress;
+
+/// What accompanies a run from outside: the progress line, and an operator where there is one.
+pub struct FrontEnd {
+    /// The progress line.
+    pub progress: Progress,
+    /// The run's end of the link to an operator. [`crate::RunSetup::is_operated`] lets the run go on after its mission.
+    pub operator: Option<OperatorLink>,
+}
+
+impl From<Progress> for FrontEnd {
+    fn from(progress: Progress) -> Self {
+        Self { progress, operator: None }
+    }
+}

@@ -1,0 +1,72 @@
+//! An operator's requests reach the robot, views come back, and a replay obeys at the same places.
+
+use crate::body::{GOAL, StillBody, setup};
+use std::path::Path;
+use trundle_app::operator::{FrontEnd, MissionView, Operator, operator_link};
+use trundle_app::{FinishedRun, Progress, RunLog, RunRecorder, RunReplayer, RunSetup, run_on_body};
+use trundle_core::Pose2;
+use trundle_io::OutputFolder;
+use trundle_runtime::{Mission, MotionHold, OperatorCommand, PoseGuess, Task};
+
+fn operated() -> RunSetup {
+    RunSetup { is_operated: true, mission: Mission::default(), ..setup() }
+}
+
+/// Runs a body at rest for 4 s with requests that wait from the start.
+fn run_with(commands: &[OperatorCommand], folder: &Path) -> (FinishedRun, Operator) {
+    let folder = OutputFolder::create(folder).unwrap();
+    let (operator, link) = operator_link();
+    for command in commands {
+        operator.send(command.clone()).unwrap();
+    }
+    let front_end = FrontEnd { progress: Progress::hidden(), operator: Some(link) };
+    let recorder = RunRecorder::to_folder(&folder).unwrap();
+    let run =
+        run_on_body(&operated(), &mut StillBody::new(200), recorder, RunLog::default(), front_end).unwrap();
+    folder.commit().unwrap();
+    (run, operator)
+}
+
+fn go(x: f64) -> OperatorCommand {
+    OperatorCommand::Begin(Mission::new(vec![Task::Go(Pose2 { x, ..GOAL })]).unwrap())
+}
+
+#[test]
+fn the_newest_mission_replaces_the_last_one_and_is_shown_by_its_number() {
+    let place = tempfile::tempdir().unwrap();
+    let (_, operator) = run_with(&[go(1.0), OperatorCommand::Pause, go(2.0)], &place.path().join("run"));
+    let view = operator.view().unwrap();
+    let MissionView { id, task, is_over, .. } = view.mission.clone();
+    assert_eq!((id, is_over), (3, false));
+    assert!(matches!(task, Some(Task::Go(Pose2 { x: 2.0, .. }))), "{task:?}");
+    assert_eq!(view.hold, Some(MotionHold::Paused));
+    assert!(view.odometry.is_some() && view.map.is_some());
+}
+
+#[test]
+fn a_mission_that_is_taken_away_leaves_the_robot_idle_and_the_run_goes_on() {
+    let place = tempfile::tempdir().unwrap();
+    let (run, operator) = run_with(&[go(1.0), OperatorCommand::cancel()], &place.path().join("run"));
+    assert!(run.log.elapsed() > 3.9, "{} s", run.log.elapsed());
+    let mission = &operator.view().unwrap().mission;
+    assert_eq!((mission.id, mission.task, mission.is_over), (2, None, false));
+    assert_eq!(run.log.state.name(), "idle");
+}
+
+#[test]
+fn a_given_pose_replaces_the_estimate_and_a_replay_gives_the_same() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("run");
+    let pose = Pose2::new(3.0, -2.0, 1.0);
+    let guess = PoseGuess { pose, position_sigma: 0.3, heading_sigma: 0.2 };
+    // The estimate that the pose replaces begins with the first reading: the second run of the same body comes from its recording.
+    let (run, _) = run_with(&[OperatorCommand::SetPose(guess), OperatorCommand::Pause], &folder);
+    let (mut replayer, setup) = RunReplayer::open(&folder.join("recording.mcap")).unwrap();
+    assert!(setup.is_operated);
+    let other = OutputFolder::create(&place.path().join("replay")).unwrap();
+    let recorder = RunRecorder::to_folder(&other).unwrap();
+    let replay = run_on_body(&setup, &mut replayer, recorder, RunLog::default(), Progress::hidden()).unwrap();
+    assert_eq!(replay.robot.estimate(), run.robot.estimate());
+    assert_eq!(replay.log.state, run.log.state);
+    assert_eq!(replay.robot.hold(), Some(MotionHold::Paused));
+}

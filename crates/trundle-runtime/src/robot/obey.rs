@@ -1,0 +1,50 @@
+//! Commands of an operator.
+
+use super::{Robot, event_log};
+use crate::{
+    global_localization::LocalizedPose,
+    operator::{OperatorCommand, PoseGuess},
+    report::StepReport,
+};
+use trundle_core::{Invalid, Stamp, Vector3};
+
+impl Robot {
+    /// Obeys an operator, between two events.
+    ///
+    /// # Errors
+    /// Names the number of the command that is not finite or outside its range; the robot then goes on as before.
+    pub fn obey(&mut self, command: OperatorCommand) -> Result<StepReport, Invalid> {
+        let now = self.localizer.estimate().stamp;
+        let mut report = StepReport::default();
+        match command.validated()? {
+            OperatorCommand::Begin(mission) => {
+                self.latest.state.1 = false;
+                self.begin(&mission);
+            }
+            OperatorCommand::Pause => self.pause(true, now, &mut report),
+            OperatorCommand::Continue => self.pause(false, now, &mut report),
+            OperatorCommand::SetPose(guess) => self.take_pose(&guess, now),
+        }
+        self.complete(&mut report);
+        Ok(report)
+    }
+
+    fn pause(&mut self, is_paused: bool, now: Stamp, report: &mut StepReport) {
+        let before = self.latest.body.hold(self.range_source);
+        self.latest.body.set_paused(is_paused);
+        self.on_hold(before, now, report);
+    }
+
+    /// The operator's pose in place of the estimate. Before the first odometry there is no estimate to replace.
+    fn take_pose(&mut self, guess: &PoseGuess, now: Stamp) {
+        let variances =
+            Vector3::new(guess.position_sigma, guess.position_sigma, guess.heading_sigma).map(|s| s * s);
+        event_log::pose_given(now, guess);
+        self.lose_pose();
+        self.apply_global_localization(Some(LocalizedPose {
+            stamp: now,
+            map_from_base: guess.pose,
+            covariance: nalgebra::Matrix3::from_diagonal(&variances),
+        }));
+    }
+}

@@ -1,0 +1,109 @@
+//! Silent faults of wheels and gyro, for the log: the odometry copes with them, a person should know of them.
+
+use trundle_core::Stamp;
+
+/// Age of the newest gyro reading from which the gyro counts as missing \[s\]: 25 readings. Source: ours.
+const GYRO_MISSING_S: f64 = 0.5;
+
+/// A change that the log names.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum SensorChange {
+    /// No readings of the gyro come: the heading comes from the wheels.
+    GyroMissing,
+    /// Readings of the gyro come again.
+    GyroBack,
+    /// Commanded wheels do not count: the motion comes from the images.
+    WheelsUnresponsive,
+    /// The wheels count again.
+    WheelsBack,
+}
+
+impl SensorChange {
+    pub(super) fn text(self) -> &'static str {
+        match self {
+            Self::GyroMissing => {
+                "no readings of the gyro come: the heading comes from the wheels; check the base's cable and firmware"
+            }
+            Self::GyroBack => "readings of the gyro come again",
+            Self::WheelsUnresponsive => {
+                "the wheels are commanded to turn and count nothing: the motion comes from the images; check wheels and encoders"
+            }
+            Self::WheelsBack => "the wheels count again",
+        }
+    }
+}
+
+/// Watches wheels and gyro for silent faults.
+#[derive(Debug, Default)]
+pub(super) struct SensorWatch {
+    /// The newest reading of the gyro; the first one of the wheels before any.
+    gyro: Option<Stamp>,
+    is_gyro_missing: bool,
+    are_wheels_unresponsive: bool,
+}
+
+impl SensorWatch {
+    /// Notes a reading of the gyro.
+    pub(super) fn on_gyro(&mut self, stamp: Stamp) {
+        self.gyro = Some(stamp);
+    }
+
+    /// The changes at a reading of the wheels.
+    pub(super) fn on_wheels(
+        &mut self,
+        now: Stamp,
+        are_unresponsive: bool,
+    ) -> impl Iterator<Item = SensorChange> + use<> {
+        let is_missing = now - *self.gyro.get_or_insert(now) > GYRO_MISSING_S;
+        let gyro = (is_missing != self.is_gyro_missing).then_some(if is_missing {
+            SensorChange::GyroMissing
+        } else {
+            SensorChange::GyroBack
+        });
+        let wheels = (are_unresponsive != self.are_wheels_unresponsive).then_some(if are_unresponsive {
+            SensorChange::WheelsUnresponsive
+        } else {
+            SensorChange::WheelsBack
+        });
+        (self.is_gyro_missing, self.are_wheels_unresponsive) = (is_missing, are_unresponsive);
+        gyro.into_iter().chain(wheels)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_change_is_named_once() {
+        let mut watch = SensorWatch::default();
+        let at = |s: f64| Stamp::default().after(s);
+        let mut changes = Vec::new();
+        for i in 0..200 {
+            let now = at(0.02 * f64::from(i));
+            if !(50..150).contains(&i) {
+                watch.on_gyro(now);
+            }
+            changes.extend(watch.on_wheels(now, (100..120).contains(&i)));
+        }
+        assert_eq!(
+            changes,
+            [
+                SensorChange::GyroMissing,
+                SensorChange::WheelsUnresponsive,
+                SensorChange::WheelsBack,
+                SensorChange::GyroBack
+            ]
+        );
+    }
+
+    #[test]
+    fn a_gyro_that_never_comes_is_missing_after_half_a_second() {
+        let mut watch = SensorWatch::default();
+        let changes = |watch: &mut SensorWatch, s: f64| {
+            watch.on_wheels(Stamp::default().after(s), false).collect::<Vec<_>>()
+        };
+        assert!(changes(&mut watch, 5.0).is_empty() && changes(&mut watch, 5.4).is_empty());
+        assert_eq!(changes(&mut watch, 5.6), [SensorChange::GyroMissing]);
+    }
+}

@@ -1,0 +1,106 @@
+//! Views of the robot's state, for reports and front ends.
+
+use super::Robot;
+use crate::{
+    goal_approach::GoalApproachReport,
+    mission::{Task, TaskRecord},
+    stage::StageTimes,
+};
+use trundle_control::MotionHold;
+use trundle_core::{Battery, OccupancyGrid, Odometry, Pose3, PoseEstimate, Scan};
+use trundle_localization::StationEstimate;
+use trundle_planning::PlanResult;
+use trundle_slam::RgbdSlam;
+
+/// How far a mission has come.
+#[derive(Debug, Clone, Copy)]
+pub struct MissionProgress<'r> {
+    /// The present task.
+    pub task: Option<Task>,
+    /// The tasks that have ended.
+    pub ended: &'r [TaskRecord],
+}
+
+impl Robot {
+    /// The pose estimate.
+    pub fn estimate(&self) -> PoseEstimate {
+        self.localizer.estimate()
+    }
+
+    /// The map.
+    pub fn grid(&self) -> &OccupancyGrid {
+        self.mapper.grid()
+    }
+
+    /// The visual tracker with its landmark map; none while a perception job runs.
+    pub fn slam(&self) -> Option<&RgbdSlam> {
+        self.perception.as_ref().map(|perception| perception.slam())
+    }
+
+    /// The visual tracker's frame in the map.
+    pub fn map_from_visual(&self) -> Option<Pose3> {
+        self.localizer.map_from_visual()
+    }
+
+    /// The tasks of the mission that have ended; empty while a decision job runs.
+    pub fn tasks_ended(&self) -> &[TaskRecord] {
+        self.decision_worker.as_ref().map_or(&[], |decision_worker| decision_worker.executor.records())
+    }
+
+    /// How far the mission has come; none while a decision job runs.
+    pub fn mission_progress(&self) -> Option<MissionProgress<'_>> {
+        let executor = &self.decision_worker.as_ref()?.executor;
+        Some(MissionProgress { task: executor.task(), ended: executor.records() })
+    }
+
+    /// Report of turns and straight moves for the present goal, or for the last goal with such a request; none while a decision job
+    /// runs.
+    pub fn docking(&self) -> Option<&GoalApproachReport> {
+        Some(self.decision_worker.as_ref()?.navigator.docking())
+    }
+
+    /// The present task; none while a decision job runs.
+    pub fn task(&self) -> Option<Task> {
+        self.decision_worker.as_ref()?.executor.task()
+    }
+
+    /// The newest plan; none while a decision is made in the background.
+    pub fn plan(&self) -> Option<&PlanResult> {
+        self.decision_worker.as_ref()?.navigator.plan()
+    }
+
+    /// The newest scan.
+    pub fn scan(&self) -> Option<&Scan> {
+        self.latest.scan.as_ref()
+    }
+
+    /// Images that were left out because they were the last one again though the robot had moved.
+    pub fn frozen_images(&self) -> usize {
+        self.latest.frozen
+    }
+
+    /// The battery; none where the body has not reported it.
+    pub fn battery(&self) -> Option<Battery> {
+        self.latest.body.battery()
+    }
+
+    /// The charging station; none before its light was seen.
+    pub fn station(&self) -> Option<StationEstimate> {
+        self.station.estimate()
+    }
+
+    /// Cost of the stages.
+    pub fn times(&self) -> &StageTimes {
+        &self.times
+    }
+
+    /// The newest odometry; none before the first reading.
+    pub fn odometry(&self) -> Option<Odometry> {
+        self.latest.odometry
+    }
+
+    /// The condition under which no wheel may turn; none where the robot may drive.
+    pub fn hold(&self) -> Option<MotionHold> {
+        self.latest.body.hold(self.range_source)
+    }
+}
