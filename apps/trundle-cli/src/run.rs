@@ -8,6 +8,7 @@ pub use args::RunArgs;
 use crate::outcome::Outcome;
 use crate::{console, logging, run_output};
 use args::MissionArgs;
+use std::time::Instant;
 use trundle::app::hardware::{OpenCamera, start_hardware};
 use trundle::app::real_time::run_in_real_time;
 use trundle::app::report::mission_text;
@@ -54,8 +55,9 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
     }
     let checkpoint = args.checkpoint.as_deref();
     let (line, progress) = console::progress(args.common.quiet);
+    let origin = Instant::now();
     let start = |events, _place| {
-        let body = start_hardware(&args.base, camera, setup.robot.camera, events)?;
+        let body = start_hardware(&args.base, camera, setup.robot.camera, events, origin)?;
         // A run that is refused leaves the checkpoint where it is.
         if resumes_from_another_file(args) {
             checkpoint.map_or(Ok(()), keep_aside)?;

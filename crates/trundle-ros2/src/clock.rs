@@ -42,9 +42,16 @@ impl RosClock {
     /// The computer's clock; the run begins at this moment.
     #[must_use]
     pub fn system() -> Self {
+        Self::system_from(Instant::now())
+    }
+
+    /// The computer's clock; the run's stamps count from `start`.
+    #[must_use]
+    pub fn system_from(start: Instant) -> Self {
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-        let at_start = i64::try_from(since.as_nanos()).unwrap_or_default();
-        Self { source: Source::System { start: Instant::now(), at_start } }
+        let at_start = since.saturating_sub(start.elapsed());
+        let at_start = i64::try_from(at_start.as_nanos()).unwrap_or_default();
+        Self { source: Source::System { start, at_start } }
     }
 
     /// A simulated clock, which begins with its first message.

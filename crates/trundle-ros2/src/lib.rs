@@ -9,8 +9,12 @@ pub mod generated;
 pub mod interface;
 pub mod navigation;
 pub mod node;
+mod options;
 pub mod outputs;
+mod robot_node;
 pub mod server;
 pub mod wire;
 
 pub use error::Ros2Error;
+pub use options::Ros2Options;
+pub use robot_node::{BodyStart, RobotNode, Ros2Robot};

@@ -99,7 +99,10 @@ pub fn parse(package: &str, kind: Kind, name: &str, text: &str) -> Result<Interf
             parts.push(Part::default());
         } else if let (false, Some(part)) = (line.is_empty(), parts.last_mut()) {
             add_line(part, line).ok_or_else(|| {
-                format!("{package}/{name}, line {}: '{line}', expected `type name` or `type NAME=value`", i + 1)
+                format!(
+                    "{package}/{name}, line {}: '{line}', expected `type name` or `type NAME=value`",
+                    i + 1
+                )
             })?;
         }
     }

@@ -26,7 +26,10 @@ pub fn file(interface: &Interface) -> String {
 fn type_of(interface: &Interface) -> String {
     let Interface { package, kind, name, .. } = interface;
     let names = format!("    const PACKAGE: &str = \"{package}\";\n    const NAME: &str = \"{name}\";\n");
-    let marker = format!("\n/// `{package}/{}/{name}`.\n#[derive(Debug, Clone, Copy)]\npub enum {name} {{}}\n", folder(*kind));
+    let marker = format!(
+        "\n/// `{package}/{}/{name}`.\n#[derive(Debug, Clone, Copy)]\npub enum {name} {{}}\n",
+        folder(*kind)
+    );
     match kind {
         Kind::Message => format!("\nimpl crate::interface::MessageType for {name} {{\n{names}}}\n"),
         Kind::Service => format!(
@@ -51,7 +54,13 @@ fn structure(package: &str, name: &str, part: &Part) -> String {
         "\n/// `{package}`: `{name}`.\n#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]\npub struct {name} {{\n"
     );
     for field in &part.fields {
-        let _ = writeln!(text, "    /// `{}`.\n    pub {}: {},", described(field), rust_name(&field.name), rust_type(package, field));
+        let _ = writeln!(
+            text,
+            "    /// `{}`.\n    pub {}: {},",
+            described(field),
+            rust_name(&field.name),
+            rust_type(package, field)
+        );
     }
     if part.fields.is_empty() {
         // An empty structure has one byte on the wire.

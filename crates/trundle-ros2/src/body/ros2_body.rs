@@ -143,7 +143,7 @@ impl Ros2Body {
             let (color, depth) = self.inbox.frames();
             let frames = lock(&self.shared.frames);
             let base_from_camera =
-                color.as_deref().and_then(|frame| frames.pose(&self.settings.base_frame, frame));
+                color.as_deref().and_then(|frame| above_floor(&frames, &self.settings.base_frame, frame));
             let color_from_depth =
                 color.as_deref().zip(depth.as_deref()).and_then(|(color, depth)| frames.pose(color, depth));
             drop(frames);
@@ -221,6 +221,15 @@ impl Ros2Body {
         CameraThread::start(parts, config)
             .map_err(|error| AppError::Environment(format!("cannot start the camera's threads: {error}")))
     }
+}
+
+/// `base_from_camera` with the height over the floor, which `base_footprint` lies on where the robot has this frame \[REP 120\].
+fn above_floor(frames: &FrameTree, base: &str, camera: &str) -> Option<Pose3> {
+    let mut pose = frames.pose(base, camera)?;
+    if let Some(on_floor) = frames.pose("base_footprint", camera) {
+        pose.translation.z = on_floor.translation.z;
+    }
+    Some(pose)
 }
 
 /// Reads the newest odometry as the robot gave it.

@@ -83,10 +83,7 @@ struct Handler<A: ActionType> {
     frames: FrameNames,
 }
 
-impl<A: NavigationAction> GoalHandler<A> for Handler<A>
-where
-    A::Goal: Sync,
-{
+impl<A: NavigationAction> GoalHandler<A> for Handler<A> {
     fn on_goal(&mut self, id: GoalId, goal: A::Goal) -> Result<(), String> {
         let view = self.active.view();
         let context = GoalContext { frames: &self.frames, view: view.as_deref() };

@@ -28,7 +28,9 @@ impl RosArguments {
                     parsed.parameters.push((name.to_owned(), value.to_owned()));
                 }
                 _ => {
-                    return Err(Ros2Error::Argument { argument: format!("{flag} {value}").trim().to_owned() });
+                    return Err(Ros2Error::Argument {
+                        argument: format!("{flag} {value}").trim().to_owned(),
+                    });
                 }
             }
         }

@@ -25,3 +25,22 @@ pub struct OutputSettings {
     /// Radius of the largest disc in the body \[m\], for the costs.
     pub body_radius_m: f64,
 }
+
+impl OutputSettings {
+    /// Those of `robot`; `has_own_body`: its body does not come by topics.
+    #[must_use]
+    pub fn of(
+        options: &crate::Ros2Options,
+        robot: &trundle_runtime::RobotConfig,
+        has_own_body: bool,
+    ) -> Self {
+        Self {
+            frames: options.frames.clone(),
+            node: options.node.names.node.clone(),
+            has_own_body,
+            publishes_scan: true,
+            scan_range_m: robot.scan.max_range,
+            body_radius_m: robot.footprint_radius,
+        }
+    }
+}

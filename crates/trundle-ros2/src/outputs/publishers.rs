@@ -10,8 +10,8 @@ use crate::generated::sensor_msgs::{BatteryState, LaserScan};
 use crate::generated::tf2_msgs::TFMessage;
 use crate::interface::MessageType;
 use crate::node::{Diagnostics, RosNode, qos};
-use ros2_client::{Publisher, WriteError};
 use ros2_client::qos::QosProfile;
+use ros2_client::{Publisher, WriteError};
 
 /// A topic that is published.
 pub struct OutputTopic<M: MessageType> {
@@ -33,8 +33,7 @@ impl<M: MessageType> OutputTopic<M> {
     /// Publishes a message. A message that is not sent is reported, not waited for.
     pub fn publish(&self, message: M) {
         if let Err(error) = self.publisher.publish(message) {
-            self.diagnostics
-                .warn(&self.name, format!("a message was not sent: {}", kind(&format!("{error:?}"))));
+            self.diagnostics.warn(&self.name, format!("a message was not sent: {}", cause(&error)));
         }
     }
 }
