@@ -5,15 +5,16 @@ mod args;
 pub use args::{Ros2Args, RosArgs};
 
 use crate::outcome::Outcome;
+use crate::run::RunArgs;
 use crate::{console, logging, run_output};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use trundle::app::operator::{FrontEnd, OperatorLink};
 use trundle::app::real_time::run_in_real_time;
 use trundle::app::report::mission_text;
 use trundle::app::{AppError, Progress, RunLog, RunSetup, read_mission, stop};
 use trundle::ros2::body::BodySettings;
-use trundle::ros2::{Ros2Error, Ros2Robot};
-use trundle::runtime::{Mission, Task};
+use trundle::ros2::{RobotNode, Ros2Error, Ros2Robot};
+use trundle::runtime::{Mission, RobotConfig, Task};
 
 /// `trundle ros2`.
 pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
@@ -60,8 +61,22 @@ pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
 }
 
 /// What accompanies a run with ROS 2.
-pub fn front_end(progress: Progress, link: OperatorLink) -> FrontEnd {
+fn front_end(progress: Progress, link: OperatorLink) -> FrontEnd {
     FrontEnd { progress, operator: Some(link) }
+}
+
+/// ROS 2 beside `trundle run`, where it is asked for.
+pub fn beside(
+    args: &RunArgs,
+    robot: &RobotConfig,
+    origin: Instant,
+    progress: Progress,
+) -> Result<(Option<RobotNode>, FrontEnd), AppError> {
+    if !args.ros2 {
+        return Ok((None, progress.into()));
+    }
+    let (node, link) = RobotNode::offer(&args.ros.options()?, robot, origin).map_err(refused)?;
+    Ok((Some(node), front_end(progress, link)))
 }
 
 /// The error of a network or of topics.

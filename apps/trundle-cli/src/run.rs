@@ -35,6 +35,10 @@ pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
     setup.time_limit = args.time_limit.unwrap_or(f64::MAX);
     setup.real_time = true;
     setup.recording = args.record.content();
+    #[cfg(feature = "ros2")]
+    {
+        setup.is_operated = args.ros2;
+    }
     if let Some(file) = &args.vocabulary {
         setup = setup.with_vocabulary(&read_vocabulary(file)?);
     }
@@ -64,8 +68,14 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
         }
         Ok(body)
     };
-    let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), progress);
+    #[cfg(feature = "ros2")]
+    let (node, front_end) = crate::ros2::beside(args, &setup.robot, origin, progress)?;
+    #[cfg(not(feature = "ros2"))]
+    let front_end = progress;
+    let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), front_end);
     line.finish_and_clear();
+    #[cfg(feature = "ros2")]
+    drop(node);
     let (run, timing) = run?;
     run_output::write(setup, run, Some(&timing), folder, args.common.quiet)
 }

@@ -28,9 +28,9 @@ pub struct Ros2Args {
     /// Intrinsics of a depth camera whose images are not registered to colour.
     #[arg(long, value_name = "TOPIC")]
     pub depth_info: Option<String>,
-    /// Gyro; it then gives the heading in place of the odometry.
-    #[arg(long, value_name = "TOPIC")]
-    pub imu: Option<String>,
+    /// Gyro; where it has messages, it gives the heading in place of the odometry. `none`: not used.
+    #[arg(long, value_name = "TOPIC", default_value = "imu")]
+    pub imu: String,
     /// A 2-D laser, in place of scans made of depth.
     #[arg(long, value_name = "TOPIC")]
     pub scan: Option<String>,
@@ -80,7 +80,7 @@ impl Ros2Args {
             depth: self.depth.clone(),
             camera_info: self.camera_info.clone(),
             depth_info: self.depth_info.clone(),
-            imu: self.imu.clone(),
+            imu: (self.imu != "none").then(|| self.imu.clone()),
             scan: self.scan.clone(),
             ..BodySettings::default()
         }

@@ -48,6 +48,14 @@ pub struct RunArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/run")]
     pub out: OutputDirArg,
+    /// Publish map, pose and state on ROS 2, and take goals from there, also after the mission.
+    #[cfg(feature = "ros2")]
+    #[arg(long)]
+    pub ros2: bool,
+    /// Network and names.
+    #[cfg(feature = "ros2")]
+    #[command(flatten)]
+    pub ros: crate::ros2::RosArgs,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,

@@ -10,6 +10,7 @@ use crate::generated::sensor_msgs::{BatteryState, Imu, LaserScan};
 use crate::generated::std_msgs::Header;
 use crate::node::{Diagnostics, RosNode, TopicMonitor, qos};
 use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 use trundle_core::{
@@ -35,6 +36,10 @@ pub struct Shared {
     pub frames: Mutex<FrameTree>,
     /// The newest odometry as it came, `odom_from_base`, in the order of arrival.
     pub odometry: Mutex<VecDeque<Odometry>>,
+    /// Whether a usable gyro reading has come.
+    pub has_gyro: AtomicBool,
+    /// Whether the run takes the heading from the gyro: decided at its start.
+    pub uses_gyro: AtomicBool,
     /// The odometry's frame.
     pub odom_frame: Mutex<Option<String>>,
     /// The time.
@@ -117,7 +122,7 @@ fn subscribe_odometry(
     shared: &Arc<Shared>,
 ) -> Result<Arc<TopicMonitor>, Ros2Error> {
     let (shared, name) = (Arc::clone(shared), node.names().resolve(&settings.odom));
-    let mut wheels = settings.imu.is_some().then(|| WheelsFromOdometry::new(drive));
+    let mut wheels = WheelsFromOdometry::new(drive);
     let base = settings.base_frame.clone();
     let on_odometry = move |message: OdometryMessage| {
         let Some(at) = shared.stamp(&name, &message.header.stamp) else { return };
@@ -125,9 +130,11 @@ fn subscribe_odometry(
         let Some(own) = on_base(own, &message.child_frame_id, &base, &shared) else { return };
         lock(&shared.odom_frame).get_or_insert(message.header.frame_id);
         note(&mut lock(&shared.odometry), own);
-        shared.send(match &mut wheels {
-            Some(wheels) => SensorEvent::Wheels(wheels.add(&own)),
-            None => SensorEvent::Odometry(own),
+        let uses_gyro = shared.uses_gyro.load(Ordering::Relaxed);
+        shared.send(if uses_gyro {
+            SensorEvent::Wheels(wheels.add(&own))
+        } else {
+            SensorEvent::Odometry(own)
         });
     };
     node.subscribe(&settings.odom, &qos::sensor(5), Some(MAX_ODOM_SILENCE), on_odometry)
@@ -152,7 +159,12 @@ fn subscribe_imu(node: &mut RosNode, topic: &str, base: &str, shared: &Arc<Share
         let Some(at) = shared.stamp(&name, &message.header.stamp) else { return };
         let Some(base_from_imu) = shared.base_from(&name, &base, &message.header) else { return };
         let rate = imu::from_ros(&message, at, &base_from_imu.rotation);
-        shared.accept(&name, rate).into_iter().for_each(|rate| shared.send(SensorEvent::Gyro(rate)));
+        if let Some(rate) = shared.accept(&name, rate) {
+            shared.has_gyro.store(true, Ordering::Relaxed);
+            if shared.uses_gyro.load(Ordering::Relaxed) {
+                shared.send(SensorEvent::Gyro(rate));
+            }
+        }
     };
     node.subscribe(topic, &qos::sensor(10), Some(MAX_ODOM_SILENCE), on_imu).map(drop)
 }

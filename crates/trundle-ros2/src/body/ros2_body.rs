@@ -67,6 +67,8 @@ impl Ros2Body {
             sink: Mutex::default(),
             frames: Mutex::new(FrameTree::default()),
             odometry: Mutex::default(),
+            has_gyro: AtomicBool::default(),
+            uses_gyro: AtomicBool::default(),
             odom_frame: Mutex::default(),
             clock: clock.clone(),
             diagnostics: diagnostics.clone(),
@@ -180,6 +182,8 @@ impl Ros2Body {
         let host = clock.clone();
         let feed = EventFeed::with_clock(events, Instant::now(), Arc::new(move || host.now()));
         let camera = self.start_camera(output, described, &feed)?;
+        let has_gyro = self.shared.has_gyro.load(Ordering::Relaxed);
+        self.shared.uses_gyro.store(has_gyro, Ordering::Relaxed);
         let sink = feed.clone();
         *lock(&self.shared.sink) = Some(Box::new(move |event| sink.send(&event)));
         let refused = |error: Ros2Error| AppError::Environment(error.to_string());

@@ -7,7 +7,7 @@ use crate::convert::camera_info::Rectification;
 pub struct BodySettings {
     /// Odometry, `nav_msgs/Odometry`.
     pub odom: String,
-    /// Gyro, `sensor_msgs/Imu`; none: the odometry's heading is used as it is.
+    /// Gyro, `sensor_msgs/Imu`. Where messages come, they give the heading; else that of the odometry is used as it is.
     pub imu: Option<String>,
     /// Laser, `sensor_msgs/LaserScan`.
     pub scan: Option<String>,
@@ -35,7 +35,7 @@ impl Default for BodySettings {
     fn default() -> Self {
         Self {
             odom: "odom".to_owned(),
-            imu: None,
+            imu: Some("imu".to_owned()),
             scan: None,
             battery: None,
             color: "camera/color/image_raw/compressed".to_owned(),
