@@ -78,9 +78,9 @@ fn with_negative_numbers(command: clap::Command) -> clap::Command {
 fn run_command(cli: Cli) -> Result<Outcome, AppError> {
     match cli.command {
         Command::Demo(args) => with_threads(&args.common, || demo::run(&args)),
-        Command::Run(args) => with_threads(&args.common, || run::run(&args)),
+        Command::Run(args) => with_threads(&args.options.common, || run::run(&args)),
         #[cfg(feature = "ros2")]
-        Command::Ros2(args) => with_threads(&args.common, || ros2::run(&args)),
+        Command::Ros2(args) => with_threads(&args.options.common, || ros2::run(&args)),
         Command::Replay(args) => with_threads(&args.common, || replay::run(&args)),
         Command::Slam(args) => with_threads(&args.common, || slam::run(&args)),
         Command::Map(args) => with_threads(&args.common, || map::run(&args)),

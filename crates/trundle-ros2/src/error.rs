@@ -1,5 +1,7 @@
 //! Why a node cannot be started.
 
+use trundle_app::AppError;
+
 /// Why a node cannot be started, or a name or argument is refused.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -56,6 +58,12 @@ pub enum Ros2Error {
     /// The user stopped the program during the start.
     #[error("stopped before the run began")]
     Interrupted,
+}
+
+impl From<Ros2Error> for AppError {
+    fn from(error: Ros2Error) -> Self {
+        Self::Input(error.to_string())
+    }
 }
 
 impl Ros2Error {

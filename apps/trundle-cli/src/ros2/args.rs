@@ -1,9 +1,9 @@
 //! The command line of `trundle ros2`, and the options of ROS 2 that other commands have too.
 
-use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs};
+use crate::common_args::{NumberArg, PoseArg};
 use crate::console;
-use crate::demo::RecordArg;
-use crate::output_args::{OutputDirArg, OutputFileArg};
+use crate::output_args::OutputDirArg;
+use crate::run::RunOptions;
 use clap::Args;
 use std::path::PathBuf;
 use trundle::app::AppError;
@@ -52,24 +52,12 @@ pub struct Ros2Args {
     /// Longest wait for the robot's topics, s
     #[arg(long, value_name = "S", default_value_t = 30.0, value_parser = NumberArg::above_zero("s"))]
     pub wait: f64,
-    /// Write maps and mission to FILE, every 3 to 10 s.
-    #[arg(long, value_name = "FILE")]
-    pub checkpoint: Option<OutputFileArg>,
-    /// What recording.mcap holds.
-    #[arg(long, value_enum, value_name = "WHAT", default_value_t = RecordArg::Events)]
-    pub record: RecordArg,
-    /// End the run after this time, s [default: none]
-    #[arg(long, value_name = "S", value_parser = NumberArg::above_zero("s"))]
-    pub time_limit: Option<f64>,
-    /// The robot's settings.
+    /// Files, time and settings.
     #[command(flatten)]
-    pub robot: RobotArgs,
+    pub options: RunOptions,
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/ros2")]
     pub out: OutputDirArg,
-    /// What every command takes.
-    #[command(flatten)]
-    pub common: Common,
 }
 
 impl Ros2Args {
@@ -88,7 +76,12 @@ impl Ros2Args {
 
     /// Whether the run goes on after its mission.
     pub fn stays(&self) -> bool {
-        self.stay || (self.goal.is_empty() && !self.explore && self.mission.is_none())
+        self.stay || !self.has_mission()
+    }
+
+    /// Whether a mission is given.
+    pub fn has_mission(&self) -> bool {
+        !self.goal.is_empty() || self.explore || self.mission.is_some()
     }
 }
 
@@ -112,7 +105,6 @@ impl RosArgs {
         if let Some(warning) = self.ros_interface.warning() {
             console::print(&format!("warning: {warning}"));
         }
-        Ros2Options::read("trundle", self.ros_domain, self.ros_interface.clone(), &self.ros_args)
-            .map_err(super::refused)
+        Ok(Ros2Options::read("trundle", self.ros_domain, self.ros_interface.clone(), &self.ros_args)?)
     }
 }

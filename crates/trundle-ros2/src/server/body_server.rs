@@ -2,7 +2,6 @@
 
 use super::ServerSettings;
 use super::image_publisher::ImagePublisher;
-use crate::Ros2Error;
 use crate::convert::odometry::OdometryFrames;
 use crate::convert::{battery, imu, odometry, scan, stamp, transform, twist};
 use crate::generated::geometry_msgs::{Twist, TwistStamped};
@@ -12,9 +11,11 @@ use crate::generated::sensor_msgs::{BatteryState, Imu, JointState, LaserScan};
 use crate::generated::tf2_msgs::TFMessage;
 use crate::node::{RosNode, qos};
 use crate::outputs::OutputTopic;
+use crate::{Ros2Error, Ros2Options};
 use nalgebra::Matrix3;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use trundle_app::AppError;
 use trundle_app::real_time::RealTimePacer;
 use trundle_core::{
     BodyEventKind, DifferentialDrive, Odometry, PinholeCamera, Pose2, Pose3, RobotBody, SensorEvent, Stamp,
@@ -38,6 +39,25 @@ pub struct OfferedBody {
     pub base_from_camera: Pose3,
     /// Geometry of the base.
     pub drive: DifferentialDrive,
+}
+
+/// Offers `body` as a ROS 2 robot, in real time, until it ends or `is_over` (called with the body's time) says so.
+///
+/// # Errors
+/// When the network cannot be joined, a topic cannot be made, or the body fails.
+pub fn serve_body<B: RobotBody>(
+    options: &Ros2Options,
+    raw_images: bool,
+    offered: OfferedBody,
+    body: &mut B,
+    is_over: impl FnMut(Stamp) -> bool,
+) -> Result<(), AppError> {
+    let (frames, stamped_commands) = (options.frames.clone(), options.stamped_commands);
+    let mut node = RosNode::new(&options.node)?;
+    let mut server =
+        BodyServer::new(&mut node, ServerSettings { frames, stamped_commands, raw_images }, offered)?;
+    let _running = node.start()?;
+    server.run(body, is_over).map_err(|error| AppError::Input(error.to_string()))
 }
 
 /// The topics of a body that is offered as a ROS 2 robot.

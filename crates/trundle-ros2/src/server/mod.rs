@@ -3,7 +3,7 @@
 mod body_server;
 mod image_publisher;
 
-pub use body_server::{BodyServer, OfferedBody};
+pub use body_server::{BodyServer, OfferedBody, serve_body};
 pub use image_publisher::ImagePublisher;
 
 use crate::outputs::FrameNames;
