@@ -35,7 +35,10 @@ const REST: [Step; 10] = [
         },
     },
     Step { name: "cargo xtask fuzz --seconds 5", check: fuzz::run_in_ci },
-    Step { name: "cargo build --release", check: |root| program::cargo(root, &["build", "--release"], &[]) },
+    Step {
+        name: "cargo build --release",
+        check: |root| program::cargo(root, &["build", "--release", "--features", "trundle-cli/ros2"], &[]),
+    },
     Step { name: "cargo xtask golden", check: golden_net },
     Step { name: "trundle demo", check: demo },
     Step { name: "cargo xtask replay-check", check: |root| replay_check::run(root, 1) },

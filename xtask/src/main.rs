@@ -1,4 +1,4 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | golden | results | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | golden | results | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
 mod aarch64;
@@ -11,6 +11,7 @@ mod program;
 mod replay_check;
 mod results;
 mod robot_memory;
+mod ros_interfaces;
 mod seeds;
 mod settings;
 mod tidy;
@@ -64,6 +65,8 @@ enum Chore {
     },
     /// Write the reference of settings from the doc comments of the configuration structs.
     Settings,
+    /// Write the Rust structures of the ROS 2 interfaces in crates/trundle-ros2/interfaces.
+    RosInterfaces,
     /// Demo on one thread, on two, and replayed: all three must write the same bytes.
     ReplayCheck {
         /// Seed of the demo.
@@ -107,6 +110,7 @@ fn main() -> ExitCode {
         }
         Chore::Results { measure } => results::run(&root, &measure),
         Chore::Settings => settings::run(&root, false),
+        Chore::RosInterfaces => ros_interfaces::run(&root, false),
         Chore::ReplayCheck { seed } => replay_check::run(&root, seed),
         Chore::Fuzz(options) => fuzz::run(&root, &options),
         Chore::FaultScenarios => fault_scenarios::run(&root),

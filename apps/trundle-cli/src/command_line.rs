@@ -12,6 +12,8 @@ use crate::outcome::EXIT_CODES;
 use crate::plan::PlanArgs;
 use crate::replay::ReplayArgs;
 use crate::robot_file::ConfigArgs;
+#[cfg(feature = "ros2")]
+use crate::ros2::Ros2Args;
 use crate::run::RunArgs;
 use crate::shell_files::{CompletionsArgs, ManArgs};
 use crate::sim::SimArgs;
@@ -41,6 +43,9 @@ pub enum Command {
     Demo(DemoArgs),
     /// Drive a real robot: base, depth camera, mission.
     Run(RunArgs),
+    /// Drive a ROS 2 robot: its sensors and base by topics, goals by Nav2's actions.
+    #[cfg(feature = "ros2")]
+    Ros2(Ros2Args),
     /// Run the robot again on a recording: same recording, same bytes.
     Replay(ReplayArgs),
     /// Track a recorded RGB-D sequence and draw its map.

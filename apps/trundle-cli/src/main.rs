@@ -17,6 +17,8 @@ mod output_args;
 mod plan;
 mod replay;
 mod robot_file;
+#[cfg(feature = "ros2")]
+mod ros2;
 mod run;
 mod run_output;
 mod shell_files;
@@ -53,6 +55,8 @@ fn listen(command: &Command) -> Result<(), AppError> {
         }
         // A guard outlives the program that it guards.
         GuardBase => stop::ignore(),
+        #[cfg(feature = "ros2")]
+        Command::Ros2(_) => stop::listen(),
         _ => stop::end_at_once(|signal| {
             let is_ending = abandon_outputs();
             if is_ending {
@@ -74,7 +78,9 @@ fn with_negative_numbers(command: clap::Command) -> clap::Command {
 fn run_command(cli: Cli) -> Result<Outcome, AppError> {
     match cli.command {
         Command::Demo(args) => with_threads(&args.common, || demo::run(&args)),
-        Command::Run(args) => with_threads(&args.common, || run::run(&args)),
+        Command::Run(args) => with_threads(&args.options.common, || run::run(&args)),
+        #[cfg(feature = "ros2")]
+        Command::Ros2(args) => with_threads(&args.options.common, || ros2::run(&args)),
         Command::Replay(args) => with_threads(&args.common, || replay::run(&args)),
         Command::Slam(args) => with_threads(&args.common, || slam::run(&args)),
         Command::Map(args) => with_threads(&args.common, || map::run(&args)),

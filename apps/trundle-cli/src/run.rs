@@ -3,15 +3,17 @@
 mod args;
 mod check;
 
-pub use args::RunArgs;
+pub use args::{RunArgs, RunOptions};
 
+use crate::common_args::PoseArg;
 use crate::outcome::Outcome;
 use crate::{console, logging, run_output};
 use args::MissionArgs;
+use std::path::Path;
+use std::time::Instant;
 use trundle::app::hardware::{OpenCamera, start_hardware};
 use trundle::app::real_time::run_in_real_time;
 use trundle::app::report::mission_text;
-use trundle::app::vocabulary_file::read_vocabulary;
 use trundle::app::{AppError, RUN_COMMAND, RunLog, RunSetup, read_checkpoint, read_mission};
 use trundle::io::keep_aside;
 use trundle::runtime::{Mission, Task};
@@ -21,7 +23,7 @@ pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
     if args.mission.check {
         return check::check(args);
     }
-    let mut robot = args.robot.robot()?;
+    let mut robot = args.options.robot.robot()?;
     let resumed = args.mission.resume.as_deref().map(read_checkpoint).transpose()?;
     let mission = match &resumed {
         Some((checkpoint, _)) => checkpoint.mission.left.clone(),
@@ -30,12 +32,10 @@ pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
     let camera = OpenCamera::open(&args.camera)?;
     camera.require_live()?;
     robot.camera = camera.intrinsics(args.robot_camera(&robot).as_ref())?;
-    let mut setup = RunSetup::new(&args.base.to_string(), mission, robot).by_command(RUN_COMMAND);
-    setup.time_limit = args.time_limit.unwrap_or(f64::MAX);
-    setup.real_time = true;
-    setup.recording = args.record.content();
-    if let Some(file) = &args.vocabulary {
-        setup = setup.with_vocabulary(&read_vocabulary(file)?);
+    let mut setup = args.options.setup(RUN_COMMAND, &args.base.to_string(), mission, robot)?;
+    #[cfg(feature = "ros2")]
+    {
+        setup.is_operated = args.ros2;
     }
     if let Some((_, bytes)) = &resumed {
         setup = setup.resumed_from(bytes);
@@ -46,42 +46,59 @@ pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
 /// Runs the robot and writes the folder.
 fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome, AppError> {
     let folder = logging::output_folder(&args.out)?;
-    if !args.common.quiet {
+    if !args.options.common.quiet {
         let info = camera.info();
         let (name, rate_hz, mission) = (&info.name, info.color.rate_hz, mission_text(&setup.mission));
         console::print(&format!("Base {}, camera {} ({name}): {mission}.", args.base, args.camera));
         console::print(&setup.recording.announcement(&setup.robot.camera, rate_hz, setup.time_limit));
     }
-    let checkpoint = args.checkpoint.as_deref();
-    let (line, progress) = console::progress(args.common.quiet);
+    let checkpoint = args.options.checkpoint.as_deref();
+    let (line, progress) = console::progress(args.options.common.quiet);
+    let origin = Instant::now();
     let start = |events, _place| {
-        let body = start_hardware(&args.base, camera, setup.robot.camera, events)?;
+        let body = start_hardware(&args.base, camera, setup.robot.camera, events, origin)?;
         // A run that is refused leaves the checkpoint where it is.
         if resumes_from_another_file(args) {
             checkpoint.map_or(Ok(()), keep_aside)?;
         }
         Ok(body)
     };
-    let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), progress);
+    #[cfg(feature = "ros2")]
+    let (node, front_end) = crate::ros2::beside(args, &setup.robot, origin, progress)?;
+    #[cfg(not(feature = "ros2"))]
+    let front_end = progress;
+    let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), front_end);
     line.finish_and_clear();
+    #[cfg(feature = "ros2")]
+    drop(node);
     let (run, timing) = run?;
-    run_output::write(setup, run, Some(&timing), folder, args.common.quiet)
+    run_output::write(setup, run, Some(&timing), folder, args.options.common.quiet)
 }
 
 /// Whether the checkpoint that is written is not the one that the run resumes from.
 fn resumes_from_another_file(args: &RunArgs) -> bool {
-    args.mission.resume.as_deref() != args.checkpoint.as_deref()
+    args.mission.resume.as_deref() != args.options.checkpoint.as_deref()
 }
 
 fn mission(args: &MissionArgs) -> Result<Mission, AppError> {
-    if let Some(file) = &args.mission {
+    mission_of(args.mission.as_deref(), &args.goal, args.explore, args.dock)
+}
+
+/// The mission of a file, or of goals, exploration and the charging station.
+pub fn mission_of(
+    file: Option<&Path>,
+    goals: &[PoseArg],
+    explore: bool,
+    dock: bool,
+) -> Result<Mission, AppError> {
+    if let Some(file) = file {
         return read_mission(file);
     }
-    let mut tasks: Vec<Task> = args.goal.iter().map(|goal| Task::Go(goal.0)).collect();
-    if args.explore {
+    let mut tasks: Vec<Task> = goals.iter().map(|goal| Task::Go(goal.0)).collect();
+    if explore {
         // The station is the better place to end at than the start.
-        tasks = if args.dock { vec![Task::Explore] } else { vec![Task::Explore, Task::Return] };
+        tasks = if dock { vec![Task::Explore] } else { vec![Task::Explore, Task::Return] };
     }
-    tasks.extend(args.dock.then_some(Task::Dock));
+    tasks.extend(dock.then_some(Task::Dock));
     Ok(Mission::new(tasks)?)
 }

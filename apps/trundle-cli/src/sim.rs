@@ -2,6 +2,8 @@
 
 mod args;
 mod map;
+#[cfg(feature = "ros2")]
+mod ros2;
 #[cfg(unix)]
 mod serve;
 mod teleop;
@@ -32,6 +34,10 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
     #[cfg(unix)]
     if let Some(port) = &args.wires.kobuki {
         return serve::serve(args, name, port);
+    }
+    #[cfg(feature = "ros2")]
+    if args.ros2 {
+        return ros2::serve(args, name);
     }
     let config = args.sensors.config()?;
     let band = match args.true_map.band.as_deref() {

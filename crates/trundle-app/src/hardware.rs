@@ -34,7 +34,8 @@ pub fn guard_base() -> Result<(), AppError> {
     ))
 }
 
-/// Starts base and camera as the body of a run; `output` is the camera that the robot works with. Events go to `events`.
+/// Starts base and camera as the body of a run; `output` is the camera that the robot works with. Events go to `events`, their stamps count
+/// from `origin`.
 ///
 /// # Errors
 /// When the base does not answer, or the system refuses a thread.
@@ -43,8 +44,8 @@ pub fn start_hardware(
     camera: OpenCamera,
     output: PinholeCamera,
     events: InboxSender<TimedEvent>,
+    origin: Instant,
 ) -> Result<LiveBody, AppError> {
-    let origin = Instant::now();
     let feed = EventFeed::new(events, origin);
     let sink = feed.clone();
     let drivers = Drivers::start(base, camera, output, origin, move |event| sink.send(&event))?;

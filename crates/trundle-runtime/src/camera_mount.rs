@@ -43,15 +43,37 @@ impl CameraMount {
         Ok(self)
     }
 
+    /// The mount of a camera whose optical frame stands at `base_from_camera`.
+    pub fn from_pose(base_from_camera: &Pose3) -> Self {
+        let turn = base_from_camera.rotation_matrix() * Self::body_from_optical().transpose();
+        let (roll, pitch, yaw) = nalgebra::Rotation3::from_matrix_unchecked(turn).euler_angles();
+        let at = base_from_camera.translation;
+        Self {
+            x: at.x,
+            y: at.y,
+            z: at.z,
+            yaw_deg: yaw.to_degrees(),
+            pitch_deg: pitch.to_degrees(),
+            roll_deg: roll.to_degrees(),
+        }
+    }
+
+    /// Axes of the optical frame (z ahead, x right) in those of a body (x ahead, y left).
+    fn body_from_optical() -> Matrix3<f64> {
+        Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0)
+    }
+
     /// `base_from_camera`, the camera in its optical frame.
     pub fn base_from_camera(&self) -> Pose3 {
-        let body_from_optical = Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
         let turn = nalgebra::Rotation3::from_euler_angles(
             self.roll_deg.to_radians(),
             self.pitch_deg.to_radians(),
             self.yaw_deg.to_radians(),
         );
-        Pose3::from_matrix(turn.into_inner() * body_from_optical, Vector3::new(self.x, self.y, self.z))
+        Pose3::from_matrix(
+            turn.into_inner() * Self::body_from_optical(),
+            Vector3::new(self.x, self.y, self.z),
+        )
     }
 }
 
@@ -92,5 +114,13 @@ mod tests {
         assert!((optical_axis - Vector3::y()).norm() < 1e-12, "{optical_axis}");
         let at = mount.base_from_camera().translation;
         assert_eq!((at.x, at.y, at.z), (mount.x, mount.y, mount.z));
+    }
+
+    #[test]
+    fn a_mount_is_found_again_from_its_pose() {
+        let mount = CameraMount { x: 0.1, y: -0.02, z: 0.5, yaw_deg: 20.0, pitch_deg: 12.0, roll_deg: -3.0 };
+        let found = CameraMount::from_pose(&mount.base_from_camera());
+        assert!((found.yaw_deg - 20.0).abs() < 1e-9 && (found.pitch_deg - 12.0).abs() < 1e-9);
+        assert!((found.roll_deg + 3.0).abs() < 1e-9 && (found.z - 0.5).abs() < 1e-12);
     }
 }

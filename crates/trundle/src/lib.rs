@@ -38,6 +38,7 @@
 //! | drive real hardware | [`drivers`] |
 //! | simulate, evaluate, draw | [`sim`], [`eval`], [`viz`] |
 //! | read and write files | [`io`] |
+//! | speak ROS 2 | `ros2`, with the feature `ros2` |
 //!
 //! Eight numbered examples stand in `crates/trundle/examples`.
 
@@ -55,6 +56,8 @@ pub use trundle_localization as localization;
 pub use trundle_mapping as mapping;
 pub use trundle_optim as optim;
 pub use trundle_planning as planning;
+#[cfg(feature = "ros2")]
+pub use trundle_ros2 as ros2;
 pub use trundle_runtime as runtime;
 pub use trundle_sim as sim;
 pub use trundle_slam as slam;

@@ -14,8 +14,7 @@ pub const ALGORITHM_CRATES: [&str; 7] = [
     "trundle-docking",
 ];
 /// The edges: they depend on core alone.
-pub const EDGES: [&str; 6] =
-    ["trundle-sim", "trundle-io", "trundle-drivers", "trundle-ros2", "trundle-viz", "trundle-eval"];
+pub const EDGES: [&str; 5] = ["trundle-sim", "trundle-io", "trundle-drivers", "trundle-viz", "trundle-eval"];
 /// Crates that may read TOML or command lines.
 const SETTINGS_CRATES: [&str; 6] =
     ["trundle-runtime", "trundle-app", "trundle-cli", "trundle-io", "trundle-fuzz", "xtask"];
@@ -74,6 +73,7 @@ fn is_known(name: &str) -> bool {
             "trundle-runtime",
             "trundle-app",
             "trundle-experiments",
+            "trundle-ros2",
             "trundle",
             "trundle-cli",
             "xtask",
@@ -104,6 +104,12 @@ fn may_know(from: &str, to: &str) -> bool {
         "trundle-experiments" => {
             base || ALGORITHM_CRATES.contains(&to)
                 || EDGES.contains(&to)
+                || ["trundle-runtime", "trundle-app"].contains(&to)
+        }
+        "trundle-ros2" => {
+            let edges = ["trundle-io", "trundle-drivers"];
+            base || ALGORITHM_CRATES.contains(&to)
+                || edges.contains(&to)
                 || ["trundle-runtime", "trundle-app"].contains(&to)
         }
         "trundle" => !["trundle", "trundle-cli"].contains(&to),

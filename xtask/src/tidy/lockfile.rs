@@ -5,6 +5,8 @@ use super::tree::Tree;
 
 /// Packages that compile or look for foreign code.
 const FOREIGN: [&str; 7] = ["cc", "cmake", "bindgen", "pkg-config", "vcpkg", "nasm-rs", "cxx"];
+/// Packages of systems that trundle does not run on: what they alone depend on is never built.
+const OTHER_SYSTEMS: [&str; 1] = ["iana-time-zone-haiku"];
 /// Packages of which there must be one version: their types cross crates.
 const SINGLE: [&str; 1] = ["nalgebra"];
 
@@ -19,7 +21,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
         .collect();
     let mut findings = Vec::new();
     for (line, name) in &names {
-        if FOREIGN.contains(name) {
+        if FOREIGN.contains(name) && is_built(&lock.text, name) {
             let message = format!("{name} is in the graph: trundle builds with a Rust toolchain alone");
             findings.push(Finding::error(&lock.path, *line, message));
         }
@@ -30,6 +32,16 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
         }
     }
     findings
+}
+
+/// Whether a package of systems that trundle runs on depends on `name`.
+fn is_built(lock: &str, name: &str) -> bool {
+    let needs = |package: &&str| package.lines().any(|line| line.trim_matches([' ', '"', ',']) == name);
+    let own = |package: &str| {
+        package.lines().find_map(|line| line.strip_prefix("name = \"")?.strip_suffix('"')).map(str::to_owned)
+    };
+    let mut dependents = lock.split("[[package]]").filter(needs).filter_map(own).peekable();
+    dependents.peek().is_none() || dependents.any(|package| !OTHER_SYSTEMS.contains(&package.as_str()))
 }
 
 #[cfg(test)]
@@ -43,5 +55,12 @@ mod tests {
         let found = check(&tree(&[("Cargo.lock", lock)]));
         assert_eq!(found.iter().map(|f| f.line).collect::<Vec<_>>(), [4, 6]);
         assert!(check(&tree(&[("Cargo.lock", "name = \"linux-raw-sys\"")])).is_empty());
+        let of = |dependent: &str| {
+            format!(
+                "[[package]]\nname = \"cc\"\n[[package]]\nname = \"{dependent}\"\ndependencies = [\n \"cc\",\n]\n"
+            )
+        };
+        assert!(check(&tree(&[("Cargo.lock", &of("iana-time-zone-haiku"))])).is_empty());
+        assert_eq!(check(&tree(&[("Cargo.lock", &of("libz"))])).len(), 1);
     }
 }

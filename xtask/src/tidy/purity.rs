@@ -37,7 +37,7 @@ const NONDETERMINISM: [(&str, &str); 9] = [
 ];
 
 /// Edges that work with devices and links, which need the clock.
-const LIVE_EDGES: [&str; 2] = ["trundle-drivers", "trundle-ros2"];
+const LIVE_EDGES: [&str; 1] = ["trundle-drivers"];
 
 /// Checks the sources of all crates of algorithms, and of the edges for clocks and randomness.
 pub fn check(tree: &Tree) -> Vec<Finding> {

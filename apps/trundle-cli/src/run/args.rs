@@ -5,9 +5,11 @@ use crate::demo::RecordArg;
 use crate::output_args::{ContinuedFileArg, OutputDirArg, OutputFileArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
+use trundle::app::vocabulary_file::read_vocabulary;
+use trundle::app::{AppError, RunSetup};
 use trundle::core::PinholeCamera;
 use trundle::drivers::{BaseSpec, CameraSpec};
-use trundle::runtime::RobotConfig;
+use trundle::runtime::{Mission, RobotConfig};
 
 /// `trundle run`
 #[derive(Debug, Args)]
@@ -30,6 +32,25 @@ pub struct RunArgs {
     /// Write what --check measured into this robot file; its other keys stay.
     #[arg(long, value_name = "ROBOT.toml", requires = "check", conflicts_with_all = ["goal", "explore", "dock", "mission", "resume"])]
     pub write: Option<PathBuf>,
+    /// Files, time and settings.
+    #[command(flatten)]
+    pub options: RunOptions,
+    /// Folder for the results; the last run in it is kept as DIR.1
+    #[arg(long, value_name = "DIR", default_value = "out/run")]
+    pub out: OutputDirArg,
+    /// Publish map, pose and state on ROS 2, and take goals from there, also after the mission.
+    #[cfg(feature = "ros2")]
+    #[arg(long)]
+    pub ros2: bool,
+    /// Network and names.
+    #[cfg(feature = "ros2")]
+    #[command(flatten)]
+    pub ros: crate::ros2::RosArgs,
+}
+
+/// What every run on a live robot takes.
+#[derive(Debug, Args)]
+pub struct RunOptions {
     /// Write the robot's maps and the state of its mission to FILE, every 3 to 10 s: `--resume FILE` goes on from there.
     #[arg(long, value_name = "FILE")]
     pub checkpoint: Option<OutputFileArg>,
@@ -45,12 +66,30 @@ pub struct RunArgs {
     /// The robot's settings.
     #[command(flatten)]
     pub robot: RobotArgs,
-    /// Folder for the results; the last run in it is kept as DIR.1
-    #[arg(long, value_name = "DIR", default_value = "out/run")]
-    pub out: OutputDirArg,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
+}
+
+impl RunOptions {
+    /// The setup of a run of `command` in real time.
+    pub fn setup(
+        &self,
+        command: &str,
+        name: &str,
+        mission: Mission,
+        robot: RobotConfig,
+    ) -> Result<RunSetup, AppError> {
+        let mut setup = RunSetup::new(name, mission, robot).by_command(command);
+        setup.time_limit = self.time_limit.unwrap_or(f64::MAX);
+        setup.real_time = true;
+        setup.recording = self.record.content();
+        let vocabulary = self.vocabulary.as_deref().map(read_vocabulary).transpose()?;
+        Ok(match vocabulary {
+            Some(vocabulary) => setup.with_vocabulary(&vocabulary),
+            None => setup,
+        })
+    }
 }
 
 impl RunArgs {

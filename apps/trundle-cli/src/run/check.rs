@@ -11,17 +11,17 @@ const CHECK_S: f64 = 15.0;
 
 /// Checks base and camera, prints what was found, and writes the measured part of the robot file where that is wished.
 pub fn check(args: &RunArgs) -> Result<Outcome, AppError> {
-    let robot = args.robot.robot()?;
+    let robot = args.options.robot.robot()?;
     let camera = OpenCamera::open(&args.camera)?;
     let output = camera.intrinsics(args.robot_camera(&robot).as_ref())?;
-    let seconds = args.time_limit.unwrap_or(CHECK_S);
-    if !args.common.quiet {
+    let seconds = args.options.time_limit.unwrap_or(CHECK_S);
+    if !args.options.common.quiet {
         console::print(&format!(
             "Listening for {seconds:.0} s; the base does not drive. Leave the robot at rest for 3 s, then push it straight ahead by 0.5 m."
         ));
     }
     let report = check_hardware(CheckRequest { base: &args.base, camera, output, robot: &robot, seconds })?;
-    if !args.common.quiet {
+    if !args.options.common.quiet {
         print(&report);
     }
     if let Some(file) = args.write.as_deref() {

@@ -55,6 +55,18 @@ pub struct SimArgs {
     /// The wires of a real robot.
     #[command(flatten)]
     pub wires: WireArgs,
+    /// Be a ROS 2 robot, in real time, until Ctrl-C or --duration.
+    #[cfg(feature = "ros2")]
+    #[arg(long, conflicts_with_all = ["driver", "record", "map", "kobuki"])]
+    pub ros2: bool,
+    /// With --ros2: raw images in place of JPEG and PNG files.
+    #[cfg(feature = "ros2")]
+    #[arg(long, requires = "ros2")]
+    pub raw_images: bool,
+    /// Network and names.
+    #[cfg(feature = "ros2")]
+    #[command(flatten)]
+    pub ros: crate::ros2::RosArgs,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,

@@ -4,6 +4,7 @@ use super::{BodyTiming, MemoryUsage, TimedEvent};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use trundle_core::{BodyEvent, BodyEventKind, SensorEvent, Stamp};
+use trundle_drivers::clock::HostClock;
 use trundle_io::EncodedEvent;
 use trundle_runtime::Histogram;
 use trundle_runtime::real_time::{InboxItem, InboxSender};
@@ -17,6 +18,8 @@ pub struct EventFeed {
     events: InboxSender<TimedEvent>,
     /// The instant of stamp 0.
     origin: Instant,
+    /// The time of the run.
+    clock: HostClock,
     state: Arc<Mutex<FeedState>>,
 }
 
@@ -35,7 +38,14 @@ impl EventFeed {
     /// A feed into the inbox of a run. Stamps count from `origin`.
     #[must_use]
     pub fn new(events: InboxSender<TimedEvent>, origin: Instant) -> Self {
-        Self { events, origin, state: Arc::default() }
+        let clock = Arc::new(move || Stamp::default().after(origin.elapsed().as_secs_f64()));
+        Self::with_clock(events, origin, clock)
+    }
+
+    /// The same with another clock of the run, as that of a simulator, which may run slower or stand still.
+    #[must_use]
+    pub fn with_clock(events: InboxSender<TimedEvent>, origin: Instant, clock: HostClock) -> Self {
+        Self { events, origin, clock, state: Arc::default() }
     }
 
     /// The instant of stamp 0: drivers map their clocks to it.
@@ -60,7 +70,7 @@ impl EventFeed {
         if now - since >= MIN_SILENCE {
             state.newest = Some(now);
             drop(state);
-            let event = BodyEvent { stamp: self.stamp_of(now), kind: BodyEventKind::Silence };
+            let event = BodyEvent { stamp: (self.clock)(), kind: BodyEventKind::Silence };
             self.events.put(InboxItem::Urgent(TimedEvent { event: EncodedEvent::Body(event), at: now }));
         }
     }
@@ -82,7 +92,7 @@ impl EventFeed {
     fn put(&self, event: EncodedEvent) {
         let at = Instant::now();
         let is_image = matches!(event, EncodedEvent::Rgbd(_));
-        let age_ms = (self.stamp_of(at) - event.stamp()) * 1e3;
+        let age_ms = ((self.clock)() - event.stamp()) * 1e3;
         let event = TimedEvent { event, at };
         let is_taken =
             self.events.put(if is_image { InboxItem::Deferred(event) } else { InboxItem::Urgent(event) });
@@ -94,10 +104,6 @@ impl EventFeed {
             state.images_refused += u64::from(!is_taken);
             state.image_ages.note(age_ms.max(0.0));
         }
-    }
-
-    fn stamp_of(&self, at: Instant) -> Stamp {
-        Stamp::default().after(at.saturating_duration_since(self.origin).as_secs_f64())
     }
 
     fn state(&self) -> std::sync::MutexGuard<'_, FeedState> {

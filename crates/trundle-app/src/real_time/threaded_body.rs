@@ -72,7 +72,7 @@ impl ThreadedBody {
     fn wait_for_input(&mut self) -> Option<RunInput> {
         match self.inbox.next(&self.loop_timer, BODY_TIMEOUT)? {
             Got::Event(TimedEvent { event, at }) => {
-                if matches!(event, EncodedEvent::Wheels(_)) {
+                if matches!(event, EncodedEvent::Wheels(_) | EncodedEvent::Odometry(_)) {
                     self.loop_timer.begin();
                     self.reading = Some(at);
                 }

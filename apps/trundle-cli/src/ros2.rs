@@ -1,0 +1,81 @@
+//! `trundle ros2`: a ROS 2 robot, its sensors and base by topics.
+
+mod args;
+
+pub use args::{Ros2Args, RosArgs};
+
+use crate::outcome::Outcome;
+use crate::run::{RunArgs, mission_of};
+use crate::{console, logging, run_output};
+use std::time::{Duration, Instant};
+use trundle::app::operator::FrontEnd;
+use trundle::app::real_time::run_in_real_time;
+use trundle::app::report::mission_text;
+use trundle::app::{AppError, Progress, RunLog, stop};
+use trundle::ros2::body::BodySettings;
+use trundle::ros2::{RobotNode, Ros2Robot};
+use trundle::runtime::{Mission, RobotConfig};
+
+/// `trundle ros2`.
+pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
+    let mut robot = args.options.robot.robot()?;
+    let options = args.ros.options()?;
+    let mission = if !args.has_mission() {
+        Mission::default()
+    } else {
+        mission_of(args.mission.as_deref(), &args.goal, args.explore, false)?
+    };
+    let settings = BodySettings {
+        use_sim_time: options.use_sim_time,
+        stamped_commands: options.stamped_commands,
+        base_frame: options.frames.base.clone(),
+        ..args.topics()
+    };
+    let wait = Duration::from_secs_f64(args.wait);
+    let is_cancelled = || stop::is_requested(|| "the wait for topics".to_owned());
+    let connected = Ros2Robot::connect(&options, settings, &mut robot, wait, is_cancelled)?;
+    let (node, link, body) = connected.into_parts();
+    let mut setup = args.options.setup("ros2", &options.node.names.node, mission, robot)?;
+    setup.is_operated = args.stays();
+    let folder = logging::output_folder(&args.out)?;
+    if !args.options.common.quiet {
+        let mission = if args.stays() {
+            "waits for goals; Ctrl-C ends it".to_owned()
+        } else {
+            mission_text(&setup.mission)
+        };
+        console::print(&format!(
+            "ROS 2 domain {}, node {}: {mission}.",
+            options.node.domain, options.node.names.node
+        ));
+    }
+    let (line, progress) = console::progress(args.options.common.quiet);
+    let log = if args.stays() { RunLog::brief() } else { RunLog::default() };
+    let start = |events, _place| body.start(events);
+    let run = run_in_real_time(
+        &setup,
+        start,
+        &folder,
+        args.options.checkpoint.as_deref(),
+        log,
+        FrontEnd { progress, operator: Some(link) },
+    );
+    line.finish_and_clear();
+    drop(node);
+    let (run, timing) = run?;
+    run_output::write(&setup, run, Some(&timing), folder, args.options.common.quiet)
+}
+
+/// ROS 2 beside `trundle run`, where it is asked for.
+pub fn beside(
+    args: &RunArgs,
+    robot: &RobotConfig,
+    origin: Instant,
+    progress: Progress,
+) -> Result<(Option<RobotNode>, FrontEnd), AppError> {
+    if !args.ros2 {
+        return Ok((None, progress.into()));
+    }
+    let (node, link) = RobotNode::offer(&args.ros.options()?, robot, origin)?;
+    Ok((Some(node), FrontEnd { progress, operator: Some(link) }))
+}

@@ -1,0 +1,110 @@
+//! The command line of `trundle ros2`, and the options of ROS 2 that other commands have too.
+
+use crate::common_args::{NumberArg, PoseArg};
+use crate::console;
+use crate::output_args::OutputDirArg;
+use crate::run::RunOptions;
+use clap::Args;
+use std::path::PathBuf;
+use trundle::app::AppError;
+use trundle::ros2::Ros2Options;
+use trundle::ros2::body::BodySettings;
+use trundle::ros2::node::Networks;
+
+/// `trundle ros2`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle ros2 --ros-args -r odom:=wheel/odom -p use_sim_time:=true\n\n\
+    Without a mission it waits for goals: NavigateToPose, goal_pose of RViz (docs/how-to/ros2.md).")]
+pub struct Ros2Args {
+    /// Colour images: `.../compressed`, or raw images.
+    #[arg(long, value_name = "TOPIC", default_value = "camera/color/image_raw/compressed")]
+    pub color: String,
+    /// Depth images: `.../compressedDepth`, or raw images of 16UC1 or 32FC1.
+    #[arg(long, value_name = "TOPIC", default_value = "camera/depth/image_raw/compressedDepth")]
+    pub depth: String,
+    /// Intrinsics of the colour camera.
+    #[arg(long, value_name = "TOPIC", default_value = "camera/color/camera_info")]
+    pub camera_info: String,
+    /// Intrinsics of a depth camera whose images are not registered to colour.
+    #[arg(long, value_name = "TOPIC")]
+    pub depth_info: Option<String>,
+    /// Gyro; where it has messages, it gives the heading in place of the odometry. `none`: not used.
+    #[arg(long, value_name = "TOPIC", default_value = "imu")]
+    pub imu: String,
+    /// A 2-D laser, in place of scans made of depth.
+    #[arg(long, value_name = "TOPIC")]
+    pub scan: Option<String>,
+    /// Network and names.
+    #[command(flatten)]
+    pub ros: RosArgs,
+    /// Goal in the map frame: m, m, deg; may be given again.
+    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true, conflicts_with_all = ["explore", "mission"])]
+    pub goal: Vec<PoseArg>,
+    /// Explore until the map is complete, then come back.
+    #[arg(long, conflicts_with = "mission")]
+    pub explore: bool,
+    /// The tasks of a mission file.
+    #[arg(long, value_name = "FILE")]
+    pub mission: Option<PathBuf>,
+    /// Go on after the mission and wait for goals.
+    #[arg(long)]
+    pub stay: bool,
+    /// Longest wait for the robot's topics, s
+    #[arg(long, value_name = "S", default_value_t = 30.0, value_parser = NumberArg::above_zero("s"))]
+    pub wait: f64,
+    /// Files, time and settings.
+    #[command(flatten)]
+    pub options: RunOptions,
+    /// Folder for the results; the last run in it is kept as DIR.1
+    #[arg(long, value_name = "DIR", default_value = "out/ros2")]
+    pub out: OutputDirArg,
+}
+
+impl Ros2Args {
+    /// The robot's topics.
+    pub fn topics(&self) -> BodySettings {
+        BodySettings {
+            color: self.color.clone(),
+            depth: self.depth.clone(),
+            camera_info: self.camera_info.clone(),
+            depth_info: self.depth_info.clone(),
+            imu: (self.imu != "none").then(|| self.imu.clone()),
+            scan: self.scan.clone(),
+            ..BodySettings::default()
+        }
+    }
+
+    /// Whether the run goes on after its mission.
+    pub fn stays(&self) -> bool {
+        self.stay || !self.has_mission()
+    }
+
+    /// Whether a mission is given.
+    pub fn has_mission(&self) -> bool {
+        !self.goal.is_empty() || self.explore || self.mission.is_some()
+    }
+}
+
+/// Network and names of a ROS 2 node.
+#[derive(Debug, Args)]
+pub struct RosArgs {
+    /// Domain: nodes of different domains do not meet [default: ROS_DOMAIN_ID, else 0]
+    #[arg(long, value_name = "N")]
+    pub ros_domain: Option<u16>,
+    /// Networks: loopback, all, or addresses of interfaces. Whoever is on them can drive the robot.
+    #[arg(long, value_name = "IP|all", default_value = "loopback")]
+    pub ros_interface: Networks,
+    /// Last: remappings, namespace and parameters, as every ROS 2 node takes them.
+    #[arg(long, value_name = "ARG", num_args = 1.., allow_hyphen_values = true)]
+    pub ros_args: Vec<String>,
+}
+
+impl RosArgs {
+    /// The options; warns of a network that others share.
+    pub fn options(&self) -> Result<Ros2Options, AppError> {
+        if let Some(warning) = self.ros_interface.warning() {
+            console::print(&format!("warning: {warning}"));
+        }
+        Ok(Ros2Options::read("trundle", self.ros_domain, self.ros_interface.clone(), &self.ros_args)?)
+    }
+}

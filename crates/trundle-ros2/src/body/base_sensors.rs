@@ -1,0 +1,197 @@
+//! Odometry, gyro, laser and battery of a ROS 2 robot as events.
+
+use super::{BodySettings, FrameTree, WheelsFromOdometry};
+use crate::Ros2Error;
+use crate::clock::RosClock;
+use crate::convert::{battery, imu, odometry, scan, stamp};
+use crate::generated::builtin_interfaces::Time;
+use crate::generated::nav_msgs::Odometry as OdometryMessage;
+use crate::generated::sensor_msgs::{BatteryState, Imu, LaserScan};
+use crate::generated::std_msgs::Header;
+use crate::node::{Diagnostics, RosNode, TopicMonitor, qos};
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+use trundle_core::{
+    BodyEvent, BodyEventKind, DifferentialDrive, Invalid, Odometry, Pose2, Pose3, SensorEvent, Stamp,
+};
+
+/// Silence of the odometry after which the base counts as lost [s]: ten readings at 20 Hz. Source: ours.
+pub const MAX_ODOM_SILENCE: Duration = Duration::from_millis(500);
+/// Silence of a laser after which it counts as lost: five sweeps at 5 Hz. Source: ours.
+pub const MAX_SCAN_SILENCE: Duration = Duration::from_secs(1);
+
+/// Readings of odometry that are kept: 2 s at 50 Hz. Source: ours.
+const ODOMETRY_HISTORY: usize = 100;
+
+/// Receives events; replaced when a run begins.
+pub type Sink = Box<dyn Fn(SensorEvent) + Send>;
+
+/// What the handlers of a robot's topics share.
+pub struct Shared {
+    /// Receives events; none before the run.
+    pub sink: Mutex<Option<Sink>>,
+    /// Frames.
+    pub frames: Mutex<FrameTree>,
+    /// The newest odometry as it came, `odom_from_base`, in the order of arrival.
+    pub odometry: Mutex<VecDeque<Odometry>>,
+    /// Whether a usable gyro reading has come.
+    pub has_gyro: AtomicBool,
+    /// Whether the run takes the heading from the gyro: decided at its start.
+    pub uses_gyro: AtomicBool,
+    /// The odometry's frame.
+    pub odom_frame: Mutex<Option<String>>,
+    /// The time.
+    pub clock: RosClock,
+    /// Conditions of topics.
+    pub diagnostics: Diagnostics,
+}
+
+impl Shared {
+    /// Sends an event into the run, where one goes.
+    pub fn send(&self, event: SensorEvent) {
+        if let Some(sink) = &*lock(&self.sink) {
+            sink(event);
+        }
+    }
+
+    /// The run's stamp of a message, or a report that names the topic.
+    pub(super) fn stamp(&self, topic: &str, time: &Time) -> Option<Stamp> {
+        self.accept(topic, stamp::from_ros(time).and_then(|ros| self.clock.checked_to_run(ros)))
+    }
+
+    /// The value, or a report that names the topic.
+    pub(super) fn accept<T>(&self, topic: &str, value: Result<T, Invalid>) -> Option<T> {
+        value.map_err(|error| self.diagnostics.warn(topic, error.to_string())).ok()
+    }
+
+    /// The pose of the frame of `header` on the base, or a report that names the topic.
+    fn base_from(&self, topic: &str, base: &str, header: &Header) -> Option<Pose3> {
+        let pose = lock(&self.frames).pose(base, &header.frame_id);
+        if pose.is_none() && header.frame_id != base {
+            let frame = &header.frame_id;
+            let message = format!(
+                "no transform from {base} to its frame '{frame}' on /tf_static: start robot_state_publisher or static_transform_publisher"
+            );
+            self.diagnostics.warn(topic, message);
+        }
+        pose.or_else(|| (header.frame_id == base).then(Pose3::identity))
+    }
+}
+
+/// The value of a mutex, whoever panicked with it.
+pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Monitors of the topics without which the base counts as lost.
+pub struct BaseMonitors {
+    /// Odometry.
+    pub odom: Arc<TopicMonitor>,
+    /// Laser.
+    pub scan: Option<Arc<TopicMonitor>>,
+}
+
+/// Subscribes to odometry, gyro, laser and battery.
+///
+/// # Errors
+/// When a topic cannot be made.
+pub fn subscribe(
+    node: &mut RosNode,
+    settings: &BodySettings,
+    drive: DifferentialDrive,
+    shared: &Arc<Shared>,
+) -> Result<BaseMonitors, Ros2Error> {
+    let odom = subscribe_odometry(node, settings, drive, shared)?;
+    if let Some(topic) = &settings.imu {
+        subscribe_imu(node, topic, &settings.base_frame, shared)?;
+    }
+    let scan =
+        settings.scan.as_deref().map(|topic| subscribe_scan(node, topic, &settings.base_frame, shared));
+    if let Some(topic) = &settings.battery {
+        subscribe_battery(node, topic, shared)?;
+    }
+    Ok(BaseMonitors { odom, scan: scan.transpose()? })
+}
+
+fn subscribe_odometry(
+    node: &mut RosNode,
+    settings: &BodySettings,
+    drive: DifferentialDrive,
+    shared: &Arc<Shared>,
+) -> Result<Arc<TopicMonitor>, Ros2Error> {
+    let (shared, name) = (Arc::clone(shared), node.names().resolve(&settings.odom));
+    let mut wheels = WheelsFromOdometry::new(drive);
+    let base = settings.base_frame.clone();
+    let on_odometry = move |message: OdometryMessage| {
+        let Some(at) = shared.stamp(&name, &message.header.stamp) else { return };
+        let Some(own) = shared.accept(&name, odometry::from_ros(&message, at)) else { return };
+        let Some(own) = on_base(own, &message.child_frame_id, &base, &shared) else { return };
+        lock(&shared.odom_frame).get_or_insert(message.header.frame_id);
+        note(&mut lock(&shared.odometry), own);
+        let uses_gyro = shared.uses_gyro.load(Ordering::Relaxed);
+        shared.send(if uses_gyro {
+            SensorEvent::Wheels(wheels.add(&own))
+        } else {
+            SensorEvent::Odometry(own)
+        });
+    };
+    node.subscribe(&settings.odom, &qos::sensor(5), Some(MAX_ODOM_SILENCE), on_odometry)
+}
+
+fn note(history: &mut VecDeque<Odometry>, newest: Odometry) {
+    if history.len() >= ODOMETRY_HISTORY {
+        history.pop_front();
+    }
+    history.push_back(newest);
+}
+
+/// Odometry of another frame of the base (`base_footprint`) as that of `base`: both turn alike, and lie above each other as a rule.
+fn on_base(own: Odometry, child: &str, base: &str, shared: &Shared) -> Option<Odometry> {
+    let offset = lock(&shared.frames).pose(child, base).map_or(Pose2::IDENTITY, |pose| pose.to_pose2());
+    Some(Odometry { pose: own.pose * offset, ..own })
+}
+
+fn subscribe_imu(node: &mut RosNode, topic: &str, base: &str, shared: &Arc<Shared>) -> Result<(), Ros2Error> {
+    let (shared, name, base) = (Arc::clone(shared), node.names().resolve(topic), base.to_owned());
+    let on_imu = move |message: Imu| {
+        let Some(at) = shared.stamp(&name, &message.header.stamp) else { return };
+        let Some(base_from_imu) = shared.base_from(&name, &base, &message.header) else { return };
+        let rate = imu::from_ros(&message, at, &base_from_imu.rotation);
+        if let Some(rate) = shared.accept(&name, rate) {
+            shared.has_gyro.store(true, Ordering::Relaxed);
+            if shared.uses_gyro.load(Ordering::Relaxed) {
+                shared.send(SensorEvent::Gyro(rate));
+            }
+        }
+    };
+    node.subscribe(topic, &qos::sensor(10), Some(MAX_ODOM_SILENCE), on_imu).map(drop)
+}
+
+fn subscribe_scan(
+    node: &mut RosNode,
+    topic: &str,
+    base: &str,
+    shared: &Arc<Shared>,
+) -> Result<Arc<TopicMonitor>, Ros2Error> {
+    let (shared, name, base) = (Arc::clone(shared), node.names().resolve(topic), base.to_owned());
+    let on_scan = move |message: LaserScan| {
+        let Some(at) = shared.stamp(&name, &message.header.stamp) else { return };
+        let Some(base_from_laser) = shared.base_from(&name, &base, &message.header) else { return };
+        let sweep = scan::from_ros(&message, at, &base_from_laser.to_pose2());
+        shared.accept(&name, sweep).into_iter().for_each(|sweep| shared.send(SensorEvent::Scan(sweep)));
+    };
+    node.subscribe(topic, &qos::sensor(5), Some(MAX_SCAN_SILENCE), on_scan)
+}
+
+fn subscribe_battery(node: &mut RosNode, topic: &str, shared: &Arc<Shared>) -> Result<(), Ros2Error> {
+    let (shared, name) = (Arc::clone(shared), node.names().resolve(topic));
+    let on_battery = move |message: BatteryState| {
+        let stamp = shared.clock.now();
+        if let Some(battery) = shared.accept(&name, battery::from_ros(&message)) {
+            shared.send(SensorEvent::Body(BodyEvent { stamp, kind: BodyEventKind::Battery(battery) }));
+        }
+    };
+    node.subscribe(topic, &qos::sensor(1), None, on_battery).map(drop)
+}

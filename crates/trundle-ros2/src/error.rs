@@ -1,0 +1,73 @@
+//! Why a node cannot be started.
+
+use trundle_app::AppError;
+
+/// Why a node cannot be started, or a name or argument is refused.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Ros2Error {
+    /// A name with characters that ROS 2 does not allow.
+    #[error("'{name}' is no ROS 2 name: {problem}; expected letters, digits and _ parted by /")]
+    Name {
+        /// The name.
+        name: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// An unknown ROS argument.
+    #[error(
+        "'{argument}' after --ros-args is unknown; expected `-r FROM:=TO`, `-r __ns:=/NS`, `-r __node:=NAME` or `-p NAME:=VALUE`"
+    )]
+    Argument {
+        /// The argument.
+        argument: String,
+    },
+    /// A parameter whose value is not of its type.
+    #[error("parameter {name} is '{value}', expected {expected}")]
+    Parameter {
+        /// Name of the parameter.
+        name: String,
+        /// The value.
+        value: String,
+        /// Values that are accepted.
+        expected: &'static str,
+    },
+    /// The DDS participant, a topic or a service cannot be made.
+    #[error("cannot create {what}: {problem}")]
+    Create {
+        /// What was to be made.
+        what: String,
+        /// What the library says.
+        problem: String,
+    },
+    /// The system refuses a thread.
+    #[error("cannot start the thread of the ROS 2 node: {0}")]
+    Thread(#[from] std::io::Error),
+    /// A topic that is needed to begin stayed silent.
+    #[error(
+        "no usable message came on {topics} within {seconds:.0} s{reason}; `ros2 topic list` shows what is there, --ros-interface and ROS_DOMAIN_ID which network and domain are used"
+    )]
+    Silent {
+        /// The topics.
+        topics: String,
+        /// Time of the wait \[s\].
+        seconds: f64,
+        /// What was wrong with the messages that came; empty where none came.
+        reason: String,
+    },
+    /// The user stopped the program during the start.
+    #[error("stopped before the run began")]
+    Interrupted,
+}
+
+impl From<Ros2Error> for AppError {
+    fn from(error: Ros2Error) -> Self {
+        Self::Input(error.to_string())
+    }
+}
+
+impl Ros2Error {
+    pub(crate) fn create(what: impl Into<String>, problem: impl std::fmt::Debug) -> Self {
+        Self::Create { what: what.into(), problem: format!("{problem:?}") }
+    }
+}

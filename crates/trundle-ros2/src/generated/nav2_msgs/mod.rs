@@ -1,0 +1,45 @@
+//! `nav2_msgs`. Written by `cargo xtask ros-interfaces`.
+
+mod back_up;
+mod clear_costmap_around_robot;
+mod clear_costmap_except_region;
+mod clear_entire_costmap;
+mod compute_path_to_pose;
+mod costmap;
+mod costmap_meta_data;
+mod dock_robot;
+mod drive_on_heading;
+mod follow_path;
+mod follow_waypoints;
+mod get_costmap;
+mod load_map;
+mod manage_lifecycle_nodes;
+mod navigate_through_poses;
+mod navigate_to_pose;
+mod save_map;
+mod set_initial_pose;
+mod spin;
+mod undock_robot;
+mod waypoint_status;
+
+pub use back_up::*;
+pub use clear_costmap_around_robot::*;
+pub use clear_costmap_except_region::*;
+pub use clear_entire_costmap::*;
+pub use compute_path_to_pose::*;
+pub use costmap::*;
+pub use costmap_meta_data::*;
+pub use dock_robot::*;
+pub use drive_on_heading::*;
+pub use follow_path::*;
+pub use follow_waypoints::*;
+pub use get_costmap::*;
+pub use load_map::*;
+pub use manage_lifecycle_nodes::*;
+pub use navigate_through_poses::*;
+pub use navigate_to_pose::*;
+pub use save_map::*;
+pub use set_initial_pose::*;
+pub use spin::*;
+pub use undock_robot::*;
+pub use waypoint_status::*;

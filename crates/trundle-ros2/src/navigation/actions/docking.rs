@@ -1,0 +1,100 @@
+//! `DockRobot` and `UndockRobot`, at the charging station whose light the base sees.
+
+use super::duration;
+use crate::generated::nav2_msgs::{
+    DockRobot, DockRobotFeedback, DockRobotGoal, DockRobotResult, UndockRobot, UndockRobotFeedback,
+    UndockRobotGoal, UndockRobotResult,
+};
+use crate::navigation::active_goal::GoalProgress;
+use crate::navigation::error_codes::of_docking;
+use crate::navigation::goal_outcome::GoalOutcome;
+use crate::navigation::goal_pose::in_map;
+use crate::navigation::navigation_action::{GoalContext, GoalError, NavigationAction, pose_error};
+use crate::outputs::FrameNames;
+use std::time::Duration;
+use trundle_app::operator::RunView;
+use trundle_core::Pose2;
+use trundle_runtime::Task;
+
+/// Distance before a given dock at which the search for its light begins \[m\]. Source: Nav2's default staging pose, 0.7 m.
+const STAGING_M: f64 = 0.7;
+
+/// A limit in seconds; 0 and below is none.
+fn limit(seconds: f32) -> Option<Duration> {
+    (seconds.is_finite() && seconds > 0.0).then(|| Duration::from_secs_f32(seconds))
+}
+
+impl NavigationAction for DockRobot {
+    fn tasks(
+        goal: &DockRobotGoal,
+        context: &GoalContext<'_>,
+    ) -> Result<Vec<Task>, GoalError<DockRobotResult>> {
+        let failed = |error_msg| DockRobotResult {
+            error_code: DockRobotResult::DOCK_NOT_VALID,
+            error_msg,
+            ..DockRobotResult::default()
+        };
+        // A dock by its id is the one whose light the base sees: there is no table of docks.
+        if goal.use_dock_id || !goal.navigate_to_staging_pose {
+            return Ok(vec![Task::Dock]);
+        }
+        let dock = in_map(&goal.dock_pose, context.frames, context.view)
+            .map_err(|error| pose_error(error, failed))?;
+        Ok(vec![Task::Go(dock * Pose2::new(-STAGING_M, 0.0, 0.0)), Task::Dock])
+    }
+
+    fn time_limit(goal: &DockRobotGoal) -> Option<Duration> {
+        limit(goal.max_staging_time)
+    }
+
+    fn feedback(
+        _goal: &DockRobotGoal,
+        view: &RunView,
+        progress: &GoalProgress,
+        _frames: &FrameNames,
+    ) -> DockRobotFeedback {
+        let is_docking = matches!(view.mission.task, Some(Task::Dock));
+        let state =
+            if is_docking { DockRobotFeedback::CONTROLLING } else { DockRobotFeedback::NAV_TO_STAGING_POSE };
+        DockRobotFeedback { state, docking_time: duration(progress.time_s), num_retries: 0 }
+    }
+
+    fn result(_goal: &DockRobotGoal, outcome: &GoalOutcome, _time_s: f64) -> DockRobotResult {
+        let error_code = outcome.code(DockRobotResult::TIMEOUT, of_docking, DockRobotResult::UNKNOWN);
+        DockRobotResult {
+            success: error_code == 0,
+            error_code,
+            num_retries: 0,
+            error_msg: outcome.message.clone(),
+        }
+    }
+}
+
+impl NavigationAction for UndockRobot {
+    /// A robot on its station backs off it before any task: here before a turn by nothing.
+    fn tasks(
+        _goal: &UndockRobotGoal,
+        _context: &GoalContext<'_>,
+    ) -> Result<Vec<Task>, GoalError<UndockRobotResult>> {
+        Ok(vec![Task::Turn { angle: 0.0 }])
+    }
+
+    fn time_limit(goal: &UndockRobotGoal) -> Option<Duration> {
+        limit(goal.max_undocking_time)
+    }
+
+    fn feedback(
+        _goal: &UndockRobotGoal,
+        _view: &RunView,
+        _progress: &GoalProgress,
+        _frames: &FrameNames,
+    ) -> UndockRobotFeedback {
+        UndockRobotFeedback::default()
+    }
+
+    fn result(_goal: &UndockRobotGoal, outcome: &GoalOutcome, _time_s: f64) -> UndockRobotResult {
+        let failed = |_: &trundle_runtime::Reason| UndockRobotResult::FAILED_TO_CONTROL;
+        let error_code = outcome.code(UndockRobotResult::TIMEOUT, failed, UndockRobotResult::UNKNOWN);
+        UndockRobotResult { success: error_code == 0, error_code, error_msg: outcome.message.clone() }
+    }
+}

@@ -1,0 +1,36 @@
+//! Nav2's actions, one file each or a pair of the same kind.
+
+mod docking;
+mod navigate_through_poses;
+mod navigate_to_pose;
+mod relative;
+mod waypoints;
+
+use crate::convert::{pose, stamp};
+use crate::generated::builtin_interfaces::Duration;
+use crate::generated::geometry_msgs::PoseStamped;
+use crate::outputs::FrameNames;
+use trundle_app::operator::RunView;
+use trundle_core::Pose2;
+
+/// The robot's pose as feedback.
+fn current_pose(view: &RunView, frames: &FrameNames) -> PoseStamped {
+    pose::stamped(&view.estimate.pose, view.estimate.stamp, &frames.map)
+}
+
+/// Seconds as a duration; 0 where they are not known.
+fn duration(seconds: f64) -> Duration {
+    stamp::duration(if seconds.is_finite() { seconds } else { 0.0 })
+}
+
+/// Distance that is left along the plan \[m\], and the time for it \[s\]; straight to `goal` where there is no plan.
+fn left(view: &RunView, goal: &Pose2) -> (f32, Duration) {
+    let pose = &view.estimate.pose;
+    match &view.plan {
+        Some(plan) => {
+            let left = super::remaining::remaining(plan, pose);
+            (left.distance_m as f32, duration(left.time_s))
+        }
+        None => (pose.distance(goal) as f32, Duration::default()),
+    }
+}

@@ -1,0 +1,167 @@
+//! `Spin`, `BackUp` and `DriveOnHeading`: motions relative to where the robot stands.
+
+use super::duration;
+use crate::convert::stamp;
+use crate::generated::builtin_interfaces::Duration as Allowance;
+use crate::generated::geometry_msgs::Point;
+use crate::generated::nav2_msgs::{
+    BackUp, BackUpFeedback, BackUpGoal, BackUpResult, DriveOnHeading, DriveOnHeadingFeedback,
+    DriveOnHeadingGoal, DriveOnHeadingResult, Spin, SpinFeedback, SpinGoal, SpinResult,
+};
+use crate::navigation::active_goal::GoalProgress;
+use crate::navigation::goal_outcome::GoalOutcome;
+use crate::navigation::navigation_action::{GoalContext, GoalError, NavigationAction};
+use crate::outputs::FrameNames;
+use std::time::Duration;
+use trundle_app::operator::RunView;
+use trundle_core::wrap_angle;
+use trundle_runtime::Task;
+
+/// The time that a goal allows; 0 is none, as Nav2 has it.
+fn allowance(time: &Allowance) -> Option<Duration> {
+    let seconds = stamp::seconds(time);
+    (seconds > 0.0).then(|| Duration::from_secs_f64(seconds))
+}
+
+/// A straight drive, or why its numbers are wrong.
+fn straight(target: &Point, speed: f32, ahead: f64) -> Result<Vec<Task>, String> {
+    if target.y != 0.0 || target.z != 0.0 {
+        return Err(format!("target is ({}, {}, {}) m, expected y and z 0", target.x, target.y, target.z));
+    }
+    let (distance, speed) = (target.x, f64::from(speed));
+    if !(distance.is_finite() && speed.is_finite()) || speed == 0.0 {
+        return Err(format!(
+            "target.x is {distance} m and speed {speed} m/s, expected finite numbers, the speed not 0"
+        ));
+    }
+    Ok(vec![Task::Straight { distance: ahead * distance.abs(), speed: speed.abs() }])
+}
+
+impl NavigationAction for Spin {
+    fn tasks(goal: &SpinGoal, _context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<SpinResult>> {
+        if !goal.target_yaw.is_finite() {
+            return Err(GoalError::Refused(format!(
+                "target_yaw is {} rad, expected a finite number",
+                goal.target_yaw
+            )));
+        }
+        Ok(vec![Task::Turn { angle: f64::from(goal.target_yaw) }])
+    }
+
+    fn time_limit(goal: &SpinGoal) -> Option<Duration> {
+        allowance(&goal.time_allowance)
+    }
+
+    fn feedback(
+        _goal: &SpinGoal,
+        view: &RunView,
+        progress: &GoalProgress,
+        _frames: &FrameNames,
+    ) -> SpinFeedback {
+        SpinFeedback {
+            angular_distance_traveled: wrap_angle(view.estimate.pose.theta - progress.start.theta) as f32,
+        }
+    }
+
+    fn result(_goal: &SpinGoal, outcome: &GoalOutcome, time_s: f64) -> SpinResult {
+        let error_code =
+            outcome.code(SpinResult::TIMEOUT, |_| SpinResult::COLLISION_AHEAD, SpinResult::UNKNOWN);
+        SpinResult { total_elapsed_time: duration(time_s), error_code, error_msg: outcome.message.clone() }
+    }
+}
+
+impl NavigationAction for BackUp {
+    fn tasks(goal: &BackUpGoal, _context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<BackUpResult>> {
+        let failed = |error_msg| BackUpResult {
+            error_code: BackUpResult::INVALID_INPUT,
+            error_msg,
+            ..BackUpResult::default()
+        };
+        straight(&goal.target, goal.speed, -1.0).map_err(|message| GoalError::Failed(failed(message)))
+    }
+
+    fn time_limit(goal: &BackUpGoal) -> Option<Duration> {
+        allowance(&goal.time_allowance)
+    }
+
+    fn feedback(
+        _goal: &BackUpGoal,
+        view: &RunView,
+        progress: &GoalProgress,
+        _frames: &FrameNames,
+    ) -> BackUpFeedback {
+        BackUpFeedback { distance_traveled: view.estimate.pose.distance(&progress.start) as f32 }
+    }
+
+    fn result(_goal: &BackUpGoal, outcome: &GoalOutcome, time_s: f64) -> BackUpResult {
+        let error_code =
+            outcome.code(BackUpResult::TIMEOUT, |_| BackUpResult::COLLISION_AHEAD, BackUpResult::UNKNOWN);
+        BackUpResult { total_elapsed_time: duration(time_s), error_code, error_msg: outcome.message.clone() }
+    }
+}
+
+impl NavigationAction for DriveOnHeading {
+    fn tasks(
+        goal: &DriveOnHeadingGoal,
+        _context: &GoalContext<'_>,
+    ) -> Result<Vec<Task>, GoalError<DriveOnHeadingResult>> {
+        let failed = |error_msg| DriveOnHeadingResult {
+            error_code: DriveOnHeadingResult::INVALID_INPUT,
+            error_msg,
+            ..DriveOnHeadingResult::default()
+        };
+        if goal.target.x * f64::from(goal.speed) < 0.0 {
+            let message =
+                format!("target.x is {} m and speed {} m/s, expected equal signs", goal.target.x, goal.speed);
+            return Err(GoalError::Failed(failed(message)));
+        }
+        let ahead = if goal.target.x < 0.0 { -1.0 } else { 1.0 };
+        straight(&goal.target, goal.speed, ahead).map_err(|message| GoalError::Failed(failed(message)))
+    }
+
+    fn time_limit(goal: &DriveOnHeadingGoal) -> Option<Duration> {
+        allowance(&goal.time_allowance)
+    }
+
+    fn feedback(
+        _goal: &DriveOnHeadingGoal,
+        view: &RunView,
+        progress: &GoalProgress,
+        _frames: &FrameNames,
+    ) -> DriveOnHeadingFeedback {
+        DriveOnHeadingFeedback { distance_traveled: view.estimate.pose.distance(&progress.start) as f32 }
+    }
+
+    fn result(_goal: &DriveOnHeadingGoal, outcome: &GoalOutcome, time_s: f64) -> DriveOnHeadingResult {
+        let blocked = |_: &trundle_runtime::Reason| DriveOnHeadingResult::COLLISION_AHEAD;
+        let error_code = outcome.code(DriveOnHeadingResult::TIMEOUT, blocked, DriveOnHeadingResult::UNKNOWN);
+        DriveOnHeadingResult {
+            total_elapsed_time: duration(time_s),
+            error_code,
+            error_msg: outcome.message.clone(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn backing_up_goes_back_and_broken_targets_fail_with_nav2s_code() {
+        let frames = FrameNames::default();
+        let context = GoalContext { frames: &frames, view: None };
+        let goal =
+            |x, y, speed| BackUpGoal { target: Point { x, y, z: 0.0 }, speed, ..BackUpGoal::default() };
+        let tasks = BackUp::tasks(&goal(0.25, 0.0, 0.5), &context).unwrap();
+        assert_eq!(tasks, [Task::Straight { distance: -0.25, speed: 0.5 }]);
+        for broken in [goal(0.25, 0.1, 0.5), goal(f64::NAN, 0.0, 0.5), goal(0.25, 0.0, 0.0)] {
+            let Err(GoalError::Failed(result)) = BackUp::tasks(&broken, &context) else {
+                panic!("{broken:?}")
+            };
+            assert_eq!(result.error_code, BackUpResult::INVALID_INPUT);
+        }
+        let spin = SpinGoal { target_yaw: f32::NAN, ..SpinGoal::default() };
+        assert!(matches!(Spin::tasks(&spin, &context), Err(GoalError::Refused(_))));
+    }
+}

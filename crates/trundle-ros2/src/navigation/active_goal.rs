@@ -1,0 +1,209 @@
+//! The one goal that the robot works on, of whichever action.
+
+use super::goal_outcome::GoalOutcome;
+use crate::clock::RosClock;
+use crate::node::{Diagnostics, GoalEnd};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+use trundle_app::operator::{Operator, OperatorError, RunView};
+use trundle_core::Twist2;
+use trundle_runtime::{Mission, OperatorCommand, Reason, Task, TaskEnd};
+
+/// Period of feedback. Source: ours; Nav2's is 10 ms to 1 s by action.
+const FEEDBACK_PERIOD: Duration = Duration::from_millis(100);
+/// Longest wait for standstill after a cancel. Source: ours; from 0.7 m/s at 0.5 m/s^2 it takes 1.4 s.
+const STANDSTILL_TIMEOUT: Duration = Duration::from_secs(3);
+/// Speed below which the robot stands \[m/s, rad/s\]. Source: ours.
+const STANDSTILL_SPEED: f64 = 0.02;
+/// Wait for the run to take a mission up. Source: ours; it takes one request a step.
+const START_TIMEOUT: Duration = Duration::from_secs(5);
+
+/// A goal of an action that is being worked on.
+pub trait RunningGoal: Send {
+    /// Sends feedback.
+    fn feedback(&mut self, view: &RunView, progress: &GoalProgress);
+
+    /// Whether the client asked to cancel it.
+    fn is_canceling(&self) -> bool;
+
+    /// Ends it.
+    fn end(self: Box<Self>, end: GoalEnd, outcome: &GoalOutcome);
+}
+
+/// How long a goal has been worked on.
+#[derive(Debug, Clone, Copy)]
+pub struct GoalProgress {
+    /// Time since its start \[s\].
+    pub time_s: f64,
+    /// `map_from_base` at its start.
+    pub start: trundle_core::Pose2,
+}
+
+struct Active {
+    goal: Box<dyn RunningGoal>,
+    /// The number of its mission.
+    request: u64,
+    since: Instant,
+    start: trundle_core::Pose2,
+    /// Time after which it has failed.
+    time_limit: Option<Duration>,
+    /// When the robot was asked to stop for good, and how the goal ends then.
+    stopping: Option<(Instant, GoalEnd, GoalOutcome)>,
+    feedback_due: Instant,
+}
+
+/// The one goal that the robot works on. Clones share it.
+#[derive(Clone)]
+pub struct ActiveGoal {
+    operator: Operator,
+    clock: RosClock,
+    diagnostics: Diagnostics,
+    active: Arc<Mutex<Option<Active>>>,
+}
+
+impl ActiveGoal {
+    /// No goal yet.
+    #[must_use]
+    pub fn new(operator: Operator, clock: RosClock, diagnostics: Diagnostics) -> Self {
+        Self { operator, clock, diagnostics, active: Arc::default() }
+    }
+
+    /// The newest view of the run.
+    #[must_use]
+    pub fn view(&self) -> Option<Arc<RunView>> {
+        self.operator.view()
+    }
+
+    /// The ROS clock.
+    #[must_use]
+    pub fn clock(&self) -> RosClock {
+        self.clock.clone()
+    }
+
+    /// Begins a mission for a goal. The goal before it ends as aborted, as Nav2's servers do.
+    ///
+    /// # Errors
+    /// Why the goal is refused.
+    pub fn begin(
+        &self,
+        tasks: Vec<Task>,
+        goal: Box<dyn RunningGoal>,
+        time_limit: Option<Duration>,
+    ) -> Result<(), String> {
+        let Some(view) = self.view() else {
+            return Err("the robot has not begun: wait for its first images".to_owned());
+        };
+        let mission = Mission::new(tasks).map_err(|error| error.to_string())?;
+        let request =
+            self.operator.send(OperatorCommand::Begin(mission)).map_err(|error| error.to_string())?;
+        let now = Instant::now();
+        let start = view.estimate.pose;
+        let active =
+            Active { goal, request, since: now, start, time_limit, stopping: None, feedback_due: now };
+        if let Some(old) = self.lock().replace(active) {
+            old.goal.end(GoalEnd::Aborted, &GoalOutcome::replaced());
+        }
+        Ok(())
+    }
+
+    /// Begins a mission that no action follows: a click in RViz.
+    ///
+    /// # Errors
+    /// Why it is refused.
+    pub fn begin_without_action(&self, tasks: Vec<Task>) -> Result<(), String> {
+        let mission = Mission::new(tasks).map_err(|error| error.to_string())?;
+        self.send(OperatorCommand::Begin(mission)).map_err(|error| error.to_string())?;
+        if let Some(old) = self.lock().take() {
+            old.goal.end(GoalEnd::Aborted, &GoalOutcome::replaced());
+        }
+        Ok(())
+    }
+
+    /// Sends a command to the run.
+    ///
+    /// # Errors
+    /// When the command cannot be obeyed, too many wait, or the run is over.
+    pub fn send(&self, command: OperatorCommand) -> Result<u64, OperatorError> {
+        self.operator.send(command)
+    }
+
+    /// Follows the goal: feedback, its end, cancel, time limit. Called in the node's thread.
+    pub fn tick(&self, now: Instant) {
+        let mut active = self.lock();
+        let (Some(goal), Some(view)) = (active.as_mut(), self.operator.view()) else { return };
+        if let Some((end, outcome)) = self.step(goal, &view, now)
+            && let Some(goal) = active.take()
+        {
+            goal.goal.end(end, &outcome);
+        }
+    }
+
+    /// One look at a goal; its end.
+    fn step(&self, active: &mut Active, view: &RunView, now: Instant) -> Option<(GoalEnd, GoalOutcome)> {
+        if view.mission.id > active.request {
+            return Some((GoalEnd::Aborted, GoalOutcome::replaced()));
+        }
+        if view.mission.id < active.request {
+            let is_late = now - active.since > START_TIMEOUT;
+            return is_late
+                .then(|| (GoalEnd::Aborted, GoalOutcome::failed("the run did not take the goal up")));
+        }
+        if let Some((since, end, outcome)) = &active.stopping {
+            let is_over = is_standing(view) || now - *since > STANDSTILL_TIMEOUT;
+            return is_over.then(|| (*end, outcome.clone()));
+        }
+        if view.mission.is_over {
+            return Some(end_of(view));
+        }
+        self.stop_where_asked(active, now);
+        if now >= active.feedback_due {
+            active.feedback_due = now + FEEDBACK_PERIOD;
+            let progress = GoalProgress { time_s: (now - active.since).as_secs_f64(), start: active.start };
+            active.goal.feedback(view, &progress);
+        }
+        None
+    }
+
+    /// Takes the mission away where the client cancels or the time is over.
+    fn stop_where_asked(&self, active: &mut Active, now: Instant) {
+        let is_late = active.time_limit.is_some_and(|limit| now - active.since > limit);
+        let (end, outcome) = if active.goal.is_canceling() {
+            (GoalEnd::Canceled, GoalOutcome::default())
+        } else if is_late {
+            (GoalEnd::Aborted, GoalOutcome::timed_out())
+        } else {
+            return;
+        };
+        match self.operator.send(OperatorCommand::cancel()) {
+            Ok(request) => {
+                active.request = request;
+                active.stopping = Some((now, end, outcome));
+            }
+            Err(error) => self.diagnostics.warn("cancel", error.to_string()),
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Option<Active>> {
+        self.active.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+fn is_standing(view: &RunView) -> bool {
+    let Twist2 { v, omega, .. } = view.estimate.twist;
+    v.abs() < STANDSTILL_SPEED && omega.abs() < STANDSTILL_SPEED
+}
+
+/// How a goal ended whose mission is over.
+fn end_of(view: &RunView) -> (GoalEnd, GoalOutcome) {
+    let reason = |end: &TaskEnd| match end {
+        TaskEnd::GivenUp { reason } => Some(reason.clone()),
+        _ => None,
+    };
+    let missed: Vec<(usize, Reason)> =
+        view.mission.ended.iter().filter_map(|record| Some((record.index, reason(&record.end)?))).collect();
+    let state = view.state.reason().cloned();
+    let failure = missed.last().map(|(_, reason)| reason.clone()).or(state);
+    let end = if failure.is_none() { GoalEnd::Succeeded } else { GoalEnd::Aborted };
+    let message = failure.as_ref().map(ToString::to_string).unwrap_or_default();
+    (end, GoalOutcome { message, reason: failure, missed, is_timeout: false })
+}

@@ -1,0 +1,84 @@
+//! Nav2's error codes for the reasons of a failed task.
+
+use crate::generated::nav2_msgs::{
+    ComputePathToPoseResult, DockRobotResult, FollowPathResult, NavigateToPoseResult,
+};
+use trundle_runtime::{NoPath, Reason, ReasonKind};
+
+/// The error code of `NavigateToPose` for a reason: as Nav2's navigator, that of the planner or controller that failed.
+#[must_use]
+pub fn of_reason(reason: &Reason) -> u16 {
+    if let Reason::NoPath { cause, .. } = reason {
+        return of_no_path(cause);
+    }
+    let Some(code) = reason.kinds().iter().find_map(|kind| of_kind(*kind)) else {
+        return NavigateToPoseResult::UNKNOWN;
+    };
+    code
+}
+
+/// The error code of `ComputePathToPose`.
+#[must_use]
+pub fn of_no_path(cause: &NoPath) -> u16 {
+    match cause {
+        NoPath::Blocked { .. } => ComputePathToPoseResult::NO_VALID_PATH,
+        NoPath::StartInObstacle { .. } => ComputePathToPoseResult::START_OCCUPIED,
+        NoPath::GoalInObstacle { .. } => ComputePathToPoseResult::GOAL_OCCUPIED,
+        NoPath::StartOutside => ComputePathToPoseResult::START_OUTSIDE_MAP,
+        NoPath::GoalOutside => ComputePathToPoseResult::GOAL_OUTSIDE_MAP,
+        _ => ComputePathToPoseResult::UNKNOWN,
+    }
+}
+
+fn of_kind(kind: ReasonKind) -> Option<u16> {
+    Some(match kind {
+        ReasonKind::PathBlocked => ComputePathToPoseResult::NO_VALID_PATH,
+        ReasonKind::TooLittleRoom => ComputePathToPoseResult::GOAL_OCCUPIED,
+        ReasonKind::OffTheMap => ComputePathToPoseResult::GOAL_OUTSIDE_MAP,
+        ReasonKind::PoseUnknown | ReasonKind::PoseUncertain | ReasonKind::ViewContradictsMap => {
+            FollowPathResult::TF_ERROR
+        }
+        ReasonKind::Obstacle | ReasonKind::Contact | ReasonKind::Cliff | ReasonKind::MovingObstacle => {
+            FollowPathResult::NO_VALID_CONTROL
+        }
+        ReasonKind::NoProgress | ReasonKind::FinalApproach | ReasonKind::RepeatedContact => {
+            FollowPathResult::FAILED_TO_MAKE_PROGRESS
+        }
+        ReasonKind::ImageMissing | ReasonKind::WheelsMissing | ReasonKind::DeviceLost => {
+            FollowPathResult::PATIENCE_EXCEEDED
+        }
+        _ => return None,
+    })
+}
+
+/// The error code of `DockRobot`.
+#[must_use]
+pub fn of_docking(reason: &Reason) -> u16 {
+    let code = |kind: &ReasonKind| match kind {
+        ReasonKind::NoStationLight | ReasonKind::StationLightLost | ReasonKind::StationUncertain => {
+            Some(DockRobotResult::FAILED_TO_DETECT_DOCK)
+        }
+        ReasonKind::NoCharging => Some(DockRobotResult::FAILED_TO_CHARGE),
+        ReasonKind::StationBlocked | ReasonKind::Obstacle | ReasonKind::Contact => {
+            Some(DockRobotResult::FAILED_TO_CONTROL)
+        }
+        _ => None,
+    };
+    reason.kinds().iter().find_map(code).unwrap_or(DockRobotResult::UNKNOWN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn unreachable_goals_have_the_planners_codes() {
+        let code = |cause| of_reason(&Reason::NoPath { cause, unseen: None });
+        assert_eq!(code(NoPath::GoalOutside), 204);
+        assert_eq!(code(NoPath::GoalInObstacle { missing: 0.1 }), 206);
+        assert_eq!(of_reason(&Reason::PoseUnknown), 102);
+        let stuck = Reason::NoProgress { time: 30.0, state: "waiting", cause: None };
+        assert_eq!(of_reason(&stuck), 105);
+        assert_eq!(of_reason(&Reason::Interrupted), 9000);
+    }
+}

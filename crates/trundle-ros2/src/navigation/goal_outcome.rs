@@ -1,0 +1,47 @@
+//! What became of a goal.
+
+use trundle_runtime::Reason;
+
+/// What became of a goal, for its result.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct GoalOutcome {
+    /// What went wrong, in words; empty where nothing did.
+    pub message: String,
+    /// Why the robot gave up.
+    pub reason: Option<Reason>,
+    /// Tasks of the goal that are undone.
+    pub missed: Vec<(usize, Reason)>,
+    /// Whether the time that was allowed is over.
+    pub is_timeout: bool,
+}
+
+impl GoalOutcome {
+    /// A failure without a reason of the robot.
+    #[must_use]
+    pub fn failed(message: &str) -> Self {
+        Self { message: message.to_owned(), ..Self::default() }
+    }
+
+    /// Another goal took its place.
+    #[must_use]
+    pub fn replaced() -> Self {
+        Self::failed("a newer goal replaced it")
+    }
+
+    /// The time that was allowed is over.
+    #[must_use]
+    pub fn timed_out() -> Self {
+        Self { is_timeout: true, ..Self::failed("the time that was allowed is over") }
+    }
+
+    /// The error code: `none` of a success, `timeout`, or that of the reason.
+    #[must_use]
+    pub fn code(&self, timeout: u16, of_reason: impl Fn(&Reason) -> u16, unknown: u16) -> u16 {
+        match (&self.reason, self.is_timeout, self.message.is_empty()) {
+            (_, true, _) => timeout,
+            (Some(reason), ..) => of_reason(reason),
+            (None, _, true) => 0,
+            (None, _, false) => unknown,
+        }
+    }
+}

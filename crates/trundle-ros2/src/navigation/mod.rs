@@ -1,0 +1,47 @@
+//! Nav2's interface of goals: actions, goal and initial pose, services that its tools ask.
+
+mod actions;
+mod active_goal;
+mod error_codes;
+mod goal_outcome;
+mod goal_pose;
+mod lifecycle;
+mod map_services;
+mod navigation_action;
+mod parameters;
+mod pose_inputs;
+mod remaining;
+
+pub use active_goal::{ActiveGoal, GoalProgress, RunningGoal};
+pub use goal_outcome::GoalOutcome;
+pub use navigation_action::{GoalContext, GoalError, NavigationAction};
+pub use parameters::Parameters;
+
+use crate::Ros2Error;
+use crate::generated::nav2_msgs::{
+    BackUp, DockRobot, DriveOnHeading, FollowWaypoints, NavigateThroughPoses, NavigateToPose, Spin,
+    UndockRobot,
+};
+use crate::node::RosNode;
+use crate::outputs::FrameNames;
+
+/// Offers everything by which Nav2's users and tools give goals.
+///
+/// # Errors
+/// When a topic, service or action cannot be made.
+pub fn offer(node: &mut RosNode, active: &ActiveGoal, frames: &FrameNames) -> Result<(), Ros2Error> {
+    navigation_action::offer::<NavigateToPose>(node, "navigate_to_pose", active, frames)?;
+    navigation_action::offer::<NavigateThroughPoses>(node, "navigate_through_poses", active, frames)?;
+    navigation_action::offer::<FollowWaypoints>(node, "follow_waypoints", active, frames)?;
+    navigation_action::offer::<Spin>(node, "spin", active, frames)?;
+    navigation_action::offer::<BackUp>(node, "backup", active, frames)?;
+    navigation_action::offer::<DriveOnHeading>(node, "drive_on_heading", active, frames)?;
+    navigation_action::offer::<DockRobot>(node, "dock_robot", active, frames)?;
+    navigation_action::offer::<UndockRobot>(node, "undock_robot", active, frames)?;
+    pose_inputs::offer(node, active, frames)?;
+    map_services::offer(node, active, frames)?;
+    lifecycle::offer(node, active)?;
+    let followed = active.clone();
+    node.every_tick(move |now| followed.tick(now));
+    Ok(())
+}

@@ -1,0 +1,131 @@
+//! An action that the robot performs as a mission, and its server.
+
+use super::active_goal::{ActiveGoal, GoalProgress, RunningGoal};
+use super::goal_outcome::GoalOutcome;
+use super::goal_pose::GoalPoseError;
+use crate::Ros2Error;
+use crate::interface::ActionType;
+use crate::node::{ActionHandle, GoalEnd, GoalHandler, GoalId, RosNode};
+use crate::outputs::FrameNames;
+use std::time::{Duration, Instant};
+use trundle_app::operator::RunView;
+use trundle_runtime::Task;
+
+/// What an action knows of the run.
+pub struct GoalContext<'c> {
+    /// Names of frames.
+    pub frames: &'c FrameNames,
+    /// The newest view of the run.
+    pub view: Option<&'c RunView>,
+}
+
+/// Why a goal is not performed.
+#[derive(Debug, Clone, PartialEq)]
+pub enum GoalError<R> {
+    /// It is refused.
+    Refused(String),
+    /// It is accepted and fails with this result.
+    Failed(R),
+}
+
+/// An action that the robot performs as a mission.
+pub trait NavigationAction: ActionType<Result: Default> + 'static {
+    /// The tasks of a goal.
+    ///
+    /// # Errors
+    /// Why the goal is not performed.
+    fn tasks(goal: &Self::Goal, context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<Self::Result>>;
+
+    /// The time that the goal allows.
+    fn time_limit(_goal: &Self::Goal) -> Option<Duration> {
+        None
+    }
+
+    /// Feedback.
+    fn feedback(
+        goal: &Self::Goal,
+        view: &RunView,
+        progress: &GoalProgress,
+        frames: &FrameNames,
+    ) -> Self::Feedback;
+
+    /// The result, after `time_s` seconds.
+    fn result(goal: &Self::Goal, outcome: &GoalOutcome, time_s: f64) -> Self::Result;
+}
+
+/// Offers an action.
+///
+/// # Errors
+/// When the action cannot be made.
+pub fn offer<A: NavigationAction>(
+    node: &mut RosNode,
+    name: &str,
+    active: &ActiveGoal,
+    frames: &FrameNames,
+) -> Result<(), Ros2Error> {
+    let (active, frames) = (active.clone(), frames.clone());
+    let clock = active.clock();
+    ActionHandle::<A>::offer(node, name, clock, |handle| Box::new(Handler { handle, active, frames }))
+        .map(drop)
+}
+
+/// The result of a goal whose pose cannot be taken up; `failed` makes it of the message.
+pub fn pose_error<R>(error: GoalPoseError, failed: impl FnOnce(String) -> R) -> GoalError<R> {
+    match error {
+        GoalPoseError::Invalid(error) => GoalError::Refused(error.to_string()),
+        GoalPoseError::Frame(message) => GoalError::Failed(failed(message)),
+    }
+}
+
+struct Handler<A: ActionType> {
+    handle: ActionHandle<A>,
+    active: ActiveGoal,
+    frames: FrameNames,
+}
+
+impl<A: NavigationAction> GoalHandler<A> for Handler<A> {
+    fn on_goal(&mut self, id: GoalId, goal: A::Goal) -> Result<(), String> {
+        let view = self.active.view();
+        let context = GoalContext { frames: &self.frames, view: view.as_deref() };
+        match A::tasks(&goal, &context) {
+            Err(GoalError::Refused(why)) => Err(why),
+            Err(GoalError::Failed(result)) => {
+                self.handle.end(&id, GoalEnd::Aborted, result);
+                Ok(())
+            }
+            Ok(tasks) => {
+                let limit = A::time_limit(&goal);
+                let (handle, frames) = (self.handle.clone(), self.frames.clone());
+                let running = Running::<A> { handle, id, goal, since: Instant::now(), frames };
+                self.active.begin(tasks, Box::new(running), limit)
+            }
+        }
+    }
+
+    fn on_cancel(&mut self, _id: GoalId) {
+        // The tick asks `is_canceling`.
+    }
+}
+
+struct Running<A: ActionType> {
+    handle: ActionHandle<A>,
+    id: GoalId,
+    goal: A::Goal,
+    since: Instant,
+    frames: FrameNames,
+}
+
+impl<A: NavigationAction> RunningGoal for Running<A> {
+    fn feedback(&mut self, view: &RunView, progress: &GoalProgress) {
+        self.handle.feedback(&self.id, A::feedback(&self.goal, view, progress, &self.frames));
+    }
+
+    fn is_canceling(&self) -> bool {
+        self.handle.is_canceling(&self.id)
+    }
+
+    fn end(self: Box<Self>, end: GoalEnd, outcome: &GoalOutcome) {
+        let result = A::result(&self.goal, outcome, self.since.elapsed().as_secs_f64());
+        self.handle.end(&self.id, end, result);
+    }
+}

@@ -1,0 +1,100 @@
+//! Subscriptions and service servers with their handlers.
+
+use super::event_loop::Endpoint;
+use super::{Diagnostics, TopicMonitor};
+use ros2_client::dds::rustdds::mio1::event::Source;
+use ros2_client::dds::rustdds::mio1::{Interest, Registry, Token};
+use ros2_client::{Message, RmwRequestId, Server, Subscription};
+use std::io;
+use std::sync::Arc;
+
+/// Messages that are taken from a queue at once: other topics wait meanwhile. Source: ours.
+const MAX_TAKEN_AT_ONCE: usize = 1000;
+
+/// A subscription and its handler.
+pub(super) struct Subscribed<M: Message + Send + 'static, F> {
+    pub subscription: Subscription<M>,
+    pub handler: F,
+    pub name: String,
+    pub monitor: Arc<TopicMonitor>,
+    pub diagnostics: Diagnostics,
+}
+
+impl<M: Message + Send + 'static, F: FnMut(M) + Send> Endpoint for Subscribed<M, F> {
+    fn register(&mut self, registry: &Registry, token: Token) -> io::Result<()> {
+        Source::register(&mut self.subscription, registry, token, Interest::READABLE)
+    }
+
+    fn take_all(&mut self) {
+        for _ in 0..MAX_TAKEN_AT_ONCE {
+            match self.subscription.take() {
+                Ok(Some((message, _))) => {
+                    self.monitor.on_message();
+                    (self.handler)(message);
+                }
+                Ok(None) => return,
+                Err(error) => {
+                    let message = format!(
+                        "a message cannot be read ({error:?}): its sender uses another definition of the type"
+                    );
+                    self.diagnostics.warn(&self.name, message);
+                }
+            }
+        }
+    }
+}
+
+/// A service server and its handler. The handler answers by the server, at once or later.
+pub(super) struct Served<Req: Message, Resp: Message, F> {
+    pub server: Arc<ServerHandle<Req, Resp>>,
+    pub handler: F,
+    pub name: String,
+    pub diagnostics: Diagnostics,
+}
+
+/// A server that is shared between the node's thread and those who answer later.
+pub struct ServerHandle<Req: Message, Resp: Message>(std::sync::Mutex<Server<Req, Resp>>);
+
+impl<Req: Message + Clone + 'static, Resp: Message + 'static> ServerHandle<Req, Resp> {
+    pub(super) fn new(server: Server<Req, Resp>) -> Arc<Self> {
+        Arc::new(Self(std::sync::Mutex::new(server)))
+    }
+
+    /// Answers a request.
+    pub fn answer(&self, request: RmwRequestId, response: Resp) {
+        if let Err(error) = self.lock().send_response(request, response) {
+            tracing::debug!("a response was not sent: {error:?}");
+        }
+    }
+
+    pub(super) fn lock(&self) -> std::sync::MutexGuard<'_, Server<Req, Resp>> {
+        self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+    }
+}
+
+impl<Req, Resp, F> Endpoint for Served<Req, Resp, F>
+where
+    Req: Message + Clone + Send + 'static,
+    Resp: Message + Send + 'static,
+    F: FnMut(RmwRequestId, Req) + Send,
+{
+    fn register(&mut self, registry: &Registry, token: Token) -> io::Result<()> {
+        Source::register(&mut *self.server.lock(), registry, token, Interest::READABLE)
+    }
+
+    fn take_all(&mut self) {
+        for _ in 0..MAX_TAKEN_AT_ONCE {
+            let taken = self.server.lock().receive_request();
+            match taken {
+                Ok(Some((id, request))) => (self.handler)(id, request),
+                Ok(None) => return,
+                Err(error) => {
+                    let message = format!(
+                        "a request cannot be read ({error:?}): its sender uses another definition of the service"
+                    );
+                    self.diagnostics.warn(&self.name, message);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,23 @@
+//! A ROS 2 node in a thread of its own: topics, services, actions, names, conditions.
+
+mod action_endpoint;
+mod diagnostics;
+mod endpoints;
+mod event_loop;
+mod goals;
+mod names;
+mod network;
+pub mod qos;
+mod ros_arguments;
+mod ros_node;
+mod topic_monitor;
+
+pub use action_endpoint::{ActionHandle, GoalHandler};
+pub use diagnostics::{Condition, Diagnostics, Level};
+pub use event_loop::NodeThread;
+pub use goals::{GoalEnd, GoalId, Goals, MAX_GOALS_PER_SECOND, ResultAnswer};
+pub use names::Names;
+pub use network::Networks;
+pub use ros_arguments::RosArguments;
+pub use ros_node::{NodeSettings, RosNode};
+pub use topic_monitor::TopicMonitor;

@@ -1,0 +1,75 @@
+//! Networks that a node uses.
+
+use std::net::{IpAddr, Ipv4Addr};
+use std::str::FromStr;
+
+/// Networks that a node uses. DDS asks nobody who he is: whoever is on one of them may read every topic and drive the robot.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Networks {
+    /// This computer alone.
+    #[default]
+    Loopback,
+    /// The interfaces with these addresses.
+    Only(Vec<IpAddr>),
+    /// Every interface.
+    All,
+}
+
+impl Networks {
+    /// Addresses of the interfaces; `None` for all.
+    pub(super) fn addresses(&self) -> Option<Vec<IpAddr>> {
+        match self {
+            Self::Loopback => Some(vec![IpAddr::V4(Ipv4Addr::LOCALHOST)]),
+            Self::Only(addresses) => Some(addresses.clone()),
+            Self::All => None,
+        }
+    }
+
+    /// What others on the network can do; `None` on this computer alone.
+    #[must_use]
+    pub fn warning(&self) -> Option<String> {
+        let danger = "everyone there can read the camera and drive the robot: DDS has no password (docs/how-to/ros2.md, Security)";
+        match self {
+            Self::Loopback => None,
+            Self::Only(addresses) => {
+                let addresses: Vec<String> = addresses.iter().map(ToString::to_string).collect();
+                Some(format!("ROS 2 is open on the network of {}: {danger}", addresses.join(", ")))
+            }
+            Self::All => Some(format!("ROS 2 is open on every network of this computer: {danger}")),
+        }
+    }
+}
+
+/// `loopback`, `all`, or addresses parted by commas.
+impl FromStr for Networks {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "loopback" | "lo" => Ok(Self::Loopback),
+            "all" => Ok(Self::All),
+            addresses => {
+                let address = |part: &str| {
+                    part.trim().parse().map_err(|_| {
+                        format!("'{part}' is no network; expected loopback, all, or the IP address of an interface")
+                    })
+                };
+                Ok(Self::Only(addresses.split(',').map(address).collect::<Result<_, _>>()?))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_loopback_is_without_warning() {
+        assert_eq!("loopback".parse::<Networks>().unwrap().warning(), None);
+        let lan: Networks = "192.168.1.5".parse().unwrap();
+        assert!(lan.warning().unwrap().contains("192.168.1.5"));
+        assert_eq!(Networks::All.addresses(), None);
+        assert!("wlan0".parse::<Networks>().unwrap_err().contains("'wlan0'"));
+    }
+}

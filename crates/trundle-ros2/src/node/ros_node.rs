@@ -1,0 +1,233 @@
+//! A ROS 2 node: topics, services and its thread.
+
+use super::endpoints::{Served, ServerHandle, Subscribed};
+use super::event_loop::{Endpoint, NodeThread, Ticker};
+use super::{Diagnostics, Level, Names, Networks, TopicMonitor, qos};
+use crate::Ros2Error;
+use crate::interface::{ActionType, MessageType, ServiceType};
+use ros2_client::action::{ActionServer, ActionServerQosPolicies};
+use ros2_client::dds::rustdds::DomainParticipantBuilder;
+use ros2_client::qos::QosProfile;
+use ros2_client::{
+    ActionTypeName, Context, MessageTypeName, Node, NodeName, NodeOptions, Publisher, RmwRequestId,
+    ServiceMapping, ServiceTypeName,
+};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How a node joins the network.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NodeSettings {
+    /// Namespace, node name, remapping rules.
+    pub names: Names,
+    /// Domain: nodes of different domains do not meet. 0 to 232.
+    pub domain: u16,
+    /// Networks.
+    pub networks: Networks,
+}
+
+/// Largest domain id whose ports exist \[DDSI-RTPS 9.6.1\].
+const MAX_DOMAIN: u16 = 232;
+/// Receive buffer of a socket \[bytes\]: a raw image pair of 640 x 480. The system may grant less. Source: ours.
+const RECEIVE_BUFFER_BYTES: usize = 4 << 20;
+/// Period of the checks for stalled topics and foreign types. Source: ours.
+const CHECK_PERIOD: Duration = Duration::from_secs(1);
+
+/// A node that is being built: topics and services are added, then [`RosNode::start`] runs it.
+pub struct RosNode {
+    context: Context,
+    node: Node,
+    names: Names,
+    endpoints: Vec<Box<dyn Endpoint>>,
+    tickers: Vec<Ticker>,
+    monitors: Vec<Arc<TopicMonitor>>,
+    diagnostics: Diagnostics,
+}
+
+impl RosNode {
+    /// Joins the network.
+    ///
+    /// # Errors
+    /// When the domain or a name is not allowed, or no socket can be opened.
+    pub fn new(settings: &NodeSettings) -> Result<Self, Ros2Error> {
+        let NodeSettings { names, domain, networks } = settings;
+        if *domain > MAX_DOMAIN {
+            let value = domain.to_string();
+            return Err(Ros2Error::Parameter { name: "domain id".into(), value, expected: "0 to 232" });
+        }
+        let mut builder =
+            DomainParticipantBuilder::new(*domain).socket_receive_buffer_size(RECEIVE_BUFFER_BYTES);
+        if let Some(addresses) = networks.addresses() {
+            builder = builder.with_only_networks(addresses);
+        }
+        let participant = builder.build().map_err(|error| Ros2Error::create("the DDS participant", error))?;
+        let context = Context::from_domain_participant(participant)
+            .map_err(|error| Ros2Error::create("the ROS 2 context", error))?;
+        let full = |problem| Ros2Error::Name { name: format!("{}/{}", names.namespace, names.node), problem };
+        let name = NodeName::new(&names.namespace, &names.node).map_err(|error| full(error.to_string()))?;
+        let options = NodeOptions::new().start_parameter_services(false);
+        let node = context.new_node(name, options).map_err(|error| Ros2Error::create("the node", error))?;
+        Ok(Self {
+            context,
+            node,
+            names: names.clone(),
+            endpoints: Vec::new(),
+            tickers: Vec::new(),
+            monitors: Vec::new(),
+            diagnostics: Diagnostics::default(),
+        })
+    }
+
+    /// Conditions of the node's topics.
+    #[must_use]
+    pub fn diagnostics(&self) -> Diagnostics {
+        self.diagnostics.clone()
+    }
+
+    /// Namespace, node name and rules.
+    #[must_use]
+    pub fn names(&self) -> &Names {
+        &self.names
+    }
+
+    /// Publishes messages of type `M` on a topic.
+    ///
+    /// # Errors
+    /// When the name is not allowed or the topic cannot be made.
+    pub fn publisher<M: MessageType>(
+        &mut self,
+        topic: &str,
+        qos: &QosProfile,
+    ) -> Result<Publisher<M>, Ros2Error> {
+        let name = self.names.resolve(topic);
+        let topic = self.topic::<M>(topic, qos)?;
+        self.node.create_publisher(&topic, Some(qos.clone())).map_err(|error| Ros2Error::create(name, error))
+    }
+
+    /// Calls `handler` in the node's thread with each message of a topic. After its first message a topic with a `limit` counts as
+    /// stalled when no message comes for that time.
+    ///
+    /// # Errors
+    /// When the name is not allowed or the topic cannot be made.
+    pub fn subscribe<M: MessageType>(
+        &mut self,
+        topic: &str,
+        qos: &QosProfile,
+        limit: Option<Duration>,
+        handler: impl FnMut(M) + Send + 'static,
+    ) -> Result<Arc<TopicMonitor>, Ros2Error> {
+        let name = self.names.resolve(topic);
+        let topic = self.topic::<M>(topic, qos)?;
+        let subscription = self.node.create_subscription(&topic, Some(qos.clone()));
+        let subscription = subscription.map_err(|error| Ros2Error::create(&name, error))?;
+        let monitor = Arc::new(TopicMonitor::new(
+            name.clone(),
+            MessageTypeName::new(M::PACKAGE, M::NAME).dds_msg_type(),
+            limit,
+        ));
+        self.monitors.push(Arc::clone(&monitor));
+        let diagnostics = self.diagnostics.clone();
+        let subscribed =
+            Subscribed { subscription, handler, name, monitor: Arc::clone(&monitor), diagnostics };
+        self.endpoints.push(Box::new(subscribed));
+        Ok(monitor)
+    }
+
+    /// Calls `handler` in the node's thread with each request of a service; its value is the response.
+    ///
+    /// # Errors
+    /// When the name is not allowed or the service cannot be made.
+    pub fn serve<S: ServiceType + 'static>(
+        &mut self,
+        service: &str,
+        mut handler: impl FnMut(S::Request) -> S::Response + Send + 'static,
+    ) -> Result<(), Ros2Error> {
+        let (name, full) = (self.names.parsed(service)?, self.names.resolve(service));
+        let type_name = ServiceTypeName::new(S::PACKAGE, S::NAME);
+        let qos = qos::reliable(10);
+        let server = self.node.create_server(ServiceMapping::Enhanced, &name, &type_name, qos.clone(), qos);
+        let server = ServerHandle::new(server.map_err(|error| Ros2Error::create(&full, error))?);
+        let answering = Arc::clone(&server);
+        let answer = move |id: RmwRequestId, request| answering.answer(id, handler(request));
+        let diagnostics = self.diagnostics.clone();
+        self.endpoints.push(Box::new(Served { server, handler: answer, name: full, diagnostics }));
+        Ok(())
+    }
+
+    /// The raw server of an action.
+    pub(super) fn raw_action_server<A: ActionType>(
+        &mut self,
+        action: &str,
+    ) -> Result<ActionServer<A::Goal, A::Result, A::Feedback>, Ros2Error> {
+        let name = self.names.parsed(action)?;
+        let type_name = ActionTypeName::new(A::PACKAGE, A::NAME);
+        let qos = ActionServerQosPolicies {
+            goal_service: qos::reliable(10),
+            result_service: qos::reliable(10),
+            cancel_service: qos::reliable(10),
+            feedback_publisher: qos::reliable(10),
+            status_publisher: qos::latched(),
+        };
+        self.node
+            .create_action_server(ServiceMapping::Enhanced, &name, &type_name, qos)
+            .map_err(|error| Ros2Error::create(name.to_string(), error))
+    }
+
+    /// Adds an endpoint of the node's own modules.
+    pub(super) fn add_endpoint(&mut self, endpoint: Box<dyn Endpoint>) {
+        self.endpoints.push(endpoint);
+    }
+
+    /// Does `work` in the node's thread at least every 20 ms.
+    pub fn every_tick(&mut self, work: impl FnMut(Instant) + Send + 'static) {
+        self.tickers.push(Box::new(work));
+    }
+
+    /// Runs the node in a thread of its own.
+    ///
+    /// # Errors
+    /// When the system refuses a thread.
+    pub fn start(self) -> Result<NodeThread, Ros2Error> {
+        let Self { context, node, endpoints, mut tickers, monitors, diagnostics, .. } = self;
+        let (checked, mut due) = (context.clone(), Instant::now());
+        tickers.push(Box::new(move |now| {
+            if now >= due {
+                due = now + CHECK_PERIOD;
+                check_topics(&checked, &monitors, &diagnostics, now);
+            }
+        }));
+        NodeThread::start(endpoints, tickers, (node, context))
+    }
+
+    fn topic<M: MessageType>(
+        &self,
+        topic: &str,
+        qos: &QosProfile,
+    ) -> Result<ros2_client::dds::rustdds::Topic, Ros2Error> {
+        let (name, full) = (self.names.parsed(topic)?, self.names.resolve(topic));
+        self.node
+            .create_topic(&name, MessageTypeName::new(M::PACKAGE, M::NAME), qos)
+            .map_err(|error| Ros2Error::create(full, error))
+    }
+}
+
+/// Reports topics that stalled, and topics under which others publish another type.
+fn check_topics(context: &Context, monitors: &[Arc<TopicMonitor>], diagnostics: &Diagnostics, now: Instant) {
+    for monitor in monitors {
+        if let Some(stall) = monitor.stall(now) {
+            diagnostics.report(&monitor.name, Level::Error, stall);
+        }
+    }
+    let writers = context.domain_participant().discovered_writers();
+    for writer in writers.iter().map(|writer| &writer.publication_topic_data) {
+        let name = writer.topic_name().strip_prefix("rt").unwrap_or_default();
+        let found = monitors.iter().find(|monitor| monitor.name == name);
+        if let Some(monitor) = found.filter(|monitor| monitor.type_name != writer.type_name) {
+            let (own, other) = (&monitor.type_name, &writer.type_name);
+            let message = format!(
+                "somebody publishes {other} here, expected {own}: give the topic of the right type by -r {name}:=TOPIC"
+            );
+            diagnostics.report(name, Level::Error, message);
+        }
+    }
+}

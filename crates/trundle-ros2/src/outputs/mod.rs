@@ -1,0 +1,46 @@
+//! The robot's state as topics, as a Nav2 user expects them.
+
+pub mod costmap;
+mod frames;
+mod publishers;
+mod robot_outputs;
+
+pub use frames::FrameNames;
+pub use publishers::{OutputTopic, RobotTopics};
+pub use robot_outputs::{OutputSources, RobotOutputs};
+
+/// What a robot publishes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutputSettings {
+    /// Names of frames.
+    pub frames: FrameNames,
+    /// Name of the node.
+    pub node: String,
+    /// Whether the body is trundle's own: odometry, its transform and the battery are published too.
+    pub has_own_body: bool,
+    /// Whether the scan made of depth images is published.
+    pub publishes_scan: bool,
+    /// Range of that scan \[m\].
+    pub scan_range_m: f64,
+    /// Radius of the largest disc in the body \[m\], for the costs.
+    pub body_radius_m: f64,
+}
+
+impl OutputSettings {
+    /// Those of `robot`; `has_own_body`: its body does not come by topics.
+    #[must_use]
+    pub fn of(
+        options: &crate::Ros2Options,
+        robot: &trundle_runtime::RobotConfig,
+        has_own_body: bool,
+    ) -> Self {
+        Self {
+            frames: options.frames.clone(),
+            node: options.node.names.node.clone(),
+            has_own_body,
+            publishes_scan: true,
+            scan_range_m: robot.scan.max_range,
+            body_radius_m: robot.footprint_radius,
+        }
+    }
+}

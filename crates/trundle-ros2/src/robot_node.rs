@@ -1,0 +1,159 @@
+//! The robot as a ROS 2 node: its outputs, its actions and services, and its body where that comes by topics.
+
+use crate::body::{BodyDescription, BodySettings, OdometryReader, Ros2Body};
+use crate::clock::RosClock;
+use crate::navigation::{self, ActiveGoal, Parameters};
+use crate::node::{NodeThread, RosNode};
+use crate::outputs::{OutputSettings, OutputSources, RobotOutputs, RobotTopics};
+use crate::{Ros2Error, Ros2Options};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use trundle_app::AppError;
+use trundle_app::operator::{Operator, OperatorLink, operator_link};
+use trundle_app::real_time::{LiveBody, TimedEvent};
+use trundle_runtime::real_time::InboxSender;
+use trundle_runtime::{CameraMount, RangeSource, RobotConfig};
+
+/// The robot as a running ROS 2 node. Dropping it ends its threads.
+pub struct RobotNode {
+    // Declared first: the outputs end before the node.
+    _outputs: RobotOutputs,
+    thread: Arc<NodeThread>,
+}
+
+/// A robot whose body comes by topics, all of them begun.
+pub struct Ros2Robot {
+    /// The node.
+    pub node: RobotNode,
+    /// The run's end of the link to those who give goals.
+    pub link: OperatorLink,
+    body: Ros2Body,
+    described: BodyDescription,
+}
+
+impl Ros2Robot {
+    /// Joins the network and waits until the robot's topics have begun. Camera and mount of `robot` become those of the topics; a mount
+    /// that no transform gives stays as it is.
+    ///
+    /// # Errors
+    /// When the network cannot be joined, or topics stay silent for `timeout`.
+    pub fn connect(
+        options: &Ros2Options,
+        settings: BodySettings,
+        robot: &mut RobotConfig,
+        timeout: Duration,
+        is_cancelled: impl Fn() -> bool,
+    ) -> Result<Self, Ros2Error> {
+        let mut node = RosNode::new(&options.node)?;
+        let has_laser = settings.scan.is_some();
+        let body = Ros2Body::new(&mut node, settings, robot.drive)?;
+        let (operator, link) = operator_link();
+        let outputs =
+            OutputSettings { publishes_scan: !has_laser, ..OutputSettings::of(options, robot, false) };
+        let parts = Parts::new(&mut node, options, robot, outputs, operator, body.clock())?;
+        let thread = Arc::new(node.start()?);
+        let described = body.wait(timeout, is_cancelled)?;
+        robot.camera = described.camera;
+        if let Some(pose) = &described.base_from_camera {
+            let broken =
+                |error| Ros2Error::create("the robot with the camera where /tf_static has it", error);
+            robot.mount = CameraMount::from_pose(pose).validated().map_err(broken)?;
+        } else {
+            tracing::warn!("no transform leads to the camera's frame: the mount of the robot file is used");
+        }
+        if has_laser {
+            robot.sight = RangeSource::Laser;
+        }
+        let node = parts.start(thread, robot, Some(body.odometry()))?;
+        Ok(Self { node, link, body, described })
+    }
+
+    /// Starts the body of a run: events go to `events`. The node lives on in its second value.
+    ///
+    /// # Errors
+    /// When the system refuses a thread.
+    pub fn into_parts(self) -> (RobotNode, OperatorLink, BodyStart) {
+        let thread = Arc::clone(&self.node.thread);
+        (self.node, self.link, BodyStart { body: self.body, described: self.described, thread })
+    }
+}
+
+/// A body that is ready to begin.
+pub struct BodyStart {
+    body: Ros2Body,
+    described: BodyDescription,
+    thread: Arc<NodeThread>,
+}
+
+impl BodyStart {
+    /// Starts the body: events go to `events`.
+    ///
+    /// # Errors
+    /// When the system refuses a thread.
+    pub fn start(self, events: InboxSender<TimedEvent>) -> Result<LiveBody, AppError> {
+        self.body.start(self.described.camera, &self.described, events, self.thread)
+    }
+}
+
+impl RobotNode {
+    /// Offers a run on trundle's own body, whose stamps count from `origin`.
+    ///
+    /// # Errors
+    /// When the network cannot be joined, or a topic cannot be made.
+    pub fn offer(
+        options: &Ros2Options,
+        robot: &RobotConfig,
+        origin: Instant,
+    ) -> Result<(Self, OperatorLink), Ros2Error> {
+        let mut node = RosNode::new(&options.node)?;
+        let (operator, link) = operator_link();
+        let outputs = OutputSettings::of(options, robot, true);
+        let parts = Parts::new(&mut node, options, robot, outputs, operator, RosClock::system_from(origin))?;
+        let thread = Arc::new(node.start()?);
+        Ok((parts.start(thread, robot, None)?, link))
+    }
+}
+
+/// What a node publishes and offers, before it runs.
+struct Parts {
+    topics: RobotTopics,
+    settings: OutputSettings,
+    operator: Operator,
+    clock: RosClock,
+    diagnostics: crate::node::Diagnostics,
+}
+
+impl Parts {
+    fn new(
+        node: &mut RosNode,
+        options: &Ros2Options,
+        robot: &RobotConfig,
+        settings: OutputSettings,
+        operator: Operator,
+        clock: RosClock,
+    ) -> Result<Self, Ros2Error> {
+        let diagnostics = node.diagnostics();
+        let topics = RobotTopics::new(node, &settings)?;
+        let active = ActiveGoal::new(operator.clone(), clock.clone(), diagnostics.clone());
+        navigation::offer(node, &active, &options.frames)?;
+        Parameters::of(robot, options.use_sim_time).offer(node)?;
+        Ok(Self { topics, settings, operator, clock, diagnostics })
+    }
+
+    fn start(
+        self,
+        thread: Arc<NodeThread>,
+        robot: &RobotConfig,
+        body_odometry: Option<OdometryReader>,
+    ) -> Result<RobotNode, Ros2Error> {
+        let sources = OutputSources {
+            operator: self.operator,
+            clock: self.clock,
+            diagnostics: self.diagnostics,
+            body_odometry,
+            base_from_camera: robot.mount.base_from_camera(),
+        };
+        let outputs = RobotOutputs::start(self.topics, self.settings, sources)?;
+        Ok(RobotNode { _outputs: outputs, thread })
+    }
+}

@@ -1,0 +1,109 @@
+//! Images of a camera as messages, encoded in a thread of their own.
+
+use super::ServerSettings;
+use crate::Ros2Error;
+use crate::convert::camera_info;
+use crate::convert::image::{color_to_ros, compressed_depth_to_ros, depth_to_ros, jpeg_to_ros};
+use crate::generated::sensor_msgs::{CameraInfo, CompressedImage, Image};
+use crate::node::{RosNode, qos};
+use crate::outputs::OutputTopic;
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::thread::JoinHandle;
+use trundle_core::{PinholeCamera, RgbdImage, Stamp};
+use trundle_io::{JPEG_QUALITY, encode_color, encode_depth};
+
+/// The topics of a camera.
+struct CameraTopics {
+    form: Form,
+    color_info: OutputTopic<CameraInfo>,
+    depth_info: OutputTopic<CameraInfo>,
+    camera: PinholeCamera,
+    frame: String,
+}
+
+enum Form {
+    Compressed(OutputTopic<CompressedImage>, OutputTopic<CompressedImage>),
+    Raw(OutputTopic<Image>, OutputTopic<Image>),
+}
+
+/// Publishes images in a thread of its own: an image that waits is replaced by none, the newest is dropped.
+pub struct ImagePublisher {
+    images: Option<SyncSender<(RgbdImage, Stamp)>>,
+    thread: Option<JoinHandle<()>>,
+    /// Images that were dropped, since the thread was busy.
+    pub dropped: u64,
+}
+
+impl ImagePublisher {
+    /// The topics `camera/color/...` and `camera/depth/...` of `camera`, and the thread.
+    ///
+    /// # Errors
+    /// When a topic cannot be made or the system refuses a thread.
+    pub fn start(
+        node: &mut RosNode,
+        settings: &ServerSettings,
+        camera: PinholeCamera,
+    ) -> Result<Self, Ros2Error> {
+        let (color, depth) = ("camera/color/image_raw", "camera/depth/image_raw");
+        let qos = qos::sensor(2);
+        let form = if settings.raw_images {
+            Form::Raw(OutputTopic::new(node, color, &qos)?, OutputTopic::new(node, depth, &qos)?)
+        } else {
+            let (color, depth) = (format!("{color}/compressed"), format!("{depth}/compressedDepth"));
+            Form::Compressed(OutputTopic::new(node, &color, &qos)?, OutputTopic::new(node, &depth, &qos)?)
+        };
+        let topics = CameraTopics {
+            form,
+            color_info: OutputTopic::new(node, "camera/color/camera_info", &qos::reliable(1))?,
+            depth_info: OutputTopic::new(node, "camera/depth/camera_info", &qos::reliable(1))?,
+            camera,
+            frame: settings.frames.camera.clone(),
+        };
+        let (images, received) = sync_channel(1);
+        let thread = std::thread::Builder::new().name("ros2-images".to_owned());
+        let thread = thread.spawn(move || topics.publish_all(&received))?;
+        Ok(Self { images: Some(images), thread: Some(thread), dropped: 0 })
+    }
+
+    /// Publishes an image, stamped `at` on the ROS clock.
+    pub fn publish(&mut self, image: RgbdImage, at: Stamp) {
+        let sent = self.images.as_ref().map(|images| images.try_send((image, at)));
+        self.dropped += u64::from(matches!(sent, Some(Err(TrySendError::Full(_)))));
+    }
+}
+
+impl Drop for ImagePublisher {
+    fn drop(&mut self) {
+        self.images = None;
+        if self.thread.take().is_some_and(|thread| thread.join().is_err()) {
+            tracing::error!("the thread that publishes images panicked");
+        }
+    }
+}
+
+impl CameraTopics {
+    fn publish_all(&self, images: &Receiver<(RgbdImage, Stamp)>) {
+        for (image, at) in images {
+            let info = camera_info::to_ros(&self.camera, at, &self.frame);
+            self.color_info.publish(info.clone());
+            self.depth_info.publish(info);
+            match &self.form {
+                Form::Raw(color, depth) => {
+                    color.publish(color_to_ros(image.color(), at, &self.frame));
+                    depth.publish(depth_to_ros(image.depth(), at, &self.frame));
+                }
+                Form::Compressed(color, depth) => {
+                    match (encode_color(image.color(), JPEG_QUALITY), encode_depth(image.depth())) {
+                        (Ok(jpeg), Ok(png)) => {
+                            color.publish(jpeg_to_ros(jpeg, at, &self.frame));
+                            depth.publish(compressed_depth_to_ros(&png, at, &self.frame));
+                        }
+                        (Err(error), _) | (_, Err(error)) => {
+                            tracing::warn!("an image was not published: {error}")
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,20 @@
+//! A body of trundle offered to ROS 2: the simulator as a ROS 2 robot.
+
+mod body_server;
+mod image_publisher;
+
+pub use body_server::{BodyServer, OfferedBody, serve_body};
+pub use image_publisher::ImagePublisher;
+
+use crate::outputs::FrameNames;
+
+/// How a body is offered.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ServerSettings {
+    /// Names of frames.
+    pub frames: FrameNames,
+    /// Whether commands are `TwistStamped`, else `Twist`.
+    pub stamped_commands: bool,
+    /// Whether images are published raw, else as JPEG and PNG files.
+    pub raw_images: bool,
+}
