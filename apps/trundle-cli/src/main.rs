@@ -4,6 +4,7 @@ mod calibrate;
 mod command_line;
 mod common_args;
 mod console;
+mod convert;
 mod data;
 mod demo;
 mod devices;
@@ -46,11 +47,10 @@ fn main() -> ExitCode {
 
 /// Takes Ctrl-C as a request where the command has long loops, which read it; else it ends the program.
 fn listen(command: &Command) -> Result<(), AppError> {
-    use Command::{Calibrate, Demo, Experiment, Map, Replay, Run, Sim, Slam};
+    use Command::{Calibrate, Convert, Demo, Experiment, Map, Replay, Run, Sim, Slam};
     match command {
-        Calibrate(_) | Demo(_) | Run(_) | Replay(_) | Slam(_) | Map(_) | Sim(_) | Experiment(_) => {
-            stop::listen()
-        }
+        Calibrate(_) | Convert(_) | Demo(_) | Run(_) | Replay(_) | Slam(_) | Map(_) | Sim(_)
+        | Experiment(_) => stop::listen(),
         _ => stop::end_at_once(|signal| {
             let is_ending = abandon_outputs();
             if is_ending {
@@ -75,6 +75,7 @@ fn run_command(cli: Cli) -> Result<Outcome, AppError> {
         Command::Run(args) => with_threads(&args.common, || run::run(&args)),
         Command::Replay(args) => with_threads(&args.common, || replay::run(&args)),
         Command::Slam(args) => with_threads(&args.common, || slam::run(&args)),
+        Command::Convert(args) => with_threads(&args.common, || convert::run(&args)),
         Command::Map(args) => with_threads(&args.common, || map::run(&args)),
         Command::Calibrate(args) => with_threads(args.common(), || calibrate::run(&args)),
         Command::Eval(args) => with_threads(args.common(), || eval::run(&args)),

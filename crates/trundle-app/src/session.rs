@@ -2,12 +2,13 @@
 
 use crate::encoded_body::{EncodedBody, RunInput};
 use crate::run_mark::{RunMark, RunMarkMessage};
+use crate::run_messages::RunMessages;
 use crate::setup::mission_text;
 use crate::{AppError, BestView, FinishedRun, Progress, RecordingCost, RunLog, RunRecorder, RunSetup};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use trundle_core::{FrameId, Pose2, Stamp, Twist2};
-use trundle_io::{EncodedEvent, PoseInFrame, PosesInFrame};
+use trundle_core::{Stamp, Twist2};
+use trundle_io::EncodedEvent;
 use trundle_runtime::{Answer, DriveState, LazyImage, Reason, Robot, Stage, StepReport, Worker};
 
 /// A run in progress: feeds the robot and records each input and output.
@@ -16,6 +17,7 @@ pub struct RunSession<'s> {
     robot: Robot,
     recorder: RunRecorder,
     log: RunLog,
+    messages: RunMessages,
     view: BestView,
     progress: Progress,
     start: Instant,
@@ -40,12 +42,17 @@ impl<'s> RunSession<'s> {
         if recorder.writes_checkpoints() {
             robot = robot.with_checkpoints();
         }
-        let config = setup.clone();
+        let (config, camera) = (setup.clone(), setup.robot.camera);
+        recorder.write(move |file| {
+            file.set_camera(camera);
+            Ok(())
+        });
         recorder.write(move |file| file.record_json("/config", "trundle.Config", Stamp::default(), &config));
         tracing::info!("run in '{}', seed {}: {}", setup.scene, setup.seed, mission_text(&setup.mission));
         let view = BestView::default();
         let start = Instant::now();
-        Ok(Self { setup, robot, recorder, log, view, progress, start, is_interrupted: false })
+        let messages = RunMessages::default();
+        Ok(Self { setup, robot, recorder, log, messages, view, progress, start, is_interrupted: false })
     }
 
     /// The log so far.
@@ -173,23 +180,7 @@ impl<'s> RunSession<'s> {
     }
 
     fn record(&mut self, stamp: Stamp, report: &StepReport) {
-        if let Some(twist) = report.twist {
-            self.recorder.write(move |file| file.record_json("/twist", "trundle.Twist", stamp, &twist));
-        }
-        let frame = || FrameId::Map.to_string();
-        if let (Some(estimate), Some(_)) = (report.estimate, &report.track) {
-            self.recorder.write(move |file| {
-                let pose = PoseInFrame::planar(stamp, &frame(), estimate.pose);
-                file.record_json("/pose", PoseInFrame::SCHEMA, stamp, &pose)
-            });
-        }
-        if let (true, Some(plan)) = (report.replanned, self.robot.plan()) {
-            let poses: Vec<Pose2> = plan.trajectory.points().iter().map(|point| point.pose).collect();
-            self.recorder.write(move |file| {
-                let poses = PosesInFrame::planar(stamp, &frame(), poses);
-                file.record_json("/trajectory", PosesInFrame::SCHEMA, stamp, &poses)
-            });
-        }
+        self.messages.record(stamp, report, &self.robot, self.setup, &mut self.recorder);
     }
 
     fn show_status(&mut self, fraction_read: Option<f64>) {

@@ -544,6 +544,11 @@ impl Robot {
         self.localizer.estimate()
     }
 
+    /// The odometry by wheels and gyro, or of the body itself; none before its first reading.
+    pub fn odometry(&self) -> Option<&Odometry> {
+        self.latest.odometry.as_ref()
+    }
+
     /// The map.
     pub fn grid(&self) -> &OccupancyGrid {
         self.mapper.grid()
