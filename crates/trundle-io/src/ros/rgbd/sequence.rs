@@ -215,10 +215,10 @@ fn camera(
 }
 
 /// The odometry's topic, the base's frame, and its poses; empty without odometry.
-fn motion(
-    survey: &mut Survey,
-    asked: Option<&str>,
-) -> Result<(String, Option<String>, Vec<(Stamp, Pose2)>), String> {
+type BaseMotion = (String, Option<String>, Vec<(Stamp, Pose2)>);
+
+/// The motion of the base by the requested topic, or by the bag's choice.
+fn motion(survey: &mut Survey, asked: Option<&str>) -> Result<BaseMotion, String> {
     if asked.is_none() && !survey.contents.has_motion() {
         return Ok((String::new(), None, Vec::new()));
     }

@@ -31,7 +31,7 @@ impl Yuv {
 /// # Errors
 /// When the width is odd, or the bytes are too few for the size.
 pub(super) fn color_of_yuv(raw: &RawImage, form: Yuv) -> Result<ColorImage, CodecError> {
-    if raw.width % 2 != 0 {
+    if !raw.width.is_multiple_of(2) {
         let problem = format!("'{}' of an odd width of {} px", raw.encoding, raw.width);
         return Err(CodecError::decode("colour", problem));
     }
