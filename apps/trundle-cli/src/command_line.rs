@@ -1,6 +1,7 @@
 //! The commands of `trundle`.
 
 use crate::calibrate::CalibrateArgs;
+use crate::convert::ConvertArgs;
 use crate::data::DataArgs;
 use crate::demo::DemoArgs;
 use crate::devices::{DevicesArgs, ServeCameraArgs};
@@ -52,6 +53,8 @@ pub enum Command {
     Slam(SlamArgs),
     /// Draw the map of a laser log, a ROS 2 bag or an RGB-D folder.
     Map(MapArgs),
+    /// Convert RGB-D images with their poses: ROS bag, TUM folder, recording.
+    Convert(ConvertArgs),
     /// Measure the robot's own numbers: camera, mount, wheels, image delay.
     Calibrate(CalibrateArgs),
     /// Judge a trajectory or a map against the truth.

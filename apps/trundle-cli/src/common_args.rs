@@ -1,7 +1,9 @@
 //! Arguments that several commands take: quiet, threads, robot file, poses, up axis.
 
+mod bag_topics;
 mod number;
 
+pub use bag_topics::BagTopicsArgs;
 pub use number::NumberArg;
 
 use clap::{Args, ValueEnum};

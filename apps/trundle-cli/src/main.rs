@@ -4,6 +4,7 @@ mod calibrate;
 mod command_line;
 mod common_args;
 mod console;
+mod convert;
 mod data;
 mod demo;
 mod devices;
@@ -48,11 +49,10 @@ fn main() -> ExitCode {
 
 /// Takes Ctrl-C as a request where the command has long loops, which read it; else it ends the program.
 fn listen(command: &Command) -> Result<(), AppError> {
-    use Command::{Calibrate, Demo, Experiment, GuardBase, Map, Replay, Run, Sim, Slam};
+    use Command::{Calibrate, Convert, Demo, Experiment, GuardBase, Map, Replay, Run, Sim, Slam};
     match command {
-        Calibrate(_) | Demo(_) | Run(_) | Replay(_) | Slam(_) | Map(_) | Sim(_) | Experiment(_) => {
-            stop::listen()
-        }
+        Calibrate(_) | Convert(_) | Demo(_) | Run(_) | Replay(_) | Slam(_) | Map(_) | Sim(_)
+        | Experiment(_) => stop::listen(),
         // A guard outlives the program that it guards.
         GuardBase => stop::ignore(),
         #[cfg(feature = "ros2")]
@@ -83,6 +83,7 @@ fn run_command(cli: Cli) -> Result<Outcome, AppError> {
         Command::Ros2(args) => with_threads(&args.options.common, || ros2::run(&args)),
         Command::Replay(args) => with_threads(&args.common, || replay::run(&args)),
         Command::Slam(args) => with_threads(&args.common, || slam::run(&args)),
+        Command::Convert(args) => with_threads(&args.common, || convert::run(&args)),
         Command::Map(args) => with_threads(&args.common, || map::run(&args)),
         Command::Calibrate(args) => with_threads(args.common(), || calibrate::run(&args)),
         Command::Eval(args) => with_threads(args.common(), || eval::run(&args)),

@@ -2,7 +2,7 @@
 
 mod laser_args;
 
-use crate::common_args::{Common, MapImageArg, NumberArg};
+use crate::common_args::{BagTopicsArgs, Common, MapImageArg, NumberArg};
 use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
@@ -12,8 +12,7 @@ use laser_args::LaserArgs;
 use std::path::PathBuf;
 use trundle::app::AppError;
 use trundle::app::laser_map::{LaserMapRequest, map_log, map_rows, read_log};
-use trundle::app::sequence_input::SequenceInput;
-use trundle::io::{FileKind, LaserLog};
+use trundle::io::{LaserLog, LaserLogOptions};
 
 /// `trundle map`
 #[derive(Debug, Args)]
@@ -51,6 +50,9 @@ pub struct MapArgs {
     /// The laser of a log, and the topics of a bag.
     #[command(flatten)]
     pub laser: LaserArgs,
+    /// The topics of a bag.
+    #[command(flatten)]
+    pub topics: BagTopicsArgs,
     /// Go on with the map of an earlier run, its filter.map: the robot is looked for in it first.
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
@@ -67,8 +69,8 @@ pub struct MapArgs {
 
 /// `trundle map LOG`.
 pub fn run(args: &MapArgs) -> Result<Outcome, AppError> {
-    args.refuse_wrong_options()?;
     let request = args.request();
+    request.refuse_wrong_options(args.laser.first_given())?;
     let display = console::StepDisplay::new(args.common.quiet);
     let input = read_log(&request, &display)?;
     let folder = logging::output_folder(&args.out)?;
@@ -97,47 +99,15 @@ impl MapArgs {
         LaserMapRequest {
             log: self.log.clone(),
             recover: self.recover,
+            topics: self.topics.options(),
             poses: self.poses.clone(),
             poses_drift: self.poses_drift,
             particles: usize::from(self.particles),
             seed: self.seed,
             resolution: self.resolution,
-            laser: self.laser.options(),
+            laser: LaserLogOptions { odometry_topic: self.topics.odom_topic.clone(), ..self.laser.options() },
             map: self.map.clone(),
             map_image: self.map_image.format(),
-        }
-    }
-
-    /// Refuses the topic of the odometry of a log that has no topics.
-    fn refuse_topic_of_odometry(&self) -> Result<(), AppError> {
-        let has_no_topics =
-            matches!(FileKind::of(&self.log)?, FileKind::CarmenLog | FileKind::Text | FileKind::Gzip);
-        match &self.laser.odom_topic {
-            Some(topic) if has_no_topics => Err(AppError::Input(format!(
-                "--odom-topic is {topic}, but {} is a CARMEN log, whose odometry is in its own lines, expected a bag with it",
-                self.log.display()
-            ))),
-            _ => Ok(()),
-        }
-    }
-
-    /// Refuses options of a laser beside RGB-D images, and options of a camera beside a laser log.
-    fn refuse_wrong_options(&self) -> Result<(), AppError> {
-        let log = self.log.display();
-        if !SequenceInput::is_one(&self.log) {
-            return match self.poses {
-                Some(_) => Err(AppError::Input(format!(
-                    "--poses is about the camera of RGB-D images, and {log} holds none"
-                ))),
-                None => self.refuse_topic_of_odometry(),
-            };
-        }
-        match self.laser.first_given() {
-            Some(option) => Err(AppError::Input(format!(
-                "{option} is about a laser, but {log} holds RGB-D images: their camera is that of camera.toml or of the recording, and \
-                 it sits as on the default robot, or where groundtruth.txt or the recording says"
-            ))),
-            None => Ok(()),
         }
     }
 }

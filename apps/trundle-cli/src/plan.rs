@@ -8,8 +8,6 @@ use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
 use args::PlaceArg;
-use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::OnceLock;
 use std::time::Instant;
 use trundle::app::AppError;
@@ -17,7 +15,7 @@ use trundle::app::plan::{
     GoalRefusal, NamedPose, OffMap, PlanFiles, PlanRequest, PlanTimes, curve_lines, plan_rows, write_plan,
     write_refusal,
 };
-use trundle::core::{DriveLimits, Pose2};
+use trundle::core::DriveLimits;
 use trundle::io::{OutputFolder, read_places};
 use trundle::planning::MultiGoalPlan;
 
@@ -25,7 +23,9 @@ use trundle::planning::MultiGoalPlan;
 pub fn run(args: &PlanArgs) -> Result<Outcome, AppError> {
     let robot = args.robot.robot()?;
     let mut request = PlanRequest::read(&args.files(), args.ends()?, args.near, &robot)?;
-    warn_of_speed_mask(args, &request);
+    if let (Some(path), Some(warning)) = (&args.speed_mask, request.speed_mask_warning()) {
+        console::warn(&format!("{}: {warning}", path.display()));
+    }
     request.planner.set_clock(Some(seconds));
     let start = seconds();
     let plan = request.plan();
@@ -73,18 +73,6 @@ fn report_refusal(
     Ok(Outcome::Missed)
 }
 
-fn warn_of_speed_mask(args: &PlanArgs, request: &PlanRequest) {
-    let (Some(path), Some(limits)) = (&args.speed_mask, request.speed_limits) else { return };
-    if limits.out_of_range > 0 {
-        let (count, all) = (limits.out_of_range, limits.cells);
-        console::warn(&format!(
-            "{}: {count} of {all} cells stand for a speed that is not above 0, or above 100 %: they set no limit, as in Nav2. \
-             Black does so by default; to forbid a place, use --keepout",
-            path.display()
-        ));
-    }
-}
-
 impl PlanArgs {
     fn files(&self) -> PlanFiles {
         PlanFiles {
@@ -98,31 +86,11 @@ impl PlanArgs {
     /// Start and goals, named places looked up in the file of places.
     fn ends(&self) -> Result<(NamedPose, Vec<NamedPose>), AppError> {
         let places = self.places.as_deref().map(read_places).transpose()?;
-        let look_up = |place: &PlaceArg| look_up(place, self.places.as_deref(), places.as_ref());
+        let look_up = |place: &PlaceArg| match place {
+            PlaceArg::Pose(pose) => Ok(NamedPose { pose: pose.0, name: None }),
+            PlaceArg::Name(name) => NamedPose::of_place(name, self.places.as_deref(), places.as_ref()),
+        };
         Ok((look_up(&self.from)?, self.goal.iter().map(look_up).collect::<Result<_, _>>()?))
-    }
-}
-
-fn look_up(
-    place: &PlaceArg,
-    file: Option<&Path>,
-    places: Option<&BTreeMap<String, Pose2>>,
-) -> Result<NamedPose, AppError> {
-    let name = match place {
-        PlaceArg::Pose(pose) => return Ok(NamedPose { pose: pose.0, name: None }),
-        PlaceArg::Name(name) => name,
-    };
-    let (Some(file), Some(places)) = (file, places) else {
-        let message = format!("'{name}' is no pose X,Y,DEG; to name a place, give its file with --places");
-        return Err(AppError::Input(message));
-    };
-    match places.get(name) {
-        Some(pose) => Ok(NamedPose { pose: *pose, name: Some(name.clone()) }),
-        None => {
-            let known: Vec<&str> = places.keys().map(String::as_str).collect();
-            let message = format!("{}: no place '{name}'; there are: {}", file.display(), known.join(", "));
-            Err(AppError::Input(message))
-        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod args;
 
-pub use args::SlamArgs;
+pub use args::{CameraArgs, SlamArgs};
 
 use crate::console;
 use crate::logging;
@@ -32,8 +32,9 @@ impl SlamArgs {
     fn request(&self) -> SequenceRequest {
         SequenceRequest {
             path: self.input.clone(),
-            camera: self.camera.clone(),
-            depth_scale: self.depth_scale,
+            topics: self.topics.options(),
+            camera: self.camera.camera.clone(),
+            depth_scale: self.camera.depth_scale,
             recover: self.recover,
             frames: self.frames.map(|frames| frames as usize),
             height: self.height,

@@ -9,6 +9,7 @@ mod numbers;
 mod request;
 mod run;
 mod run_result;
+mod wrong_options;
 
 pub use counts::ScanCounts;
 pub use input::read_log;

@@ -18,9 +18,9 @@ pub enum RecordingContent {
 }
 
 /// Size of the events without images in a second of a run \[bytes\]. Source: recordings of the demo.
-const EVENT_BYTES_PER_S: f64 = 80e3;
-/// Size of a pixel of colour and depth, as JPEG and PNG \[bytes\]. Source: recordings of the demo.
-const BYTES_PER_PIXEL: f64 = 1.15;
+const EVENT_BYTES_PER_S: f64 = 40e3;
+/// Size of a pixel of colour and depth, as JPEG and RVL in zstd \[bytes\]. Source: recordings of the demo.
+const BYTES_PER_PIXEL: f64 = 0.9;
 /// Number of bytes in a megabyte.
 const BYTES_PER_MB: f64 = 1e6;
 
@@ -78,7 +78,7 @@ mod tests {
         let camera = RobotConfig::default().camera;
         let text = |content: RecordingContent| content.announcement(&camera, 15.0, 100.0);
         assert_eq!(text(RecordingContent::None), "Nothing is recorded.");
-        assert!(text(RecordingContent::Events).contains("at most 8 MB in 100 s"));
+        assert!(text(RecordingContent::Events).contains("at most 4 MB in 100 s"));
         assert!(text(RecordingContent::All).contains("MB a second"));
         let short = RecordingContent::Events.announcement(&camera, 15.0, 6.0);
         assert!(short.contains("less than 1 MB in 6 s"), "{short}");

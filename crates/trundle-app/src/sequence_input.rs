@@ -1,4 +1,4 @@
-//! RGB-D images with odometry and truth, as `slam` and `map` read them: a TUM RGB-D folder, or the recording of a run.
+//! RGB-D images with odometry and truth, as `slam` and `map` read them: a TUM RGB-D folder, a ROS bag, or the recording of a run.
 
 mod frames;
 mod recorded_run;
@@ -10,13 +10,16 @@ use crate::{AppError, log_warnings};
 use frames::SequenceFrames;
 use std::path::{Path, PathBuf};
 use trundle_core::{Pose2, Pose3, Stamp};
-use trundle_io::{CameraModel, FileKind, KINECT_V2_DEPTH_SCALE, SequenceCamera, TumSequence, Warnings};
-use trundle_runtime::RobotConfig;
+use trundle_io::{
+    CameraModel, FileKind, KINECT_V2_DEPTH_SCALE, RosSequence, RosSequenceOptions, RosTopics, SequenceCamera,
+    TumSequence, Warnings,
+};
+use trundle_runtime::{CameraMount, RobotConfig};
 
 /// Input of a sequence.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct SequenceOptions<'a> {
-    /// A TUM RGB-D folder or a recording of a run.
+    /// A TUM RGB-D folder, a ROS bag or a recording of a run.
     pub path: &'a Path,
     /// A camera preset or a file of one; `None` for the input's own.
     pub camera: Option<&'a str>,
@@ -24,6 +27,16 @@ pub struct SequenceOptions<'a> {
     pub depth_scale: Option<f64>,
     /// Whether a recording may be cut: it is read up to the cut.
     pub recover: bool,
+    /// The topics of a bag.
+    pub topics: RosSequenceOptions,
+}
+
+impl<'a> SequenceOptions<'a> {
+    /// The images of `path` as the input describes them.
+    #[must_use]
+    pub fn new(path: &'a Path) -> Self {
+        Self { path, camera: None, depth_scale: None, recover: false, topics: RosSequenceOptions::default() }
+    }
 }
 
 /// RGB-D images in the order of their stamps, with what is known beside them.
@@ -40,26 +53,67 @@ pub struct SequenceInput {
 enum Source {
     Folder(Box<TumSequence>),
     Recording(Box<RecordedRun>),
+    Bag(Box<RosSequence>),
 }
 
 impl SequenceInput {
-    /// Whether `path` is read as RGB-D images: a TUM RGB-D folder or a recording of trundle.
+    /// Whether `path` is read as RGB-D images: a TUM RGB-D folder, a recording of trundle, or a bag with images and without scans of a
+    /// laser. `topics` that are named make any bag one.
     #[must_use]
-    pub fn is_one(path: &Path) -> bool {
-        matches!(FileKind::of(path), Ok(FileKind::SequenceFolder | FileKind::TrundleRecording))
+    pub fn is_one(path: &Path, topics: &RosSequenceOptions) -> bool {
+        let names_images = topics.color_topic.is_some() || topics.depth_topic.is_some();
+        match FileKind::of(path) {
+            Ok(FileKind::SequenceFolder | FileKind::TrundleRecording) => true,
+            Ok(kind) if kind.is_bag() => {
+                names_images
+                    || RosTopics::read(path).is_ok_and(|topics| topics.has_images() && !topics.has_scans())
+            }
+            _ => false,
+        }
     }
 
-    /// Opens a folder or a recording. Warnings are logged.
+    /// Opens a folder, a bag or a recording. Warnings are logged.
     ///
     /// # Errors
-    /// When it is neither, cannot be read, holds no images, or has no known camera.
+    /// When it is none of them, cannot be read, holds no images, or has no known camera.
     pub fn open(options: &SequenceOptions<'_>) -> Result<Self, AppError> {
         match FileKind::of(options.path)? {
             FileKind::TrundleRecording => {
                 Self::of_recording(options, RecordedRun::read(options.path, options.recover)?)
             }
+            kind if kind.is_bag() => Self::of_bag(options),
             _ => Self::of_folder(options),
         }
+    }
+
+    fn of_bag(options: &SequenceOptions<'_>) -> Result<Self, AppError> {
+        let path = options.path;
+        let sequence = RosSequence::open(path, &options.topics, options.camera.is_none())?;
+        let mut camera = match sequence.camera() {
+            Some(camera) => SequenceCamera {
+                model: CameraModel { camera, depth_scale: KINECT_V2_DEPTH_SCALE },
+                name: sequence.topics().info.clone(),
+                is_assumed: false,
+                warnings: Warnings::default(),
+            },
+            None => SequenceCamera::choose(options.camera, path)?,
+        };
+        log_warnings(&camera.warnings);
+        log_warnings(sequence.warnings());
+        // Depth of ROS is in millimetres (REP 118), whatever the images of that camera's folders are in.
+        camera.model.depth_scale = options.depth_scale.unwrap_or(KINECT_V2_DEPTH_SCALE);
+        let topics = sequence.topics();
+        tracing::info!("colour on {}, depth on {}", topics.color, topics.depth);
+        let mut robot = RobotConfig::default();
+        robot.camera = camera.model.camera;
+        match sequence.base_from_camera().map(|pose| CameraMount::of_pose(&pose)) {
+            Some(Ok(mount)) => robot.mount = mount,
+            Some(Err(invalid)) => {
+                tracing::warn!("{}: {invalid}; the default robot's mount is taken", path.display())
+            }
+            None => {}
+        }
+        Ok(Self { path: path.to_owned(), camera, robot, source: Source::Bag(Box::new(sequence)) })
     }
 
     fn of_folder(options: &SequenceOptions<'_>) -> Result<Self, AppError> {
@@ -112,6 +166,7 @@ impl SequenceInput {
         match &self.source {
             Source::Folder(sequence) => sequence.len(),
             Source::Recording(run) => run.image_count(),
+            Source::Bag(sequence) => sequence.len(),
         }
     }
 
@@ -127,6 +182,7 @@ impl SequenceInput {
         match &self.source {
             Source::Folder(sequence) => sequence.unpaired(),
             Source::Recording(_) => 0,
+            Source::Bag(sequence) => sequence.unpaired(),
         }
     }
 
@@ -136,6 +192,7 @@ impl SequenceInput {
         match &self.source {
             Source::Folder(sequence) => sequence.listed(),
             Source::Recording(run) => run.image_count(),
+            Source::Bag(sequence) => sequence.listed(),
         }
     }
 
@@ -145,6 +202,7 @@ impl SequenceInput {
         match &self.source {
             Source::Folder(sequence) => sequence.ground_truth(),
             Source::Recording(run) => run.ground_truth(),
+            Source::Bag(sequence) => sequence.ground_truth(),
         }
     }
 
@@ -154,6 +212,7 @@ impl SequenceInput {
         match &self.source {
             Source::Folder(sequence) => sequence.odometry(),
             Source::Recording(run) => run.odometry(),
+            Source::Bag(sequence) => sequence.odometry(),
         }
     }
 
@@ -163,6 +222,7 @@ impl SequenceInput {
         match self.source {
             Source::Folder(_) => ["odometry.txt", "groundtruth.txt"],
             Source::Recording(_) => ["wheels", "truth"],
+            Source::Bag(_) => ["odometry", "ground truth"],
         }
     }
 
@@ -170,7 +230,7 @@ impl SequenceInput {
     #[must_use]
     pub fn cut_report(&self) -> Option<&str> {
         match &self.source {
-            Source::Folder(_) => None,
+            Source::Folder(_) | Source::Bag(_) => None,
             Source::Recording(run) => run.cut_report(),
         }
     }
@@ -181,6 +241,7 @@ impl SequenceInput {
         match &self.source {
             Source::Folder(_) => None,
             Source::Recording(run) => run.robot().map(|robot| robot.mount.base_from_camera()),
+            Source::Bag(sequence) => sequence.base_from_camera(),
         }
     }
 
@@ -194,6 +255,10 @@ impl SequenceInput {
             Source::Recording(run) => {
                 let delay = self.robot.image_delay;
                 Ok(SequenceFrames::of_recording(&self.path, run.open()?, self.size(), delay))
+            }
+            Source::Bag(sequence) => {
+                let frames = sequence.frames(self.depth_scale())?;
+                Ok(SequenceFrames::of_bag(&self.path, frames, self.size()))
             }
         }
     }

@@ -4,12 +4,13 @@ use crate::encoded_body::{EncodedBody, RunInput};
 use crate::operator::{FrontEnd, OperatorLink, OperatorRequest};
 use crate::overload_watch::OverloadWatch;
 use crate::run_mark::{RunMark, RunMarkMessage};
+use crate::run_messages::RunMessages;
 use crate::setup::mission_text;
 use crate::{AppError, BestView, FinishedRun, Progress, RecordingCost, RunLog, RunRecorder, RunSetup};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use trundle_core::{FrameId, Pose2, Stamp, Twist2};
-use trundle_io::{EncodedEvent, PoseInFrame, PosesInFrame};
+use trundle_core::{Stamp, Twist2};
+use trundle_io::EncodedEvent;
 use trundle_runtime::{
     Answer, DriveState, LazyImage, OperatorCommand, Reason, Robot, Stage, StepReport, TaskRecord, Worker,
 };
@@ -20,6 +21,7 @@ pub struct RunSession<'s> {
     robot: Robot,
     recorder: RunRecorder,
     log: RunLog,
+    messages: RunMessages,
     view: BestView,
     overload: OverloadWatch,
     progress: Progress,
@@ -48,17 +50,23 @@ impl<'s> RunSession<'s> {
         if recorder.writes_checkpoints() {
             robot = robot.with_checkpoints();
         }
-        let config = setup.clone();
+        let (config, camera) = (setup.clone(), setup.robot.camera);
+        recorder.write(move |file| {
+            file.set_camera(camera);
+            Ok(())
+        });
         recorder.write(move |file| file.record_json("/config", "trundle.Config", Stamp::default(), &config));
         tracing::info!("run in '{}', seed {}: {}", setup.scene, setup.seed, mission_text(&setup.mission));
         let (view, overload) = (BestView::default(), OverloadWatch::default());
         let start = Instant::now();
+        let messages = RunMessages::default();
         let FrontEnd { progress, operator } = front_end;
         Ok(Self {
             setup,
             robot,
             recorder,
             log,
+            messages,
             view,
             overload,
             progress,
@@ -220,23 +228,7 @@ impl<'s> RunSession<'s> {
     }
 
     fn record(&mut self, stamp: Stamp, report: &StepReport) {
-        if let Some(twist) = report.twist {
-            self.recorder.write(move |file| file.record_json("/twist", "trundle.Twist", stamp, &twist));
-        }
-        let frame = || FrameId::Map.to_string();
-        if let (Some(estimate), Some(_)) = (report.estimate, &report.track) {
-            self.recorder.write(move |file| {
-                let pose = PoseInFrame::planar(stamp, &frame(), estimate.pose);
-                file.record_json("/pose", PoseInFrame::SCHEMA, stamp, &pose)
-            });
-        }
-        if let (true, Some(plan)) = (report.replanned, self.robot.plan()) {
-            let poses: Vec<Pose2> = plan.trajectory.points().iter().map(|point| point.pose).collect();
-            self.recorder.write(move |file| {
-                let poses = PosesInFrame::planar(stamp, &frame(), poses);
-                file.record_json("/trajectory", PosesInFrame::SCHEMA, stamp, &poses)
-            });
-        }
+        self.messages.record(stamp, report, &self.robot, self.setup, &mut self.recorder);
     }
 
     fn show_status(&mut self, fraction_read: Option<f64>) {

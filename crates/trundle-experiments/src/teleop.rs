@@ -2,6 +2,8 @@
 
 mod page;
 mod server;
+mod steering;
 
 pub use page::{RobotView, TeleopPage};
 pub use server::TeleopServer;
+pub use steering::{Steering, SteeringKey};

@@ -5,12 +5,15 @@ mod fields;
 mod image_side;
 mod matrix;
 mod open3d;
+mod ros_lens;
+mod ros_message;
 mod ros_yaml;
 mod slam_yaml;
 mod toml_file;
 
 pub(crate) use depth_scale::checked_depth_scale;
 pub use depth_scale::{KINECT_V2_DEPTH_SCALE, TUM_DEPTH_SCALE};
+pub(crate) use ros_message::{InfoNumbers, camera_of_info};
 
 use crate::files::read_text;
 use crate::{Expected, FileKind, IoError};

@@ -1,4 +1,4 @@
-//! Encoding and decoding of colour and depth images: JPEG and PNG.
+//! Encoding and decoding of colour and depth images: JPEG, PNG and RVL.
 
 mod claim;
 mod color;
@@ -11,6 +11,7 @@ mod png_depth;
 mod png_grey;
 mod png_writer;
 mod raw_depth;
+mod rvl;
 mod tiff_depth;
 
 pub(crate) use claim::can_hold;
@@ -20,8 +21,9 @@ pub use error::CodecError;
 pub use event::{EncodedEvent, EncodedRgbd};
 pub use png_color::encode_color_png;
 pub(crate) use png_depth::encode_grey16;
-pub use png_depth::{decode_depth, decode_raw_depth, encode_depth};
+pub use png_depth::{decode_depth, decode_raw_depth, encode_depth, encode_depth_rvl};
 pub(crate) use png_grey::encode_grey8;
+pub(crate) use rvl::decode_rvl;
 
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 use trundle_core::ColorImage;

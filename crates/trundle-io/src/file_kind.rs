@@ -34,6 +34,20 @@ impl FileKind {
         Ok(Self::of_bytes(&head(path)?, meta.len()))
     }
 
+    /// Whether this is a ROS bag, or a file that may be one: MCAP of any profile, or packed with zstd.
+    #[must_use]
+    pub fn is_bag(self) -> bool {
+        matches!(
+            self,
+            Self::Ros1Bag
+                | Self::Ros2Mcap
+                | Self::Ros2Sqlite
+                | Self::Ros2BagFolder
+                | Self::OtherMcap
+                | Self::Zstd
+        )
+    }
+
     /// The kind of a file that begins with `head` and has `len` bytes in all.
     #[must_use]
     pub fn of_bytes(head: &[u8], len: u64) -> Self {

@@ -52,7 +52,7 @@ pub use camera::{CameraModel, KINECT_V2_DEPTH_SCALE, TUM_DEPTH_SCALE};
 pub use carmen::{CarmenLog, read_carmen};
 pub use codec::{
     CodecError, EncodedEvent, EncodedRgbd, JPEG_QUALITY, decode_color, decode_depth, decode_raw_depth,
-    encode_color, encode_color_png, encode_depth,
+    encode_color, encode_color_png, encode_depth, encode_depth_rvl,
 };
 pub use csv::{curve_csv, table_csv, trajectory_csv, waypoints_csv};
 pub use depth_statistics::DepthStatistics;
@@ -68,12 +68,13 @@ pub use map::{
     read_keep_out_mask, read_map, read_map_file, read_places, read_speed_mask, write_map, write_map_as,
 };
 pub use output::{InputFiles, OutputFile, OutputFolder, abandon_outputs, keep_aside};
-pub use recording::{
-    FeatureMarks, KeyframeGraph, LandmarkCloud, PoseInFrame, PosesInFrame, RecordedMessage, Recorder,
-    RecordingCut, RecordingReader,
-};
+pub use recording::{PoseInFrame, PosesInFrame, RecordedMessage, Recorder, RecordingCut, RecordingReader};
 pub use replace::{replace_file, require_replaceable};
-pub use ros::{read_laser_log, read_ros_bag};
+pub use ros::message as ros_message;
+pub use ros::{
+    RosFrame, RosFrames, RosImageTopics, RosSequence, RosSequenceOptions, RosTopics, read_laser_log,
+    read_ros_bag,
+};
 pub use sequence_camera::SequenceCamera;
 pub use stamp_text::parse_stamp;
 pub use summary::Summary;

@@ -140,6 +140,16 @@ impl OutputFolder {
         Recorder::new(BufWriter::with_capacity(1 << 20, file), &target)
     }
 
+    /// Starts a ROS 2 bag as the file `name`; finish it before the commit.
+    ///
+    /// # Errors
+    /// When it cannot be created.
+    pub fn bag(&self, name: &str) -> Result<Recorder<BufWriter<File>>, IoError> {
+        let target = self.target().join(name);
+        let file = File::create(self.staged(name)).map_err(IoError::system(&target, "create"))?;
+        Recorder::bag(BufWriter::with_capacity(1 << 20, file), &target)
+    }
+
     /// Moves everything to its place, and the files of an earlier run to the folder that keeps the last run. Returns the
     /// folder.
     ///

@@ -1,28 +1,35 @@
-//! Recordings of a run: MCAP with JSON messages and images as ROS 2 has them, which Foxglove Studio opens as it is.
+//! Recordings of a run: MCAP with messages of ROS 2 in CDR, which RViz, Foxglove, Rerun and rosbags open as it is. Recordings of JSON, as
+//! earlier versions wrote them, are read too.
 
 mod chunk_decoder;
+mod container;
 mod cut;
+mod images;
 mod messages;
 mod poses;
 mod reader;
 mod record_parser;
 mod recorder;
-mod ros_image;
-mod schemas;
 mod stream;
 mod time;
 mod unpacked;
-mod visual_map;
 
 pub use poses::{PoseInFrame, PosesInFrame};
 pub use reader::{RecordedMessage, RecordingReader};
 pub use recorder::Recorder;
 pub use stream::RecordingCut;
 pub(crate) use stream::{Encoding, MessageStream, RawMessage};
-pub use visual_map::{FeatureMarks, KeyframeGraph, LandmarkCloud};
 
-/// Where each kind of sensor event is recorded.
+/// The name of the writer in the header of a recording.
+pub(crate) const LIBRARY: &str = "trundle";
+
+/// Topics of a recording.
 mod topics {
+    /// In front of the topics of what a replay needs.
+    pub const PRIVATE: &str = "/trundle";
+    /// The key of a channel's metadata that names the schema of its JSON.
+    pub const SCHEMA_KEY: &str = "trundle_schema";
+    // Where each kind of sensor event is recorded.
     pub const WHEELS: &str = "/wheels";
     pub const GYRO: &str = "/gyro";
     pub const TOUCH: &str = "/touch";
@@ -33,6 +40,13 @@ mod topics {
     pub const BODY: &str = "/body";
     pub const SCAN: &str = "/scan";
     pub const TRUTH: &str = "/truth";
-    pub const COLOR: &str = "/camera/color";
-    pub const DEPTH: &str = "/camera/depth";
+    /// The place of an image among the events.
+    pub const IMAGE: &str = "/image";
+    pub const COLOR: &str = "/camera/color/image_raw/compressed";
+    pub const DEPTH: &str = "/camera/depth/image_raw/compressedDepth";
+    pub const COLOR_INFO: &str = "/camera/color/camera_info";
+    pub const DEPTH_INFO: &str = "/camera/depth/camera_info";
+    /// Images of recordings of JSON: depth right behind colour.
+    pub const OLD_COLOR: &str = "/camera/color";
+    pub const OLD_DEPTH: &str = "/camera/depth";
 }

@@ -2,14 +2,22 @@
 
 mod bag;
 mod cdr;
+mod cdr_writer;
 mod contents;
 mod database;
+mod definitions;
 mod frames;
 mod laser_log;
 mod laser_scan;
+pub mod message;
 mod messages;
+mod rgbd;
 mod ros1_bag;
 mod ros1_record;
 mod sqlite;
 
+pub(crate) use cdr::{CdrError, CdrReader, Wire};
+pub(crate) use definitions::definition;
 pub use laser_log::{read_laser_log, read_ros_bag};
+pub(crate) use messages::header;
+pub use rgbd::{RosFrame, RosFrames, RosImageTopics, RosSequence, RosSequenceOptions, RosTopics};

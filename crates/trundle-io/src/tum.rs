@@ -14,6 +14,7 @@ mod trajectory;
 mod trajectory_form;
 mod writer;
 
+pub(crate) use association::pair_nearest;
 pub use frame::TumFrame;
 pub use odometry::{odometry_text, read_odometry};
 use orb_slam::orb_slam_yaml;

@@ -57,7 +57,7 @@ impl Ros2Robot {
         if let Some(pose) = &described.base_from_camera {
             let broken =
                 |error| Ros2Error::create("the robot with the camera where /tf_static has it", error);
-            robot.mount = CameraMount::from_pose(pose).validated().map_err(broken)?;
+            robot.mount = CameraMount::of_pose(pose).map_err(broken)?;
         } else {
             tracing::warn!("no transform leads to the camera's frame: the mount of the robot file is used");
         }

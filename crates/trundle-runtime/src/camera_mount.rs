@@ -28,6 +28,9 @@ impl Default for CameraMount {
     }
 }
 
+/// The optical frame (x right, y down, z ahead) in the camera's body frame (x ahead, y left, z up). Source: REP 103.
+const BODY_FROM_OPTICAL: Matrix3<f64> = Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
+
 impl CameraMount {
     /// Passes a valid mount through.
     ///
@@ -43,24 +46,16 @@ impl CameraMount {
         Ok(self)
     }
 
-    /// The mount of a camera whose optical frame stands at `base_from_camera`.
-    pub fn from_pose(base_from_camera: &Pose3) -> Self {
-        let turn = base_from_camera.rotation_matrix() * Self::body_from_optical().transpose();
+    /// The mount whose [`CameraMount::base_from_camera`] is `base_from_camera`.
+    ///
+    /// # Errors
+    /// When a number is outside its range.
+    pub fn of_pose(base_from_camera: &Pose3) -> Result<Self, Invalid> {
+        let turn = base_from_camera.rotation_matrix() * BODY_FROM_OPTICAL.transpose();
         let (roll, pitch, yaw) = nalgebra::Rotation3::from_matrix_unchecked(turn).euler_angles();
-        let at = base_from_camera.translation;
-        Self {
-            x: at.x,
-            y: at.y,
-            z: at.z,
-            yaw_deg: yaw.to_degrees(),
-            pitch_deg: pitch.to_degrees(),
-            roll_deg: roll.to_degrees(),
-        }
-    }
-
-    /// Axes of the optical frame (z ahead, x right) in those of a body (x ahead, y left).
-    fn body_from_optical() -> Matrix3<f64> {
-        Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0)
+        let [x, y, z] = base_from_camera.translation.into();
+        let [yaw_deg, pitch_deg, roll_deg] = [yaw, pitch, roll].map(f64::to_degrees);
+        Self { x, y, z, yaw_deg, pitch_deg, roll_deg }.validated()
     }
 
     /// `base_from_camera`, the camera in its optical frame.
@@ -70,10 +65,7 @@ impl CameraMount {
             self.pitch_deg.to_radians(),
             self.yaw_deg.to_radians(),
         );
-        Pose3::from_matrix(
-            turn.into_inner() * Self::body_from_optical(),
-            Vector3::new(self.x, self.y, self.z),
-        )
+        Pose3::from_matrix(turn.into_inner() * BODY_FROM_OPTICAL, Vector3::new(self.x, self.y, self.z))
     }
 }
 
@@ -88,6 +80,22 @@ mod tests {
         assert!((optical_axis - Vector3::new(0.75_f64.sqrt(), 0.0, -0.5)).norm() < 1e-12);
         let right = mount.base_from_camera().rotate(Vector3::x());
         assert!((right + Vector3::y()).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_mount_comes_back_from_its_pose() {
+        let mount = CameraMount { x: 0.1, y: -0.2, z: 0.3, yaw_deg: 40.0, pitch_deg: 8.0, roll_deg: -3.0 };
+        let back = CameraMount::of_pose(&mount.base_from_camera()).unwrap();
+        for (a, b) in [
+            (back.x, mount.x),
+            (back.z, mount.z),
+            (back.yaw_deg, mount.yaw_deg),
+            (back.pitch_deg, mount.pitch_deg),
+            (back.roll_deg, mount.roll_deg),
+        ] {
+            assert!((a - b).abs() < 1e-9, "{back:?}");
+        }
+        assert!(CameraMount::of_pose(&Pose3::identity()).is_err(), "it looks up");
     }
 
     #[test]

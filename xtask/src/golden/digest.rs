@@ -1,5 +1,6 @@
 //! Digests of outputs: numbers only, so that a change of wording does not change them.
 
+use super::recording::each_text;
 use std::path::{Path, PathBuf};
 
 /// What of a path is hashed.
@@ -9,7 +10,7 @@ pub enum Quantity {
     File,
     /// All files of a folder, by name.
     Folder,
-    /// The messages of one topic of an MCAP recording: stamps and payloads in order.
+    /// The messages of one of trundle's own topics of a recording: stamps and JSON in order.
     Topic(&'static str),
 }
 
@@ -64,14 +65,11 @@ impl Digest {
     }
 
     fn add_topic(&mut self, path: &Path, topic: &str) -> Result<(), String> {
-        let broken = |error: mcap::McapError| format!("{}: {error}", path.display());
-        for message in mcap::MessageStream::new(&read(path)?).map_err(broken)? {
-            let message = message.map_err(broken)?;
-            if message.channel.topic == topic {
-                self.add(&message.log_time.to_le_bytes());
-                self.add(&message.data);
-            }
-        }
+        let add = |stamp: u64, text: &[u8]| {
+            self.add(&stamp.to_le_bytes());
+            self.add(text);
+        };
+        each_text(&read(path)?, topic, add).map_err(|error| format!("{}: {error}", path.display()))?;
         Ok(())
     }
 }

@@ -4,6 +4,7 @@
 mod cases;
 mod digest;
 mod expected;
+mod recording;
 
 use crate::program;
 use crate::workspace::Verdict;

@@ -91,7 +91,7 @@ pub enum RecordArg {
     None,
     /// Everything but images: about 0.1 MB a second.
     Events,
-    /// Everything, images too: about 4 MB a second.
+    /// Everything, images too: about 3 MB a second.
     All,
 }
 

@@ -22,9 +22,6 @@ pub struct LaserArgs {
     /// The topic of the scans, in a CARMEN log the name of the lines, as RAWLASER2 [default: that with the most scans]
     #[arg(long, value_name = "TOPIC")]
     pub scan_topic: Option<String>,
-    /// The topic of a bag's odometry, or of its transforms [default: that with the most odometry]
-    #[arg(long, value_name = "TOPIC")]
-    pub odom_topic: Option<String>,
 }
 
 impl LaserArgs {
@@ -36,7 +33,7 @@ impl LaserArgs {
             upside_down: self.upside_down,
             max_range: self.max_range,
             scan_topic: self.scan_topic.clone(),
-            odometry_topic: self.odom_topic.clone(),
+            odometry_topic: None,
         }
     }
 
@@ -48,7 +45,6 @@ impl LaserArgs {
             ("--upside-down", self.upside_down),
             ("--max-range", self.max_range.is_some()),
             ("--scan-topic", self.scan_topic.is_some()),
-            ("--odom-topic", self.odom_topic.is_some()),
         ];
         options.into_iter().find(|(_, is_given)| *is_given).map(|(name, _)| name)
     }

@@ -1,16 +1,16 @@
 //! Driving by hand: keys in the terminal, a page in the browser, in real time.
 
-mod steering;
+mod keys;
 mod terminal;
 
 use crate::console;
-use steering::Steering;
+use keys::steering_key;
 use terminal::RawTerminal;
 use trundle::app::AppError;
 use trundle::app::real_time::RealTimePacer;
 use trundle::core::{OccupancyGrid, Pose2, RgbdImage, Stamp, Twist2};
 use trundle::experiments::sim_drive::SimDriver;
-use trundle::experiments::teleop::{RobotView, TeleopPage, TeleopServer};
+use trundle::experiments::teleop::{RobotView, Steering, TeleopPage, TeleopServer};
 use trundle::sim::Simulator;
 
 /// A driver at the keys.
@@ -49,9 +49,11 @@ impl SimDriver for TeleopDriver {
     /// The twist of the keys; waits until real time has come to `stamp`.
     fn twist(&mut self, stamp: Stamp, _pose: Pose2) -> Result<Twist2, AppError> {
         self.pacer.wait_for(stamp.as_secs());
-        for key in self.terminal.pressed()? {
-            self.steering.press(key);
-        }
+        self.terminal
+            .pressed()?
+            .into_iter()
+            .filter_map(steering_key)
+            .for_each(|key| self.steering.press(key));
         Ok(self.steering.twist())
     }
 

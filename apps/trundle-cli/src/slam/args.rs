@@ -1,6 +1,6 @@
 //! The command line of `trundle slam`.
 
-use crate::common_args::{Common, MapImageArg, NumberArg};
+use crate::common_args::{BagTopicsArgs, Common, MapImageArg, NumberArg};
 use crate::output_args::OutputDirArg;
 use clap::Args;
 use std::path::PathBuf;
@@ -11,19 +11,18 @@ use std::path::PathBuf;
     after_help = "Example: trundle slam ../shared/data/tum_fr1_rpy_400 --height 1.57 --tilt 33 --roll=-37"
 )]
 pub struct SlamArgs {
-    /// A TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt; optional groundtruth.txt and odometry.txt), or a
-    /// recording of trundle with images.
+    /// A TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt; optional groundtruth.txt and odometry.txt), a ROS
+    /// 2 bag (folder, .mcap, .db3), or a recording of trundle with images.
     pub input: PathBuf,
     /// Read a recording of trundle that is cut, as by a power failure, up to the cut.
     #[arg(long)]
     pub recover: bool,
-    /// Preset freiburg1, freiburg2, freiburg3, kinect_v2, or a camera file of trundle, ORB-SLAM, stella_vslam, ROS or Open3D
-    /// [default: the recording's, or the one in the folder, camera.toml first, else freiburg1 with a warning]
-    #[arg(long, value_name = "PRESET|FILE")]
-    pub camera: Option<String>,
-    /// Depth units a metre [default: the camera's]
-    #[arg(long, value_name = "N", value_parser = NumberArg::above_zero("units a metre"), allow_negative_numbers = true)]
-    pub depth_scale: Option<f64>,
+    /// The camera.
+    #[command(flatten)]
+    pub camera: CameraArgs,
+    /// The topics of a bag.
+    #[command(flatten)]
+    pub topics: BagTopicsArgs,
     /// Stop after this many frames.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,
@@ -57,4 +56,16 @@ pub struct SlamArgs {
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
+}
+
+/// The camera of the images.
+#[derive(Debug, Args)]
+pub struct CameraArgs {
+    /// Preset freiburg1, freiburg2, freiburg3, kinect_v2, or a camera file of trundle, ORB-SLAM, stella_vslam, ROS or Open3D
+    /// [default: the recording's, or the one in the folder, camera.toml first, else freiburg1 with a warning]
+    #[arg(long, value_name = "PRESET|FILE")]
+    pub camera: Option<String>,
+    /// Depth units a metre [default: the camera's]
+    #[arg(long, value_name = "N", value_parser = NumberArg::above_zero("units a metre"), allow_negative_numbers = true)]
+    pub depth_scale: Option<f64>,
 }

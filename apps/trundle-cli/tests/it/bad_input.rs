@@ -99,6 +99,10 @@ fn a_file_of_another_kind_is_named_whatever_its_name_by_every_command() {
     };
     let ros1 = file("run.log", b"#ROSBAG V2.0\n\x45\0\0\0");
     assert!(refusal(&["map", text(&ros1)]).contains("run.log: "), "a ROS 1 bag without a scan");
+    assert!(
+        refusal(&["slam", text(&ros1)]).contains("run.log: the bag is truncated"),
+        "a ROS 1 bag without images"
+    );
     let picture = file("map.yaml", b"P5\n2 2\n255\n\0\0\0\0");
     let mesh = file("room.glb", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     let empty = file("run.mcap", b"");
@@ -111,8 +115,7 @@ fn a_file_of_another_kind_is_named_whatever_its_name_by_every_command() {
     ] {
         let file = text(file);
         for arguments in [
-            &["slam", file][..],
-            &["replay", file],
+            &["replay", file][..],
             &["plan", file, poses[0], poses[1]],
             &["dock", file, poses[0], poses[1]],
             &["sim", file],
@@ -123,5 +126,8 @@ fn a_file_of_another_kind_is_named_whatever_its_name_by_every_command() {
             assert!(words.iter().all(|word| sentence.contains(word)), "{arguments:?}: {sentence}");
         }
     }
+    assert!(
+        refusal(&["slam", text(&picture)]).contains("this is a PGM picture, expected a TUM RGB-D folder")
+    );
     assert!(refusal(&["plan", text(&picture), poses[0], poses[1]]).contains("give the map's YAML file"));
 }

@@ -27,7 +27,7 @@ impl CalibrationInput {
             );
             return Err(AppError::Input(problem));
         }
-        let options = SequenceOptions { path, camera: None, depth_scale: None, recover };
+        let options = SequenceOptions { recover, ..SequenceOptions::new(path) };
         let images = SequenceInput::open(&options)?;
         let reader = if recover { RecordingReader::open_to_cut(path)? } else { RecordingReader::open(path)? };
         let (gyro, ticks) = read_base(reader)?;

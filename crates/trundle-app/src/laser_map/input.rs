@@ -12,8 +12,11 @@ use trundle_io::{FileKind, read_laser_log};
 /// # Errors
 /// Names the file, and the line or frame that cannot be accepted.
 pub fn read_log(request: &LaserMapRequest, progress: &dyn StepProgress) -> Result<LogInput, AppError> {
-    let options =
-        SequenceOptions { path: &request.log, camera: None, depth_scale: None, recover: request.recover };
+    let options = SequenceOptions {
+        recover: request.recover,
+        topics: request.topics.clone(),
+        ..SequenceOptions::new(&request.log)
+    };
     let input = match FileKind::of(&request.log)? {
         FileKind::SequenceFolder => SequenceInput::open(&options)?,
         FileKind::TrundleRecording => {
@@ -22,6 +25,9 @@ pub fn read_log(request: &LaserMapRequest, progress: &dyn StepProgress) -> Resul
                 return depth_scans::of_laser(&run, &request.log);
             }
             SequenceInput::of_recording(&options, run)?
+        }
+        kind if kind.is_bag() && SequenceInput::is_one(&request.log, &request.topics) => {
+            SequenceInput::open(&options)?
         }
         _ => {
             let log = read_laser_log(&request.log, &request.laser)?;

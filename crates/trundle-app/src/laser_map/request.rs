@@ -3,7 +3,7 @@
 use super::log_input::DepthLog;
 use crate::{AppError, read_map};
 use std::path::{Path, PathBuf};
-use trundle_io::{Expected, FileKind, LaserLogOptions, MapImage};
+use trundle_io::{Expected, FileKind, LaserLogOptions, MapImage, RosSequenceOptions};
 use trundle_mapping::{
     MapLocalizer, MapperConfig, MotionConfig, ParticleConfig, ParticleMapper, PosePriorConfig,
 };
@@ -15,6 +15,8 @@ pub struct LaserMapRequest {
     pub log: PathBuf,
     /// Whether a recording of trundle may be cut: it is read up to the cut.
     pub recover: bool,
+    /// The topics of a bag with RGB-D images.
+    pub topics: RosSequenceOptions,
     /// The motion of an RGB-D folder: a TUM trajectory of the camera; `None` for the folder's own.
     pub poses: Option<PathBuf>,
     /// Whether these poses drift: only their steps are used, and loops are closed.

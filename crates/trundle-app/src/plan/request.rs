@@ -3,7 +3,8 @@
 use super::goal_refusal::GoalRefusal;
 use super::masks::{SpeedMaskLimits, read_lanes, set_keep_out, set_speed_mask};
 use crate::{AppError, read_map};
-use std::path::PathBuf;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use trundle_core::{Footprint, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle_planning::{MultiGoalPlan, Plan, Planner, PlannerConfig, UnknownIs, WaypointGraph};
 use trundle_runtime::RobotConfig;
@@ -32,6 +33,31 @@ pub struct NamedPose {
 }
 
 impl NamedPose {
+    /// The place `name` of the file of places.
+    ///
+    /// # Errors
+    /// When there is no file of places, or no such place in it.
+    pub fn of_place(
+        name: &str,
+        file: Option<&Path>,
+        places: Option<&BTreeMap<String, Pose2>>,
+    ) -> Result<Self, AppError> {
+        let (Some(file), Some(places)) = (file, places) else {
+            let message =
+                format!("'{name}' is no pose X,Y,DEG; to name a place, give its file with --places");
+            return Err(AppError::Input(message));
+        };
+        match places.get(name) {
+            Some(pose) => Ok(Self { pose: *pose, name: Some(name.to_owned()) }),
+            None => {
+                let known: Vec<&str> = places.keys().map(String::as_str).collect();
+                let message =
+                    format!("{}: no place '{name}'; there are: {}", file.display(), known.join(", "));
+                Err(AppError::Input(message))
+            }
+        }
+    }
+
     /// Name and position, for messages.
     pub(super) fn describe(&self) -> String {
         let at = format!("({}, {}) m", self.pose.x, self.pose.y);
@@ -67,6 +93,17 @@ pub struct PlanRequest {
 }
 
 impl PlanRequest {
+    /// Warning about the cells of the speed mask whose limit is out of range; `None` without such cells.
+    #[must_use]
+    pub fn speed_mask_warning(&self) -> Option<String> {
+        let limits = self.speed_limits.filter(|limits| limits.out_of_range > 0)?;
+        Some(format!(
+            "{} of {} cells stand for a speed that is not above 0, or above 100 %: they set no limit, as in Nav2. \
+             Black does so by default; to forbid a place, use --keepout",
+            limits.out_of_range, limits.cells
+        ))
+    }
+
     /// Reads and checks the files. `goal_tolerance_m`: distance from a blocked goal that still counts; `None` for the robot's own.
     ///
     /// # Errors

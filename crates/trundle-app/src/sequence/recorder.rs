@@ -3,11 +3,9 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufWriter;
-use trundle_core::{Stamp, Vector2, Vector3};
-use trundle_io::{
-    EncodedEvent, EncodedRgbd, FeatureMarks, IoError, KeyframeGraph, LandmarkCloud, OutputFolder,
-    PoseInFrame, Recorder,
-};
+use trundle_core::{FrameId, PinholeCamera, Stamp, Vector2, Vector3};
+use trundle_io::ros_message::RosMessage;
+use trundle_io::{EncodedEvent, EncodedRgbd, IoError, OutputFolder, Recorder, ros_message};
 use trundle_slam::{KeyframeId, RgbdSlam, TrackReport};
 
 /// Shared landmarks from which two keyframes are drawn as covisible; with fewer they are not linked. Source: ours.
@@ -27,8 +25,9 @@ pub struct SequenceRecorder {
 }
 
 impl SequenceRecorder {
-    /// Records into `recorder`.
-    pub fn new(recorder: Recorder<BufWriter<File>>) -> Self {
+    /// Records images of `camera` into `recorder`.
+    pub fn new(mut recorder: Recorder<BufWriter<File>>, camera: PinholeCamera) -> Self {
+        recorder.set_camera(camera);
         Self { recorder, failure: None, now: Stamp::default() }
     }
 
@@ -55,10 +54,12 @@ impl SequenceRecorder {
             let keypoint = feature.keypoint;
             (Vector2::new(f64::from(keypoint.x), f64::from(keypoint.y)), feature.tracked)
         };
-        let marks = FeatureMarks::new(self.now, slam.last_features().iter().map(mark));
-        self.recorder.record_json("/slam/features", FeatureMarks::SCHEMA, self.now, &marks)?;
-        let pose = PoseInFrame::new(self.now, FRAME, report.visual_from_camera);
-        self.recorder.record_json("/slam/pose", PoseInFrame::SCHEMA, self.now, &pose)?;
+        let marks: Vec<(Vector2, bool)> = slam.last_features().iter().map(mark).collect();
+        let camera = FrameId::Camera.to_string();
+        self.show("/slam/features", &ros_message::features(self.now, &camera, &marks))?;
+        self.show("/slam/pose", &ros_message::pose(self.now, FRAME, report.visual_from_camera))?;
+        let transform = (self.now, FRAME, camera.as_str(), report.visual_from_camera);
+        self.show("/tf", &ros_message::transforms(&[transform]))?;
         if report.closed_loop.is_some() { self.record_map(slam) } else { Ok(()) }
     }
 
@@ -72,12 +73,15 @@ impl SequenceRecorder {
     }
 
     fn record_map(&mut self, slam: &RgbdSlam) -> Result<(), IoError> {
-        let cloud = LandmarkCloud::new(self.now, FRAME, slam.landmarks());
-        self.recorder.record_json("/slam/landmarks", LandmarkCloud::SCHEMA, self.now, &cloud)?;
+        self.show("/slam/landmarks", &ros_message::points(self.now, FRAME, slam.landmarks()))?;
         let links = KeyframeLinks::of(slam);
-        let graph = KeyframeGraph::new(self.now, FRAME, links.covisible, links.loops);
-        self.recorder.record_json("/slam/graph", KeyframeGraph::SCHEMA, self.now, &graph)?;
-        Ok(())
+        let graph = ros_message::keyframe_graph(self.now, FRAME, &links.covisible, &links.loops);
+        self.show("/slam/graph", &graph)
+    }
+
+    /// Records a message for other programs.
+    fn show(&mut self, topic: &str, message: &RosMessage) -> Result<(), IoError> {
+        self.recorder.record_message(topic, self.now, message)
     }
 }
 

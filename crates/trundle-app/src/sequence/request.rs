@@ -5,15 +5,17 @@ use crate::sequence_input::{SequenceInput, SequenceOptions};
 use crate::vocabulary_file::vocabulary_or_builtin;
 use std::path::PathBuf;
 use trundle_core::{Invalid, Pose3};
-use trundle_io::{Expected, MapImage};
+use trundle_io::{Expected, MapImage, RosSequenceOptions};
 use trundle_runtime::level_from_first_camera;
 use trundle_slam::{Mode, RgbdSlam, SlamConfig};
 
 /// A recorded sequence and how to track it.
 #[derive(Debug, Clone)]
 pub struct SequenceRequest {
-    /// A TUM RGB-D folder or a recording of a run.
+    /// A TUM RGB-D folder, a ROS bag or a recording of a run.
     pub path: PathBuf,
+    /// The topics of a bag.
+    pub topics: RosSequenceOptions,
     /// A camera preset or a file of one; `None` for the input's own.
     pub camera: Option<String>,
     /// Depth units a metre; `None` for the camera's own.
@@ -54,6 +56,7 @@ impl SequenceRequest {
             camera: self.camera.as_deref(),
             depth_scale: self.depth_scale,
             recover: self.recover,
+            topics: self.topics.clone(),
         })
     }
 

@@ -84,7 +84,7 @@ pub fn track_sequence(
     progress: &dyn StepProgress,
 ) -> Result<SequenceRun, AppError> {
     let mut run = SequenceRun::new(request, input)?;
-    let mut recorder = SequenceRecorder::new(folder.recorder("recording.mcap")?);
+    let mut recorder = SequenceRecorder::new(folder.recorder("recording.mcap")?, input.camera.model.camera);
     let odometry = OdometryPrior::new(input);
     let frames = request.frames.map_or(input.len(), |frames| input.len().min(frames));
     progress.begin(Some(frames));

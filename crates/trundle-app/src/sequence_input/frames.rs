@@ -4,7 +4,8 @@ use crate::AppError;
 use std::path::Path;
 use trundle_core::{RgbdImage, Stamp};
 use trundle_io::{
-    CodecError, EncodedEvent, EncodedRgbd, FrameError, IoError, RecordedMessage, RecordingReader, TumSequence,
+    CodecError, EncodedEvent, EncodedRgbd, FrameError, IoError, RecordedMessage, RecordingReader, RosFrame,
+    RosFrames, TumSequence,
 };
 
 /// An image that is not decoded yet.
@@ -18,6 +19,8 @@ enum Content<'a> {
     Listed(&'a TumSequence),
     /// Read from the recording at this path, whose camera has this size, px.
     Recorded { path: &'a Path, image: EncodedRgbd, size: (usize, usize) },
+    /// Read from the bag at this path, whose camera has this size, px.
+    Bagged { path: &'a Path, image: RosFrame, size: (usize, usize) },
 }
 
 impl PendingFrame<'_> {
@@ -27,6 +30,7 @@ impl PendingFrame<'_> {
         match &self.content {
             Content::Listed(sequence) => sequence.stamp(self.index),
             Content::Recorded { image, .. } => image.stamp,
+            Content::Bagged { image, .. } => image.stamp(),
         }
     }
 
@@ -37,16 +41,25 @@ impl PendingFrame<'_> {
     pub fn decode(&self) -> Result<RgbdImage, FrameError> {
         match &self.content {
             Content::Listed(sequence) => sequence.load(self.index),
-            Content::Recorded { path, image, size } => {
-                let refused = |source| FrameError { index: self.index, stamp: image.stamp, source };
-                let decoded = image.decode().map_err(|problem| refused(IoError::bad_image(path, problem)))?;
-                let found = (decoded.color().width(), decoded.color().height());
-                if found != *size {
-                    return Err(refused(IoError::wrong_image_size(path, found, *size)));
-                }
-                Ok(decoded)
-            }
+            Content::Recorded { path, image, size } => self.sized(path, image.decode(), *size),
+            Content::Bagged { path, image, size } => self.sized(path, image.decode(), *size),
         }
+    }
+
+    /// The decoded image, where it is of the camera's size.
+    fn sized(
+        &self,
+        path: &Path,
+        decoded: Result<RgbdImage, CodecError>,
+        size: (usize, usize),
+    ) -> Result<RgbdImage, FrameError> {
+        let refused = |source| FrameError { index: self.index, stamp: self.stamp(), source };
+        let decoded = decoded.map_err(|problem| refused(IoError::bad_image(path, problem)))?;
+        let found = (decoded.color().width(), decoded.color().height());
+        if found != size {
+            return Err(refused(IoError::wrong_image_size(path, found, size)));
+        }
+        Ok(decoded)
     }
 
     /// The bytes to record for the decoded `image`: those that were read, where they are of the recordings' form.
@@ -57,19 +70,26 @@ impl PendingFrame<'_> {
         match self.content {
             Content::Listed(_) => EncodedRgbd::encode(image),
             Content::Recorded { image, .. } => Ok(image),
+            Content::Bagged { image: read, .. } => read.encoded(image),
         }
     }
 }
 
-/// The images of a folder or a recording.
+/// The images of a folder, a recording or a bag.
 pub(super) enum SequenceFrames<'a> {
     Folder { sequence: &'a TumSequence, next: usize },
     Recording { path: &'a Path, reader: Box<RecordingReader>, size: (usize, usize), delay: f64, next: usize },
+    Bag { path: &'a Path, frames: RosFrames<'a>, size: (usize, usize), next: usize },
 }
 
 impl<'a> SequenceFrames<'a> {
     pub(super) fn of_folder(sequence: &'a TumSequence) -> Self {
         Self::Folder { sequence, next: 0 }
+    }
+
+    /// `size` of the camera, px.
+    pub(super) fn of_bag(path: &'a Path, frames: RosFrames<'a>, size: (usize, usize)) -> Self {
+        Self::Bag { path, frames, size, next: 0 }
     }
 
     /// `size` of the camera, px; `delay` of the images' stamps, s, which is subtracted.
@@ -92,6 +112,15 @@ impl<'a> Iterator for SequenceFrames<'a> {
                 let index = (*next < sequence.len()).then_some(*next)?;
                 *next += 1;
                 Some(Ok(PendingFrame { index, content: Content::Listed(sequence) }))
+            }
+            Self::Bag { path, frames, size, next } => {
+                let image = match frames.next()? {
+                    Ok(image) => image,
+                    Err(error) => return Some(Err(error.into())),
+                };
+                let content = Content::Bagged { path, image, size: *size };
+                *next += 1;
+                Some(Ok(PendingFrame { index: *next - 1, content }))
             }
             Self::Recording { path, reader, size, delay, next } => {
                 let mut image = match next_image(reader) {

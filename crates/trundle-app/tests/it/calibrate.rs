@@ -153,7 +153,7 @@ fn a_delay_in_use_is_subtracted_from_the_images_and_part_of_the_delay_that_is_fo
         Some(event)
     };
     record_with(&file, &in_use, robot(), TURNS, keep_first);
-    let options = SequenceOptions { path: &file, camera: None, depth_scale: None, recover: false };
+    let options = SequenceOptions::new(&file);
     let images = SequenceInput::open(&options).unwrap();
     let stamp = images.frames().unwrap().next().unwrap().unwrap().stamp();
     assert!((first.unwrap() - stamp - 0.03).abs() < 1e-9);

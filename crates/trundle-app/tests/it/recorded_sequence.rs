@@ -6,7 +6,7 @@ use trundle_app::laser_map::{LaserMapRequest, map_log, read_log};
 use trundle_app::sequence::{SequenceRequest, track_sequence};
 use trundle_app::sequence_input::{RecordedRun, SequenceInput, SequenceOptions};
 use trundle_core::{Beam, GyroRate, Pose2, RgbdImage, Scan, Stamp, Vector2, WheelTicks};
-use trundle_io::{EncodedEvent, LaserLogOptions, MapImage, OutputFolder};
+use trundle_io::{EncodedEvent, LaserLogOptions, MapImage, OutputFolder, RosSequenceOptions};
 use trundle_sim::{Scene, SimConfig, Simulator};
 
 /// A second and a half of the simulated robot, recorded with images.
@@ -19,11 +19,12 @@ fn recording(scratch: &Path) -> PathBuf {
 }
 
 fn options(path: &Path, recover: bool) -> SequenceOptions<'_> {
-    SequenceOptions { path, camera: None, depth_scale: None, recover }
+    SequenceOptions { recover, ..SequenceOptions::new(path) }
 }
 
 fn request(path: &Path) -> SequenceRequest {
     SequenceRequest {
+        topics: RosSequenceOptions::default(),
         path: path.to_owned(),
         camera: None,
         depth_scale: None,
@@ -42,6 +43,7 @@ fn request(path: &Path) -> SequenceRequest {
 
 fn map_request(log: &Path, recover: bool) -> LaserMapRequest {
     LaserMapRequest {
+        topics: RosSequenceOptions::default(),
         log: log.to_owned(),
         recover,
         poses: None,
@@ -115,7 +117,8 @@ fn a_cut_recording_is_read_up_to_the_cut() {
         let refusal = SequenceInput::open(&options(&cut_file, false)).err().unwrap().to_string();
         assert!(refusal.contains("truncated") && refusal.contains("--recover"), "{refusal}");
     }
-    assert!(last_count + 2 >= all.len(), "{last_count} of {} images before the last cut", all.len());
+    // What is cut is lost with its flush, about 1 MB.
+    assert!(last_count + 6 >= all.len(), "{last_count} of {} images before the last cut", all.len());
 }
 
 #[test]

@@ -19,9 +19,10 @@ pub fn laser_log() -> Vec<Vec<u8>> {
     ])
 }
 
-/// Bags of both storage formats, compressed in both ways.
+/// Bags of both storage formats, compressed in both ways, and one with images.
 pub fn bag() -> Vec<Vec<u8>> {
-    ["zstd.mcap", "lz4.mcap", "sqlite/bag_0.db3"].iter().filter_map(|name| committed(name)).collect()
+    let names = ["zstd.mcap", "lz4.mcap", "sqlite/bag_0.db3"];
+    names.iter().filter_map(|name| committed(name)).chain(recording()).collect()
 }
 
 /// A bag as an SQLite file.
@@ -52,7 +53,14 @@ pub fn cdr() -> Vec<Vec<u8>> {
         [head.clone(), name("odo"), name("bas"), vec![0; 4], doubles(&[1.0, 2.0, 0.0, 0.0, 0.0, 0.0, 1.0])];
     let count = [&[0, 1, 0, 0, 1, 0, 0, 0][..], &head[4..]].concat();
     let transform = [count, name("bas"), name("las"), doubles(&[0.1, 0.0, 0.2, 0.0, 0.0, 0.0, 1.0])];
-    vec![scan.concat(), odometry.concat(), transform.concat()]
+    let image = [
+        head.clone(),
+        name("cam"),
+        [1_u32, 2].map(u32::to_le_bytes).concat(),
+        name("rgb8"),
+        [vec![0; 4], 6_u32.to_le_bytes().to_vec(), 6_u32.to_le_bytes().to_vec(), vec![7; 6]].concat(),
+    ];
+    vec![scan.concat(), odometry.concat(), transform.concat(), image.concat()]
 }
 
 /// A recording with its setup and an event of each kind.

@@ -6,16 +6,30 @@ use mcap::records::MessageHeader;
 use std::collections::BTreeMap;
 use std::io::Cursor;
 use std::path::Path;
-use trundle::io::{Expected, FileKind, LaserLogOptions, RecordingReader, read_laser_log, read_ros_bag};
+use trundle::io::{
+    Expected, FileKind, LaserLogOptions, RecordingReader, RosSequence, RosSequenceOptions, read_laser_log,
+    read_ros_bag,
+};
 
 /// A laser log of any kind, recognised by its content.
 pub fn laser_log(bytes: &[u8]) {
     let _ = with_file("robot.log", bytes, |path| read_laser_log(path, &LaserLogOptions::default()));
 }
 
-/// A ROS 2 bag in one file.
+/// A ROS 2 bag in one file: its scans, its images.
 pub fn bag(bytes: &[u8]) {
-    let _ = with_file("bag", bytes, |path| read_ros_bag(path, &LaserLogOptions::default()));
+    with_file("bag", bytes, |path| {
+        let _ = read_ros_bag(path, &LaserLogOptions::default());
+        read_images(path);
+    });
+}
+
+fn read_images(path: &Path) {
+    let Ok(sequence) = RosSequence::open(path, &RosSequenceOptions::default(), false) else { return };
+    let Ok(frames) = sequence.frames(1000.0) else { return };
+    for frame in frames.flatten() {
+        let _ = frame.decode();
+    }
 }
 
 /// Any file, whose kind is recognised by its content.
@@ -36,6 +50,9 @@ fn bag_of(message: &[u8]) -> Result<Vec<u8>, mcap::McapError> {
         ("/tf", "tf2_msgs/msg/TFMessage"),
         ("/odom", "nav_msgs/msg/Odometry"),
         ("/scan", "sensor_msgs/msg/LaserScan"),
+        ("/image", "sensor_msgs/msg/Image"),
+        ("/image/compressed", "sensor_msgs/msg/CompressedImage"),
+        ("/camera_info", "sensor_msgs/msg/CameraInfo"),
     ];
     for (sequence, (topic, kind)) in (0_u32..).zip(types) {
         let schema_id = writer.add_schema(kind, "ros2msg", b"")?;

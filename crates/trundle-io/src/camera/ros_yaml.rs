@@ -3,14 +3,11 @@
 use super::fields::CameraFields;
 use super::image_side::image_side;
 use super::matrix::{CameraMatrix, MatrixOrder};
+use super::ros_lens::lens_of;
 use crate::IoError;
 use crate::yaml_document::{YamlDocument, YamlValue};
 use std::path::Path;
 use trundle_core::Distortion;
-
-/// Parts of the names of models whose image is no pinhole camera's, also with all numbers 0: there the angle from the optical
-/// axis, not its tangent, is the distance in the image. Source: ROS REP 118's image_geometry, Kalibr.
-const FISHEYE_MODELS: [&str; 5] = ["equidist", "fisheye", "kannala", "omni", "spherical"];
 
 /// The numbers of a camera_info file.
 pub(super) fn parse(path: &Path, text: &str) -> Result<CameraFields, IoError> {
@@ -36,12 +33,6 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<CameraFields, IoError> {
     Ok(fields)
 }
 
-/// Whether a lens model is a fisheye's.
-fn is_fisheye(model: &str) -> bool {
-    let model = model.to_lowercase();
-    FISHEYE_MODELS.iter().any(|part| model.contains(part))
-}
-
 /// The lens of model plumb_bob: k1, k2, p1, p2, k3. Other models but fisheyes pass where all that they add is 0.
 fn lens(document: &YamlDocument<'_>) -> Result<Distortion, IoError> {
     let key = document.first_of(&["distortion_coefficients.data", "D", "d"]);
@@ -50,22 +41,16 @@ fn lens(document: &YamlDocument<'_>) -> Result<Distortion, IoError> {
     } else {
         Vec::new()
     };
-    let at = |i: usize| numbers.get(i).copied().unwrap_or(0.0);
-    let is_pinhole = match document.get("distortion_model") {
-        Some(YamlValue::Text(model))
-            if model == "plumb_bob" || model == "rational_polynomial" || model.is_empty() =>
-        {
-            numbers.iter().skip(5).all(|number| *number == 0.0)
-        }
-        Some(YamlValue::Text(model)) if is_fisheye(model) => false,
-        Some(_) => numbers.iter().all(|number| *number == 0.0),
-        None => true,
+    let model = match document.get("distortion_model") {
+        Some(YamlValue::Text(model)) => Some(model.as_str()),
+        Some(_) => Some(UNNAMED_MODEL),
+        None => None,
     };
-    match document.get("distortion_model") {
-        Some(model) if !is_pinhole => {
-            let expected = "plumb_bob with up to 5 numbers: rectify the images and give the rectified camera";
-            Err(document.wrong("distortion_model", model, expected))
-        }
-        _ => Ok(Distortion { k1: at(0), k2: at(1), p1: at(2), p2: at(3), k3: at(4) }),
-    }
+    lens_of(model, &numbers).map_err(|expected| {
+        let found = document.get("distortion_model").cloned().unwrap_or(YamlValue::Null(()));
+        document.wrong("distortion_model", &found, expected)
+    })
 }
+
+/// A model whose name is no text: its lens passes where all numbers are 0.
+const UNNAMED_MODEL: &str = "unnamed";

@@ -1,19 +1,19 @@
 //! Sensor events with compressed images, as they are sent and recorded.
 
-use super::{CodecError, JPEG_QUALITY, decode_color, decode_depth, encode_color, encode_depth};
+use super::{CodecError, JPEG_QUALITY, decode_color, decode_depth, encode_color, encode_depth_rvl};
 use trundle_core::{
     BodyEvent, Cliff, GyroRate, Odometry, Pose2, RgbdImage, Scan, SensorEvent, Stamp, Touch, WheelTicks,
 };
 
-/// An RGB-D image as it travels: colour as JPEG, depth as 16-bit PNG in millimetres.
+/// An RGB-D image as it travels: colour as JPEG, depth in millimetres as RVL.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EncodedRgbd {
     /// When it was taken.
     pub stamp: Stamp,
     /// The bytes of a JPEG.
     pub color_jpeg: Vec<u8>,
-    /// The bytes of a PNG.
-    pub depth_png: Vec<u8>,
+    /// Width, height and stream of RVL; of earlier recordings the bytes of a 16-bit PNG.
+    pub depth: Vec<u8>,
 }
 
 impl EncodedRgbd {
@@ -25,8 +25,16 @@ impl EncodedRgbd {
         Ok(Self {
             stamp: image.stamp(),
             color_jpeg: encode_color(image.color(), JPEG_QUALITY)?,
-            depth_png: encode_depth(image.depth())?,
+            depth: encode_depth_rvl(image.depth())?,
         })
+    }
+
+    /// The same with colour as the JPEG that it was decoded from.
+    ///
+    /// # Errors
+    /// When a side is 0 or above 65,535 px.
+    pub fn with_jpeg(color_jpeg: Vec<u8>, image: &RgbdImage) -> Result<Self, CodecError> {
+        Ok(Self { stamp: image.stamp(), color_jpeg, depth: encode_depth_rvl(image.depth())? })
     }
 
     /// The decoded image: the one that the robot and a replay receive.
@@ -34,7 +42,7 @@ impl EncodedRgbd {
     /// # Errors
     /// When the bytes are no images or their sizes differ.
     pub fn decode(&self) -> Result<RgbdImage, CodecError> {
-        let (color, depth) = (decode_color(&self.color_jpeg)?, decode_depth(&self.depth_png)?);
+        let (color, depth) = (decode_color(&self.color_jpeg)?, decode_depth(&self.depth)?);
         Ok(RgbdImage::new(self.stamp, color, depth)?)
     }
 }
@@ -135,7 +143,7 @@ mod tests {
         let encoded = EncodedRgbd::encode(&image).unwrap();
         let seen = encoded.decode().unwrap();
         assert_eq!(seen, encoded.decode().unwrap());
-        assert_eq!(encoded.depth_png, EncodedRgbd::encode(&seen).unwrap().depth_png);
+        assert_eq!(encoded.depth, EncodedRgbd::encode(&seen).unwrap().depth);
         assert_eq!(EncodedEvent::encode(&SensorEvent::Rgbd(image)).unwrap().stamp(), seen.stamp());
     }
 
@@ -144,7 +152,7 @@ mod tests {
         let encoded = EncodedRgbd {
             stamp: Stamp::default(),
             color_jpeg: encode_color(&crate::codec::tests::test_image(64, 48), 90).unwrap(),
-            depth_png: encode_depth(&DepthImage::filled(32, 24, 1.0)).unwrap(),
+            depth: crate::encode_depth(&DepthImage::filled(32, 24, 1.0)).unwrap(),
         };
         let error = encoded.decode().unwrap_err().to_string();
         assert_eq!(error, "depth image size is 32 x 24 px, expected 64 x 48 as the colour image");

@@ -1,12 +1,16 @@
-//! Depth images as 16-bit grey PNG in millimetres.
+//! Depth images in millimetres: as 16-bit grey PNG, and as RVL.
 
 use super::CodecError;
 use super::claim::MAX_PIXELS;
 use super::claim::check_size;
 use super::png_writer::{PngFormat, encode_png};
+use super::rvl::{decode_rvl, encode_rvl};
 use png::{BitDepth, ColorType, Decoder, Filter, Limits};
 use std::io::Cursor;
 use trundle_core::{DepthImage, Image};
+
+/// First bytes of a PNG. As a width of RVL they are beyond what is read.
+const PNG_MAGIC: &[u8] = b"\x89PNG";
 
 /// Depth in metres of a whole number of millimetres: the one place where the unit of the wire becomes ours.
 fn metres(millimetres: u16) -> f32 {
@@ -35,12 +39,24 @@ pub(crate) fn encode_grey16(image: &DepthImage, unit: impl Fn(f32) -> u16) -> Re
     encode_png("depth", (image.width(), image.height()), &format, &data)
 }
 
-/// A depth image in metres from a 16-bit grey PNG in millimetres.
+/// A depth image (m, 0 where there is none) in millimetres as width, height and stream of RVL.
 ///
 /// # Errors
-/// As [`decode_raw_depth`].
+/// When a side is 0.
+pub fn encode_depth_rvl(image: &DepthImage) -> Result<Vec<u8>, CodecError> {
+    if image.data().is_empty() {
+        return Err(CodecError::encode("depth", "the image has no pixel"));
+    }
+    let raw = image.data().iter().map(|&depth| millimetres(depth)).collect();
+    Ok(encode_rvl(&Image::new(image.width(), image.height(), raw)?))
+}
+
+/// A depth image in metres from millimetres: a 16-bit grey PNG, or else RVL behind width and height.
+///
+/// # Errors
+/// As [`decode_raw_depth`], and when the stream of RVL is cut or does not fit its size.
 pub fn decode_depth(bytes: &[u8]) -> Result<DepthImage, CodecError> {
-    let raw = decode_raw_depth(bytes)?;
+    let raw = if bytes.starts_with(PNG_MAGIC) { decode_raw_depth(bytes)? } else { decode_rvl(bytes)? };
     let data = raw.data().iter().map(|&value| metres(value)).collect();
     Ok(DepthImage::new(raw.width(), raw.height(), data)?)
 }
@@ -84,8 +100,10 @@ mod tests {
     #[test]
     fn every_millimetre_survives() {
         let image = DepthImage::from_fn(256, 256, |x, y| metres((y * 256 + x) as u16));
-        let back = decode_depth(&encode_depth(&image).unwrap()).unwrap();
-        assert_eq!(back, image);
+        for bytes in [encode_depth(&image).unwrap(), encode_depth_rvl(&image).unwrap()] {
+            assert_eq!(decode_depth(&bytes).unwrap(), image);
+        }
+        assert!(encode_depth_rvl(&DepthImage::default()).is_err());
     }
 
     #[test]

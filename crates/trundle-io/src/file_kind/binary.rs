@@ -59,8 +59,8 @@ fn of_mcap(head: &[u8]) -> FileKind {
     let profile = text_of(&mut rest);
     let library = text_of(&mut rest);
     match (profile, library) {
+        (_, library) if library == crate::recording::LIBRARY.as_bytes() => FileKind::TrundleRecording,
         (b"ros2", _) => FileKind::Ros2Mcap,
-        (_, b"trundle") => FileKind::TrundleRecording,
         _ => FileKind::OtherMcap,
     }
 }

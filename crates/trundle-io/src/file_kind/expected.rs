@@ -129,7 +129,7 @@ impl Expected {
             Self::LaserLog => "a CARMEN log, a ROS bag, a trundle recording or a TUM RGB-D folder",
             Self::Docking => "a map's YAML file, a CARMEN log or a file of docking problems",
             Self::Sequence => {
-                "a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt) or a trundle recording"
+                "a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt), a ROS bag or a trundle recording"
             }
             Self::Recording => "a trundle recording (recording.mcap)",
             Self::Camera => "a camera file (TOML, ORB-SLAM's, stella_vslam's or ROS's YAML, Open3D's JSON)",

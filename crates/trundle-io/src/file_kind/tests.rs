@@ -20,6 +20,7 @@ fn binary_files_by_their_first_bytes() {
         (b"SQLite format 3\0....", K::Ros2Sqlite),
         (&mcap("ros2", "rosbag2"), K::Ros2Mcap),
         (&mcap("", "trundle"), K::TrundleRecording),
+        (&mcap("ros2", "trundle"), K::TrundleRecording),
         (&mcap("x", "foxglove"), K::OtherMcap),
         (&mcap("ros2", "rosbag2")[..20], K::OtherMcap),
         (b"\x1f\x8b\x08\0", K::Gzip),

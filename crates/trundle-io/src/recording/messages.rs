@@ -1,7 +1,7 @@
 //! The JSON messages of a recording for the events of a body.
 
+use super::images::ImageBytes;
 use super::poses::PoseInFrame;
-use super::ros_image::ImageBytes;
 use super::time::Time;
 use crate::codec::{EncodedEvent, EncodedRgbd};
 use base64::Engine;
@@ -9,8 +9,8 @@ use base64::engine::general_purpose::STANDARD;
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use trundle_core::{
-    Beam, BodyEvent, BodyEventKind, Cliff, GyroRate, Invalid, Odometry, Pose2, Scan, Touch, Twist2, Vector2,
-    WheelTicks,
+    Beam, BodyEvent, BodyEventKind, Cliff, GyroRate, Invalid, Odometry, Pose2, Scan, Stamp, Touch, Twist2,
+    Vector2, WheelTicks,
 };
 
 #[derive(Serialize, Deserialize)]
@@ -71,6 +71,18 @@ pub(super) struct ScanMessage {
     hits: Vec<bool>,
 }
 
+/// The place of an image among the events.
+#[derive(Serialize, Deserialize)]
+pub(super) struct ImageMessage {
+    stamp: Time,
+}
+
+impl ImageMessage {
+    pub fn stamp(&self) -> Result<Stamp, Invalid> {
+        self.stamp.try_into()
+    }
+}
+
 /// `foxglove.CompressedImage` in JSON, as recordings of version 0.1.0 hold images.
 #[derive(Deserialize)]
 pub(super) struct JsonImage {
@@ -88,13 +100,14 @@ pub(super) enum EventMessages {
     Odometry(OdometryMessage),
     Body(BodyEventMessage),
     Truth(PoseInFrame),
+    Image(ImageMessage),
 }
 
 impl EventMessages {
-    /// `None` for an image, which is no JSON.
-    pub fn of(event: &EncodedEvent) -> Option<Self> {
+    /// The message of an event; of an image only its place.
+    pub fn of(event: &EncodedEvent) -> Self {
         let stamp = event.stamp().into();
-        Some(match event {
+        match event {
             EncodedEvent::Wheels(ticks) => {
                 Self::Wheels(WheelTicksMessage { stamp, left: ticks.left, right: ticks.right })
             }
@@ -105,8 +118,8 @@ impl EventMessages {
             EncodedEvent::Odometry(odometry) => Self::Odometry(OdometryMessage::new(stamp, odometry)),
             EncodedEvent::Body(event) => Self::Body(BodyEventMessage { stamp, event: event.kind }),
             EncodedEvent::Truth { stamp, pose } => Self::Truth(PoseInFrame::planar(*stamp, "world", *pose)),
-            EncodedEvent::Rgbd(_) => return None,
-        })
+            EncodedEvent::Rgbd(_) => Self::Image(ImageMessage { stamp }),
+        }
     }
 }
 
@@ -170,7 +183,7 @@ pub(super) fn rgbd(color: ImageBytes, depth: ImageBytes) -> Result<EncodedEvent,
     if depth.stamp != stamp {
         return Err(format!("the depth image of {} s follows the colour image of {stamp} s", depth.stamp));
     }
-    Ok(EncodedEvent::Rgbd(EncodedRgbd { stamp, color_jpeg: color.bytes, depth_png: depth.bytes }))
+    Ok(EncodedEvent::Rgbd(EncodedRgbd { stamp, color_jpeg: color.bytes, depth: depth.bytes }))
 }
 
 impl TryFrom<WheelTicksMessage> for EncodedEvent {

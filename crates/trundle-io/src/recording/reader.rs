@@ -1,13 +1,14 @@
 //! Reader of a recording, message by message.
 
+use super::images::{self, ImageBytes, WaitingImages};
 use super::messages::{
-    self, BodyEventMessage, CliffMessage, GyroRateMessage, JsonImage, OdometryMessage, ScanMessage,
-    TouchMessage, WheelTicksMessage,
+    self, BodyEventMessage, CliffMessage, GyroRateMessage, ImageMessage, JsonImage, OdometryMessage,
+    ScanMessage, TouchMessage, WheelTicksMessage,
 };
 use super::poses::PoseInFrame;
-use super::ros_image::{self, ImageBytes};
 use super::stream::{Encoding, MessageStream, RawMessage, RecordingCut};
 use super::topics;
+use crate::ros::{CdrReader, Wire};
 use crate::{EncodedEvent, Expected, IoError};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -38,6 +39,7 @@ pub struct RecordingReader {
     config: Option<Value>,
     /// A message read ahead while looking for the configuration.
     ahead: Option<RawMessage>,
+    images: WaitingImages,
 }
 
 impl RecordingReader {
@@ -47,7 +49,7 @@ impl RecordingReader {
     /// When the file cannot be read or is no MCAP recording.
     pub fn open(path: &Path) -> Result<Self, IoError> {
         Expected::Recording.check(path)?;
-        Self::of(MessageStream::open(path, Encoding::Json)?)
+        Self::of(MessageStream::open(path, Encoding::Own)?)
     }
 
     /// The same of a recording that may be cut at any byte, as by a power failure: its messages up to there.
@@ -56,7 +58,7 @@ impl RecordingReader {
     /// When the file cannot be read, is no MCAP recording, or is cut before its first message.
     pub fn open_to_cut(path: &Path) -> Result<Self, IoError> {
         Expected::Recording.check(path)?;
-        let reader = Self::of(MessageStream::open_to_cut(path, Encoding::Json)?)?;
+        let reader = Self::of(MessageStream::open_to_cut(path, Encoding::Own)?)?;
         match reader.cut() {
             Some(cut) if reader.config.is_none() && reader.ahead.is_none() => {
                 let problem = format!("the recording was cut at byte {}, before its first message", cut.byte);
@@ -66,13 +68,15 @@ impl RecordingReader {
         }
     }
 
-    fn of(mut stream: MessageStream) -> Result<Self, IoError> {
-        let first = stream.next_message()?;
-        let (config, ahead) = match first {
-            Some(raw) if raw.schema == "trundle.Config" => (Some(json(stream.path(), &raw)?), None),
-            other => (None, other),
-        };
-        Ok(Self { stream, config, ahead })
+    fn of(stream: MessageStream) -> Result<Self, IoError> {
+        let mut reader = Self { stream, config: None, ahead: None, images: WaitingImages::default() };
+        match reader.next_own()? {
+            Some(raw) if raw.schema == "trundle.Config" => {
+                reader.config = Some(json(reader.stream.path(), &raw)?);
+            }
+            other => reader.ahead = other,
+        }
+        Ok(reader)
     }
 
     /// The configuration of the run, as JSON.
@@ -107,8 +111,15 @@ impl RecordingReader {
             topics::ODOMETRY => sensor::<OdometryMessage>(path, &raw)?,
             topics::BODY => sensor::<BodyEventMessage>(path, &raw)?,
             topics::TRUTH => sensor::<PoseInFrame>(path, &raw)?,
-            topics::COLOR => return self.image(&raw),
-            topics::DEPTH => {
+            topics::IMAGE => {
+                let path = path.to_owned();
+                let stamp = json::<ImageMessage>(&path, &raw)?.stamp();
+                let image =
+                    stamp.map_err(|invalid| invalid.to_string()).and_then(|stamp| self.images.pop(stamp));
+                EncodedEvent::Rgbd(image.map_err(|problem| wrong(&path, &raw, &problem))?)
+            }
+            topics::OLD_COLOR => return self.image(&raw),
+            topics::OLD_DEPTH => {
                 return Err(wrong(path, &raw, "a depth image without its colour image before it"));
             }
             _ => {
@@ -132,8 +143,34 @@ impl RecordingReader {
     fn next_raw(&mut self) -> Result<Option<RawMessage>, IoError> {
         match self.ahead.take() {
             Some(raw) => Ok(Some(raw)),
-            None => self.stream.next_message(),
+            None => self.next_own(),
         }
+    }
+
+    /// The next message of ours, its JSON unwrapped. Images wait for their place; other messages of ROS 2 are passed over.
+    fn next_own(&mut self) -> Result<Option<RawMessage>, IoError> {
+        while let Some(raw) = self.stream.next_message()? {
+            let path = self.stream.path();
+            if let Some(topic) = raw.topic.strip_prefix(topics::PRIVATE).filter(|rest| rest.starts_with('/'))
+            {
+                let text = CdrReader::new("std_msgs/msg/String", &raw.data, Wire::Cdr)
+                    .and_then(|mut reader| reader.string("data"));
+                let text = text.map_err(|error| wrong(path, &raw, &error.to_string()))?;
+                return Ok(Some(RawMessage { topic: topic.to_owned(), data: text.into_bytes(), ..raw }));
+            }
+            match raw.topic.as_str() {
+                topics::COLOR | topics::DEPTH => {
+                    let image = images::decode(&raw.data);
+                    let kept = image.and_then(|image| self.images.push(image, raw.topic == topics::COLOR));
+                    kept.map_err(|problem| wrong(path, &raw, &problem))?;
+                }
+                _ if raw.is_json || raw.topic == topics::OLD_COLOR || raw.topic == topics::OLD_DEPTH => {
+                    return Ok(Some(raw));
+                }
+                _ => {}
+            }
+        }
+        Ok(None)
     }
 
     /// The image of a colour message and the depth message behind it; `None` where the recording was cut between both.
@@ -142,7 +179,7 @@ impl RecordingReader {
         if next.is_none() && self.cut().is_some() {
             return Ok(None);
         }
-        let depth = next.filter(|raw| raw.topic == topics::DEPTH);
+        let depth = next.filter(|raw| raw.topic == topics::OLD_DEPTH);
         let path = self.stream.path();
         let depth =
             depth.ok_or_else(|| wrong(path, color, "a colour image without its depth image behind it"))?;
@@ -175,7 +212,7 @@ where
 
 fn compressed_image(path: &Path, raw: &RawMessage) -> Result<ImageBytes, IoError> {
     let image = match raw.schema.as_str() {
-        ros_image::SCHEMA => ros_image::decode(&raw.data),
+        images::SCHEMA => images::decode(&raw.data),
         _ => json::<JsonImage>(path, raw)?.image(),
     };
     image.map_err(|problem| wrong(path, raw, &problem))

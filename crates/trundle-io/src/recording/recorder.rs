@@ -1,38 +1,38 @@
-//! Writer of a recording: an MCAP file with JSON messages, and images as ROS 2 has them.
+//! Writer of a recording: an MCAP file of ROS 2 messages.
 
+use super::container::{Container, Group};
 use super::messages::EventMessages;
-use super::poses::PoseInFrame;
-use super::ros_image;
-use super::schemas::json_schema;
 use super::topics;
+use crate::ros::definition;
+use crate::ros::message::{self as ros_message, RosMessage};
 use crate::{EncodedEvent, EncodedRgbd, IoError};
-use mcap::records::MessageHeader;
-use mcap::{McapError, WriteOptions, Writer};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::{BufWriter, Seek, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use trundle_core::{Invalid, Stamp};
+use trundle_core::{FrameId, Invalid, PinholeCamera, Pose2, Pose3, Scan, Stamp};
 
-/// Size of a chunk, bytes. The recorder keeps the chunks for the index at the end: an hour of 30 images a second is 9,000 chunks
-/// and some 2 MB of index. A program that is killed loses the chunk that it was writing.
-const CHUNK_BYTES: u64 = 4 << 20;
-
-/// Writes a recording: MCAP in uncompressed chunks (images are compressed already), messages in JSON, images in CDR.
+/// Writes a recording: MCAP with the profile `ros2`, every message in CDR.
 ///
-/// The bytes depend on nothing but what is recorded: no clock, no chance; log time and publish time are the stamp.
-pub struct Recorder<W: Write + Seek> {
-    writer: Writer<W>,
+/// What a replay needs stands on topics below `/trundle` as JSON in `std_msgs/msg/String`, exact to the last bit. What other programs show
+/// stands beside it in messages of ROS 2. The bytes depend on nothing but what is recorded: no clock, no chance; log time and publish
+/// time are the stamp.
+pub struct Recorder<W: Write> {
+    container: Container<W>,
     path: PathBuf,
     channels: BTreeMap<String, Channel>,
-    buffer: Vec<u8>,
+    /// Numbers of the schemas by their names.
+    schemas: BTreeMap<&'static str, u16>,
+    camera: Option<PinholeCamera>,
 }
+
+/// The name of the writer in the header of a bag that is no recording.
+const BAG_LIBRARY: &str = "trundle convert";
 
 struct Channel {
     id: u16,
     schema: String,
-    messages: u32,
 }
 
 impl Recorder<BufWriter<File>> {
@@ -46,34 +46,46 @@ impl Recorder<BufWriter<File>> {
     }
 }
 
-impl<W: Write + Seek> Recorder<W> {
+impl<W: Write> Recorder<W> {
     /// A recording into `writer`, called `path` in errors.
     ///
     /// # Errors
     /// When nothing can be written.
     pub fn new(writer: W, path: &Path) -> Result<Self, IoError> {
-        let options = WriteOptions::new()
-            .chunk_size(Some(CHUNK_BYTES))
-            .compression(None)
-            .profile("")
-            .library("trundle");
-        let writer = options.create(writer).map_err(|error| failed(path, error))?;
-        Ok(Self { writer, path: path.to_owned(), channels: BTreeMap::new(), buffer: Vec::new() })
+        Self::named(writer, path, super::LIBRARY)
     }
 
-    /// Records a sensor event; an image as two messages, colour and depth.
+    /// A ROS 2 bag that is no recording of a run, into `writer`, called `path` in errors.
+    ///
+    /// # Errors
+    /// When nothing can be written.
+    pub fn bag(writer: W, path: &Path) -> Result<Self, IoError> {
+        Self::named(writer, path, BAG_LIBRARY)
+    }
+
+    fn named(writer: W, path: &Path, library: &str) -> Result<Self, IoError> {
+        let container = Container::new(writer, "ros2", library).map_err(IoError::system(path, "write"))?;
+        let path = path.to_owned();
+        Ok(Self { container, path, channels: BTreeMap::new(), schemas: BTreeMap::new(), camera: None })
+    }
+
+    /// The camera of the images that follow: its camera_info is recorded with each.
+    pub fn set_camera(&mut self, camera: PinholeCamera) {
+        self.camera = Some(camera);
+    }
+
+    /// Records a sensor event, exact, and the message of ROS 2 that shows it.
     ///
     /// # Errors
     /// When its stamp is before the epoch, a number is not finite, or it cannot be written.
     pub fn record_event(&mut self, event: &EncodedEvent) -> Result<(), IoError> {
         check_finite(event).map_err(IoError::field(&self.path))?;
         let stamp = event.stamp();
-        let messages = match event {
-            EncodedEvent::Rgbd(image) => return self.record_images(image),
-            other => EventMessages::of(other),
-        };
-        let Some(messages) = messages else { return Ok(()) };
-        match messages {
+        if let EncodedEvent::Rgbd(image) = event {
+            // Ahead of their place: what is flushed between them is then read in time.
+            self.record_images(image)?;
+        }
+        match EventMessages::of(event) {
             EventMessages::Wheels(m) => self.record_json(topics::WHEELS, "trundle.WheelTicks", stamp, &m),
             EventMessages::Gyro(m) => self.record_json(topics::GYRO, "trundle.GyroRate", stamp, &m),
             EventMessages::Touch(m) => self.record_json(topics::TOUCH, "trundle.Touch", stamp, &m),
@@ -81,11 +93,42 @@ impl<W: Write + Seek> Recorder<W> {
             EventMessages::Scan(m) => self.record_json(topics::SCAN, "trundle.Scan", stamp, &m),
             EventMessages::Odometry(m) => self.record_json(topics::ODOMETRY, "trundle.Odometry", stamp, &m),
             EventMessages::Body(m) => self.record_json(topics::BODY, "trundle.BodyEvent", stamp, &m),
-            EventMessages::Truth(m) => self.record_json(topics::TRUTH, PoseInFrame::SCHEMA, stamp, &m),
+            EventMessages::Truth(m) => self.record_json(topics::TRUTH, "trundle.Truth", stamp, &m),
+            EventMessages::Image(m) => self.record_json(topics::IMAGE, "trundle.Image", stamp, &m),
+        }?;
+        self.show(event)
+    }
+
+    /// Records what other programs show of an event beside its images.
+    fn show(&mut self, event: &EncodedEvent) -> Result<(), IoError> {
+        let base = FrameId::Base.to_string();
+        match event {
+            EncodedEvent::Gyro(rate) => {
+                self.record_message("/imu", rate.stamp, &ros_message::gyro(&base, rate))
+            }
+            EncodedEvent::Scan(scan) => self.record_scan("/laser/scan", "laser", scan),
+            EncodedEvent::Truth { stamp, pose } => {
+                let (world, pose) = (FrameId::World.to_string(), Pose3::from_pose2(*pose));
+                let message = ros_message::odometry_pose(*stamp, &world, &base, pose);
+                self.record_message("/ground_truth", *stamp, &message)
+            }
+            _ => Ok(()),
         }
     }
 
-    /// Records any message as JSON: f64 exactly, NaN and infinity as `null`. A topic has one schema.
+    /// Records a sweep for other programs: its message on `topic`, and the pose of its `frame`, which is at the sweep's origin.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn record_scan(&mut self, topic: &str, frame: &str, scan: &Scan) -> Result<(), IoError> {
+        let stamp = scan.stamp();
+        let origin = Pose3::from_pose2(Pose2::new(scan.origin().x, scan.origin().y, 0.0));
+        let base = FrameId::Base.to_string();
+        self.record_message("/tf", stamp, &ros_message::transforms(&[(stamp, &base, frame, origin)]))?;
+        self.record_message(topic, stamp, &ros_message::scan(frame, scan))
+    }
+
+    /// Records any message as JSON below `/trundle`: f64 exactly, NaN and infinity as `null`. A topic has one schema.
     ///
     /// The run's configuration is a `trundle.Config`, recorded first (see [`crate::RecordingReader::config`]).
     ///
@@ -99,64 +142,92 @@ impl<W: Write + Seek> Recorder<W> {
         stamp: Stamp,
         message: &impl Serialize,
     ) -> Result<(), IoError> {
-        self.buffer.clear();
-        serde_json::to_writer(&mut self.buffer, message)
+        let text = serde_json::to_string(message)
             .map_err(|error| IoError::malformed(&self.path, format!("message on {topic}: {error}")))?;
-        self.record_buffer(topic, schema_name, stamp)
+        let name = format!("{}{topic}", topics::PRIVATE);
+        self.write_message((&name, topic), schema_name, stamp, &ros_message::text(&text), Group::Rest)
     }
 
-    /// Records an image as two messages, colour and behind it depth.
-    fn record_images(&mut self, image: &EncodedRgbd) -> Result<(), IoError> {
-        for (topic, bytes) in [(topics::COLOR, &image.color_jpeg), (topics::DEPTH, &image.depth_png)] {
-            self.buffer = ros_image::encode(image.stamp, bytes).map_err(IoError::field(&self.path))?;
-            self.record_buffer(topic, ros_image::SCHEMA, image.stamp)?;
+    /// Records a message of ROS 2.
+    ///
+    /// # Errors
+    /// As [`Recorder::record_json`].
+    pub fn record_message(&mut self, topic: &str, stamp: Stamp, message: &RosMessage) -> Result<(), IoError> {
+        self.write_message((topic, topic), message.kind(), stamp, message, Group::Rest)
+    }
+
+    /// Records colour, depth and the camera's intrinsics, without their place among the events of a run.
+    ///
+    /// # Errors
+    /// As [`Recorder::record_json`].
+    pub fn record_images(&mut self, image: &EncodedRgbd) -> Result<(), IoError> {
+        let (stamp, frame) = (image.stamp, FrameId::Camera.to_string());
+        let color = ros_message::color_image(stamp, &frame, &image.color_jpeg);
+        let depth = ros_message::depth_image(stamp, &frame, &image.depth);
+        for (topic, message, group) in
+            [(topics::COLOR, color, Group::Color), (topics::DEPTH, depth, Group::Depth)]
+        {
+            self.write_message((topic, topic), message.kind(), stamp, &message, group)?;
+        }
+        if let Some(camera) = self.camera {
+            let info = ros_message::camera_info(stamp, &frame, &camera);
+            for topic in [topics::COLOR_INFO, topics::DEPTH_INFO] {
+                self.record_message(topic, stamp, &info)?;
+            }
         }
         Ok(())
     }
 
-    fn record_buffer(&mut self, topic: &str, schema_name: &str, stamp: Stamp) -> Result<(), IoError> {
+    fn write_message(
+        &mut self,
+        (topic, named): (&str, &str),
+        schema: &str,
+        stamp: Stamp,
+        message: &RosMessage,
+        group: Group,
+    ) -> Result<(), IoError> {
         let time = u64::try_from(stamp.nanos).map_err(|_| {
-            IoError::field(&self.path)(Invalid::new(format!("stamp on {topic}"), stamp, "s", "0 or later"))
+            IoError::field(&self.path)(Invalid::new(format!("stamp on {named}"), stamp, "s", "0 or later"))
         })?;
-        let (channel_id, sequence) = self.channel(topic, schema_name)?;
-        let header = MessageHeader { channel_id, sequence, log_time: time, publish_time: time };
-        self.writer.write_to_known_channel(&header, &self.buffer).map_err(|error| failed(&self.path, error))
+        let channel = self.channel((topic, named), schema, message.kind(), group)?;
+        let written = self.container.write_message(channel, time, message.bytes());
+        written.map_err(|error| failed(&self.path, error))
     }
 
     /// Writes the index and gives the writer back.
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn finish(mut self) -> Result<W, IoError> {
-        self.writer.finish().map_err(|error| failed(&self.path, error))?;
-        let mut writer = self.writer.into_inner();
-        writer.flush().map_err(IoError::system(&self.path, "write"))?;
-        Ok(writer)
+    pub fn finish(self) -> Result<W, IoError> {
+        let Self { container, path, .. } = self;
+        container.finish().map_err(|error| failed(&path, error))
     }
 
-    /// The channel of a topic, made at its first message, and the number of that message.
-    fn channel(&mut self, topic: &str, schema: &str) -> Result<(u16, u32), IoError> {
-        if !self.channels.contains_key(topic) {
-            let id = self.add_channel(topic, schema).map_err(|error| failed(&self.path, error))?;
-            self.channels.insert(topic.to_owned(), Channel { id, schema: schema.to_owned(), messages: 0 });
+    /// The channel of a topic, made at its first message.
+    fn channel(
+        &mut self,
+        (topic, named): (&str, &str),
+        schema: &str,
+        kind: &'static str,
+        group: Group,
+    ) -> Result<u16, IoError> {
+        if let Some(channel) = self.channels.get(topic) {
+            if channel.schema != schema {
+                let problem = Invalid::new(format!("schema of {named}"), schema, "", channel.schema.clone());
+                return Err(IoError::field(&self.path)(problem));
+            }
+            return Ok(channel.id);
         }
-        let channel = self.channels.get_mut(topic).expect("invariant: made above");
-        if channel.schema != schema {
-            let problem = Invalid::new(format!("schema of {topic}"), schema, "", channel.schema.clone());
-            return Err(IoError::field(&self.path)(problem));
+        let container = &mut self.container;
+        let known = self.schemas.entry(kind);
+        let schema_id = *known.or_insert_with(|| container.add_schema(kind, "ros2msg", &definition(kind)));
+        let mut metadata = BTreeMap::from([("offered_qos_profiles".to_owned(), String::new())]);
+        if schema != kind {
+            metadata.insert(topics::SCHEMA_KEY.to_owned(), schema.to_owned());
         }
-        channel.messages = channel.messages.wrapping_add(1);
-        Ok((channel.id, channel.messages))
-    }
-
-    fn add_channel(&mut self, topic: &str, schema: &str) -> Result<u16, McapError> {
-        if schema == ros_image::SCHEMA {
-            let definition = ros_image::DEFINITION.as_bytes();
-            let schema = self.writer.add_schema(schema, ros_image::SCHEMA_ENCODING, definition)?;
-            return self.writer.add_channel(schema, topic, "cdr", &BTreeMap::new());
-        }
-        let schema = self.writer.add_schema(schema, "jsonschema", json_schema(schema).as_bytes())?;
-        self.writer.add_channel(schema, topic, "json", &BTreeMap::new())
+        let id = container.add_channel(topic, schema_id, &metadata, group);
+        self.channels.insert(topic.to_owned(), Channel { id, schema: schema.to_owned() });
+        Ok(id)
     }
 }
 
@@ -172,9 +243,6 @@ fn check_finite(event: &EncodedEvent) -> Result<(), Invalid> {
     }
 }
 
-fn failed(path: &Path, error: McapError) -> IoError {
-    match error {
-        McapError::Io(error) => IoError::system(path, "write")(error),
-        other => IoError::malformed(path, other.to_string()),
-    }
+fn failed(path: &Path, error: io::Error) -> IoError {
+    IoError::system(path, "write")(error)
 }

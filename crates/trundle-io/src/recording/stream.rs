@@ -3,7 +3,7 @@
 use super::chunk_decoder::{OwnedRecord, records_of_chunk};
 use super::cut::{WHOLE, records_of_cut_chunk, whole_part};
 use super::record_parser::parse_needed_record;
-use super::ros_image;
+use super::topics;
 use super::unpacked::unpacked;
 use crate::IoError;
 use mcap::McapError;
@@ -27,14 +27,16 @@ pub(crate) struct RawMessage {
     pub topic: String,
     pub schema: String,
     pub stamp: Stamp,
+    /// Whether the data is JSON, not CDR.
+    pub is_json: bool,
     pub data: Vec<u8>,
 }
 
 /// Encoding of the messages that a reader accepts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Encoding {
-    /// Trundle's own, with images in CDR: any other message is an error.
-    Json,
+    /// Trundle's own: JSON, or CDR of ROS 2; any other message is an error.
+    Own,
     /// Those of ROS 2; others are passed over.
     Cdr,
 }
@@ -53,11 +55,20 @@ pub(crate) struct MessageStream {
     last_records: VecDeque<OwnedRecord>,
     encoding: Encoding,
     schemas: BTreeMap<u16, String>,
-    channels: BTreeMap<u16, (String, u16)>,
+    channels: BTreeMap<u16, ChannelName>,
     passed_over: BTreeSet<u16>,
     read: u64,
     len: u64,
     stopped: bool,
+}
+
+/// Topic and schema of a channel.
+struct ChannelName {
+    topic: String,
+    schema: u16,
+    is_json: bool,
+    /// The schema of the JSON in its texts.
+    json_schema: Option<String>,
 }
 
 /// Where a recording was cut.
@@ -209,38 +220,42 @@ impl MessageStream {
         match record {
             Record::Schema { header, .. } => drop(self.schemas.insert(header.id, header.name)),
             Record::Channel(channel) => {
-                let expected = match self.encoding {
-                    Encoding::Json => "json",
-                    Encoding::Cdr => "cdr",
-                };
-                if channel.message_encoding != expected && self.encoding == Encoding::Cdr {
+                let is_cdr = channel.message_encoding == "cdr";
+                if self.encoding == Encoding::Cdr && !is_cdr {
                     self.passed_over.insert(channel.id);
                     return Ok(None);
                 }
-                let schema = self.schemas.get(&channel.schema_id).map_or("", String::as_str);
-                let is_image = schema == ros_image::SCHEMA && channel.message_encoding == "cdr";
-                if channel.message_encoding != expected && !is_image {
+                if !is_cdr && channel.message_encoding != "json" {
                     let problem = format!(
-                        "messages on {} are in '{}', expected {expected}",
+                        "messages on {} are in '{}', expected json or cdr",
                         channel.topic, channel.message_encoding
                     );
                     return Err(IoError::malformed(&self.path, problem));
                 }
-                self.channels.insert(channel.id, (channel.topic, channel.schema_id));
+                let json_schema = channel.metadata.get(topics::SCHEMA_KEY).cloned();
+                let name = ChannelName {
+                    topic: channel.topic,
+                    schema: channel.schema_id,
+                    is_json: !is_cdr,
+                    json_schema,
+                };
+                self.channels.insert(channel.id, name);
             }
             Record::Message { header, .. } if self.passed_over.contains(&header.channel_id) => {}
             Record::Message { header, data } => {
-                let (topic, schema) = self.channels.get(&header.channel_id).ok_or_else(|| {
-                    let problem = format!("a message on the unknown channel {}", header.channel_id);
-                    IoError::malformed(&self.path, problem)
-                })?;
+                let ChannelName { topic, schema, is_json, json_schema } =
+                    self.channels.get(&header.channel_id).ok_or_else(|| {
+                        let problem = format!("a message on the unknown channel {}", header.channel_id);
+                        IoError::malformed(&self.path, problem)
+                    })?;
                 let nanos = i64::try_from(header.log_time).map_err(|_| {
                     IoError::malformed(&self.path, format!("log time {} ns is out of range", header.log_time))
                 })?;
                 return Ok(Some(RawMessage {
                     topic: topic.clone(),
-                    schema: self.schemas.get(schema).cloned().unwrap_or_default(),
+                    schema: json_schema.as_ref().or(self.schemas.get(schema)).cloned().unwrap_or_default(),
                     stamp: Stamp::from_nanos(nanos),
+                    is_json: *is_json,
                     data: data.into_owned(),
                 }));
             }
@@ -251,7 +266,7 @@ impl MessageStream {
 }
 
 fn broken((path, encoding): (&Path, Encoding), read: u64, error: &McapError) -> IoError {
-    let hint = if encoding == Encoding::Json { "; --recover reads it to there" } else { "" };
+    let hint = if encoding == Encoding::Own { "; --recover reads it to there" } else { "" };
     let problem = match error {
         McapError::BadMagic if read <= 1 << 16 => "not an MCAP recording".to_owned(),
         // A chunk that is longer than the file, within what chunks have.

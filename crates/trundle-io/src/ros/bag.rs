@@ -11,11 +11,11 @@ use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// The messages of a ROS 2 bag, file after file.
-pub(super) struct Bag {
+pub(in crate::ros) struct Bag {
     files: std::vec::IntoIter<PathBuf>,
     open: Option<Storage>,
     /// Where files were cut, in sentences.
-    pub(super) cuts: Vec<String>,
+    pub(in crate::ros) cuts: Vec<String>,
 }
 
 /// One file of a bag.
@@ -27,7 +27,7 @@ enum Storage {
 
 impl Bag {
     /// Opens a folder with its `metadata.yaml`, or else all files of a bag in it, or a single file.
-    pub(super) fn open(path: &Path) -> Result<Self, IoError> {
+    pub(in crate::ros) fn open(path: &Path) -> Result<Self, IoError> {
         let files = if path.is_dir() { files_of(path)? } else { vec![path.to_owned()] };
         let mut bag = Self { files: files.into_iter(), open: None, cuts: Vec::new() };
         bag.next_file()?;
@@ -35,7 +35,7 @@ impl Bag {
     }
 
     /// The next message; `None` at the end of the last file.
-    pub(super) fn next_message(&mut self) -> Result<Option<RawMessage>, IoError> {
+    pub(in crate::ros) fn next_message(&mut self) -> Result<Option<RawMessage>, IoError> {
         loop {
             let message = match &mut self.open {
                 None => return Ok(None),
@@ -51,7 +51,7 @@ impl Bag {
     }
 
     /// How the messages of the open file are written.
-    pub(super) fn wire(&self) -> Wire {
+    pub(in crate::ros) fn wire(&self) -> Wire {
         if matches!(self.open, Some(Storage::Ros1(_))) { Wire::Ros1 } else { Wire::Cdr }
     }
 

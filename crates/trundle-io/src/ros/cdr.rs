@@ -5,7 +5,7 @@ use thiserror::Error;
 /// Why a message cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{message}: {field} at byte {offset}: {problem}")]
-pub(super) struct CdrError {
+pub(crate) struct CdrError {
     /// The type of the message.
     pub message: &'static str,
     /// Which of its fields.
@@ -18,7 +18,7 @@ pub(super) struct CdrError {
 
 /// How messages are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Wire {
+pub(crate) enum Wire {
     /// As the middleware of ROS 2 does.
     Cdr,
     /// As ROS 1 does: little endian, nothing aligned.
@@ -30,7 +30,7 @@ pub(super) enum Wire {
 /// The first four bytes hold version and byte order. The rest is aligned to its own size, counted from their end (at most to 4 in
 /// version 2). Source: OMG DDS-XTypes 1.3, section 7.4.
 #[derive(Debug, Clone)]
-pub(super) struct CdrReader<'a> {
+pub(crate) struct CdrReader<'a> {
     message: &'static str,
     bytes: &'a [u8],
     at: usize,
@@ -46,7 +46,7 @@ const HEADER_BYTES: usize = 4;
 
 impl<'a> CdrReader<'a> {
     /// A reader of a message of type `message`.
-    pub(super) fn new(message: &'static str, bytes: &'a [u8], wire: Wire) -> Result<Self, CdrError> {
+    pub(crate) fn new(message: &'static str, bytes: &'a [u8], wire: Wire) -> Result<Self, CdrError> {
         let mut reader = Self { message, bytes, at: 0, little: true, max_aligned: 1, start: 0, wire };
         if wire == Wire::Cdr {
             reader.read_encapsulation()?;
@@ -55,7 +55,7 @@ impl<'a> CdrReader<'a> {
     }
 
     /// How the message is written.
-    pub(super) fn wire(&self) -> Wire {
+    pub(crate) fn wire(&self) -> Wire {
         self.wire
     }
 
@@ -79,28 +79,33 @@ impl<'a> CdrReader<'a> {
         Ok(())
     }
 
-    pub(super) fn u32(&mut self, field: &'static str) -> Result<u32, CdrError> {
+    pub(crate) fn u32(&mut self, field: &'static str) -> Result<u32, CdrError> {
         let little = self.little;
         let bytes = self.number::<4>(field)?;
         Ok(if little { u32::from_le_bytes(bytes) } else { u32::from_be_bytes(bytes) })
     }
 
-    pub(super) fn i32(&mut self, field: &'static str) -> Result<i32, CdrError> {
+    /// A number of one byte.
+    pub(crate) fn u8(&mut self, field: &'static str) -> Result<u8, CdrError> {
+        self.number::<1>(field).map(|[byte]| byte)
+    }
+
+    pub(crate) fn i32(&mut self, field: &'static str) -> Result<i32, CdrError> {
         self.u32(field).map(u32::cast_signed)
     }
 
-    pub(super) fn f32(&mut self, field: &'static str) -> Result<f32, CdrError> {
+    pub(crate) fn f32(&mut self, field: &'static str) -> Result<f32, CdrError> {
         self.u32(field).map(f32::from_bits)
     }
 
-    pub(super) fn f64(&mut self, field: &'static str) -> Result<f64, CdrError> {
+    pub(crate) fn f64(&mut self, field: &'static str) -> Result<f64, CdrError> {
         let little = self.little;
         let bytes = self.number::<8>(field)?;
         Ok(if little { f64::from_le_bytes(bytes) } else { f64::from_be_bytes(bytes) })
     }
 
     /// `N` numbers in a row.
-    pub(super) fn f64s<const N: usize>(&mut self, field: &'static str) -> Result<[f64; N], CdrError> {
+    pub(crate) fn f64s<const N: usize>(&mut self, field: &'static str) -> Result<[f64; N], CdrError> {
         let mut values = [0.0; N];
         for value in &mut values {
             *value = self.f64(field)?;
@@ -109,7 +114,7 @@ impl<'a> CdrReader<'a> {
     }
 
     /// A text: its length, in CDR with the zero at its end, and its bytes.
-    pub(super) fn string(&mut self, field: &'static str) -> Result<String, CdrError> {
+    pub(crate) fn string(&mut self, field: &'static str) -> Result<String, CdrError> {
         let length = self.u32(field)? as usize;
         let start = self.at;
         let bytes = self.take(field, length)?;
@@ -121,7 +126,7 @@ impl<'a> CdrReader<'a> {
 
     /// How many elements follow, each at least `least` bytes long: more than the rest of the message holds is an error, so
     /// that a broken length asks for no memory.
-    pub(super) fn count(&mut self, field: &'static str, least: usize) -> Result<usize, CdrError> {
+    pub(crate) fn count(&mut self, field: &'static str, least: usize) -> Result<usize, CdrError> {
         let count = self.u32(field)? as usize;
         let rest = self.bytes.len() - self.at;
         if count.checked_mul(least).is_none_or(|bytes| bytes > rest) {
@@ -132,9 +137,21 @@ impl<'a> CdrReader<'a> {
     }
 
     /// A list of numbers.
-    pub(super) fn f32_list(&mut self, field: &'static str) -> Result<Vec<f32>, CdrError> {
+    pub(crate) fn f32_list(&mut self, field: &'static str) -> Result<Vec<f32>, CdrError> {
         let count = self.count(field, 4)?;
         (0..count).map(|_| self.f32(field)).collect()
+    }
+
+    /// A list of numbers.
+    pub(crate) fn f64_list(&mut self, field: &'static str) -> Result<Vec<f64>, CdrError> {
+        let count = self.count(field, 8)?;
+        (0..count).map(|_| self.f64(field)).collect()
+    }
+
+    /// A list of bytes.
+    pub(crate) fn bytes(&mut self, field: &'static str) -> Result<&'a [u8], CdrError> {
+        let count = self.count(field, 1)?;
+        self.take(field, count)
     }
 
     fn number<const N: usize>(&mut self, field: &'static str) -> Result<[u8; N], CdrError> {

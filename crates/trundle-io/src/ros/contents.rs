@@ -17,13 +17,13 @@ const MAX_TOPICS_NAMED: usize = 20;
 
 /// All messages of a bag that say something to us, with their numbers in it, by topic.
 #[derive(Default)]
-pub(super) struct Contents {
+pub(in crate::ros) struct Contents {
     scans: BTreeMap<String, Vec<(usize, LaserScan)>>,
     odometry: BTreeMap<String, Vec<(usize, Odometry)>>,
     moving: Vec<(usize, String, Transform)>,
     fixed: Frames,
     all: Frames,
-    pub(super) skipped: Vec<LaserLogSkip>,
+    pub(in crate::ros) skipped: Vec<LaserLogSkip>,
     /// All topics with the type and the number of their messages.
     topics: BTreeMap<String, (String, usize)>,
 }
@@ -37,15 +37,15 @@ struct OdometryPose {
 }
 
 /// The odometry of a bag.
-pub(super) struct BagMotion {
-    pub(super) topic: String,
+pub(in crate::ros) struct BagMotion {
+    pub(in crate::ros) topic: String,
     /// The name of the base's frame.
-    pub(super) base: String,
-    pub(super) motion: Motion,
+    pub(in crate::ros) base: String,
+    pub(in crate::ros) motion: Motion,
 }
 
 impl Contents {
-    pub(super) fn read(path: &Path) -> Result<Self, IoError> {
+    pub(in crate::ros) fn read(path: &Path) -> Result<Self, IoError> {
         let mut contents = Self::default();
         let mut bag = Bag::open(path)?;
         for number in 1.. {
@@ -77,7 +77,12 @@ impl Contents {
         self.topics.values().map(|(_, count)| count).sum()
     }
 
-    fn take(&mut self, number: usize, message: &RawMessage, wire: Wire) -> Result<(), String> {
+    pub(in crate::ros) fn take(
+        &mut self,
+        number: usize,
+        message: &RawMessage,
+        wire: Wire,
+    ) -> Result<(), String> {
         let RawMessage { topic, schema, data, .. } = message;
         self.topics.entry(topic.clone()).or_insert_with(|| (schema.clone(), 0)).1 += 1;
         match types::canonical(schema) {
@@ -109,7 +114,10 @@ impl Contents {
     }
 
     /// The scans of the requested topic, or of the one with the most, and the topic.
-    pub(super) fn scans(&mut self, asked: Option<&str>) -> Result<(String, Vec<(usize, LaserScan)>), String> {
+    pub(in crate::ros) fn scans(
+        &mut self,
+        asked: Option<&str>,
+    ) -> Result<(String, Vec<(usize, LaserScan)>), String> {
         let topic = chosen(&counts(&self.scans), asked, types::LASER_SCAN);
         let topic = topic.map_err(|problem| match self.skipped.first() {
             Some(skip) if self.scans.is_empty() => format!("no scan can be used: {}", skip.problem),
@@ -122,8 +130,18 @@ impl Contents {
         Ok((topic, scans))
     }
 
+    /// Whether there is odometry, or transforms below `odom`.
+    pub(in crate::ros) fn has_motion(&self) -> bool {
+        !self.odometry.is_empty() || self.moving.iter().any(|(_, _, t)| t.parent.ends_with("odom"))
+    }
+
+    /// `to_from_from` by the static transforms, else by all.
+    pub(in crate::ros) fn transform(&self, to: &str, from: &str) -> Result<Pose3, NoTransform> {
+        self.fixed.between(to, from).or_else(|_| self.all.between(to, from))
+    }
+
     /// The base's motion by the requested topic, or by the one with the most odometry, or by transforms.
-    pub(super) fn motion(&mut self, asked: Option<&str>) -> Result<BagMotion, String> {
+    pub(in crate::ros) fn motion(&mut self, asked: Option<&str>) -> Result<BagMotion, String> {
         let (topic, poses) = self.odometry_poses(asked)?;
         let base = poses.iter().map(|pose| pose.child.clone()).find(|base| !base.is_empty());
         let base = base.unwrap_or_else(|| "base_link".to_owned());
@@ -181,14 +199,14 @@ impl Contents {
     }
 
     /// Mount of the laser: the options, and the transforms for the rest.
-    pub(super) fn base_from_laser(
+    pub(in crate::ros) fn base_from_laser(
         &self,
         base: &str,
         laser: &str,
         options: &LaserLogOptions,
     ) -> Result<Pose3, NoTransform> {
         let LaserLogOptions { laser_x, laser_turn, upside_down, .. } = *options;
-        let recorded = self.fixed.between(base, laser).or_else(|_| self.all.between(base, laser));
+        let recorded = self.transform(base, laser);
         let recorded = recorded.map(|pose| if upside_down { upside_down_at(pose) } else { pose });
         if laser_x.is_none() && laser_turn.is_none() {
             return recorded;
@@ -204,7 +222,7 @@ impl Contents {
     }
 
     /// The names of all transforms, for messages.
-    pub(super) fn transform_names(&self) -> String {
+    pub(in crate::ros) fn transform_names(&self) -> String {
         self.all.names()
     }
 
@@ -221,11 +239,11 @@ impl Contents {
     }
 
     /// The topics of scans and odometry that are still here, with the number of their messages.
-    pub(super) fn topics_left(&self) -> Vec<(String, usize)> {
+    pub(in crate::ros) fn topics_left(&self) -> Vec<(String, usize)> {
         counts(&self.scans).into_iter().chain(counts(&self.odometry)).collect()
     }
 
-    pub(super) fn skip(&mut self, number: usize, topic: &str, problem: &str) {
+    pub(in crate::ros) fn skip(&mut self, number: usize, topic: &str, problem: &str) {
         let problem = format!("message {number} on {topic}: {problem}");
         self.skipped.push(LaserLogSkip { line: number, problem });
     }

@@ -48,7 +48,13 @@ impl BagDatabase {
             };
             if let Some((topic, schema)) = self.topics.get(topic) {
                 let (topic, schema) = (topic.clone(), schema.clone());
-                return Ok(Some(RawMessage { topic, schema, stamp: Stamp::from_nanos(*nanos), data }));
+                return Ok(Some(RawMessage {
+                    topic,
+                    schema,
+                    stamp: Stamp::from_nanos(*nanos),
+                    is_json: false,
+                    data,
+                }));
             }
         }
         Ok(None)

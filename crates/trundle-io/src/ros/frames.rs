@@ -6,14 +6,14 @@ use trundle_core::Pose3;
 
 /// The tree of frames that do not move against each other: the newest transform of each.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Frames {
+pub(in crate::ros) struct Frames {
     /// By child: its parent, and `parent_from_child`.
     parents: BTreeMap<String, (String, MessagePose)>,
 }
 
 /// Why one frame's place in another is not known.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum NoTransform {
+pub(in crate::ros) enum NoTransform {
     /// No transforms lead from one to the other.
     Unconnected,
     /// A transform between them is none: which, and why.
@@ -25,7 +25,7 @@ const MAX_FRAME_CHAIN: usize = 100;
 
 impl Frames {
     /// Adds a transform; a broken one in place of a good one is left out.
-    pub(super) fn insert(&mut self, transform: Transform) {
+    pub(in crate::ros) fn insert(&mut self, transform: Transform) {
         let Transform { parent, child, parent_from_child, .. } = transform;
         let is_good = |known: &(String, MessagePose)| known.1.is_ok();
         if parent_from_child.is_ok() || !self.parents.get(&child).is_some_and(is_good) {
@@ -34,7 +34,7 @@ impl Frames {
     }
 
     /// `to_from_from`: where one frame sits in another, when transforms lead from both to one frame.
-    pub(super) fn between(&self, to: &str, from: &str) -> Result<Pose3, NoTransform> {
+    pub(in crate::ros) fn between(&self, to: &str, from: &str) -> Result<Pose3, NoTransform> {
         let (up_to, up_from) = (self.chain(to), self.chain(from));
         let meeting = up_from.iter().find_map(|(name, meet_from_from)| {
             let (_, meet_from_to) = up_to.iter().find(|(other, _)| other == name)?;
@@ -59,7 +59,7 @@ impl Frames {
     }
 
     /// The names, for messages.
-    pub(super) fn names(&self) -> String {
+    pub(in crate::ros) fn names(&self) -> String {
         let all: Vec<String> =
             self.parents.iter().map(|(child, (parent, _))| format!("{parent} > {child}")).collect();
         if all.is_empty() { "none".to_owned() } else { all.join(", ") }

@@ -6,7 +6,7 @@ use super::laser_scan::convert;
 use super::messages::LaserScan;
 use crate::carmen::read_carmen;
 use crate::laser_log::{LaserLog, LaserLogOptions, LaserLogScan, LaserLogSources, LaserMount, Motion};
-use crate::{Expected, FileKind, IoError};
+use crate::{Expected, IoError};
 use std::path::Path;
 use trundle_core::{Pose3, Vector3};
 
@@ -16,12 +16,7 @@ use trundle_core::{Pose3, Vector3};
 /// As [`read_carmen`] and [`read_ros_bag`].
 pub fn read_laser_log(path: &Path, options: &LaserLogOptions) -> Result<LaserLog, IoError> {
     match Expected::LaserLog.check(path)? {
-        FileKind::Ros2Mcap
-        | FileKind::OtherMcap
-        | FileKind::Zstd
-        | FileKind::Ros1Bag
-        | FileKind::Ros2Sqlite
-        | FileKind::Ros2BagFolder => read_ros_bag(path, options),
+        kind if kind.is_bag() => read_ros_bag(path, options),
         _ => read_carmen(path, options),
     }
 }

@@ -5,10 +5,14 @@ use nalgebra::{Quaternion, UnitQuaternion};
 use trundle_core::{Pose3, Stamp, Vector3};
 
 /// The types of messages that are read.
-pub(super) mod types {
+pub(in crate::ros) mod types {
     pub const LASER_SCAN: &str = "sensor_msgs/msg/LaserScan";
     pub const ODOMETRY: &str = "nav_msgs/msg/Odometry";
     pub const TF: &str = "tf2_msgs/msg/TFMessage";
+    pub const IMAGE: &str = "sensor_msgs/msg/Image";
+    pub const COMPRESSED_IMAGE: &str = "sensor_msgs/msg/CompressedImage";
+    pub const CAMERA_INFO: &str = "sensor_msgs/msg/CameraInfo";
+    pub const TRANSFORM: &str = "geometry_msgs/msg/TransformStamped";
 
     /// The name in ROS 2 of a type of either ROS.
     pub fn canonical(name: &str) -> &str {
@@ -16,6 +20,10 @@ pub(super) mod types {
             "sensor_msgs/LaserScan" => LASER_SCAN,
             "nav_msgs/Odometry" => ODOMETRY,
             "tf2_msgs/TFMessage" | "tf/tfMessage" => TF,
+            "sensor_msgs/Image" => IMAGE,
+            "sensor_msgs/CompressedImage" => COMPRESSED_IMAGE,
+            "sensor_msgs/CameraInfo" => CAMERA_INFO,
+            "geometry_msgs/TransformStamped" => TRANSFORM,
             other => other,
         }
     }
@@ -23,7 +31,7 @@ pub(super) mod types {
 
 /// `sensor_msgs/msg/LaserScan`, as far as it is used.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct LaserScan {
+pub(in crate::ros) struct LaserScan {
     pub stamp: Stamp,
     pub frame: String,
     /// Of the first beam and between beams, about the laser's z, rad.
@@ -36,11 +44,11 @@ pub(super) struct LaserScan {
 }
 
 /// A pose of a message, or what is wrong with it.
-pub(super) type MessagePose = Result<Pose3, String>;
+pub(in crate::ros) type MessagePose = Result<Pose3, String>;
 
 /// `nav_msgs/msg/Odometry`, as far as it is used.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Odometry {
+pub(in crate::ros) struct Odometry {
     pub stamp: Stamp,
     /// Whose pose it is.
     pub child: String,
@@ -50,7 +58,7 @@ pub(super) struct Odometry {
 
 /// A `geometry_msgs/msg/TransformStamped` of a `tf2_msgs/msg/TFMessage`.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Transform {
+pub(in crate::ros) struct Transform {
     pub stamp: Stamp,
     pub parent: String,
     pub child: String,
@@ -58,7 +66,7 @@ pub(super) struct Transform {
 }
 
 impl LaserScan {
-    pub(super) fn read(bytes: &[u8], wire: Wire) -> Result<Self, CdrError> {
+    pub(in crate::ros) fn read(bytes: &[u8], wire: Wire) -> Result<Self, CdrError> {
         let mut r = CdrReader::new(types::LASER_SCAN, bytes, wire)?;
         let (stamp, frame) = header(&mut r)?;
         let angle_min = r.f32("angle_min")?;
@@ -79,7 +87,7 @@ impl LaserScan {
 }
 
 impl Odometry {
-    pub(super) fn read(bytes: &[u8], wire: Wire) -> Result<Self, CdrError> {
+    pub(in crate::ros) fn read(bytes: &[u8], wire: Wire) -> Result<Self, CdrError> {
         let mut r = CdrReader::new(types::ODOMETRY, bytes, wire)?;
         let (stamp, _) = header(&mut r)?;
         let child = frame(&mut r, "child_frame_id")?;
@@ -89,11 +97,16 @@ impl Odometry {
 
 impl Transform {
     /// All of a message.
-    pub(super) fn read_all(bytes: &[u8], wire: Wire) -> Result<Vec<Self>, CdrError> {
+    pub(in crate::ros) fn read_all(bytes: &[u8], wire: Wire) -> Result<Vec<Self>, CdrError> {
         let mut r = CdrReader::new(types::TF, bytes, wire)?;
         // A transform is two times, two texts and seven numbers.
         let count = r.count("transforms", 72)?;
         (0..count).map(|_| Self::read(&mut r)).collect()
+    }
+
+    /// The only one of a `geometry_msgs/msg/TransformStamped`.
+    pub(in crate::ros) fn read_one(bytes: &[u8], wire: Wire) -> Result<Self, CdrError> {
+        Self::read(&mut CdrReader::new(types::TRANSFORM, bytes, wire)?)
     }
 
     fn read(r: &mut CdrReader<'_>) -> Result<Self, CdrError> {
@@ -104,7 +117,7 @@ impl Transform {
 }
 
 /// `std_msgs/msg/Header`: stamp and frame; in ROS 1 a number comes first.
-fn header(r: &mut CdrReader<'_>) -> Result<(Stamp, String), CdrError> {
+pub(crate) fn header(r: &mut CdrReader<'_>) -> Result<(Stamp, String), CdrError> {
     if r.wire() == Wire::Ros1 {
         r.u32("header.seq")?;
     }

@@ -160,7 +160,8 @@ fn take(
             let (topic, kind) =
                 connections.get(&id).ok_or_else(|| format!("a message on the unknown connection {id}"))?;
             let (topic, schema) = (topic.clone(), kind.clone());
-            Ok(Some(RawMessage { topic, schema, stamp: Stamp::default(), data: record.data.to_vec() }))
+            let data = record.data.to_vec();
+            Ok(Some(RawMessage { topic, schema, stamp: Stamp::default(), is_json: false, data }))
         }
         _ => Ok(None),
     }

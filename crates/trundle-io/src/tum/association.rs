@@ -5,7 +5,7 @@ use trundle_core::Stamp;
 /// Pairs (index of colour, index of depth) by rising time: each colour image with the depth image nearest in time, the
 /// earlier of two equally near, if it is within `max_difference` s. A depth image may serve two colour images: where the
 /// depth camera dropped one, its neighbour is still the best there is. Both lists rise.
-pub(super) fn pair_nearest(color: &[Stamp], depth: &[Stamp], max_difference: f64) -> Vec<(usize, usize)> {
+pub(crate) fn pair_nearest(color: &[Stamp], depth: &[Stamp], max_difference: f64) -> Vec<(usize, usize)> {
     let limit = (max_difference * 1e9).round() as u64;
     let gap = |c: &Stamp, j: usize| depth[j].nanos.abs_diff(c.nanos);
     let nearest = |c: &Stamp| {

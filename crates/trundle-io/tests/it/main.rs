@@ -3,6 +3,7 @@
 
 mod recording;
 mod ros;
+mod ros_rgbd;
 mod sequence;
 mod tum_writer;
 

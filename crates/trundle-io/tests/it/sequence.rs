@@ -11,9 +11,10 @@ fn folder() -> TempDir {
     let (mut rgb, mut depth) = (String::from("# colour\n"), String::from("# depth\n"));
     for i in 0..3 {
         let stamp = Stamp::from_nanos(1_305_031_229_528_748_000 + i * 100_000_000);
-        let encoded = EncodedRgbd::encode(&frame(stamp, 40, 30)).unwrap();
-        fs::write(dir.path().join(format!("{i}.jpg")), &encoded.color_jpeg).unwrap();
-        fs::write(dir.path().join(format!("{i}.png")), &encoded.depth_png).unwrap();
+        let image = frame(stamp, 40, 30);
+        fs::write(dir.path().join(format!("{i}.jpg")), encode_color(image.color(), JPEG_QUALITY).unwrap())
+            .unwrap();
+        fs::write(dir.path().join(format!("{i}.png")), encode_depth(image.depth()).unwrap()).unwrap();
         rgb += &format!("{stamp} {i}.jpg\n");
         depth += &format!("{} {i}.png\n", stamp.after(0.003));
     }
@@ -61,8 +62,8 @@ fn wrong_folders_are_one_clear_sentence() {
     let dir = tempfile::tempdir().unwrap();
     assert_eq!(
         problem(&dir),
-        "DIR: this is an empty folder, expected a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt) \
-         or a trundle recording"
+        "DIR: this is an empty folder, expected a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt), \
+         a ROS bag or a trundle recording"
     );
     fs::write(dir.path().join("rgb.txt"), "1.0 a.png").unwrap();
     assert_eq!(
@@ -141,8 +142,8 @@ fn wrong_depth_images_are_named() {
         load_problem(&dir, &sequence, 1)
             .contains("DIR/1.png: depth image has 8-bit grey pixels, expected 16-bit grey ones")
     );
-    let small = EncodedRgbd::encode(&frame(Stamp::default(), 20, 10)).unwrap();
-    fs::write(dir.path().join("2.png"), &small.depth_png).unwrap();
+    let small = frame(Stamp::default(), 20, 10);
+    fs::write(dir.path().join("2.png"), encode_depth(small.depth()).unwrap()).unwrap();
     assert!(
         load_problem(&dir, &sequence, 2)
             .ends_with("DIR/2.png: depth image size is 20 x 10 px, expected 40 x 30 as the colour image")

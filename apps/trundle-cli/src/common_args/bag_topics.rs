@@ -1,0 +1,30 @@
+//! The topics of a bag.
+
+use clap::Args;
+use trundle::io::RosSequenceOptions;
+
+/// The topics of a bag.
+#[derive(Debug, Clone, Args)]
+pub struct BagTopicsArgs {
+    /// The topic of a bag's colour images [default: that with the most; `trundle convert BAG --list` lists all]
+    #[arg(long, value_name = "TOPIC")]
+    pub color_topic: Option<String>,
+    /// The topic of a bag's depth images, registered to colour [default: the only one in the frame of colour]
+    #[arg(long, value_name = "TOPIC")]
+    pub depth_topic: Option<String>,
+    /// The topic of the camera_info of a bag's colour images [default: the one beside them]
+    #[arg(long, value_name = "TOPIC")]
+    pub info_topic: Option<String>,
+    /// The topic of a bag's odometry, or of its transforms [default: that with the most odometry]
+    #[arg(long, value_name = "TOPIC")]
+    pub odom_topic: Option<String>,
+}
+
+impl BagTopicsArgs {
+    /// The topics.
+    pub fn options(&self) -> RosSequenceOptions {
+        let [color_topic, depth_topic, info_topic, odometry_topic] =
+            [&self.color_topic, &self.depth_topic, &self.info_topic, &self.odom_topic].map(Option::clone);
+        RosSequenceOptions { color_topic, depth_topic, info_topic, odometry_topic }
+    }
+}

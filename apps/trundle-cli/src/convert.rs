@@ -1,0 +1,62 @@
+//! `trundle convert`: RGB-D images with their poses in another form.
+
+use crate::common_args::{BagTopicsArgs, Common};
+use crate::outcome::Outcome;
+use crate::output_args::OutputDirArg;
+use crate::slam::CameraArgs;
+use crate::{console, logging};
+use clap::Args;
+use std::path::PathBuf;
+use trundle::app::AppError;
+use trundle::app::convert::{SequenceForm, convert_sequence};
+use trundle::app::sequence_input::{SequenceInput, SequenceOptions};
+use trundle::io::RosTopics;
+
+/// `trundle convert`
+#[derive(Debug, Args)]
+#[command(after_help = "Example: trundle convert bag.mcap out/tum --to tum")]
+pub struct ConvertArgs {
+    /// A ROS 2 bag (folder, .mcap, .db3), a TUM RGB-D folder or a recording of trundle with images.
+    pub input: PathBuf,
+    /// Folder for the result.
+    #[arg(required_unless_present = "list")]
+    pub out: Option<OutputDirArg>,
+    /// tum: a TUM RGB-D folder. bag: bag.mcap, a ROS 2 bag.
+    #[arg(long, value_name = "FORM", default_value = "tum")]
+    pub to: SequenceForm,
+    /// Only list the topics of a bag or a recording: name, type, messages, encoding of images.
+    #[arg(long)]
+    pub list: bool,
+    /// The camera.
+    #[command(flatten)]
+    pub camera: CameraArgs,
+    /// The topics of a bag.
+    #[command(flatten)]
+    pub topics: BagTopicsArgs,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
+/// `trundle convert IN OUT`.
+pub fn run(args: &ConvertArgs) -> Result<Outcome, AppError> {
+    let Some(out) = args.out.as_ref().filter(|_| !args.list) else {
+        let topics = RosTopics::read(&args.input)?;
+        console::print_table(&topics.rows().map(Vec::from).collect::<Vec<_>>());
+        return Ok(Outcome::Reached);
+    };
+    let input = SequenceInput::open(&SequenceOptions {
+        camera: args.camera.camera.as_deref(),
+        depth_scale: args.camera.depth_scale,
+        topics: args.topics.options(),
+        ..SequenceOptions::new(&args.input)
+    })?;
+    let folder = logging::output_folder(out)?;
+    let display = console::StepDisplay::new(args.common.quiet);
+    let converted = convert_sequence(&input, args.to, &folder, &display)?;
+    let place = folder.commit()?;
+    if !args.common.quiet {
+        console::print(&format!("{converted}: {}", place.display()));
+    }
+    Ok(Outcome::Reached)
+}

@@ -1,0 +1,166 @@
+//! Conversion of RGB-D images with their poses: ROS bag, TUM folder or recording into a TUM folder or a ROS 2 bag.
+
+use crate::sequence_input::{PendingFrame, SequenceInput};
+use crate::{AppError, StepProgress, stop};
+use trundle_core::{FrameId, Pose3, RgbdImage, Stamp};
+use trundle_io::ros_message::RosMessage;
+use trundle_io::{EncodedRgbd, OutputFolder, Recorder, TumFrame, TumWriter, ros_message};
+
+/// The form that a sequence is converted into.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SequenceForm {
+    /// A TUM RGB-D folder.
+    TumFolder,
+    /// `bag.mcap`: a ROS 2 bag with colour as JPEG, depth in whole millimetres, camera_info, transforms, odometry and ground truth.
+    RosBag,
+}
+
+impl std::str::FromStr for SequenceForm {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        match name {
+            "tum" => Ok(Self::TumFolder),
+            "bag" => Ok(Self::RosBag),
+            _ => Err("expected tum or bag".to_owned()),
+        }
+    }
+}
+
+/// What a conversion wrote.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Converted {
+    /// Number of images.
+    pub images: usize,
+    /// Number of images that are damaged and left out.
+    pub skipped: usize,
+}
+
+impl std::fmt::Display for Converted {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} images, {} damaged and left out", self.images, self.skipped)
+    }
+}
+
+/// Name of the file of a ROS 2 bag in its folder.
+const BAG_FILE: &str = "bag.mcap";
+/// Rate of the images where it is not known \[Hz\]: that of the simulated camera. Source: ours.
+const DEFAULT_RATE_HZ: f64 = 15.0;
+
+/// Writes the images of `input`, its odometry and its ground truth into `folder`. A damaged image is left out with a warning.
+///
+/// # Errors
+/// When the input breaks, no image can be used, or the folder cannot be written.
+pub fn convert_sequence(
+    input: &SequenceInput,
+    form: SequenceForm,
+    folder: &OutputFolder,
+    progress: &dyn StepProgress,
+) -> Result<Converted, AppError> {
+    match form {
+        SequenceForm::TumFolder => to_tum(input, folder, progress),
+        SequenceForm::RosBag => to_bag(input, folder, progress),
+    }
+}
+
+fn to_tum(
+    input: &SequenceInput,
+    folder: &OutputFolder,
+    progress: &dyn StepProgress,
+) -> Result<Converted, AppError> {
+    let mut writer = TumWriter::new(folder, input.camera.model.camera, DEFAULT_RATE_HZ);
+    let converted = each_image(input, progress, |_, image| {
+        let frame = TumFrame::encode(&image).map_err(AppError::input)?;
+        Ok(writer.frame(&frame)?)
+    })?;
+    input.odometry().into_iter().flatten().for_each(|(stamp, pose)| writer.odometry(*stamp, *pose));
+    input.ground_truth().into_iter().flatten().for_each(|(stamp, pose)| writer.ground_truth(*stamp, *pose));
+    writer.finish()?;
+    Ok(converted)
+}
+
+fn to_bag(
+    input: &SequenceInput,
+    folder: &OutputFolder,
+    progress: &dyn StepProgress,
+) -> Result<Converted, AppError> {
+    let mut bag = folder.bag(BAG_FILE)?;
+    bag.set_camera(input.camera.model.camera);
+    if input.camera.model.camera.readout() > 0.0 {
+        tracing::warn!(
+            "camera_info holds no readout time: give the camera with --camera where the bag is read"
+        );
+    }
+    let (base, camera) = (FrameId::Base.to_string(), FrameId::Camera.to_string());
+    let mut poses = poses(input, &base, &camera);
+    poses.reverse();
+    let mut mount = input.level_from_first_camera();
+    let mut write = |bag: &mut Recorder<_>, until: Stamp| -> Result<(), AppError> {
+        if let Some(pose) = mount.take() {
+            bag.record_message(
+                "/tf_static",
+                until,
+                &ros_message::transforms(&[(until, &base, &camera, pose)]),
+            )?;
+        }
+        while let Some((stamp, topic, message)) = poses.pop_if(|(stamp, ..)| *stamp <= until) {
+            bag.record_message(topic, stamp, &message)?;
+        }
+        Ok(())
+    };
+    let converted = each_image(input, progress, |frame, image| {
+        write(&mut bag, image.stamp())?;
+        let encoded: EncodedRgbd = frame.encoded(&image).map_err(AppError::input)?;
+        Ok(bag.record_images(&encoded)?)
+    })?;
+    write(&mut bag, Stamp::from_nanos(i64::MAX))?;
+    bag.finish()?;
+    Ok(converted)
+}
+
+/// Odometry and ground truth as messages with their topics, by rising stamps.
+fn poses(input: &SequenceInput, base: &str, camera: &str) -> Vec<(Stamp, &'static str, RosMessage)> {
+    let (odom, world) = (FrameId::Odom.to_string(), FrameId::World.to_string());
+    let odometry = input.odometry().into_iter().flatten().map(|(stamp, pose)| {
+        let pose = Pose3::from_pose2(*pose);
+        (*stamp, "/odom", ros_message::odometry_pose(*stamp, &odom, base, pose))
+    });
+    let truth = input.ground_truth().into_iter().flatten().map(|(stamp, pose)| {
+        (*stamp, "/ground_truth", ros_message::odometry_pose(*stamp, &world, camera, *pose))
+    });
+    let mut all: Vec<_> = odometry.chain(truth).collect();
+    all.sort_by_key(|(stamp, ..)| *stamp);
+    all
+}
+
+/// Hands on each image that is whole.
+fn each_image(
+    input: &SequenceInput,
+    progress: &dyn StepProgress,
+    mut write: impl FnMut(PendingFrame<'_>, RgbdImage) -> Result<(), AppError>,
+) -> Result<Converted, AppError> {
+    let mut converted = Converted { images: 0, skipped: 0 };
+    progress.begin(Some(input.len()));
+    for frame in input.frames()? {
+        if stop::is_requested(|| format!("{} of {} images", converted.images, input.len())) {
+            return Err(AppError::Stopped);
+        }
+        let frame = frame?;
+        match frame.decode() {
+            Ok(image) => {
+                write(frame, image)?;
+                converted.images += 1;
+            }
+            Err(problem) => {
+                tracing::warn!("{problem}; the image is left out");
+                converted.skipped += 1;
+            }
+        }
+        progress.advance();
+    }
+    progress.end();
+    if converted.images == 0 {
+        return Err(AppError::Input(format!("{}: no image can be used", input.path.display())));
+    }
+    Ok(converted)
+}

@@ -1,0 +1,71 @@
+//! Images, camera_info, gyro and sweeps.
+
+use super::RosMessage;
+use crate::ros::cdr_writer::CdrWriter;
+use trundle_core::{Beam, GyroRate, PinholeCamera, Scan, Stamp};
+
+/// Bytes in front of a depth image of `compressed_depth_image_transport`: no quantisation.
+const DEPTH_HEADER: [u8; 12] = [0; 12];
+/// Range beyond which a sweep of ours holds nothing \[m\]. Source: ours, more than any room.
+const MAX_RANGE_M: f32 = 100.0;
+/// Covariance of a quantity that was not measured. Source: sensor_msgs/msg/Imu.
+const NOT_MEASURED: f64 = -1.0;
+
+/// `sensor_msgs/msg/CompressedImage` of colour: the bytes of a JPEG or PNG.
+#[must_use]
+pub fn color_image(stamp: Stamp, frame: &str, picture: &[u8]) -> RosMessage {
+    let format = if picture.starts_with(b"\x89PNG") { "png" } else { "jpeg" };
+    compressed(stamp, frame, format, &[picture])
+}
+
+/// `sensor_msgs/msg/CompressedImage` of depth in millimetres: a PNG, or RVL behind width and height.
+#[must_use]
+pub fn depth_image(stamp: Stamp, frame: &str, depth: &[u8]) -> RosMessage {
+    let is_png = depth.starts_with(b"\x89PNG");
+    let format = if is_png { "16UC1; compressedDepth png" } else { "16UC1; compressedDepth rvl" };
+    compressed(stamp, frame, format, &[&DEPTH_HEADER, depth])
+}
+
+fn compressed(stamp: Stamp, frame: &str, format: &str, parts: &[&[u8]]) -> RosMessage {
+    let writer = CdrWriter::with_header(stamp, frame).string(format).bytes(&parts.concat());
+    RosMessage::new("sensor_msgs/msg/CompressedImage", writer)
+}
+
+/// `sensor_msgs/msg/CameraInfo` of raw images.
+#[must_use]
+pub fn camera_info(stamp: Stamp, frame: &str, camera: &PinholeCamera) -> RosMessage {
+    let (fx, fy, cx, cy) = (camera.fx(), camera.fy(), camera.cx(), camera.cy());
+    let lens = camera.distortion();
+    let writer = CdrWriter::with_header(stamp, frame).count(camera.height()).count(camera.width());
+    let writer = writer.string("plumb_bob").count(5).f64s([lens.k1, lens.k2, lens.p1, lens.p2, lens.k3]);
+    let writer = writer.f64s([fx, 0.0, cx, 0.0, fy, cy, 0.0, 0.0, 1.0]);
+    let writer = writer.f64s([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]);
+    let writer = writer.f64s([fx, 0.0, cx, 0.0, 0.0, fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0]);
+    let writer = writer.u32(0).u32(0).u32(0).u32(0).u32(0).u32(0).u8(0);
+    RosMessage::new("sensor_msgs/msg/CameraInfo", writer)
+}
+
+/// `sensor_msgs/msg/Imu` of a gyro about the vertical axis; nothing else was measured.
+#[must_use]
+pub fn gyro(frame: &str, rate: &GyroRate) -> RosMessage {
+    let writer = CdrWriter::with_header(rate.stamp, frame).f64s([0.0, 0.0, 0.0, 1.0]);
+    let unmeasured = [NOT_MEASURED, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+    let writer = writer.f64s(unmeasured).f64s([0.0, 0.0, rate.omega]).f64s([0.0; 9]);
+    RosMessage::new("sensor_msgs/msg/Imu", writer.f64s([0.0; 3]).f64s(unmeasured))
+}
+
+/// `sensor_msgs/msg/LaserScan` in a frame at the sweep's origin: infinite where a beam met nothing, NaN where nothing is known.
+#[must_use]
+pub fn scan(frame: &str, scan: &Scan) -> RosMessage {
+    let (first, step, count) = (scan.angle_min(), scan.angle_increment(), scan.beams().len());
+    let last = first + step * count.saturating_sub(1) as f64;
+    let writer = CdrWriter::with_header(scan.stamp(), frame);
+    let writer = writer.f32s([first as f32, last as f32, step as f32, 0.0, 0.0, 0.0, MAX_RANGE_M]);
+    let range = |beam: &Beam| match beam {
+        Beam::Hit { range } => *range as f32,
+        Beam::Free { .. } => f32::INFINITY,
+        Beam::Unseen => f32::NAN,
+    };
+    let writer = writer.count(count).f32s(scan.beams().iter().map(range)).count(0);
+    RosMessage::new("sensor_msgs/msg/LaserScan", writer)
+}
