@@ -79,7 +79,7 @@ impl PendingFrame<'_> {
 pub(super) enum SequenceFrames<'a> {
     Folder { sequence: &'a TumSequence, next: usize },
     Recording { path: &'a Path, reader: Box<RecordingReader>, size: (usize, usize), delay: f64, next: usize },
-    Bag { path: &'a Path, frames: RosFrames<'a>, size: (usize, usize), next: usize },
+    Bag { path: &'a Path, frames: Box<RosFrames<'a>>, size: (usize, usize), next: usize },
 }
 
 impl<'a> SequenceFrames<'a> {
@@ -89,7 +89,7 @@ impl<'a> SequenceFrames<'a> {
 
     /// `size` of the camera, px.
     pub(super) fn of_bag(path: &'a Path, frames: RosFrames<'a>, size: (usize, usize)) -> Self {
-        Self::Bag { path, frames, size, next: 0 }
+        Self::Bag { path, frames: Box::new(frames), size, next: 0 }
     }
 
     /// `size` of the camera, px; `delay` of the images' stamps, s, which is subtracted.
