@@ -172,7 +172,7 @@ fn notes(fit: &CameraFit, found: &FoundViews) -> Vec<String> {
         fit.coverage.max_tilt_deg,
         fit.coverage.cells * 100.0
     )];
-    notes.extend(fit.coverage.warnings().into_iter().map(|warning| format!("warning: {warning}")));
+    notes.extend(fit.warnings().into_iter().map(|warning| format!("warning: {warning}")));
     notes.extend(found.rejected.iter().map(|image| format!("left out: {image}")));
     let unfit =
         fit.rejected.iter().map(|view| format!("left out: {}: {}", found.names[view.index], view.cause));

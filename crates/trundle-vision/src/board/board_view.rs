@@ -1,4 +1,4 @@
-//! Corners of a board in one image.
+//! Corners of a board in one image. Any part of the corners is a view; the calibration knows no kind of board.
 
 use thiserror::Error;
 use trundle_core::Vector2;
@@ -40,5 +40,54 @@ pub enum BoardProblem {
         rows: usize,
         /// The board.
         expected: String,
+    },
+    /// No marker.
+    #[error("no tag of tag36h11 found, expected {expected}; show the board in focus and evenly lit, each tag 20 px wide or more")]
+    NoTags {
+        /// The ids of the board.
+        expected: String,
+    },
+    /// Markers of another family.
+    #[error(
+        "{squares} black squares found, none a tag of tag36h11: the nearest differs in {wrong_cells} cells, accepted are 2 or fewer; \
+         expected {expected}; print a board of this family by `trundle calibrate board`"
+    )]
+    OtherFamily {
+        /// Squares with cells.
+        squares: usize,
+        /// Wrong cells of the nearest one.
+        wrong_cells: u32,
+        /// The ids of the board.
+        expected: String,
+    },
+    /// Markers in a mirror.
+    #[error("the image is mirrored: {tags} tags are read from behind only; switch mirroring off in the camera")]
+    Mirrored {
+        /// Mirrored markers.
+        tags: usize,
+    },
+    /// Markers that the board does not have.
+    #[error(
+        "tags {ids} found, expected {expected}; cover tags beside the board, or correct columns, rows and first id of --board"
+    )]
+    ForeignTags {
+        /// Ids of the markers.
+        ids: String,
+        /// The ids of the board.
+        expected: String,
+    },
+    /// A marker appears more than once.
+    #[error("tag {id} appears twice; show one board only, without mirrors")]
+    RepeatedTag {
+        /// Id of the marker.
+        id: usize,
+    },
+    /// Too small a part of the board.
+    #[error("{found} tags of the board found, expected {minimum} or more; show more of the board, in focus")]
+    TooFewTags {
+        /// Markers found.
+        found: usize,
+        /// Markers needed.
+        minimum: usize,
     },
 }

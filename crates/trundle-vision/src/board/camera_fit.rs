@@ -37,6 +37,22 @@ pub struct CameraFit {
     pub coverage: BoardCoverage,
 }
 
+impl CameraFit {
+    /// What to improve, one sentence each; empty where nothing is missing.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = self.coverage.warnings();
+        if self.residual_px > GOOD_RESIDUAL_PX {
+            warnings.push(format!(
+                "the residual is {:.2} px, expected below {GOOD_RESIDUAL_PX} px: the board is bent or out of focus, or --board has a \
+                 wrong number of columns, of rows, or a wrong gap",
+                self.residual_px
+            ));
+        }
+        warnings
+    }
+}
+
 /// A view that was left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RejectedView {
@@ -67,7 +83,7 @@ pub enum CameraFitError {
         tilt_deg: f64,
     },
     /// The fit does not converge.
-    #[error("the fit does not converge: residual {residual_px:.1} px; check the size of the board")]
+    #[error("the fit does not converge: residual {residual_px:.1} px; check columns, rows and gap of --board")]
     NotConverged {
         /// Residual, px.
         residual_px: f64,
@@ -84,7 +100,7 @@ const MAX_STEP_COUNT: usize = 60;
 const CONVERGED_RATIO: f64 = 1e-10;
 /// Largest residual of a view, over the median of all views. Source: ours.
 const MAX_RESIDUAL_RATIO: f64 = 4.0;
-/// Residual of a view that is never rejected: 0.5 px. Source: ours.
+/// Residual of a view that is never rejected, and of a fit without a warning: 0.5 px. Source: ours.
 const GOOD_RESIDUAL_PX: f64 = 0.5;
 /// Largest residual of a fit: 5 px. Source: ours.
 const MAX_RESIDUAL_PX: f64 = 5.0;

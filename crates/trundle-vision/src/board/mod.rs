@@ -4,6 +4,7 @@
 //! |---|---|
 //! | what is on the board, in metres | [`Board`] |
 //! | corners of a board in an image, to a tenth of a pixel | [`Board::find`] |
+//! | square markers in an image | [`tags`] |
 //! | intrinsics and lens from corners in several images | [`calibrate_camera`] |
 
 mod board_kind;
@@ -16,9 +17,12 @@ mod coverage;
 mod homography;
 mod saddle_points;
 mod smooth_image;
+mod tag_board;
+pub mod tags;
 
 pub use board_kind::Board;
 pub use board_view::{BoardPoint, BoardProblem, BoardView};
 pub use camera_fit::{CameraFit, CameraFitError, RejectedView, calibrate_camera};
 pub use camera_parameters::{CameraParameters, LensModel};
 pub use coverage::BoardCoverage;
+pub use tag_board::TagBoard;

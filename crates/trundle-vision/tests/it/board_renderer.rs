@@ -4,6 +4,8 @@ use nalgebra::UnitQuaternion;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{GrayImage, PinholeCamera, Pose3, Vector2, Vector3};
+use trundle_vision::board::TagBoard;
+use trundle_vision::board::tags::{TAG_CELLS, tag_cells};
 
 /// Brightness on a sheet about its middle, m.
 pub struct Pattern {
@@ -44,6 +46,43 @@ impl Pattern {
         };
         let first = (Vector2::repeat(1.0) - cells / 2.0) * square;
         Self { paint: Box::new(paint), half, first }
+    }
+
+    /// A board of markers, with the black squares of Kalibr between them or without, and a white margin of one gap.
+    pub fn tags(board: TagBoard, has_squares: bool) -> Self {
+        let TagBoard { columns, rows, side, gap_ratio, .. } = board;
+        let gap = side * gap_ratio;
+        let length = |count: usize| count as f64 * (side + gap) - gap;
+        let size = Vector2::new(length(columns), length(rows));
+        let cells: Vec<_> = board.ids().map(|id| tag_cells(id).unwrap()).collect();
+        let paint = move |at: Vector2| {
+            let at = at + size / 2.0;
+            if at.x < -gap || at.y < -gap || at.x > size.x + gap || at.y > size.y + gap {
+                return None;
+            }
+            let (column, row) = ((at.x / (side + gap)).floor(), (at.y / (side + gap)).floor());
+            let inside = (at - Vector2::new(column, row) * (side + gap)) * (TAG_CELLS as f64 / side);
+            let is_on_board = column >= 0.0 && row >= 0.0 && (column as usize) < columns && (row as usize) < rows;
+            let is_dark = match (inside.x < TAG_CELLS as f64, inside.y < TAG_CELLS as f64) {
+                (true, true) if is_on_board => {
+                    let tag = &cells[(rows - 1 - row as usize) * columns + column as usize];
+                    !tag[inside.y as usize][inside.x as usize]
+                }
+                (false, false) => has_squares,
+                _ => false,
+            };
+            Some(if is_dark { 35.0 } else { 215.0 })
+        };
+        Self { paint: Box::new(paint), half: size / 2.0 + Vector2::repeat(gap), first: -size / 2.0 }
+    }
+
+    /// The same sheet with grey disks of this radius, m, on it.
+    pub fn covered(self, middles: Vec<Vector2>, radius: f64) -> Self {
+        let paint = move |at: Vector2| {
+            let is_covered = middles.iter().any(|middle| (middle - at).norm() < radius);
+            if is_covered { Some(120.0) } else { (self.paint)(at) }
+        };
+        Self { paint: Box::new(paint), half: self.half, first: self.first }
     }
 
     /// The board's frame at its first corner.

@@ -9,6 +9,7 @@ mod invariance;
 mod localisation;
 mod real_frames;
 mod spread;
+mod tag_board;
 mod texture;
 mod tum;
 mod view;

@@ -1,0 +1,76 @@
+//! Square markers of the family tag36h11 in a grey image.
+//!
+//! Problem: where the corners of each marker are, to a tenth of a pixel, and which marker it is. Idea \[Olson11\]: a marker is a dark
+//! square with 36 cells inside, whose codes differ from each other in 11 cells or more in every orientation. Dark regions with a
+//! convex outline of four corners are candidates. Curves are fitted to the edges, their intersections are the corners, and the cells
+//! name the marker. Cost: O(pixels).
+//!
+//! | \[Olson11\] | here |
+//! |---|---|
+//! | quad | `Quad`, clockwise in the image |
+//! | line segment | `SideCurve`, of second order: a lens bends lines |
+//! | payload | `TagCode` |
+
+mod codes;
+mod components;
+mod decode;
+mod quad;
+mod side_curve;
+mod threshold;
+
+pub use codes::{TAG_CELLS, TAG_COUNT, tag_cells};
+
+use super::smooth_image::SmoothImage;
+use components::dark_components;
+use decode::{Decoded, decode};
+use quad::{outline_quad, refined_quad};
+use threshold::dark_mask;
+use trundle_core::{GrayImage, Vector2};
+
+/// A marker in an image.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tag {
+    /// Number of the marker in its family.
+    pub id: usize,
+    /// Corners of the black square, px, seen from the front with the marker upright: upper left, upper right, lower right, lower left.
+    pub corners: [Vector2; 4],
+    /// Cells that differ from those of the family's marker, 0 to 2.
+    pub wrong_cells: u32,
+}
+
+/// What is in an image.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TagSearch {
+    /// Markers of the family, by id.
+    pub tags: Vec<Tag>,
+    /// Wrong cells of each black square whose cells are those of no marker, against the nearest one.
+    pub unknown: Vec<u32>,
+    /// Markers of the family that appear mirrored.
+    pub mirrored: usize,
+}
+
+/// Blur before the search, px: against noise. Source: ours.
+const SEARCH_BLUR_PX: f32 = 0.8;
+/// Blur before the refinement, px: against noise; it moves no straight edge. Source: ours.
+const REFINEMENT_BLUR_PX: f32 = 0.7;
+
+/// The markers of tag36h11 in an image. Markers with a side below 16 px, or with a hidden corner, are not found.
+#[must_use]
+pub fn find_tags(image: &GrayImage) -> TagSearch {
+    let smooth = SmoothImage::new(image, REFINEMENT_BLUR_PX);
+    let mask = dark_mask(&SmoothImage::new(image, SEARCH_BLUR_PX));
+    let mut found = TagSearch::default();
+    for component in dark_components(mask, image.width()) {
+        let Some(quad) = outline_quad(&component).and_then(|quad| refined_quad(&smooth, quad)) else {
+            continue;
+        };
+        match decode(&smooth, &quad) {
+            Some(Decoded::Tag(tag)) => found.tags.push(tag),
+            Some(Decoded::Mirrored) => found.mirrored += 1,
+            Some(Decoded::Unknown { wrong_cells }) => found.unknown.push(wrong_cells),
+            None => {}
+        }
+    }
+    found.tags.sort_by_key(|tag| tag.id);
+    found
+}
