@@ -1,6 +1,8 @@
 //! What is plugged in, what is missing and how to get it.
 
 use std::path::Path;
+use trundle_drivers::camera::kinect2::usb::KINECT2_USB_STATE;
+use trundle_drivers::camera::kinect2::usb::ids::KINECT2_UDEV_RULE;
 use trundle_drivers::camera::native::{LibraryReport, LibraryState, NativeKind, list_devices, reports};
 use trundle_drivers::{KOBUKI_UDEV_PORT, KOBUKI_UDEV_RULE, PortAccess, SerialDevice, serial_devices};
 
@@ -10,7 +12,8 @@ pub fn udev_rules() -> String {
     format!(
         "# Written by `trundle devices --udev`. Install: save as /etc/udev/rules.d/60-trundle.rules, then\n\
          # sudo udevadm control --reload && sudo udevadm trigger\n\
-         # Kobuki: {KOBUKI_UDEV_PORT}\n{KOBUKI_UDEV_RULE}"
+         # Kobuki: {KOBUKI_UDEV_PORT}\n{KOBUKI_UDEV_RULE}\n\
+         # Kinect V2: members of the group plugdev may open it\n{KINECT2_UDEV_RULE}"
     )
 }
 
@@ -29,13 +32,10 @@ pub fn device_rows() -> Vec<Vec<String>> {
         format!("{KOBUKI_UDEV_PORT} is not there: install the rule of `trundle devices --udev`")
     };
     rows.push(vec!["udev rule".to_owned(), rule]);
-    rows.extend(
-        NativeKind::ALL.into_iter().zip(reports()).flat_map(|(kind, report)| camera_rows(kind, &report)),
-    );
+    rows.extend(NativeKind::ALL.iter().zip(reports()).flat_map(|(kind, report)| camera_rows(*kind, &report)));
     let any = "any camera by --camera stream:PATH (docs/camera-stream.md)".to_owned();
     rows.push(vec!["camera stream".to_owned(), any]);
-    let kinect = "its USB transfer is not built in; packets from a file by --camera kinect2-dump:FILE; no device was met".to_owned();
-    rows.push(vec!["camera Kinect V2".to_owned(), kinect]);
+    rows.push(vec!["camera Kinect V2".to_owned(), KINECT2_USB_STATE.to_owned()]);
     rows
 }
 
@@ -49,7 +49,9 @@ fn camera_rows(kind: NativeKind, report: &LibraryReport) -> Vec<Vec<String>> {
             let version = version.map_or_else(String::new, |version| format!(" {version}"));
             let mut rows = vec![row(format!("library{version}: {}", file.display()))];
             match list_devices(kind) {
-                Ok(devices) if devices.is_empty() => rows.push(row("none is plugged in".to_owned())),
+                Ok(devices) if devices.is_empty() => {
+                    rows.push(row(format!("no {} is plugged in", kind.cameras())));
+                }
                 Ok(devices) => rows.extend(devices.iter().map(|device| {
                     let usb = device.usb.map_or_else(String::new, |usb| format!(", {usb}"));
                     row(format!("{} {}, firmware {}{usb}", device.name, device.serial, device.firmware))

@@ -51,8 +51,9 @@ pub mod packing;
 pub mod phasors;
 mod smoothing;
 mod unwrapping;
+pub mod usb;
 
 pub use decoder::{DecoderConfig, DepthDecoder, Kinect2Calibration};
 pub use dump::{DumpReader, DumpWriter, parse_dump_header};
 pub use dump_camera::DumpCamera;
-pub use packets::{FrameAssembler, SubPacket, SubPacketParser};
+pub use packets::{FrameAssembler, PackedFrame, SubPacket, SubPacketParser};
