@@ -73,3 +73,34 @@ fn serial_row(device: &SerialDevice) -> Vec<String> {
     let kind = if device.is_kobuki() { "base Kobuki" } else { "serial device" };
     vec![kind.to_owned(), format!("{} {}: {access}", device.path.display(), device.id)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_udev_rules_name_the_kobuki_and_both_kinects() {
+        let rules = udev_rules();
+        for part in [
+            "SYMLINK+=\"kobuki\"",
+            "\"045e\", ATTR{idProduct}==\"02c4\"",
+            "\"045e\", ATTR{idProduct}==\"02d8\"",
+        ] {
+            assert!(rules.contains(part), "{part} in {rules}");
+        }
+        let is_rule = |line: &str| line.starts_with('#') || line.starts_with("SUBSYSTEM==");
+        assert!(rules.lines().all(is_rule), "{rules}");
+    }
+
+    #[test]
+    fn a_row_says_that_no_kinect_v2_was_met() {
+        let rows = device_rows();
+        let texts: Vec<&str> =
+            rows.iter().filter(|row| row[0] == "camera Kinect V2").map(|row| row[1].as_str()).collect();
+        let state =
+            if cfg!(feature = "kinect2-usb") { "has never met a device" } else { "--features kinect2-usb" };
+        assert!(texts.len() == 1 && texts[0].contains(state), "{texts:?}");
+        let is_listed = rows.iter().any(|row| row[0] == "camera kinect2");
+        assert_eq!(is_listed, cfg!(feature = "kinect2-usb"), "its library and its devices");
+    }
+}

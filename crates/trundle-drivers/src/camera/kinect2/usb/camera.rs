@@ -5,7 +5,7 @@ use super::color_packets::ColorPacket;
 use super::device::{Identity, Kinect2Device};
 use super::functions::UsbApi;
 use super::ids::KINECT2_NAME;
-use super::libusb::Session;
+use super::libusb::UsbSession;
 use super::stream_thread::{StreamThread, Streamed};
 use crate::camera::kinect2::packets::PackedFrame;
 use crate::camera::kinect2::{DecoderConfig, DepthDecoder};
@@ -47,7 +47,7 @@ impl Kinect2UsbCamera {
                 remedy: "name packets in a file as kinect2-dump:FILE".into(),
             });
         }
-        let device = Kinect2Device::open(&Session::new(api)?, selection)?;
+        let device = Kinect2Device::open(&UsbSession::new(api)?, selection)?;
         tracing::warn!("{}", super::KINECT2_USB_STATE);
         let speed = device.speed();
         let (identity, stream) = StreamThread::start(device)?;
@@ -76,7 +76,7 @@ pub fn list_devices(api: &Arc<UsbApi>) -> Result<Vec<DeviceEntry>, CameraError> 
         found.opened?;
         Ok(DeviceEntry { name: KINECT2_NAME.into(), serial, firmware: String::new(), usb })
     };
-    Session::new(api)?.kinects()?.into_iter().map(entry).collect()
+    UsbSession::new(api)?.kinects()?.into_iter().map(entry).collect()
 }
 
 impl DepthCamera for Kinect2UsbCamera {

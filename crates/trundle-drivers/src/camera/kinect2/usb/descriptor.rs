@@ -1,11 +1,11 @@
 //! Size of isochronous packets from a configuration descriptor. Source: USB 3.1 specification, 9.6.
 
 /// Types of descriptors.
-const INTERFACE: u8 = 4;
-const ENDPOINT: u8 = 5;
-const COMPANION: u8 = 48;
+const INTERFACE_TYPE: u8 = 4;
+const ENDPOINT_TYPE: u8 = 5;
+const COMPANION_TYPE: u8 = 48;
 /// Types of transfer of an endpoint: isochronous.
-const ISOCHRONOUS: u8 = 1;
+const ISOCHRONOUS_BITS: u8 = 1;
 /// Bits of the type of transfer.
 const TRANSFER_MASK: u8 = 3;
 
@@ -17,13 +17,14 @@ pub fn bytes_per_interval(configuration: &[u8], interface: u8, alternate: u8, en
     while let [length, kind, ..] = *rest {
         let (descriptor, following) = rest.split_at_checked(length.into()).filter(|_| length >= 2)?;
         match (kind, descriptor) {
-            (INTERFACE, [_, _, number, setting, ..]) => {
+            (INTERFACE_TYPE, [_, _, number, setting, ..]) => {
                 (is_setting, is_endpoint) = ((*number, *setting) == (interface, alternate), false);
             }
-            (ENDPOINT, [_, _, address, attributes, ..]) => {
-                is_endpoint = is_setting && *address == endpoint && attributes & TRANSFER_MASK == ISOCHRONOUS;
+            (ENDPOINT_TYPE, [_, _, address, attributes, ..]) => {
+                is_endpoint =
+                    is_setting && *address == endpoint && attributes & TRANSFER_MASK == ISOCHRONOUS_BITS;
             }
-            (COMPANION, [_, _, _, _, low, high, ..]) if is_endpoint => {
+            (COMPANION_TYPE, [_, _, _, _, low, high, ..]) if is_endpoint => {
                 return Some(u16::from_le_bytes([*low, *high]).into());
             }
             _ => {}

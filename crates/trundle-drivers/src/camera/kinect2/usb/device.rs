@@ -3,7 +3,7 @@
 use super::calibration::{color_camera, depth_camera, p0_tables};
 use super::command::{Kinect2Command, Page, STREAM_MODE};
 use super::ids::{self, KINECT2_NAME};
-use super::libusb::{Found, Handle, Session, TransferPlan};
+use super::libusb::{Found, TransferPlan, UsbConnection, UsbSession};
 use super::reply::{COMPLETION_BYTES, ReplyFault, ReplyReader};
 use super::{answers, depth_packets, descriptor};
 use crate::camera::kinect2::Kinect2Calibration;
@@ -28,7 +28,7 @@ const U1_ENABLE: u16 = 48;
 const U2_ENABLE: u16 = 49;
 const FUNCTION_SUSPEND: u16 = 0;
 /// Suspend with remote wake, in the upper byte of the index.
-const SUSPENDED: u16 = 3 << 8;
+const SUSPENDED_INDEX: u16 = 3 << 8;
 /// Delay without hubs in between \[ns\].
 const ISOCHRONOUS_DELAY_NS: u16 = 40;
 /// Colour transfers that wait at the same time, and their size \[bytes\].
@@ -51,7 +51,7 @@ pub(super) struct Identity {
 /// An open device. It is stopped when it is dropped.
 #[derive(Debug)]
 pub(super) struct Kinect2Device {
-    handle: Handle,
+    handle: UsbConnection,
     sequence: u32,
     packet_bytes: usize,
     speed: Option<UsbSpeed>,
@@ -60,14 +60,14 @@ pub(super) struct Kinect2Device {
 
 impl Kinect2Device {
     /// Opens a device and takes its interfaces.
-    pub(super) fn open(session: &Arc<Session>, selection: &Selection) -> Result<Self, CameraError> {
+    pub(super) fn open(session: &Arc<UsbSession>, selection: &Selection) -> Result<Self, CameraError> {
         let found = choose(session.kinects()?, selection)?;
         let speed = found.speed;
         let handle = found.opened?;
         if let Some(speed) = speed.filter(|speed| *speed < UsbSpeed::Super) {
             return Err(CameraError::UsbTooSlow { device: KINECT2_NAME.into(), speed });
         }
-        handle.set_configuration(ids::CONFIGURATION)?;
+        handle.set_configuration(ids::CONFIGURATION_NUMBER)?;
         handle.claim(ids::CONTROL_INTERFACE)?;
         handle.claim(ids::DEPTH_INTERFACE)?;
         let mut device = Self { handle, sequence: 0, packet_bytes: 0, speed, is_streaming: false };
@@ -81,7 +81,7 @@ impl Kinect2Device {
     }
 
     /// The handle, for transfers.
-    pub(super) fn handle(&self) -> &Handle {
+    pub(super) fn handle(&self) -> &UsbConnection {
         &self.handle
     }
 
@@ -98,7 +98,7 @@ impl Kinect2Device {
         self.handle.set_alternate(ids::DEPTH_INTERFACE, 0)?;
         self.handle.control(TO_DEVICE, SET_FEATURE, U1_ENABLE, 0)?;
         self.handle.control(TO_DEVICE, SET_FEATURE, U2_ENABLE, 0)?;
-        self.handle.control(TO_INTERFACE, SET_FEATURE, FUNCTION_SUSPEND, SUSPENDED)?;
+        self.handle.control(TO_INTERFACE, SET_FEATURE, FUNCTION_SUSPEND, SUSPENDED_INDEX)?;
         let bytes = self.handle.configuration_descriptor()?;
         let size = descriptor::bytes_per_interval(&bytes, ids::DEPTH_INTERFACE, 1, ids::DEPTH_ENDPOINT);
         self.packet_bytes =
@@ -186,7 +186,7 @@ impl Kinect2Device {
         for command in quiet.into_iter().chain(end).chain(shut) {
             self.execute(command)?;
         }
-        self.handle.control(TO_INTERFACE, SET_FEATURE, FUNCTION_SUSPEND, SUSPENDED)
+        self.handle.control(TO_INTERFACE, SET_FEATURE, FUNCTION_SUSPEND, SUSPENDED_INDEX)
     }
 }
 

@@ -1,9 +1,9 @@
 //! Numbers of the device.
 
 /// Vendor number of Microsoft. Source: the USB vendor list.
-pub const VENDOR: u16 = 0x045e;
+pub const VENDOR_ID: u16 = 0x045e;
 /// Product numbers: the Kinect V2 before and after its release.
-pub const PRODUCTS: [u16; 2] = [0x02d8, 0x02c4];
+pub const PRODUCT_IDS: [u16; 2] = [0x02d8, 0x02c4];
 /// Name of the camera in messages.
 pub const KINECT2_NAME: &str = "Kinect V2";
 /// Bulk endpoint of requests.
@@ -19,7 +19,7 @@ pub const CONTROL_INTERFACE: u8 = 0;
 /// Interface of depth. Its alternate setting 0 has no isochronous endpoint, 1 has it.
 pub const DEPTH_INTERFACE: u8 = 1;
 /// Configuration with both interfaces.
-pub const CONFIGURATION: u8 = 1;
+pub const CONFIGURATION_NUMBER: u8 = 1;
 
 /// Rule of udev that lets everyone in the group `plugdev` open a Kinect V2.
 pub const KINECT2_UDEV_RULE: &str = "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"045e\", ATTR{idProduct}==\"02c4\", MODE=\"0660\", GROUP=\"plugdev\", \
@@ -28,7 +28,7 @@ pub const KINECT2_UDEV_RULE: &str = "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"045e\
 
 /// Whether these are the numbers of a Kinect V2.
 pub fn is_kinect2(vendor: u16, product: u16) -> bool {
-    vendor == VENDOR && PRODUCTS.contains(&product)
+    vendor == VENDOR_ID && PRODUCT_IDS.contains(&product)
 }
 
 #[cfg(test)]
@@ -37,12 +37,13 @@ mod tests {
 
     #[test]
     fn the_udev_rule_has_every_product() {
-        for product in PRODUCTS {
-            assert!(is_kinect2(VENDOR, product));
+        for product in PRODUCT_IDS {
+            assert!(is_kinect2(VENDOR_ID, product));
             assert!(
-                KINECT2_UDEV_RULE.contains(&format!("{VENDOR:04x}\", ATTR{{idProduct}}==\"{product:04x}\""))
+                KINECT2_UDEV_RULE
+                    .contains(&format!("{VENDOR_ID:04x}\", ATTR{{idProduct}}==\"{product:04x}\""))
             );
         }
-        assert!(!is_kinect2(VENDOR, 0x02ae), "the Kinect v1 is another device");
+        assert!(!is_kinect2(VENDOR_ID, 0x02ae), "the Kinect v1 is another device");
     }
 }

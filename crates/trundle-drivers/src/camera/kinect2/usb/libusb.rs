@@ -84,13 +84,13 @@ impl UsbApi {
 
 /// A session with libusb.
 #[derive(Debug)]
-pub(super) struct Session {
+pub(super) struct UsbSession {
     api: Arc<UsbApi>,
     context: NonNull<UsbContext>,
 }
 
 // SAFETY: libusb may be called from any thread.
-unsafe impl Send for Session {}
+unsafe impl Send for UsbSession {}
 
 /// A Kinect V2 in the list of devices.
 #[derive(Debug)]
@@ -98,11 +98,11 @@ pub(super) struct Found {
     /// Speed of its connection; `None` where unknown.
     pub(super) speed: Option<UsbSpeed>,
     /// The open device, or why it cannot be opened.
-    pub(super) opened: Result<Handle, CameraError>,
+    pub(super) opened: Result<UsbConnection, CameraError>,
     serial_text: u8,
 }
 
-impl Session {
+impl UsbSession {
     /// Begins a session.
     pub(super) fn new(api: &Arc<UsbApi>) -> Result<Arc<Self>, CameraError> {
         let mut context = std::ptr::null_mut();
@@ -146,13 +146,13 @@ impl Session {
         let opened = self.api.check("libusb_open", code).and_then(|_| {
             let handle =
                 NonNull::new(handle).ok_or_else(|| self.api.failed("libusb_open", code, LIBRARY.remedy))?;
-            Ok(Handle { session: Arc::clone(self), handle })
+            Ok(UsbConnection { session: Arc::clone(self), handle })
         });
         Some(Found { speed: speed_of(speed), opened, serial_text: descriptor.serial_text })
     }
 }
 
-impl Drop for Session {
+impl Drop for UsbSession {
     fn drop(&mut self) {
         // SAFETY: the context is alive; handles hold the session, so all of them are closed.
         unsafe { (self.api.libusb_exit)(self.context.as_ptr()) };
@@ -177,15 +177,15 @@ fn speed_of(speed: c_int) -> Option<UsbSpeed> {
 
 /// An open device.
 #[derive(Debug)]
-pub(super) struct Handle {
-    session: Arc<Session>,
+pub(super) struct UsbConnection {
+    session: Arc<UsbSession>,
     handle: NonNull<UsbHandle>,
 }
 
 // SAFETY: libusb may be called from any thread.
-unsafe impl Send for Handle {}
+unsafe impl Send for UsbConnection {}
 
-impl Handle {
+impl UsbConnection {
     fn check(&self, function: &'static str, code: c_int) -> Result<usize, CameraError> {
         self.session.api.check(function, code)
     }
@@ -284,7 +284,7 @@ impl Handle {
     }
 }
 
-impl Drop for Handle {
+impl Drop for UsbConnection {
     fn drop(&mut self) {
         // SAFETY: the device is open, and transfers borrow it.
         unsafe { (self.session.api.libusb_close)(self.handle.as_ptr()) };
@@ -319,7 +319,7 @@ struct Shared<'a> {
 
 /// Transfers that are submitted again when they arrive.
 pub(super) struct Transfers<'a> {
-    handle: &'a Handle,
+    handle: &'a UsbConnection,
     shared: NonNull<Shared<'a>>,
     transfers: Vec<(NonNull<UsbTransfer>, Vec<u8>)>,
 }
@@ -327,7 +327,7 @@ pub(super) struct Transfers<'a> {
 impl<'a> Transfers<'a> {
     /// Submits all transfers; `on_arrival` gets what arrives, in the order of arrival.
     pub(super) fn start(
-        handle: &'a Handle,
+        handle: &'a UsbConnection,
         plans: &[TransferPlan],
         on_arrival: impl FnMut(Arrival<'_>) + 'a,
     ) -> Result<Self, CameraError> {
