@@ -1,5 +1,6 @@
 //! A camera as a user names it.
 
+use crate::camera::kinect2::usb::KINECT2_USB_STATE;
 use crate::camera::kinect2::{DecoderConfig, DumpCamera};
 use crate::camera::native::openni2::{OpenNiSettings, serve_openni};
 use crate::camera::native::{NativeKind, Selection, open};
@@ -30,7 +31,8 @@ pub enum CameraSpec {
 }
 
 /// What the kinds of camera are called, for messages.
-const KINDS: &str = "realsense, freenect (Kinect v1), orbbec, openni2, stream:PATH, folder:PATH, kinect2-dump:FILE; a serial number or \
+const KINDS: &str = "realsense, freenect (Kinect v1), orbbec, openni2, kinect2 (needs the feature kinect2-usb), stream:PATH, \
+     folder:PATH, kinect2-dump:FILE; a serial number or \
      recording may follow, as realsense:FILE.db3";
 /// Endings of recordings of RealSense cameras. Source: librealsense's recorder.
 const RECORDING_ENDINGS: [&str; 2] = [".db3", ".bag"];
@@ -71,7 +73,7 @@ impl CameraSpec {
     }
 
     fn native(kind: &str, which: Option<&str>) -> Option<Self> {
-        let kind = NativeKind::ALL.into_iter().find(|known| known.to_string() == kind)?;
+        let kind = NativeKind::ALL.iter().copied().find(|known| known.to_string() == kind)?;
         let is_file =
             |which: &str| which.contains('/') || RECORDING_ENDINGS.iter().any(|end| which.ends_with(end));
         Some(Self::Native(
@@ -95,6 +97,7 @@ impl FromStr for CameraSpec {
             ("stream", Some(path)) => Some(Self::Stream(path.into())),
             ("folder", Some(path)) => Some(Self::Folder(path.into())),
             ("kinect2-dump", Some(file)) => Some(Self::Kinect2Dump(file.into())),
+            ("kinect2", _) if !cfg!(feature = "kinect2-usb") => return Err(KINECT2_USB_STATE.to_owned()),
             _ => Self::native(kind, which),
         };
         camera.ok_or_else(|| format!("no camera '{text}', expected one of {KINDS}"))
@@ -140,6 +143,16 @@ mod tests {
             assert!(
                 text.parse::<CameraSpec>().unwrap_err().starts_with(&format!("no camera '{text}', expected"))
             );
+        }
+    }
+
+    #[test]
+    fn a_kinect2_needs_its_feature() {
+        let parsed = "kinect2:012345".parse::<CameraSpec>();
+        if cfg!(feature = "kinect2-usb") {
+            assert_eq!(parsed.unwrap().to_string(), "kinect2:012345");
+        } else {
+            assert!(parsed.unwrap_err().contains("cargo build --release --features kinect2-usb"));
         }
     }
 

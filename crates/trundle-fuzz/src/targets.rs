@@ -7,7 +7,7 @@ mod saved;
 mod sequences;
 mod settings;
 
-pub use drivers::{camera_stream, kinect2_dump, kobuki, mission};
+pub use drivers::{camera_stream, kinect2_dump, kinect2_usb, kobuki, mission};
 pub use logs::{bag, cdr, file_kind, laser_log, recording};
 pub use maps::{graph, map_picture, map_yaml, places};
 pub use saved::{checkpoint, dbow2, visual_map, vocabulary};

@@ -1,6 +1,8 @@
 //! What is plugged in, what is missing and how to get it.
 
 use std::path::Path;
+use trundle_drivers::camera::kinect2::usb::KINECT2_USB_STATE;
+use trundle_drivers::camera::kinect2::usb::ids::KINECT2_UDEV_RULE;
 use trundle_drivers::camera::native::{LibraryReport, LibraryState, NativeKind, list_devices, reports};
 use trundle_drivers::{KOBUKI_UDEV_PORT, KOBUKI_UDEV_RULE, PortAccess, SerialDevice, serial_devices};
 
@@ -10,7 +12,8 @@ pub fn udev_rules() -> String {
     format!(
         "# Written by `trundle devices --udev`. Install: save as /etc/udev/rules.d/60-trundle.rules, then\n\
          # sudo udevadm control --reload && sudo udevadm trigger\n\
-         # Kobuki: {KOBUKI_UDEV_PORT}\n{KOBUKI_UDEV_RULE}"
+         # Kobuki: {KOBUKI_UDEV_PORT}\n{KOBUKI_UDEV_RULE}\n\
+         # Kinect V2: members of the group plugdev may open it\n{KINECT2_UDEV_RULE}"
     )
 }
 
@@ -29,13 +32,10 @@ pub fn device_rows() -> Vec<Vec<String>> {
         format!("{KOBUKI_UDEV_PORT} is not there: install the rule of `trundle devices --udev`")
     };
     rows.push(vec!["udev rule".to_owned(), rule]);
-    rows.extend(
-        NativeKind::ALL.into_iter().zip(reports()).flat_map(|(kind, report)| camera_rows(kind, &report)),
-    );
+    rows.extend(NativeKind::ALL.iter().zip(reports()).flat_map(|(kind, report)| camera_rows(*kind, &report)));
     let any = "any camera by --camera stream:PATH (docs/camera-stream.md)".to_owned();
     rows.push(vec!["camera stream".to_owned(), any]);
-    let kinect = "its USB transfer is not built in; packets from a file by --camera kinect2-dump:FILE; no device was met".to_owned();
-    rows.push(vec!["camera Kinect V2".to_owned(), kinect]);
+    rows.push(vec!["camera Kinect V2".to_owned(), KINECT2_USB_STATE.to_owned()]);
     rows
 }
 
@@ -49,7 +49,9 @@ fn camera_rows(kind: NativeKind, report: &LibraryReport) -> Vec<Vec<String>> {
             let version = version.map_or_else(String::new, |version| format!(" {version}"));
             let mut rows = vec![row(format!("library{version}: {}", file.display()))];
             match list_devices(kind) {
-                Ok(devices) if devices.is_empty() => rows.push(row("none is plugged in".to_owned())),
+                Ok(devices) if devices.is_empty() => {
+                    rows.push(row(format!("no {} is plugged in", kind.cameras())));
+                }
                 Ok(devices) => rows.extend(devices.iter().map(|device| {
                     let usb = device.usb.map_or_else(String::new, |usb| format!(", {usb}"));
                     row(format!("{} {}, firmware {}{usb}", device.name, device.serial, device.firmware))
@@ -70,4 +72,35 @@ fn serial_row(device: &SerialDevice) -> Vec<String> {
     };
     let kind = if device.is_kobuki() { "base Kobuki" } else { "serial device" };
     vec![kind.to_owned(), format!("{} {}: {access}", device.path.display(), device.id)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_udev_rules_name_the_kobuki_and_both_kinects() {
+        let rules = udev_rules();
+        for part in [
+            "SYMLINK+=\"kobuki\"",
+            "\"045e\", ATTR{idProduct}==\"02c4\"",
+            "\"045e\", ATTR{idProduct}==\"02d8\"",
+        ] {
+            assert!(rules.contains(part), "{part} in {rules}");
+        }
+        let is_rule = |line: &str| line.starts_with('#') || line.starts_with("SUBSYSTEM==");
+        assert!(rules.lines().all(is_rule), "{rules}");
+    }
+
+    #[test]
+    fn a_row_says_that_no_kinect_v2_was_met() {
+        let rows = device_rows();
+        let texts: Vec<&str> =
+            rows.iter().filter(|row| row[0] == "camera Kinect V2").map(|row| row[1].as_str()).collect();
+        let state =
+            if cfg!(feature = "kinect2-usb") { "has never met a device" } else { "--features kinect2-usb" };
+        assert!(texts.len() == 1 && texts[0].contains(state), "{texts:?}");
+        let is_listed = rows.iter().any(|row| row[0] == "camera kinect2");
+        assert_eq!(is_listed, cfg!(feature = "kinect2-usb"), "its library and its devices");
+    }
 }

@@ -10,7 +10,7 @@
 //! | [`registration`] | depth moved into the colour camera |
 //! | [`frame_monitor`] | faults found in the frames themselves |
 //! | [`pipe`] | frames from a pipe, a file or a growing folder |
-//! | [`kinect2`] | depth of the Kinect V2 from its raw packets |
+//! | [`kinect2`] | depth of the Kinect V2 from its raw packets, which come from a file or by USB |
 //! | [`camera_thread`] | a camera in a thread of its own, reopened after faults |
 
 pub mod camera_thread;

@@ -5,6 +5,7 @@ mod fixtures;
 mod folders;
 mod kinect2;
 mod kinect2_model;
+mod kinect2_usb;
 mod monitor;
 mod pixels;
 mod registration;

@@ -33,7 +33,7 @@ fn wheels_and_variables_lead_to_the_libraries() {
         return;
     }
     let found: Vec<_> = reports();
-    let [_, freenect, orbbec, _] = found.as_slice() else { panic!("{found:?}") };
+    let [_, freenect, orbbec, ..] = found.as_slice() else { panic!("{found:?}") };
     assert!(freenect.is_usable() && freenect.to_string().contains("fakenect"), "{freenect}");
     assert!(orbbec.is_usable() && orbbec.to_string().contains("pyorbbecsdk"), "{orbbec}");
     assert_eq!(list_devices(NativeKind::Orbbec).unwrap(), []);

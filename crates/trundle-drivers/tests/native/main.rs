@@ -6,6 +6,8 @@
 
 mod all_kinds;
 mod freenect;
+#[cfg(feature = "kinect2-usb")]
+mod kinect2_usb;
 mod library;
 mod openni2;
 mod orbbec;

@@ -2,6 +2,9 @@
 
 use super::texts;
 use trundle::core::{Distortion, PinholeCamera, Stamp};
+use trundle::drivers::camera::kinect2::layout::{IMAGE_BYTES, IMAGE_COUNT};
+use trundle::drivers::camera::kinect2::usb::color_packets::{FOOTER_MAGIC, HEADER_MAGIC};
+use trundle::drivers::camera::kinect2::usb::reply::COMPLETION_MAGIC;
 use trundle::drivers::camera::pipe::StreamWriter;
 use trundle::drivers::camera::{CameraFrame, CameraInfo, PixelFormat, RawImage, StreamInfo};
 use trundle::drivers::kobuki::protocol::KobukiCommand;
@@ -55,6 +58,34 @@ pub fn kinect2_dump() -> Vec<Vec<u8>> {
     texts(&[
         r#"{"magic":"trundle-kinect2","version":1,"camera":{"width":512,"height":424,"fx":365.0,"fy":365.0,"cx":255.5,"cy":211.5}}"#,
     ])
+}
+
+/// A frame of depth, a colour image, a reply and a configuration descriptor, as arrivals.
+pub fn kinect2_usb() -> Vec<Vec<u8>> {
+    let arrival = |kind: u8, bytes: &[u8]| [&[kind], &(bytes.len() as u16).to_le_bytes()[..], bytes].concat();
+    let words = |words: &[u32]| words.iter().flat_map(|word| word.to_le_bytes()).collect::<Vec<u8>>();
+    let image = |subsequence| {
+        let mut footer = words(&[0, 9, 1, 1, subsequence, IMAGE_BYTES as u32]);
+        footer.extend([0; 128]);
+        let zeros = (IMAGE_BYTES / 8) as u16;
+        [&[4], &zeros.to_le_bytes()[..], &arrival(0, &footer)].concat()
+    };
+    let frame: Vec<u8> = (0..IMAGE_COUNT as u32).flat_map(image).collect();
+    let mut color = words(&[1, HEADER_MAGIC]);
+    color.extend([0xff, 0xd8, 0xff, 0xd9]);
+    color.extend(words(&[FOOTER_MAGIC, 1, 0, 0, 0, 267, 0, 0, HEADER_MAGIC, 68, 0, 0, 0, 0]));
+    let completion = words(&[COMPLETION_MAGIC, 1, 0, 0]);
+    let reply = [arrival(2, b"data"), arrival(2, &completion)].concat();
+    let descriptor = [9, 4, 1, 1, 1, 255, 0, 0, 0, 7, 5, 0x84, 1, 0, 4, 1, 6, 48, 0, 0, 0, 0x84];
+    let numbers: Vec<u8> = [365.0_f32; 25].iter().flat_map(|number| number.to_le_bytes()).collect();
+    vec![
+        frame,
+        arrival(1, &color),
+        reply,
+        arrival(7, &descriptor),
+        arrival(5, &numbers),
+        arrival(6, &numbers),
+    ]
 }
 
 /// A mission with a task of each kind.

@@ -67,7 +67,8 @@ impl SubPacketParser {
         self.skipped
     }
 
-    fn skip(&mut self) {
+    /// Skips the bytes of a sub-packet that is not whole.
+    pub(in crate::camera::kinect2) fn skip(&mut self) {
         self.skipped += self.bytes.len() as u64;
         self.bytes.clear();
     }
@@ -87,13 +88,20 @@ pub struct FrameAssembler {
     ticks: u32,
     images: [Vec<u8>; IMAGE_COUNT],
     dropped: u64,
-    /// Time of the last frame with its overflows \[0.125 ms\].
-    long_ticks: Option<i64>,
+    /// The frame that was whole last.
+    finished: Option<u32>,
+    repeated: u64,
+    clock: TickClock,
 }
 
 impl FrameAssembler {
-    /// Takes a sub-packet; the whole frame when it was the last one missing. A new sequence drops an incomplete frame.
+    /// Takes a sub-packet; the whole frame when it was the last one missing. A new sequence drops an incomplete frame. Sub-packets of the
+    /// frame that was whole last came twice, and are passed over.
     pub fn push(&mut self, packet: SubPacket) -> Option<PackedFrame> {
+        if self.finished == Some(packet.sequence) {
+            self.repeated += 1;
+            return None;
+        }
         if self.sequence != Some(packet.sequence) {
             self.begin(&packet);
         }
@@ -105,7 +113,8 @@ impl FrameAssembler {
             return None;
         }
         let sequence = self.sequence.take()?;
-        let stamp = self.stamp();
+        self.finished = Some(sequence);
+        let stamp = self.clock.stamp(self.ticks);
         Some(PackedFrame { stamp, sequence, images: std::mem::take(&mut self.images) })
     }
 
@@ -114,17 +123,31 @@ impl FrameAssembler {
         self.dropped
     }
 
+    /// Sub-packets passed over since their frame was whole already.
+    pub fn repeated(&self) -> u64 {
+        self.repeated
+    }
+
     fn begin(&mut self, packet: &SubPacket) {
         self.dropped += self.images.iter().any(|image| !image.is_empty()) as u64;
         self.images.iter_mut().for_each(Vec::clear);
         (self.sequence, self.ticks) = (Some(packet.sequence), packet.ticks);
     }
+}
 
-    /// The time without the overflow of its 32 bits, which comes every 6.2 days.
-    fn stamp(&mut self) -> Stamp {
-        let last = self.long_ticks.unwrap_or(self.ticks as i64);
-        let step = self.ticks.wrapping_sub(last as u32) as i32;
-        let ticks = last.saturating_add(step as i64);
+/// A clock of 32 bits that goes on after its largest number, which comes every 6.2 days.
+#[derive(Debug, Clone, Default)]
+pub struct TickClock {
+    /// The last time with its overflows \[0.125 ms\].
+    long_ticks: Option<i64>,
+}
+
+impl TickClock {
+    /// The time of a number of ticks, which is less than half a round from the one before.
+    pub fn stamp(&mut self, ticks: u32) -> Stamp {
+        let last = self.long_ticks.unwrap_or(ticks.into());
+        let step = ticks.wrapping_sub(last as u32).cast_signed();
+        let ticks = last.saturating_add(step.into());
         self.long_ticks = Some(ticks);
         Stamp::from_nanos(ticks.saturating_mul(TICK_NANOS))
     }

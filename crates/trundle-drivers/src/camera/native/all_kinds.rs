@@ -5,11 +5,13 @@ use super::openni2::{self, OpenNiApi, OpenNiCamera, OpenNiSettings};
 use super::orbbec::{self, OrbbecApi, OrbbecCamera, OrbbecSettings};
 use super::realsense::{self, RealSenseApi, RealSenseCamera, RealSenseSettings};
 use super::{DeviceEntry, LibraryReport, NativeKind, Selection};
+#[cfg(feature = "kinect2-usb")]
+use crate::camera::kinect2::usb::{self, Kinect2UsbCamera, UsbApi};
 use crate::camera::{CameraError, DepthCamera};
 
 /// Whether the library of each kind is usable, in the order of [`NativeKind::ALL`].
 pub fn reports() -> Vec<LibraryReport> {
-    NativeKind::ALL.into_iter().map(report).collect()
+    NativeKind::ALL.iter().copied().map(report).collect()
 }
 
 /// Whether the library of `kind` is usable.
@@ -30,6 +32,11 @@ pub fn report(kind: NativeKind) -> LibraryReport {
             let loaded = OpenNiApi::load(None).map(|api| (api.file(), Some(api.version())));
             LibraryReport::new(&openni2::LIBRARY, loaded)
         }
+        #[cfg(feature = "kinect2-usb")]
+        NativeKind::Kinect2Usb => {
+            let loaded = UsbApi::load(None).map(|api| (api.file(), Some(api.version())));
+            LibraryReport::new(&usb::LIBRARY, loaded)
+        }
     }
 }
 
@@ -43,6 +50,8 @@ pub fn list_devices(kind: NativeKind) -> Result<Vec<DeviceEntry>, CameraError> {
         NativeKind::Freenect => freenect::list_devices(&FreenectApi::load(None)?),
         NativeKind::Orbbec => orbbec::list_devices(&OrbbecApi::load(None)?),
         NativeKind::OpenNi2 => openni2::list_devices(&OpenNiApi::load(None)?),
+        #[cfg(feature = "kinect2-usb")]
+        NativeKind::Kinect2Usb => usb::list_devices(&UsbApi::load(None)?),
     }
 }
 
@@ -69,5 +78,7 @@ pub fn open(kind: NativeKind, selection: &Selection) -> Result<Box<dyn DepthCame
             let settings = OpenNiSettings::default();
             Box::new(OpenNiCamera::open(&OpenNiApi::load(None)?, selection, &settings)?)
         }
+        #[cfg(feature = "kinect2-usb")]
+        NativeKind::Kinect2Usb => Box::new(Kinect2UsbCamera::open(&UsbApi::load(None)?, selection)?),
     })
 }

@@ -8,22 +8,22 @@ const MAX_PAIR_GAP_PERIODS: f64 = 0.51;
 
 /// The newest image of each kind.
 #[derive(Debug)]
-pub(super) struct ImagePair {
+pub(in crate::camera) struct ImagePair {
     max_gap_s: f64,
     /// The newest colour image.
-    pub(super) color: Option<RawImage>,
+    pub(in crate::camera) color: Option<RawImage>,
     /// The newest depth image.
-    pub(super) depth: Option<RawImage>,
+    pub(in crate::camera) depth: Option<RawImage>,
 }
 
 impl ImagePair {
     /// No images; `rate_hz` is the rate of the slower stream \[Hz\], above 0.
-    pub(super) fn new(rate_hz: f64) -> Self {
+    pub(in crate::camera) fn new(rate_hz: f64) -> Self {
         Self { max_gap_s: MAX_PAIR_GAP_PERIODS / rate_hz, color: None, depth: None }
     }
 
     /// A pair of images of the same time; the older one of two that do not fit is dropped.
-    pub(super) fn take(&mut self) -> Option<CameraFrame> {
+    pub(in crate::camera) fn take(&mut self) -> Option<CameraFrame> {
         let gap_s = self.color.as_ref()?.device_stamp - self.depth.as_ref()?.device_stamp;
         if gap_s.abs() <= self.max_gap_s {
             return Some(CameraFrame { color: self.color.take()?, depth: self.depth.take()? });

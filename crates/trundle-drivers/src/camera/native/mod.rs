@@ -17,7 +17,7 @@ mod all_kinds;
 pub mod calibration;
 pub mod distortion_fit;
 pub mod freenect;
-mod image_pair;
+pub(super) mod image_pair;
 pub mod library;
 pub mod openni2;
 pub mod orbbec;

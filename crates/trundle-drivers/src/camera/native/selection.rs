@@ -15,11 +15,33 @@ pub enum NativeKind {
     Orbbec,
     /// Xtion and Astra, OpenNI2.
     OpenNi2,
+    /// Kinect V2, libusb.
+    #[cfg(feature = "kinect2-usb")]
+    Kinect2Usb,
 }
 
 impl NativeKind {
     /// All kinds.
-    pub const ALL: [Self; 4] = [Self::RealSense, Self::Freenect, Self::Orbbec, Self::OpenNi2];
+    pub const ALL: &[Self] = &[
+        Self::RealSense,
+        Self::Freenect,
+        Self::Orbbec,
+        Self::OpenNi2,
+        #[cfg(feature = "kinect2-usb")]
+        Self::Kinect2Usb,
+    ];
+
+    /// The cameras of this kind, for messages.
+    pub fn cameras(self) -> &'static str {
+        match self {
+            Self::RealSense => "RealSense",
+            Self::Freenect => "Kinect v1",
+            Self::Orbbec => "Orbbec",
+            Self::OpenNi2 => "Xtion or Astra",
+            #[cfg(feature = "kinect2-usb")]
+            Self::Kinect2Usb => "Kinect V2",
+        }
+    }
 }
 
 /// The name in settings, as `realsense`.
@@ -30,6 +52,8 @@ impl fmt::Display for NativeKind {
             Self::Freenect => "freenect",
             Self::Orbbec => "orbbec",
             Self::OpenNi2 => "openni2",
+            #[cfg(feature = "kinect2-usb")]
+            Self::Kinect2Usb => "kinect2",
         })
     }
 }
@@ -48,7 +72,7 @@ pub enum Selection {
 
 impl Selection {
     /// The camera in words, for errors.
-    pub(super) fn describe(&self, kind: &str) -> String {
+    pub(in crate::camera) fn describe(&self, kind: &str) -> String {
         match self {
             Self::First => kind.to_owned(),
             Self::Serial(serial) => format!("{kind} with serial number {serial}"),

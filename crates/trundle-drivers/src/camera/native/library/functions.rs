@@ -47,4 +47,4 @@ macro_rules! functions {
     };
 }
 
-pub(in crate::camera::native) use functions;
+pub(in crate::camera) use functions;

@@ -21,7 +21,7 @@
 //! | `wheel` | libraries inside Python wheels |
 
 mod candidate;
-pub(super) mod functions;
+pub(in crate::camera) mod functions;
 pub mod native_library;
 pub mod report;
 pub mod search;

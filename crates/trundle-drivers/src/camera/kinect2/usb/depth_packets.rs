@@ -1,0 +1,47 @@
+//! Frames of depth from isochronous packets.
+//!
+//! A packed image and its footer fill nine packets of at most 33,792 bytes; an empty packet stands between images. A lost packet costs the
+//! frame that it belongs to.
+
+use crate::camera::kinect2::packets::{FrameAssembler, PackedFrame, SubPacketParser};
+
+/// Least size of the isochronous packets \[bytes\].
+pub const MIN_PACKET_BYTES: usize = 0x8400;
+
+/// Puts frames together from isochronous packets. It holds at most one frame.
+#[derive(Debug, Clone, Default)]
+pub struct DepthPackets {
+    parser: SubPacketParser,
+    assembler: FrameAssembler,
+}
+
+impl DepthPackets {
+    /// Takes one isochronous packet; the frame when this packet ends the last of its ten images.
+    pub fn push(&mut self, packet: &[u8]) -> Option<PackedFrame> {
+        if packet.is_empty() {
+            self.parser.skip();
+            return None;
+        }
+        self.assembler.push(self.parser.push(packet)?)
+    }
+
+    /// A packet was lost: the image that it belongs to is skipped, and its frame is dropped.
+    pub fn lose(&mut self) {
+        self.parser.skip();
+    }
+
+    /// Bytes that belong to no whole image.
+    pub fn skipped_bytes(&self) -> u64 {
+        self.parser.skipped_bytes()
+    }
+
+    /// Frames dropped since an image was missing.
+    pub fn dropped(&self) -> u64 {
+        self.assembler.dropped()
+    }
+
+    /// Images passed over since their frame was whole already.
+    pub fn repeated(&self) -> u64 {
+        self.assembler.repeated()
+    }
+}
