@@ -3,7 +3,9 @@
 mod args;
 mod check;
 
-pub use args::{RunArgs, RunOptions};
+pub use args::RunArgs;
+#[cfg(feature = "ros2")]
+pub use args::RunOptions;
 
 use crate::common_args::PoseArg;
 use crate::outcome::Outcome;

@@ -11,6 +11,7 @@ use trundle_ros2::node::{Names, Networks, NodeSettings, RosNode};
 pub struct Domain(u16);
 
 impl Domain {
+    /// The next domain of this process.
     pub fn new() -> Self {
         static NEXT: AtomicU16 = AtomicU16::new(0);
         // Domains 100 to 229: below the system's ephemeral ports, and seldom used.
@@ -18,6 +19,7 @@ impl Domain {
         Self(100 + (first * 3 + NEXT.fetch_add(1, Ordering::Relaxed)) % 130)
     }
 
+    /// A node of this name in the domain.
     pub fn node(&self, name: &str) -> RosNode {
         RosNode::new(&NodeSettings {
             names: Names::of_node(name),
