@@ -57,7 +57,8 @@ impl TagBoard {
         if found.tags.is_empty() {
             return Err(problem_without_tags(&found, expected));
         }
-        let foreign: Vec<usize> = found.tags.iter().map(|tag| tag.id).filter(|id| !ids.contains(id)).collect();
+        let foreign: Vec<usize> =
+            found.tags.iter().map(|tag| tag.id).filter(|id| !ids.contains(id)).collect();
         if !foreign.is_empty() {
             return Err(BoardProblem::ForeignTags { ids: listed(&foreign), expected });
         }
@@ -81,11 +82,9 @@ fn problem_without_tags(found: &TagSearch, expected: String) -> BoardProblem {
         return BoardProblem::Mirrored { tags: found.mirrored };
     }
     match found.unknown.iter().min() {
-        Some(wrong_cells) => BoardProblem::OtherFamily {
-            squares: found.unknown.len(),
-            wrong_cells: *wrong_cells,
-            expected,
-        },
+        Some(wrong_cells) => {
+            BoardProblem::OtherFamily { squares: found.unknown.len(), wrong_cells: *wrong_cells, expected }
+        }
         None => BoardProblem::NoTags { expected },
     }
 }

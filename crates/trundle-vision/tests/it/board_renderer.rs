@@ -62,7 +62,8 @@ impl Pattern {
             }
             let (column, row) = ((at.x / (side + gap)).floor(), (at.y / (side + gap)).floor());
             let inside = (at - Vector2::new(column, row) * (side + gap)) * (TAG_CELLS as f64 / side);
-            let is_on_board = column >= 0.0 && row >= 0.0 && (column as usize) < columns && (row as usize) < rows;
+            let is_on_board =
+                column >= 0.0 && row >= 0.0 && (column as usize) < columns && (row as usize) < rows;
             let is_dark = match (inside.x < TAG_CELLS as f64, inside.y < TAG_CELLS as f64) {
                 (true, true) if is_on_board => {
                     let tag = &cells[(rows - 1 - row as usize) * columns + column as usize];

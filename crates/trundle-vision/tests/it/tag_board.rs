@@ -88,7 +88,11 @@ fn the_corners_of_markers_are_found_to_a_tenth_of_a_pixel() {
     }
     let worst = all.iter().copied().fold(0.0, f64::max);
     println!("{count} of 600 markers, rms {:.3} px, worst {worst:.3} px", rms(&all));
-    assert!(count >= 590 && rms(&all) < 0.1 && worst < 0.5, "{count} markers, rms {}, worst {worst}", rms(&all));
+    assert!(
+        count >= 590 && rms(&all) < 0.1 && worst < 0.5,
+        "{count} markers, rms {}, worst {worst}",
+        rms(&all)
+    );
 }
 
 #[test]
@@ -133,7 +137,8 @@ fn a_marker_is_found_in_every_orientation_with_its_corners_in_order() {
 #[test]
 fn a_wrong_side_changes_no_camera() {
     let views_of = |text: &str| views(&whole()[..8], &board(text));
-    let (right, wrong) = (calibrated(&views_of(TEXT)).unwrap(), calibrated(&views_of("apriltag:6x5:75mm:0.3")).unwrap());
+    let (right, wrong) =
+        (calibrated(&views_of(TEXT)).unwrap(), calibrated(&views_of("apriltag:6x5:75mm:0.3")).unwrap());
     for i in 0..4 {
         assert!((right.parameters.0[i] - wrong.parameters.0[i]).abs() < 1e-3, "{right:?}, {wrong:?}");
     }
@@ -162,7 +167,10 @@ fn a_mirrored_image_other_ids_and_a_strange_family_are_named() {
     let problem = board(TEXT).find(&mirrored).unwrap_err();
     assert!(matches!(problem, BoardProblem::Mirrored { tags } if tags > 20), "{problem}");
     let problem = board("apriltag:5x5:60mm:0.3").find(image).unwrap_err();
-    assert!(problem.to_string().contains("tags 25, 26, 27, 28, 29 found, expected tags 0 to 24"), "{problem}");
+    assert!(
+        problem.to_string().contains("tags 25, 26, 27, 28, 29 found, expected tags 0 to 24"),
+        "{problem}"
+    );
     let negative = GrayImage::from_fn(640, 480, |x, y| 255 - image.data()[y * 640 + x]);
     assert!(board(TEXT).find(&negative).is_err());
     let problem = board(TEXT).find(&other_family()).unwrap_err();
@@ -184,9 +192,18 @@ fn other_family() -> GrayImage {
 fn images_without_markers_are_refused() {
     let noise = GrayImage::from_fn(640, 480, |x, y| ((x * 31 + y * 17) ^ (x * y)) as u8);
     let dark = GrayImage::filled(640, 480, 0);
-    for image in [GrayImage::filled(640, 480, 128), GrayImage::filled(4, 4, 0), GrayImage::filled(1, 1, 9), noise, dark] {
+    for image in [
+        GrayImage::filled(640, 480, 128),
+        GrayImage::filled(4, 4, 0),
+        GrayImage::filled(1, 1, 9),
+        noise,
+        dark,
+    ] {
         let problem = board(TEXT).find(&image).unwrap_err();
-        assert!(matches!(problem, BoardProblem::NoTags { .. } | BoardProblem::OtherFamily { .. }), "{problem}");
+        assert!(
+            matches!(problem, BoardProblem::NoTags { .. } | BoardProblem::OtherFamily { .. }),
+            "{problem}"
+        );
     }
 }
 
@@ -204,7 +221,9 @@ fn few_markers_and_a_marker_twice_are_refused() {
 
 #[test]
 fn uneven_light_hides_no_marker() {
-    let dim = |(x, y): (usize, usize), value: u8| (f64::from(value) * (0.25 + 0.75 * (x + y) as f64 / 1120.0)) as u8;
+    let dim = |(x, y): (usize, usize), value: u8| {
+        (f64::from(value) * (0.25 + 0.75 * (x + y) as f64 / 1120.0)) as u8
+    };
     let image = &whole()[0].1;
     let dimmed = GrayImage::from_fn(640, 480, |x, y| dim((x, y), image.data()[y * 640 + x]));
     assert!(find_tags(&dimmed).tags.len() >= find_tags(image).tags.len() - 1);

@@ -98,14 +98,18 @@ mod tests {
 
     #[test]
     fn codes_differ_in_eleven_cells_in_every_orientation() {
-        let bits = |cells: &CodeCells| cells.iter().flatten().fold(0_u64, |bits, cell| bits << 1 | u64::from(*cell));
+        let bits =
+            |cells: &CodeCells| cells.iter().flatten().fold(0_u64, |bits, cell| bits << 1 | u64::from(*cell));
         for id in 0..TAG_COUNT {
             let mut turned = code_cells(id);
             for turns in 0..4 {
                 let turned_bits = bits(&turned);
                 for (other, code) in CODES.iter().enumerate() {
                     let distance = (code ^ turned_bits).count_ones();
-                    assert!(distance >= 11 || (other == id && turns == 0), "{id} turned {turns}, {other}: {distance}");
+                    assert!(
+                        distance >= 11 || (other == id && turns == 0),
+                        "{id} turned {turns}, {other}: {distance}"
+                    );
                 }
                 turned = turned_left(&turned);
             }

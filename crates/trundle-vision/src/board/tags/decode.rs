@@ -42,9 +42,8 @@ pub(super) fn decode(image: &SmoothImage, quad: &Quad) -> Option<Decoded> {
         return None;
     }
     let wrong_border = border().filter(|(row, column)| cells.value(*row, *column) > threshold).count() as u32;
-    let code: CodeCells = std::array::from_fn(|row| {
-        std::array::from_fn(|column| cells.value(row + 1, column + 1) > threshold)
-    });
+    let code: CodeCells =
+        std::array::from_fn(|row| std::array::from_fn(|column| cells.value(row + 1, column + 1) > threshold));
     let white = code.iter().flatten().filter(|is_white| **is_white).count();
     if wrong_border > MAX_WRONG_CELLS || white < MIN_CELLS || white > CODE_CELLS * CODE_CELLS - MIN_CELLS {
         return None;
@@ -83,7 +82,10 @@ impl<'a> Cells<'a> {
     fn new(image: &'a SmoothImage, quad: &Quad) -> Option<Self> {
         let side = TAG_CELLS as f64;
         let corners = [(0.0, 0.0), (side, 0.0), (side, side), (0.0, side)];
-        let point = |((x, y), pixel): (&(f64, f64), &Vector2)| BoardPoint { board: Vector2::new(*x, *y), pixel: *pixel };
+        let point = |((x, y), pixel): (&(f64, f64), &Vector2)| BoardPoint {
+            board: Vector2::new(*x, *y),
+            pixel: *pixel,
+        };
         let points: Vec<BoardPoint> = corners.iter().zip(quad).map(point).collect();
         Some(Self { image, image_from_cells: homography(&points)? })
     }

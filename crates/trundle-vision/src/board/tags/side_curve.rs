@@ -56,8 +56,10 @@ impl SideCurve {
         let (samples, tried) = straight.samples(image);
         let needed = (MIN_SAMPLE_RATIO * tried as f64).max(4.0) as usize;
         let first = straight.fitted(&samples)?;
-        let good: Vec<Sample> =
-            samples.into_iter().filter(|(u, offset)| (first.offset(*u) - offset).abs() <= MAX_RESIDUAL_PX).collect();
+        let good: Vec<Sample> = samples
+            .into_iter()
+            .filter(|(u, offset)| (first.offset(*u) - offset).abs() <= MAX_RESIDUAL_PX)
+            .collect();
         if good.len() < needed {
             return None;
         }
@@ -115,8 +117,9 @@ impl SideCurve {
         };
         let steps = (search / STEP_PX) as i64;
         let offsets = (-steps..=steps).map(|k| k as f64 * STEP_PX);
-        let (mut edge, peak) =
-            offsets.map(|at| (at, gradient(at))).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.total_cmp(&a.0)))?;
+        let (mut edge, peak) = offsets
+            .map(|at| (at, gradient(at)))
+            .max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.total_cmp(&a.0)))?;
         if peak < MIN_GRADIENT {
             return None;
         }

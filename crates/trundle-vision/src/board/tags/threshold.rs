@@ -17,7 +17,8 @@ type Range = (f32, f32);
 /// Whether each pixel is dark, by rows.
 pub(super) fn dark_mask(image: &SmoothImage) -> Vec<bool> {
     let (columns, rows) = (image.width.div_ceil(TILE_PX), image.height.div_ceil(TILE_PX));
-    let tiles: Vec<Range> = (0..columns * rows).map(|i| tile_range(image, i % columns, i / columns)).collect();
+    let tiles: Vec<Range> =
+        (0..columns * rows).map(|i| tile_range(image, i % columns, i / columns)).collect();
     let levels = WINDOW_RADII_TILES.map(|radius| window_ranges(&tiles, (columns, rows), radius));
     let threshold = |tile: usize| {
         let range = levels.iter().map(|level| level[tile]).find(|(low, high)| high - low >= MIN_CONTRAST);
@@ -46,7 +47,8 @@ fn window_ranges(tiles: &[Range], (columns, rows): (usize, usize), radius: usize
                 let (x, y) = (i % columns, i / columns);
                 let (at, size) = if is_row { (x, columns) } else { (y, rows) };
                 let window = at.saturating_sub(radius)..(at + radius + 1).min(size);
-                let others = window.map(|k| if is_row { from[y * columns + k] } else { from[k * columns + x] });
+                let others =
+                    window.map(|k| if is_row { from[y * columns + k] } else { from[k * columns + x] });
                 others.fold((f32::MAX, f32::MIN), |(low, high), other| (low.min(other.0), high.max(other.1)))
             })
             .collect()
