@@ -42,7 +42,9 @@ pub enum BoardProblem {
         expected: String,
     },
     /// No marker.
-    #[error("no tag of tag36h11 found, expected {expected}; show the board in focus and evenly lit, each tag 20 px wide or more")]
+    #[error(
+        "no tag of tag36h11 found, expected {expected}; show the board in focus and evenly lit, each tag 20 px wide or more"
+    )]
     NoTags {
         /// The ids of the board.
         expected: String,
@@ -61,7 +63,9 @@ pub enum BoardProblem {
         expected: String,
     },
     /// Markers in a mirror.
-    #[error("the image is mirrored: {tags} tags are read from behind only; switch mirroring off in the camera")]
+    #[error(
+        "the image is mirrored: {tags} tags are read from behind only; switch mirroring off in the camera"
+    )]
     Mirrored {
         /// Mirrored markers.
         tags: usize,

@@ -83,7 +83,9 @@ pub enum CameraFitError {
         tilt_deg: f64,
     },
     /// The fit does not converge.
-    #[error("the fit does not converge: residual {residual_px:.1} px; check columns, rows and gap of --board")]
+    #[error(
+        "the fit does not converge: residual {residual_px:.1} px; check columns, rows and gap of --board"
+    )]
     NotConverged {
         /// Residual, px.
         residual_px: f64,
