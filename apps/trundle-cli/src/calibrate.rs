@@ -6,10 +6,10 @@ pub use args::CalibrateArgs;
 
 use crate::console;
 use crate::outcome::Outcome;
-use args::{BoardImageArgs, CalibrateCommand, DriveArgs};
+use args::{BoardImageArgs, BoardSheetArgs, CalibrateCommand, DriveArgs};
 use trundle::app::calibrate::{
     BoardRequest, Calibration, CalibrationInput, calibrate_board, calibrate_delay, calibrate_mount,
-    calibrate_wheels,
+    calibrate_wheels, write_board,
 };
 use trundle::app::{AppError, StepProgress, load_robot};
 use trundle::vision::board::LensModel;
@@ -20,6 +20,7 @@ type DriveCalibration = fn(&CalibrationInput, &dyn StepProgress) -> Result<Calib
 pub fn run(args: &CalibrateArgs) -> Result<Outcome, AppError> {
     match &args.command {
         CalibrateCommand::Camera(args) => camera(args)?,
+        CalibrateCommand::Board(args) => sheet(args)?,
         CalibrateCommand::Mount(args) => drive(args, calibrate_mount)?,
         CalibrateCommand::Wheels(args) => drive(args, calibrate_wheels)?,
         CalibrateCommand::Delay(args) => drive(args, calibrate_delay)?,
@@ -56,6 +57,12 @@ fn camera(args: &BoardImageArgs) -> Result<(), AppError> {
         found.calibration.write(file)?;
         print_written(file, args.common.quiet);
     }
+    Ok(())
+}
+
+fn sheet(args: &BoardSheetArgs) -> Result<(), AppError> {
+    write_board(&args.board, &args.out)?;
+    print_written(&args.out, args.common.quiet);
     Ok(())
 }
 

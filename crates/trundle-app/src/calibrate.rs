@@ -3,6 +3,7 @@
 //! Each function reads its input, fits, and returns a [`Calibration`]: values with standard deviations beside the values in use.
 //! [`Calibration::write`] changes exactly these keys of a robot file. See `docs/how-to/calibrate.md`.
 
+mod board_sheet;
 mod camera;
 mod camera_track;
 mod delay;
@@ -12,6 +13,7 @@ mod robot_file_update;
 mod values;
 mod wheels;
 
+pub use board_sheet::write_board;
 pub use camera::{BoardRequest, CameraCalibration, calibrate_board};
 pub use delay::calibrate_delay;
 pub use mount::{calibrate_mount, floor_values};

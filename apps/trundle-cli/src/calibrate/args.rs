@@ -19,6 +19,8 @@ pub struct CalibrateArgs {
 pub enum CalibrateCommand {
     /// Intrinsics and lens of a camera, by images of a board.
     Camera(BoardImageArgs),
+    /// A board to print, SVG in its true size.
+    Board(BoardSheetArgs),
     /// Pose of the camera on the base, by a drive with turns on the spot and straight parts.
     Mount(DriveArgs),
     /// Radius of the wheels and distance between them, by a drive with turns and straight parts.
@@ -49,7 +51,7 @@ pub struct BoardImageArgs {
     /// Images of the board, JPEG or PNG, or folders of them.
     #[arg(required = true)]
     pub images: Vec<PathBuf>,
-    /// The board: checkerboard:9x6:25mm (inner corners, side of a square)
+    /// The board: checkerboard:9x6:25mm (inner corners, side of a square) or apriltag:6x6:88mm:0.3 (tags, side, gap over side)
     #[arg(long, value_name = "BOARD")]
     pub board: Board,
     /// Estimate the third radial coefficient as well: wide lenses
@@ -66,11 +68,25 @@ pub struct BoardImageArgs {
     pub common: Common,
 }
 
+/// A board to print.
+#[derive(Debug, Args)]
+pub struct BoardSheetArgs {
+    /// The board: checkerboard:9x6:25mm or apriltag:6x6:88mm:0.3
+    pub board: Board,
+    /// The file to write, SVG.
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// What every command takes.
+    #[command(flatten)]
+    pub common: Common,
+}
+
 impl CalibrateArgs {
     /// What every command takes.
     pub fn common(&self) -> &Common {
         match &self.command {
             CalibrateCommand::Camera(args) => &args.common,
+            CalibrateCommand::Board(args) => &args.common,
             CalibrateCommand::Mount(args)
             | CalibrateCommand::Wheels(args)
             | CalibrateCommand::Delay(args) => &args.common,

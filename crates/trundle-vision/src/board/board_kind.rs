@@ -149,7 +149,7 @@ mod tests {
         let expected = TagBoard { columns: 6, rows: 5, side: 0.088, gap_ratio: 0.3, first_id: 0 };
         assert_eq!("apriltag:6x5:88mm:0.3".parse::<Board>().unwrap(), Board::AprilTag(expected));
         let second = Board::AprilTag(TagBoard { first_id: 557, ..expected });
-        assert_eq!("apriltag:6x5:8.8cm:0.3:557".parse::<Board>().unwrap(), second);
+        assert_eq!("apriltag:6x5:0.088m:0.3:557".parse::<Board>().unwrap(), second);
         for bad in [
             "apriltag:6x5:88mm",
             "apriltag:6x5:88mm:0.05",

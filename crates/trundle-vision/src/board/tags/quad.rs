@@ -10,12 +10,12 @@ pub(super) type Quad = [Vector2; 4];
 
 /// Smallest side, px. Source: ours; cells of 2 px.
 const MIN_SIDE_PX: f64 = 14.0;
-/// Smallest area of the quad over that of the outline. Source: ours.
-const MIN_AREA_RATIO: f64 = 0.85;
+/// Smallest area of the quad over that of the outline: blur rounds the corners of small markers. Source: ours.
+const MIN_AREA_RATIO: f64 = 0.75;
 /// Smallest number of dark pixels over the area: the border alone is 28 of 64 cells. Source: ours.
 const MIN_DARK_RATIO: f64 = 0.25;
-/// Rounds of the refinement. Source: ours; the second starts from corners that are right to half a pixel.
-const ROUNDS: usize = 2;
+/// Rounds of the refinement. Source: ours; the last starts from corners that are right to half a pixel.
+const ROUNDS: usize = 3;
 /// Largest move of a corner by the refinement, over the mean side. Source: ours.
 const MAX_MOVE_RATIO: f64 = 0.2;
 

@@ -27,15 +27,15 @@ const END_RATIO: f64 = 0.08;
 /// Smallest such part, px: blur reaches so far. Source: ours.
 const MIN_END_PX: f64 = 2.5;
 /// Largest distance of the edge from the chord, over the length: less than the border of one cell of eight. Source: ours.
-const SEARCH_RATIO: f64 = 0.08;
+const SEARCH_RATIO: f64 = 0.12;
 /// Smallest such distance, px. Source: ours.
-const MIN_SEARCH_PX: f64 = 2.0;
+const MIN_SEARCH_PX: f64 = 3.0;
 /// Distance between samples along the edge and across it, px. Source: ours.
 const STEP_PX: f64 = 0.5;
 /// Half width of the window in which the mean of the gradient is the edge, px. Source: ours.
 const WINDOW_PX: f64 = 2.0;
-/// The same over the length: a smaller window for small markers. Source: ours; the border is an eighth.
-const WINDOW_RATIO: f64 = 0.09;
+/// The same over the length: the border is an eighth of the side, less where the marker is tilted. Source: ours.
+const WINDOW_RATIO: f64 = 0.05;
 /// Smallest gradient of an edge, grey values a px. Source: ours.
 const MIN_GRADIENT: f64 = 4.0;
 /// Length from which the curve is a parabola; below, a line, px. Source: ours; the bend of shorter sides is below 0.1 px.
