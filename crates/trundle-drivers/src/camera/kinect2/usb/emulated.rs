@@ -2,6 +2,8 @@
 //!
 //! It cannot show that a device behaves so; it shows that the calls keep their order, that nothing is lost, and that all memory is freed.
 
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
 use super::functions::*;
 use super::{Kinect2UsbCamera, color_packets, ids, list_devices, reply};
 use crate::camera::kinect2::layout::{IMAGE_BYTES, IMAGE_COUNT, PIXEL_COUNT};
