@@ -30,7 +30,9 @@ fn without_a_device_the_list_is_empty_and_opening_says_so() {
     for _ in 0..20 {
         let devices = match list_devices(&api) {
             // A container may have no USB at all.
-            Err(CameraError::LibraryFailed { function, .. }) if function == "libusb_init" => return,
+            Err(error @ CameraError::LibraryFailed { .. }) if error.to_string().contains("libusb_init") => {
+                return println!("SKIPPED kinect2_usb: this machine has no USB: {error}");
+            }
             devices => devices.unwrap(),
         };
         if !devices.is_empty() {

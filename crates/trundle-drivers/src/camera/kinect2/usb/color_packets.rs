@@ -98,9 +98,8 @@ impl ColorPackets {
 
 /// The JPEG file at the start of `bytes`, without the padding after it.
 fn jpeg_of(bytes: &[u8]) -> Option<&[u8]> {
-    let ends = (0..=MAX_PADDING_BYTES).filter_map(|padding| bytes.len().checked_sub(padding));
-    // The longest padding: padding of 0xa5 cannot end a file, so a match is the end.
-    let end = ends.filter(|end| bytes[..*end].ends_with(&JPEG_END)).last()?;
+    let mut ends = (0..=MAX_PADDING_BYTES).filter_map(|padding| bytes.len().checked_sub(padding));
+    let end = ends.find(|end| bytes[..*end].ends_with(&JPEG_END))?;
     Some(&bytes[..end]).filter(|jpeg| jpeg.starts_with(&JPEG_START))
 }
 

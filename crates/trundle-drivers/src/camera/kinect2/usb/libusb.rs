@@ -92,6 +92,9 @@ pub(super) struct UsbSession {
 // SAFETY: libusb may be called from any thread.
 unsafe impl Send for UsbSession {}
 
+// SAFETY: as above.
+unsafe impl Sync for UsbSession {}
+
 /// A Kinect V2 in the list of devices.
 #[derive(Debug)]
 pub(super) struct Found {

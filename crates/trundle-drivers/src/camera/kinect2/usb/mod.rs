@@ -27,6 +27,8 @@ pub mod depth_packets;
 pub mod descriptor;
 #[cfg(feature = "kinect2-usb")]
 mod device;
+#[cfg(all(test, feature = "kinect2-usb"))]
+mod emulated;
 #[cfg(feature = "kinect2-usb")]
 mod functions;
 pub mod ids;
