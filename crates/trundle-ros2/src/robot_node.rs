@@ -150,6 +150,9 @@ impl Parts {
             operator: self.operator,
             clock: self.clock,
             diagnostics: self.diagnostics,
+            publishes_odom_transform: body_odometry
+                .as_ref()
+                .is_none_or(|odometry| !odometry.has_transform(&self.settings.frames.base)),
             body_odometry,
             base_from_camera: robot.mount.base_from_camera(),
         };

@@ -248,6 +248,12 @@ impl OdometryReader {
         history.iter().rev().find(|odometry| odometry.stamp <= stamp).copied()
     }
 
+    /// Whether `/tf` holds the transform from the odometry's frame to `base`.
+    #[must_use]
+    pub fn has_transform(&self, base: &str) -> bool {
+        self.frame().is_some_and(|odom| lock(&self.0.frames).pose(&odom, base).is_some())
+    }
+
     /// Name of the odometry's frame.
     #[must_use]
     pub fn frame(&self) -> Option<String> {

@@ -14,6 +14,9 @@ pub struct WheelsFromOdometry {
 /// Motion between two messages that is a restart of the odometry \[m\]. Source: ours; 10 m/s at 20 Hz.
 const MAX_STEP_M: f64 = 0.5;
 
+/// Turn below which an arc is as long as its chord \[rad\]. Source: ours; the difference is below 1e-12.
+const MIN_TURN_RAD: f64 = 1e-6;
+
 impl WheelsFromOdometry {
     /// Counters of the wheels of `drive`.
     #[must_use]
@@ -27,9 +30,10 @@ impl WheelsFromOdometry {
         self.last = Some(odometry.pose);
         if motion.position().norm() <= MAX_STEP_M {
             let turn = motion.theta * self.drive.wheelbase / 2.0;
-            // The chord of an arc lies half its turn beside the heading.
-            let half = Pose2::new(0.0, 0.0, motion.theta / 2.0).direction();
-            let ahead = motion.position().dot(&half);
+            // The chord of an arc lies half its turn beside the heading, and is shorter than the arc.
+            let half = motion.theta / 2.0;
+            let chord = motion.position().dot(&Pose2::new(0.0, 0.0, half).direction());
+            let ahead = if half.abs() > MIN_TURN_RAD { chord * half / half.sin() } else { chord };
             for (travel, distance) in self.travel.iter_mut().zip([ahead - turn, ahead + turn]) {
                 *travel += distance / self.drive.metres_per_tick();
             }
@@ -60,8 +64,8 @@ mod tests {
         let ticks = wheels.add(&odometry(pose));
         let (left, right) = drive.wheel_speeds(Twist2::new(0.3, 0.8));
         let expected = [left, right].map(|speed| speed * 0.5 / drive.metres_per_tick());
-        assert!((f64::from(ticks.left) - expected[0]).abs() < 12.0, "{ticks:?} {expected:?}");
-        assert!((f64::from(ticks.right) - expected[1]).abs() < 12.0, "{ticks:?} {expected:?}");
+        assert!((f64::from(ticks.left) - expected[0]).abs() < 1.5, "{ticks:?} {expected:?}");
+        assert!((f64::from(ticks.right) - expected[1]).abs() < 1.5, "{ticks:?} {expected:?}");
         let jumped = wheels.add(&odometry(Pose2::new(100.0, 0.0, 0.0)));
         assert_eq!((jumped.left, jumped.right), (ticks.left, ticks.right));
     }

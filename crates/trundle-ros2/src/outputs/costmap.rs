@@ -18,7 +18,8 @@ const INSCRIBED: i8 = 99;
 /// `radius` is that of the largest disc in the body \[m\].
 #[must_use]
 pub fn costs(grid: &OccupancyGrid, radius: f64) -> Vec<i8> {
-    let field = DistanceField::up_to(radius + INFLATION_M, grid, UnknownIs::Free);
+    let field =
+        DistanceField::up_to(radius + INFLATION_M + grid.geometry().resolution, grid, UnknownIs::Free);
     let cost = |(i, cell): (usize, &Cell)| match cell {
         Cell::Occupied => LETHAL,
         _ => match (field.at_linear(i) - radius, cell) {

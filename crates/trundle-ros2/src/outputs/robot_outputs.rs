@@ -38,6 +38,8 @@ pub struct OutputSources {
     pub diagnostics: Diagnostics,
     /// The odometry that the body publishes itself; `None`: the robot's own is published.
     pub body_odometry: Option<OdometryReader>,
+    /// Whether the transform from the odometry's frame to the base is published here.
+    pub publishes_odom_transform: bool,
     /// `base_from_camera`, for the static transforms.
     pub base_from_camera: Pose3,
 }
@@ -148,8 +150,10 @@ impl OutputLoop {
         let held = at.after(TRANSFORM_TOLERANCE_S);
         let mut transforms: Vec<TransformStamped> =
             vec![transform::planar_to_ros(&map_from_odom, held, &frames.map, odom)];
-        if let (Some(topic), Some(own)) = (&self.topics.odom, &view.odometry) {
+        if self.sources.publishes_odom_transform {
             transforms.push(transform::planar_to_ros(&odom_from_base, at, odom, &frames.base));
+        }
+        if let (Some(topic), Some(own)) = (&self.topics.odom, &view.odometry) {
             topic.publish(odometry::to_ros(own, at, OdometryFrames { odom, base: &frames.base }));
         }
         self.topics.tf.publish(TFMessage { transforms });
