@@ -248,6 +248,8 @@ pub(crate) mod fixtures {
             images_dropped: Vec::new(),
             docking: None,
             state: DriveState::Arrived,
+            is_operated: false,
+            out_of_time: None,
         };
         let line = vec![Vector2::zeros(), Vector2::new(1.0, 0.0)];
         Trial {
