@@ -80,7 +80,7 @@ impl ViewFeed {
 
     fn update_map(&mut self, now: Stamp, robot: &Robot) {
         let is_due = self.map_copied.is_none_or(|copied| now - copied >= MAP_PERIOD_S);
-        let revision = robot.times().runs(Stage::Mapping) as u64;
+        let revision = robot.times().runs(Stage::Mapping);
         if is_due && self.map.as_ref().is_none_or(|map| map.revision != revision) {
             self.map = Some(Arc::new(MapView { revision, grid: robot.grid().clone() }));
             self.map_copied = Some(now);
