@@ -45,7 +45,8 @@ pub(super) fn decode(image: &SmoothImage, quad: &Quad) -> Option<Decoded> {
     let code: CodeCells =
         std::array::from_fn(|row| std::array::from_fn(|column| cells.value(row + 1, column + 1) > threshold));
     let white = code.iter().flatten().filter(|is_white| **is_white).count();
-    if wrong_border > MAX_WRONG_CELLS || white < MIN_CELLS || white > CODE_CELLS * CODE_CELLS - MIN_CELLS {
+    let has_both_colours = (MIN_CELLS..=CODE_CELLS * CODE_CELLS - MIN_CELLS).contains(&white);
+    if wrong_border > MAX_WRONG_CELLS || !has_both_colours {
         return None;
     }
     let found = nearest_code(&code);
