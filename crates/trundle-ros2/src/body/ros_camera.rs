@@ -218,7 +218,7 @@ mod tests {
         source.inbox.on_color_info(camera_info::to_ros(&camera(6), Stamp::default(), "camera"));
         put_images(&source, 6, 4);
         assert!(!camera_of_ros.next_frame(Duration::ZERO).unwrap_err().is_of_one_frame());
-        assert_eq!(source.open(Duration::ZERO).map(drop).is_err(), true, "a new opening waits for images");
+        assert!(source.open(Duration::ZERO).map(drop).is_err(), "a new opening waits for images");
         put_images(&source, 6, 5);
         assert_eq!(source.open(Duration::from_secs(1)).unwrap().info().color.camera.width(), 6);
     }

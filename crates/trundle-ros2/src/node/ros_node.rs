@@ -33,6 +33,10 @@ const RECEIVE_BUFFER_BYTES: usize = 4 << 20;
 /// Period of the checks for stalled topics and foreign types. Source: ours.
 const CHECK_PERIOD: Duration = Duration::from_secs(1);
 
+/// The server of an action as the library has it.
+pub(super) type RawActionServer<A> =
+    ActionServer<<A as ActionType>::Goal, <A as ActionType>::Result, <A as ActionType>::Feedback>;
+
 /// A node that is being built: topics and services are added, then [`RosNode::start`] runs it.
 pub struct RosNode {
     context: Context,
@@ -158,7 +162,7 @@ impl RosNode {
     pub(super) fn raw_action_server<A: ActionType>(
         &mut self,
         action: &str,
-    ) -> Result<ActionServer<A::Goal, A::Result, A::Feedback>, Ros2Error> {
+    ) -> Result<RawActionServer<A>, Ros2Error> {
         let name = self.names.parsed(action)?;
         let type_name = ActionTypeName::new(A::PACKAGE, A::NAME);
         let qos = ActionServerQosPolicies {

@@ -205,12 +205,12 @@ impl BodyServer {
     }
 }
 
+/// The newest command and when it came.
+type NewestCommand = Arc<Mutex<Option<(Twist2, Instant)>>>;
+
 /// Keeps the newest command; one that is not usable is reported and stops the base.
-fn subscribe_commands(
-    node: &mut RosNode,
-    stamped: bool,
-) -> Result<Arc<Mutex<Option<(Twist2, Instant)>>>, Ros2Error> {
-    let command = Arc::<Mutex<Option<(Twist2, Instant)>>>::default();
+fn subscribe_commands(node: &mut RosNode, stamped: bool) -> Result<NewestCommand, Ros2Error> {
+    let command = NewestCommand::default();
     let (kept, diagnostics, name) =
         (Arc::clone(&command), node.diagnostics(), node.names().resolve("cmd_vel"));
     let keep = move |message: &Twist| {

@@ -21,7 +21,7 @@ pub struct TagBoard {
 
 /// Smallest number of markers of a view: 4, of a board of fewer all. Source: ours; the pose by fewer is uncertain.
 const MIN_TAGS: usize = 4;
-/// Most ids that a message lists. Source: ours.
+/// Largest number of ids that a message lists. Source: ours.
 const MAX_LISTED_IDS: usize = 8;
 
 impl TagBoard {

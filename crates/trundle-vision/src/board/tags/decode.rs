@@ -45,8 +45,8 @@ pub(super) fn decode(image: &SmoothImage, quad: &Quad) -> Option<Decoded> {
     let code: CodeCells =
         std::array::from_fn(|row| std::array::from_fn(|column| cells.value(row + 1, column + 1) > threshold));
     let white = code.iter().flatten().filter(|is_white| **is_white).count();
-    let is_varied = (MIN_CELLS..=CODE_CELLS * CODE_CELLS - MIN_CELLS).contains(&white);
-    if wrong_border > MAX_WRONG_CELLS || !is_varied {
+    let has_both_colours = (MIN_CELLS..=CODE_CELLS * CODE_CELLS - MIN_CELLS).contains(&white);
+    if wrong_border > MAX_WRONG_CELLS || !has_both_colours {
         return None;
     }
     let found = nearest_code(&code);

@@ -49,8 +49,8 @@ pub struct TagSearch {
     pub mirrored: usize,
 }
 
-/// Blur before the search, px: against noise. Source: ours.
-const SEARCH_BLUR_PX: f32 = 0.8;
+/// Blur before the search, px: against noise; more would break the border of small markers. Source: ours.
+const SEARCH_BLUR_PX: f32 = 0.4;
 /// Blur before the refinement, px: more would mix the inner cells of a tilted marker into its edge. Source: ours.
 const REFINEMENT_BLUR_PX: f32 = 0.3;
 

@@ -41,8 +41,10 @@ const MIN_GRADIENT: f64 = 4.0;
 /// Length from which the curve is a parabola; below, a line, px. Source: ours; the bend of shorter sides is below 0.1 px.
 const MIN_CURVED_PX: f64 = 24.0;
 /// Smallest fraction of samples with an edge that fits. Source: ours.
-const MIN_SAMPLE_RATIO: f64 = 0.7;
-/// Largest residual of a sample, px; the others are left out of the second fit. Source: ours.
+const MIN_SAMPLE_RATIO: f64 = 0.5;
+/// Fits after the first, each by the samples near the fit before. Source: ours.
+const SELECTIONS: usize = 3;
+/// Largest residual of a sample, px; the others are left out of the next fit. Source: ours.
 const MAX_RESIDUAL_PX: f64 = 0.5;
 
 impl SideCurve {
@@ -55,15 +57,16 @@ impl SideCurve {
         let straight = Self { middle, along, outward, half_length, coefficients: Vector3::zeros() };
         let (samples, tried) = straight.samples(image);
         let needed = (MIN_SAMPLE_RATIO * tried as f64).max(4.0) as usize;
-        let first = straight.fitted(&samples)?;
-        let good: Vec<Sample> = samples
-            .into_iter()
-            .filter(|(u, offset)| (first.offset(*u) - offset).abs() <= MAX_RESIDUAL_PX)
-            .collect();
-        if good.len() < needed {
-            return None;
+        let mut curve = straight.fitted(&samples)?;
+        for _ in 0..SELECTIONS {
+            let is_near = |(u, offset): &&Sample| (curve.offset(*u) - offset).abs() <= MAX_RESIDUAL_PX;
+            let good: Vec<Sample> = samples.iter().filter(is_near).copied().collect();
+            if good.len() < needed {
+                return None;
+            }
+            curve = straight.fitted(&good)?;
         }
-        straight.fitted(&good)
+        Some(curve)
     }
 
     /// Where this curve's end meets the start of the next, by Newton's method; `None` where they are parallel.

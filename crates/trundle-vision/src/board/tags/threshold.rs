@@ -9,9 +9,9 @@ const WINDOW_RADII_TILES: [usize; 4] = [2, 4, 8, 16];
 /// Smallest contrast of a window, grey values: more than noise. Source: ours.
 const MIN_CONTRAST: f32 = 20.0;
 /// Threshold between dark, 0, and light, 1, of a window: below the middle, which parts dark squares that touch at a corner. Source: ours.
-const DARK_RATIO: f32 = 0.35;
+const DARK_RATIO: f32 = 0.4;
 
-/// Least and largest grey value.
+/// Smallest and largest grey value.
 type Range = (f32, f32);
 
 /// Whether each pixel is dark, by rows.
