@@ -1,4 +1,5 @@
 //! Two nodes in one process, over the loopback network.
+#![allow(clippy::unwrap_used, clippy::new_without_default, reason = "helpers of tests")]
 
 mod actions;
 mod topics;
