@@ -10,7 +10,7 @@ use std::error::Error;
 use trundle::core::{DifferentialDrive, GyroRate, Pose2, RobotBody, SensorEvent, Stamp, Twist2, WheelTicks};
 use trundle::runtime::{Robot, RobotConfig};
 
-/// Time between two readings of wheels and gyro [s]: 50 Hz.
+/// Time between two readings of wheels and gyro \[s\]: 50 Hz.
 const PERIOD_S: f64 = 0.02;
 /// Time after which this example ends \[s\].
 const DURATION_S: f64 = 2.0;

@@ -40,7 +40,7 @@ fn write_pair(folder: &Path, stamp: i64) {
     fs::write(folder.join(format!("depth/{stamp}.png")), depth_png(1000 + stamp as u16)).unwrap();
 }
 
-/// Stamp and depth of the first pixel [mm] of a frame.
+/// Stamp and depth of the first pixel \[mm\] of a frame.
 fn summary(frame: &CameraFrame) -> (i64, u32) {
     let (mut color, mut depth) = Default::default();
     color_from_raw(&frame.color, &mut color).unwrap();

@@ -16,7 +16,7 @@ use trundle_drivers::camera::kinect2::{
 };
 use trundle_drivers::camera::pixels::depth_from_raw;
 
-/// Depths of the nine steps [m].
+/// Depths of the nine steps \[m\].
 fn step_depth(step: usize) -> f64 {
     0.5 + 0.5 * step as f64
 }
@@ -56,7 +56,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// Errors [m] of the pixels away from edges, and the share of them without depth.
+/// Errors \[m\] of the pixels away from edges, and the share of them without depth.
 fn errors(depth: &DepthImage, is_of: impl Fn(usize, usize) -> bool) -> (Vec<f64>, f64) {
     let (mut errors, mut empty) = (Vec::new(), 0usize);
     for (x, y) in (2..HEIGHT - 2).flat_map(|y| (2..WIDTH - 2).map(move |x| (x, y))) {

@@ -5,7 +5,7 @@ use trundle_core::{Distortion, PinholeCamera, Vector2};
 
 pub const WIDTH: usize = 512;
 pub const HEIGHT: usize = 424;
-/// Modulation frequencies [Hz].
+/// Modulation frequencies \[Hz\].
 const FREQUENCIES: [f64; 3] = [80e6, 16e6, 120e6];
 /// Amplitude of a white surface at 1 m.
 const WHITE_AMPLITUDE: f64 = 2000.0;
@@ -43,7 +43,7 @@ pub fn p0() -> [Vec<u16>; 3] {
     std::array::from_fn(|_| (0..WIDTH * HEIGHT).map(|_| random.next() as u16).collect())
 }
 
-/// A surface point: depth along the optical axis [m], and how much light it returns (1 is white).
+/// A surface point: depth along the optical axis \[m\], and how much light it returns (1 is white).
 pub type Surface = (f64, f64);
 
 /// Nine measurements and the ambient image of each pixel, packed.

@@ -17,7 +17,7 @@ use trundle_core::{
     BodyEvent, BodyEventKind, DifferentialDrive, Invalid, Odometry, Pose2, Pose3, SensorEvent, Stamp,
 };
 
-/// Silence of the odometry after which the base counts as lost [s]: ten readings at 20 Hz. Source: ours.
+/// Silence of the odometry after which the base counts as lost \[s\]: ten readings at 20 Hz. Source: ours.
 pub const MAX_ODOM_SILENCE: Duration = Duration::from_millis(500);
 /// Silence of a laser after which it counts as lost: five sweeps at 5 Hz. Source: ours.
 pub const MAX_SCAN_SILENCE: Duration = Duration::from_secs(1);

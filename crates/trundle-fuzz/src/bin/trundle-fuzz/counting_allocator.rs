@@ -3,7 +3,7 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
-/// Memory at which an allocation is refused [bytes]: 3 GB. The process then ends, and its input is a finding. Source: ours.
+/// Memory at which an allocation is refused \[bytes\]: 3 GB. The process then ends, and its input is a finding. Source: ours.
 const MAX_BYTES_IN_USE: usize = 3 << 30;
 
 /// The system's allocator, counting what is in use and the peak.

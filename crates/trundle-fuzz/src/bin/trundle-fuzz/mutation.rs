@@ -5,9 +5,9 @@ use rand_chacha::ChaCha8Rng;
 
 /// Changes to one input, at most.
 const MAX_CHANGES: usize = 6;
-/// Longest input [bytes]. Source: ours.
+/// Longest input \[bytes\]. Source: ours.
 const MAX_LENGTH: usize = 1 << 18;
-/// Longest piece that is copied or cut [bytes].
+/// Longest piece that is copied or cut \[bytes\].
 const MAX_PIECE: usize = 256;
 /// Numbers at the edges of what a length or a count can be.
 const EDGES: [u64; 14] = [

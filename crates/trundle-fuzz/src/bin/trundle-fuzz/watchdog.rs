@@ -4,7 +4,7 @@ use rustix::time::{ClockId, clock_gettime};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::time::Duration;
 
-/// Processor time of an input [ms]: an input that takes more is a hang. Source: ours.
+/// Processor time of an input \[ms\]: an input that takes more is a hang. Source: ours.
 const MAX_INPUT_MS: u64 = 1000;
 /// Exit code of a process that hung.
 pub const HANG_CODE: i32 = 97;
@@ -13,7 +13,7 @@ const WATCH_PERIOD: Duration = Duration::from_millis(50);
 /// No input is read.
 const NO_INPUT: u64 = u64::MAX;
 
-/// Processor time at which the input began [ms].
+/// Processor time at which the input began \[ms\].
 static BEGAN_MS: AtomicU64 = AtomicU64::new(NO_INPUT);
 
 /// Starts the thread that watches.
