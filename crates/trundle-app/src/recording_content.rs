@@ -83,6 +83,6 @@ mod tests {
         let short = RecordingContent::Events.announcement(&camera, 15.0, 6.0);
         assert!(short.contains("less than 1 MB in 6 s"), "{short}");
         let endless = RecordingContent::Events.announcement(&camera, 15.0, f64::MAX);
-        assert_eq!(endless, "Records events without images, about 0.08 MB a second of the robot's time.");
+        assert_eq!(endless, "Records events without images, about 0.04 MB a second of the robot's time.");
     }
 }
