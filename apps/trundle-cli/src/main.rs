@@ -20,6 +20,8 @@ mod replay;
 mod robot_file;
 #[cfg(feature = "ros2")]
 mod ros2;
+#[cfg(feature = "ros2")]
+mod ros_node;
 mod run;
 mod run_output;
 mod shell_files;

@@ -2,19 +2,19 @@
 
 mod args;
 
-pub use args::{Ros2Args, RosArgs};
+pub use args::Ros2Args;
 
 use crate::outcome::Outcome;
-use crate::run::{RunArgs, mission_of};
+use crate::run::mission_of;
 use crate::{console, logging, run_output};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use trundle::app::operator::FrontEnd;
 use trundle::app::real_time::run_in_real_time;
 use trundle::app::report::mission_text;
-use trundle::app::{AppError, Progress, RunLog, stop};
+use trundle::app::{AppError, RunLog, stop};
+use trundle::ros2::Ros2Robot;
 use trundle::ros2::body::BodySettings;
-use trundle::ros2::{RobotNode, Ros2Robot};
-use trundle::runtime::{Mission, RobotConfig};
+use trundle::runtime::Mission;
 
 /// `trundle ros2`.
 pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
@@ -64,18 +64,4 @@ pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
     drop(node);
     let (run, timing) = run?;
     run_output::write(&setup, run, Some(&timing), folder, args.options.common.quiet)
-}
-
-/// ROS 2 beside `trundle run`, where it is asked for.
-pub fn beside(
-    args: &RunArgs,
-    robot: &RobotConfig,
-    origin: Instant,
-    progress: Progress,
-) -> Result<(Option<RobotNode>, FrontEnd), AppError> {
-    if !args.ros2 {
-        return Ok((None, progress.into()));
-    }
-    let (node, link) = RobotNode::offer(&args.ros.options()?, robot, origin)?;
-    Ok((Some(node), FrontEnd { progress, operator: Some(link) }))
 }

@@ -66,7 +66,13 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
         Ok(body)
     };
     #[cfg(feature = "ros2")]
-    let (node, front_end) = crate::ros2::beside(args, &setup.robot, origin, progress)?;
+    let (node, front_end) = match args.ros2 {
+        true => {
+            let (node, front_end) = crate::ros_node::beside(&args.ros, &setup.robot, origin, progress)?;
+            (Some(node), front_end)
+        }
+        false => (None, progress.into()),
+    };
     #[cfg(not(feature = "ros2"))]
     let front_end = progress;
     let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), front_end);

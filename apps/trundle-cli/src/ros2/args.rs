@@ -1,15 +1,12 @@
-//! The command line of `trundle ros2`, and the options of ROS 2 that other commands have too.
+//! The command line of `trundle ros2`.
 
 use crate::common_args::{NumberArg, PoseArg};
-use crate::console;
 use crate::output_args::OutputDirArg;
+use crate::ros_node::RosArgs;
 use crate::run::RunOptions;
 use clap::Args;
 use std::path::PathBuf;
-use trundle::app::AppError;
-use trundle::ros2::Ros2Options;
 use trundle::ros2::body::BodySettings;
-use trundle::ros2::node::Networks;
 
 /// `trundle ros2`
 #[derive(Debug, Args)]
@@ -82,29 +79,5 @@ impl Ros2Args {
     /// Whether a mission is given.
     pub fn has_mission(&self) -> bool {
         !self.goal.is_empty() || self.explore || self.mission.is_some()
-    }
-}
-
-/// Network and names of a ROS 2 node.
-#[derive(Debug, Args)]
-pub struct RosArgs {
-    /// Domain: nodes of different domains do not meet [default: ROS_DOMAIN_ID, else 0]
-    #[arg(long, value_name = "N")]
-    pub ros_domain: Option<u16>,
-    /// Networks: loopback, all, or addresses of interfaces. Whoever is on them can drive the robot.
-    #[arg(long, value_name = "IP|all", default_value = "loopback")]
-    pub ros_interface: Networks,
-    /// Last: remappings, namespace and parameters, as every ROS 2 node takes them.
-    #[arg(long, value_name = "ARG", num_args = 1.., allow_hyphen_values = true)]
-    pub ros_args: Vec<String>,
-}
-
-impl RosArgs {
-    /// The options; warns of a network that others share.
-    pub fn options(&self) -> Result<Ros2Options, AppError> {
-        if let Some(warning) = self.ros_interface.warning() {
-            console::print(&format!("warning: {warning}"));
-        }
-        Ok(Ros2Options::read("trundle", self.ros_domain, self.ros_interface.clone(), &self.ros_args)?)
     }
 }

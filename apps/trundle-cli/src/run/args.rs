@@ -45,7 +45,7 @@ pub struct RunArgs {
     /// Network and names.
     #[cfg(feature = "ros2")]
     #[command(flatten)]
-    pub ros: crate::ros2::RosArgs,
+    pub ros: crate::ros_node::RosArgs,
 }
 
 /// What every run on a live robot takes.

@@ -66,7 +66,7 @@ pub struct SimArgs {
     /// Network and names.
     #[cfg(feature = "ros2")]
     #[command(flatten)]
-    pub ros: crate::ros2::RosArgs,
+    pub ros: crate::ros_node::RosArgs,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,

@@ -4,6 +4,7 @@
 //! open port and a pipe from the program. When the pipe closes, the guard sends zero speed and ends.
 
 use super::protocol::{BaseControl, KobukiCommand};
+use rustix::io::Errno;
 use rustix::termios::ioctl_tiocnxcl;
 use std::io::{self, Read};
 use std::os::fd::{AsFd, BorrowedFd};
@@ -85,7 +86,11 @@ pub fn guard_base(mut pipe: impl Read, port: impl AsFd) -> io::Result<()> {
 fn write_all(port: &impl AsFd, mut bytes: &[u8]) -> io::Result<()> {
     let start = Instant::now();
     while !bytes.is_empty() {
-        match super::serial_port::or_none(rustix::io::write(port, bytes))? {
+        let written = match rustix::io::write(port, bytes) {
+            Err(Errno::AGAIN | Errno::INTR) => 0,
+            written => written?,
+        };
+        match written {
             0 if start.elapsed() > MAX_END_TIME => return Err(io::ErrorKind::TimedOut.into()),
             0 => std::thread::sleep(Duration::from_millis(1)),
             written => bytes = &bytes[written..],

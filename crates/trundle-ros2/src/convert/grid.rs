@@ -7,11 +7,11 @@ use crate::generated::nav_msgs::{MapMetaData, OccupancyGrid as Message};
 use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, Stamp, Vector2};
 
 /// Value of an unknown cell.
-const UNKNOWN: i8 = -1;
+const UNKNOWN_CELL: i8 = -1;
 /// Value of a free cell.
 const FREE: i8 = 0;
 /// Value of an occupied cell.
-const OCCUPIED: i8 = 100;
+const OCCUPIED_CELL: i8 = 100;
 /// Smallest value of an occupied cell of others: map_server's default `occupied_thresh`, 0.65.
 const MIN_OCCUPIED: i8 = 65;
 /// Largest value of a free cell of others: map_server's default `free_thresh`, 0.25.
@@ -44,9 +44,9 @@ pub fn info(geometry: &GridGeometry, at: Stamp) -> MapMetaData {
 #[must_use]
 pub fn value(cell: Cell) -> i8 {
     match cell {
-        Cell::Unknown => UNKNOWN,
+        Cell::Unknown => UNKNOWN_CELL,
         Cell::Free => FREE,
-        Cell::Occupied => OCCUPIED,
+        Cell::Occupied => OCCUPIED_CELL,
     }
 }
 
@@ -93,7 +93,7 @@ pub fn from_ros(message: &Message) -> Result<OccupancyGrid, Invalid> {
     let geometry = GridGeometry::new(resolution, Vector2::new(origin.x, origin.y), width, height)?;
     let cell = |value: &i8| match *value {
         FREE..=MAX_FREE => Cell::Free,
-        MIN_OCCUPIED..=OCCUPIED => Cell::Occupied,
+        MIN_OCCUPIED..=OCCUPIED_CELL => Cell::Occupied,
         _ => Cell::Unknown,
     };
     OccupancyGrid::new(geometry, message.data.iter().map(cell).collect())

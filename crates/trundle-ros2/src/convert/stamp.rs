@@ -5,24 +5,24 @@ use crate::generated::std_msgs::Header;
 use trundle_core::{Invalid, Stamp};
 
 /// Nanoseconds of a second.
-const NANOS: i64 = 1_000_000_000;
+const NANOS_PER_S: i64 = 1_000_000_000;
 
 /// The stamp on its sender's clock.
 ///
 /// # Errors
 /// When the nanoseconds are not below a second.
 pub fn from_ros(time: &Time) -> Result<Stamp, Invalid> {
-    if i64::from(time.nanosec) >= NANOS {
+    if i64::from(time.nanosec) >= NANOS_PER_S {
         return Err(Invalid::new("stamp.nanosec", time.nanosec, "ns", "0 to 999999999"));
     }
-    Ok(Stamp::from_nanos(i64::from(time.sec) * NANOS + i64::from(time.nanosec)))
+    Ok(Stamp::from_nanos(i64::from(time.sec) * NANOS_PER_S + i64::from(time.nanosec)))
 }
 
 /// The stamp as a message; what does not fit into 32 bits of seconds (after 2038) is the largest that does.
 #[must_use]
 pub fn to_ros(stamp: Stamp) -> Time {
-    let sec = i32::try_from(stamp.nanos.div_euclid(NANOS)).unwrap_or(i32::MAX);
-    Time { sec, nanosec: stamp.nanos.rem_euclid(NANOS) as u32 }
+    let sec = i32::try_from(stamp.nanos.div_euclid(NANOS_PER_S)).unwrap_or(i32::MAX);
+    Time { sec, nanosec: stamp.nanos.rem_euclid(NANOS_PER_S) as u32 }
 }
 
 /// A duration of `seconds` \[s\].

@@ -1,6 +1,6 @@
 //! The one goal that the robot works on, of whichever action.
 
-use super::goal_outcome::GoalOutcome;
+use super::goal_outcome::NavigationOutcome;
 use crate::clock::RosClock;
 use crate::node::{Diagnostics, GoalEnd};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -27,7 +27,7 @@ pub trait RunningGoal: Send {
     fn is_canceling(&self) -> bool;
 
     /// Ends it.
-    fn end(self: Box<Self>, end: GoalEnd, outcome: &GoalOutcome);
+    fn end(self: Box<Self>, end: GoalEnd, outcome: &NavigationOutcome);
 }
 
 /// How long a goal has been worked on.
@@ -48,7 +48,7 @@ struct Active {
     /// Time after which it has failed.
     time_limit: Option<Duration>,
     /// When the robot was asked to stop for good, and how the goal ends then.
-    stopping: Option<(Instant, GoalEnd, GoalOutcome)>,
+    stopping: Option<(Instant, GoalEnd, NavigationOutcome)>,
     feedback_due: Instant,
 }
 
@@ -101,7 +101,7 @@ impl ActiveGoal {
         let active =
             Active { goal, request, since: now, start, time_limit, stopping: None, feedback_due: now };
         if let Some(old) = self.lock().replace(active) {
-            old.goal.end(GoalEnd::Aborted, &GoalOutcome::replaced());
+            old.goal.end(GoalEnd::Aborted, &NavigationOutcome::replaced());
         }
         Ok(())
     }
@@ -114,7 +114,7 @@ impl ActiveGoal {
         let mission = Mission::new(tasks).map_err(|error| error.to_string())?;
         self.send(OperatorCommand::Begin(mission)).map_err(|error| error.to_string())?;
         if let Some(old) = self.lock().take() {
-            old.goal.end(GoalEnd::Aborted, &GoalOutcome::replaced());
+            old.goal.end(GoalEnd::Aborted, &NavigationOutcome::replaced());
         }
         Ok(())
     }
@@ -139,14 +139,19 @@ impl ActiveGoal {
     }
 
     /// One look at a goal; its end.
-    fn step(&self, active: &mut Active, view: &RunView, now: Instant) -> Option<(GoalEnd, GoalOutcome)> {
+    fn step(
+        &self,
+        active: &mut Active,
+        view: &RunView,
+        now: Instant,
+    ) -> Option<(GoalEnd, NavigationOutcome)> {
         if view.mission.id > active.request {
-            return Some((GoalEnd::Aborted, GoalOutcome::replaced()));
+            return Some((GoalEnd::Aborted, NavigationOutcome::replaced()));
         }
         if view.mission.id < active.request {
             let is_late = now - active.since > START_TIMEOUT;
             return is_late
-                .then(|| (GoalEnd::Aborted, GoalOutcome::failed("the run did not take the goal up")));
+                .then(|| (GoalEnd::Aborted, NavigationOutcome::failed("the run did not take the goal up")));
         }
         if let Some((since, end, outcome)) = &active.stopping {
             let is_over = is_standing(view) || now - *since > STANDSTILL_TIMEOUT;
@@ -168,9 +173,9 @@ impl ActiveGoal {
     fn stop_where_asked(&self, active: &mut Active, now: Instant) {
         let is_late = active.time_limit.is_some_and(|limit| now - active.since > limit);
         let (end, outcome) = if active.goal.is_canceling() {
-            (GoalEnd::Canceled, GoalOutcome::default())
+            (GoalEnd::Canceled, NavigationOutcome::default())
         } else if is_late {
-            (GoalEnd::Aborted, GoalOutcome::timed_out())
+            (GoalEnd::Aborted, NavigationOutcome::timed_out())
         } else {
             return;
         };
@@ -194,7 +199,7 @@ fn is_standing(view: &RunView) -> bool {
 }
 
 /// How a goal ended whose mission is over.
-fn end_of(view: &RunView) -> (GoalEnd, GoalOutcome) {
+fn end_of(view: &RunView) -> (GoalEnd, NavigationOutcome) {
     let reason = |end: &TaskEnd| match end {
         TaskEnd::GivenUp { reason } => Some(reason.clone()),
         _ => None,
@@ -205,5 +210,5 @@ fn end_of(view: &RunView) -> (GoalEnd, GoalOutcome) {
     let failure = missed.last().map(|(_, reason)| reason.clone()).or(state);
     let end = if failure.is_none() { GoalEnd::Succeeded } else { GoalEnd::Aborted };
     let message = failure.as_ref().map(ToString::to_string).unwrap_or_default();
-    (end, GoalOutcome { message, reason: failure, missed, is_timeout: false })
+    (end, NavigationOutcome { message, reason: failure, missed, is_timeout: false })
 }

@@ -4,7 +4,7 @@ use trundle_runtime::Reason;
 
 /// What became of a goal, for its result.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct GoalOutcome {
+pub struct NavigationOutcome {
     /// What went wrong, in words; empty where nothing did.
     pub message: String,
     /// Why the robot gave up.
@@ -15,7 +15,7 @@ pub struct GoalOutcome {
     pub is_timeout: bool,
 }
 
-impl GoalOutcome {
+impl NavigationOutcome {
     /// A failure without a reason of the robot.
     #[must_use]
     pub fn failed(message: &str) -> Self {

@@ -13,8 +13,8 @@ mod pose_inputs;
 mod remaining;
 
 pub use active_goal::{ActiveGoal, GoalProgress, RunningGoal};
-pub use goal_outcome::GoalOutcome;
-pub use navigation_action::{GoalContext, GoalError, NavigationAction};
+pub use goal_outcome::NavigationOutcome;
+pub use navigation_action::{GoalContext, NavigationAction, NavigationRefusal};
 pub use parameters::Parameters;
 
 use crate::Ros2Error;

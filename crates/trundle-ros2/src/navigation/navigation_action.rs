@@ -1,7 +1,7 @@
 //! An action that the robot performs as a mission, and its server.
 
 use super::active_goal::{ActiveGoal, GoalProgress, RunningGoal};
-use super::goal_outcome::GoalOutcome;
+use super::goal_outcome::NavigationOutcome;
 use super::goal_pose::GoalPoseError;
 use crate::Ros2Error;
 use crate::interface::ActionType;
@@ -21,7 +21,7 @@ pub struct GoalContext<'c> {
 
 /// Why a goal is not performed.
 #[derive(Debug, Clone, PartialEq)]
-pub enum GoalError<R> {
+pub enum NavigationRefusal<R> {
     /// It is refused.
     Refused(String),
     /// It is accepted and fails with this result.
@@ -34,7 +34,10 @@ pub trait NavigationAction: ActionType<Result: Default> + 'static {
     ///
     /// # Errors
     /// Why the goal is not performed.
-    fn tasks(goal: &Self::Goal, context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<Self::Result>>;
+    fn tasks(
+        goal: &Self::Goal,
+        context: &GoalContext<'_>,
+    ) -> Result<Vec<Task>, NavigationRefusal<Self::Result>>;
 
     /// The time that the goal allows.
     fn time_limit(_goal: &Self::Goal) -> Option<Duration> {
@@ -50,7 +53,7 @@ pub trait NavigationAction: ActionType<Result: Default> + 'static {
     ) -> Self::Feedback;
 
     /// The result, after `time_s` seconds.
-    fn result(goal: &Self::Goal, outcome: &GoalOutcome, time_s: f64) -> Self::Result;
+    fn result(goal: &Self::Goal, outcome: &NavigationOutcome, time_s: f64) -> Self::Result;
 }
 
 /// Offers an action.
@@ -70,10 +73,10 @@ pub fn offer<A: NavigationAction>(
 }
 
 /// The result of a goal whose pose cannot be taken up; `failed` makes it of the message.
-pub fn pose_error<R>(error: GoalPoseError, failed: impl FnOnce(String) -> R) -> GoalError<R> {
+pub fn pose_error<R>(error: GoalPoseError, failed: impl FnOnce(String) -> R) -> NavigationRefusal<R> {
     match error {
-        GoalPoseError::Invalid(error) => GoalError::Refused(error.to_string()),
-        GoalPoseError::Frame(message) => GoalError::Failed(failed(message)),
+        GoalPoseError::Invalid(error) => NavigationRefusal::Refused(error.to_string()),
+        GoalPoseError::Frame(message) => NavigationRefusal::Failed(failed(message)),
     }
 }
 
@@ -88,8 +91,8 @@ impl<A: NavigationAction> GoalHandler<A> for Handler<A> {
         let view = self.active.view();
         let context = GoalContext { frames: &self.frames, view: view.as_deref() };
         match A::tasks(&goal, &context) {
-            Err(GoalError::Refused(why)) => Err(why),
-            Err(GoalError::Failed(result)) => {
+            Err(NavigationRefusal::Refused(why)) => Err(why),
+            Err(NavigationRefusal::Failed(result)) => {
                 self.handle.end(&id, GoalEnd::Aborted, result);
                 Ok(())
             }
@@ -124,7 +127,7 @@ impl<A: NavigationAction> RunningGoal for Running<A> {
         self.handle.is_canceling(&self.id)
     }
 
-    fn end(self: Box<Self>, end: GoalEnd, outcome: &GoalOutcome) {
+    fn end(self: Box<Self>, end: GoalEnd, outcome: &NavigationOutcome) {
         let result = A::result(&self.goal, outcome, self.since.elapsed().as_secs_f64());
         self.handle.end(&self.id, end, result);
     }

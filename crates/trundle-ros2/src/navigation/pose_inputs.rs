@@ -25,12 +25,12 @@ pub fn offer(node: &mut RosNode, active: &ActiveGoal, frames: &FrameNames) -> Re
     let (goals, own, diagnostics) = (active.clone(), frames.clone(), node.diagnostics());
     let mut limit = RateLimit::default();
     node.subscribe("goal_pose", &qos::reliable(1), None, move |goal: PoseStamped| {
-        let begun = if limit.is_within(Instant::now()) {
+        let started = if limit.is_within(Instant::now()) {
             begin(&goals, &goal, &own)
         } else {
             Err(format!("more than {MAX_GOALS_PER_SECOND} goals in a second; the rest is refused"))
         };
-        begun.unwrap_or_else(|why| diagnostics.warn("goal_pose", why));
+        started.unwrap_or_else(|why| diagnostics.warn("goal_pose", why));
     })?;
     let (guesses, own, diagnostics) = (active.clone(), frames.clone(), node.diagnostics());
     let on_guess =

@@ -9,7 +9,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 /// Longest wait for a message: periodic work is done at least this often. Source: ours.
-const TICK: Duration = Duration::from_millis(20);
+const TICK_PERIOD: Duration = Duration::from_millis(20);
 /// Readiness events taken at once. Source: ours.
 const EVENT_CAPACITY: usize = 256;
 
@@ -89,7 +89,7 @@ fn run_loop(mut poll: Poll, endpoints: &mut [Box<dyn Endpoint>], tickers: &mut [
         }
         let now = Instant::now();
         if now >= due {
-            due = now + TICK;
+            due = now + TICK_PERIOD;
             tickers.iter_mut().for_each(|tick| tick(now));
         }
     }

@@ -10,9 +10,9 @@ const DECAY_PER_M: f64 = 3.0;
 /// Side of the local view \[m\]. Source: Nav2's default.
 pub const LOCAL_SIDE_M: f64 = 3.0;
 /// Cost of an occupied cell.
-const LETHAL: i8 = 100;
+const LETHAL_COST: i8 = 100;
 /// Cost of a cell on which the middle of the robot would touch an obstacle.
-const INSCRIBED: i8 = 99;
+const INSCRIBED_COST: i8 = 99;
 
 /// Costs of all cells, row by row from the lowest y: 100 occupied, 99 within the body's radius, falling beyond it, -1 unknown.
 /// `radius` is that of the largest disc in the body \[m\].
@@ -21,12 +21,12 @@ pub fn costs(grid: &OccupancyGrid, radius: f64) -> Vec<i8> {
     let field =
         DistanceField::up_to(radius + INFLATION_M + grid.geometry().resolution, grid, UnknownIs::Free);
     let cost = |(i, cell): (usize, &Cell)| match cell {
-        Cell::Occupied => LETHAL,
+        Cell::Occupied => LETHAL_COST,
         _ => match (field.at_linear(i) - radius, cell) {
-            (beyond, _) if beyond <= 0.0 => INSCRIBED,
+            (beyond, _) if beyond <= 0.0 => INSCRIBED_COST,
             (_, Cell::Unknown) => -1,
             (beyond, _) if beyond > INFLATION_M => 0,
-            (beyond, _) => (f64::from(INSCRIBED - 1) * (-DECAY_PER_M * beyond).exp()).round() as i8,
+            (beyond, _) => (f64::from(INSCRIBED_COST - 1) * (-DECAY_PER_M * beyond).exp()).round() as i8,
         },
     };
     grid.cells().iter().enumerate().map(cost).collect()
@@ -64,7 +64,7 @@ mod tests {
     fn costs_fall_with_the_distance_from_obstacles() {
         let grid = OccupancyGrid::from_ascii(0.1, "#...........").unwrap();
         let costs = costs(&grid, 0.2);
-        assert_eq!(costs[..2], [LETHAL, INSCRIBED]);
+        assert_eq!(costs[..2], [LETHAL_COST, INSCRIBED_COST]);
         assert!(costs.windows(2).all(|pair| pair[0] >= pair[1]), "{costs:?}");
         assert_eq!(*costs.last().unwrap(), 0);
         let (part, cells) = local(grid.geometry(), &costs, &Pose2::new(1.2, 0.0, 0.0)).unwrap();

@@ -7,7 +7,7 @@ use trundle_core::{Invalid, Stamp};
 use trundle_drivers::camera::{PixelFormat, RawImage};
 
 /// Length of the head \[bytes\]: a format number and two parameters of the quantisation, of 4 bytes each.
-const HEAD: usize = 12;
+const HEAD_BYTES: usize = 12;
 /// The first bytes of a PNG file.
 const PNG_MAGIC: [u8; 4] = [0x89, b'P', b'N', b'G'];
 
@@ -19,7 +19,7 @@ pub fn compressed_depth_from_ros(image: CompressedImage, size: (usize, usize)) -
     let device_stamp = stamp::from_ros(&image.header.stamp)?;
     let data = image.data.0;
     let has_head = !data.starts_with(&PNG_MAGIC);
-    let start = if has_head { HEAD } else { 0 };
+    let start = if has_head { HEAD_BYTES } else { 0 };
     if !data.get(start..).is_some_and(|png| png.starts_with(&PNG_MAGIC)) {
         let value = format!("'{}' of {} bytes", image.format, data.len());
         return Err(Invalid::new(
@@ -60,7 +60,7 @@ fn metres(png: &[u8], (width, height): (usize, usize), scale: f32, offset: f32) 
 /// Depth in millimetres, a PNG file of 16 bits, as a message.
 #[must_use]
 pub fn compressed_depth_to_ros(png: &[u8], at: Stamp, frame: &str) -> CompressedImage {
-    let mut data = vec![0; HEAD];
+    let mut data = vec![0; HEAD_BYTES];
     data.extend_from_slice(png);
     let format = "16UC1; compressedDepth png".to_owned();
     CompressedImage { header: stamp::header(at, frame), format, data: Bytes(data) }

@@ -7,9 +7,9 @@ use crate::generated::nav2_msgs::{
 };
 use crate::navigation::active_goal::GoalProgress;
 use crate::navigation::error_codes::of_docking;
-use crate::navigation::goal_outcome::GoalOutcome;
+use crate::navigation::goal_outcome::NavigationOutcome;
 use crate::navigation::goal_pose::in_map;
-use crate::navigation::navigation_action::{GoalContext, GoalError, NavigationAction, pose_error};
+use crate::navigation::navigation_action::{GoalContext, NavigationAction, NavigationRefusal, pose_error};
 use crate::outputs::FrameNames;
 use std::time::Duration;
 use trundle_app::operator::RunView;
@@ -28,7 +28,7 @@ impl NavigationAction for DockRobot {
     fn tasks(
         goal: &DockRobotGoal,
         context: &GoalContext<'_>,
-    ) -> Result<Vec<Task>, GoalError<DockRobotResult>> {
+    ) -> Result<Vec<Task>, NavigationRefusal<DockRobotResult>> {
         let failed = |error_msg| DockRobotResult {
             error_code: DockRobotResult::DOCK_NOT_VALID,
             error_msg,
@@ -59,7 +59,7 @@ impl NavigationAction for DockRobot {
         DockRobotFeedback { state, docking_time: duration(progress.time_s), num_retries: 0 }
     }
 
-    fn result(_goal: &DockRobotGoal, outcome: &GoalOutcome, _time_s: f64) -> DockRobotResult {
+    fn result(_goal: &DockRobotGoal, outcome: &NavigationOutcome, _time_s: f64) -> DockRobotResult {
         let error_code = outcome.code(DockRobotResult::TIMEOUT, of_docking, DockRobotResult::UNKNOWN);
         DockRobotResult {
             success: error_code == 0,
@@ -75,7 +75,7 @@ impl NavigationAction for UndockRobot {
     fn tasks(
         _goal: &UndockRobotGoal,
         _context: &GoalContext<'_>,
-    ) -> Result<Vec<Task>, GoalError<UndockRobotResult>> {
+    ) -> Result<Vec<Task>, NavigationRefusal<UndockRobotResult>> {
         Ok(vec![Task::Turn { angle: 0.0 }])
     }
 
@@ -92,7 +92,7 @@ impl NavigationAction for UndockRobot {
         UndockRobotFeedback::default()
     }
 
-    fn result(_goal: &UndockRobotGoal, outcome: &GoalOutcome, _time_s: f64) -> UndockRobotResult {
+    fn result(_goal: &UndockRobotGoal, outcome: &NavigationOutcome, _time_s: f64) -> UndockRobotResult {
         let failed = |_: &trundle_runtime::Reason| UndockRobotResult::FAILED_TO_CONTROL;
         let error_code = outcome.code(UndockRobotResult::TIMEOUT, failed, UndockRobotResult::UNKNOWN);
         UndockRobotResult { success: error_code == 0, error_code, error_msg: outcome.message.clone() }

@@ -7,19 +7,19 @@ use crate::generated::nav2_msgs::{
 };
 use crate::navigation::active_goal::GoalProgress;
 use crate::navigation::error_codes::of_reason;
-use crate::navigation::goal_outcome::GoalOutcome;
+use crate::navigation::goal_outcome::NavigationOutcome;
 use crate::navigation::goal_pose::in_map;
-use crate::navigation::navigation_action::{GoalContext, GoalError, NavigationAction, pose_error};
+use crate::navigation::navigation_action::{GoalContext, NavigationAction, NavigationRefusal, pose_error};
 use crate::outputs::FrameNames;
 use trundle_app::operator::RunView;
 use trundle_runtime::{Task, TaskEnd};
 
 impl NavigationAction for NavigateThroughPoses {
-    fn tasks(goal: &Goal, context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<Outcome>> {
+    fn tasks(goal: &Goal, context: &GoalContext<'_>) -> Result<Vec<Task>, NavigationRefusal<Outcome>> {
         let failed = |error_code, error_msg| Outcome { error_code, error_msg, ..Outcome::default() };
         if goal.poses.goals.is_empty() {
             let message = "poses is empty, expected at least one".to_owned();
-            return Err(GoalError::Failed(failed(Outcome::NO_VALID_WAYPOINTS, message)));
+            return Err(NavigationRefusal::Failed(failed(Outcome::NO_VALID_WAYPOINTS, message)));
         }
         let task = |pose| {
             let pose = in_map(pose, context.frames, context.view);
@@ -64,7 +64,7 @@ impl NavigationAction for NavigateThroughPoses {
         }
     }
 
-    fn result(_goal: &Goal, outcome: &GoalOutcome, _time_s: f64) -> Outcome {
+    fn result(_goal: &Goal, outcome: &NavigationOutcome, _time_s: f64) -> Outcome {
         let error_code = outcome.code(Outcome::TIMEOUT, of_reason, Outcome::UNKNOWN);
         Outcome { error_code, error_msg: outcome.message.clone(), ..Outcome::default() }
     }

@@ -7,22 +7,22 @@ use crate::generated::nav2_msgs::{
 };
 use crate::navigation::active_goal::GoalProgress;
 use crate::navigation::error_codes::of_reason;
-use crate::navigation::goal_outcome::GoalOutcome;
+use crate::navigation::goal_outcome::NavigationOutcome;
 use crate::navigation::goal_pose::in_map;
-use crate::navigation::navigation_action::{GoalContext, GoalError, NavigationAction, pose_error};
+use crate::navigation::navigation_action::{GoalContext, NavigationAction, NavigationRefusal, pose_error};
 use crate::outputs::FrameNames;
 use trundle_app::operator::RunView;
 use trundle_runtime::Task;
 
 impl NavigationAction for NavigateToPose {
-    fn tasks(goal: &Goal, context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<Outcome>> {
+    fn tasks(goal: &Goal, context: &GoalContext<'_>) -> Result<Vec<Task>, NavigationRefusal<Outcome>> {
         if !goal.behavior_tree.is_empty() {
             let error_msg = format!(
                 "behavior_tree is '{}', expected none: trundle has no behavior trees",
                 goal.behavior_tree
             );
             let error_code = Outcome::FAILED_TO_LOAD_BEHAVIOR_TREE;
-            return Err(GoalError::Failed(Outcome { error_code, error_msg }));
+            return Err(NavigationRefusal::Failed(Outcome { error_code, error_msg }));
         }
         let failed = |error_msg| Outcome { error_code: Outcome::TF_ERROR, error_msg };
         let pose =
@@ -42,7 +42,7 @@ impl NavigationAction for NavigateToPose {
         }
     }
 
-    fn result(_goal: &Goal, outcome: &GoalOutcome, _time_s: f64) -> Outcome {
+    fn result(_goal: &Goal, outcome: &NavigationOutcome, _time_s: f64) -> Outcome {
         let error_code = outcome.code(Outcome::TIMEOUT, of_reason, Outcome::UNKNOWN);
         Outcome { error_code, error_msg: outcome.message.clone() }
     }
@@ -64,14 +64,15 @@ mod tests {
         };
         let tasks = NavigateToPose::tasks(&goal(1.0, "map"), &context).unwrap();
         assert!(matches!(tasks[..], [Task::Go(pose)] if (pose.theta - 1.0).abs() < 1e-12));
-        let Err(GoalError::Failed(result)) = NavigateToPose::tasks(&goal(1.0, "moon"), &context) else {
+        let Err(NavigationRefusal::Failed(result)) = NavigateToPose::tasks(&goal(1.0, "moon"), &context)
+        else {
             panic!()
         };
         assert_eq!(result.error_code, Outcome::TF_ERROR);
         assert!(result.error_msg.contains("'moon', expected map, odom or base_link"));
         assert!(matches!(
             NavigateToPose::tasks(&goal(f64::NAN, "map"), &context),
-            Err(GoalError::Refused(_))
+            Err(NavigationRefusal::Refused(_))
         ));
     }
 }

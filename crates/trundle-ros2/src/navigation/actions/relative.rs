@@ -9,8 +9,8 @@ use crate::generated::nav2_msgs::{
     DriveOnHeadingGoal, DriveOnHeadingResult, Spin, SpinFeedback, SpinGoal, SpinResult,
 };
 use crate::navigation::active_goal::GoalProgress;
-use crate::navigation::goal_outcome::GoalOutcome;
-use crate::navigation::navigation_action::{GoalContext, GoalError, NavigationAction};
+use crate::navigation::goal_outcome::NavigationOutcome;
+use crate::navigation::navigation_action::{GoalContext, NavigationAction, NavigationRefusal};
 use crate::outputs::FrameNames;
 use std::time::Duration;
 use trundle_app::operator::RunView;
@@ -38,9 +38,12 @@ fn straight(target: &Point, speed: f32, ahead: f64) -> Result<Vec<Task>, String>
 }
 
 impl NavigationAction for Spin {
-    fn tasks(goal: &SpinGoal, _context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<SpinResult>> {
+    fn tasks(
+        goal: &SpinGoal,
+        _context: &GoalContext<'_>,
+    ) -> Result<Vec<Task>, NavigationRefusal<SpinResult>> {
         if !goal.target_yaw.is_finite() {
-            return Err(GoalError::Refused(format!(
+            return Err(NavigationRefusal::Refused(format!(
                 "target_yaw is {} rad, expected a finite number",
                 goal.target_yaw
             )));
@@ -63,7 +66,7 @@ impl NavigationAction for Spin {
         }
     }
 
-    fn result(_goal: &SpinGoal, outcome: &GoalOutcome, time_s: f64) -> SpinResult {
+    fn result(_goal: &SpinGoal, outcome: &NavigationOutcome, time_s: f64) -> SpinResult {
         let error_code =
             outcome.code(SpinResult::TIMEOUT, |_| SpinResult::COLLISION_AHEAD, SpinResult::UNKNOWN);
         SpinResult { total_elapsed_time: duration(time_s), error_code, error_msg: outcome.message.clone() }
@@ -71,13 +74,16 @@ impl NavigationAction for Spin {
 }
 
 impl NavigationAction for BackUp {
-    fn tasks(goal: &BackUpGoal, _context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<BackUpResult>> {
+    fn tasks(
+        goal: &BackUpGoal,
+        _context: &GoalContext<'_>,
+    ) -> Result<Vec<Task>, NavigationRefusal<BackUpResult>> {
         let failed = |error_msg| BackUpResult {
             error_code: BackUpResult::INVALID_INPUT,
             error_msg,
             ..BackUpResult::default()
         };
-        straight(&goal.target, goal.speed, -1.0).map_err(|message| GoalError::Failed(failed(message)))
+        straight(&goal.target, goal.speed, -1.0).map_err(|message| NavigationRefusal::Failed(failed(message)))
     }
 
     fn time_limit(goal: &BackUpGoal) -> Option<Duration> {
@@ -93,7 +99,7 @@ impl NavigationAction for BackUp {
         BackUpFeedback { distance_traveled: view.estimate.pose.distance(&progress.start) as f32 }
     }
 
-    fn result(_goal: &BackUpGoal, outcome: &GoalOutcome, time_s: f64) -> BackUpResult {
+    fn result(_goal: &BackUpGoal, outcome: &NavigationOutcome, time_s: f64) -> BackUpResult {
         let error_code =
             outcome.code(BackUpResult::TIMEOUT, |_| BackUpResult::COLLISION_AHEAD, BackUpResult::UNKNOWN);
         BackUpResult { total_elapsed_time: duration(time_s), error_code, error_msg: outcome.message.clone() }
@@ -104,7 +110,7 @@ impl NavigationAction for DriveOnHeading {
     fn tasks(
         goal: &DriveOnHeadingGoal,
         _context: &GoalContext<'_>,
-    ) -> Result<Vec<Task>, GoalError<DriveOnHeadingResult>> {
+    ) -> Result<Vec<Task>, NavigationRefusal<DriveOnHeadingResult>> {
         let failed = |error_msg| DriveOnHeadingResult {
             error_code: DriveOnHeadingResult::INVALID_INPUT,
             error_msg,
@@ -113,10 +119,11 @@ impl NavigationAction for DriveOnHeading {
         if goal.target.x * f64::from(goal.speed) < 0.0 {
             let message =
                 format!("target.x is {} m and speed {} m/s, expected equal signs", goal.target.x, goal.speed);
-            return Err(GoalError::Failed(failed(message)));
+            return Err(NavigationRefusal::Failed(failed(message)));
         }
         let ahead = if goal.target.x < 0.0 { -1.0 } else { 1.0 };
-        straight(&goal.target, goal.speed, ahead).map_err(|message| GoalError::Failed(failed(message)))
+        straight(&goal.target, goal.speed, ahead)
+            .map_err(|message| NavigationRefusal::Failed(failed(message)))
     }
 
     fn time_limit(goal: &DriveOnHeadingGoal) -> Option<Duration> {
@@ -132,7 +139,7 @@ impl NavigationAction for DriveOnHeading {
         DriveOnHeadingFeedback { distance_traveled: view.estimate.pose.distance(&progress.start) as f32 }
     }
 
-    fn result(_goal: &DriveOnHeadingGoal, outcome: &GoalOutcome, time_s: f64) -> DriveOnHeadingResult {
+    fn result(_goal: &DriveOnHeadingGoal, outcome: &NavigationOutcome, time_s: f64) -> DriveOnHeadingResult {
         let blocked = |_: &trundle_runtime::Reason| DriveOnHeadingResult::COLLISION_AHEAD;
         let error_code = outcome.code(DriveOnHeadingResult::TIMEOUT, blocked, DriveOnHeadingResult::UNKNOWN);
         DriveOnHeadingResult {
@@ -156,12 +163,12 @@ mod tests {
         let tasks = BackUp::tasks(&goal(0.25, 0.0, 0.5), &context).unwrap();
         assert_eq!(tasks, [Task::Straight { distance: -0.25, speed: 0.5 }]);
         for broken in [goal(0.25, 0.1, 0.5), goal(f64::NAN, 0.0, 0.5), goal(0.25, 0.0, 0.0)] {
-            let Err(GoalError::Failed(result)) = BackUp::tasks(&broken, &context) else {
+            let Err(NavigationRefusal::Failed(result)) = BackUp::tasks(&broken, &context) else {
                 panic!("{broken:?}")
             };
             assert_eq!(result.error_code, BackUpResult::INVALID_INPUT);
         }
         let spin = SpinGoal { target_yaw: f32::NAN, ..SpinGoal::default() };
-        assert!(matches!(Spin::tasks(&spin, &context), Err(GoalError::Refused(_))));
+        assert!(matches!(Spin::tasks(&spin, &context), Err(NavigationRefusal::Refused(_))));
     }
 }

@@ -6,9 +6,9 @@ use crate::generated::nav2_msgs::{
 };
 use crate::navigation::active_goal::GoalProgress;
 use crate::navigation::error_codes::of_reason;
-use crate::navigation::goal_outcome::GoalOutcome;
+use crate::navigation::goal_outcome::NavigationOutcome;
 use crate::navigation::goal_pose::in_map;
-use crate::navigation::navigation_action::{GoalContext, GoalError, NavigationAction, pose_error};
+use crate::navigation::navigation_action::{GoalContext, NavigationAction, NavigationRefusal, pose_error};
 use crate::outputs::FrameNames;
 use trundle_app::operator::RunView;
 use trundle_runtime::Task;
@@ -17,7 +17,7 @@ use trundle_runtime::Task;
 const MAX_WAYPOINTS: usize = 10_000;
 
 impl NavigationAction for FollowWaypoints {
-    fn tasks(goal: &Goal, context: &GoalContext<'_>) -> Result<Vec<Task>, GoalError<Outcome>> {
+    fn tasks(goal: &Goal, context: &GoalContext<'_>) -> Result<Vec<Task>, NavigationRefusal<Outcome>> {
         let failed =
             |error_msg| Outcome { error_code: Outcome::NO_VALID_WAYPOINTS, error_msg, ..Outcome::default() };
         let loops = 1 + goal.number_of_loops as usize;
@@ -27,7 +27,7 @@ impl NavigationAction for FollowWaypoints {
                 "{count} way-points from index {}, expected 1 to {MAX_WAYPOINTS} and an index among them",
                 goal.goal_index
             );
-            return Err(GoalError::Failed(failed(message)));
+            return Err(NavigationRefusal::Failed(failed(message)));
         }
         let task = |pose| {
             in_map(pose, context.frames, context.view)
@@ -43,7 +43,7 @@ impl NavigationAction for FollowWaypoints {
         Feedback { current_waypoint: (place % goal.poses.len().max(1)) as u32 }
     }
 
-    fn result(goal: &Goal, outcome: &GoalOutcome, _time_s: f64) -> Outcome {
+    fn result(goal: &Goal, outcome: &NavigationOutcome, _time_s: f64) -> Outcome {
         let missed = |(task, reason): &(usize, trundle_runtime::Reason)| {
             let index = (goal.goal_index as usize + task) % goal.poses.len().max(1);
             WaypointStatus {

@@ -1,8 +1,8 @@
 //! Which marker a quad is.
 
-use super::Tag;
 use super::codes::{CODE_CELLS, CodeCells, TAG_CELLS, mirrored, nearest_code};
 use super::quad::Quad;
+use super::tag::Tag;
 use crate::board::board_view::BoardPoint;
 use crate::board::homography::homography;
 use crate::board::smooth_image::SmoothImage;

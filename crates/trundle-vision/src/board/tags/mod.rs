@@ -16,27 +16,18 @@ mod components;
 mod decode;
 mod quad;
 mod side_curve;
+mod tag;
 mod threshold;
 
 pub use codes::{TAG_CELLS, TAG_COUNT, tag_cells};
+pub use tag::Tag;
 
 use super::smooth_image::SmoothImage;
 use components::dark_components;
 use decode::{Decoded, decode};
 use quad::{outline_quad, refined_quad};
 use threshold::dark_mask;
-use trundle_core::{GrayImage, Vector2};
-
-/// A marker in an image.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tag {
-    /// Number of the marker in its family.
-    pub id: usize,
-    /// Corners of the black square, px, seen from the front with the marker upright: upper left, upper right, lower right, lower left.
-    pub corners: [Vector2; 4],
-    /// Cells that differ from those of the family's marker, 0 to 2.
-    pub wrong_cells: u32,
-}
+use trundle_core::GrayImage;
 
 /// What is in an image.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -15,7 +15,7 @@ const MIN_AREA_RATIO: f64 = 0.75;
 /// Smallest number of dark pixels over the area: the border alone is 28 of 64 cells. Source: ours.
 const MIN_DARK_RATIO: f64 = 0.25;
 /// Rounds of the refinement. Source: ours; the last starts from corners that are right to half a pixel.
-const ROUNDS: usize = 3;
+const SEARCH_ROUNDS: usize = 3;
 /// Largest move of a corner by the refinement, over the mean side. Source: ours.
 const MAX_MOVE_RATIO: f64 = 0.2;
 
@@ -45,7 +45,7 @@ fn area(corners: &[Vector2]) -> f64 {
 /// The corners at which curves along the edges meet; `None` where an edge is missing.
 pub(super) fn refined_quad(image: &SmoothImage, start: Quad) -> Option<Quad> {
     let mut quad = start;
-    for _ in 0..ROUNDS {
+    for _ in 0..SEARCH_ROUNDS {
         let mut sides = Vec::with_capacity(4);
         for i in 0..4 {
             sides.push(SideCurve::fit(image, quad[i], quad[(i + 1) % 4])?);

@@ -43,7 +43,7 @@ const MIN_CURVED_PX: f64 = 24.0;
 /// Smallest fraction of samples with an edge that fits. Source: ours.
 const MIN_SAMPLE_RATIO: f64 = 0.5;
 /// Fits after the first, each by the samples near the fit before. Source: ours.
-const SELECTIONS: usize = 3;
+const SELECTION_COUNT: usize = 3;
 /// Largest residual of a sample, px; the others are left out of the next fit. Source: ours.
 const MAX_RESIDUAL_PX: f64 = 0.5;
 
@@ -58,7 +58,7 @@ impl SideCurve {
         let (samples, tried) = straight.samples(image);
         let needed = (MIN_SAMPLE_RATIO * tried as f64).max(4.0) as usize;
         let mut curve = straight.fitted(&samples)?;
-        for _ in 0..SELECTIONS {
+        for _ in 0..SELECTION_COUNT {
             let is_near = |(u, offset): &&Sample| (curve.offset(*u) - offset).abs() <= MAX_RESIDUAL_PX;
             let good: Vec<Sample> = samples.iter().filter(is_near).copied().collect();
             if good.len() < needed {

@@ -1,0 +1,45 @@
+//! The options of ROS 2 that several commands have, and the node beside `trundle run`.
+
+use crate::console;
+use clap::Args;
+use std::time::Instant;
+use trundle::app::operator::FrontEnd;
+use trundle::app::{AppError, Progress};
+use trundle::ros2::node::Networks;
+use trundle::ros2::{RobotNode, Ros2Options};
+use trundle::runtime::RobotConfig;
+
+/// Network and names of a ROS 2 node.
+#[derive(Debug, Args)]
+pub struct RosArgs {
+    /// Domain: nodes of different domains do not meet [default: ROS_DOMAIN_ID, else 0]
+    #[arg(long, value_name = "N")]
+    pub ros_domain: Option<u16>,
+    /// Networks: loopback, all, or addresses of interfaces. Whoever is on them can drive the robot.
+    #[arg(long, value_name = "IP|all", default_value = "loopback")]
+    pub ros_interface: Networks,
+    /// Last: remappings, namespace and parameters, as every ROS 2 node takes them.
+    #[arg(long, value_name = "ARG", num_args = 1.., allow_hyphen_values = true)]
+    pub ros_args: Vec<String>,
+}
+
+impl RosArgs {
+    /// The options; warns of a network that others share.
+    pub fn options(&self) -> Result<Ros2Options, AppError> {
+        if let Some(warning) = self.ros_interface.warning() {
+            console::print(&format!("warning: {warning}"));
+        }
+        Ok(Ros2Options::read("trundle", self.ros_domain, self.ros_interface.clone(), &self.ros_args)?)
+    }
+}
+
+/// A node beside `trundle run`, and what accompanies the run then.
+pub fn beside(
+    args: &RosArgs,
+    robot: &RobotConfig,
+    origin: Instant,
+    progress: Progress,
+) -> Result<(RobotNode, FrontEnd), AppError> {
+    let (node, link) = RobotNode::offer(&args.options()?, robot, origin)?;
+    Ok((node, FrontEnd { progress, operator: Some(link) }))
+}
