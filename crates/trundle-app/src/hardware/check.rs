@@ -1,18 +1,16 @@
 //! The check of base and camera before the first drive: rates, delays, signs of the encoders, the floor in the images.
 
 use super::check_log::{CheckLog, ImageNote, mean, rate_and_gap};
-use super::{Drivers, OpenCamera};
+use super::{Drivers, OpenCamera, STOP_POLL_PERIOD};
 use crate::calibrate::{CalibratedValue, Calibration, floor_values};
 use crate::{AppError, stop};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use trundle_core::{PinholeCamera, Vector3};
 use trundle_drivers::BaseSpec;
 use trundle_localization::FloorMount;
 use trundle_runtime::RobotConfig;
 
-/// Time between two looks for Ctrl-C. Source: ours.
-const STOP_POLL_PERIOD: Duration = Duration::from_millis(50);
 /// Part of the camera's own rate below which images are too few. Source: ours.
 const MIN_RATE_PART: f64 = 0.8;
 /// Smallest rate of the wheels' readings \[Hz\]: control steps follow them. Source: half of a Kobuki's 50 Hz.

@@ -1,5 +1,6 @@
 //! The drivers of base and camera, in threads of their own.
 
+use super::STOP_POLL_PERIOD;
 use crate::{AppError, stop};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -22,8 +23,6 @@ const PROGRAM_NAME: &str = "trundle";
 
 /// Longest wait for a lost camera to open again: the driver's threads look for the end of the run in between. Source: ours.
 const REOPEN_TIMEOUT: Duration = Duration::from_secs(1);
-/// Time between two looks for the user's wish to stop. Source: ours.
-const STOP_POLL_PERIOD: Duration = Duration::from_millis(50);
 
 /// A camera that is open, and how to open it again.
 pub struct OpenCamera {

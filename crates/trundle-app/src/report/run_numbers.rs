@@ -123,10 +123,10 @@ impl RunNumbers {
                 n => format!("All {n} goals reached, nothing touched."),
             };
         }
-        let mut faults = Vec::new();
         if self.is_operated {
             return self.operated_verdict();
         }
+        let mut faults = Vec::new();
         if self.goals_asked.is_none() {
             faults.push("the goal is the start, so the robot had nothing to do".to_owned());
         }

@@ -44,7 +44,7 @@ impl Robot {
 
     /// The tasks of the mission that have ended; empty while a decision job runs.
     pub fn tasks_ended(&self) -> &[TaskRecord] {
-        self.decision_worker.as_ref().map_or(&[], |decision_worker| decision_worker.executor.records())
+        self.mission_progress().map_or(&[], |progress| progress.ended)
     }
 
     /// How far the mission has come; none while a decision job runs.
@@ -61,7 +61,7 @@ impl Robot {
 
     /// The present task; none while a decision job runs.
     pub fn task(&self) -> Option<Task> {
-        self.decision_worker.as_ref()?.executor.task()
+        self.mission_progress()?.task
     }
 
     /// The newest plan; none while a decision is made in the background.
