@@ -11,13 +11,10 @@ pub use drivers::{Drivers, OpenCamera};
 
 use crate::AppError;
 use crate::real_time::{EventFeed, LiveBody, TimedEvent};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use trundle_core::PinholeCamera;
 use trundle_drivers::BaseSpec;
 use trundle_runtime::real_time::InboxSender;
-
-/// Time between two looks for the user's wish to stop. Source: ours.
-const STOP_POLL_PERIOD: Duration = Duration::from_millis(50);
 
 /// Waits until standard input ends, then stops the base at the port that is standard output: the guard of a program that may die.
 ///

@@ -4,8 +4,11 @@ use crate::AppError;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
 use trundle_io::OutputFolder;
 
+/// Time between two looks for the user's request in a loop that waits. Source: ours.
+pub const POLL_PERIOD: Duration = Duration::from_millis(50);
 /// The number of the first signal; 0 without one.
 static SIGNAL: AtomicUsize = AtomicUsize::new(0);
 /// Progress at the end of a loop that the signal ended; `None` without one.

@@ -1,7 +1,7 @@
 //! The check of base and camera before the first drive: rates, delays, signs of the encoders, the floor in the images.
 
 use super::check_log::{CheckLog, ImageNote, mean, rate_and_gap};
-use super::{Drivers, OpenCamera, STOP_POLL_PERIOD};
+use super::{Drivers, OpenCamera};
 use crate::calibrate::{CalibratedValue, Calibration, floor_values};
 use crate::{AppError, stop};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -69,7 +69,7 @@ pub fn check_hardware(request: CheckRequest<'_>) -> Result<HardwareReport, AppEr
     let start = Instant::now();
     let is_over = || stop::is_requested(|| format!("{:.1} s", start.elapsed().as_secs_f64()));
     while start.elapsed().as_secs_f64() < seconds && !is_over() {
-        std::thread::sleep(STOP_POLL_PERIOD);
+        std::thread::sleep(stop::POLL_PERIOD);
     }
     let (versions, (base_counters, camera_counters)) = (drivers.versions(), drivers.counters());
     let fault = drivers.camera_fault();

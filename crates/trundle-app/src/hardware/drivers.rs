@@ -1,6 +1,5 @@
 //! The drivers of base and camera, in threads of their own.
 
-use super::STOP_POLL_PERIOD;
 use crate::{AppError, stop};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -44,7 +43,7 @@ impl OpenCamera {
             .spawn(open)
             .map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))?;
         let camera = loop {
-            match opened.recv_timeout(STOP_POLL_PERIOD) {
+            match opened.recv_timeout(stop::POLL_PERIOD) {
                 Ok(camera) => break camera.map_err(|error| refused(spec, &error))?,
                 Err(RecvTimeoutError::Timeout) if stop::is_requested(|| "nothing".to_owned()) => {
                     return Err(AppError::Stopped);
