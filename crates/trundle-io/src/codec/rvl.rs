@@ -1,11 +1,13 @@
 //! Depth images in RVL: differences along the rows in groups of three bits, runs of zeros by their length. Source: \[Wilson17\].
 
-use super::claim::check_size;
 use super::error::CodecError;
 use trundle_core::Image;
 
 /// Bytes of the width and the height in front of the stream, as `compressed_depth_image_transport` has them.
 const SIZE_BYTES: usize = 8;
+/// Largest number of pixels of an RVL image that is read: 8.4 Mpx, above 3840 x 2160. A run of zeros takes a few bytes at any length, so the
+/// number of bytes bounds nothing. Source: ours.
+const MAX_RVL_PIXELS: usize = 1 << 23;
 /// Number of groups that a word of the stream holds.
 const GROUPS_PER_WORD: u32 = 8;
 
@@ -39,8 +41,9 @@ pub(crate) fn decode_rvl(bytes: &[u8]) -> Result<Image<u16>, CodecError> {
     let failed = |problem: &str| CodecError::decode("depth", format!("RVL: {problem}"));
     let side = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?) as usize);
     let (width, height) = side(0).zip(side(4)).ok_or_else(|| failed("the size is cut"))?;
-    // A run of zeros takes a few bytes at any length, so the number of bytes bounds nothing.
-    check_size("depth", (width, height), 1, usize::MAX)?;
+    if width.checked_mul(height).is_none_or(|pixels| !(1..=MAX_RVL_PIXELS).contains(&pixels)) {
+        return Err(failed(&format!("{width} x {height} px, expected 1 to {MAX_RVL_PIXELS} px")));
+    }
     let mut groups = GroupReader { bytes: &bytes[SIZE_BYTES..], word: 0, count: 0 };
     let mut values = Vec::with_capacity(width * height);
     let mut before = 0_i32;
