@@ -36,8 +36,8 @@ const REST: [Step; 10] = [
     },
     Step { name: "cargo xtask fuzz --seconds 5", check: fuzz::run_in_ci },
     Step {
-        name: "cargo build --release",
-        check: |root| program::cargo(root, &["build", "--release", "--features", "trundle-cli/ros2"], &[]),
+        name: "cargo build --release --package trundle-cli --features ros2",
+        check: |root| program::release_trundle(root).map(|_| true),
     },
     Step { name: "cargo xtask golden", check: golden_net },
     Step { name: "trundle demo", check: demo },
