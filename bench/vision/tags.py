@@ -1,6 +1,6 @@
 """AprilTags: trundle-vision against OpenCV and the AprilTag library, on the same drawn images with known corners.
 
-usage: tags.py --ours PROGRAM [--count 20] [--keep FOLDER]
+usage: tags.py --ours PROGRAM [--count 20] [--seed 1] [--keep FOLDER]
 
 Each image shows 6 x 5 tags of tag36h11 through a known homography, 4 x 4 samples a pixel, with blur of 0.8 px and noise of 3 grey
 values. Printed for each program: the fraction of the tags found, wrong ids, and the error of the corners. Prints `skipped` where the
@@ -89,9 +89,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--ours", required=True)
     parser.add_argument("--count", type=int, default=20)
+    parser.add_argument("--seed", type=int, default=1, help="of the views and of the noise")
     parser.add_argument("--keep", type=pathlib.Path)
     args = parser.parse_args()
-    rng = np.random.default_rng(1)
+    rng = np.random.default_rng(args.seed)
     board, corners = sheet()
     with tempfile.TemporaryDirectory() as scratch:
         folder = args.keep or pathlib.Path(scratch)

@@ -1,18 +1,21 @@
 //! Arguments that several commands take: quiet, threads, robot file, poses, up axis.
 
 mod bag_topics;
+mod choice;
 mod number;
+mod place;
 
 pub use bag_topics::BagTopicsArgs;
+pub use choice::choice;
 pub use number::NumberArg;
+pub use place::PlaceArgs;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::PathBuf;
 use std::str::FromStr;
 use trundle::app::{AppError, load_robot};
 use trundle::core::{MAX_COORDINATE_M, Pose2};
 use trundle::experiments::simulated::MeshOptions;
-use trundle::io::MapImage;
 use trundle::runtime::RobotConfig;
 use trundle::sim::import::UpAxis;
 
@@ -79,8 +82,8 @@ impl FromStr for PoseArg {
 #[derive(Debug, Clone, Copy, Args)]
 pub struct MeshArgs {
     /// The axis that points up in a .glb or .gltf.
-    #[arg(long, value_enum, value_name = "AXIS", default_value_t = UpArg::Y)]
-    pub up: UpArg,
+    #[arg(long, value_name = "AXIS", default_value = "y", value_parser = choice(&UpAxis::CHOICES))]
+    pub up: UpAxis,
     /// Metres a unit of a .glb or .gltf, as 0.01 for centimetres [default: 1]
     #[arg(long, value_name = "M", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub scale: Option<f64>,
@@ -92,45 +95,7 @@ pub struct MeshArgs {
 impl MeshArgs {
     /// The options of the scene.
     pub fn options(self) -> MeshOptions {
-        MeshOptions { up: self.up.axis(), scale: self.scale, floor: self.floor }
-    }
-}
-
-/// The axis of a file that points up.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum UpArg {
-    /// As glTF has it.
-    Y,
-    /// As robots have it.
-    Z,
-}
-
-impl UpArg {
-    /// The axis.
-    pub fn axis(self) -> UpAxis {
-        match self {
-            Self::Y => UpAxis::Y,
-            Self::Z => UpAxis::Z,
-        }
-    }
-}
-
-/// The format of a map's picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum MapImageArg {
-    /// As map_saver writes it.
-    Pgm,
-    /// Compressed, without loss.
-    Png,
-}
-
-impl MapImageArg {
-    /// The format.
-    pub fn format(self) -> MapImage {
-        match self {
-            Self::Pgm => MapImage::Pgm,
-            Self::Png => MapImage::Png,
-        }
+        MeshOptions { up: self.up, scale: self.scale, floor: self.floor }
     }
 }
 

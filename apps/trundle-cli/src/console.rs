@@ -41,20 +41,27 @@ pub fn print_failure() -> Option<&'static std::io::Error> {
     PRINT_FAILURE.get()
 }
 
-/// Prints a table of two columns or more on standard output, columns aligned.
+/// Prints a table of two columns or more on standard output, columns aligned: the first one and texts to the left, numbers to the right.
 pub fn print_table(rows: &[Vec<String>]) {
+    aligned(rows).iter().for_each(|line| print(line));
+}
+
+/// Width of a column from which it holds text, not numbers \[characters\]. Source: ours.
+const MIN_TEXT_WIDTH: usize = 60;
+
+/// The lines of a table.
+fn aligned(rows: &[Vec<String>]) -> Vec<String> {
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |c: usize| {
         rows.iter().filter_map(|row| row.get(c)).map(|cell| cell.chars().count()).max().unwrap_or(0)
     };
     let widths: Vec<usize> = (0..columns).map(width).collect();
-    for row in rows {
-        let cells = row.iter().zip(&widths).enumerate();
-        let line: Vec<String> = cells
-            .map(|(c, (cell, &w))| if c == 0 { format!("{cell:<w$}") } else { format!("{cell:>w$}") })
-            .collect();
-        print(format!("  {}", line.join("  ")).trim_end());
-    }
+    let cell = |(c, (cell, &w)): (usize, (&String, &usize))| {
+        if c == 0 || w >= MIN_TEXT_WIDTH { format!("{cell:<w$}") } else { format!("{cell:>w$}") }
+    };
+    let line =
+        |row: &Vec<String>| row.iter().zip(&widths).enumerate().map(cell).collect::<Vec<_>>().join("  ");
+    rows.iter().map(|row| format!("  {}", line(row)).trim_end().to_owned()).collect()
 }
 
 /// A line of progress: a spinner with a message, and the progress that sets it. Clear the line when the work has ended.
@@ -146,6 +153,19 @@ mod tests {
     use indicatif::TermLike;
     use std::io;
     use std::sync::{Arc, Mutex};
+
+    #[test]
+    fn numbers_stand_to_the_right_and_texts_to_the_left() {
+        let table = |rows: &[[&str; 2]]| {
+            aligned(&rows.iter().map(|row| row.map(str::to_owned).to_vec()).collect::<Vec<_>>())
+        };
+        assert_eq!(
+            table(&[["time", "9.5 s"], ["contacts", "0"]]),
+            ["  time      9.5 s", "  contacts      0"]
+        );
+        let long = "x".repeat(60);
+        assert_eq!(table(&[["base", "none"], ["camera", &long]])[0], "  base    none");
+    }
 
     /// A terminal of some width that keeps the lines drawn.
     #[derive(Debug, Clone)]

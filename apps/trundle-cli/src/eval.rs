@@ -1,22 +1,72 @@
 //! `trundle eval`: errors of a trajectory or a map against the truth.
 
 mod args;
-mod maps;
-mod named_error;
-mod relations;
-mod trajectory;
 
 pub use args::EvalArgs;
 
 use crate::outcome::Outcome;
-use args::Which;
+use crate::output_args::OutputDirArg;
+use crate::{console, logging};
+use args::{MapsArgs, RelationsArgs, TrajectoryArgs, Which};
 use trundle::app::AppError;
+use trundle::app::evaluation::{
+    MapEvaluation, RelationEvaluation, RelationReference, TrajectoryEvaluation, write_evaluation,
+};
+use trundle::eval::{AbsoluteConfig, Delta, RelativeConfig};
+use trundle::io::Summary;
 
 /// `trundle eval ...`.
 pub fn run(args: &EvalArgs) -> Result<Outcome, AppError> {
     match &args.which {
-        Which::Trajectory(args) => trajectory::run(args),
-        Which::Relations(args) => relations::run(args),
-        Which::Map(args) => maps::run(args),
+        Which::Trajectory(args) => trajectory(args)?,
+        Which::Relations(args) => relations(args)?,
+        Which::Map(args) => map(args)?,
     }
+    Ok(Outcome::Reached)
+}
+
+fn trajectory(args: &TrajectoryArgs) -> Result<(), AppError> {
+    let max_difference = args.max_difference;
+    let absolute = AbsoluteConfig { max_difference, alignment: args.align };
+    let delta = Delta::of(args.delta, args.unit)?;
+    let relative = RelativeConfig { max_difference, delta, all_pairs: args.all_pairs }.validated()?;
+    let found = TrajectoryEvaluation::of_files(&args.reference, &args.estimate, &absolute, &relative)?;
+    let subtitle = format!("{} against {}.", args.estimate.display(), args.reference.display());
+    let folder = args.out.as_deref().map(logging::output_folder).transpose()?;
+    let place = folder.map(|folder| write_evaluation(&found, &subtitle, folder)).transpose()?;
+    if !args.common.quiet {
+        console::print_table(&found.rows());
+        place
+            .iter()
+            .for_each(|place| console::print(&format!("See {}", place.join("report.html").display())));
+    }
+    Ok(())
+}
+
+fn relations(args: &RelationsArgs) -> Result<(), AppError> {
+    let form = if args.file { RelationReference::RelationFile } else { RelationReference::Trajectory };
+    let found = RelationEvaluation::of(&args.reference, form, &args.estimate, args.max_difference)?;
+    write_summary(args.out.as_ref(), &found.summary())?;
+    if !args.common.quiet {
+        console::print_table(&found.rows());
+    }
+    Ok(())
+}
+
+fn map(args: &MapsArgs) -> Result<(), AppError> {
+    let found = MapEvaluation::of(&args.truth, &args.map, args.at.0, args.exact, args.within)?;
+    write_summary(args.out.as_ref(), &found.summary())?;
+    if !args.common.quiet {
+        console::print_table(&found.rows());
+    }
+    Ok(())
+}
+
+/// Writes a folder with the summary alone, where one is asked for.
+fn write_summary(out: Option<&OutputDirArg>, summary: &Summary) -> Result<(), AppError> {
+    let Some(out) = out else { return Ok(()) };
+    let folder = logging::output_folder(out)?;
+    folder.write("summary.json", summary.to_json().as_bytes())?;
+    folder.commit()?;
+    Ok(())
 }

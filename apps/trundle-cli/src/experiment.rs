@@ -6,11 +6,10 @@ use crate::output_args::OutputDirArg;
 use crate::{console, logging};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 use trundle::app::{AppError, Progress, stop};
 use trundle::experiments::{
-    ExperimentReport, RunsRequest, barn, corridor, docking_station, fault_scenarios, missions, mrpb, people,
-    poses, real_time,
+    ExperimentReport, IndexRange, RunsRequest, barn, corridor, docking_station, fault_scenarios, missions,
+    mrpb, people, poses, real_time,
 };
 use trundle::io::OutputFolder;
 
@@ -98,7 +97,7 @@ pub struct HouseArgs {
 pub struct BarnArgs {
     /// Which of the worlds, counted from 0 in the order of worlds.csv [default: all]
     #[arg(long, value_name = "A-B")]
-    pub worlds: Option<WorldRange>,
+    pub worlds: Option<IndexRange>,
     /// Seeds of noise for each world: 1 to N.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub seeds: u32,
@@ -166,30 +165,6 @@ pub struct RealTimeArgs {
     pub common: Common,
 }
 
-/// From one world to another, both included.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct WorldRange {
-    /// From 0.
-    pub first: usize,
-    /// Not before the first.
-    pub last: usize,
-}
-
-impl FromStr for WorldRange {
-    type Err = String;
-
-    /// `A-B`, or `A` alone.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number =
-            |part: &str| part.trim().parse::<usize>().map_err(|_| format!("'{part}' is not a number"));
-        let (first, last) = text.split_once('-').unwrap_or((text, text));
-        match (number(first)?, number(last)?) {
-            (first, last) if first <= last => Ok(Self { first, last }),
-            _ => Err("expected A-B with A not above B".to_owned()),
-        }
-    }
-}
-
 /// `trundle experiment corridor`
 #[derive(Debug, Args)]
 #[command(
@@ -254,7 +229,7 @@ fn runs<R: ExperimentReport>(
 fn run_barn(args: &BarnArgs) -> Result<Outcome, AppError> {
     let request = barn::BarnRequest {
         data: args.data.clone(),
-        worlds: args.worlds.map(|range| (range.first, range.last)),
+        worlds: args.worlds,
         seeds: args.seeds,
         robot: args.robot.robot_if_given()?,
     };

@@ -2,7 +2,7 @@
 
 mod laser_args;
 
-use crate::common_args::{BagTopicsArgs, Common, MapImageArg, NumberArg};
+use crate::common_args::{BagTopicsArgs, Common, NumberArg, choice};
 use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
@@ -12,7 +12,7 @@ use laser_args::LaserArgs;
 use std::path::PathBuf;
 use trundle::app::AppError;
 use trundle::app::laser_map::{LaserMapRequest, map_log, map_rows, read_log};
-use trundle::io::{LaserLog, LaserLogOptions};
+use trundle::io::{LaserLog, LaserLogOptions, MapImage};
 
 /// `trundle map`
 #[derive(Debug, Args)]
@@ -39,8 +39,8 @@ pub struct MapArgs {
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub particles: u16,
     /// Format of the map's picture.
-    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = MapImageArg::Pgm)]
-    pub map_image: MapImageArg,
+    #[arg(long, value_name = "FORMAT", default_value = "pgm", value_parser = choice(&MapImage::CHOICES))]
+    pub map_image: MapImage,
     /// Seed of the filter.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
@@ -107,7 +107,7 @@ impl MapArgs {
             resolution: self.resolution,
             laser: LaserLogOptions { odometry_topic: self.topics.odom_topic.clone(), ..self.laser.options() },
             map: self.map.clone(),
-            map_image: self.map_image.format(),
+            map_image: self.map_image,
         }
     }
 }

@@ -5,7 +5,6 @@ mod args;
 pub use args::Ros2Args;
 
 use crate::outcome::Outcome;
-use crate::run::mission_of;
 use crate::{console, logging, run_output};
 use std::time::Duration;
 use trundle::app::operator::FrontEnd;
@@ -20,11 +19,8 @@ use trundle::runtime::Mission;
 pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
     let mut robot = args.options.robot.robot()?;
     let options = args.ros.options()?;
-    let mission = if !args.has_mission() {
-        Mission::default()
-    } else {
-        mission_of(args.mission.as_deref(), &args.goal, args.explore, false)?
-    };
+    let request = args.request();
+    let mission = if request.is_empty() { Mission::default() } else { request.mission()? };
     let settings = BodySettings {
         use_sim_time: options.use_sim_time,
         stamped_commands: options.stamped_commands,

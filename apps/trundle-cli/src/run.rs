@@ -7,18 +7,14 @@ pub use args::RunArgs;
 #[cfg(feature = "ros2")]
 pub use args::RunOptions;
 
-use crate::common_args::PoseArg;
 use crate::outcome::Outcome;
 use crate::{console, logging, run_output};
-use args::MissionArgs;
-use std::path::Path;
 use std::time::Instant;
 use trundle::app::hardware::{OpenCamera, start_hardware};
 use trundle::app::real_time::run_in_real_time;
 use trundle::app::report::mission_text;
-use trundle::app::{AppError, RUN_COMMAND, RunLog, RunSetup, read_checkpoint, read_mission};
+use trundle::app::{AppError, RUN_COMMAND, RunLog, RunSetup, read_checkpoint};
 use trundle::io::keep_aside;
-use trundle::runtime::{Mission, Task};
 
 /// `trundle run`.
 pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
@@ -29,7 +25,7 @@ pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
     let resumed = args.mission.resume.as_deref().map(read_checkpoint).transpose()?;
     let mission = match &resumed {
         Some((checkpoint, _)) => checkpoint.mission.left.clone(),
-        None => mission(&args.mission)?,
+        None => args.mission.request().mission()?,
     };
     let camera = OpenCamera::open(&args.camera)?;
     camera.require_live()?;
@@ -86,27 +82,4 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
 /// Whether the checkpoint that is written is not the one that the run resumes from.
 fn resumes_from_another_file(args: &RunArgs) -> bool {
     args.mission.resume.as_deref() != args.options.checkpoint.as_deref()
-}
-
-fn mission(args: &MissionArgs) -> Result<Mission, AppError> {
-    mission_of(args.mission.as_deref(), &args.goal, args.explore, args.dock)
-}
-
-/// The mission of a file, or of goals, exploration and the charging station.
-pub fn mission_of(
-    file: Option<&Path>,
-    goals: &[PoseArg],
-    explore: bool,
-    dock: bool,
-) -> Result<Mission, AppError> {
-    if let Some(file) = file {
-        return read_mission(file);
-    }
-    let mut tasks: Vec<Task> = goals.iter().map(|goal| Task::Go(goal.0)).collect();
-    if explore {
-        // The station is the better place to end at than the start.
-        tasks = if dock { vec![Task::Explore] } else { vec![Task::Explore, Task::Return] };
-    }
-    tasks.extend(dock.then_some(Task::Dock));
-    Ok(Mission::new(tasks)?)
 }

@@ -23,8 +23,11 @@ pub fn write(
         if let Some(timing) = timing {
             console::print_table(&timing.rows());
         }
+        console::print(&format!("\n{}", numbers.verdict()));
         let report = output.folder.join("report.html");
-        console::print(&format!("\n{}\nSee {}", numbers.verdict(), report.display()));
+        if report.exists() {
+            console::print(&format!("See {}", report.display()));
+        }
     }
     match output.incomplete {
         Some(error) => Err(error),

@@ -1,7 +1,6 @@
 //! `trundle sim`: drives through a simulated scene and records the robot's sensors.
 
 mod args;
-mod map;
 #[cfg(feature = "ros2")]
 mod ros2;
 #[cfg(unix)]
@@ -13,16 +12,17 @@ pub use args::SimArgs;
 use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
+use crate::output_args::write_file;
 use std::path::Path;
 use teleop::{TeleopDriver, require_terminal};
 use trundle::app::AppError;
-use trundle::core::{OccupancyGrid, Vector3};
+use trundle::core::OccupancyGrid;
 use trundle::experiments::sim_drive::{
     DriveRecording, ScriptDriver, SimDrive, SimDriver, Standing, WaypointDriver, drive_rows, drive_simulator,
-    drive_summary, drive_verdict, recording_announcement, true_map,
+    drive_summary, drive_verdict, recording_announcement, recording_hint, true_map,
 };
-use trundle::experiments::simulated::{list_scenes, load_scene};
-use trundle::io::OutputFolder;
+use trundle::experiments::simulated::{list_scenes, load_simulator};
+use trundle::io::{OutputFolder, map_files};
 use trundle::sim::{HeightBand, Simulator};
 
 /// `trundle sim`.
@@ -36,7 +36,7 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
         return serve::serve(args, name, port);
     }
     #[cfg(feature = "ros2")]
-    if args.ros2 {
+    if args.ros_robot.ros2 {
         return ros2::serve(args, name);
     }
     let config = args.sensors.config()?;
@@ -46,16 +46,17 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
     };
     let driver = driver(args)?;
     let folder = args.record.as_deref().map(logging::output_folder).transpose()?;
-    let scene = load_scene(name, args.scene_options())?;
-    let grid = args.needs_map().then(|| true_map(&scene, args.true_map.resolution, band)).transpose()?;
+    let mut robot = load_simulator(name, args.place.options(), config)?;
+    let grid =
+        args.needs_map().then(|| true_map(robot.scene(), args.true_map.resolution, band)).transpose()?;
     if let (Some(file), Some(grid)) = (&args.true_map.map, &grid) {
-        map::write(file, grid, args.true_map.map_image.format())?;
+        for (file, bytes) in map_files(file, grid, args.true_map.map_image)? {
+            write_file(&file, &bytes)?;
+        }
     }
     if args.wants_only_map() {
         return Ok(Outcome::Reached);
     }
-    let mut robot = Simulator::new(scene, config, args.seed)
-        .map_err(|error| AppError::Input(format!("{name}: {error}")))?;
     let drive = drive(args, &mut robot, driver, grid.as_ref(), folder.as_ref())?;
     let place = folder.map(OutputFolder::commit).transpose()?;
     if !args.common.quiet {
@@ -66,14 +67,14 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
 
 /// The driver that the arguments name; `None` for one at the keys, who starts when the robot is there.
 fn driver(args: &SimArgs) -> Result<Option<Box<dyn SimDriver>>, AppError> {
-    Ok(match (&args.drive, &args.follow) {
+    Ok(match (&args.driver.drive, &args.driver.follow) {
         (Some(file), _) => Some(Box::new(ScriptDriver::read(file)?)),
         (None, Some(file)) => Some(Box::new(WaypointDriver::read(file)?)),
-        (None, None) if args.keys => {
+        (None, None) if args.driver.keys => {
             require_terminal()?;
             None
         }
-        (None, None) => Some(Box::new(Standing::new(args.duration))),
+        (None, None) => Some(Box::new(Standing::new(args.driver.duration))),
     })
 }
 
@@ -86,18 +87,18 @@ fn drive(
 ) -> Result<SimDrive, AppError> {
     let mut driver: Box<dyn SimDriver> = match (driver, grid) {
         (None, Some(grid)) => Box::new(TeleopDriver::start(grid.clone(), args.common.quiet)?),
-        (driver, _) => driver.unwrap_or_else(|| Box::new(Standing::new(args.duration))),
+        (driver, _) => driver.unwrap_or_else(|| Box::new(Standing::new(args.driver.duration))),
     };
     if folder.is_some() && !args.common.quiet {
-        console::print(&recording_announcement(robot, args.duration.or_else(|| driver.end_s())));
+        console::print(&recording_announcement(robot, args.driver.duration.or_else(|| driver.end_s())));
     }
     let mut recording = folder.map(|folder| DriveRecording::new(folder, robot)).transpose()?;
     let display = console::StepDisplay::new(args.common.quiet);
-    let drive = drive_simulator(robot, driver.as_mut(), args.duration, recording.as_mut(), &display)?;
+    let drive = drive_simulator(robot, driver.as_mut(), args.driver.duration, recording.as_mut(), &display)?;
     drop(driver); // a driver at the keys gives the terminal back
     if let (Some(recording), Some(grid)) = (recording, grid) {
         let scene = robot.scene();
-        recording.finish(grid, scene.start, &drive_summary(&drive, &scene.name, args.seed))?;
+        recording.finish(grid, scene.start, &drive_summary(&drive, &scene.name, args.place.seed))?;
     }
     Ok(drive)
 }
@@ -107,12 +108,6 @@ fn print(drive: &SimDrive, place: Option<&Path>, robot: &Simulator) {
     console::print(&format!("{}: {}", robot.scene().name, drive_verdict(drive)));
     console::print_table(&drive_rows(drive));
     if let Some(place) = place {
-        let base_from_camera = robot.config().base_from_camera;
-        let height = base_from_camera.translation.z;
-        let tilt = (-base_from_camera.rotate(Vector3::z()).z).asin().to_degrees();
-        console::print(&format!(
-            "Wrote {0}; try: trundle slam {0} --height {height:.2} --tilt {tilt:.0}",
-            place.display()
-        ));
+        console::print(&recording_hint(robot, place));
     }
 }

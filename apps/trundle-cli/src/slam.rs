@@ -44,7 +44,7 @@ impl SlamArgs {
             localize_only: self.localise,
             vocabulary: self.vocabulary.clone(),
             seed: self.seed,
-            map_image: self.map_image.format(),
+            map_image: self.map_image,
         }
     }
 }

@@ -12,13 +12,10 @@ use std::sync::Arc;
 use std::time::Instant;
 use trundle::app::AppError;
 use trundle::app::vocabulary_file::{
-    read_dbow2_vocabulary, read_descriptors, read_vocabulary, vocabulary_or_builtin,
+    read_dbow2_vocabulary, read_vocabulary, vocabulary_or_builtin, vocabulary_rows,
 };
-use trundle::experiments::vocabulary::{PlaceRecall, described_views, recall_table};
-use trundle::vision::{Descriptor, Vocabulary, VocabularyConfig};
-
-/// Descriptors for each child of a node. With fewer a word is an accident of the images. Source: ours.
-const MIN_DESCRIPTORS_PER_CHILD: usize = 2;
+use trundle::experiments::vocabulary::{PlaceRecall, VocabularyTraining, recall_table};
+use trundle::vision::{Vocabulary, VocabularyConfig};
 
 /// `trundle vocabulary ...`.
 pub fn run(args: &VocabularyArgs) -> Result<Outcome, AppError> {
@@ -33,39 +30,20 @@ pub fn run(args: &VocabularyArgs) -> Result<Outcome, AppError> {
 }
 
 fn train(args: &TrainArgs) -> Result<(), AppError> {
-    let config = VocabularyConfig { branching: args.branching, depth: args.depth, ..Default::default() };
-    let config = config.validated()?;
-    let images = images(args)?;
-    let descriptors: usize = images.iter().map(Vec::len).sum();
-    if descriptors < MIN_DESCRIPTORS_PER_CHILD * config.branching {
-        let wanted = MIN_DESCRIPTORS_PER_CHILD * config.branching;
-        let problem =
-            format!("{descriptors} descriptors in {} images, expected {wanted} or more", images.len());
-        return Err(AppError::Input(problem));
-    }
+    let training = VocabularyTraining {
+        sources: args.sources.sources(),
+        descriptors: args.descriptors.clone(),
+        config: VocabularyConfig { branching: args.branching, depth: args.depth, ..Default::default() },
+        seed: args.seed,
+    };
     let clock = Instant::now();
-    let vocabulary = Vocabulary::train(&images, &config, args.seed)?;
+    let trained = training.train(&console::StepDisplay::new(args.common.quiet))?;
     let seconds = clock.elapsed().as_secs_f64();
-    write_file(&args.out, &vocabulary.to_bytes())?;
+    write_file(&args.out, &trained.vocabulary.to_bytes())?;
     if !args.common.quiet {
-        let (images, words) = (images.len(), vocabulary.word_count());
-        console::print(&format!(
-            "{words} words from {descriptors} descriptors of {images} images, trained in {seconds:.1} s"
-        ));
-        console::print(&format!("See {}", args.out.display()));
+        console::print(&format!("{trained}, in {seconds:.1} s\nSee {}", args.out.display()));
     }
     Ok(())
-}
-
-/// The descriptors of every image to train on.
-fn images(args: &TrainArgs) -> Result<Vec<Vec<Descriptor>>, AppError> {
-    let mut images = args.descriptors.as_deref().map_or(Ok(Vec::new()), read_descriptors)?;
-    let sources = args.sources.sources();
-    if args.descriptors.is_none() || sources.require_any().is_ok() {
-        let views = described_views(&sources, &console::StepDisplay::new(args.common.quiet))?;
-        images.extend(views.into_iter().map(|view| view.descriptors));
-    }
-    Ok(images)
 }
 
 /// A row for each source of images, a column for each vocabulary.
@@ -92,14 +70,7 @@ fn info(args: &InfoArgs) -> Result<(), AppError> {
     let clock = Instant::now();
     let vocabulary = vocabulary_or_builtin(args.file.as_deref())?;
     let milliseconds = clock.elapsed().as_secs_f64() * 1e3;
-    let row = |name: &str, value: String| vec![name.to_owned(), value];
-    console::print_table(&[
-        row("words", vocabulary.word_count().to_string()),
-        row("children of a node, at most", vocabulary.branching().to_string()),
-        row("levels below the root, at most", vocabulary.depth().to_string()),
-        row("size", format!("{} bytes", vocabulary.to_bytes().len())),
-        row("read in", format!("{milliseconds:.1} ms")),
-    ]);
+    console::print_table(&vocabulary_rows(&vocabulary, milliseconds));
     Ok(())
 }
 

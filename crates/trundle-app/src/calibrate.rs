@@ -18,5 +18,6 @@ pub use camera::{BoardRequest, CameraCalibration, calibrate_board};
 pub use delay::calibrate_delay;
 pub use mount::{calibrate_mount, floor_values};
 pub use recording::CalibrationInput;
+pub use robot_file_update::require_robot_file;
 pub use values::{CalibratedValue, Calibration};
 pub use wheels::calibrate_wheels;

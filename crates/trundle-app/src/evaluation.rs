@@ -1,10 +1,13 @@
-//! Judging a trajectory by its absolute and relative errors: numbers, pictures and page.
+//! Judging a trajectory or a map against the truth: numbers, pictures and page.
 
+mod map_evaluation;
+mod named_error;
 mod output;
 mod page;
 mod relations;
 mod trajectory_evaluation;
 
+pub use map_evaluation::MapEvaluation;
 pub use output::write_evaluation;
-pub use relations::{path_length, relation_rows, relation_summary, unrounded_trajectory};
+pub use relations::{RelationEvaluation, RelationReference, unrounded_trajectory};
 pub use trajectory_evaluation::TrajectoryEvaluation;

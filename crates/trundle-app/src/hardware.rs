@@ -50,5 +50,5 @@ pub fn start_hardware(
     let sink = feed.clone();
     let drivers = Drivers::start(base, camera, output, origin, move |event| sink.send(&event))?;
     let commands = drivers.commands();
-    LiveBody::start(feed, Some(commands), move || drop(drivers))
+    LiveBody::start(feed, Some(commands), move || drivers.camera_fault())
 }

@@ -17,6 +17,15 @@ pub enum RecordingContent {
     All,
 }
 
+impl RecordingContent {
+    /// The choices of a front end: name, help text, value.
+    pub const CHOICES: [(&'static str, &'static str, Self); 3] = [
+        ("none", "There is no recording", Self::None),
+        ("events", "Everything but images: about 0.1 MB a second", Self::Events),
+        ("all", "Everything, images too: about 3 MB a second", Self::All),
+    ];
+}
+
 /// Size of the events without images in a second of a run \[bytes\]. Source: recordings of the demo.
 const EVENT_BYTES_PER_S: f64 = 40e3;
 /// Size of a pixel of colour and depth, as JPEG and RVL in zstd \[bytes\]. Source: recordings of the demo.

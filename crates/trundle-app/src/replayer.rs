@@ -39,7 +39,7 @@ impl RunReplayer {
         let name = file.display();
         let config = reader.config().ok_or_else(|| {
             AppError::Input(format!(
-                "{name}: no trundle.Config message comes first, so this is no recording of a trundle run"
+                "{name}: no trundle.Config message comes first: this is no recording of a trundle run, or the disk was full when the run began"
             ))
         })?;
         let setup = RunSetup::of_recording(file, config.clone())?;

@@ -10,4 +10,4 @@ pub use crate::setup::mission_text;
 pub use camera_picture::{camera_view, landmarks_in_map};
 pub use goal_outcome::GoalOutcome;
 pub use run_folder::{RunOutput, write_run};
-pub use run_numbers::{RunNumbers, stage_rows, wall_clock};
+pub use run_numbers::{RunEnd, RunNumbers, stage_rows, wall_clock};

@@ -14,6 +14,19 @@ pub fn vocabulary_or_builtin(path: Option<&Path>) -> Result<Arc<Vocabulary>, App
     path.map_or_else(|| Ok(Vocabulary::builtin()), |path| read_vocabulary(path).map(Arc::new))
 }
 
+/// The size of a vocabulary, a row for each number. `milliseconds`: wall-clock time of reading.
+#[must_use]
+pub fn vocabulary_rows(vocabulary: &Vocabulary, milliseconds: f64) -> Vec<Vec<String>> {
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    vec![
+        row("words", vocabulary.word_count().to_string()),
+        row("children of a node, at most", vocabulary.branching().to_string()),
+        row("levels below the root, at most", vocabulary.depth().to_string()),
+        row("size", format!("{} bytes", vocabulary.to_bytes().len())),
+        row("read in", format!("{milliseconds:.1} ms")),
+    ]
+}
+
 /// A vocabulary in our own form.
 ///
 /// # Errors

@@ -17,6 +17,14 @@ pub enum Method {
     Hong24,
 }
 
+impl Method {
+    /// The choices of a front end: name, help text, value.
+    pub const CHOICES: [(&'static str, &'static str, Self); 2] = [
+        ("optimal", "Least time, with a proven bound", Self::Optimal),
+        ("paper", "The greedy method of Hong (2024)", Self::Hong24),
+    ];
+}
+
 /// Parameters of docking in narrow spaces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

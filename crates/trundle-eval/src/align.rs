@@ -18,6 +18,15 @@ pub enum Alignment {
     Similarity,
 }
 
+impl Alignment {
+    /// The choices of a front end: name, help text, value.
+    pub const CHOICES: [(&'static str, &'static str, Self); 3] = [
+        ("se3", "Rotation and translation", Self::Rigid),
+        ("sim3", "Rotation, translation and scale: for one camera without depth", Self::Similarity),
+        ("none", "Both are in one frame", Self::None),
+    ];
+}
+
 /// An element of Sim(3): `reference_from_estimate`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Similarity {

@@ -46,7 +46,7 @@ pub use error::{EvalError, Side};
 pub use goal::{GoalError, goal_error};
 pub use map_agreement::{MapAgreement, MapAgreementConfig, map_agreement};
 pub use map_alignment::align_maps;
-pub use pairs::Delta;
+pub use pairs::{Delta, DeltaUnit};
 pub use relation_sets::{RelationSets, RelationSetsConfig};
 pub use relation_text::{RelationTextError, relations_from_text, relations_text};
 pub use relations::{Relation, RelationConfig, RelationError, relation_error};

@@ -4,6 +4,9 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use trundle_core::{Invalid, Pose3, Stamp, require_positive};
 
+/// Number of frames from which a delta is refused: more than a trajectory has. Source: ours.
+const MAX_FRAMES: f64 = 1e9;
+
 /// How far apart the two poses of a relative error are.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -14,6 +17,26 @@ pub enum Delta {
     Seconds(f64),
     /// The first pose after at least that many metres along the estimate; above 0.
     Metres(f64),
+}
+
+/// Unit of the length of a motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DeltaUnit {
+    /// Poses.
+    Frames,
+    /// Seconds.
+    Seconds,
+    /// Metres along the estimate.
+    Metres,
+}
+
+impl DeltaUnit {
+    /// The choices of a front end: name, help text, value.
+    pub const CHOICES: [(&'static str, &'static str, Self); 3] = [
+        ("frames", "Poses", Self::Frames),
+        ("s", "Seconds", Self::Seconds),
+        ("m", "Metres along the estimate", Self::Metres),
+    ];
 }
 
 impl fmt::Display for Delta {
@@ -27,6 +50,21 @@ impl fmt::Display for Delta {
 }
 
 impl Delta {
+    /// A delta of this length in this unit.
+    ///
+    /// # Errors
+    /// When it is not above 0, or a number of frames is not whole.
+    pub fn of(length: f64, unit: DeltaUnit) -> Result<Self, Invalid> {
+        match unit {
+            DeltaUnit::Frames if length.fract() == 0.0 && (1.0..MAX_FRAMES).contains(&length) => {
+                Ok(Self::Frames(length as usize))
+            }
+            DeltaUnit::Frames => Err(Invalid::new("delta", length, "frames", "a whole number from 1 on")),
+            DeltaUnit::Seconds => Self::Seconds(length).validated(),
+            DeltaUnit::Metres => Self::Metres(length).validated(),
+        }
+    }
+
     /// Passes a valid delta through.
     ///
     /// # Errors

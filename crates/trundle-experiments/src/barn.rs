@@ -7,9 +7,9 @@ mod worlds;
 
 pub use trial::BarnTrial;
 
-use crate::ExperimentReport;
 use crate::laser_run::{LaserPlan, drive};
 use crate::run_each::run_each;
+use crate::{ExperimentReport, IndexRange};
 use std::path::PathBuf;
 use trial::{TIME_LIMIT_S, is_at_goal};
 use trundle_app::{AppError, Progress};
@@ -22,7 +22,7 @@ pub struct BarnRequest {
     /// The folder with worlds.csv and obstacles.csv.
     pub data: PathBuf,
     /// The worlds, from 0, first and last. None: all.
-    pub worlds: Option<(usize, usize)>,
+    pub worlds: Option<IndexRange>,
     /// Seeds of noise for each world: 1 to this.
     pub seeds: u32,
     /// A robot in place of the challenge's Jackal.
@@ -41,12 +41,12 @@ pub struct BarnOutcome {
 /// When the data cannot be read, or a run cannot be made.
 pub fn run(request: &BarnRequest, progress: &Progress) -> Result<BarnOutcome, AppError> {
     let worlds = worlds::read(&request.data)?;
-    let (first, last) = request.worlds.unwrap_or((0, worlds.len().saturating_sub(1)));
-    if last >= worlds.len() {
-        let max = worlds.len().saturating_sub(1);
+    let max = (worlds.len() as u64).saturating_sub(1);
+    let IndexRange { first, last } = request.worlds.unwrap_or(IndexRange { first: 0, last: max });
+    if last > max {
         return Err(AppError::Input(format!("--worlds up to {last}, expected at most {max}")));
     }
-    let chosen = worlds.into_iter().enumerate().filter(|(i, _)| (first..=last).contains(i));
+    let chosen = (0_u64..).zip(worlds).filter(|(i, _)| (first..=last).contains(i));
     let plans: Vec<(BarnWorld, u64)> = chosen
         .flat_map(|(_, world)| (1..=u64::from(request.seeds)).map(move |seed| (world.clone(), seed)))
         .collect();

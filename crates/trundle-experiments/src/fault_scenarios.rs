@@ -212,7 +212,7 @@ fn is_good(trial: &Trial) -> bool {
     let numbers = &trial.numbers;
     let end =
         scenarios().into_iter().find(|scenario| scenario.name == trial.name).map(|scenario| scenario.end);
-    let as_it_should = match (end, &numbers.state) {
+    let as_it_should = match (end, &numbers.end.state) {
         (Some(End::Arrived), _) => numbers.is_success(),
         (Some(End::Stopped(kinds) | End::FoundOrStopped(kinds)), DriveState::Stopped { reason }) => {
             kinds.iter().any(|kind| reason.is_due_to(*kind))
@@ -229,7 +229,7 @@ fn has_found(error: GoalError) -> bool {
 
 fn row(trial: &Trial) -> Vec<String> {
     let numbers = &trial.numbers;
-    let end = match (&numbers.state, numbers.goal_error) {
+    let end = match (&numbers.end.state, numbers.goal_error) {
         (DriveState::Arrived, Some(error)) => {
             format!("arrived, {:.1} cm, {:.2} deg off", error.distance * 100.0, error.dtheta.to_degrees())
         }
@@ -269,7 +269,7 @@ fn summary(trials: &[Trial], success: bool) -> Summary {
     summary.set("success", success).set("runs", trials.len());
     summary.set("contacts", trials.iter().map(|trial| trial.numbers.contacts).sum::<usize>());
     for trial in trials {
-        let end = serde_json::json!({ "good": is_good(trial), "end": trial.numbers.state.to_string() });
+        let end = serde_json::json!({ "good": is_good(trial), "end": trial.numbers.end.state.to_string() });
         summary.set(&format!("{}, seed {}", trial.name, trial.seed), end);
     }
     summary

@@ -20,6 +20,7 @@ pub mod data_sets;
 pub mod docking_station;
 mod experiment_report;
 pub mod fault_scenarios;
+mod index_range;
 mod laser_run;
 pub mod missions;
 pub mod mrpb;
@@ -36,4 +37,5 @@ pub mod vocabulary;
 mod wired_trial;
 
 pub use experiment_report::{ExperimentReport, RunsRequest};
+pub use index_range::IndexRange;
 pub use trial::{ComputerFault, Trial, TrialPlan, run_all, run_one};

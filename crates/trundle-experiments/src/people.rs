@@ -172,7 +172,7 @@ fn report(trials: &[Trial], success: bool) -> Report {
             beside,
             speed,
             trial.numbers.contacts.to_string(),
-            trial.numbers.state.to_string(),
+            trial.numbers.end.state.to_string(),
         ]
     };
     let bad = trials.iter().filter(|trial| !is_good(trial));

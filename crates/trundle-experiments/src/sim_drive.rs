@@ -8,6 +8,6 @@ mod true_map;
 
 pub use drive::{SimDrive, drive_simulator};
 pub use driver::{ScriptDriver, SimDriver, Standing, WaypointDriver};
-pub use numbers::{drive_rows, drive_summary, drive_verdict};
+pub use numbers::{drive_rows, drive_summary, drive_verdict, recording_hint};
 pub use recording::{DriveRecording, recording_announcement};
 pub use true_map::true_map;

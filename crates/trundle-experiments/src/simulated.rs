@@ -13,5 +13,5 @@ pub use body::{require_free, simulated_body, simulated_real_time_body, time_limi
 pub use emulated_robot::{EmulatedRobot, EmulationCounts};
 pub use fault_file::read_faults;
 pub use real_time_body::SimulatedRealTimeBody;
-pub use scene::{MeshOptions, SceneOptions, list_scenes, load_scene};
+pub use scene::{MeshOptions, SceneOptions, list_scenes, load_scene, load_simulator};
 pub(crate) use scene_files::import_mesh;

@@ -226,6 +226,7 @@ pub(crate) mod fixtures {
 
     use super::*;
     use trundle_app::TrackCounts;
+    use trundle_app::report::RunEnd;
     use trundle_eval::goal_error;
     use trundle_runtime::DriveState;
 
@@ -247,9 +248,7 @@ pub(crate) mod fixtures {
             keyframes: 0,
             images_dropped: Vec::new(),
             docking: None,
-            state: DriveState::Arrived,
-            is_operated: false,
-            out_of_time: None,
+            end: RunEnd { state: DriveState::Arrived, is_operated: false, out_of_time: None },
         };
         let line = vec![Vector2::zeros(), Vector2::new(1.0, 0.0)];
         Trial {
@@ -269,7 +268,7 @@ pub(crate) mod fixtures {
     /// A run that did not arrive.
     pub fn under_way(name: &str, seed: u64) -> Trial {
         let mut trial = arrived(name, seed, (1.0, 0.0, 0.0), 0);
-        trial.numbers.state = DriveState::Idle;
+        trial.numbers.end.state = DriveState::Idle;
         trial
     }
 }

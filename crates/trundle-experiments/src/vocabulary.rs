@@ -4,8 +4,10 @@ mod image_sources;
 mod placement;
 mod recall;
 mod rendered_scene;
+mod training;
 mod views;
 
-pub use image_sources::{ImageSources, IndexRange};
+pub use image_sources::ImageSources;
 pub use recall::{PlaceRecall, recall_table};
+pub use training::{TrainedVocabulary, VocabularyTraining};
 pub use views::{DescribedView, described_views};

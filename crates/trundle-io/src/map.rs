@@ -16,7 +16,7 @@ use crate::codec::encode_grey8;
 use crate::{CodecError, IoError, OutputFolder, Warnings};
 use source::MapSource;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid};
 
 /// Grey of a free cell, as `map_saver` writes it.
@@ -100,6 +100,12 @@ pub enum MapImage {
     Png,
 }
 
+impl MapImage {
+    /// The choices of a front end: name, help text, value.
+    pub const CHOICES: [(&'static str, &'static str, Self); 2] =
+        [("pgm", "As map_saver writes it", Self::Pgm), ("png", "Compressed, without loss", Self::Png)];
+}
+
 /// Writes `NAME.pgm` and `NAME.yaml` into the folder, as `map_saver` does: free 254, occupied 0, unknown 205.
 ///
 /// # Errors
@@ -121,6 +127,24 @@ pub fn write_map_as(
     let (file, bytes) = map_picture(name, grid, image)?;
     folder.write(&file, &bytes)?;
     folder.write(&format!("{name}.yaml"), map_yaml(grid, &file).as_bytes())
+}
+
+/// The files of a map outside a folder of results: the picture beside `file`, then `file` itself.
+///
+/// # Errors
+/// When the name of `file` does not end in .yaml, or the picture cannot be encoded.
+pub fn map_files(
+    file: &Path,
+    grid: &OccupancyGrid,
+    image: MapImage,
+) -> Result<[(PathBuf, Vec<u8>); 2], IoError> {
+    let is_yaml = file.extension().is_some_and(|extension| extension == "yaml");
+    let Some(name) = file.file_stem().and_then(|stem| stem.to_str()).filter(|_| is_yaml) else {
+        return Err(IoError::malformed(file, "expected a map file whose name ends in .yaml"));
+    };
+    let (picture, bytes) = map_picture(name, grid, image)?;
+    let yaml = map_yaml(grid, &picture).into_bytes();
+    Ok([(file.with_file_name(&picture), bytes), (file.to_owned(), yaml)])
 }
 
 /// The name and the bytes of a map's picture in this format.

@@ -2,7 +2,8 @@
 
 use crate::bundle::{BundleConfig, BundleProblem, BundleSolution};
 use crate::bundle_layout::Layout;
-use crate::bundle_system::{FIXED_ROW, Lens, Normal, View, certain, moved, refining, robust};
+use crate::bundle_residual::{FIXED_ROW, Lens, View, certain, refining, robust};
+use crate::bundle_system::{Normal, moved};
 use crate::observation::CHI2_95_6;
 use crate::pose_graph::PoseConstraint;
 use nalgebra::Matrix6;

@@ -31,6 +31,7 @@ mod block;
 mod block_cholesky;
 mod bundle;
 mod bundle_layout;
+mod bundle_residual;
 mod bundle_solver;
 mod bundle_system;
 mod huber;

@@ -204,6 +204,7 @@ impl Robot {
     /// One sensor event through the whole robot.
     pub fn step(&mut self, event: &SensorEvent) -> StepReport {
         let mut report = StepReport::default();
+        self.latest.sensors.on_event(event.stamp());
         match event {
             SensorEvent::Gyro(gyro) => self.on_gyro(gyro),
             SensorEvent::Wheels(wheels) => self.on_wheels(wheels, &mut report),
@@ -225,7 +226,7 @@ impl Robot {
         report.estimate = Some(self.localizer.estimate());
         if let Some(decision_worker) = &self.decision_worker {
             let state = decision_worker.state();
-            event_log::state(self.localizer.estimate().stamp, &self.latest.state.0, &state.0);
+            event_log::state(self.latest.sensors.newest(), &self.latest.state.0, &state.0);
             self.latest.state = state;
         }
         (report.state, report.finished) = self.latest.state.clone();
@@ -242,6 +243,7 @@ impl Robot {
         let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
         let changes = self.latest.sensors.on_wheels(wheels.stamp, self.odometry.wheels_are_unresponsive());
         changes.for_each(|change| event_log::sensor_change(wheels.stamp, change));
+        event_log::encoder_jump(wheels.stamp, self.odometry.report(), self.odometry.counts());
         self.drive_on(odometry, wheels.stamp, report);
     }
 

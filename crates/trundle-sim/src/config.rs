@@ -60,6 +60,12 @@ impl Default for SimConfig {
 }
 
 impl SimConfig {
+    /// The cameras of a front end: name, help text, robot with it.
+    pub const CAMERAS: [(&'static str, &'static str, fn() -> Self); 2] = [
+        ("kinect-v2", "Kinect V2: 512 x 424", Self::kinect_v2),
+        ("kinect-v1", "Kinect v1, as of TUM's sequences: 640 x 480", Self::kinect_v1),
+    ];
+
     /// A robot with a Kinect V2, 512 x 424 at 15 Hz: the default.
     pub fn kinect_v2() -> Self {
         Self::default()

@@ -32,19 +32,23 @@ pub fn page(measurements: &BTreeMap<String, Measurement>, limits: &[String]) -> 
             }
         }
         page.push('\n');
-        for (name, m) in &measurements {
-            let _ = writeln!(
-                page,
-                "- `{name}`: `{}`, commit `{}`, {}, {}",
-                m.command, m.commit, m.date, m.machine
-            );
-        }
+        page.push_str(&commands(&measurements));
     }
     page.push_str("\n## Known limits\n\n");
     for limit in limits {
         let _ = writeln!(page, "- {limit}");
     }
     page
+}
+
+/// The commands of a subject: a line for each machine.
+fn commands(measurements: &[(&String, &Measurement)]) -> String {
+    let mut machines: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for (name, m) in measurements {
+        let entry = format!("`{name}`: `{}`, commit `{}`, {}", m.command, m.commit, m.date);
+        machines.entry(&m.machine).or_default().push(entry);
+    }
+    machines.iter().map(|(machine, entries)| format!("On {machine}: {}.\n", entries.join("; "))).collect()
 }
 
 fn row(measurement: &Measurement, figure: &Figure) -> String {
@@ -87,7 +91,7 @@ mod tests {
             "{page}"
         );
         assert!(page.contains("| ten seeds: goals | **97** | at least 100 |  |  |"), "{page}");
-        assert!(page.contains("- `poses`: `trundle experiment poses`, commit `abc`"));
+        assert!(page.contains("On m: `poses`: `trundle experiment poses`, commit `abc`, 2026-01-01.\n"));
         assert!(page.ends_with("- One limit.\n"));
     }
 }

@@ -1,8 +1,8 @@
 //! The command line of `trundle demo`.
 
-use crate::common_args::{Common, MeshArgs, NumberArg, PoseArg, RobotArgs};
+use crate::common_args::{Common, NumberArg, PlaceArgs, PoseArg, RobotArgs, choice};
 use crate::output_args::{OutputDirArg, OutputFileArg};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::PathBuf;
 use trundle::app::RecordingContent;
 
@@ -11,21 +11,12 @@ use trundle::app::RecordingContent;
 #[command(after_help = "Example: trundle demo --seed 3 --direct --out out/demo3\n\n\
     Exit code: 0 goal reached and nothing touched, 1 otherwise, 2 bad input.")]
 pub struct DemoArgs {
-    /// Seed of the room's furniture and textures and of all noise.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub seed: u64,
     /// The room: a built-in scene (`trundle sim --list`), a scene file, a .glb or .gltf, or a map (.yaml) raised to walls.
     #[arg(long, value_name = "SCENE", default_value = "demo")]
     pub scene: String,
-    /// Where the robot starts in the room: m, m, deg [default: the room's own]
-    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
-    pub start: Option<PoseArg>,
-    /// A charging station in the room: the middle of its front on the floor, x out of the front: m, m, deg [default: none]
-    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
-    pub station: Option<PoseArg>,
-    /// Axis, scale and floor of a mesh.
+    /// The room.
     #[command(flatten)]
-    pub mesh: MeshArgs,
+    pub place: PlaceArgs,
     /// The mission.
     #[command(flatten)]
     pub mission: DemoMissionArgs,
@@ -36,8 +27,8 @@ pub struct DemoArgs {
     #[command(flatten)]
     pub state: CheckpointArgs,
     /// What recording.mcap holds; a replay needs all. Below 1 GB of free disk the run goes on without recording.
-    #[arg(long, value_enum, value_name = "WHAT", default_value_t = RecordArg::Events)]
-    pub record: RecordArg,
+    #[arg(long, value_name = "WHAT", default_value = "events", value_parser = choice(&RecordingContent::CHOICES))]
+    pub record: RecordingContent,
     /// Recognise places by this vocabulary, in trundle's form [default: the built-in one]
     #[arg(long, value_name = "FILE")]
     pub vocabulary: Option<PathBuf>,
@@ -82,26 +73,4 @@ pub struct CheckpointArgs {
     /// with its mission. The map's frame stays that of --start.
     #[arg(long, value_name = "X,Y,DEG", alias = "wake", allow_hyphen_values = true, requires = "checkpoint", conflicts_with_all = ["goal", "direct"])]
     pub resume: Option<PoseArg>,
-}
-
-/// What the recording of a run holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum RecordArg {
-    /// There is no recording.
-    None,
-    /// Everything but images: about 0.1 MB a second.
-    Events,
-    /// Everything, images too: about 3 MB a second.
-    All,
-}
-
-impl RecordArg {
-    /// The content of the recording.
-    pub fn content(self) -> RecordingContent {
-        match self {
-            Self::None => RecordingContent::None,
-            Self::Events => RecordingContent::Events,
-            Self::All => RecordingContent::All,
-        }
-    }
 }

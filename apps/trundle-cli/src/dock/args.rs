@@ -1,8 +1,8 @@
 //! The command line of `trundle dock`.
 
-use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs};
+use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs, choice};
 use crate::output_args::{OutputDirArg, OutputFileArg};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::PathBuf;
 use trundle::core::Footprint;
 use trundle::docking::Method;
@@ -15,7 +15,7 @@ use trundle::docking::Method;
     trundle dock hong24-a --write-problem corridor.txt\n  \
     trundle dock corridor.txt --problem hong24-a\n  \
     trundle dock robot.log --scan 12 --to 0.4,0.1,0\n\n\
-    Exit code: 0 a manoeuvre was found, 1 there is none, 2 bad input."
+    Exit code: 0 a manoeuvre was found, 1 there is none or start or goal do not fit (why, and a picture, are written instead), 2 bad input, nothing is written."
 )]
 pub struct DockArgs {
     /// A map in map_server's form (*.yaml), a laser log (*.log, one scan of it), a file of corridor problems (docs/corridor-benchmark.md), or one of hong24-a, -b, -c, -d, which are built in.
@@ -36,8 +36,8 @@ pub struct DockArgs {
     #[arg(long, value_name = "NAME")]
     pub problem: Option<String>,
     /// Which method plans [default: the robot file's, or optimal]
-    #[arg(long, value_enum)]
-    pub method: Option<MethodArg>,
+    #[arg(long, value_parser = choice(&Method::CHOICES))]
+    pub method: Option<Method>,
     /// Only write the problem to a file, as text to change: with --from, --to and --footprint where they are given; a map's outlines as walls.
     #[arg(long, value_name = "FILE")]
     pub write_problem: Option<OutputFileArg>,
@@ -56,22 +56,4 @@ pub struct DockArgs {
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
-}
-
-/// Which method plans.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum MethodArg {
-    /// Least time, with a proven bound.
-    Optimal,
-    /// The greedy method of Hong (2024).
-    Paper,
-}
-
-impl From<MethodArg> for Method {
-    fn from(method: MethodArg) -> Self {
-        match method {
-            MethodArg::Optimal => Self::Optimal,
-            MethodArg::Paper => Self::Hong24,
-        }
-    }
 }

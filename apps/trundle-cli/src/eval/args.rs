@@ -1,9 +1,10 @@
 //! The command line of `trundle eval`.
 
-use crate::common_args::{Common, NumberArg, PoseArg};
+use crate::common_args::{Common, NumberArg, PoseArg, choice};
 use crate::output_args::OutputDirArg;
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, Subcommand};
 use std::path::PathBuf;
+use trundle::eval::{Alignment, DeltaUnit};
 
 /// `trundle eval`
 #[derive(Debug, Args)]
@@ -36,13 +37,13 @@ pub struct TrajectoryArgs {
     /// The trajectory to judge.
     pub estimate: PathBuf,
     /// How the estimate is laid over the reference for the absolute error.
-    #[arg(long, value_name = "HOW", value_enum, default_value_t = AlignArg::Se3)]
-    pub align: AlignArg,
+    #[arg(long, value_name = "HOW", default_value = "se3", value_parser = choice(&Alignment::CHOICES))]
+    pub align: Alignment,
     /// Length of the motions of the relative error, in --unit.
     #[arg(long, value_name = "N", default_value_t = 1.0, value_parser = NumberArg::above_zero(""), allow_negative_numbers = true)]
     pub delta: f64,
     /// Unit of --delta.
-    #[arg(long, value_enum, default_value_t = DeltaUnit::Frames)]
+    #[arg(long, default_value = "frames", value_parser = choice(&DeltaUnit::CHOICES))]
     pub unit: DeltaUnit,
     /// Take a motion from every pose on, so that motions overlap.
     #[arg(long)]
@@ -56,28 +57,6 @@ pub struct TrajectoryArgs {
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
-}
-
-/// How an estimate is laid over the reference.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum AlignArg {
-    /// Rotation and translation.
-    Se3,
-    /// Rotation, translation and scale: for one camera without depth.
-    Sim3,
-    /// Both are in one frame.
-    None,
-}
-
-/// What counts the length of a motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum DeltaUnit {
-    /// Poses.
-    Frames,
-    /// Seconds.
-    S,
-    /// Metres along the estimate.
-    M,
 }
 
 /// `trundle eval relations`

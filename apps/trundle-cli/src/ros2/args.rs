@@ -6,6 +6,7 @@ use crate::ros_node::RosArgs;
 use crate::run::RunOptions;
 use clap::Args;
 use std::path::PathBuf;
+use trundle::app::MissionRequest;
 use trundle::ros2::body::BodySettings;
 
 /// `trundle ros2`
@@ -73,11 +74,12 @@ impl Ros2Args {
 
     /// Whether the run goes on after its mission.
     pub fn stays(&self) -> bool {
-        self.stay || !self.has_mission()
+        self.stay || self.request().is_empty()
     }
 
-    /// Whether a mission is given.
-    pub fn has_mission(&self) -> bool {
-        !self.goal.is_empty() || self.explore || self.mission.is_some()
+    /// The mission that is asked for.
+    pub fn request(&self) -> MissionRequest {
+        let goals = self.goal.iter().map(|goal| goal.0).collect();
+        MissionRequest { goals, explore: self.explore, dock: false, file: self.mission.clone() }
     }
 }

@@ -1,12 +1,11 @@
 //! The command line of `trundle run`.
 
-use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs};
-use crate::demo::RecordArg;
+use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs, choice};
 use crate::output_args::{ContinuedFileArg, OutputDirArg, OutputFileArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use trundle::app::vocabulary_file::read_vocabulary;
-use trundle::app::{AppError, RunSetup};
+use trundle::app::{AppError, MissionRequest, RecordingContent, RunSetup};
 use trundle::core::PinholeCamera;
 use trundle::drivers::{BaseSpec, CameraSpec};
 use trundle::runtime::{Mission, RobotConfig};
@@ -55,8 +54,8 @@ pub struct RunOptions {
     #[arg(long, value_name = "FILE")]
     pub checkpoint: Option<OutputFileArg>,
     /// What recording.mcap holds; a replay needs all. Below 1 GB of free disk the run goes on without recording.
-    #[arg(long, value_enum, value_name = "WHAT", default_value_t = RecordArg::Events)]
-    pub record: RecordArg,
+    #[arg(long, value_name = "WHAT", default_value = "events", value_parser = choice(&RecordingContent::CHOICES))]
+    pub record: RecordingContent,
     /// Recognise places by this vocabulary, in trundle's form [default: the built-in one]
     #[arg(long, value_name = "FILE")]
     pub vocabulary: Option<PathBuf>,
@@ -83,7 +82,7 @@ impl RunOptions {
         let mut setup = RunSetup::new(name, mission, robot).by_command(command);
         setup.time_limit = self.time_limit.unwrap_or(f64::MAX);
         setup.real_time = true;
-        setup.recording = self.record.content();
+        setup.recording = self.record;
         let vocabulary = self.vocabulary.as_deref().map(read_vocabulary).transpose()?;
         Ok(match vocabulary {
             Some(vocabulary) => setup.with_vocabulary(&vocabulary),
@@ -121,6 +120,14 @@ pub struct MissionArgs {
     /// Drive nowhere: show rates, delays, image size, signs of the encoders (push the robot by hand) and tilt of the camera.
     #[arg(long, conflicts_with_all = ["goal", "explore", "dock", "mission", "resume"])]
     pub check: bool,
+}
+
+impl MissionArgs {
+    /// The mission that is asked for.
+    pub fn request(&self) -> MissionRequest {
+        let goals = self.goal.iter().map(|goal| goal.0).collect();
+        MissionRequest { goals, explore: self.explore, dock: self.dock, file: self.mission.clone() }
+    }
 }
 
 /// Source of the colour camera's intrinsics.

@@ -4,6 +4,7 @@ use super::args::RunArgs;
 use crate::console;
 use crate::outcome::Outcome;
 use trundle::app::AppError;
+use trundle::app::calibrate::require_robot_file;
 use trundle::app::hardware::{CheckRequest, HardwareReport, OpenCamera, check_hardware};
 
 /// Duration of a check where the user gives none \[s\]. Source: ours; time for a push by hand.
@@ -12,6 +13,7 @@ const CHECK_S: f64 = 15.0;
 /// Checks base and camera, prints what was found, and writes the measured part of the robot file where that is wished.
 pub fn check(args: &RunArgs) -> Result<Outcome, AppError> {
     let robot = args.options.robot.robot()?;
+    args.write.as_deref().map_or(Ok(()), require_robot_file)?;
     let camera = OpenCamera::open(&args.camera)?;
     let output = camera.intrinsics(args.robot_camera(&robot).as_ref())?;
     let seconds = args.options.time_limit.unwrap_or(CHECK_S);

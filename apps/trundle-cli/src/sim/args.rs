@@ -1,11 +1,12 @@
 //! The command line of `trundle sim`.
 
-use crate::common_args::{Common, MapImageArg, MeshArgs, NumberArg, PoseArg};
+use crate::common_args::{Common, NumberArg, PlaceArgs, choice};
 use crate::output_args::{OutputDirArg, OutputFileArg};
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::path::PathBuf;
 use trundle::app::AppError;
-use trundle::experiments::simulated::{SceneOptions, read_faults};
+use trundle::experiments::simulated::read_faults;
+use trundle::io::MapImage;
 use trundle::sim::{LaserConfig, SimConfig};
 
 /// `trundle sim`
@@ -19,30 +20,12 @@ pub struct SimArgs {
     /// Show the built-in scenes.
     #[arg(long)]
     pub list: bool,
-    /// Seed of the scene's furniture and textures and of all noise.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    pub seed: u64,
-    /// Where the robot starts, world frame: m, m, deg [default: the scene's, or where there is room]
-    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
-    pub start: Option<PoseArg>,
-    /// A charging station, world frame: the middle of its front on the floor, x out of the front: m, m, deg [default: none]
-    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
-    pub station: Option<PoseArg>,
-    /// Axis, scale and floor of a mesh.
+    /// The room.
     #[command(flatten)]
-    pub mesh: MeshArgs,
-    /// Drive by commands, a line each: t v omega (s, m/s, rad/s).
-    #[arg(long, value_name = "FILE", group = "driver")]
-    pub drive: Option<PathBuf>,
-    /// Drive to way-points, a line each: x y heading_deg (m, m, deg, world frame).
-    #[arg(long, value_name = "FILE", group = "driver")]
-    pub follow: Option<PathBuf>,
-    /// Drive by hand: arrows or WASD, space to stop, q to quit; shows a page with what the robot sees.
-    #[arg(long, group = "driver")]
-    pub keys: bool,
-    /// Stop after so many seconds of the robot's time, or when the drive is over [default: 5 where there is no drive]
-    #[arg(long, value_name = "S", value_parser = NumberArg::up_to(1e6, "s"), allow_negative_numbers = true)]
-    pub duration: Option<f64>,
+    pub place: PlaceArgs,
+    /// The driver.
+    #[command(flatten)]
+    pub driver: DriverArgs,
     /// Write a TUM RGB-D folder: images, ground truth, odometry, calibration, the true map; the last one is kept as DIR.1
     #[arg(long, value_name = "DIR")]
     pub record: Option<OutputDirArg>,
@@ -55,21 +38,45 @@ pub struct SimArgs {
     /// The wires of a real robot.
     #[command(flatten)]
     pub wires: WireArgs,
-    /// Be a ROS 2 robot, in real time, until Ctrl-C or --duration.
-    #[cfg(feature = "ros2")]
-    #[arg(long, conflicts_with_all = ["driver", "record", "map", "kobuki"])]
-    pub ros2: bool,
-    /// With --ros2: raw images in place of JPEG and PNG files.
-    #[cfg(feature = "ros2")]
-    #[arg(long, requires = "ros2")]
-    pub raw_images: bool,
-    /// Network and names.
+    /// The simulator as a ROS 2 robot.
     #[cfg(feature = "ros2")]
     #[command(flatten)]
-    pub ros: crate::ros_node::RosArgs,
+    pub ros_robot: RosRobotArgs,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
+}
+
+/// The driver of the simulated robot.
+#[derive(Debug, Args)]
+pub struct DriverArgs {
+    /// Drive by commands, a line each: t v omega (s, m/s, rad/s).
+    #[arg(long, value_name = "FILE", group = "driver")]
+    pub drive: Option<PathBuf>,
+    /// Drive to way-points, a line each: x y heading_deg (m, m, deg, world frame).
+    #[arg(long, value_name = "FILE", group = "driver")]
+    pub follow: Option<PathBuf>,
+    /// Drive by hand: arrows or WASD, space to stop, q to quit; shows a page with what the robot sees.
+    #[arg(long, group = "driver")]
+    pub keys: bool,
+    /// Stop after so many seconds of the robot's time, or when the drive is over [default: 5 where there is no drive]
+    #[arg(long, value_name = "S", value_parser = NumberArg::up_to(1e6, "s"), allow_negative_numbers = true)]
+    pub duration: Option<f64>,
+}
+
+/// The simulator as a ROS 2 robot.
+#[cfg(feature = "ros2")]
+#[derive(Debug, Args)]
+pub struct RosRobotArgs {
+    /// Be a ROS 2 robot, in real time, until Ctrl-C or --duration.
+    #[arg(long, conflicts_with_all = ["driver", "record", "map", "kobuki"])]
+    pub ros2: bool,
+    /// With --ros2: raw images in place of JPEG and PNG files.
+    #[arg(long, requires = "ros2")]
+    pub raw_images: bool,
+    /// Network and names.
+    #[command(flatten)]
+    pub ros: crate::ros_node::RosArgs,
 }
 
 /// The file of the true map.
@@ -79,8 +86,8 @@ pub struct TrueMapArgs {
     #[arg(long, value_name = "FILE.yaml")]
     pub map: Option<OutputFileArg>,
     /// Format of the picture of that map.
-    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = MapImageArg::Pgm)]
-    pub map_image: MapImageArg,
+    #[arg(long, value_name = "FORMAT", default_value = "pgm", value_parser = choice(&MapImage::CHOICES))]
+    pub map_image: MapImage,
     /// Side of the map's cells, m.
     #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub resolution: f64,
@@ -104,14 +111,14 @@ pub struct WireArgs {
 #[derive(Debug, Args)]
 pub struct SensorArgs {
     /// The camera.
-    #[arg(long, value_enum, default_value_t = CameraArg::KinectV2)]
-    pub camera: CameraArg,
+    #[arg(long, default_value = "kinect-v2", value_parser = choice(&SimConfig::CAMERAS))]
+    pub camera: fn() -> SimConfig,
     /// Images a second.
     #[arg(long, value_name = "HZ", value_parser = NumberArg::above_zero("Hz"), allow_negative_numbers = true)]
     pub rate: Option<f64>,
     /// A 2-D laser on the robot.
-    #[arg(long, value_enum, value_name = "PRESET")]
-    pub laser: Option<LaserArg>,
+    #[arg(long, value_name = "PRESET", value_parser = choice(&LaserConfig::PRESETS))]
+    pub laser: Option<fn() -> LaserConfig>,
     /// What breaks, and when: a TOML file of [[faults]].
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,
@@ -126,9 +133,9 @@ impl SensorArgs {
     /// # Errors
     /// When the fault file cannot be read or a value is outside its range.
     pub fn config(&self) -> Result<SimConfig, AppError> {
-        let mut config = self.camera.robot();
+        let mut config = (self.camera)();
         config.camera_rate_hz = self.rate.unwrap_or(config.camera_rate_hz);
-        config.laser = self.laser.map(LaserArg::laser);
+        config.laser = self.laser.map(|laser| laser());
         if let Some(file) = &self.faults {
             config.faults = read_faults(file)?;
         }
@@ -137,74 +144,15 @@ impl SensorArgs {
     }
 }
 
-/// A camera that can be simulated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum CameraArg {
-    /// Kinect V2: 512 x 424.
-    KinectV2,
-    /// Kinect v1, as of TUM's sequences: 640 x 480.
-    KinectV1,
-}
-
-impl CameraArg {
-    /// The robot with it.
-    pub fn robot(self) -> SimConfig {
-        match self {
-            Self::KinectV2 => SimConfig::kinect_v2(),
-            Self::KinectV1 => SimConfig::kinect_v1(),
-        }
-    }
-}
-
-/// A laser that can be simulated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum LaserArg {
-    /// Slamtec RPLIDAR A1: all around, 12 m.
-    RplidarA1,
-    /// Hokuyo URG-04LX: 240 deg, 5.6 m.
-    #[value(name = "urg-04lx")]
-    Urg04lx,
-    /// Hokuyo UST-10LX: 270 deg, 10 m.
-    #[value(name = "ust-10lx")]
-    Ust10lx,
-    /// LDS-01 of the TurtleBot3: all around, 3.5 m.
-    #[value(name = "lds-01")]
-    Lds01,
-}
-
-impl LaserArg {
-    /// Its configuration.
-    pub fn laser(self) -> LaserConfig {
-        match self {
-            Self::RplidarA1 => LaserConfig::rplidar_a1(),
-            Self::Urg04lx => LaserConfig::urg_04lx(),
-            Self::Ust10lx => LaserConfig::ust_10lx(),
-            Self::Lds01 => LaserConfig::lds_01(),
-        }
-    }
-}
-
-impl SimArgs {
-    /// How the scene is made.
-    pub fn scene_options(&self) -> SceneOptions {
-        SceneOptions {
-            seed: self.seed,
-            mesh: self.mesh.options(),
-            start: self.start.map(|start| start.0),
-            station: self.station.map(|station| station.0),
-        }
-    }
-}
-
 impl SimArgs {
     /// Whether the true map is written or shown.
     pub fn needs_map(&self) -> bool {
-        self.true_map.map.is_some() || self.record.is_some() || self.keys
+        self.true_map.map.is_some() || self.record.is_some() || self.driver.keys
     }
 
     /// Whether the map is all that is asked for.
     pub fn wants_only_map(&self) -> bool {
-        let drives = self.drive.is_some() || self.follow.is_some() || self.keys;
-        self.true_map.map.is_some() && !drives && self.duration.is_none() && self.record.is_none()
+        let drives = self.driver.drive.is_some() || self.driver.follow.is_some() || self.driver.keys;
+        self.true_map.map.is_some() && !drives && self.driver.duration.is_none() && self.record.is_none()
     }
 }

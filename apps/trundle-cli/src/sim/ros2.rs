@@ -5,24 +5,21 @@ use crate::console;
 use crate::outcome::Outcome;
 use trundle::app::{AppError, stop};
 use trundle::core::DifferentialDrive;
-use trundle::experiments::simulated::load_scene;
+use trundle::experiments::simulated::load_simulator;
 use trundle::ros2::server::{OfferedBody, serve_body};
-use trundle::sim::Simulator;
 
 /// Publishes the robot's sensors and obeys `cmd_vel` until the time is over or the user interrupts.
 pub fn serve(args: &SimArgs, name: &str) -> Result<Outcome, AppError> {
-    let (options, config) = (args.ros.options()?, args.sensors.config()?);
+    let (options, config) = (args.ros_robot.ros.options()?, args.sensors.config()?);
     let (camera, base_from_camera) = (config.camera, config.base_from_camera);
     let offered = OfferedBody { camera, base_from_camera, drive: DifferentialDrive::KOBUKI };
-    let scene = load_scene(name, args.scene_options())?;
-    let mut simulator = Simulator::new(scene, config, args.seed)
-        .map_err(|error| AppError::Input(format!("{name}: {error}")))?;
+    let mut simulator = load_simulator(name, args.place.options(), config)?;
     if !args.common.quiet {
         let (domain, drive) = (options.node.domain, "trundle ros2 --ros-args -p use_sim_time:=true");
         console::print(&format!("A robot in '{name}' answers on ROS 2 domain {domain}. Drive it: {drive}"));
     }
-    let limit = args.duration.unwrap_or(f64::INFINITY);
-    serve_body(&options, args.raw_images, offered, &mut simulator, |time| {
+    let limit = args.driver.duration.unwrap_or(f64::INFINITY);
+    serve_body(&options, args.ros_robot.raw_images, offered, &mut simulator, |time| {
         let time = time.as_secs();
         time >= limit || stop::is_requested(|| format!("{time:.1} s of the robot's time"))
     })?;

@@ -5,20 +5,16 @@ use crate::console;
 use crate::outcome::Outcome;
 use std::path::Path;
 use trundle::app::{AppError, stop};
-use trundle::experiments::simulated::{EmulatedRobot, load_scene};
-use trundle::sim::Simulator;
+use trundle::experiments::simulated::{EmulatedRobot, load_simulator};
 
 /// Serves base and camera until the time is over or the user interrupts; prints where the robot stands in truth.
 pub fn serve(args: &SimArgs, name: &str, port: &Path) -> Result<Outcome, AppError> {
-    let config = args.sensors.config()?;
-    let scene = load_scene(name, args.scene_options())?;
-    let simulator = Simulator::new(scene, config, args.seed)
-        .map_err(|error| AppError::Input(format!("{name}: {error}")))?;
+    let simulator = load_simulator(name, args.place.options(), args.sensors.config()?)?;
     let mut robot = EmulatedRobot::at(simulator, port, args.wires.camera_stream.as_deref())?;
     if !args.common.quiet {
         console::print(&greeting(args, port));
     }
-    let limit = args.duration.unwrap_or(f64::INFINITY);
+    let limit = args.driver.duration.unwrap_or(f64::INFINITY);
     robot.run(|simulator| {
         let time = simulator.stamp().as_secs();
         time >= limit || stop::is_requested(|| format!("{time:.1} s of the robot's time"))

@@ -1,9 +1,10 @@
 //! The command line of `trundle slam`.
 
-use crate::common_args::{BagTopicsArgs, Common, MapImageArg, NumberArg};
+use crate::common_args::{BagTopicsArgs, Common, NumberArg, choice};
 use crate::output_args::OutputDirArg;
 use clap::Args;
 use std::path::PathBuf;
+use trundle::io::MapImage;
 
 /// `trundle slam`
 #[derive(Debug, Args)]
@@ -42,8 +43,8 @@ pub struct SlamArgs {
     #[arg(long, requires = "map")]
     pub localise: bool,
     /// Format of the map's picture.
-    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = MapImageArg::Pgm)]
-    pub map_image: MapImageArg,
+    #[arg(long, value_name = "FORMAT", default_value = "pgm", value_parser = choice(&MapImage::CHOICES))]
+    pub map_image: MapImage,
     /// Recognise places by this vocabulary, in trundle's form [default: the built-in one]
     #[arg(long, value_name = "FILE")]
     pub vocabulary: Option<PathBuf>,

@@ -4,8 +4,8 @@ use crate::common_args::Common;
 use crate::output_args::OutputFileArg;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
-use std::str::FromStr;
-use trundle::experiments::vocabulary::{ImageSources, IndexRange};
+use trundle::experiments::IndexRange;
+use trundle::experiments::vocabulary::ImageSources;
 
 /// `trundle vocabulary`
 #[derive(Debug, Args)]
@@ -49,13 +49,13 @@ pub struct Sources {
     pub folders: Vec<PathBuf>,
     /// Frames of each folder: FIRST-LAST, from 0 [default: all]
     #[arg(long, value_name = "A-B")]
-    pub frames: Option<Span>,
+    pub frames: Option<IndexRange>,
     /// A scene to draw views of, built in or a glTF file; may be given again.
     #[arg(long = "scene", value_name = "NAME|FILE")]
     pub scenes: Vec<String>,
     /// Seeds of the furniture and textures of built-in scenes, and of the places: FIRST-LAST.
     #[arg(long, value_name = "A-B", default_value = "1-1")]
-    pub seeds: Span,
+    pub seeds: IndexRange,
     /// Views of each scene and seed, at chance places with room, by Kinect V2 and v1 in turn.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub views: u32,
@@ -72,9 +72,9 @@ impl Sources {
     pub fn sources(&self) -> ImageSources {
         ImageSources {
             folders: self.folders.clone(),
-            frames: self.frames.map(|span| span.0),
+            frames: self.frames,
             scenes: self.scenes.clone(),
-            seeds: self.seeds.0,
+            seeds: self.seeds,
             views: self.views as usize,
             z_up: self.z_up,
             features_per_image: self.features_per_image as usize,
@@ -154,35 +154,4 @@ pub struct RecallArgs {
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
-}
-
-/// Numbers from a first to a last one on the command line: `FIRST-LAST`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Span(pub IndexRange);
-
-impl FromStr for Span {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number = |text: &str| text.trim().parse::<u64>().ok();
-        let (first, last) = text.split_once('-').unwrap_or((text, text));
-        match (number(first), number(last)) {
-            (Some(first), Some(last)) if first <= last => Ok(Self(IndexRange { first, last })),
-            _ => Err(format!("'{text}', expected FIRST-LAST, whole numbers, the last not below the first")),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn spans_are_two_rising_numbers_or_one() {
-        assert_eq!("3-7".parse(), Ok(Span(IndexRange { first: 3, last: 7 })));
-        assert_eq!("5".parse(), Ok(Span(IndexRange { first: 5, last: 5 })));
-        for wrong in ["7-3", "a-3", "", "-1", "1-2-3"] {
-            assert!(wrong.parse::<Span>().unwrap_err().contains("expected FIRST-LAST"), "{wrong}");
-        }
-    }
 }

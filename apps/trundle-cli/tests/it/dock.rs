@@ -61,6 +61,31 @@ fn on_a_map_too_and_a_wall_between_is_a_reason() {
 }
 
 #[test]
+fn a_start_or_goal_that_does_not_fit_ends_as_in_plan_with_a_picture_and_the_reason() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (map, out) = (write_room(scratch.path()), scratch.path().join("out"));
+    let file = scratch.path().join("beside.txt");
+    fs::write(&file, PROBLEM).unwrap();
+    for (place, from, to, reason) in [
+        (&map, "--from=0.1,1,0", "--to=1,1,0", "the start overlaps the occupied cell at (0.025, "),
+        (&map, "--from=1,1,0", "--to=3.02,0.5,0", "the goal overlaps the occupied cell at (3.0"),
+        (&map, "--from=1,1,0", "--to=-30,1,0", "the goal (-30.00, 1.00) m is off the map"),
+        (&map, "--from=1,1,0", "--to=-1e5,1,0", "the goal (-100000.00, 1.00) m is off the map"),
+        (&file, "--from=0,0,90", "--to=40,30,0", "plan a path there first"),
+    ] {
+        let output = trundle(&["dock", text(place), from, to, "--out", text(&out)]);
+        let sentence = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{from} {to}: {sentence}");
+        assert!(sentence.contains(reason), "{sentence}");
+        let written = summary(&out);
+        assert!(written["reason"].as_str().unwrap().contains(reason), "{written}");
+        assert!(written["success"] == false && out.join("dock.png").exists());
+    }
+    let plan = ["plan", text(&map), "--from=0.1,1,0", "--goal=1,1,0", "--out", text(&out)];
+    assert_eq!(trundle(&plan).status.code(), Some(1), "the same decision");
+}
+
+#[test]
 fn bad_tasks_are_refused_with_their_reason() {
     let scratch = tempfile::tempdir().unwrap();
     let map = write_room(scratch.path());
@@ -68,16 +93,6 @@ fn bad_tasks_are_refused_with_their_reason() {
     fs::write(&file, PROBLEM).unwrap();
     let said = |extra: &[&str]| refusal(&[&["dock"], extra].concat());
     assert!(said(&[text(&map)]).contains("a map needs --from and --to"));
-    assert!(
-        said(&[text(&map), "--from=0.1,1,0", "--to=1,1,0"])
-            .contains("the start overlaps the occupied cell at (0.025, ")
-    );
-    assert!(
-        said(&[text(&map), "--from=1,1,0", "--to=3.02,0.5,0"])
-            .contains("the goal overlaps the occupied cell at (3.0")
-    );
-    assert!(said(&[text(&map), "--from=1,1,0", "--to=-30,1,0"]).contains("the goal (-30.00, 1.00) m is off"));
-    assert!(said(&[text(&file), "--to=40,30,0"]).contains("plan a path there first"));
     assert!(said(&[text(&file), "--problem=x"]).contains("it has no problem 'x'"));
     let shaped = |corners: &str| said(&[text(&file), "--footprint", corners]);
     assert!(shaped("0.3,0.2 -0.3,0.2 0,0.1 -0.3,-0.2 0.3,-0.2").contains("expected convex"));

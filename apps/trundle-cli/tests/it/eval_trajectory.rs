@@ -74,5 +74,5 @@ fn what_cannot_be_judged_is_named() {
     assert!(apart.contains("a.txt") && apart.contains("b.txt"), "{apart}");
     assert!(refusal(&["eval", "trajectory", text(&a), text(&a)]).contains("3"), "two poses");
     let half = refusal(&["eval", "trajectory", text(&a), text(&a), "--delta", "0.5"]);
-    assert!(half.contains("--delta is 0.5 frames, expected a whole number"), "{half}");
+    assert!(half.contains("delta is 0.5 frames, expected a whole number"), "{half}");
 }

@@ -160,7 +160,7 @@ fn numbers_and_places_that_cannot_be() {
         (["--duration", "NaN"], "--duration is 'NaN', expected a number in s"),
         (["--rate", "0"], "--rate is 0 Hz, expected a number in Hz, above 0"),
         (["--rate", "1000"], "camera_rate_hz is 1000 Hz"),
-        (["--map", "picture.png"], "--map is 'picture.png', expected a name ending in .yaml"),
+        (["--map", "picture.png"], "picture.png: expected a map file whose name ends in .yaml"),
     ] {
         let sentence = refusal(&[&["sim", "demo"], &args[..]].concat());
         assert!(sentence.contains(words), "{sentence}");

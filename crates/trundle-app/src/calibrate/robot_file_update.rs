@@ -5,7 +5,7 @@ use crate::{AppError, read_text};
 use std::path::Path;
 use toml_edit::{DocumentMut, Item, Table, Value};
 use trundle_core::{TomlProblem, toml_problem};
-use trundle_io::replace_file;
+use trundle_io::{replace_file, require_replaceable};
 use trundle_runtime::settings::RobotFile;
 
 impl Calibration {
@@ -23,6 +23,19 @@ impl Calibration {
         }
         update_robot_file(file, &keys)
     }
+}
+
+/// Checks that [`Calibration::write`] can set keys in this robot file.
+///
+/// # Errors
+/// When the file is no robot file, or cannot be written.
+pub fn require_robot_file(file: &Path) -> Result<(), AppError> {
+    if file.exists() {
+        let text = read_text(file)?;
+        let parsed = RobotFile::parse(&text, &[]);
+        parsed.map_err(|error| AppError::Input(format!("{}: {error}", file.display())))?;
+    }
+    Ok(require_replaceable(file)?)
 }
 
 /// Sets keys of a robot file, or creates the file with them. The file is replaced whole, or stays as it is.

@@ -23,13 +23,15 @@ pub struct DockingTask {
     pub grid: Option<OccupancyGrid>,
     /// The list, where the obstacles are a list's.
     pub problem: Option<Problem>,
+    /// Why no manoeuvre can be planned for the task; `None` where the planner decides.
+    pub refusal: Option<String>,
 }
 
 impl DockingTask {
-    /// A task on a map file, between two poses on it. `unknown_is_free`: whether unknown cells are no obstacles.
+    /// A task on a map file, between two poses, refused where one is off the map. `unknown_is_free`: whether unknown cells are no obstacles.
     ///
     /// # Errors
-    /// When the map cannot be read, or start or goal is off the map.
+    /// When the map cannot be read.
     pub fn on_map(
         file: &Path,
         footprint: Footprint,
@@ -38,16 +40,15 @@ impl DockingTask {
         unknown_is_free: bool,
     ) -> Result<Self, AppError> {
         let grid = read_map(file)?;
-        for (name, pose) in [("start", start), ("goal", goal)] {
-            if grid.geometry().cell_at(pose.position()).is_none() {
-                let (file, Pose2 { x, y, .. }) = (file.display(), pose);
-                return Err(AppError::Input(format!("{file}: the {name} ({x:.2}, {y:.2}) m is off the map")));
-            }
-        }
+        let off_map = [("start", start), ("goal", goal)]
+            .into_iter()
+            .find(|(_, pose)| grid.geometry().cell_at(pose.position()).is_none());
+        let refusal =
+            off_map.map(|(name, Pose2 { x, y, .. })| format!("the {name} ({x:.2}, {y:.2}) m is off the map"));
         let (center, half) = config.view(&footprint, &start, &goal);
         let scene = ObstacleScene::from_grid(&grid, center, half, !unknown_is_free);
         let name = file.display().to_string();
-        Ok(Self { name, footprint, start, goal, scene, grid: Some(grid), problem: None })
+        Ok(Self { name, footprint, start, goal, scene, grid: Some(grid), problem: None, refusal })
     }
 
     /// A task among the obstacles of a list, with the list's footprint, start and goal.
@@ -63,6 +64,7 @@ impl DockingTask {
             scene: problem.scene()?,
             grid: None,
             problem: Some(problem),
+            refusal: None,
         })
     }
 
@@ -83,36 +85,28 @@ pub fn built_in_problem(name: &Path) -> Option<Problem> {
     Scenario::ALL.map(Scenario::problem).into_iter().find(|problem| name == Path::new(&problem.name))
 }
 
-/// A problem among the points of a scan.
-#[derive(Debug, Clone)]
-pub struct ScanProblem {
-    /// The problem.
-    pub problem: Problem,
-    /// Why nothing can be planned among these points; `None` where it can.
-    pub refusal: Option<String>,
-}
-
-/// The problem among the points of one scan of a CARMEN log, in the frame of the robot that made it. `number` counts from 1; `None`
-/// for the last scan.
+/// The task among the points of one scan of a CARMEN log, in the frame of the robot that made it. `number` counts from 1; `None`
+/// for the last scan. A scan without a return is refused.
 ///
 /// # Errors
 /// When the log cannot be read or has no such scan.
-pub fn scan_problem(
+pub(super) fn scan_task(
     file: &Path,
     number: Option<usize>,
     footprint: Footprint,
     goal: Pose2,
-) -> Result<ScanProblem, AppError> {
+) -> Result<DockingTask, AppError> {
     let log = read_laser_log(file, &LaserLogOptions::default())?;
     let count = log.scans.len();
     let number = number.unwrap_or(count);
     let scan = number.checked_sub(1).and_then(|i| log.scans.get(i));
-    let scan = scan.ok_or_else(|| in_file(file, &format!("it has no scan {number}, only 1 to {count}")))?;
+    let scan = scan.ok_or_else(|| named(file, &format!("it has no scan {number}, only 1 to {count}")))?;
     let obstacles: Vec<Obstacle> = scan.scan.hits().map(Obstacle::Point).collect();
     let refusal = scan_refusal(&log, obstacles.is_empty());
     let problem =
         Problem { name: format!("scan-{number}"), footprint, start: Pose2::default(), goal, obstacles };
-    Ok(ScanProblem { problem, refusal })
+    let task = DockingTask::of_problem(problem).map_err(|invalid| named(file, &invalid))?;
+    Ok(DockingTask { refusal, ..task })
 }
 
 /// Why nothing can be planned in a scan of the log: it saw nothing, or ranges are in another unit.
@@ -136,18 +130,19 @@ fn scan_refusal(log: &LaserLog, is_blind: bool) -> Option<String> {
 /// When the file cannot be read or has no such problem.
 pub fn file_problem(file: &Path, name: Option<&str>) -> Result<Problem, AppError> {
     let text = read_text(file)?;
-    let mut problems = parse(&text).map_err(|invalid| in_file(file, &invalid))?.into_iter();
+    let mut problems = parse(&text).map_err(|invalid| named(file, &invalid))?.into_iter();
     let chosen = match name {
         Some(name) => problems.find(|problem| problem.name == name),
         None => problems.next(),
     };
     chosen.ok_or_else(|| match name {
-        Some(name) => in_file(file, &format!("it has no problem '{name}'")),
-        None => in_file(file, &"it has no problem"),
+        Some(name) => named(file, &format!("it has no problem '{name}'")),
+        None => named(file, &"it has no problem"),
     })
 }
 
-fn in_file(file: &Path, problem: &dyn std::fmt::Display) -> AppError {
+/// The problem with the name of the file.
+pub(super) fn named(file: &Path, problem: &dyn std::fmt::Display) -> AppError {
     AppError::Input(format!("{}: {problem}", file.display()))
 }
 

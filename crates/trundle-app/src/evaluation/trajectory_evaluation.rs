@@ -1,5 +1,9 @@
 //! The errors of a trajectory, as table, summary and folder.
 
+use super::named_error::named_error;
+use super::unrounded_trajectory;
+use crate::AppError;
+use std::path::Path;
 use trundle_core::{Pose3, Stamp, Vector3};
 use trundle_eval::{
     AbsoluteConfig, AbsoluteError, ErrorStatistics, EvalError, RelativeConfig, RelativeError,
@@ -46,6 +50,20 @@ impl TrajectoryEvaluation {
             absolute_config: absolute_config.clone(),
             relative_config: relative_config.clone(),
         })
+    }
+
+    /// Judges the trajectory of one file against the reference of another one.
+    ///
+    /// # Errors
+    /// When a file cannot be read, or as [`TrajectoryEvaluation::of`], with the name of the file.
+    pub fn of_files(
+        reference: &Path,
+        estimate: &Path,
+        absolute: &AbsoluteConfig,
+        relative: &RelativeConfig,
+    ) -> Result<Self, AppError> {
+        let (truth, poses) = (unrounded_trajectory(reference)?, unrounded_trajectory(estimate)?);
+        Self::of(&truth, &poses, absolute, relative).map_err(|error| named_error(&error, reference, estimate))
     }
 
     /// The positions of the estimate that are compared, laid over the reference, m.

@@ -83,6 +83,7 @@ pub fn check_hardware(request: CheckRequest<'_>) -> Result<HardwareReport, AppEr
         "base",
         format!("{base}, hardware {}, firmware {}", text(versions.hardware), text(versions.firmware)),
     );
+    report.problems.extend(versions.firmware_fault());
     report.check_base(&log);
     report.row("bytes skipped, packets with a wrong checksum", {
         let decoder = base_counters.decoder;
@@ -97,7 +98,7 @@ pub fn check_hardware(request: CheckRequest<'_>) -> Result<HardwareReport, AppEr
     report.problems.extend(fault.map(|fault| format!("camera: {fault}")));
     report.check_wheels(&log);
     report.check_floor(&log, robot);
-    report.notes.extend(log.events.iter().map(|event| format!("event at {event}")));
+    report.notes.extend(log.body.events.iter().map(|event| format!("event at {event}")));
     report.values.values.extend(intrinsics(&info.color.camera, &robot.camera));
     Ok(report)
 }
@@ -130,7 +131,11 @@ impl HardwareReport {
                 "readings of the gyro {rate}, expected {MIN_GYRO_HZ} Hz or more: update the base's firmware, or check its cable"
             ));
         }
-        if let Some(battery) = &log.battery {
+        if log.body.wheel_drop.any() {
+            let problem = "a wheel hangs free: put the robot on the floor, or mend the switch of the wheel";
+            self.problems.push(problem.to_owned());
+        }
+        if let Some(battery) = &log.body.battery {
             let charge = battery.charge.map_or(String::new(), |charge| format!(", {:.0} %", charge * 100.0));
             self.row("battery", format!("{:.1} V{charge}", battery.voltage_v));
         }

@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 use trundle_core::{
-    Battery, BodyEventKind, DifferentialDrive, GyroRate, PinholeCamera, RgbdImage, SensorEvent, Stamp,
-    Vector3, WheelTicks,
+    Battery, BodyEventKind, DifferentialDrive, GyroRate, PerWheel, PinholeCamera, RgbdImage, SensorEvent,
+    Stamp, Vector3, WheelTicks,
 };
 use trundle_localization::FloorSearch;
 
@@ -17,6 +17,16 @@ pub(super) struct ImageNote {
     pub age_ms: f64,
     /// Part of the pixels with depth, 0 to 1.
     pub depth_part: f64,
+}
+
+/// What the base reported of itself.
+#[derive(Debug, Default)]
+pub(super) struct BodyNotes {
+    pub battery: Option<Battery>,
+    /// Wheels that hang free.
+    pub wheel_drop: PerWheel,
+    /// Events, in words.
+    pub events: Vec<String>,
 }
 
 /// What came from base and camera during a check.
@@ -36,9 +46,7 @@ pub(super) struct CheckLog {
     pub gyro_turn: f64,
     /// Gyro rates while the wheels stood \[rad/s\].
     pub rest_rates: Vec<f64>,
-    pub battery: Option<Battery>,
-    /// Events of the body, in words.
-    pub events: Vec<String>,
+    pub body: BodyNotes,
     last_ticks: Option<WheelTicks>,
     last_gyro: Option<GyroRate>,
     has_rolled: bool,
@@ -62,8 +70,7 @@ impl CheckLog {
             distances: [0.0; 2],
             gyro_turn: 0.0,
             rest_rates: Vec::new(),
-            battery: None,
-            events: Vec::new(),
+            body: BodyNotes::default(),
             last_ticks: None,
             last_gyro: None,
             has_rolled: false,
@@ -83,25 +90,28 @@ impl CheckLog {
             SensorEvent::Rgbd(image) => self.on_image(now, image),
             SensorEvent::Body(event) => self.on_body(now, event.kind),
             SensorEvent::Touch(touch) if touch.pressed => {
-                self.events.push(format!("{now:.1} s: bumper pressed"))
+                self.body.events.push(format!("{now:.1} s: bumper pressed"))
             }
             SensorEvent::Cliff(cliff) if cliff.over_edge => {
-                self.events.push(format!("{now:.1} s: no floor ahead"))
+                self.body.events.push(format!("{now:.1} s: no floor ahead"))
             }
             _ => {}
         }
     }
 
     fn on_body(&mut self, now: f64, kind: BodyEventKind) {
+        if let BodyEventKind::WheelDrop(wheels) = kind {
+            self.body.wheel_drop = wheels;
+        }
         let what = match kind {
-            BodyEventKind::Battery(battery) => return self.battery = Some(battery),
+            BodyEventKind::Battery(battery) => return self.body.battery = Some(battery),
             BodyEventKind::Link(link) if !link.is_up => format!("the {} does not answer", link.device),
             BodyEventKind::WheelDrop(wheels) if wheels.any() => "a wheel hangs".to_owned(),
             BodyEventKind::OverCurrent(wheels) if wheels.any() => "a motor draws too much current".to_owned(),
             BodyEventKind::Button(button) if button.pressed => format!("button B{} pressed", button.index),
             _ => return,
         };
-        self.events.push(format!("{now:.1} s: {what}"));
+        self.body.events.push(format!("{now:.1} s: {what}"));
     }
 
     fn on_wheels(&mut self, now: f64, ticks: &WheelTicks) {

@@ -136,7 +136,7 @@ impl Drivers {
             Arc::clone(&clock),
             Box::new(send.clone()),
         )
-        .map_err(|error| AppError::Input(format!("base {base}: {error}")))?;
+        .map_err(AppError::input)?;
         let config = CameraThreadConfig { output: Some(output), ..CameraThreadConfig::default() };
         let OpenCamera { spec, camera } = camera;
         let mut first = Some(camera);

@@ -58,6 +58,9 @@ pub struct BodyTiming {
     pub image_age_median_ms: f64,
     /// Age of an image at its arrival, 99th percentile \[ms\].
     pub image_age_p99_ms: f64,
+    /// The last fault of the camera, in words; `None` of a camera without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub camera_fault: Option<String>,
     /// Resident memory of the program.
     #[serde(skip)]
     pub memory: MemoryUsage,

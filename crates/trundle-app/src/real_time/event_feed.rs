@@ -83,6 +83,7 @@ impl EventFeed {
             lateness: None,
             images_not_taken: state.images_refused,
             images: state.images,
+            camera_fault: None,
             image_age_median_ms: age(0.5),
             image_age_p99_ms: age(0.99),
             memory: state.memory.clone(),

@@ -18,19 +18,19 @@ pub struct LiveBody {
     feed: EventFeed,
     is_over: Arc<AtomicBool>,
     watch: JoinHandle<()>,
-    stop_drivers: Box<dyn FnOnce() + Send>,
+    stop_drivers: Box<dyn FnOnce() -> Option<String> + Send>,
 }
 
 impl LiveBody {
     /// The body whose drivers send events to `feed`. `commands` leads to the base; without a base, commands have no effect.
-    /// `stop_drivers` is called at the end of the run: it stops the base and joins the drivers' threads.
+    /// `stop_drivers` is called at the end of the run: it stops the base, joins the drivers' threads and gives the last fault of the camera.
     ///
     /// # Errors
     /// When the system refuses a thread.
     pub fn start(
         feed: EventFeed,
         commands: Option<Sender<Twist2>>,
-        stop_drivers: impl FnOnce() + Send + 'static,
+        stop_drivers: impl FnOnce() -> Option<String> + Send + 'static,
     ) -> Result<Self, AppError> {
         let is_over = Arc::<AtomicBool>::default();
         let (watched, over) = (feed.clone(), Arc::clone(&is_over));
@@ -60,9 +60,9 @@ impl BackgroundBody for LiveBody {
 
     fn stop(self) -> Result<BodyTiming, AppError> {
         self.is_over.store(true, Ordering::Relaxed);
-        (self.stop_drivers)();
+        let camera_fault = (self.stop_drivers)();
         let gone = |_| AppError::Environment("the thread that watches for silence has died".to_owned());
         self.watch.join().map_err(gone)?;
-        Ok(self.feed.timing())
+        Ok(BodyTiming { camera_fault, ..self.feed.timing() })
     }
 }

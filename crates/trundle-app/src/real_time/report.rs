@@ -5,6 +5,9 @@ use serde::Serialize;
 use trundle_runtime::Histogram;
 use trundle_runtime::real_time::LoopTimerReport;
 
+/// Half of a run from which the growth of memory is shown \[s\]: 5 minutes. A shorter run is still filling its maps. Source: ours.
+const MIN_MEMORY_HALF_S: f64 = 300.0;
+
 /// How a run in real time kept time.
 #[derive(Debug, Clone, Serialize)]
 pub struct RealTimeReport {
@@ -95,8 +98,9 @@ impl RealTimeReport {
         rows.push(row("age of images on arrival: median, p99".to_owned(), milliseconds(&age)));
         let images = format!("{} of {}", body.images_not_taken, body.images);
         rows.push(row("images not taken".to_owned(), images));
+        rows.extend(body.camera_fault.clone().map(|fault| row("last fault of the camera".to_owned(), fault)));
         let half = self.memory.samples.last().map_or(0.0, |(time, _)| time / 2.0);
-        if let Some(growth) = self.memory.growth_mb_an_hour(half) {
+        if let Some(growth) = self.memory.growth_mb_an_hour(half).filter(|_| half >= MIN_MEMORY_HALF_S) {
             rows.push(row("growth of memory in the second half".to_owned(), format!("{growth:.1} MB/h")));
         }
         rows

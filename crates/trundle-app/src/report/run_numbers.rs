@@ -2,7 +2,7 @@
 
 use super::GoalOutcome;
 use crate::real_time::RealTimeReport;
-use crate::{FinishedRun, RunSetup, TrackCounts};
+use crate::{FinishedRun, RunLog, RunSetup, TrackCounts};
 use serde_json::{Map, Value, json};
 use trundle_eval::{GoalError, goal_error};
 use trundle_io::Summary;
@@ -39,11 +39,40 @@ pub struct RunNumbers {
     /// Report of turns and straight moves for the last goal with such a request; `None` without a request.
     pub docking: Option<GoalApproachReport>,
     /// How it ended.
+    pub end: RunEnd,
+}
+
+/// The end of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunEnd {
+    /// The robot's state.
     pub state: DriveState,
     /// Whether an operator gave the missions: the end of the run is then no failure.
     pub is_operated: bool,
     /// The time limit that ended the run \[s\], where one did.
     pub out_of_time: Option<f64>,
+}
+
+impl RunEnd {
+    fn of(setup: &RunSetup, log: &RunLog) -> Self {
+        Self {
+            state: log.state.clone(),
+            is_operated: setup.is_operated,
+            out_of_time: (log.elapsed() > setup.time_limit).then_some(setup.time_limit),
+        }
+    }
+
+    /// Whether the run was ended before its mission was over.
+    fn is_cut(&self) -> bool {
+        self.out_of_time.is_some() || self.state == DriveState::Stopped { reason: Reason::Interrupted }
+    }
+
+    fn why_not_arrived(&self) -> String {
+        match self.out_of_time {
+            Some(limit) => format!("the time limit of {limit:.0} s ended the run ({})", self.state),
+            None => format!("the robot did not arrive ({})", self.state),
+        }
+    }
 }
 
 fn docking_text(docking: &GoalApproachReport) -> String {
@@ -78,9 +107,7 @@ impl RunNumbers {
             keyframes: run.robot.slam().map_or(0, |slam| slam.keyframes().count()),
             images_dropped: log.seconds_of(run.robot.dropped_images()),
             docking: run.robot.docking().filter(|docking| docking.plans > 0).cloned(),
-            state: log.state.clone(),
-            is_operated: setup.is_operated,
-            out_of_time: (log.elapsed() > setup.time_limit).then_some(setup.time_limit),
+            end: RunEnd::of(setup, log),
         }
     }
 
@@ -101,11 +128,15 @@ impl RunNumbers {
 
     /// Whether every goal was reached without a contact, in truth where it is known.
     pub fn is_success(&self) -> bool {
-        if self.is_operated {
+        if self.end.is_operated {
             return self.goals_missed() == 0 && self.contacts == 0;
         }
         let all = self.goals_missed() == 0 && self.goals_asked.is_some();
-        self.state == DriveState::Arrived && all && self.is_near() && self.is_aligned() && self.contacts == 0
+        self.end.state == DriveState::Arrived
+            && all
+            && self.is_near()
+            && self.is_aligned()
+            && self.contacts == 0
     }
 
     /// Goals that the robot reported as reached and missed in truth.
@@ -123,20 +154,18 @@ impl RunNumbers {
                 n => format!("All {n} goals reached, nothing touched."),
             };
         }
-        if self.is_operated {
+        if self.end.is_operated {
             return self.operated_verdict();
         }
         let mut faults = Vec::new();
         if self.goals_asked.is_none() {
             faults.push("the goal is the start, so the robot had nothing to do".to_owned());
         }
-        if self.state != DriveState::Arrived {
-            faults.push(self.why_not_arrived());
+        if self.end.state != DriveState::Arrived {
+            faults.push(self.end.why_not_arrived());
         }
         // A run that was ended early had not come to its last goal.
-        let is_cut =
-            self.out_of_time.is_some() || self.state == DriveState::Stopped { reason: Reason::Interrupted };
-        let is_off = !(is_cut || self.is_near() && self.is_aligned());
+        let is_off = !(self.end.is_cut() || self.is_near() && self.is_aligned());
         if let Some(error) = self.judged_error().filter(|_| is_off) {
             let (cm, deg) = (error.distance * 100.0, error.dtheta.to_degrees());
             faults.push(format!("it stands {cm:.1} cm and {deg:.1} deg off the goal"));
@@ -157,13 +186,6 @@ impl RunNumbers {
             self.goals_missed(),
             self.contacts
         )
-    }
-
-    fn why_not_arrived(&self) -> String {
-        match self.out_of_time {
-            Some(limit) => format!("the time limit of {limit:.0} s ended the run ({})", self.state),
-            None => format!("the robot did not arrive ({})", self.state),
-        }
     }
 
     /// The table without the wall clock's part.
@@ -214,8 +236,8 @@ impl RunNumbers {
             .set("scene", &setup.scene)
             .set("seed", setup.seed)
             .set("success", self.is_success())
-            .set("state", self.state.to_string())
-            .set("reason_kinds", self.state.reason().map(Reason::kinds).unwrap_or_default())
+            .set("state", self.end.state.to_string())
+            .set("reason_kinds", self.end.state.reason().map(Reason::kinds).unwrap_or_default())
             .set("goals", &self.goals)
             .set("goal_error_m", self.goal_error.map(|e| e.distance))
             .set("goal_error_dx_m", self.goal_error.map(|e| e.dx))

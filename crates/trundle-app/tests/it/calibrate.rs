@@ -120,6 +120,8 @@ fn drive_on_time() -> CalibrationInput {
 fn assert_found(calibration: &Calibration, name: &str, truth: f64, limit: f64) {
     let found = calibration.value(name).unwrap_or_else(|| panic!("{name}: {calibration:?}"));
     let sigma = found.sigma.unwrap();
+    // Read by `cargo xtask results --measure calibration`.
+    println!("error of {name}: {:.6} {}", (found.value - truth).abs(), found.unit);
     assert!((found.value - truth).abs() <= limit, "{found:?}, truth {truth}");
     assert!(sigma > 0.0 && sigma <= limit, "{found:?}");
 }

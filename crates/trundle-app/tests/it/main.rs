@@ -1,5 +1,5 @@
 //! Runs on a body without a camera: session, recorder, replayer, checkpoint writer, report.
-#![allow(clippy::unwrap_used, reason = "workers of tests")]
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "workers of tests; figures of the results")]
 
 mod body;
 mod calibrate;

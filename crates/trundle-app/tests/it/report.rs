@@ -2,7 +2,7 @@
 
 use crate::body::{GOAL, StillBody, run_into, setup};
 use trundle_app::TrackCounts;
-use trundle_app::report::{GoalOutcome, RunNumbers, mission_text, write_run};
+use trundle_app::report::{GoalOutcome, RunEnd, RunNumbers, mission_text, write_run};
 use trundle_core::Pose2;
 use trundle_eval::{GoalError, goal_error};
 use trundle_io::OutputFolder;
@@ -41,9 +41,7 @@ fn good() -> RunNumbers {
         keyframes: 30,
         images_dropped: vec![1.0, 2.0],
         docking: None,
-        state: DriveState::Arrived,
-        is_operated: false,
-        out_of_time: None,
+        end: RunEnd { state: DriveState::Arrived, is_operated: false, out_of_time: None },
     }
 }
 
@@ -67,7 +65,10 @@ fn each_fault_is_named_in_the_verdict() {
         (RunNumbers { contacts: 2, ..good() }, "2 contacts with obstacles"),
         (RunNumbers { goal_error: off(0.06, 0.0), ..good() }, "6.0 cm and 0.0 deg off the goal"),
         (RunNumbers { goal_error: off(0.0, 4.0), ..good() }, "0.0 cm and 4.0 deg off the goal"),
-        (RunNumbers { state: stopped, ..good() }, "did not arrive (stopped: the pose is unknown"),
+        (
+            RunNumbers { end: RunEnd { state: stopped, ..good().end }, ..good() },
+            "did not arrive (stopped: the pose is unknown",
+        ),
         (RunNumbers { goals: vec![goal(TaskEnd::Done, off(0.2, 0.0))], ..good() }, "at 1 goals"),
     ];
     for (numbers, fault) in cases {

@@ -1,6 +1,7 @@
 //! The errors of a depth camera.
 
 use super::UsbSpeed;
+use std::io::ErrorKind;
 use trundle_core::Invalid;
 
 /// Why a camera cannot be opened or read. Each sentence ends with what to do.
@@ -123,7 +124,7 @@ pub enum CameraError {
         problem: String,
     },
     /// Reading failed.
-    #[error("the camera stream {place} cannot be read: {source}")]
+    #[error("the camera stream {place} cannot be read: {}", reason(source))]
     Io {
         /// The file, pipe or folder.
         place: String,
@@ -132,9 +133,32 @@ pub enum CameraError {
     },
 }
 
+/// Why a file cannot be read, and what to do.
+fn reason(source: &std::io::Error) -> String {
+    match source.kind() {
+        ErrorKind::NotFound => {
+            "it does not exist: check its name, or start the program that writes it".to_owned()
+        }
+        ErrorKind::PermissionDenied => "you have no right to: change its permissions or its owner".to_owned(),
+        _ => format!("{source}: check the file and the program that writes it"),
+    }
+}
+
 impl CameraError {
     /// Whether the next frame may be good without opening the camera anew.
     pub fn is_of_one_frame(&self) -> bool {
         matches!(self, Self::BrokenFrame(_))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_stream_is_named_with_what_to_do_and_without_the_words_of_the_system() {
+        let error = CameraError::Io { place: "/tmp/camera".to_owned(), source: ErrorKind::NotFound.into() };
+        let text = error.to_string();
+        assert!(text.contains("/tmp/camera cannot be read: it does not exist: check its name"), "{text}");
     }
 }

@@ -15,7 +15,23 @@ pub struct Versions {
     pub unique_id: Option<UniqueId>,
 }
 
+/// Oldest firmware without faults that the vendor names: 1.1.4. Source: the vendor's driver, recommended versions 1.1.4 and 1.2.0.
+const MIN_FIRMWARE: Version = Version::new(1, 1, 4);
+
 impl Versions {
+    /// Why the firmware is not one that the vendor recommends, with the remedy; `None` where it is.
+    pub fn firmware_fault(&self) -> Option<String> {
+        match self.firmware {
+            Some(firmware) if firmware >= MIN_FIRMWARE => None,
+            Some(firmware) => Some(format!(
+                "the base's firmware is {firmware}, expected {MIN_FIRMWARE} or later: update it"
+            )),
+            None => Some(format!(
+                "the base does not report its firmware's version, expected {MIN_FIRMWARE} or later: update it"
+            )),
+        }
+    }
+
     /// Takes what a packet says.
     pub(super) fn update(&mut self, feedback: &Feedback) {
         self.hardware = feedback.hardware.or(self.hardware);

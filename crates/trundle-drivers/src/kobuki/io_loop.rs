@@ -9,6 +9,7 @@ use super::command_schedule::CommandSchedule;
 use super::decoder::FeedbackDecoder;
 use super::feedback_events::FeedbackEvents;
 use super::link::{ByteLink, Connector};
+use super::link_state::LinkState;
 use super::outbox::Outbox;
 use super::probe::greeting;
 use super::protocol::{BaseControl, Feedback, KobukiCommand, Outputs};
@@ -46,15 +47,11 @@ pub(super) struct IoLoop {
     connector: Box<dyn Connector>,
     queues: Queues,
     link: Option<Box<dyn ByteLink>>,
-    is_up: bool,
-    /// Last packet, or opening of the port, or loss.
-    since: Stamp,
-    retry_s: f64,
+    state: LinkState,
     decoder: FeedbackDecoder,
     events: FeedbackEvents,
     schedule: CommandSchedule,
     check: StreamCheck,
-    is_faulty: bool,
     outbox: Outbox,
     /// Outputs as last asked for: the base forgets them when it is switched off.
     outputs: Option<Outputs>,
@@ -72,18 +69,15 @@ impl IoLoop {
     ) -> Self {
         Self {
             config,
-            since: clock(),
+            state: LinkState::new(clock(), config.min_retry_s),
             clock,
             connector,
             queues,
             link: Some(link),
-            is_up: false,
-            retry_s: config.min_retry_s,
             decoder,
             events: FeedbackEvents::new(config.gyro_source, config.transport_delay_s),
             schedule: CommandSchedule::new(config.command_timeout_s),
             check: StreamCheck::default(),
-            is_faulty: false,
             outbox: Outbox::default(),
             outputs: None,
             last_ms: None,
@@ -112,9 +106,9 @@ impl IoLoop {
     fn exchange(&mut self, link: &mut dyn ByteLink) -> io::Result<()> {
         let before = (self.clock)();
         self.read(link)?;
-        let limit = if self.is_up { self.config.silence_limit_s } else { FIRST_PACKET_LIMIT_S };
+        let limit = if self.state.is_up { self.config.silence_limit_s } else { FIRST_PACKET_LIMIT_S };
         // Packets that waited while this thread stood still have been read: only the time before counts.
-        if before - self.since >= limit {
+        if before - self.state.since >= limit {
             return Err(io::Error::new(io::ErrorKind::TimedOut, format!("no new packet came for {limit} s")));
         }
         let now = (self.clock)();
@@ -148,12 +142,13 @@ impl IoLoop {
         // A packet with the stamp of the one before it says nothing new.
         let stamp_ms = feedback.core.map(|core| core.stamp_ms);
         if stamp_ms.is_some() && std::mem::replace(&mut self.last_ms, stamp_ms) != stamp_ms {
-            self.since = arrival;
-            let events = if self.is_up {
-                self.events.events(&feedback, arrival)
-            } else {
+            let events = if self.state.on_packet(arrival, self.config.silence_limit_s) {
                 self.link_up(arrival);
                 self.events.events_after_link_up(&feedback, arrival)
+            } else if self.state.is_up {
+                self.events.events(&feedback, arrival)
+            } else {
+                Vec::new()
             };
             events.into_iter().for_each(|event| self.deliver(event));
         }
@@ -167,7 +162,7 @@ impl IoLoop {
     /// The first packet of a connection: commands from before are dropped, the outputs are set. Zero speed is sent since the port is open.
     fn link_up(&mut self, now: Stamp) {
         self.take_commands(now);
-        (self.is_up, self.retry_s) = (true, self.config.min_retry_s);
+        (self.state.is_up, self.state.retry_s) = (true, self.config.min_retry_s);
         if let Some(outputs) = self.outputs {
             self.outbox.push(&KobukiCommand::Outputs(outputs).encode());
         }
@@ -178,7 +173,7 @@ impl IoLoop {
     fn take_commands(&mut self, now: Stamp) {
         let mut dropped = 0;
         for twist in self.queues.commands.try_iter().take(MAX_COMMANDS_AT_ONCE) {
-            if self.is_up {
+            if self.state.is_up {
                 self.schedule.set(twist, now);
             } else {
                 dropped += 1;
@@ -188,7 +183,7 @@ impl IoLoop {
             if let KobukiCommand::Outputs(outputs) = command {
                 self.outputs = Some(outputs);
             }
-            if self.is_up {
+            if self.state.is_up {
                 self.outbox.push(&command.encode());
             } else {
                 dropped += 1;
@@ -211,7 +206,8 @@ impl IoLoop {
 
     fn lose(&mut self, error: &io::Error) {
         let now = (self.clock)();
-        if self.is_up {
+        let was_up = self.state.is_up;
+        if was_up {
             tracing::warn!(
                 "port {}: the link to the base is lost: {error}; it is opened again",
                 self.connector.port()
@@ -220,10 +216,10 @@ impl IoLoop {
             self.deliver(event);
         }
         let mut status = locked(&self.queues.status);
-        status.counters.link_losses += u64::from(self.is_up);
+        status.counters.link_losses += u64::from(was_up);
         status.is_up = false;
         drop(status);
-        (self.is_up, self.since) = (false, now);
+        self.state.lose(now, error.kind() == io::ErrorKind::TimedOut);
         self.decoder.clear();
         self.outbox.clear();
         self.schedule.restart();
@@ -233,10 +229,11 @@ impl IoLoop {
     fn reconnect(&mut self) {
         let now = (self.clock)();
         self.take_commands(now);
-        if now - self.since < self.retry_s {
+        if now - self.state.since < self.state.retry_s {
             return std::thread::sleep(CLOSED_WAIT);
         }
-        (self.since, self.retry_s) = (now, (2.0 * self.retry_s).min(self.config.max_retry_s));
+        let retry_s = (2.0 * self.state.retry_s).min(self.config.max_retry_s);
+        (self.state.since, self.state.retry_s) = (now, retry_s);
         locked(&self.queues.status).counters.reconnects += 1;
         match self.connector.connect() {
             Ok(link) => {
@@ -258,14 +255,18 @@ impl IoLoop {
         }
     }
 
-    /// Warns once when the stream begins to look as if the port had two users.
+    /// Warns when the stream becomes faulty: the first time, the second, the fourth and so on.
     fn report_fault(&mut self) {
-        let fault = self.check.fault();
-        if let Some(fault) = fault.filter(|_| !self.is_faulty) {
-            tracing::warn!("port {}: {fault}", self.connector.port());
-            locked(&self.queues.status).counters.stream_faults += 1;
+        let Some((fault, count)) = self.check.new_fault() else { return };
+        locked(&self.queues.status).counters.stream_faults += 1;
+        let port = self.connector.port();
+        match count {
+            1 => tracing::warn!("port {port}: {fault}"),
+            _ if count.is_power_of_two() => {
+                tracing::warn!("port {port}: {fault} ({count} faults of the stream so far)");
+            }
+            _ => {}
         }
-        self.is_faulty = fault.is_some();
     }
 
     /// Warns of another base than the one before.

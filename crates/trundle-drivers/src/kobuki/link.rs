@@ -42,6 +42,12 @@ pub enum ConnectError {
         /// The port.
         port: PathBuf,
     },
+    /// The port is there, but no device is behind it.
+    #[error("port {} has no device behind it: connect the base's USB cable and switch the base on, or name another port", port.display())]
+    NoDevice {
+        /// The port.
+        port: PathBuf,
+    },
     /// Another program has the port.
     #[error("port {} is in use by another program: close it (`fuser {}` names it)", port.display(), port.display())]
     Busy {

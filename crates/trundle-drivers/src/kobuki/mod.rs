@@ -24,6 +24,7 @@ pub mod emulator;
 pub mod feedback_events;
 mod io_loop;
 pub mod link;
+mod link_state;
 mod outbox;
 mod probe;
 pub mod protocol;

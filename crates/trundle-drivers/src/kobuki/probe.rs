@@ -4,7 +4,7 @@ use super::base_config::KobukiBaseConfig;
 use super::base_status::Versions;
 use super::decoder::FeedbackDecoder;
 use super::link::ByteLink;
-use super::protocol::{BaseControl, Feedback, KobukiCommand, Version};
+use super::protocol::{BaseControl, Feedback, KobukiCommand};
 use super::start_error::StartError;
 use super::stream_check::{StreamCheck, StreamFault};
 use crate::clock::HostClock;
@@ -18,8 +18,6 @@ const REQUEST_PERIOD_S: f64 = 0.5;
 const MAX_SHOWN_BYTES: usize = 16;
 /// Longest wait for bytes at once: 10 ms. Source: ours, half a packet's period.
 const READ_WAIT: Duration = Duration::from_millis(10);
-/// Oldest firmware without faults that the vendor names: 1.1.4. Source: the vendor's driver, recommended versions 1.1.4 and 1.2.0.
-const MIN_FIRMWARE: Version = Version::new(1, 1, 4);
 /// Major version of the firmware with this protocol: 1. Source: the vendor's driver, compatible major version.
 const FIRMWARE_MAJOR: u8 = 1;
 
@@ -129,21 +127,11 @@ impl Probe<'_> {
     fn judge_firmware(&self, port: String) -> Result<(), StartError> {
         match self.versions.firmware {
             Some(firmware) if firmware.major != FIRMWARE_MAJOR => {
-                Err(StartError::Firmware { port, firmware })
+                return Err(StartError::Firmware { port, firmware });
             }
-            Some(firmware) if firmware < MIN_FIRMWARE => {
-                tracing::warn!(
-                    "port {port}: the base's firmware is {firmware}, expected {MIN_FIRMWARE} or later: update it"
-                );
-                Ok(())
-            }
-            Some(_) => Ok(()),
-            None => {
-                tracing::warn!(
-                    "port {port}: the base does not say its firmware's version, expected {MIN_FIRMWARE} or later"
-                );
-                Ok(())
-            }
+            _ => {}
         }
+        self.versions.firmware_fault().iter().for_each(|fault| tracing::warn!("port {port}: {fault}"));
+        Ok(())
     }
 }

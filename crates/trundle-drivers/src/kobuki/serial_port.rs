@@ -151,7 +151,8 @@ pub(super) fn or_none(bytes: Result<usize, Errno>) -> io::Result<usize> {
 fn connect_error(path: &Path, errno: Errno) -> ConnectError {
     let port = path.to_owned();
     match errno {
-        Errno::NOENT | Errno::NODEV | Errno::NXIO => ConnectError::Missing { port },
+        Errno::NOENT => ConnectError::Missing { port },
+        Errno::NODEV | Errno::NXIO => ConnectError::NoDevice { port },
         Errno::BUSY | Errno::WOULDBLOCK => ConnectError::Busy { port },
         Errno::ACCESS | Errno::PERM => ConnectError::NoRights { port },
         Errno::NOTTY | Errno::ISDIR => ConnectError::NotASerialPort { port },
@@ -167,6 +168,7 @@ mod tests {
     fn errors_say_what_to_do() {
         let text = |errno| connect_error(Path::new("/dev/ttyUSB0"), errno).to_string();
         assert!(text(Errno::ACCESS).contains("sudo usermod -aG dialout $USER"));
+        assert!(text(Errno::NXIO).starts_with("port /dev/ttyUSB0 has no device behind it"));
         assert!(text(Errno::BUSY).starts_with("port /dev/ttyUSB0 is in use by another program"));
         assert!(text(Errno::NOENT).contains("connect the base's USB cable"));
         assert!(text(Errno::IO).starts_with("port /dev/ttyUSB0 cannot be opened: "));

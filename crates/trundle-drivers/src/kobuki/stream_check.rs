@@ -9,6 +9,10 @@ const WINDOW_PACKETS: usize = 50;
 const MIN_STEP_MS: i16 = 15;
 /// Such steps in the window that make a fault: 5. Source: ours; a base that restarts makes one.
 const MIN_SHORT_STEPS: usize = 5;
+/// Step between the stamps of two packets above which the base is slow or packets are missing: 60 ms, three periods. Source: ours.
+const MAX_STEP_MS: i16 = 60;
+/// Such steps in the window that make a fault: 5. Source: ours; a base that restarts makes one.
+const MIN_LONG_STEPS: usize = 5;
 /// Refused headers in the window that make a fault: 10. Source: ours; a sound line has none for minutes.
 const MIN_REFUSED: usize = 10;
 
@@ -24,6 +28,13 @@ pub enum StreamFault {
     FrozenClock {
         /// Such packets in the last second.
         packets: usize,
+    },
+    /// The base sends too rarely.
+    SlowBase {
+        /// Steps of the stamp above 60 ms in the last 50 packets.
+        long_steps: usize,
+        /// The longest of them \[ms\].
+        longest_ms: i16,
     },
     /// Bytes are missing or added.
     DamagedStream {
@@ -45,6 +56,12 @@ impl fmt::Display for StreamFault {
                 "{packets} of {WINDOW_PACKETS} packets have the stamp of the one before, expected 20 ms more: the clock of the base stands \
                  still; switch the base off and on"
             ),
+            Self::SlowBase { long_steps, longest_ms } => write!(
+                f,
+                "{long_steps} of {WINDOW_PACKETS} packets came more than {MAX_STEP_MS} ms after the one before by the base's clock, up to \
+                 {longest_ms} ms, expected 20 ms (50 packets a second): the base sends too slowly, or the line loses packets; check the \
+                 cable, switch the base off and on"
+            ),
             Self::DamagedStream { refused } => write!(
                 f,
                 "{refused} of {WINDOW_PACKETS} packets are damaged: another program may read the same port (close it), \
@@ -58,6 +75,7 @@ impl fmt::Display for StreamFault {
 enum Entry {
     Sound,
     ShortStep,
+    LongStep(i16),
     NoStep,
     Refused,
 }
@@ -67,6 +85,9 @@ enum Entry {
 pub(super) struct StreamCheck {
     last_ms: Option<u16>,
     entries: VecDeque<Entry>,
+    is_faulty: bool,
+    /// Times that the stream became faulty.
+    faults: u64,
 }
 
 impl StreamCheck {
@@ -77,6 +98,7 @@ impl StreamCheck {
         self.push(match step {
             Some(0) => Entry::NoStep,
             Some(step) if step < MIN_STEP_MS => Entry::ShortStep,
+            Some(step) if step > MAX_STEP_MS => Entry::LongStep(step),
             _ => Entry::Sound,
         });
     }
@@ -88,16 +110,36 @@ impl StreamCheck {
 
     /// The fault of the last second, if there is one.
     pub(super) fn fault(&self) -> Option<StreamFault> {
-        let count = |kind| self.entries.iter().filter(|entry| **entry == kind).count();
+        let count = |kind: Entry| self.entries.iter().filter(|entry| **entry == kind).count();
         let (short_steps, refused) = (count(Entry::ShortStep), count(Entry::Refused));
         let packets = count(Entry::NoStep);
         if packets >= MIN_SHORT_STEPS && short_steps < MIN_SHORT_STEPS {
             Some(StreamFault::FrozenClock { packets })
         } else if short_steps >= MIN_SHORT_STEPS {
             Some(StreamFault::TwoSources { short_steps })
+        } else if refused >= MIN_REFUSED {
+            Some(StreamFault::DamagedStream { refused })
         } else {
-            (refused >= MIN_REFUSED).then_some(StreamFault::DamagedStream { refused })
+            self.slow_base()
         }
+    }
+
+    fn slow_base(&self) -> Option<StreamFault> {
+        let steps = self.entries.iter().filter_map(|entry| match entry {
+            Entry::LongStep(step) => Some(*step),
+            _ => None,
+        });
+        let (long_steps, longest_ms) = (steps.clone().count(), steps.max()?);
+        (long_steps >= MIN_LONG_STEPS).then_some(StreamFault::SlowBase { long_steps, longest_ms })
+    }
+
+    /// The fault where the stream was sound at the last call, and how many times it became faulty so far.
+    pub(super) fn new_fault(&mut self) -> Option<(StreamFault, u64)> {
+        let fault = self.fault();
+        let begins = fault.is_some() && !self.is_faulty;
+        self.is_faulty = fault.is_some();
+        self.faults += u64::from(begins);
+        fault.filter(|_| begins).map(|fault| (fault, self.faults))
     }
 
     fn push(&mut self, entry: Entry) {
@@ -138,6 +180,25 @@ mod tests {
     fn a_clock_that_stands_still_is_no_second_base() {
         let frozen = (0..40u16).map(|i| i.min(20) * 20);
         assert_eq!(fault_of(frozen), Some(StreamFault::FrozenClock { packets: 19 }));
+    }
+
+    #[test]
+    fn a_base_of_5_hz_is_named_with_its_period() {
+        let slow = fault_of((0..20u16).map(|i| i * 200));
+        assert_eq!(slow, Some(StreamFault::SlowBase { long_steps: 19, longest_ms: 200 }));
+        assert!(slow.unwrap().to_string().contains("up to 200 ms, expected 20 ms"));
+    }
+
+    #[test]
+    fn a_fault_is_new_once_until_the_stream_was_sound() {
+        let mut check = StreamCheck::default();
+        for count in 1..=3 {
+            check.on_refused(10);
+            assert_eq!(check.new_fault(), Some((StreamFault::DamagedStream { refused: 10 }, count)));
+            assert_eq!(check.new_fault(), None);
+            (0..50).for_each(|i| check.on_packet(i * 20));
+            assert_eq!(check.new_fault(), None);
+        }
     }
 
     #[test]

@@ -1,7 +1,10 @@
 //! The numbers of a drive: verdict, table, summary.
 
 use super::drive::SimDrive;
+use std::path::Path;
+use trundle_core::Vector3;
 use trundle_io::Summary;
+use trundle_sim::Simulator;
 
 /// The verdict, a sentence.
 #[must_use]
@@ -14,6 +17,16 @@ pub fn drive_verdict(drive: &SimDrive) -> String {
         Some((reached, all)) => format!("way-point {} of {all} not reached.", reached + 1),
         None => "done.".to_owned(),
     }
+}
+
+/// The folder of a drive's recording, and a command that reads it.
+#[must_use]
+pub fn recording_hint(robot: &Simulator, folder: &Path) -> String {
+    let base_from_camera = robot.config().base_from_camera;
+    let height = base_from_camera.translation.z;
+    let tilt = (-base_from_camera.rotate(Vector3::z()).z).asin().to_degrees();
+    let folder = folder.display();
+    format!("Wrote {folder}; try: trundle slam {folder} --height {height:.2} --tilt {tilt:.0}")
 }
 
 /// The table, the wall clock's rows last.

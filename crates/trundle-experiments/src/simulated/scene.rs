@@ -8,7 +8,7 @@ use trundle_core::Pose2;
 use trundle_io::{Expected, FileKind};
 use trundle_sim::import::{GltfOptions, RaisedMap, UpAxis};
 use trundle_sim::scenes::file::{BaseLoader, SceneFile};
-use trundle_sim::{Lights, Scene, World};
+use trundle_sim::{Lights, Scene, SimConfig, Simulator, World};
 
 /// Files that the command line names are relative to where the program runs.
 const HERE: SceneFiles = SceneFiles { folder: PathBuf::new() };
@@ -73,6 +73,15 @@ pub fn load_scene(name: &str, args: SceneOptions) -> Result<Scene, AppError> {
         Some(station) => scene.with_station(station)?,
         None => scene,
     })
+}
+
+/// A robot in the scene of a name; the options' seed is that of the noise too.
+///
+/// # Errors
+/// Those of [`load_scene`], and when the robot does not fit at the start.
+pub fn load_simulator(name: &str, options: SceneOptions, robot: SimConfig) -> Result<Simulator, AppError> {
+    let scene = load_scene(name, options)?;
+    Simulator::new(scene, robot, options.seed).map_err(|error| AppError::Input(format!("{name}: {error}")))
 }
 
 /// The kind of the file that a scene's name stands for; `None` for a name that is no file.

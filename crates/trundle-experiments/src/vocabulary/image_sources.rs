@@ -1,16 +1,8 @@
 //! Where images come from: recorded folders and simulated scenes.
 
+use crate::IndexRange;
 use std::path::PathBuf;
 use trundle_app::AppError;
-
-/// Numbers from a first to a last one, both included.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct IndexRange {
-    /// The first.
-    pub first: u64,
-    /// The last.
-    pub last: u64,
-}
 
 /// Recorded folders and simulated scenes.
 #[derive(Debug, Clone)]

@@ -2,6 +2,7 @@
 
 mod bearings;
 mod config;
+mod fan;
 mod floor_fit;
 mod floor_samples;
 mod mount;

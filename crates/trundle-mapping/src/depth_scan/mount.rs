@@ -2,9 +2,10 @@
 
 use super::{
     DepthScanConfig,
+    fan::Fan,
     floor_samples::FloorSamples,
     pixel_model::PixelModel,
-    pixel_rays::{Fan, LensRays},
+    pixel_rays::LensRays,
     range_bins::{BELOW, BIN_COUNT, SpanBits, bins},
 };
 use trundle_core::{Invalid, Pose3, Vector2, Vector3};

@@ -195,7 +195,7 @@ impl Ros2Body {
             drop(commands);
             drop(links);
             *lock(&shared.sink) = None;
-            drop(camera);
+            camera.last_fault()
         })
     }
 

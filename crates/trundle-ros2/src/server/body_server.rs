@@ -1,12 +1,12 @@
 //! A body offered as a ROS 2 robot: its sensors are published, commands come by `cmd_vel`.
 
 use super::ServerSettings;
+use super::clock_publisher::ClockPublisher;
 use super::image_publisher::ImagePublisher;
 use crate::convert::odometry::OdometryFrames;
 use crate::convert::{battery, imu, odometry, scan, stamp, transform, twist};
 use crate::generated::geometry_msgs::{Twist, TwistStamped};
 use crate::generated::nav_msgs::Odometry as OdometryMessage;
-use crate::generated::rosgraph_msgs::Clock;
 use crate::generated::sensor_msgs::{BatteryState, Imu, JointState, LaserScan};
 use crate::generated::tf2_msgs::TFMessage;
 use crate::node::{RosNode, qos};
@@ -14,7 +14,7 @@ use crate::outputs::OutputTopic;
 use crate::{Ros2Error, Ros2Options};
 use nalgebra::Matrix3;
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::time::{Duration, Instant};
 use trundle_app::AppError;
 use trundle_app::real_time::RealTimePacer;
 use trundle_core::{
@@ -27,8 +27,6 @@ use trundle_localization::{OdometryConfig, WheelOdometry};
 const COMMAND_LIFETIME: Duration = Duration::from_millis(500);
 /// Range of a laser's beams without echo \[m\]. Source: the simulated lasers reach 12 m.
 const LASER_RANGE_M: f64 = 12.0;
-/// Period of `/clock` \[s\]: that of the wheels. Source: ours.
-const CLOCK_PERIOD_S: f64 = 0.01;
 
 /// What a body that is offered looks like.
 #[derive(Debug, Clone, Copy)]
@@ -72,14 +70,11 @@ pub struct BodyServer {
     battery: OutputTopic<BatteryState>,
     tf: OutputTopic<TFMessage>,
     tf_static: OutputTopic<TFMessage>,
-    clock: OutputTopic<Clock>,
+    clock: ClockPublisher,
     images: ImagePublisher,
     odometry: WheelOdometry,
     wheels: Wheels,
-    command: Arc<Mutex<Option<(Twist2, Instant)>>>,
-    /// The ROS time of the body's stamp 0 \[ns\].
-    origin: i64,
-    clock_due: Option<Stamp>,
+    command: NewestCommand,
 }
 
 impl BodyServer {
@@ -91,7 +86,6 @@ impl BodyServer {
         let config = OdometryConfig::default();
         let odometry =
             WheelOdometry::new(body.drive, config).map_err(|error| Ros2Error::create("odometry", error))?;
-        let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         Ok(Self {
             odom: OutputTopic::new(node, "odom", &qos::reliable(10))?,
             truth: OutputTopic::new(node, "ground_truth", &qos::reliable(10))?,
@@ -101,15 +95,13 @@ impl BodyServer {
             battery: OutputTopic::new(node, "battery_state", &qos::reliable(1))?,
             tf: OutputTopic::new(node, "/tf", &qos::reliable(100))?,
             tf_static: OutputTopic::new(node, "/tf_static", &qos::latched())?,
-            clock: OutputTopic::new(node, "/clock", &qos::sensor(1))?,
+            clock: ClockPublisher::new(node)?,
             images: ImagePublisher::start(node, &settings, body.camera)?,
             command: subscribe_commands(node, settings.stamped_commands)?,
             settings,
             body,
             odometry,
             wheels: Wheels::default(),
-            origin: i64::try_from(since.as_nanos()).unwrap_or_default(),
-            clock_due: None,
         })
     }
 
@@ -144,13 +136,9 @@ impl BodyServer {
         command.filter(|(_, at)| at.elapsed() <= COMMAND_LIFETIME).map_or(Twist2::ZERO, |(twist, _)| twist)
     }
 
-    fn at(&self, stamp: Stamp) -> Stamp {
-        Stamp::from_nanos(self.origin.saturating_add(stamp.nanos))
-    }
-
     fn publish(&mut self, event: SensorEvent) {
-        let at = self.at(event.stamp());
-        self.publish_clock(at);
+        let at = self.clock.ros_time(event.stamp());
+        self.clock.publish(at);
         let frames = &self.settings.frames;
         match event {
             SensorEvent::Gyro(gyro) => {
@@ -190,15 +178,8 @@ impl BodyServer {
         self.tf.publish(TFMessage { transforms });
     }
 
-    fn publish_clock(&mut self, at: Stamp) {
-        if self.clock_due.is_none_or(|due| at >= due) {
-            self.clock_due = Some(at.after(CLOCK_PERIOD_S));
-            self.clock.publish(Clock { clock: stamp::to_ros(at) });
-        }
-    }
-
     fn publish_static(&self) {
-        let (frames, at) = (&self.settings.frames, self.at(Stamp::default()));
+        let (frames, at) = (&self.settings.frames, self.clock.ros_time(Stamp::default()));
         let camera = transform::to_ros(&self.body.base_from_camera, at, &frames.base, &frames.camera);
         let scan = transform::planar_to_ros(&Pose2::IDENTITY, at, &frames.base, &frames.scan);
         self.tf_static.publish(TFMessage { transforms: vec![camera, scan] });

@@ -1,6 +1,7 @@
 //! A body of trundle offered to ROS 2: the simulator as a ROS 2 robot.
 
 mod body_server;
+mod clock_publisher;
 mod image_publisher;
 
 pub use body_server::{BodyServer, OfferedBody, serve_body};

@@ -6,6 +6,7 @@ use crate::operator::PoseGuess;
 use crate::reason::Reason;
 use trundle_control::MotionHold;
 use trundle_core::{Pose2, Stamp, difference_of_angles};
+use trundle_localization::{WheelCounts, WheelReport};
 
 /// Correction of the pose estimate \[m\] above which the correction is logged. Source: ours, the size of a grid cell.
 const LOGGED_CORRECTION_M: f64 = 0.05;
@@ -39,6 +40,23 @@ pub(super) fn sensor_change(at: Stamp, change: SensorChange) {
     tracing::warn!("{:.3} s: {}", at.as_secs(), change.text());
 }
 
+/// Logs readings of the wheels that no wheel can make: the first, the second, the fourth and so on.
+pub(super) fn encoder_jump(at: Stamp, report: WheelReport, counts: WheelCounts) {
+    let at = at.as_secs();
+    match report {
+        WheelReport::TooFast { speed } if counts.too_fast.is_power_of_two() => tracing::warn!(
+            "{at:.3} s: the encoders jump: the wheels would drive {speed:.1} m/s, more than odometry.max_speed; the reading is dropped, \
+             {} so far; check the encoders and the base's cable",
+            counts.too_fast
+        ),
+        WheelReport::Restarted if counts.restarts.is_power_of_two() => tracing::warn!(
+            "{at:.3} s: the encoders count on from another value, {} times so far: the motion in between is unknown",
+            counts.restarts
+        ),
+        _ => {}
+    }
+}
+
 /// Logs a pose that an operator gives.
 pub(super) fn pose_given(at: Stamp, guess: &PoseGuess) {
     let (at, pose, sigma) = (at.as_secs(), guess.pose, guess.position_sigma);
@@ -53,8 +71,10 @@ pub(super) fn pose_given(at: Stamp, guess: &PoseGuess) {
 /// Logs a state that differs from the last one, or has a reason of another kind.
 pub(super) fn state(at: Stamp, last: &DriveState, new: &DriveState) {
     let kind = |state: &DriveState| state.reason().map(Reason::kind);
-    if last.name() != new.name() || kind(last) != kind(new) {
+    if last.name() != new.name() {
         tracing::info!("{:.3} s: {} -> {new}", at.as_secs(), last.name());
+    } else if kind(last) != kind(new) {
+        tracing::info!("{:.3} s: still {new}", at.as_secs());
     }
 }
 

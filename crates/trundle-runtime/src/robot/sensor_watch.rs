@@ -36,6 +36,8 @@ impl SensorChange {
 /// Watches wheels and gyro for silent faults.
 #[derive(Debug, Default)]
 pub(super) struct SensorWatch {
+    /// The newest stamp of any event.
+    newest: Stamp,
     /// The newest reading of the gyro; the first one of the wheels before any.
     gyro: Option<Stamp>,
     is_gyro_missing: bool,
@@ -43,6 +45,16 @@ pub(super) struct SensorWatch {
 }
 
 impl SensorWatch {
+    /// Notes the stamp of an event of any kind.
+    pub(super) fn on_event(&mut self, stamp: Stamp) {
+        self.newest = self.newest.max(stamp);
+    }
+
+    /// The newest stamp of any event: the time of log lines never runs backwards.
+    pub(super) fn newest(&self) -> Stamp {
+        self.newest
+    }
+
     /// Notes a reading of the gyro.
     pub(super) fn on_gyro(&mut self, stamp: Stamp) {
         self.gyro = Some(stamp);

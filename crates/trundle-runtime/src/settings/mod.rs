@@ -2,14 +2,19 @@
 
 mod file;
 mod former_names;
+mod missing_keys;
+mod overrides;
 mod plausibility;
 mod print;
 mod reference;
 mod schema;
+mod settings_error;
+mod translation;
 mod value_kind;
 
-pub use file::{RobotFile, SettingsError};
+pub use file::RobotFile;
 pub use former_names::with_present_names;
 pub use print::to_commented_toml;
 pub use reference::{Setting, reference};
 pub use schema::json_schema;
+pub use settings_error::SettingsError;

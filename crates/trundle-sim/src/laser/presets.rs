@@ -9,6 +9,14 @@ const URG_STEP: f64 = TAU / 1024.0;
 /// Lasers by their data sheets. What a sheet gives as accuracy is a bound and holds a systematic part; the noise here is a
 /// third of it where the sheet gives no standard deviation.
 impl LaserConfig {
+    /// The lasers of a front end: name, help text, configuration.
+    pub const PRESETS: [(&'static str, &'static str, fn() -> Self); 4] = [
+        ("rplidar-a1", "Slamtec RPLIDAR A1: all around, 12 m", Self::rplidar_a1),
+        ("urg-04lx", "Hokuyo URG-04LX: 240 deg, 5.6 m", Self::urg_04lx),
+        ("ust-10lx", "Hokuyo UST-10LX: 270 deg, 10 m", Self::ust_10lx),
+        ("lds-01", "LDS-01 of the TurtleBot3: all around, 3.5 m", Self::lds_01),
+    ];
+
     /// Slamtec RPLIDAR A1M8: 0.15 to 12 m, 5.5 Hz, 1 deg, resolution 0.5 mm near and below 1 % of the range
     /// (Introduction and Datasheet, rev. 1.0, 2016, and rev. 3.0, 2020).
     pub fn rplidar_a1() -> Self {

@@ -2,7 +2,8 @@
 
 use crate::camera::frame_monitor::check_intrinsics;
 use crate::camera::{CameraInfo, StreamInfo};
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 use trundle_core::{Invalid, Pose3, require_in, require_positive};
 
 /// First word of the header.
@@ -31,7 +32,9 @@ struct Header {
     serial: String,
     #[serde(default)]
     firmware: String,
+    #[serde(deserialize_with = "color_stream")]
     color: StreamInfo,
+    #[serde(deserialize_with = "depth_stream")]
     depth: StreamInfo,
     #[serde(default = "millimetre")]
     depth_unit_m: f64,
@@ -41,6 +44,19 @@ struct Header {
     delay_s: f64,
     #[serde(default = "yes")]
     live: bool,
+}
+
+fn color_stream<'de, D: Deserializer<'de>>(header: D) -> Result<StreamInfo, D::Error> {
+    named_stream("color", header)
+}
+
+fn depth_stream<'de, D: Deserializer<'de>>(header: D) -> Result<StreamInfo, D::Error> {
+    named_stream("depth", header)
+}
+
+/// A stream of the header; an error names the stream.
+fn named_stream<'de, D: Deserializer<'de>>(name: &str, header: D) -> Result<StreamInfo, D::Error> {
+    StreamInfo::deserialize(header).map_err(|error| D::Error::custom(format!("{name}: {error}")))
 }
 
 fn millimetre() -> f64 {

@@ -76,13 +76,13 @@ fn half_a_frame_from_before_a_loss_is_not_ended_on_the_new_connection() {
     let (mut io_loop, commands, millis) = looped(first, second);
     commands.send(Twist2::new(0.3, 0.0)).unwrap();
     io_loop.step();
-    assert!(io_loop.is_up && !io_loop.outbox.is_empty());
+    assert!(io_loop.state.is_up && !io_loop.outbox.is_empty());
     io_loop.step();
-    assert!(!io_loop.is_up && io_loop.link.is_none());
+    assert!(!io_loop.state.is_up && io_loop.link.is_none());
     commands.send(Twist2::new(0.3, 0.0)).unwrap();
     millis.store(100, Ordering::SeqCst);
     (0..4).for_each(|_| io_loop.step());
-    assert!(io_loop.is_up);
+    assert!(io_loop.state.is_up);
     let zero = KobukiCommand::BaseControl(BaseControl::STOP).encode();
     assert_eq!(*written.lock().unwrap(), [greeting(), zero].concat(), "zero speed and the request alone");
 }
@@ -94,13 +94,13 @@ fn a_base_whose_clock_stands_still_is_lost_and_does_not_come_back_by_opening() {
     let (second, _) = scripted(vec![packet.clone(), packet], 1000);
     let (mut io_loop, _commands, millis) = looped(first, second);
     io_loop.step();
-    assert!(io_loop.is_up);
+    assert!(io_loop.state.is_up);
     millis.store(101, Ordering::SeqCst);
     io_loop.step();
-    assert!(!io_loop.is_up && io_loop.link.is_none(), "the second packet says nothing new");
+    assert!(!io_loop.state.is_up && io_loop.link.is_none(), "the second packet says nothing new");
     millis.store(1000, Ordering::SeqCst);
     (0..3).for_each(|_| io_loop.step());
-    assert!(!io_loop.is_up);
+    assert!(!io_loop.state.is_up);
 }
 
 #[test]
@@ -134,7 +134,7 @@ fn a_thread_that_stands_still_does_not_lose_the_link() {
     let states: Vec<bool> = (0..5)
         .map(|_| {
             io_loop.step();
-            io_loop.is_up
+            io_loop.state.is_up
         })
         .collect();
     assert_eq!(

@@ -15,6 +15,12 @@ pub enum UpAxis {
     Z,
 }
 
+impl UpAxis {
+    /// The choices of a front end: name, help text, value.
+    pub const CHOICES: [(&'static str, &'static str, Self); 2] =
+        [("y", "As glTF has it", Self::Y), ("z", "As robots have it", Self::Z)];
+}
+
 /// How a glTF file is placed in the world.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

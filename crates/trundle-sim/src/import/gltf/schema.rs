@@ -38,6 +38,7 @@ pub(super) fn parse(json: &[u8]) -> Result<Root, ImportFault> {
     let not_gltf = |reason: String| ImportFault::NotGltf { reason };
     let mut value: Value = deserialize::from_slice(json).map_err(|error| not_gltf(broken_json(&error)))?;
     remove_extras(&mut value);
+    remove_unused_maps(&mut value);
     let mut root: Root = deserialize::from_value(value).map_err(|error| not_gltf(wrong_value(&error)))?;
     if !root.asset.version.starts_with("2.") {
         return Err(not_gltf(format!("asset.version is '{}', expected 2.x", root.asset.version)));
@@ -87,6 +88,19 @@ fn remove_extras(value: &mut Value) {
     }
 }
 
+/// Members of a material that hold maps which the renderer does not use.
+const UNUSED_MEMBERS: [&str; 4] = ["normalTexture", "occlusionTexture", "emissiveTexture", "extensions"];
+
+/// Takes out the maps of materials that the renderer does not use: a wrong index in one of them would refuse the whole scene.
+fn remove_unused_maps(value: &mut Value) {
+    let materials = value.get_mut("materials").and_then(Value::as_array_mut).into_iter().flatten();
+    for material in materials.filter_map(Value::as_object_mut) {
+        UNUSED_MEMBERS.iter().for_each(|name| drop(material.remove(*name)));
+        let surface = material.get_mut("pbrMetallicRoughness").and_then(Value::as_object_mut);
+        surface.into_iter().for_each(|surface| drop(surface.remove("metallicRoughnessTexture")));
+    }
+}
+
 /// Takes out indices of image data that is not there. Such a texture is grey; without this, the whole scene is refused.
 fn leave_out_lost_images(root: &mut Root) {
     let (views, images) = (root.buffer_views.len(), root.images.len());
@@ -109,4 +123,29 @@ fn check_attributes(root: &Root) -> Result<(), ImportFault> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(material: &str) -> Result<Root, ImportFault> {
+        parse(format!(r#"{{"asset": {{"version": "2.0"}}, "materials": [{material}]}}"#).as_bytes())
+    }
+
+    #[test]
+    fn a_wrong_index_of_a_map_that_is_not_drawn_is_no_fault() {
+        for map in [
+            r#"{"normalTexture": {"index": 7}}"#,
+            r#"{"occlusionTexture": {"index": 7}}"#,
+            r#"{"emissiveTexture": {"index": 7}}"#,
+            r#"{"pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 7}}}"#,
+            r#"{"extensions": {"KHR_materials_clearcoat": {"clearcoatTexture": {"index": 7}}}}"#,
+        ] {
+            let root = parsed(map).unwrap_or_else(|fault| panic!("{map}: {fault}"));
+            assert_eq!(root.materials.len(), 1);
+        }
+        let drawn = parsed(r#"{"pbrMetallicRoughness": {"baseColorTexture": {"index": 7}}}"#);
+        assert!(drawn.is_err(), "the base colour is drawn");
+    }
 }

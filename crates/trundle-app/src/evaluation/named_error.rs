@@ -1,8 +1,8 @@
 //! Errors of an evaluation with the name of the file that they concern.
 
+use crate::AppError;
 use std::path::Path;
-use trundle::app::AppError;
-use trundle::eval::{EvalError, Side};
+use trundle_eval::{EvalError, Side};
 
 /// The error with the name of the file that it concerns, or of both.
 pub fn named_error(error: &EvalError, reference: &Path, estimate: &Path) -> AppError {
