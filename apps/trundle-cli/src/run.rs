@@ -53,14 +53,6 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
     let checkpoint = args.options.checkpoint.as_deref();
     let (line, progress) = console::progress(args.options.common.quiet);
     let origin = Instant::now();
-    let start = |events, _place| {
-        let body = start_hardware(&args.base, camera, setup.robot.camera, events, origin)?;
-        // A run that is refused leaves the checkpoint where it is.
-        if resumes_from_another_file(args) {
-            checkpoint.map_or(Ok(()), keep_aside)?;
-        }
-        Ok(body)
-    };
     #[cfg(feature = "ros2")]
     let (node, front_end) = match args.ros2 {
         true => {
@@ -69,8 +61,18 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
         }
         false => (None, progress.into()),
     };
+    #[cfg(feature = "ros2")]
+    let observer = node.as_ref().and_then(trundle::ros2::RobotNode::observer);
     #[cfg(not(feature = "ros2"))]
-    let front_end = progress;
+    let (front_end, observer) = (progress, None);
+    let start = |events, _place| {
+        let body = start_hardware(&args.base, camera, setup.robot.camera, events, origin, observer)?;
+        // A run that is refused leaves the checkpoint where it is.
+        if resumes_from_another_file(args) {
+            checkpoint.map_or(Ok(()), keep_aside)?;
+        }
+        Ok(body)
+    };
     let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), front_end);
     line.finish_and_clear();
     #[cfg(feature = "ros2")]

@@ -56,22 +56,46 @@ def largest_step(found):
     return step
 
 
+# Values and descriptors that are asked for at once: a reply has little room.
+AT_ONCE = 4
+
+
+def parameter_names(user, node):
+    """All names: a list that has no room for them names prefixes, which are asked for in turn."""
+    names, prefixes, asked = set(), [""], set()
+    while prefixes:
+        prefix = prefixes.pop()
+        if prefix not in asked:
+            asked.add(prefix)
+            request = ListParameters.Request(prefixes=[prefix] if prefix else [])
+            answer = user.call(ListParameters, f"{node}/list_parameters", request)
+            names.update(answer.result.names if answer else [])
+            prefixes.extend(answer.result.prefixes if answer else [])
+    return sorted(names)
+
+
+def in_parts(user, kind, service, names, field):
+    """The answers for all names, asked for a few at a time."""
+    parts = [names[i:i + AT_ONCE] for i in range(0, len(names), AT_ONCE)]
+    answers = [user.call(kind, service, kind.Request(names=part)) for part in parts]
+    return [value for answer in answers if answer for value in getattr(answer, field)]
+
+
 def parameters(checks, user, options):
     """All settings can be read and described; a changeable one keeps its range and its type."""
-    names = user.call(ListParameters, f"{options.node}/list_parameters", ListParameters.Request())
-    names = list(names.result.names) if names else []
+    names = parameter_names(user, options.node)
     if not checks.check("parameters are listed", len(names) > 20, f"{len(names)} names"):
         return
-    values = user.call(GetParameters, f"{options.node}/get_parameters", GetParameters.Request(names=names))
-    known = values and sum(v.type != ParameterType.PARAMETER_NOT_SET for v in values.values)
-    checks.check("every parameter has a value", known == len(names), f"{known} of {len(names)}")
-    described = user.call(DescribeParameters, f"{options.node}/describe_parameters", DescribeParameters.Request(names=names))
-    texts = described and sum(bool(d.description) for d in described.descriptors)
+    values = in_parts(user, GetParameters, f"{options.node}/get_parameters", names, "values")
+    unset = [n for n, v in zip(names, values) if v.type == ParameterType.PARAMETER_NOT_SET]
+    checks.check("every parameter has a value or is optional", len(values) == len(names), f"{len(values)} of {len(names)}, not set: {unset}")
+    described = in_parts(user, DescribeParameters, f"{options.node}/describe_parameters", names, "descriptors")
+    texts = sum(bool(d.description) for d in described)
     checks.check("every parameter is described", texts == len(names), f"{texts} of {len(names)}")
     missing = user.call(GetParameters, f"{options.node}/get_parameters", GetParameters.Request(names=["no.such.parameter"]))
     checks.check("an unknown name is answered as not set", missing is not None and all(v.type == 0 for v in missing.values))
-    if values and described:
-        set_parameters(checks, user, options, described.descriptors, values.values)
+    if len(values) == len(described) == len(names):
+        set_parameters(checks, user, options, described, values)
 
 
 def setting(user, options, name, value):

@@ -10,9 +10,9 @@ pub use device_list::{device_rows, udev_rules};
 pub use drivers::{Drivers, OpenCamera};
 
 use crate::AppError;
-use crate::real_time::{EventFeed, LiveBody, TimedEvent};
+use crate::real_time::{EventFeed, EventObserver, LiveBody, TimedEvent};
 use std::time::Instant;
-use trundle_core::PinholeCamera;
+use trundle_core::{PinholeCamera, SensorEvent};
 use trundle_drivers::BaseSpec;
 use trundle_runtime::real_time::InboxSender;
 
@@ -35,7 +35,7 @@ pub fn guard_base() -> Result<(), AppError> {
 }
 
 /// Starts base and camera as the body of a run; `output` is the camera that the robot works with. Events go to `events`, their stamps count
-/// from `origin`.
+/// from `origin`. `observer` is called with each of them.
 ///
 /// # Errors
 /// When the base does not answer, or the system refuses a thread.
@@ -45,10 +45,15 @@ pub fn start_hardware(
     output: PinholeCamera,
     events: InboxSender<TimedEvent>,
     origin: Instant,
+    observer: Option<EventObserver>,
 ) -> Result<LiveBody, AppError> {
     let feed = EventFeed::new(events, origin);
     let sink = feed.clone();
-    let drivers = Drivers::start(base, camera, output, origin, move |event| sink.send(&event))?;
+    let send = move |event: SensorEvent| {
+        sink.send(&event);
+        observer.iter().for_each(|observer| observer(&event));
+    };
+    let drivers = Drivers::start(base, camera, output, origin, send)?;
     let commands = drivers.commands();
     LiveBody::start(feed, Some(commands), move || drivers.camera_fault())
 }

@@ -16,7 +16,7 @@ mod report;
 mod threaded_body;
 
 pub use background_body::{BackgroundBody, BodyTiming, Lateness, TimedEvent};
-pub use event_feed::EventFeed;
+pub use event_feed::{EventFeed, EventObserver};
 pub use live_body::LiveBody;
 pub use memory_usage::MemoryUsage;
 pub use pacer::RealTimePacer;

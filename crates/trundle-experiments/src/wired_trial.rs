@@ -57,8 +57,9 @@ fn drive(setup: &RunSetup, folder: &Path) -> Result<FinishedRun, AppError> {
     let (base, camera) = (BaseSpec::Kobuki(Some(port(folder))), CameraSpec::Stream(camera(folder)));
     let output = OutputFolder::create(&folder.join("run"))?;
     let camera = OpenCamera::open(&camera)?;
-    let start =
-        |events, _place| start_hardware(&base, camera, setup.robot.camera, events, std::time::Instant::now());
+    let start = |events, _place| {
+        start_hardware(&base, camera, setup.robot.camera, events, std::time::Instant::now(), None)
+    };
     let (run, _) = run_in_real_time(setup, start, &output, None, RunLog::default(), Progress::hidden())?;
     Ok(run)
 }

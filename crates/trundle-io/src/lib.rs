@@ -73,8 +73,8 @@ pub use recording::{PoseInFrame, PosesInFrame, RecordedMessage, Recorder, Record
 pub use replace::{replace_file, require_replaceable};
 pub use ros::message as ros_message;
 pub use ros::{
-    RosFrame, RosFrames, RosImageTopics, RosSequence, RosSequenceOptions, RosTopics, read_laser_log,
-    read_ros_bag,
+    RosFrame, RosFrames, RosImageTopics, RosSequence, RosSequenceOptions, RosTopics, decode_compressed_depth,
+    read_laser_log, read_ros_bag,
 };
 pub use sequence_camera::SequenceCamera;
 pub use stamp_text::parse_stamp;

@@ -20,4 +20,6 @@ pub(crate) use cdr::{CdrError, CdrReader, Wire};
 pub(crate) use definitions::definition;
 pub use laser_log::{read_laser_log, read_ros_bag};
 pub(crate) use messages::header;
-pub use rgbd::{RosFrame, RosFrames, RosImageTopics, RosSequence, RosSequenceOptions, RosTopics};
+pub use rgbd::{
+    RosFrame, RosFrames, RosImageTopics, RosSequence, RosSequenceOptions, RosTopics, decode_compressed_depth,
+};

@@ -19,7 +19,7 @@ pub trait ServiceType {
     /// The request.
     type Request: Message + Clone + Send + 'static;
     /// The response.
-    type Response: Message + Clone + Send + 'static;
+    type Response: Message + Clone + Default + Send + 'static;
 }
 
 /// An action.

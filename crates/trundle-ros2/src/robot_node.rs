@@ -4,13 +4,15 @@ use crate::body::{BodyDescription, BodySettings, OdometryReader, Ros2Body};
 use crate::clock::RosClock;
 use crate::navigation::{self, ActiveGoal, Parameters};
 use crate::node::{NodeThread, RosNode};
-use crate::outputs::{OutputSettings, OutputSources, RobotOutputs, RobotTopics};
+use crate::outputs::{OutputSettings, OutputSources, PublishedMap, RobotOutputs, RobotTopics};
+use crate::server::{SensorTopics, ServerSettings};
 use crate::{Ros2Error, Ros2Options};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use trundle_app::AppError;
 use trundle_app::operator::{Operator, OperatorLink, operator_link};
-use trundle_app::real_time::{LiveBody, TimedEvent};
+use trundle_app::real_time::{EventObserver, LiveBody, TimedEvent};
+use trundle_core::SensorEvent;
 use trundle_runtime::real_time::InboxSender;
 use trundle_runtime::{CameraMount, RangeSource, RobotConfig};
 
@@ -19,6 +21,8 @@ pub struct RobotNode {
     // Declared first: the outputs end before the node.
     _outputs: RobotOutputs,
     thread: Arc<NodeThread>,
+    /// Publishes the sensors of trundle's own body; none where the body comes by topics.
+    observer: Option<EventObserver>,
 }
 
 /// A robot whose body comes by topics, all of them begun.
@@ -108,10 +112,35 @@ impl RobotNode {
         let mut node = RosNode::new(&options.node)?;
         let (operator, link) = operator_link();
         let outputs = OutputSettings::of(options, robot, true);
-        let parts = Parts::new(&mut node, options, robot, outputs, operator, RosClock::system_from(origin))?;
+        let clock = RosClock::system_from(origin);
+        let sensors = observer(&mut node, options, robot, clock.clone())?;
+        let parts = Parts::new(&mut node, options, robot, outputs, operator, clock)?;
         let thread = Arc::new(node.start()?);
-        Ok((parts.start(thread, robot, None)?, link))
+        let offered = parts.start(thread, robot, None)?;
+        Ok((Self { observer: Some(sensors), ..offered }, link))
     }
+
+    /// Publishes the sensors of trundle's own body, from any thread; none where the body comes by topics.
+    #[must_use]
+    pub fn observer(&self) -> Option<EventObserver> {
+        self.observer.clone()
+    }
+}
+
+/// Publishes the events of the sensors of `robot`.
+fn observer(
+    node: &mut RosNode,
+    options: &Ros2Options,
+    robot: &RobotConfig,
+    clock: RosClock,
+) -> Result<EventObserver, Ros2Error> {
+    let (frames, stamped_commands) = (options.frames.clone(), options.stamped_commands);
+    let settings = ServerSettings { frames, stamped_commands, raw_images: false };
+    let topics = Mutex::new(SensorTopics::new(node, &settings, robot.camera, robot.drive)?);
+    Ok(Arc::new(move |event: &SensorEvent| {
+        let at = clock.to_ros(event.stamp());
+        topics.lock().unwrap_or_else(PoisonError::into_inner).publish(event, at);
+    }))
 }
 
 /// What a node publishes and offers, before it runs.
@@ -121,6 +150,7 @@ struct Parts {
     operator: Operator,
     clock: RosClock,
     diagnostics: crate::node::Diagnostics,
+    published_map: PublishedMap,
 }
 
 impl Parts {
@@ -135,9 +165,10 @@ impl Parts {
         let diagnostics = node.diagnostics();
         let topics = RobotTopics::new(node, &settings)?;
         let active = ActiveGoal::new(operator.clone(), clock.clone(), diagnostics.clone());
-        navigation::offer(node, &active, &options.frames)?;
-        Parameters::of(robot, options.use_sim_time).offer(node)?;
-        Ok(Self { topics, settings, operator, clock, diagnostics })
+        let published_map = PublishedMap::default();
+        navigation::offer(node, &active, &options.frames, &published_map, robot)?;
+        Parameters::of(robot, options.use_sim_time).offer(node, &active)?;
+        Ok(Self { topics, settings, operator, clock, diagnostics, published_map })
     }
 
     fn start(
@@ -155,8 +186,10 @@ impl Parts {
                 .is_none_or(|odometry| !odometry.has_transform(&self.settings.frames.base)),
             body_odometry,
             base_from_camera: robot.mount.base_from_camera(),
+            published_map: self.published_map,
+            node: Arc::clone(&thread),
         };
         let outputs = RobotOutputs::start(self.topics, self.settings, sources)?;
-        Ok(RobotNode { _outputs: outputs, thread })
+        Ok(RobotNode { _outputs: outputs, thread, observer: None })
     }
 }

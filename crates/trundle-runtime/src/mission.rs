@@ -50,12 +50,22 @@ pub struct MissionState {
     pub places: Vec<usize>,
     /// The tasks that have ended.
     pub ended: Vec<TaskRecord>,
+    /// Whether an operator gave the mission and waits for its outcome: a goal without a path ends at once.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub by_operator: bool,
 }
 
 impl MissionState {
     /// A mission that has yet to begin.
     pub fn new(mission: Mission) -> Self {
-        Self { places: (0..mission.tasks().len()).collect(), left: mission, ended: Vec::new() }
+        let places = (0..mission.tasks().len()).collect();
+        Self { places, left: mission, ended: Vec::new(), by_operator: false }
+    }
+
+    /// The same mission, given by an operator.
+    #[must_use]
+    pub(crate) fn of_operator(self) -> Self {
+        Self { by_operator: true, ..self }
     }
 
     /// Passes one from a file through.

@@ -1,6 +1,7 @@
 //! Commands of an operator to a robot that runs: a person at a page, or a program.
 
 use crate::Mission;
+use crate::mission::executor_config::PATIENCE_RANGE_S;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose2, require_finite, require_in};
 
@@ -17,6 +18,8 @@ pub enum OperatorCommand {
     Continue,
     /// The pose of the robot, as the operator knows it.
     SetPose(PoseGuess),
+    /// Change a setting, until the run ends.
+    Change(RunSetting),
 }
 
 impl OperatorCommand {
@@ -34,6 +37,7 @@ impl OperatorCommand {
         match self {
             Self::Begin(mission) => Ok(Self::Begin(Mission::new(mission.tasks().to_vec())?)),
             Self::SetPose(guess) => Ok(Self::SetPose(guess.validated()?)),
+            Self::Change(setting) => Ok(Self::Change(setting.validated()?)),
             Self::Pause | Self::Continue => Ok(self),
         }
     }
@@ -68,6 +72,50 @@ impl PoseGuess {
     }
 }
 
+/// A setting that may change while the robot runs.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum RunSetting {
+    /// `limits.v_m_s`: highest forward speed of the next plans \[m/s\]. The robot file's speed is never exceeded.
+    Speed(f64),
+    /// `mission_executor.patience_s`: time without progress after which a goal is given up \[s\].
+    Patience(f64),
+}
+
+/// Range of a speed limit \[m/s\]. Source: ours; below it a base's wheels stick.
+const SPEED_RANGE_M_S: (f64, f64) = (0.05, 10.0);
+
+impl RunSetting {
+    /// The setting with a key of the robot file, in the unit of the key; `None` where it cannot change while the robot runs.
+    #[must_use]
+    pub fn of_key(key: &str, value: f64) -> Option<Self> {
+        match key {
+            "limits.v_m_s" => Some(Self::Speed(value)),
+            "mission_executor.patience_s" => Some(Self::Patience(value)),
+            _ => None,
+        }
+    }
+
+    /// Smallest and largest value.
+    #[must_use]
+    pub fn range(self) -> (f64, f64) {
+        match self {
+            Self::Speed(_) => SPEED_RANGE_M_S,
+            Self::Patience(_) => PATIENCE_RANGE_S,
+        }
+    }
+
+    fn validated(self) -> Result<Self, Invalid> {
+        let (min, max) = self.range();
+        match self {
+            Self::Speed(value) => require_in("speed limit", value, "m/s", min, max)?,
+            Self::Patience(value) => require_in("patience", value, "s", min, max)?,
+        };
+        Ok(self)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -86,10 +134,24 @@ mod tests {
     }
 
     #[test]
+    fn settings_stay_in_their_ranges() {
+        let change =
+            |key, value| OperatorCommand::Change(RunSetting::of_key(key, value).unwrap()).validated();
+        assert!(change("limits.v_m_s", 0.2).is_ok() && change("mission_executor.patience_s", 20.0).is_ok());
+        for (key, value) in
+            [("limits.v_m_s", 0.0), ("limits.v_m_s", f64::NAN), ("mission_executor.patience_s", 0.5)]
+        {
+            assert!(change(key, value).is_err(), "{key} {value}");
+        }
+        assert_eq!(RunSetting::of_key("drive.wheel_radius_m", 0.1), None);
+    }
+
+    #[test]
     fn commands_keep_their_form_in_recordings() {
         let text = |command: OperatorCommand| serde_json::to_string(&command).unwrap();
         assert_eq!(text(OperatorCommand::cancel()), r#"{"begin":[]}"#);
         assert_eq!(text(OperatorCommand::Pause), r#""pause""#);
+        assert_eq!(text(OperatorCommand::Change(RunSetting::Speed(0.2))), r#"{"change":{"speed":0.2}}"#);
         let begin = OperatorCommand::Begin(Mission::new(vec![Task::Explore, Task::Return]).unwrap());
         assert_eq!(text(begin), r#"{"begin":["explore","return"]}"#);
         assert!(text(guess(1.0, 0.1, 0.2)).contains(r#""position_sigma":0.1"#));

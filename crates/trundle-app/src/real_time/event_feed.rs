@@ -12,6 +12,9 @@ use trundle_runtime::real_time::{InboxItem, InboxSender};
 /// Time without any event after which silence is reported: five readings of a base at 50 Hz. Source: ours.
 const MIN_SILENCE: Duration = Duration::from_millis(100);
 
+/// Is called with each event of the drivers, in the thread that sends it; it must not wait.
+pub type EventObserver = Arc<dyn Fn(&SensorEvent) + Send + Sync>;
+
 /// Sends the events of drivers into a run, from any thread. Images are encoded in the thread that sends them.
 #[derive(Clone)]
 pub struct EventFeed {

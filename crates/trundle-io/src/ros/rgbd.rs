@@ -11,6 +11,7 @@ mod survey;
 mod topic_choice;
 mod yuv;
 
+pub use compressed_depth::decode_compressed_depth;
 pub use frames::{RosFrame, RosFrames};
 pub use sequence::{RosSequence, RosSequenceOptions};
 pub use topic_choice::{RosImageTopics, RosTopics};

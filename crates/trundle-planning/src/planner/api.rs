@@ -32,6 +32,8 @@ const LANE_HALF_WIDTH_M: f64 = 0.2;
 #[derive(Debug)]
 pub struct Planner {
     core: PlannerCore,
+    /// Highest forward speed of the robot, m/s.
+    full_speed: f64,
 }
 
 impl Planner {
@@ -55,6 +57,7 @@ impl Planner {
         let reach = config.curve.reach.min(LANE_HALF_WIDTH_M);
         let on_lanes = PlannerConfig { curve: CurveConfig { reach, ..config.curve }, ..config };
         Ok(Self {
+            full_speed: limits.v,
             core: PlannerCore {
                 config,
                 on_lanes,
@@ -70,6 +73,11 @@ impl Planner {
                 times: PlanningTimes::default(),
             },
         })
+    }
+
+    /// Limits the forward speed of the next plans, m/s, above 0. The robot's own limit stays.
+    pub fn limit_speed(&mut self, speed: f64) {
+        self.core.drive.limits.v = speed.min(self.full_speed);
     }
 
     /// Sets a clock that counts seconds, for [`Planner::stage_times`]. Plans do not depend on it.

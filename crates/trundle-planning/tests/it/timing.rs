@@ -64,3 +64,24 @@ fn what_was_never_seen_is_entered_slowly() {
     assert!(points.iter().all(|p| p.pose.x < 5.0 - RADIUS + 0.01 || p.twist.v <= limit + 1e-6));
     assert!(points.iter().any(|p| p.twist.v > 0.6), "slow everywhere");
 }
+
+#[test]
+fn a_speed_limit_holds_for_the_next_plans_and_never_exceeds_the_robots_own() {
+    let (start, goal) = (Pose2::new(1.0, 1.0, 0.2), Pose2::new(8.0, 4.0, 0.8));
+    let mut planner = planner(at_home(), RADIUS);
+    let fastest = |result: &PlanResult| {
+        result.trajectory.points().iter().map(|point| point.twist.v).fold(0.0, f64::max)
+    };
+    let free = found(planner.plan(&hall(), start, Twist2::ZERO, goal));
+    planner.limit_speed(0.2);
+    let slow = found(planner.plan(&hall(), start, Twist2::ZERO, goal));
+    judge(&hall(), &slow, start, goal, RADIUS);
+    assert!(fastest(&slow) <= 0.2 + 1e-9 && fastest(&free) > 0.4, "{} {}", fastest(&slow), fastest(&free));
+    // A robot that is faster than the new limit brakes.
+    let moving = found(planner.plan(&hall(), start, Twist2::new(0.5, 0.0), goal));
+    let late = moving.trajectory.points().iter().filter(|point| point.time > 3.0);
+    assert!(late.map(|point| point.twist.v).fold(0.0, f64::max) <= 0.2 + 1e-9);
+    planner.limit_speed(100.0);
+    let again = found(planner.plan(&hall(), start, Twist2::ZERO, goal));
+    assert_eq!(again.trajectory.duration(), free.trajectory.duration());
+}

@@ -328,10 +328,7 @@ impl WatchedLink {
     }
 
     fn check(&mut self, shared: &Shared, node: &NodeThread) {
-        let death = node
-            .is_dead()
-            .then(|| "the thread of the ROS 2 node has died: start the program anew".to_owned());
-        let problem = death.or_else(|| self.monitor.stall(Instant::now()));
+        let problem = node.death().or_else(|| self.monitor.stall(Instant::now()));
         let is_up = problem.is_none();
         if let Some(problem) = problem {
             shared.diagnostics.report(&self.monitor.name, Level::Error, problem);

@@ -118,7 +118,7 @@ impl RosCameraSource {
         let color = color.and_then(|image| of_size(image, color_size));
         let depth = match depth {
             ImageMessage::Raw(image) => depth_from_ros(image),
-            ImageMessage::Compressed(image) => compressed_depth_from_ros(image, depth_size),
+            ImageMessage::Compressed(image) => compressed_depth_from_ros(image),
         };
         let depth = depth.and_then(|image| of_size(image, depth_size));
         Ok(CameraFrame {

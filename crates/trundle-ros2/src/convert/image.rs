@@ -6,6 +6,7 @@ pub use compressed_depth::{compressed_depth_from_ros, compressed_depth_to_ros};
 
 use super::stamp;
 use crate::generated::sensor_msgs::{CompressedImage, Image};
+use crate::generated::std_msgs::Header;
 use crate::wire::Bytes;
 use trundle_core::{ColorImage, DepthImage, Invalid, Stamp};
 use trundle_drivers::camera::{PixelFormat, RawImage};
@@ -88,15 +89,7 @@ pub fn compressed_color_from_ros(image: CompressedImage, size: (usize, usize)) -
 /// A colour image as a message.
 #[must_use]
 pub fn color_to_ros(image: &ColorImage, at: Stamp, frame: &str) -> Image {
-    Image {
-        header: stamp::header(at, frame),
-        height: image.height() as u32,
-        width: image.width() as u32,
-        encoding: "rgb8".to_owned(),
-        is_bigendian: 0,
-        step: (image.width() * 3) as u32,
-        data: Bytes(image.data().as_flattened().to_vec()),
-    }
+    to_ros(image, "rgb8", image.data().as_flattened().to_vec(), stamp::header(at, frame))
 }
 
 /// A depth image as a message in millimetres.
@@ -104,14 +97,19 @@ pub fn color_to_ros(image: &ColorImage, at: Stamp, frame: &str) -> Image {
 pub fn depth_to_ros(image: &DepthImage, at: Stamp, frame: &str) -> Image {
     let millimetres =
         |depth: &f32| ((depth * 1000.0).round().clamp(0.0, f32::from(u16::MAX)) as u16).to_le_bytes();
+    to_ros(image, "16UC1", image.data().iter().flat_map(millimetres).collect(), stamp::header(at, frame))
+}
+
+/// Bytes of the size of `image`, rows without a gap.
+fn to_ros<T>(image: &trundle_core::Image<T>, encoding: &str, bytes: Vec<u8>, header: Header) -> Image {
     Image {
-        header: stamp::header(at, frame),
+        header,
         height: image.height() as u32,
         width: image.width() as u32,
-        encoding: "16UC1".to_owned(),
+        encoding: encoding.to_owned(),
         is_bigendian: 0,
-        step: (image.width() * 2) as u32,
-        data: Bytes(image.data().iter().flat_map(millimetres).collect()),
+        step: (bytes.len() / image.height().max(1)) as u32,
+        data: Bytes(bytes),
     }
 }
 

@@ -1,36 +1,33 @@
 //! Services of the map: get, save, and the clearing of costmaps.
 
-use super::active_goal::ActiveGoal;
 use crate::Ros2Error;
 use crate::convert::grid;
 use crate::generated::nav_msgs::{GetMap, GetMapResponse};
 use crate::generated::nav2_msgs::{
     ClearCostmapAroundRobot, ClearCostmapAroundRobotResponse, ClearCostmapExceptRegion,
     ClearCostmapExceptRegionResponse, ClearEntireCostmap, ClearEntireCostmapResponse, LoadMap,
-    LoadMapResponse, SaveMap, SaveMapRequest, SaveMapResponse,
+    LoadMapRequest, LoadMapResponse, SaveMap, SaveMapRequest, SaveMapResponse,
 };
-use crate::node::{Diagnostics, RosNode};
-use crate::outputs::FrameNames;
+use crate::node::{Diagnostics, RosNode, arrives};
+use crate::outputs::{FrameNames, PublishedMap};
 use std::path::Path;
-use trundle_io::{MapImage, map_picture, map_yaml, replace_file};
+use trundle_io::{MapImage, map_picture, map_yaml, read_map, replace_file};
 
 /// Offers `map_server/map`, `map_saver/save_map`, `map_server/load_map` and the clearing of both costmaps.
 ///
 /// # Errors
 /// When a service cannot be made.
-pub fn offer(node: &mut RosNode, active: &ActiveGoal, frames: &FrameNames) -> Result<(), Ros2Error> {
-    let (map, frame) = (active.clone(), frames.map.clone());
-    node.serve::<GetMap>("map_server/map", move |_| GetMapResponse {
-        map: newest(&map).map(|(view, at)| grid::to_ros(&view.grid, at, &frame)).unwrap_or_default(),
-    })?;
-    let (map, diagnostics) = (active.clone(), node.diagnostics());
+pub fn offer(node: &mut RosNode, published: &PublishedMap, frames: &FrameNames) -> Result<(), Ros2Error> {
+    let (map, frame, diagnostics) = (published.clone(), frames.map.clone(), node.diagnostics());
+    node.serve::<GetMap>("map_server/map", move |_| get(&map, &frame, &diagnostics))?;
+    let (map, diagnostics) = (published.clone(), node.diagnostics());
     node.serve::<SaveMap>("map_saver/save_map", move |request| {
         let saved = save(&request, &map);
         saved.as_ref().err().into_iter().for_each(|why| diagnostics.warn("map_saver/save_map", why));
         SaveMapResponse { result: saved.is_ok() }
     })?;
     let diagnostics = node.diagnostics();
-    node.serve::<LoadMap>("map_server/load_map", move |_| refuse_load(&diagnostics))?;
+    node.serve::<LoadMap>("map_server/load_map", move |request| refuse_load(&request, &diagnostics))?;
     for costmap in ["global_costmap", "local_costmap"] {
         // The costs follow the map at each second: there is nothing to clear.
         let clear = |service: &str| format!("{costmap}/{service}_{costmap}");
@@ -47,17 +44,24 @@ pub fn offer(node: &mut RosNode, active: &ActiveGoal, frames: &FrameNames) -> Re
     Ok(())
 }
 
-/// The newest map, and its time on the ROS clock.
-fn newest(
-    active: &ActiveGoal,
-) -> Option<(std::sync::Arc<trundle_app::operator::MapView>, trundle_core::Stamp)> {
-    let view = active.view()?;
-    let at = active.clock().to_ros(view.stamp);
-    Some((view.map.clone()?, at))
+/// The map of the topic, as far as a reply has room for it. The frame of an empty map names the topic that has it.
+fn get(published: &PublishedMap, frame: &str, diagnostics: &Diagnostics) -> GetMapResponse {
+    let map = published.newest().map(|(map, at)| grid::to_ros(&map.grid, at, frame)).unwrap_or_default();
+    if arrives(&map) {
+        return GetMapResponse { map };
+    }
+    let message = format!(
+        "the map has {} cells, more than a reply has room for: read the topic map, which late subscribers receive too",
+        map.data.len()
+    );
+    diagnostics.warn("map_server/map", &message);
+    let mut empty = GetMapResponse::default();
+    empty.map.header.frame_id = message;
+    empty
 }
 
-/// Writes the map to `map_url.yaml` and its picture beside it.
-fn save(request: &SaveMapRequest, active: &ActiveGoal) -> Result<(), String> {
+/// Writes the map of the topic to `map_url.yaml` and its picture beside it.
+fn save(request: &SaveMapRequest, published: &PublishedMap) -> Result<(), String> {
     let url = Path::new(request.map_url.trim_start_matches("file://"));
     let name = url.file_name().and_then(|name| name.to_str());
     let name =
@@ -70,7 +74,7 @@ fn save(request: &SaveMapRequest, active: &ActiveGoal) -> Result<(), String> {
     if !["", "trinary"].contains(&request.map_mode.as_str()) {
         return Err(format!("map_mode is '{}', expected trinary", request.map_mode));
     }
-    let (map, _) = newest(active).ok_or("there is no map yet")?;
+    let (map, _) = published.newest().ok_or("no map has been published yet")?;
     let (file, bytes) = map_picture(name, &map.grid, image).map_err(|error| error.to_string())?;
     replace_file(&url.with_file_name(&file), &bytes).map_err(|error| error.to_string())?;
     let yaml = map_yaml(&map.grid, &file);
@@ -78,8 +82,59 @@ fn save(request: &SaveMapRequest, active: &ActiveGoal) -> Result<(), String> {
         .map_err(|error| error.to_string())
 }
 
-fn refuse_load(diagnostics: &Diagnostics) -> LoadMapResponse {
-    let message = "the map of a running robot cannot be replaced: start trundle with --resume CHECKPOINT";
+/// The map of a running robot stays; the result says whether the file could be read.
+fn refuse_load(request: &LoadMapRequest, diagnostics: &Diagnostics) -> LoadMapResponse {
+    let path = Path::new(request.map_url.trim_start_matches("file://"));
+    let (result, message) = match read_map(path) {
+        _ if !path.exists() => {
+            (LoadMapResponse::RESULT_MAP_DOES_NOT_EXIST, format!("there is no file {}", path.display()))
+        }
+        Err(error) => (LoadMapResponse::RESULT_INVALID_MAP_DATA, error.to_string()),
+        Ok(_) => {
+            let message =
+                "the map of a running robot cannot be replaced: start trundle with --resume CHECKPOINT";
+            (LoadMapResponse::RESULT_UNDEFINED_FAILURE, message.to_owned())
+        }
+    };
     diagnostics.warn("map_server/load_map", message);
-    LoadMapResponse { result: LoadMapResponse::RESULT_UNDEFINED_FAILURE, ..LoadMapResponse::default() }
+    LoadMapResponse { result, ..LoadMapResponse::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+    use trundle_app::operator::MapView;
+    use trundle_core::{OccupancyGrid, Stamp};
+
+    fn published(text: &str) -> PublishedMap {
+        let published = PublishedMap::default();
+        let grid = OccupancyGrid::from_ascii(0.05, text).unwrap();
+        published.set(Arc::new(MapView { revision: 1, grid }), Stamp::default());
+        published
+    }
+
+    #[test]
+    fn the_saved_picture_is_the_published_map_and_before_it_nothing_is_saved() {
+        let folder = std::env::temp_dir().join(format!("trundle-save-map-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let map_url = folder.join("saved").display().to_string();
+        let request = SaveMapRequest { map_url, ..SaveMapRequest::default() };
+        assert!(save(&request, &PublishedMap::default()).unwrap_err().contains("no map"));
+        let own = published("#..\n#??\n###");
+        save(&request, &own).unwrap();
+        let saved = trundle_io::read_map(&folder.join("saved.yaml")).unwrap();
+        assert_eq!(saved.cells(), own.newest().unwrap().0.grid.cells());
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn a_map_that_no_reply_has_room_for_is_refused_with_the_name_of_the_topic() {
+        let diagnostics = Diagnostics::default();
+        assert_eq!(get(&published("#..\n#??"), "map", &diagnostics).map.data.len(), 6);
+        let row = "#".repeat(60) + "\n";
+        let large = get(&published(&row.repeat(60)), "map", &diagnostics);
+        assert!(large.map.data.is_empty() && large.map.header.frame_id.contains("topic map"));
+        assert!(diagnostics.summary().contains("map_server/map: the map has 3600 cells"));
+    }
 }

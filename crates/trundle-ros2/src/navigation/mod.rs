@@ -9,6 +9,7 @@ mod lifecycle;
 mod map_services;
 mod navigation_action;
 mod parameters;
+mod path_planner;
 mod pose_inputs;
 mod remaining;
 
@@ -19,27 +20,36 @@ pub use parameters::Parameters;
 
 use crate::Ros2Error;
 use crate::generated::nav2_msgs::{
-    BackUp, DockRobot, DriveOnHeading, FollowWaypoints, NavigateThroughPoses, NavigateToPose, Spin,
-    UndockRobot,
+    BackUp, DockRobot, DriveOnHeading, FollowPath, FollowWaypoints, NavigateThroughPoses, NavigateToPose,
+    Spin, UndockRobot,
 };
 use crate::node::RosNode;
-use crate::outputs::FrameNames;
+use crate::outputs::{FrameNames, PublishedMap};
+use trundle_runtime::RobotConfig;
 
 /// Offers everything by which Nav2's users and tools give goals.
 ///
 /// # Errors
 /// When a topic, service or action cannot be made.
-pub fn offer(node: &mut RosNode, active: &ActiveGoal, frames: &FrameNames) -> Result<(), Ros2Error> {
+pub fn offer(
+    node: &mut RosNode,
+    active: &ActiveGoal,
+    frames: &FrameNames,
+    published_map: &PublishedMap,
+    robot: &RobotConfig,
+) -> Result<(), Ros2Error> {
     navigation_action::offer::<NavigateToPose>(node, "navigate_to_pose", active, frames)?;
     navigation_action::offer::<NavigateThroughPoses>(node, "navigate_through_poses", active, frames)?;
     navigation_action::offer::<FollowWaypoints>(node, "follow_waypoints", active, frames)?;
+    navigation_action::offer::<FollowPath>(node, "follow_path", active, frames)?;
     navigation_action::offer::<Spin>(node, "spin", active, frames)?;
     navigation_action::offer::<BackUp>(node, "backup", active, frames)?;
     navigation_action::offer::<DriveOnHeading>(node, "drive_on_heading", active, frames)?;
     navigation_action::offer::<DockRobot>(node, "dock_robot", active, frames)?;
     navigation_action::offer::<UndockRobot>(node, "undock_robot", active, frames)?;
+    path_planner::offer(node, active, frames, robot)?;
     pose_inputs::offer(node, active, frames)?;
-    map_services::offer(node, active, frames)?;
+    map_services::offer(node, published_map, frames)?;
     lifecycle::offer(node, active)?;
     let followed = active.clone();
     node.every_tick(move |now| followed.tick(now));

@@ -1,23 +1,27 @@
-//! The robot's settings as ROS 2 parameters: each can be read, with its meaning and range. None changes while the robot runs.
+//! The robot's settings as ROS 2 parameters: each can be read, with its meaning. Some change while the robot runs, within a range.
 
+mod listing;
+
+use super::active_goal::ActiveGoal;
 use crate::Ros2Error;
 use crate::generated::rcl_interfaces::{
-    DescribeParameters, DescribeParametersResponse, GetParameterTypes, GetParameterTypesResponse,
-    GetParameters, GetParametersResponse, ListParameters, ListParametersRequest, ListParametersResponse,
-    ListParametersResult, ParameterDescriptor, ParameterType, ParameterValue, SetParameters,
-    SetParametersAtomically, SetParametersAtomicallyResponse, SetParametersResponse, SetParametersResult,
+    DescribeParameters, DescribeParametersResponse, FloatingPointRange, GetParameterTypes,
+    GetParameterTypesResponse, GetParameters, GetParametersResponse, ListParameters, ListParametersRequest,
+    ListParametersResponse, ListParametersResult, Parameter as ParameterMessage, ParameterDescriptor,
+    ParameterType, ParameterValue, SetParameters, SetParametersAtomically, SetParametersAtomicallyResponse,
+    SetParametersResponse, SetParametersResult,
 };
 use crate::node::RosNode;
 use crate::wire::Bytes;
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::sync::Arc;
-use trundle_runtime::RobotConfig;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use trundle_runtime::settings::reference;
+use trundle_runtime::{OperatorCommand, RobotConfig, RunSetting};
 
 /// Why a parameter is not set.
 const READ_ONLY: &str =
-    "settings of a running robot cannot change: set them in the robot file and start trundle anew";
+    "this setting cannot change while the robot runs: set it in the robot file and start trundle anew";
 
 /// A parameter.
 #[derive(Debug, Clone)]
@@ -25,11 +29,13 @@ struct Parameter {
     value: ParameterValue,
     description: String,
     constraints: String,
+    /// Smallest and largest value, where it may change while the robot runs.
+    range: Option<(f64, f64)>,
 }
 
-/// All parameters by name.
+/// All parameters by name. Clones share them.
 #[derive(Debug, Clone)]
-pub struct Parameters(Arc<BTreeMap<String, Parameter>>);
+pub struct Parameters(Arc<Mutex<BTreeMap<String, Parameter>>>);
 
 impl Parameters {
     /// The settings of a robot, and `use_sim_time`.
@@ -43,69 +49,100 @@ impl Parameters {
             } else {
                 String::new()
             };
-            Some((
-                setting.key.to_owned(),
-                Parameter { value, description: setting.doc.to_owned(), constraints },
-            ))
+            let range = RunSetting::of_key(setting.key, value.double_value).map(|own| range(own, robot));
+            let description = setting.doc.to_owned();
+            Some((setting.key.to_owned(), Parameter { value, description, constraints, range }))
         };
         let mut parameters: BTreeMap<String, Parameter> = reference().iter().filter_map(parameter).collect();
         let sim_time = Parameter {
             value: value_of(&Value::Bool(use_sim_time)),
             description: "Whether /clock gives the time.".to_owned(),
             constraints: String::new(),
+            range: None,
         };
         parameters.insert("use_sim_time".to_owned(), sim_time);
-        Self(Arc::new(parameters))
+        Self(Arc::new(Mutex::new(parameters)))
+    }
+
+    fn all(&self) -> MutexGuard<'_, BTreeMap<String, Parameter>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn value(&self, name: &str) -> ParameterValue {
-        self.0.get(name).map(|parameter| parameter.value.clone()).unwrap_or_default()
+        self.all().get(name).map(|parameter| parameter.value.clone()).unwrap_or_default()
     }
 
     fn describe(&self, name: &str) -> ParameterDescriptor {
-        let own = self.0.get(name);
+        let all = self.all();
+        let own = all.get(name);
+        let range = own.and_then(|parameter| parameter.range);
+        let range =
+            range.map(|(from_value, to_value)| FloatingPointRange { from_value, to_value, step: 0.0 });
         ParameterDescriptor {
             name: name.to_owned(),
             r#type: own.map_or(ParameterType::PARAMETER_NOT_SET, |parameter| parameter.value.r#type),
             description: own.map(|parameter| parameter.description.clone()).unwrap_or_default(),
             additional_constraints: own.map(|parameter| parameter.constraints.clone()).unwrap_or_default(),
-            read_only: true,
+            read_only: range.is_none(),
+            floating_point_range: range.into_iter().collect(),
             ..ParameterDescriptor::default()
         }
     }
 
     fn list(&self, request: &ListParametersRequest) -> ListParametersResult {
-        let has_depth = |rest: &str| request.depth == 0 || rest.split('.').count() as u64 <= request.depth;
-        let is_asked = |name: &str| {
-            let below = |prefix: &String| {
-                name == prefix
-                    || name
-                        .strip_prefix(prefix.as_str())
-                        .is_some_and(|rest| rest.starts_with('.') && has_depth(&rest[1..]))
-            };
-            if request.prefixes.is_empty() { has_depth(name) } else { request.prefixes.iter().any(below) }
-        };
-        let names: Vec<String> = self.0.keys().filter(|name| is_asked(name)).cloned().collect();
-        let mut prefixes: Vec<String> =
-            names.iter().filter_map(|name| Some(name.rsplit_once('.')?.0.to_owned())).collect();
-        prefixes.dedup();
-        ListParametersResult { names, prefixes }
+        listing::list(self.all().keys(), request)
     }
 
-    fn refuse(&self, name: &str) -> SetParametersResult {
-        let reason = if self.0.contains_key(name) {
-            READ_ONLY.to_owned()
-        } else {
-            format!("there is no parameter {name}")
-        };
-        SetParametersResult { successful: false, reason }
+    /// Sets a parameter by `send`; why it is not set.
+    fn set(
+        &self,
+        asked: &ParameterMessage,
+        send: impl FnOnce(OperatorCommand) -> Result<(), String>,
+    ) -> SetParametersResult {
+        let change = self.change(asked).and_then(|setting| send(OperatorCommand::Change(setting)));
+        if change.is_ok()
+            && let Some(parameter) = self.all().get_mut(&asked.name)
+        {
+            parameter.value = asked.value.clone();
+        }
+        SetParametersResult { successful: change.is_ok(), reason: change.err().unwrap_or_default() }
+    }
+
+    /// The change that is asked for, or why it cannot be made.
+    fn change(&self, asked: &ParameterMessage) -> Result<RunSetting, String> {
+        let (name, value) = (&asked.name, &asked.value);
+        let all = self.all();
+        let own = all.get(name).ok_or_else(|| format!("there is no parameter {name}"))?;
+        let (min, max) = own.range.ok_or(READ_ONLY)?;
+        if value.r#type != own.value.r#type {
+            let (found, expected) = (type_name(value.r#type), type_name(own.value.r#type));
+            return Err(format!("type of {name} is {found}, expected {expected}"));
+        }
+        if !(min..=max).contains(&value.double_value) {
+            return Err(format!("{name} is {}, expected {min} to {max}", value.double_value));
+        }
+        RunSetting::of_key(name, value.double_value).ok_or_else(|| READ_ONLY.to_owned())
+    }
+
+    /// All of the changes, or none: the first that cannot be made is named before any is sent.
+    fn set_all(
+        &self,
+        asked: &[ParameterMessage],
+        send: impl Fn(OperatorCommand) -> Result<(), String>,
+    ) -> SetParametersResult {
+        if let Some(reason) = asked.iter().find_map(|asked| self.change(asked).err()) {
+            return SetParametersResult { successful: false, reason };
+        }
+        let mut results = asked.iter().map(|asked| self.set(asked, &send));
+        let success = SetParametersResult { successful: true, reason: String::new() };
+        results.find(|result| !result.successful).unwrap_or(success)
     }
 
     /// Offers the six services of parameters.
     ///
     /// # Errors
     /// When a service cannot be made.
-    pub fn offer(&self, node: &mut RosNode) -> Result<(), Ros2Error> {
+    pub fn offer(&self, node: &mut RosNode, active: &ActiveGoal) -> Result<(), Ros2Error> {
         let own = self.clone();
         node.serve::<GetParameters>("~/get_parameters", move |request| GetParametersResponse {
             values: request.names.iter().map(|name| own.value(name)).collect(),
@@ -124,15 +161,44 @@ impl Parameters {
         node.serve::<ListParameters>("~/list_parameters", move |request| ListParametersResponse {
             result: own.list(&request),
         })?;
-        let own = self.clone();
+        let (own, run) = (self.clone(), active.clone());
         node.serve::<SetParameters>("~/set_parameters", move |request| SetParametersResponse {
-            results: request.parameters.iter().map(|parameter| own.refuse(&parameter.name)).collect(),
+            results: request
+                .parameters
+                .iter()
+                .map(|asked| own.set(asked, |command| send(&run, command)))
+                .collect(),
         })?;
-        let own = self.clone();
+        let (own, run) = (self.clone(), active.clone());
         node.serve::<SetParametersAtomically>("~/set_parameters_atomically", move |request| {
-            let name = request.parameters.first().map(|parameter| parameter.name.clone()).unwrap_or_default();
-            SetParametersAtomicallyResponse { result: own.refuse(&name) }
+            let result = own.set_all(&request.parameters, |command| send(&run, command));
+            SetParametersAtomicallyResponse { result }
         })
+    }
+}
+
+fn send(run: &ActiveGoal, command: OperatorCommand) -> Result<(), String> {
+    run.send(command).map(drop).map_err(|error| error.to_string())
+}
+
+/// Name of a type of parameters.
+fn type_name(kind: u8) -> &'static str {
+    match kind {
+        ParameterType::PARAMETER_NOT_SET => "not set",
+        ParameterType::PARAMETER_BOOL => "bool",
+        ParameterType::PARAMETER_INTEGER => "integer",
+        ParameterType::PARAMETER_DOUBLE => "double, as 0.2",
+        ParameterType::PARAMETER_STRING => "string",
+        _ => "list",
+    }
+}
+
+/// The range of a setting of `robot`: its speed is never above that of the robot file.
+fn range(setting: RunSetting, robot: &RobotConfig) -> (f64, f64) {
+    let (min, max) = setting.range();
+    match setting {
+        RunSetting::Speed(_) => (min, max.min(robot.limits.v)),
+        _ => (min, max),
     }
 }
 
@@ -164,10 +230,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_setting_can_be_read_with_its_meaning_and_none_set() {
+    fn every_setting_can_be_read_with_its_meaning() {
         let parameters = Parameters::of(&RobotConfig::default(), true);
-        let names = parameters.list(&ListParametersRequest::default()).names;
-        assert!(names.len() > 100, "{}", names.len());
         let described = parameters.describe("drive.wheel_radius_m");
         assert!(described.read_only && !described.description.is_empty());
         assert_eq!(described.r#type, ParameterType::PARAMETER_DOUBLE);
@@ -177,8 +241,46 @@ mod tests {
         );
         assert!(parameters.value("use_sim_time").bool_value);
         assert_eq!(parameters.value("no.such").r#type, ParameterType::PARAMETER_NOT_SET);
-        assert!(parameters.refuse("no.such").reason.contains("no.such"));
-        let below = parameters.list(&ListParametersRequest { prefixes: vec!["drive".into()], depth: 1 });
-        assert!(below.names.iter().all(|name| name.starts_with("drive.")) && !below.names.is_empty());
+    }
+
+    #[test]
+    fn a_setting_that_may_change_is_set_within_its_range_and_type() {
+        let robot = RobotConfig::default();
+        let parameters = Parameters::of(&robot, false);
+        let asked =
+            |name: &str, value: Value| ParameterMessage { name: name.to_owned(), value: value_of(&value) };
+        let sent = std::cell::RefCell::new(Vec::new());
+        let set = |asked: ParameterMessage| {
+            parameters.set(&asked, |command| {
+                sent.borrow_mut().push(command);
+                Ok(())
+            })
+        };
+        let speed = "limits.v_m_s";
+        let described = parameters.describe(speed);
+        assert!(!described.read_only);
+        assert_eq!(described.floating_point_range[0].to_value, robot.limits.v);
+        assert!(set(asked(speed, 0.2.into())).successful);
+        assert_eq!(parameters.value(speed).double_value, 0.2);
+        let refused = [
+            (asked(speed, 9.5.into()), "limits.v_m_s is 9.5, expected 0.05 to"),
+            (asked(speed, 1.into()), "type of limits.v_m_s is integer, expected double"),
+            (asked(speed, "fast".into()), "type of limits.v_m_s is string, expected double"),
+            (asked("no.such", 1.0.into()), "there is no parameter no.such"),
+            (asked("drive.wheel_radius_m", 0.1.into()), "this setting cannot change"),
+        ];
+        for (asked, reason) in refused {
+            let result = set(asked);
+            assert!(!result.successful && result.reason.starts_with(reason), "{}", result.reason);
+        }
+        assert_eq!(*sent.borrow(), [OperatorCommand::Change(RunSetting::Speed(0.2))]);
+        let both = [asked("mission_executor.patience_s", 20.0.into()), asked("no.such", 1.0.into())];
+        assert!(!parameters.set_all(&both, |_| Ok(())).successful);
+        assert_eq!(
+            parameters.value("mission_executor.patience_s").double_value,
+            robot.mission_executor.patience
+        );
+        assert!(parameters.set_all(&both[..1], |_| Ok(())).successful);
+        assert!(!set(ParameterMessage::default()).successful);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::event_loop::Endpoint;
 use super::goals::{GoalEnd, GoalId, Goals, ResultAnswer};
-use super::{Diagnostics, RosNode};
+use super::{Diagnostics, RosNode, reply};
 use crate::Ros2Error;
 use crate::clock::RosClock;
 use crate::generated::action_msgs::{CancelGoalRequest, CancelGoalResponse};
@@ -117,7 +117,11 @@ where
     A::Result: Default,
 {
     fn send_result(&self, request: ros2_client::RmwRequestId, status: i8, result: A::Result) {
-        let response = GetResultResponse { status: status_of(status), result };
+        let mut response = GetResultResponse { status: status_of(status), result };
+        if let Some(bytes) = reply::excess(&response) {
+            self.diagnostics.warn(&self.name, reply::message(bytes));
+            response.result = A::Result::default();
+        }
         if self.server.send_result(request, response).is_err() {
             tracing::debug!("a result of {} was not sent", self.name);
         }

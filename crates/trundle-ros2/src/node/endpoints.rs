@@ -1,7 +1,7 @@
 //! Subscriptions and service servers with their handlers.
 
 use super::event_loop::Endpoint;
-use super::{Diagnostics, TopicMonitor};
+use super::{Diagnostics, TopicMonitor, reply};
 use ros2_client::dds::rustdds::mio1::event::Source;
 use ros2_client::dds::rustdds::mio1::{Interest, Registry, Token};
 use ros2_client::{Message, RmwRequestId, Server, Subscription};
@@ -53,29 +53,36 @@ pub(super) struct Served<Req: Message, Resp: Message, F> {
 }
 
 /// A server that is shared between the node's thread and those who answer later.
-pub struct ServerHandle<Req: Message, Resp: Message>(std::sync::Mutex<Server<Req, Resp>>);
+pub struct ServerHandle<Req: Message, Resp: Message> {
+    server: std::sync::Mutex<Server<Req, Resp>>,
+    name: String,
+    diagnostics: Diagnostics,
+}
 
-impl<Req: Message + Clone + 'static, Resp: Message + 'static> ServerHandle<Req, Resp> {
-    pub(super) fn new(server: Server<Req, Resp>) -> Arc<Self> {
-        Arc::new(Self(std::sync::Mutex::new(server)))
+impl<Req: Message + Clone + 'static, Resp: Message + Default + 'static> ServerHandle<Req, Resp> {
+    pub(super) fn new(server: Server<Req, Resp>, name: String, diagnostics: Diagnostics) -> Arc<Self> {
+        Arc::new(Self { server: std::sync::Mutex::new(server), name, diagnostics })
     }
 
-    /// Answers a request.
+    /// Answers a request: with an empty response where this one is too large to arrive.
     pub fn answer(&self, request: RmwRequestId, response: Resp) {
+        let excess = reply::excess(&response);
+        excess.into_iter().for_each(|bytes| self.diagnostics.warn(&self.name, reply::message(bytes)));
+        let response = if excess.is_some() { Resp::default() } else { response };
         if let Err(error) = self.lock().send_response(request, response) {
-            tracing::debug!("a response was not sent: {error:?}");
+            tracing::debug!("a response of {} was not sent: {error:?}", self.name);
         }
     }
 
     pub(super) fn lock(&self) -> std::sync::MutexGuard<'_, Server<Req, Resp>> {
-        self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+        self.server.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
 }
 
 impl<Req, Resp, F> Endpoint for Served<Req, Resp, F>
 where
     Req: Message + Clone + Send + 'static,
-    Resp: Message + Send + 'static,
+    Resp: Message + Default + Send + 'static,
     F: FnMut(RmwRequestId, Req) + Send,
 {
     fn register(&mut self, registry: &Registry, token: Token) -> io::Result<()> {

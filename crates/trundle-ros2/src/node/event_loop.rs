@@ -1,5 +1,6 @@
 //! The thread of a node: it waits for messages and requests, and hands each to its handler.
 
+use super::middleware_death;
 use crate::Ros2Error;
 use ros2_client::dds::rustdds::mio1::{Events, Poll, Registry, Token};
 use std::io;
@@ -54,10 +55,18 @@ impl NodeThread {
         Ok(Self { is_over, thread: Some(thread) })
     }
 
-    /// Whether the thread has ended: by a panic, as long as the node is not dropped.
+    /// Which thread of the node or of the middleware has ended: by a panic, as long as the node is not dropped. `None` while all run.
+    #[must_use]
+    pub fn death(&self) -> Option<String> {
+        let own = self.thread.as_ref().is_none_or(JoinHandle::is_finished);
+        let name = if own { Some("ros2".to_owned()) } else { middleware_death::dead_thread() };
+        name.map(|name| format!("the thread '{name}' of ROS 2 has died: start the program anew"))
+    }
+
+    /// Whether a thread of the node or of the middleware has ended.
     #[must_use]
     pub fn is_dead(&self) -> bool {
-        self.thread.as_ref().is_none_or(JoinHandle::is_finished)
+        self.death().is_some()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::endpoints::{Served, ServerHandle, Subscribed};
 use super::event_loop::{Endpoint, NodeThread, Ticker};
-use super::{Diagnostics, Level, Names, Networks, TopicMonitor, qos};
+use super::{Diagnostics, Level, Names, Networks, Readers, TopicMonitor, middleware_death, qos};
 use crate::Ros2Error;
 use crate::interface::{ActionType, MessageType, ServiceType};
 use ros2_client::action::{ActionServer, ActionServerQosPolicies};
@@ -45,6 +45,7 @@ pub struct RosNode {
     endpoints: Vec<Box<dyn Endpoint>>,
     tickers: Vec<Ticker>,
     monitors: Vec<Arc<TopicMonitor>>,
+    readers: Vec<Readers>,
     diagnostics: Diagnostics,
 }
 
@@ -59,6 +60,7 @@ impl RosNode {
             let value = domain.to_string();
             return Err(Ros2Error::Parameter { name: "domain id".into(), value, expected: "0 to 232" });
         }
+        middleware_death::watch();
         let mut builder =
             DomainParticipantBuilder::new(*domain).socket_receive_buffer_size(RECEIVE_BUFFER_BYTES);
         if let Some(addresses) = networks.addresses() {
@@ -78,6 +80,7 @@ impl RosNode {
             endpoints: Vec::new(),
             tickers: Vec::new(),
             monitors: Vec::new(),
+            readers: Vec::new(),
             diagnostics: Diagnostics::default(),
         })
     }
@@ -106,6 +109,13 @@ impl RosNode {
         let name = self.names.resolve(topic);
         let topic = self.topic::<M>(topic, qos)?;
         self.node.create_publisher(&topic, Some(qos.clone())).map_err(|error| Ros2Error::create(name, error))
+    }
+
+    /// Whether others read a topic, looked up once a second.
+    pub fn readers(&mut self, topic: &str) -> Readers {
+        let readers = Readers::new(self.names.resolve(topic));
+        self.readers.push(readers.clone());
+        readers
     }
 
     /// Calls `handler` in the node's thread with each message of a topic. After its first message a topic with a `limit` counts as
@@ -137,7 +147,8 @@ impl RosNode {
         Ok(monitor)
     }
 
-    /// Calls `handler` in the node's thread with each request of a service; its value is the response.
+    /// Calls `handler` in the node's thread with each request of a service; its value is the response. A response above
+    /// [`super::MAX_REPLY_BYTES`] is replaced by an empty one and reported.
     ///
     /// # Errors
     /// When the name is not allowed or the service cannot be made.
@@ -150,10 +161,11 @@ impl RosNode {
         let type_name = ServiceTypeName::new(S::PACKAGE, S::NAME);
         let qos = qos::reliable(10);
         let server = self.node.create_server(ServiceMapping::Enhanced, &name, &type_name, qos.clone(), qos);
-        let server = ServerHandle::new(server.map_err(|error| Ros2Error::create(&full, error))?);
+        let server = server.map_err(|error| Ros2Error::create(&full, error))?;
+        let diagnostics = self.diagnostics.clone();
+        let server = ServerHandle::new(server, full.clone(), diagnostics.clone());
         let answering = Arc::clone(&server);
         let answer = move |id: RmwRequestId, request| answering.answer(id, handler(request));
-        let diagnostics = self.diagnostics.clone();
         self.endpoints.push(Box::new(Served { server, handler: answer, name: full, diagnostics }));
         Ok(())
     }
@@ -192,12 +204,13 @@ impl RosNode {
     /// # Errors
     /// When the system refuses a thread.
     pub fn start(self) -> Result<NodeThread, Ros2Error> {
-        let Self { context, node, endpoints, mut tickers, monitors, diagnostics, .. } = self;
+        let Self { context, node, endpoints, mut tickers, monitors, readers, diagnostics, .. } = self;
         let (checked, mut due) = (context.clone(), Instant::now());
         tickers.push(Box::new(move |now| {
             if now >= due {
                 due = now + CHECK_PERIOD;
                 check_topics(&checked, &monitors, &diagnostics, now);
+                find_readers(&checked, &readers);
             }
         }));
         NodeThread::start(endpoints, tickers, (node, context))
@@ -212,6 +225,18 @@ impl RosNode {
         self.node
             .create_topic(&name, MessageTypeName::new(M::PACKAGE, M::NAME), qos)
             .map_err(|error| Ros2Error::create(full, error))
+    }
+}
+
+/// Looks up who reads what.
+fn find_readers(context: &Context, watched: &[Readers]) {
+    if watched.is_empty() {
+        return;
+    }
+    let found = context.domain_participant().discovered_readers();
+    for own in watched {
+        let reads = |topic: &String| topic.strip_prefix("rt") == Some(own.topic.as_str());
+        own.set(found.iter().any(|reader| reads(reader.subscription_topic_data.topic_name())));
     }
 }
 

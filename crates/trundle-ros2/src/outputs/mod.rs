@@ -2,10 +2,12 @@
 
 pub mod costmap;
 mod frames;
+mod published_map;
 mod publishers;
 mod robot_outputs;
 
 pub use frames::FrameNames;
+pub use published_map::PublishedMap;
 pub use publishers::{OutputTopic, RobotTopics};
 pub use robot_outputs::{OutputSources, RobotOutputs};
 

@@ -1,5 +1,6 @@
 //! The robot's state as messages, from a thread of its own: the robot never waits for it.
 
+use super::published_map::PublishedMap;
 use super::publishers::RobotTopics;
 use super::{OutputSettings, costmap};
 use crate::Ros2Error;
@@ -10,13 +11,14 @@ use crate::convert::{battery, diagnostics, grid, odometry, path, pose, scan, sta
 use crate::generated::geometry_msgs::{PoseWithCovarianceStamped, TransformStamped};
 use crate::generated::nav_msgs::OccupancyGrid as GridMessage;
 use crate::generated::tf2_msgs::TFMessage;
-use crate::node::{Condition, Diagnostics, Level};
+use crate::node::{Condition, Diagnostics, Level, NodeThread};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 use trundle_app::operator::{Operator, RunView};
 use trundle_core::{OccupancyGrid, Pose2, Pose3, Stamp};
+use trundle_runtime::OperatorCommand;
 
 /// Period of transforms and odometry. Source: the robot's control rate, 50 Hz.
 const POSE_PERIOD: Duration = Duration::from_millis(20);
@@ -42,6 +44,10 @@ pub struct OutputSources {
     pub publishes_odom_transform: bool,
     /// `base_from_camera`, for the static transforms.
     pub base_from_camera: Pose3,
+    /// Receives each map that is published as a whole.
+    pub published_map: PublishedMap,
+    /// The node: when it dies, the robot is stopped.
+    pub node: Arc<NodeThread>,
 }
 
 /// The thread that publishes. Dropping it ends the thread.
@@ -98,6 +104,7 @@ struct OutputLoop {
     plan: Option<usize>,
     scan: Option<Stamp>,
     has_static: bool,
+    is_dead: bool,
 }
 
 impl OutputLoop {
@@ -115,10 +122,12 @@ impl OutputLoop {
             plan: None,
             scan: None,
             has_static: false,
+            is_dead: false,
         }
     }
 
     fn step(&mut self, now: Instant) {
+        self.stop_robot_without_node();
         let view = self.sources.operator.view();
         let (is_slow, is_slowest) = (now >= self.slow_due, now >= self.slowest_due);
         if let Some(view) = &view {
@@ -136,6 +145,19 @@ impl OutputLoop {
             self.slowest_due = now + SLOWEST_PERIOD;
             self.publish_diagnostics(view.as_deref());
             view.iter().for_each(|view| self.publish_battery(view));
+        }
+    }
+
+    /// Stops the robot where the node has died: nobody can give it a goal, or take one away.
+    fn stop_robot_without_node(&mut self) {
+        if self.is_dead {
+            return;
+        }
+        let Some(death) = self.sources.node.death() else { return };
+        self.is_dead = true;
+        tracing::error!("{death}; the robot stops");
+        if let Err(error) = self.sources.operator.send(OperatorCommand::Pause) {
+            tracing::error!("the robot was not stopped: {error}");
         }
     }
 
@@ -230,6 +252,7 @@ impl OutputLoop {
         }
         if (is_slowest || !is_same_place) && self.whole != Some(map.revision) {
             self.whole = Some(map.revision);
+            self.sources.published_map.set(Arc::clone(map), at);
             self.topics.map.publish(grid::to_ros(&map.grid, at, frame));
             self.costs = costmap::costs(&map.grid, self.settings.body_radius_m);
             let info = grid::info(map.grid.geometry(), at);

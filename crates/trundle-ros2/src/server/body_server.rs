@@ -2,12 +2,12 @@
 
 use super::ServerSettings;
 use super::clock_publisher::ClockPublisher;
-use super::image_publisher::ImagePublisher;
+use super::sensor_topics::SensorTopics;
 use crate::convert::odometry::OdometryFrames;
-use crate::convert::{battery, imu, odometry, scan, stamp, transform, twist};
+use crate::convert::{battery, odometry, scan, transform, twist};
 use crate::generated::geometry_msgs::{Twist, TwistStamped};
 use crate::generated::nav_msgs::Odometry as OdometryMessage;
-use crate::generated::sensor_msgs::{BatteryState, Imu, JointState, LaserScan};
+use crate::generated::sensor_msgs::{BatteryState, LaserScan};
 use crate::generated::tf2_msgs::TFMessage;
 use crate::node::{RosNode, qos};
 use crate::outputs::OutputTopic;
@@ -19,7 +19,7 @@ use trundle_app::AppError;
 use trundle_app::real_time::RealTimePacer;
 use trundle_core::{
     BodyEventKind, DifferentialDrive, Odometry, PinholeCamera, Pose2, Pose3, RobotBody, SensorEvent, Stamp,
-    Twist2, WheelTicks,
+    Twist2,
 };
 use trundle_localization::{OdometryConfig, WheelOdometry};
 
@@ -48,14 +48,16 @@ pub fn serve_body<B: RobotBody>(
     raw_images: bool,
     offered: OfferedBody,
     body: &mut B,
-    is_over: impl FnMut(Stamp) -> bool,
+    mut is_over: impl FnMut(Stamp) -> bool,
 ) -> Result<(), AppError> {
     let (frames, stamped_commands) = (options.frames.clone(), options.stamped_commands);
     let mut node = RosNode::new(&options.node)?;
     let mut server =
         BodyServer::new(&mut node, ServerSettings { frames, stamped_commands, raw_images }, offered)?;
-    let _running = node.start()?;
-    server.run(body, is_over).map_err(|error| AppError::Input(error.to_string()))
+    let running = node.start()?;
+    let ran = server.run(body, |at| is_over(at) || running.is_dead());
+    ran.map_err(|error| AppError::Input(error.to_string()))?;
+    running.death().map_or(Ok(()), |death| Err(AppError::Environment(death)))
 }
 
 /// The topics of a body that is offered as a ROS 2 robot.
@@ -64,16 +66,13 @@ pub struct BodyServer {
     body: OfferedBody,
     odom: OutputTopic<OdometryMessage>,
     truth: OutputTopic<OdometryMessage>,
-    imu: OutputTopic<Imu>,
-    joints: OutputTopic<JointState>,
     scan: OutputTopic<LaserScan>,
     battery: OutputTopic<BatteryState>,
     tf: OutputTopic<TFMessage>,
     tf_static: OutputTopic<TFMessage>,
     clock: ClockPublisher,
-    images: ImagePublisher,
+    sensors: SensorTopics,
     odometry: WheelOdometry,
-    wheels: Wheels,
     command: NewestCommand,
 }
 
@@ -89,19 +88,16 @@ impl BodyServer {
         Ok(Self {
             odom: OutputTopic::new(node, "odom", &qos::reliable(10))?,
             truth: OutputTopic::new(node, "ground_truth", &qos::reliable(10))?,
-            imu: OutputTopic::new(node, "imu", &qos::sensor(10))?,
-            joints: OutputTopic::new(node, "joint_states", &qos::reliable(10))?,
             scan: OutputTopic::new(node, "scan", &qos::sensor(5))?,
             battery: OutputTopic::new(node, "battery_state", &qos::reliable(1))?,
             tf: OutputTopic::new(node, "/tf", &qos::reliable(100))?,
             tf_static: OutputTopic::new(node, "/tf_static", &qos::latched())?,
             clock: ClockPublisher::new(node)?,
-            images: ImagePublisher::start(node, &settings, body.camera)?,
+            sensors: SensorTopics::new(node, &settings, body.camera, body.drive)?,
             command: subscribe_commands(node, settings.stamped_commands)?,
             settings,
             body,
             odometry,
-            wheels: Wheels::default(),
         })
     }
 
@@ -139,19 +135,17 @@ impl BodyServer {
     fn publish(&mut self, event: SensorEvent) {
         let at = self.clock.ros_time(event.stamp());
         self.clock.publish(at);
+        self.sensors.publish(&event, at);
         let frames = &self.settings.frames;
         match event {
             SensorEvent::Gyro(gyro) => {
                 self.odometry.step_gyro(&gyro);
-                self.imu.publish(imu::to_ros(gyro.omega, None, at, &frames.base));
             }
             SensorEvent::Wheels(ticks) => {
                 let odometry = self.odometry.step_wheels(&ticks);
                 self.publish_odometry(&odometry, at);
-                self.joints.publish(self.wheels.joints(&ticks, &self.body.drive, at));
             }
             SensorEvent::Odometry(odometry) => self.publish_odometry(&odometry, at),
-            SensorEvent::Rgbd(image) => self.images.publish(image, at),
             SensorEvent::Scan(sweep) => {
                 self.scan.publish(scan::to_ros(&sweep, at, &frames.scan, LASER_RANGE_M))
             }
@@ -207,47 +201,4 @@ fn subscribe_commands(node: &mut RosNode, stamped: bool) -> Result<NewestCommand
         node.subscribe("cmd_vel", &qos::reliable(1), None, move |message: Twist| keep(&message))?;
     }
     Ok(command)
-}
-
-/// Angles of the wheels, from counters that wrap.
-#[derive(Debug, Default)]
-struct Wheels {
-    last: Option<WheelTicks>,
-    /// Left and right \[rad\].
-    angles: [f64; 2],
-}
-
-impl Wheels {
-    fn joints(&mut self, ticks: &WheelTicks, drive: &DifferentialDrive, at: Stamp) -> JointState {
-        let last = self.last.replace(*ticks).unwrap_or(*ticks);
-        let turned = [ticks.left.wrapping_sub(last.left), ticks.right.wrapping_sub(last.right)];
-        let steps =
-            turned.map(|ticks| f64::from(ticks as i16) * std::f64::consts::TAU / drive.ticks_per_turn);
-        let dt = ticks.stamp - last.stamp;
-        self.angles.iter_mut().zip(steps).for_each(|(angle, step)| *angle += step);
-        JointState {
-            header: stamp::header(at, ""),
-            name: vec!["wheel_left_joint".to_owned(), "wheel_right_joint".to_owned()],
-            position: self.angles.to_vec(),
-            velocity: steps.map(|step| if dt > 0.0 { step / dt } else { 0.0 }).to_vec(),
-            effort: Vec::new(),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn wheel_angles_go_through_the_wrap_of_the_counters() {
-        let mut wheels = Wheels::default();
-        let ticks = |at, left| WheelTicks { stamp: Stamp::from_nanos(at), left, right: 0 };
-        wheels.joints(&ticks(0, u16::MAX), &DifferentialDrive::KOBUKI, Stamp::default());
-        let joints = wheels.joints(&ticks(1_000_000_000, 9), &DifferentialDrive::KOBUKI, Stamp::default());
-        let expected = 10.0 * std::f64::consts::TAU / DifferentialDrive::KOBUKI.ticks_per_turn;
-        assert!(
-            (joints.position[0] - expected).abs() < 1e-12 && (joints.velocity[0] - expected).abs() < 1e-12
-        );
-    }
 }

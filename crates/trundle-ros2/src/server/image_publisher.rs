@@ -5,7 +5,7 @@ use crate::Ros2Error;
 use crate::convert::camera_info;
 use crate::convert::image::{color_to_ros, compressed_depth_to_ros, depth_to_ros, jpeg_to_ros};
 use crate::generated::sensor_msgs::{CameraInfo, CompressedImage, Image};
-use crate::node::{RosNode, qos};
+use crate::node::{Readers, RosNode, qos};
 use crate::outputs::OutputTopic;
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread::JoinHandle;
@@ -30,6 +30,8 @@ enum Form {
 pub struct ImagePublisher {
     images: Option<SyncSender<(RgbdImage, Stamp)>>,
     thread: Option<JoinHandle<()>>,
+    /// Whether anybody reads the images.
+    readers: [Readers; 2],
     /// Images that were dropped, since the thread was busy.
     pub dropped: u64,
 }
@@ -46,12 +48,16 @@ impl ImagePublisher {
     ) -> Result<Self, Ros2Error> {
         let (color, depth) = ("camera/color/image_raw", "camera/depth/image_raw");
         let qos = qos::sensor(2);
+        let (color, depth) = match settings.raw_images {
+            true => (color.to_owned(), depth.to_owned()),
+            false => (format!("{color}/compressed"), format!("{depth}/compressedDepth")),
+        };
         let form = if settings.raw_images {
-            Form::Raw(OutputTopic::new(node, color, &qos)?, OutputTopic::new(node, depth, &qos)?)
+            Form::Raw(OutputTopic::new(node, &color, &qos)?, OutputTopic::new(node, &depth, &qos)?)
         } else {
-            let (color, depth) = (format!("{color}/compressed"), format!("{depth}/compressedDepth"));
             Form::Compressed(OutputTopic::new(node, &color, &qos)?, OutputTopic::new(node, &depth, &qos)?)
         };
+        let readers = [&color, &depth].map(|topic| node.readers(topic));
         let topics = CameraTopics {
             form,
             color_info: OutputTopic::new(node, "camera/color/camera_info", &qos::reliable(1))?,
@@ -62,12 +68,15 @@ impl ImagePublisher {
         let (images, received) = sync_channel(1);
         let thread = std::thread::Builder::new().name("ros2-images".to_owned());
         let thread = thread.spawn(move || topics.publish_all(&received))?;
-        Ok(Self { images: Some(images), thread: Some(thread), dropped: 0 })
+        Ok(Self { images: Some(images), thread: Some(thread), readers, dropped: 0 })
     }
 
-    /// Publishes an image, stamped `at` on the ROS clock.
-    pub fn publish(&mut self, image: RgbdImage, at: Stamp) {
-        let sent = self.images.as_ref().map(|images| images.try_send((image, at)));
+    /// Publishes an image, stamped `at` on the ROS clock. An image that nobody reads is not encoded.
+    pub fn publish(&mut self, image: &RgbdImage, at: Stamp) {
+        if !self.readers.iter().any(Readers::are_there) {
+            return;
+        }
+        let sent = self.images.as_ref().map(|images| images.try_send((image.clone(), at)));
         self.dropped += u64::from(matches!(sent, Some(Err(TrySendError::Full(_)))));
     }
 }

@@ -1,11 +1,13 @@
-//! A body of trundle offered to ROS 2: the simulator as a ROS 2 robot.
+//! A body of trundle offered to ROS 2: the simulator as a ROS 2 robot, the sensors of a run's own body.
 
 mod body_server;
 mod clock_publisher;
 mod image_publisher;
+mod sensor_topics;
 
 pub use body_server::{BodyServer, OfferedBody, serve_body};
 pub use image_publisher::ImagePublisher;
+pub use sensor_topics::SensorTopics;
 
 use crate::outputs::FrameNames;
 

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::new_without_default, reason = "helpers of tests")]
 
 mod actions;
+mod sensors;
 mod topics;
 
 use std::sync::atomic::{AtomicU16, Ordering};

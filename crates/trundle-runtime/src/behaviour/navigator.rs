@@ -28,6 +28,7 @@ use crate::{
     config::RobotConfig,
     goal_approach::{GoalApproach, GoalApproachReport},
     mission::executor_config::MissionExecutorConfig,
+    operator::RunSetting,
     reason::Reason,
     schedule::Ticker,
     stage::{Stage, StageTimes},
@@ -99,6 +100,10 @@ pub(crate) struct Navigator {
     held_since: Option<Stamp>,
     spin: Spin,
     sight_recovery: SightRecovery,
+    /// Whether a goal that no path leads to ends, in place of a wait for a path.
+    ends_without_path: bool,
+    /// When the first of the plans since then found no path; none after a plan with a path.
+    no_path_since: Option<Stamp>,
     /// Place where the path to the goal is blocked, where there is no path.
     blocked_at: Option<Vector2>,
     viewpoint: Viewpoint,
@@ -150,6 +155,8 @@ impl Navigator {
             held_since: None,
             spin: Spin::default(),
             sight_recovery: SightRecovery::default(),
+            ends_without_path: false,
+            no_path_since: None,
             blocked_at: None,
             viewpoint: Viewpoint::Unknown,
             visibility: VisibilityConstraint::default(),
@@ -166,6 +173,19 @@ impl Navigator {
         })
     }
 
+    /// Whether goals that no path leads to end, in place of a wait for a path.
+    pub(crate) fn end_without_path(&mut self, ends: bool) {
+        self.ends_without_path = ends;
+    }
+
+    /// Changes a setting. A speed counts from the next plan on.
+    pub(crate) fn change(&mut self, setting: RunSetting) {
+        match setting {
+            RunSetting::Speed(speed) => self.planner.limit_speed(speed),
+            RunSetting::Patience(patience) => self.config.patience = patience,
+        }
+    }
+
     /// Sets the goal. A robot that follows a trajectory continues to the new goal without a stop.
     pub(crate) fn set_goal(&mut self, goal: Goal) {
         let is_maneuver = matches!(goal, Goal::Align(_) | Goal::Station(_) | Goal::Relative(_));
@@ -173,6 +193,7 @@ impl Navigator {
         self.goal = goal;
         self.plan = None;
         self.held_since = None;
+        self.no_path_since = None;
         self.blocked_at = None;
         self.viewpoint = Viewpoint::Unknown;
         self.visibility.restart();

@@ -33,6 +33,7 @@ pub(crate) struct MissionExecutor {
     queue: VecDeque<Entry>,
     current: Option<Current>,
     records: Vec<TaskRecord>,
+    by_operator: bool,
     frontier_check_due: Ticker,
 }
 
@@ -91,6 +92,7 @@ impl MissionExecutor {
             queue: VecDeque::new(),
             current: None,
             records: Vec::new(),
+            by_operator: false,
             frontier_check_due: Ticker::new(FRONTIER_CHECK_RATE_HZ),
         })
     }
@@ -104,6 +106,7 @@ impl MissionExecutor {
         self.queue = mission.places.iter().zip(mission.left.tasks()).map(entry).collect();
         self.current = None;
         self.records.clone_from(&mission.ended);
+        self.by_operator = mission.by_operator;
     }
 
     /// The tasks that have ended.
@@ -121,7 +124,7 @@ impl MissionExecutor {
         let entries = self.current.iter().map(|current| &current.entry).chain(&self.queue);
         let (places, tasks) = entries.map(|entry| (entry.index, entry.task)).unzip();
         let left = Mission::new(tasks).expect("invariant: these tasks are of a mission");
-        MissionState { left, places, ended: self.records.clone() }
+        MissionState { left, places, ended: self.records.clone(), by_operator: self.by_operator }
     }
 
     /// Whether there is nothing left to do.
@@ -539,6 +542,19 @@ mod tests {
         let mut executor = executor(&tasks("g"));
         assert_eq!(work_off(&mut executor, &[true]).len(), 1);
         assert!(matches!(executor.records()[0].end, TaskEnd::GivenUp { .. }));
+    }
+
+    #[test]
+    fn a_restored_mission_is_still_that_of_the_operator() {
+        let mut first = executor(&[]);
+        first.begin(&MissionState::new(Mission::new(tasks("gg")).unwrap()).of_operator());
+        let saved = serde_json::to_value(first.mission()).unwrap();
+        assert_eq!(saved["by_operator"], true);
+        let mut second = executor(&[]);
+        second.begin(&serde_json::from_value(saved).unwrap());
+        assert!(second.mission().by_operator);
+        second.begin(&MissionState::default());
+        assert!(serde_json::to_value(second.mission()).unwrap().get("by_operator").is_none());
     }
 
     #[test]

@@ -4,6 +4,9 @@ use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 use trundle_planning::ExploreConfig;
 
+/// Range of the patience \[s\]. Source: ours.
+pub(crate) const PATIENCE_RANGE_S: (f64, f64) = (1.0, 3600.0);
+
 /// How missions are carried out, and when the robot loses patience.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -34,7 +37,8 @@ impl MissionExecutorConfig {
     /// When a number is outside its range.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("mission_executor.opening", self.opening, "s", 0.0, 60.0)?;
-        require_in("mission_executor.patience", self.patience, "s", 1.0, 3600.0)?;
+        let (min, max) = PATIENCE_RANGE_S;
+        require_in("mission_executor.patience", self.patience, "s", min, max)?;
         require_in("mission_executor.lost_sigma", self.lost_sigma, "m", 0.1, 10.0)?;
         self.explore.validated()?;
         Ok(self)

@@ -33,7 +33,8 @@ pub enum NoPath {
 
 impl NoPath {
     /// Why a plan holds no path; none where the plan holds one.
-    pub(crate) fn of(plan: &Plan) -> Option<Self> {
+    #[must_use]
+    pub fn of(plan: &Plan) -> Option<Self> {
         match plan {
             Plan::Found(_) => None,
             Plan::Blocked { nearest } => Some(Self::Blocked { nearest: *nearest }),

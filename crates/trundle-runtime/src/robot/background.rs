@@ -5,6 +5,7 @@ use crate::world_state::{OwnedWorldState, WorldState};
 use crate::{
     lazy_image::LazyImage,
     mission::MissionState,
+    operator::RunSetting,
     workers::decision_worker::DecisionWorker,
     workers::fallback_controller::FallbackController,
     workers::job::{Job, Work},
@@ -21,6 +22,8 @@ pub(super) struct Background {
     pub(super) fallback: Option<FallbackController>,
     /// The mission that was given while the decision worker is away.
     pub(super) orders: Option<MissionState>,
+    /// Settings that were changed while the decision worker is away.
+    pub(super) changes: Vec<RunSetting>,
     /// Readings of bumper and cliff sensors while the decision worker is away.
     pub(super) felt: Vec<Felt>,
     /// The newest image that is not processed yet.

@@ -107,6 +107,8 @@ impl Robot {
                 Felt::OverEdge(over_edge) => decision_worker.navigator.cliff(over_edge),
             }
         }
+        let navigator = &mut decision_worker.navigator;
+        self.background.changes.drain(..).for_each(|setting| navigator.change(setting));
         if let Some(mission) = self.background.orders.take() {
             decision_worker.begin(&mission);
         }

@@ -2,7 +2,7 @@
 
 use super::sensor_watch::SensorChange;
 use crate::behaviour::drive_state::DriveState;
-use crate::operator::PoseGuess;
+use crate::operator::{PoseGuess, RunSetting};
 use crate::reason::Reason;
 use trundle_control::MotionHold;
 use trundle_core::{Pose2, Stamp, difference_of_angles};
@@ -66,6 +66,11 @@ pub(super) fn pose_given(at: Stamp, guess: &PoseGuess) {
         pose.x,
         pose.y
     );
+}
+
+/// Logs a setting that an operator changes.
+pub(super) fn setting_changed(at: Stamp, setting: RunSetting) {
+    tracing::info!("{:.3} s: the operator changes a setting: {setting:?}", at.as_secs());
 }
 
 /// Logs a state that differs from the last one, or has a reason of another kind.

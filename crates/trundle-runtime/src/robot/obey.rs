@@ -3,7 +3,8 @@
 use super::{Robot, event_log};
 use crate::{
     global_localization::LocalizedPose,
-    operator::{OperatorCommand, PoseGuess},
+    mission::MissionState,
+    operator::{OperatorCommand, PoseGuess, RunSetting},
     report::StepReport,
 };
 use trundle_core::{Invalid, Stamp, Vector3};
@@ -19,14 +20,23 @@ impl Robot {
         match command.validated()? {
             OperatorCommand::Begin(mission) => {
                 self.latest.state.1 = false;
-                self.begin(&mission);
+                self.restore_mission(MissionState::new(mission).of_operator());
             }
             OperatorCommand::Pause => self.pause(true, now, &mut report),
             OperatorCommand::Continue => self.pause(false, now, &mut report),
             OperatorCommand::SetPose(guess) => self.take_pose(&guess, now),
+            OperatorCommand::Change(setting) => self.change(setting, now),
         }
         self.complete(&mut report);
         Ok(report)
+    }
+
+    fn change(&mut self, setting: RunSetting, now: Stamp) {
+        event_log::setting_changed(now, setting);
+        match &mut self.decision_worker {
+            Some(decision_worker) => decision_worker.navigator.change(setting),
+            None => self.background.changes.push(setting),
+        }
     }
 
     fn pause(&mut self, is_paused: bool, now: Stamp, report: &mut StepReport) {

@@ -35,6 +35,7 @@ impl DecisionWorker {
 
     pub(crate) fn begin(&mut self, mission: &MissionState) {
         self.executor.begin(mission);
+        self.navigator.end_without_path(mission.by_operator);
         if mission.left.tasks().is_empty() {
             self.navigator.set_goal(Goal::Stay);
         }

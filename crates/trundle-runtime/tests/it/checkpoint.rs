@@ -34,7 +34,7 @@ fn checkpoint() -> Checkpoint {
         visual: vec![7; 40],
         visual_maps: BTreeMap::new(),
         grid: OccupancyGrid::from_ascii(0.05, "#.#\n?..\n").unwrap(),
-        mission: MissionState { left, places: vec![1, 3], ended },
+        mission: MissionState { left, places: vec![1, 3], ended, by_operator: false },
         station: None,
     }
 }

@@ -13,11 +13,12 @@ pub(super) fn is_compressed_depth(format: &str) -> bool {
     format.contains("compressedDepth")
 }
 
-/// Depth in metres, 0 where there is none. Images of 32 bits hold quantised inverse depth d: metres = a / (d - b).
+/// Depth in metres, 0 where there is none. `format` is that of the message, as `16UC1; compressedDepth png`. Images of 32 bits hold
+/// quantised inverse depth d: metres = a / (d - b). Of all others `depth_scale` units are a metre.
 ///
 /// # Errors
 /// When the image is cut, of another pixel format, or its parameters make no depth.
-pub(super) fn decode_compressed_depth(
+pub fn decode_compressed_depth(
     format: &str,
     bytes: &[u8],
     depth_scale: f64,

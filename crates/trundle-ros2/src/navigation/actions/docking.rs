@@ -19,6 +19,9 @@ use trundle_runtime::Task;
 /// Distance before a given dock at which the search for its light begins \[m\]. Source: Nav2's default staging pose, 0.7 m.
 const STAGING_M: f64 = 0.7;
 
+/// Names of the one dock that the robot knows, and of its type: the charging station whose light the base sees.
+const STATION_NAMES: [&str; 2] = ["", "station"];
+
 /// A limit in seconds; 0 and below is none.
 fn limit(seconds: f32) -> Option<Duration> {
     (seconds.is_finite() && seconds > 0.0).then(|| Duration::from_secs_f32(seconds))
@@ -34,7 +37,14 @@ impl NavigationAction for DockRobot {
             error_msg,
             ..DockRobotResult::default()
         };
-        // A dock by its id is the one whose light the base sees: there is no table of docks.
+        if goal.use_dock_id && !STATION_NAMES.contains(&goal.dock_id.as_str()) {
+            let error_msg = format!(
+                "dock_id is '{}', expected none or station: the dock whose light the base sees",
+                goal.dock_id
+            );
+            let error_code = DockRobotResult::DOCK_NOT_IN_DB;
+            return Err(NavigationRefusal::Failed(DockRobotResult { error_code, ..failed(error_msg) }));
+        }
         if goal.use_dock_id || !goal.navigate_to_staging_pose {
             return Ok(vec![Task::Dock]);
         }
@@ -73,9 +83,18 @@ impl NavigationAction for DockRobot {
 impl NavigationAction for UndockRobot {
     /// A robot on its station backs off it before any task: here before a turn by nothing.
     fn tasks(
-        _goal: &UndockRobotGoal,
+        goal: &UndockRobotGoal,
         _context: &GoalContext<'_>,
     ) -> Result<Vec<Task>, NavigationRefusal<UndockRobotResult>> {
+        if !STATION_NAMES.contains(&goal.dock_type.as_str()) {
+            let error_msg = format!("dock_type is '{}', expected none or station", goal.dock_type);
+            let error_code = UndockRobotResult::DOCK_NOT_VALID;
+            return Err(NavigationRefusal::Failed(UndockRobotResult {
+                success: false,
+                error_code,
+                error_msg,
+            }));
+        }
         Ok(vec![Task::Turn { angle: 0.0 }])
     }
 
@@ -96,5 +115,29 @@ impl NavigationAction for UndockRobot {
         let failed = |_: &trundle_runtime::Reason| UndockRobotResult::FAILED_TO_CONTROL;
         let error_code = outcome.code(UndockRobotResult::TIMEOUT, failed, UndockRobotResult::UNKNOWN);
         UndockRobotResult { success: error_code == 0, error_code, error_msg: outcome.message.clone() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn docks_of_other_names_fail_with_nav2s_codes() {
+        let frames = FrameNames::default();
+        let context = GoalContext { frames: &frames, view: None };
+        let dock =
+            |id: &str| DockRobotGoal { use_dock_id: true, dock_id: id.to_owned(), ..Default::default() };
+        assert_eq!(DockRobot::tasks(&dock(""), &context), Ok(vec![Task::Dock]));
+        let Err(NavigationRefusal::Failed(result)) = DockRobot::tasks(&dock("nowhere"), &context) else {
+            panic!()
+        };
+        assert_eq!(result.error_code, DockRobotResult::DOCK_NOT_IN_DB);
+        let undock = |kind: &str| UndockRobotGoal { dock_type: kind.to_owned(), ..Default::default() };
+        assert!(UndockRobot::tasks(&undock("station"), &context).is_ok());
+        let Err(NavigationRefusal::Failed(result)) = UndockRobot::tasks(&undock("nothing"), &context) else {
+            panic!()
+        };
+        assert_eq!(result.error_code, UndockRobotResult::DOCK_NOT_VALID);
     }
 }

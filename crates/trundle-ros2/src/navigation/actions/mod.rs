@@ -1,6 +1,7 @@
 //! Nav2's actions, one file each or a pair of the same kind.
 
 mod docking;
+mod follow_path;
 mod navigate_through_poses;
 mod navigate_to_pose;
 mod relative;

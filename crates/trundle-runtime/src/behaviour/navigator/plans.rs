@@ -19,6 +19,9 @@ const MIN_TIME_GAIN_S: f64 = 0.05;
 const STANDING_SPEED_M_S: f64 = 0.02;
 /// Number of turns of a search for sight: each bearing is seen twice. Source: ours.
 const MAX_SPINS: f64 = 2.0;
+/// Time for which no plan may find a path before a goal ends that does not wait for one \[s\]: 30 images, ten plans. One noisy image ends
+/// no goal. Source: ours.
+const NO_PATH_CONFIRMATION_S: f64 = 2.0;
 
 impl Navigator {
     /// Whether it is time to plan: at the beginning, or when a check finds the old plan wanting.
@@ -91,6 +94,7 @@ impl Navigator {
                 self.plan = Some(plan);
                 self.state = DriveState::Driving;
                 self.held_since = None;
+                self.no_path_since = None;
                 self.blocked_at = None;
                 self.viewpoint = Viewpoint::Unknown;
                 self.is_off_track = false;
@@ -102,6 +106,7 @@ impl Navigator {
                 false
             }
             Plan::Blocked { .. } if self.is_free_but_for_movers(s, from, goal) => {
+                self.no_path_since = None;
                 self.hold(Reason::MovingObstacle, s.now);
                 false
             }
@@ -197,6 +202,7 @@ impl Navigator {
     /// Without a path: stops, turns on the spot until the surroundings are observed, drives to a viewpoint of the blocked place, and
     /// waits there with the camera on that place.
     fn without_path(&mut self, cause: NoPath, s: &WorldState<'_>) {
+        let is_final = self.is_final(&cause, s.now);
         if matches!(self.viewpoint, Viewpoint::Going(..)) {
             self.state = DriveState::Recovering { reason: self.no_path(cause) };
             return;
@@ -210,13 +216,24 @@ impl Navigator {
         };
         let reason = self.no_path(cause);
         let has_looked = self.spin.has_turned(MAX_SPINS) && !self.is_wedged;
-        self.state = if matches!(self.goal, Goal::Viewpoint(_)) {
+        self.state = if is_final {
             DriveState::Stopped { reason }
         } else if has_looked && !self.seeks_viewpoint(s) {
             DriveState::Waiting { reason }
         } else {
             DriveState::Recovering { reason }
         };
+    }
+
+    /// Whether the goal is given up without a wait for a path: a viewpoint at once; a goal that does not wait, where no path leads to it
+    /// over known or unknown floor.
+    fn is_final(&mut self, cause: &NoPath, now: Stamp) -> bool {
+        let since = *self.no_path_since.get_or_insert(now);
+        let is_at_goal = !matches!(cause, NoPath::StartInObstacle { .. } | NoPath::StartOutside);
+        // Floor that is kept out of the search may be seen by a later observation, as long as there are any.
+        let is_kept_out = self.visibility.keep_out().is_some() && !self.visibility.is_exhausted();
+        let is_proven = is_at_goal && !is_kept_out && now - since >= NO_PATH_CONFIRMATION_S;
+        matches!(self.goal, Goal::Viewpoint(_)) || self.ends_without_path && is_proven
     }
 
     /// Near the goal, where no path is found or safety holds the robot: by turns and straight moves, if there are such.

@@ -86,7 +86,12 @@ impl VisibilityConstraint {
 
     /// Whether looking at `at` once more may help.
     pub(super) fn is_worth_observing(&self, at: Vector2) -> bool {
-        self.observations_of(at).count() < MAX_VIEWS_PER_PLACE && self.in_vain < MAX_VAIN_VIEWS
+        self.observations_of(at).count() < MAX_VIEWS_PER_PLACE && !self.is_exhausted()
+    }
+
+    /// Whether so many observations were without result that no more are made for this goal.
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.in_vain >= MAX_VAIN_VIEWS
     }
 
     /// Whether `from` is far enough from the earlier observations of `at`.
@@ -138,7 +143,7 @@ mod tests {
         (1..MAX_VAIN_VIEWS)
             .for_each(|i| unseen.record_observation(at, Vector2::zeros(), time(30.0 * i as f64)));
         unseen.forget(time(1000.0));
-        assert!(!unseen.is_worth_observing(at), "not for ever");
+        assert!(!unseen.is_worth_observing(at) && unseen.is_exhausted(), "not for ever");
     }
 
     #[test]

@@ -1,0 +1,186 @@
+//! `ComputePathToPose`: a plan on the robot's newest map, made in a thread of its own.
+
+use super::active_goal::ActiveGoal;
+use super::error_codes::of_no_path;
+use super::goal_pose::{GoalPoseError, in_map};
+use crate::Ros2Error;
+use crate::convert::{path, stamp};
+use crate::generated::geometry_msgs::PoseStamped;
+use crate::generated::nav2_msgs::{
+    ComputePathToPose, ComputePathToPoseGoal as Goal, ComputePathToPoseResult as Outcome,
+};
+use crate::node::{ActionHandle, GoalEnd, GoalHandler, GoalId, RosNode, arrives};
+use crate::outputs::FrameNames;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::time::Instant;
+use trundle_app::operator::MapView;
+use trundle_core::{Pose2, Stamp, Twist2};
+use trundle_planning::{Plan, Planner};
+use trundle_runtime::{NoPath, RobotConfig};
+
+/// Plans that may wait for the thread. Source: ours.
+const MAX_WAITING_PLANS: usize = 4;
+/// Names of the planner: none, and Nav2's default.
+const PLANNER_IDS: [&str; 2] = ["", "GridBased"];
+/// Largest number of poses in a result, where its reply has room for them. Source: ours.
+const MAX_POSES: usize = 24;
+/// Bytes of a reply beside the path. Source: its identity, status, time and code are 24 bytes.
+const REPLY_OVERHEAD_BYTES: usize = 32;
+
+/// A plan that is wanted.
+struct Wanted {
+    id: GoalId,
+    start: Pose2,
+    goal: Pose2,
+    map: Arc<MapView>,
+    at: Stamp,
+}
+
+/// Offers `compute_path_to_pose` for `robot`.
+///
+/// # Errors
+/// When the robot's settings are not usable, the action cannot be made, or the system refuses a thread.
+pub fn offer(
+    node: &mut RosNode,
+    active: &ActiveGoal,
+    frames: &FrameNames,
+    robot: &RobotConfig,
+) -> Result<(), Ros2Error> {
+    let unusable = |error| Ros2Error::create("the planner", error);
+    let footprint = robot.footprint().map_err(unusable)?;
+    let planner = Planner::new(robot.planning, &footprint, robot.limits, robot.drive).map_err(unusable)?;
+    let (plans, wanted) = sync_channel(MAX_WAITING_PLANS);
+    let (own, own_frames, clock) = (active.clone(), frames.clone(), active.clock());
+    let handle = ActionHandle::<ComputePathToPose>::offer(node, "compute_path_to_pose", clock, |handle| {
+        Box::new(Handler { handle, active: own, frames: own_frames, plans })
+    })?;
+    let frame = frames.map.clone();
+    let thread = std::thread::Builder::new().name("ros2-planner".to_owned());
+    thread.spawn(move || plan_all(planner, &wanted, &handle, &frame))?;
+    Ok(())
+}
+
+struct Handler {
+    handle: ActionHandle<ComputePathToPose>,
+    active: ActiveGoal,
+    frames: FrameNames,
+    plans: SyncSender<Wanted>,
+}
+
+impl Handler {
+    /// What is wanted, or the result of a goal that fails.
+    fn wanted(&self, id: GoalId, goal: &Goal) -> Result<Wanted, GoalFailure> {
+        if !PLANNER_IDS.contains(&goal.planner_id.as_str()) {
+            let message = format!("planner_id is '{}', expected none or GridBased", goal.planner_id);
+            return Err(GoalFailure::Failed(Outcome::INVALID_PLANNER, message));
+        }
+        let missing =
+            |what: &str| GoalFailure::Failed(Outcome::UNKNOWN, format!("the robot has no {what} yet"));
+        let view = self.active.view().ok_or_else(|| missing("pose"))?;
+        let map = view.map.clone().ok_or_else(|| missing("map"))?;
+        let in_map = |pose: &PoseStamped| in_map(pose, &self.frames, Some(&*view));
+        let start = if goal.use_start { in_map(&goal.start)? } else { view.estimate.pose };
+        let at = self.active.clock().to_ros(view.stamp);
+        Ok(Wanted { id, start, goal: in_map(&goal.goal)?, map, at })
+    }
+}
+
+/// Why no plan is made.
+enum GoalFailure {
+    Refused(String),
+    Failed(u16, String),
+}
+
+impl From<GoalPoseError> for GoalFailure {
+    fn from(error: GoalPoseError) -> Self {
+        match error {
+            GoalPoseError::Invalid(error) => Self::Refused(error.to_string()),
+            GoalPoseError::Frame(message) => Self::Failed(Outcome::TF_ERROR, message),
+        }
+    }
+}
+
+impl GoalHandler<ComputePathToPose> for Handler {
+    fn on_goal(&mut self, id: GoalId, goal: Goal) -> Result<(), String> {
+        match self.wanted(id, &goal) {
+            Ok(wanted) => {
+                let full = |_| format!("{MAX_WAITING_PLANS} plans are waited for: ask again later");
+                self.plans.try_send(wanted).map_err(full)
+            }
+            Err(GoalFailure::Refused(why)) => Err(why),
+            Err(GoalFailure::Failed(error_code, error_msg)) => {
+                let result = Outcome { error_code, error_msg, ..Outcome::default() };
+                self.handle.end(&id, GoalEnd::Aborted, result);
+                Ok(())
+            }
+        }
+    }
+
+    fn on_cancel(&mut self, _id: GoalId) {
+        // A plan takes less than a second: it is finished.
+    }
+}
+
+/// Makes the plans one after the other, until the node ends.
+fn plan_all(
+    mut planner: Planner,
+    plans: &Receiver<Wanted>,
+    handle: &ActionHandle<ComputePathToPose>,
+    frame: &str,
+) {
+    for Wanted { id, start, goal, map, at } in plans {
+        let started = Instant::now();
+        let plan = planner.plan(&map.grid, start, Twist2::ZERO, goal);
+        let planning_time = stamp::duration(started.elapsed().as_secs_f64());
+        let (end, result) = match &plan {
+            Plan::Found(found) => {
+                let poses: Vec<Pose2> = found.trajectory.points().iter().map(|point| point.pose).collect();
+                (GoalEnd::Succeeded, Outcome { path: small_path(&poses, at, frame), ..Outcome::default() })
+            }
+            refused => (GoalEnd::Aborted, refusal(refused)),
+        };
+        handle.end(&id, end, Outcome { planning_time, ..result });
+    }
+}
+
+/// Why there is no plan.
+fn refusal(plan: &Plan) -> Outcome {
+    let cause = NoPath::of(plan);
+    let error_code = cause.as_ref().map_or(Outcome::UNKNOWN, of_no_path);
+    let error_msg = cause.map(|cause| cause.to_string()).unwrap_or_default();
+    Outcome { error_code, error_msg, ..Outcome::default() }
+}
+
+/// As many poses of a path as its reply has room for.
+fn small_path(poses: &[Pose2], at: Stamp, frame: &str) -> crate::generated::nav_msgs::Path {
+    let of_count = |count| path::to_ros(&path::thinned(poses, count), at, frame);
+    let fits = |path: &crate::generated::nav_msgs::Path| arrives(&(path, [0_u8; REPLY_OVERHEAD_BYTES]));
+    (2..=MAX_POSES).rev().map(of_count).find(fits).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_path_is_thinned_to_what_a_reply_has_room_for() {
+        let wave: Vec<Pose2> =
+            (0..1000).map(|i| 0.01 * f64::from(i)).map(|x| Pose2::new(x, (3.0 * x).sin(), 0.0)).collect();
+        let path = small_path(&wave, Stamp::default(), "map");
+        assert!((10..=15).contains(&path.poses.len()), "{}", path.poses.len());
+        let result = Outcome { path, ..Outcome::default() };
+        assert!(arrives(&(result, [0_u8; 8])));
+        let back = path::from_ros(&small_path(&wave[..2], Stamp::default(), "map")).unwrap();
+        assert_eq!(back.len(), 2);
+    }
+
+    #[test]
+    fn refusals_have_the_planners_codes() {
+        let blocked = refusal(&Plan::Blocked { nearest: trundle_core::Vector2::new(1.0, 2.0) });
+        assert_eq!(blocked.error_code, 208);
+        assert!(blocked.error_msg.contains("(1.00, 2.00) m"));
+        assert_eq!(refusal(&Plan::GoalInObstacle { clearance: -0.1 }).error_code, 206);
+        assert_eq!(refusal(&Plan::StartOutside).error_code, 203);
+    }
+}
