@@ -1,20 +1,15 @@
 """python -m mujoco_robot [options] [--ros-args ...]: the simulated robot as a ROS 2 node until SIGINT, SIGTERM or --duration."""
 import argparse
 import math
-import os
 import signal
 import sys
 import time
 
-# One thread for the software renderer: more threads cost more than they gain at this size.
-os.environ.setdefault("LP_NUM_THREADS", "1")
-os.environ.setdefault("MUJOCO_GL", "egl")
+import rclpy
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import remove_ros_args
 
-import rclpy  # noqa: E402
-from rclpy.signals import SignalHandlerOptions  # noqa: E402
-from rclpy.utilities import remove_ros_args  # noqa: E402
-
-from . import bridge, simulation, worlds  # noqa: E402
+from . import bridge, simulation, worlds
 
 
 def at_least_zero(text):

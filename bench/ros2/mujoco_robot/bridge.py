@@ -7,7 +7,7 @@ from geometry_msgs.msg import PoseStamped, Twist, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import CameraInfo, CompressedImage, Image, Imu
+from sensor_msgs.msg import CameraInfo, CompressedImage, Image, Imu, LaserScan
 from std_msgs.msg import UInt32
 
 from . import messages
@@ -16,6 +16,9 @@ from . import messages
 BASE_PERIOD_MS = 20
 # Images a second of simulated time.
 IMAGE_RATE_HZ = 15
+# Lag of the scan that trundle makes of an image behind the newest image, ms of simulated time: beyond the first the simulation slows
+# down, so that a loaded machine drops no images; beyond the second nobody makes scans, and it does not wait.
+SLOW_LAG_MS, GONE_LAG_MS = 150, 1000
 # A command of these frames is in the robot's base; others are refused.
 BASE_FRAMES = ("", "base_link", "base_footprint")
 
@@ -26,12 +29,14 @@ class Bridge:
     def __init__(self, node, simulation, options):
         self.node, self.robot, self.options = node, simulation, options
         self.reported, self.command_stamp_ms, self.images = set(), -1, 0
-        self.answered = False
+        self.answered, self.image_ms, self.scan_ms = False, 0, None
         self.clock = node.create_publisher(Clock, "/clock", qos_profile_sensor_data)
         self.odom = node.create_publisher(Odometry, "odom", 10)
         self.imu = node.create_publisher(Imu, "imu", qos_profile_sensor_data)
         self.truth = node.create_publisher(PoseStamped, "ground_truth", 10)
         self.contacts = node.create_publisher(UInt32, "contacts", 10)
+        if options.lock_step > 0:
+            node.create_subscription(LaserScan, "scan", self.on_scan, qos_profile_sensor_data)
         self.create_camera()
         self.create_transforms()
         if options.cmd_vel == "twist":
@@ -58,7 +63,7 @@ class Bridge:
         if self.options.tf_static:
             kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, reliability=ReliabilityPolicy.RELIABLE)
             self.tf_static = self.node.create_publisher(TFMessage, "/tf_static", kept)
-            self.tf_static.publish(TFMessage(transforms=[messages.camera_mount(0)]))
+            self.tf_static.publish(TFMessage(transforms=[messages.camera_mount(0), messages.gyro_mount(0)]))
         if self.options.tf:
             self.tf = self.node.create_publisher(TFMessage, "/tf", 100)
             self.tf_message = TFMessage
@@ -73,6 +78,14 @@ class Bridge:
         if header:
             self.command_stamp_ms, self.answered = header.stamp.sec * 1000 + header.stamp.nanosec // 1_000_000, True
         self.robot.set_command(v, omega)
+
+    def on_scan(self, message):
+        self.scan_ms = message.header.stamp.sec * 1000 + message.header.stamp.nanosec // 1_000_000
+
+    def lag(self):
+        """Time by which the newest scan is behind the newest image, s of simulated time; 0 where it is small, or no scan comes."""
+        lag_ms = 0 if self.scan_ms is None else self.image_ms - self.scan_ms
+        return lag_ms / 1000 if SLOW_LAG_MS < lag_ms < GONE_LAG_MS else 0.0
 
     def report(self, kind, text):
         if kind not in self.reported:
@@ -99,7 +112,7 @@ class Bridge:
             self.tf.publish(self.tf_message(transforms=[messages.base_motion(wheels, end)]))
 
     def publish_images(self, color, depth):
-        now = self.robot.now_ms
+        now = self.image_ms = self.robot.now_ms
         for publisher in self.infos:
             publisher.publish(messages.camera_info(now))
         if self.options.images == "raw":
@@ -118,6 +131,7 @@ def run(node, bridge, options):
     while rclpy.ok() and bridge.robot.now_ms < last:
         bridge.advance()
         take_commands(executor, bridge, options)
+        wait_for_scan(executor, bridge, options)
         if options.real_time_factor > 0:
             ahead = bridge.robot.now_ms / 1000 / options.real_time_factor - (time.monotonic() - begin)
             if ahead > 0:
@@ -141,6 +155,13 @@ def take_commands(executor, bridge, options):
             bridge.answered = False
         else:
             executor.spin_once(timeout_sec=left)
+
+
+def wait_for_scan(executor, bridge, options):
+    """In lock step: a wait in proportion to the lag of the scans. Time does not stand still, as scans come after later odometry."""
+    deadline = time.monotonic() + min(options.lock_step, bridge.lag() / 2)
+    while bridge.lag() > 0 and (left := deadline - time.monotonic()) > 0:
+        executor.spin_once(timeout_sec=left)
 
 
 def wait(executor, seconds):

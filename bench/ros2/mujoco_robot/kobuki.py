@@ -17,8 +17,11 @@ TICKS_PER_TURN = 2578.33
 WHEEL_SPEED_M_S = 0.70
 # Highest acceleration of a wheel's circumference, m/s^2, of the motor controller (ours: below slipping).
 WHEEL_ACCELERATION_M_S2 = 1.2
-# Camera: forward, up, m, and tilt downward, rad; the default mount of trundle.
-CAMERA_X_M, CAMERA_Z_M, CAMERA_TILT_RAD = 0.05, 0.45, math.radians(8.0)
+# Camera: forward, up, m, and tilt downward, rad. It stands behind the axle as on a TurtleBot 2, so that it measures what touches the
+# front (nearest depth 0.5 m). This is not the default mount of trundle, which has to read /tf_static.
+CAMERA_X_M, CAMERA_Z_M, CAMERA_TILT_RAD = -0.087, 0.48, math.radians(8.0)
+# Place of the gyro on the base, m (the Kobuki's published description).
+GYRO_XYZ_M = (0.056, 0.062, 0.0202)
 # Radius of a caster, m, and its distance from the axle, m.
 CASTER_RADIUS_M, CASTER_X_M = 0.015, 0.12
 

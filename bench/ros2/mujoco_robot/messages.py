@@ -12,7 +12,7 @@ from sensor_msgs.msg import CameraInfo, CompressedImage, Image, Imu
 
 from . import kobuki, scene
 
-OPTICAL_FRAME = "camera_color_optical_frame"
+OPTICAL_FRAME, GYRO_FRAME = "camera_color_optical_frame", "gyro_link"
 # compressed_depth_image_transport puts a header before the PNG: format and two parameters, unused for 16UC1.
 DEPTH_HEADER = struct.pack("<iff", 0, 0.0, 0.0)
 
@@ -48,7 +48,7 @@ def odometry(wheels, now_ms):
 def imu(rate, now_ms):
     """Turn rate about z; orientation and acceleration are marked as absent (REP 145: first covariance -1)."""
     message = Imu()
-    message.header.frame_id, message.header.stamp = "gyro_link", stamp(now_ms)
+    message.header.frame_id, message.header.stamp = GYRO_FRAME, stamp(now_ms)
     message.angular_velocity.z = rate
     message.angular_velocity_covariance[[0, 4, 8]] = (1e10, 1e10, 0.0037**2)
     message.orientation_covariance[0] = message.linear_acceleration_covariance[0] = -1.0
@@ -91,6 +91,15 @@ def raw(pixels, encoding, now_ms):
     message = Image(height=pixels.shape[0], width=pixels.shape[1], encoding=encoding, step=pixels.strides[0])
     message.header.frame_id, message.header.stamp = OPTICAL_FRAME, stamp(now_ms)
     message.data = pixels.tobytes()
+    return message
+
+
+def gyro_mount(now_ms):
+    """`base_link` to the gyro's frame: the same axes, as in the Kobuki's description."""
+    message = TransformStamped(child_frame_id=GYRO_FRAME)
+    message.header.frame_id, message.header.stamp = "base_link", stamp(now_ms)
+    message.transform.translation.x, message.transform.translation.y, message.transform.translation.z = kobuki.GYRO_XYZ_M
+    message.transform.rotation.w = 1.0
     return message
 
 

@@ -11,6 +11,8 @@ import numpy as np
 CEILING_M = 2.5
 # Thickness of walls, m.
 WALL_M = 0.12
+# Distance behind the first pose of a corridor's scenario at which the robot starts, m.
+LOOKOUT_M = 1.5
 # Names of the worlds.
 NAMES = ["flat", "corridor-a", "corridor-b", "corridor-c", "corridor-d"]
 
@@ -122,14 +124,16 @@ def pictures(world, rng):
 
 
 def corridor(name, seed):
-    """A corridor 1.0 m wide and 6 m long along y, closed at both ends; the goal 0.38 m beside the start, same heading.
+    """A corridor 1.0 m wide and 6 m long along y, closed at both ends. The scenario: from a pose to one 0.38 m beside it, same heading.
 
-    (a) free, (b) blocked in front, (c) blocked in front on the left, (d) blocked in front on the right, goal 0.5 m back.
+    (a) free, (b) blocked in front, (c) blocked in front on the left, (d) blocked in front on the right, goal 0.5 m back. The paper gives
+    the map; here the robot comes from LOOKOUT_M behind, as the camera measures nothing nearer than 0.5 m. Goals: the scenario's two poses.
     """
     rng = np.random.default_rng(2000 + seed)
     half, length, offset = 0.5, 3.0, 0.38
     back = 0.5 if name == "corridor-d" else 0.0
-    world = World(name, start=(-offset / 2, 0.0, math.pi / 2), goals=[(offset / 2, -back, math.pi / 2)], unreachable=(3.0, 0.0, 0.0))
+    poses = [(-offset / 2, 0.0, math.pi / 2), (offset / 2, -back, math.pi / 2)]
+    world = World(name, start=(-offset / 2, -LOOKOUT_M, math.pi / 2), goals=poses, unreachable=(3.0, 0.0, 0.0))
     world.room_shell(-half, -length, half, length)
     ahead = 0.44 + float(rng.uniform(-0.02, 0.02))
     across = {"corridor-b": (-half, half), "corridor-c": (-half, -0.05), "corridor-d": (0.05, half)}.get(name)

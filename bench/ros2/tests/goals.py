@@ -5,17 +5,18 @@ world's goals one after the other by NavigateToPose and writes a line of JSON to
 """
 import argparse
 import json
-import os
 import pathlib
 import sys
 import tempfile
 
-from harness import Checks, Process, start_robot
+from harness import Checks, start_robot, start_trundle
 from mujoco_robot import worlds
 from nav2_user import User, outcome, status
 
 # Largest distance, m, and angle, deg, of the robot's truth from a goal (issue of the ROS 2 bridge).
 DISTANCE_M, ANGLE_DEG = 0.05, 3.0
+# Runs of the results page.
+ALL_RUNS = [("flat", seed) for seed in range(5)] + [(world, 0) for world in worlds.NAMES if world != "flat"]
 # Simulated time for one goal, s.
 GOAL_LIMIT_S = 180
 
@@ -34,8 +35,7 @@ def start(options, folder, world, seed):
     """The robot and trundle; a list to end in reverse."""
     robot = start_robot(folder, "--world", world, "--seed", str(seed), "--real-time-factor", str(options.real_time_factor),
                         "--lock-step", str(options.lock_step))
-    trundle = Process("trundle", [os.path.abspath(options.trundle), *options.trundle_arguments.split()], folder)
-    return [robot, trundle]
+    return [robot, start_trundle(options, folder)]
 
 
 def drive(user, goal):
@@ -63,7 +63,7 @@ def score(checks, options, world, seed, folder):
             distance, angle = user.error_to(goal)
             good = status(result) == "SUCCEEDED" and distance <= DISTANCE_M and angle <= ANGLE_DEG
             checks.check(f"{world} {seed} goal {number}", good, f"{outcome(result)}, {100 * distance:.1f} cm, {angle:.2f} deg, {took:.1f} s")
-            lines.append({"world": world, "seed": seed, "goal": number, "outcome": outcome(result), "distance_m": round(distance, 4),
+            lines.append({"world": world, "seed": seed, "goal": number, "good": good, "outcome": outcome(result), "distance_m": round(distance, 4),
                           "angle_deg": round(angle, 3), "simulated_s": round(took, 2)})
         checks.check(f"{world} {seed}: no contact", user.contacts() == 0, str(user.contacts()))
     finally:
@@ -73,20 +73,33 @@ def score(checks, options, world, seed, folder):
     return [line | {"contacts": user.contacts()} for line in lines]
 
 
+def summary(lines):
+    """Figures of the results page."""
+    good = [line for line in lines if line["good"] and not line["contacts"]]
+    print(f"goals within 5 cm and 3 deg without contact: {len(good)} of {len(lines)}")
+    print(f"largest distance: {100 * max((line['distance_m'] for line in lines), default=0):.2f} cm")
+    print(f"largest angle: {max((line['angle_deg'] for line in lines), default=0):.2f} deg")
+    print(f"contacts: {sum({(line['world'], line['seed']): line['contacts'] for line in lines}.values())}")
+
+
 def main():
     parser = options_of(argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter))
     parser.add_argument("--worlds", nargs="+", choices=worlds.NAMES, default=["flat"])
     parser.add_argument("--seeds", nargs="+", type=int, default=[0])
+    parser.add_argument("--all", action="store_true", help="the flat with seeds 0 to 4, each corridor with seed 0")
     options = parser.parse_args()
+    runs = ALL_RUNS if options.all else [(world, seed) for world in options.worlds for seed in options.seeds]
     out = options.out or pathlib.Path(tempfile.mkdtemp(prefix="goals-"))
-    checks = Checks("goals")
+    checks, lines = Checks("goals"), []
     out.mkdir(parents=True, exist_ok=True)
     with open(out / "goals.jsonl", "w") as file:
-        for world in options.worlds:
-            for seed in options.seeds:
-                for line in score(checks, options, world, seed, out / f"{world}-{seed}"):
-                    print(json.dumps(line), file=file, flush=True)
+        for world, seed in runs:
+            scored = score(checks, options, world, seed, out / f"{world}-{seed}")
+            lines += scored
+            for line in scored:
+                print(json.dumps(line), file=file, flush=True)
     print(f"written: {out}/goals.jsonl")
+    summary(lines)
     return checks.report()
 
 

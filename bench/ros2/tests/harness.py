@@ -21,12 +21,13 @@ from rclpy.signals import SignalHandlerOptions  # noqa: E402
 class Process:
     """A program with its output in a file; ended by SIGINT, then SIGTERM, then SIGKILL."""
 
-    def __init__(self, name, arguments, folder, environment=None):
+    def __init__(self, name, arguments, folder):
+        """The program runs in `folder`."""
         folder.mkdir(parents=True, exist_ok=True)
         self.name, self.log = name, folder / f"{name}.log"
         with open(self.log, "w") as log:
-            self.child = subprocess.Popen([str(a) for a in arguments], stdout=log, stderr=subprocess.STDOUT, cwd=FOLDER,
-                                          env=os.environ | (environment or {}))
+            self.child = subprocess.Popen([str(a) for a in arguments], stdout=log, stderr=subprocess.STDOUT, cwd=folder,
+                                          env=os.environ | {"PYTHONPATH": str(FOLDER)})
 
     def wait_for(self, text, seconds=120):
         """Until the output holds `text`; an error names the program and its last lines."""
@@ -55,6 +56,11 @@ def start_robot(folder, *options):
     robot = Process("robot", [sys.executable, "-m", "mujoco_robot", *options], folder)
     robot.wait_for("ready")
     return robot
+
+
+def start_trundle(options, folder, name="trundle"):
+    """`trundle ros2`, or what the options say; its results go to `folder`/out."""
+    return Process(name, [os.path.abspath(options.trundle), *options.trundle_arguments.split()], folder)
 
 
 class Checks:

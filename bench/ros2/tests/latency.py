@@ -1,57 +1,38 @@
 """Latency, loss and CPU of trundle's ROS 2 side at 30 image pairs a second of 640 x 480, against rclpy to rclpy in the same run.
 
-latency.py [--trundle PATH] [--seconds 20]. A standing robot is played from this process: one picture of the flat at 640 x 480, odometry
-and gyro at 50 Hz, /clock by the wall. Measured: odometry out to cmd_vel in; image pair out to its scan in (trundle) or to its echo in
-(rclpy); pairs without an answer; CPU of the peer. Prints a table and writes OUT/latency.json. Without --trundle only rclpy is measured.
+latency.py --trundle PATH [--seconds 20]. A standing robot is played from this process. Measured: odometry out to cmd_vel in; image pair
+out to its scan in (trundle) or to its echo in (rclpy); pairs that were not received, and pairs that a newer one replaced; CPU of the
+peer. Writes OUT/latency.json.
 """
 import argparse
 import json
+import math
 import os
 import pathlib
 import sys
 import tempfile
 import time
 
-os.environ.setdefault("MUJOCO_GL", "egl")
-os.environ.setdefault("LP_NUM_THREADS", "1")
-
+import goals
 import numpy as np
-from harness import Checks, Listener, Process
 from geometry_msgs.msg import TwistStamped
-from mujoco_robot import messages, scene, sensors, simulation, worlds
-from nav_msgs.msg import Odometry
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
-from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import CameraInfo, CompressedImage, Imu, LaserScan
-from tf2_msgs.msg import TFMessage
+from harness import Checks, Process, start_trundle
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import LaserScan
+from standing_robot import StandingRobot
 
-# Rate of image pairs, Hz, and of odometry and gyro, Hz.
-PAIRS_HZ, BASE_HZ = 30, 50
-WIDTH_PX, HEIGHT_PX = 640, 480
-
-
-def pictures():
-    """Compressed bytes of one colour and one depth picture, and the camera_info."""
-    scene.WIDTH_PX, scene.HEIGHT_PX = WIDTH_PX, HEIGHT_PX
-    color, depth = simulation.Simulation(worlds.build("flat", 0), 0).read_camera()
-    return messages.compressed_color(color, 0, 90), messages.compressed_depth(depth, 0), messages.camera_info(0)
+# Beginnings of the names of threads that carry messages of ROS 2: of trundle, and of the DDS library.
+BRIDGE_THREADS = ("ros2", "RustDDS", "cmd-vel", "dds")
+# Largest share of messages that may get no answer (ours; a loaded machine delays some beyond the end).
+MOST_LOST = 0.2
 
 
-class Player(Listener):
-    """Plays the robot and keeps when each stamp was sent and answered, by the wall clock."""
+class Player(StandingRobot):
+    """Keeps when each stamp was answered, by the wall clock."""
 
     def __init__(self, name):
         super().__init__(name)
-        publish = lambda kind, topic, qos=qos_profile_sensor_data: self.node.create_publisher(kind, topic, qos)
-        self.color, self.depth, self.info = pictures()
-        self.out = {"color": publish(CompressedImage, "camera/color/image_raw/compressed"),
-                    "depth": publish(CompressedImage, "camera/depth/image_raw/compressedDepth"),
-                    "info": publish(CameraInfo, "camera/color/camera_info"), "depth_info": publish(CameraInfo, "camera/depth/camera_info"),
-                    "odom": publish(Odometry, "odom", 10), "imu": publish(Imu, "imu"), "clock": publish(Clock, "/clock")}
-        kept = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL, reliability=ReliabilityPolicy.RELIABLE)
-        self.out["tf_static"] = publish(TFMessage, "/tf_static", kept)
-        self.out["tf_static"].publish(TFMessage(transforms=[messages.camera_mount(0)]))
-        self.sent, self.answered = {"base": {}, "pair": {}}, {"base": {}, "pair": {}}
+        self.answered = {"base": {}, "pair": {}}
         self.node.create_subscription(TwistStamped, "cmd_vel", self.on_command, 10)
         for kind, topic, qos in ((LaserScan, "scan", qos_profile_sensor_data), (TwistStamped, "pair_echo", 10)):
             self.node.create_subscription(kind, topic, lambda m: self.on_answer("pair", m), qos)
@@ -68,41 +49,9 @@ class Player(Listener):
         if older:
             self.answered["base"].setdefault(max(older), time.monotonic())
 
-    def play(self, duration):
-        """Send at both rates for `duration` seconds of the wall; answers are taken while waiting."""
-        wheels, begin = sensors.WheelOdometry(), time.monotonic()
-        bases = pairs = 0
-        while (now := time.monotonic() - begin) < duration:
-            now_ms = round(now * 1000)
-            if now >= bases / BASE_HZ:
-                bases += 1
-                self.send_base(wheels, now_ms)
-            if now >= pairs / PAIRS_HZ:
-                pairs += 1
-                self.send_pair(now_ms)
-            due = min(bases / BASE_HZ, pairs / PAIRS_HZ) - (time.monotonic() - begin)
-            self.executor.spin_once(timeout_sec=max(0.0, due))
-        self.spin(1.0)
-
-    def send_base(self, wheels, now_ms):
-        self.out["clock"].publish(Clock(clock=messages.stamp(now_ms)))
-        self.out["imu"].publish(messages.imu(0.0, now_ms))
-        self.sent["base"][now_ms] = time.monotonic()
-        self.out["odom"].publish(messages.odometry(wheels, now_ms))
-
-    def send_pair(self, now_ms):
-        for message in (self.color, self.depth, self.info):
-            message.header.stamp = messages.stamp(now_ms)
-        self.sent["pair"][now_ms] = time.monotonic()
-        self.out["info"].publish(self.info)
-        self.out["depth_info"].publish(self.info)
-        self.out["color"].publish(self.color)
-        self.out["depth"].publish(self.depth)
-
-    def figures(self, kind, after_s):
-        """Median and 95 % of the latency, ms, and the share without an answer, of what was sent after the warm-up."""
-        first = min(self.sent[kind].values()) + after_s
-        sent = {k: t for k, t in self.sent[kind].items() if t >= first}
+    def figures(self, kind):
+        """Median and 95 % of the latency, ms, and the share without an answer."""
+        sent = self.sent[kind]
         delays = sorted(1000 * (self.answered[kind][k] - t) for k, t in sent.items() if k in self.answered[kind])
         if not delays:
             return {"sent": len(sent), "answered": 0, "lost": 1.0}
@@ -111,45 +60,68 @@ class Player(Listener):
 
 
 def cpu_seconds(pid):
-    """User and system time of a process, s."""
-    fields = pathlib.Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    """User and system time of a process so far, s: of the threads that carry ROS 2 messages, of those that convert images, of all."""
+    spent = {"bridge": 0.0, "camera": 0.0, "all": 0.0}
+    for task in pathlib.Path(f"/proc/{pid}/task").iterdir():
+        name, fields = (task / "stat").read_text().split("(", 1)[1].rsplit(")", 1)
+        used = (int(fields.split()[11]) + int(fields.split()[12])) / os.sysconf("SC_CLK_TCK")
+        kind = "bridge" if name.startswith(BRIDGE_THREADS) else "camera" if name.startswith("camera") else None
+        for key in filter(None, (kind, "all")):
+            spent[key] += used
+    return spent
 
 
-def measure(name, arguments, options, folder):
+def measure(name, start, options):
     """Figures of one peer."""
     player = Player(f"latency_{name}")
-    process = Process(name, arguments, folder)
+    process = start()
     try:
         player.until(lambda: player.out["odom"].get_subscription_count() > 0, 60)
-        player.spin(1.0)
+        # The peer is ready when it answers images.
+        player.play(60, lambda: bool(player.answered["pair"]))
+        player.sent, player.answered = {"base": {}, "pair": {}}, {"base": {}, "pair": {}}
         before = cpu_seconds(process.child.pid)
         player.play(options.seconds)
-        spent = cpu_seconds(process.child.pid) - before
+        spent = {k: round((v - before[k]) / options.seconds, 3) for k, v in cpu_seconds(process.child.pid).items()}
+        player.spin(1.0)
     finally:
         process.end()
         player.node.destroy_node()
-    warm = min(3.0, options.seconds / 4)
-    return {"peer": name, "odom_to_cmd_vel": player.figures("base", warm), "pair_to_answer": player.figures("pair", warm),
-            "cpu_s_per_s": round(spent / options.seconds, 3), "bytes_a_pair": len(player.color.data) + len(player.depth.data)}
+    size = sum(len(m.data) for pair in player.pictures for m in pair) // len(player.pictures)
+    return {"peer": name, "odom_to_cmd_vel": player.figures("base"), "pair_to_answer": player.figures("pair"), "cpu_s_per_s": spent,
+            "bytes_a_pair": size}
+
+
+def images_of_run(folder):
+    """Image pairs that trundle's run received, and those that were replaced by a newer one before they were looked at."""
+    run = json.loads((folder / "out/ros2/summary.json").read_text())
+    return {"received": run["wall_clock"]["real_time"]["world"]["images"], "replaced": run["images_dropped"]}
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--trundle", help="path of the binary")
-    parser.add_argument("--trundle-arguments", default="ros2 --ros-args -p use_sim_time:=true -r imu:=imu")
+    parser = goals.options_of(argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter))
     parser.add_argument("--seconds", type=float, default=20.0)
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(tempfile.mkdtemp(prefix="latency-")))
     options = parser.parse_args()
-    peers = [("rclpy", [sys.executable, pathlib.Path(__file__).parent / "echo_peer.py"])]
-    if options.trundle:
-        peers.append(("trundle", [os.path.abspath(options.trundle), *options.trundle_arguments.split()]))
+    out = options.out or pathlib.Path(tempfile.mkdtemp(prefix="latency-"))
+    echo = [sys.executable, pathlib.Path(__file__).parent / "echo_peer.py"]
+    peers = {"rclpy": lambda: Process("rclpy", echo, out), "trundle": lambda: start_trundle(options, out)}
     checks, lines = Checks("latency"), []
-    for name, arguments in peers:
-        lines.append(measure(name, arguments, options, options.out))
+    for name, start in peers.items():
+        lines.append(measure(name, start, options))
+        if name == "trundle":
+            lines[-1] |= images_of_run(out)
         print(json.dumps(lines[-1]), flush=True)
         checks.check(f"{name} answers pairs and odometry", all(lines[-1][k]["answered"] for k in ("odom_to_cmd_vel", "pair_to_answer")))
-    (options.out / "latency.json").write_text(json.dumps(lines, indent=1))
+        checks.within(f"{name}: share of odometry without an answer", lines[-1]["odom_to_cmd_vel"]["lost"], MOST_LOST)
+    sent = lines[-1]["pair_to_answer"]["sent"]
+    received = lines[-1]["received"]
+    checks.check("trundle receives the pairs", received >= (1 - MOST_LOST) * sent, f"{received}, sent {sent} and some before")
+    for line in lines:
+        for kind, what in (("odom_to_cmd_vel", "odometry to command"), ("pair_to_answer", "image pair to answer")):
+            print(f"{line['peer']}, {what}, median: {line[kind].get('median_ms', math.nan)} ms; 95 %: {line[kind].get('p95_ms', math.nan)} ms; "
+                  f"lost: {100 * line[kind]['lost']:.2f} %")
+        print(f"{line['peer']}, CPU of the bridge: {line['cpu_s_per_s']['bridge' if line['peer'] == 'trundle' else 'all']} s/s")
+    (out / "latency.json").write_text(json.dumps(lines, indent=1))
     return checks.report()
 
 

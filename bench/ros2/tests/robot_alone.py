@@ -125,8 +125,10 @@ def images(checks, driver):
     sets = [{seconds(m.header.stamp) for m in driver.kept.get(t, [])} for t in
             ("camera/color/image_raw/compressed", "camera/depth/image_raw/compressedDepth", "camera/depth/camera_info")]
     pairs = sorted(sets[0] & sets[1] & sets[2])
-    rate = (len(pairs) - 1) / (pairs[-1] - pairs[0]) if len(pairs) > 1 else 0.0
-    checks.check("15 pairs with camera_info a simulated second", 14.5 < rate < 15.5, f"{rate:.2f} Hz, {len(pairs)} pairs")
+    # A loaded machine loses images of best effort: the period is the median of the gaps.
+    gaps = sorted(b - a for a, b in zip(pairs, pairs[1:]))
+    period = gaps[len(gaps) // 2] if gaps else 0.0
+    checks.check("a pair with camera_info every 1/15 s", abs(period - 1 / 15) < 0.002, f"{period:.4f} s, {len(pairs)} pairs")
     sizes = [sum(len(m.data) for m in driver.kept[t]) / len(driver.kept[t]) / 1000 for t in driver.kept if "compressed" in t]
     print(f"     mean size: {', '.join(f'{s:.0f} kB' for s in sizes)}")
 

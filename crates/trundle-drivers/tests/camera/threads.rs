@@ -2,7 +2,6 @@
 
 use crate::fixtures::{frame, info};
 use std::collections::VecDeque;
-use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use trundle_core::{BodyEventKind, Device, Invalid, SensorEvent, Stamp};
@@ -91,12 +90,10 @@ impl Rig {
             }
             seen.lock().unwrap().push(event);
         };
-        let time = AtomicI64::new(0);
-        let clock = move || Stamp::from_nanos(time.fetch_add(1_000_000_000, Ordering::SeqCst));
         let parts = CameraThreadParts {
             factory: Box::new(factory),
             sink: Box::new(sink),
-            clock: Arc::new(clock),
+            clock: clock(),
             stamps: device_stamps(),
         };
         Self { events, thread: CameraThread::start(parts, config.checked().unwrap()).unwrap() }
@@ -288,6 +285,12 @@ fn a_camera_with_only_broken_frames_is_lost() {
     assert!(rig.thread.counters().broken >= 30);
 }
 
+/// The time since the call.
+fn clock() -> Arc<dyn Fn() -> Stamp + Send + Sync> {
+    let start = Instant::now();
+    Arc::new(move || Stamp::default().after(start.elapsed().as_secs_f64()))
+}
+
 /// A writer that dies is a lost camera; a new writer of the same FIFO brings it back, and so does one that paused.
 #[cfg(unix)]
 #[test]
@@ -303,7 +306,7 @@ fn a_fifo_is_opened_anew_after_its_writer_ended_or_paused() {
             Ok(Box::new(camera) as Box<dyn DepthCamera>)
         }),
         sink: Box::new(move |event| seen.lock().unwrap().push(event)),
-        clock: Arc::new(|| Stamp::from_nanos(0)),
+        clock: clock(),
         stamps: device_stamps(),
     };
     let rig = Rig { events, thread: CameraThread::start(parts, quick()).unwrap() };

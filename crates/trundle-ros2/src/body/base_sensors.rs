@@ -1,6 +1,6 @@
 //! Odometry, gyro, laser and battery of a ROS 2 robot as events.
 
-use super::{BodySettings, FrameTree, WheelsFromOdometry};
+use super::{BodySettings, ContinuousOdometry, FrameTree, MAX_STEP_M, WheelsFromOdometry};
 use crate::Ros2Error;
 use crate::clock::RosClock;
 use crate::convert::{battery, imu, odometry, scan, stamp};
@@ -12,7 +12,7 @@ use crate::node::{Diagnostics, RosNode, TopicMonitor, qos};
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use trundle_core::{
     BodyEvent, BodyEventKind, DifferentialDrive, Invalid, Odometry, Pose2, Pose3, SensorEvent, Stamp,
 };
@@ -22,6 +22,9 @@ pub const MAX_ODOM_SILENCE: Duration = Duration::from_millis(500);
 /// Silence of a laser after which it counts as lost: five sweeps at 5 Hz. Source: ours.
 pub const MAX_SCAN_SILENCE: Duration = Duration::from_secs(1);
 
+/// Wait for transforms of sensors from the start on. Source: ours; two heartbeats of Fast DDS (3 s each), which bring `/tf_static` where
+/// its first copy got lost.
+pub(super) const FRAME_WAIT: Duration = Duration::from_secs(7);
 /// Readings of odometry that are kept: 2 s at 50 Hz. Source: ours.
 const ODOMETRY_HISTORY: usize = 100;
 
@@ -46,6 +49,8 @@ pub struct Shared {
     pub clock: RosClock,
     /// Conditions of topics.
     pub diagnostics: Diagnostics,
+    /// When the topics were subscribed.
+    pub start: Instant,
 }
 
 impl Shared {
@@ -56,8 +61,11 @@ impl Shared {
         }
     }
 
-    /// The run's stamp of a message, or a report that names the topic.
+    /// The run's stamp of a message, or a report that names the topic. A message before the first of `/clock` has no time.
     pub(super) fn stamp(&self, topic: &str, time: &Time) -> Option<Stamp> {
+        if !self.clock.has_begun() {
+            return None;
+        }
         self.accept(topic, stamp::from_ros(time).and_then(|ros| self.clock.checked_to_run(ros)))
     }
 
@@ -69,7 +77,7 @@ impl Shared {
     /// The pose of the frame of `header` on the base, or a report that names the topic.
     fn base_from(&self, topic: &str, base: &str, header: &Header) -> Option<Pose3> {
         let pose = lock(&self.frames).pose(base, &header.frame_id);
-        if pose.is_none() && header.frame_id != base {
+        if pose.is_none() && header.frame_id != base && self.start.elapsed() > FRAME_WAIT {
             let frame = &header.frame_id;
             let message = format!(
                 "no transform from {base} to its frame '{frame}' on /tf_static: start robot_state_publisher or static_transform_publisher"
@@ -87,8 +95,12 @@ pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 /// Monitors of the topics without which the base counts as lost.
 pub struct BaseMonitors {
+    /// The time, where a simulator gives it.
+    pub clock: Option<Arc<TopicMonitor>>,
     /// Odometry.
     pub odom: Arc<TopicMonitor>,
+    /// Gyro.
+    pub imu: Option<Arc<TopicMonitor>>,
     /// Laser.
     pub scan: Option<Arc<TopicMonitor>>,
 }
@@ -104,15 +116,13 @@ pub fn subscribe(
     shared: &Arc<Shared>,
 ) -> Result<BaseMonitors, Ros2Error> {
     let odom = subscribe_odometry(node, settings, drive, shared)?;
-    if let Some(topic) = &settings.imu {
-        subscribe_imu(node, topic, &settings.base_frame, shared)?;
-    }
+    let imu = settings.imu.as_deref().map(|topic| subscribe_imu(node, topic, &settings.base_frame, shared));
     let scan =
         settings.scan.as_deref().map(|topic| subscribe_scan(node, topic, &settings.base_frame, shared));
     if let Some(topic) = &settings.battery {
         subscribe_battery(node, topic, shared)?;
     }
-    Ok(BaseMonitors { odom, scan: scan.transpose()? })
+    Ok(BaseMonitors { clock: None, odom, imu: imu.transpose()?, scan: scan.transpose()? })
 }
 
 fn subscribe_odometry(
@@ -122,7 +132,7 @@ fn subscribe_odometry(
     shared: &Arc<Shared>,
 ) -> Result<Arc<TopicMonitor>, Ros2Error> {
     let (shared, name) = (Arc::clone(shared), node.names().resolve(&settings.odom));
-    let mut wheels = WheelsFromOdometry::new(drive);
+    let (mut continuous, mut wheels) = (ContinuousOdometry::default(), WheelsFromOdometry::new(drive));
     let base = settings.base_frame.clone();
     let on_odometry = move |message: OdometryMessage| {
         let Some(at) = shared.stamp(&name, &message.header.stamp) else { return };
@@ -130,6 +140,8 @@ fn subscribe_odometry(
         let Some(own) = on_base(own, &message.child_frame_id, &base, &shared) else { return };
         lock(&shared.odom_frame).get_or_insert(message.header.frame_id);
         note(&mut lock(&shared.odometry), own);
+        let (own, jump) = continuous.add(&own);
+        jump.into_iter().for_each(|length| report_jump(&name, &shared, length));
         let uses_gyro = shared.uses_gyro.load(Ordering::Relaxed);
         shared.send(if uses_gyro {
             SensorEvent::Wheels(wheels.add(&own))
@@ -138,6 +150,14 @@ fn subscribe_odometry(
         });
     };
     node.subscribe(&settings.odom, &qos::sensor(5), Some(MAX_ODOM_SILENCE), on_odometry)
+}
+
+/// Reports a jump of the odometry \[m\].
+fn report_jump(topic: &str, shared: &Shared, length: f64) {
+    let message = format!(
+        "a jump of {length:.2} m from one message to the next, expected at most {MAX_STEP_M} m: was the base's driver started anew?"
+    );
+    shared.diagnostics.warn(topic, message);
 }
 
 fn note(history: &mut VecDeque<Odometry>, newest: Odometry) {
@@ -153,7 +173,12 @@ fn on_base(own: Odometry, child: &str, base: &str, shared: &Shared) -> Option<Od
     Some(Odometry { pose: own.pose * offset, ..own })
 }
 
-fn subscribe_imu(node: &mut RosNode, topic: &str, base: &str, shared: &Arc<Shared>) -> Result<(), Ros2Error> {
+fn subscribe_imu(
+    node: &mut RosNode,
+    topic: &str,
+    base: &str,
+    shared: &Arc<Shared>,
+) -> Result<Arc<TopicMonitor>, Ros2Error> {
     let (shared, name, base) = (Arc::clone(shared), node.names().resolve(topic), base.to_owned());
     let on_imu = move |message: Imu| {
         let Some(at) = shared.stamp(&name, &message.header.stamp) else { return };
@@ -166,7 +191,7 @@ fn subscribe_imu(node: &mut RosNode, topic: &str, base: &str, shared: &Arc<Share
             }
         }
     };
-    node.subscribe(topic, &qos::sensor(10), Some(MAX_ODOM_SILENCE), on_imu).map(drop)
+    node.subscribe(topic, &qos::sensor(10), Some(MAX_ODOM_SILENCE), on_imu)
 }
 
 fn subscribe_scan(

@@ -13,6 +13,8 @@ use std::time::Duration;
 use trundle_app::real_time::COMMAND_TIMEOUT_S;
 use trundle_core::Twist2;
 
+/// Longest wait for a command before the time since the newest one is looked at. Source: ours.
+const CHECK_PERIOD: Duration = Duration::from_millis(20);
 /// Messages of standstill at the end: one may get lost. Source: ours.
 const LAST_STOPS: usize = 5;
 /// Time between them. Source: ours.
@@ -66,7 +68,7 @@ impl CommandPublisher {
     }
 }
 
-/// The thread that publishes commands. Without a command for 0.2 s, and at its end, it commands standstill.
+/// The thread that publishes commands. Without a command for 0.2 s of the robot's time, and at its end, it commands standstill.
 pub struct CommandThread {
     commands: Option<Sender<Twist2>>,
     thread: Option<JoinHandle<()>>,
@@ -105,20 +107,22 @@ impl Drop for CommandThread {
 
 /// Publishes each command until the end, which is a command that is no number.
 fn publish_all(publisher: &CommandPublisher, commands: &Receiver<Twist2>) {
-    let timeout = Duration::from_secs_f64(COMMAND_TIMEOUT_S);
-    let mut is_moving = false;
+    // The time of the newest command, where it moves the robot.
+    let mut moving_since = None;
     loop {
-        match commands.recv_timeout(timeout) {
+        match commands.recv_timeout(CHECK_PERIOD) {
             Ok(command) if !command.is_finite() => break,
             Ok(command) => {
                 publisher.publish(command);
-                is_moving = command != Twist2::ZERO;
+                moving_since = (command != Twist2::ZERO).then(|| publisher.clock.now());
             }
-            Err(RecvTimeoutError::Timeout) if is_moving => {
-                publisher.publish(Twist2::ZERO);
-                is_moving = false;
+            Err(RecvTimeoutError::Timeout) => {
+                let silence = moving_since.map_or(0.0, |since| publisher.clock.now() - since);
+                if silence > COMMAND_TIMEOUT_S {
+                    publisher.publish(Twist2::ZERO);
+                    moving_since = None;
+                }
             }
-            Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => break,
         }
     }

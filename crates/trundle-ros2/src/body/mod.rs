@@ -3,15 +3,18 @@
 mod base_sensors;
 mod camera_topics;
 mod commands;
+mod continuous_odometry;
 mod frame_tree;
 mod image_inbox;
 mod image_pairs;
+mod link_watch;
 mod ros2_body;
 mod ros_camera;
 mod settings;
 mod wheels;
 
 pub use base_sensors::{MAX_ODOM_SILENCE, MAX_SCAN_SILENCE};
+pub use continuous_odometry::{ContinuousOdometry, MAX_STEP_M};
 pub use frame_tree::FrameTree;
 pub use image_inbox::{ImageInbox, ImageMessage, ImagePair};
 pub use image_pairs::{ImagePairs, MAX_PAIR_GAP_S};

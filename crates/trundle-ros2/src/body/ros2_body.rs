@@ -1,9 +1,10 @@
 //! A ROS 2 robot as the body of a run.
 
-use super::base_sensors::{BaseMonitors, Shared, lock, subscribe as subscribe_base};
+use super::base_sensors::{BaseMonitors, FRAME_WAIT, Shared, lock, subscribe as subscribe_base};
 use super::camera_topics::subscribe as subscribe_camera;
 use super::commands::{CommandPublisher, CommandThread};
 use super::image_inbox::ImageInbox;
+use super::link_watch::{LinkWatch, WatchedCamera};
 use super::ros_camera::RosCameraSource;
 use super::{BodySettings, FrameTree};
 use crate::Ros2Error;
@@ -11,25 +12,23 @@ use crate::clock::RosClock;
 use crate::convert::stamp;
 use crate::generated::rosgraph_msgs::Clock;
 use crate::generated::tf2_msgs::TFMessage;
-use crate::node::{Level, NodeThread, RosNode, TopicMonitor, qos};
+use crate::node::{NodeThread, RosNode, TopicMonitor, qos};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 use trundle_app::AppError;
 use trundle_app::real_time::{EventFeed, LiveBody, TimedEvent};
-use trundle_core::{
-    BodyEvent, BodyEventKind, Device, DifferentialDrive, Link, Odometry, PinholeCamera, Pose3, SensorEvent,
-    Stamp,
-};
+use trundle_core::{DifferentialDrive, Odometry, PinholeCamera, Pose3, Stamp};
 use trundle_drivers::camera::camera_thread::{CameraThread, CameraThreadConfig, CameraThreadParts};
 use trundle_runtime::real_time::InboxSender;
 
-/// Time between two looks at the links. Source: ours.
-const LINK_PERIOD: Duration = Duration::from_millis(50);
+/// Time between two looks for transforms. Source: ours.
+const FRAME_PERIOD: Duration = Duration::from_millis(50);
 /// Wait of the camera's thread for images when it opens the camera again. Source: ours.
 const REOPEN_WAIT: Duration = Duration::from_secs(2);
-/// Wait for the transform of the camera after its first images. Source: ours; tf_static comes at once.
-const FRAME_WAIT: Duration = Duration::from_secs(2);
+/// Silence of `/clock` on the computer's clock after which the base counts as lost. Source: ours; a simulator of 50 Hz at a fiftieth of
+/// real time.
+const MAX_CLOCK_SILENCE: Duration = Duration::from_secs(1);
 
 /// The topics of a ROS 2 robot, subscribed; events flow once [`Ros2Body::start`] connects it to a run.
 pub struct Ros2Body {
@@ -72,13 +71,13 @@ impl Ros2Body {
             odom_frame: Mutex::default(),
             clock: clock.clone(),
             diagnostics: diagnostics.clone(),
+            start: Instant::now(),
         });
         let inbox = Arc::new(ImageInbox::new(diagnostics));
-        if settings.use_sim_time {
-            subscribe_clock(node, &shared)?;
-        }
+        let time = settings.use_sim_time.then(|| subscribe_clock(node, &shared)).transpose()?;
+        node.measure_silence_by(clock.clone());
         subscribe_frames(node, &shared)?;
-        let monitors = subscribe_base(node, &settings, drive, &shared)?;
+        let monitors = BaseMonitors { clock: time, ..subscribe_base(node, &settings, drive, &shared)? };
         subscribe_camera(node, &settings, &shared, &inbox)?;
         let commands = CommandPublisher::new(node, &settings, clock)?;
         Ok(Self { settings, shared, inbox, monitors, commands })
@@ -114,9 +113,9 @@ impl Ros2Body {
             let source = self.camera_source(None);
             camera = camera.or_else(|| source.open(Duration::from_millis(100)).ok());
             if camera.is_some() && !lock(&self.shared.odometry).is_empty() {
-                return Ok(self.description(
-                    source.cameras().map_err(|error| self.silent(error.to_string(), timeout))?.0,
-                ));
+                let cameras = source.cameras().map_err(|error| self.silent(error.to_string(), timeout))?;
+                self.wait_for_frames(&is_cancelled)?;
+                return Ok(self.description(cameras.0));
             }
             std::thread::sleep(Duration::from_millis(20));
         }
@@ -139,22 +138,36 @@ impl Ros2Body {
         Ros2Error::Silent { topics, seconds: timeout.as_secs_f64(), reason }
     }
 
-    fn description(&self, camera: PinholeCamera) -> BodyDescription {
-        let end = Instant::now() + FRAME_WAIT;
-        loop {
-            let (color, depth) = self.inbox.frames();
-            let frames = lock(&self.shared.frames);
-            let base_from_camera =
-                color.as_deref().and_then(|frame| above_floor(&frames, &self.settings.base_frame, frame));
-            let color_from_depth =
-                color.as_deref().zip(depth.as_deref()).and_then(|(color, depth)| frames.pose(color, depth));
-            drop(frames);
-            if base_from_camera.is_some() || Instant::now() >= end {
-                let color_from_depth = color_from_depth.filter(|_| self.settings.depth_info.is_some());
-                return BodyDescription { camera, base_from_camera, color_from_depth };
+    /// Waits for the transforms of camera and gyro, 7 s from the subscription at most.
+    fn wait_for_frames(&self, is_cancelled: impl Fn() -> bool) -> Result<(), Ros2Error> {
+        while self.base_from_camera().is_none() || self.awaits_gyro() {
+            if is_cancelled() {
+                return Err(Ros2Error::Interrupted);
             }
-            std::thread::sleep(LINK_PERIOD);
+            if self.shared.start.elapsed() > FRAME_WAIT {
+                break;
+            }
+            std::thread::sleep(FRAME_PERIOD);
         }
+        Ok(())
+    }
+
+    fn base_from_camera(&self) -> Option<Pose3> {
+        above_floor(&lock(&self.shared.frames), &self.settings.base_frame, self.inbox.frames().0.as_deref()?)
+    }
+
+    fn description(&self, camera: PinholeCamera) -> BodyDescription {
+        let (color, depth) = self.inbox.frames();
+        let depth = depth.filter(|_| self.settings.depth_info.is_some());
+        let color_from_depth =
+            color.zip(depth).and_then(|(color, depth)| lock(&self.shared.frames).pose(&color, &depth));
+        BodyDescription { camera, base_from_camera: self.base_from_camera(), color_from_depth }
+    }
+
+    /// Whether a gyro has messages, none of them usable so far.
+    fn awaits_gyro(&self) -> bool {
+        let has_messages = self.monitors.imu.as_ref().is_some_and(|monitor| monitor.has_begun());
+        has_messages && !self.shared.has_gyro.load(Ordering::Relaxed)
     }
 
     fn camera_source(&self, color_from_depth: Option<Pose3>) -> RosCameraSource {
@@ -181,14 +194,16 @@ impl Ros2Body {
         let clock = self.clock();
         let host = clock.clone();
         let feed = EventFeed::with_clock(events, Instant::now(), Arc::new(move || host.now()));
-        let camera = self.start_camera(output, described, &feed)?;
+        let camera = Arc::new(self.start_camera(output, described, &feed)?);
         let has_gyro = self.shared.has_gyro.load(Ordering::Relaxed);
         self.shared.uses_gyro.store(has_gyro, Ordering::Relaxed);
         let sink = feed.clone();
         *lock(&self.shared.sink) = Some(Box::new(move |event| sink.send(&event)));
         let refused = |error: Ros2Error| AppError::Environment(error.to_string());
         let commands = CommandThread::start(self.commands).map_err(refused)?;
-        let links = LinkWatch::start(Arc::clone(&self.shared), self.monitors, thread).map_err(refused)?;
+        let watched = WatchedCamera::new(Arc::clone(&camera), self.settings.color);
+        let links =
+            LinkWatch::start(Arc::clone(&self.shared), self.monitors, watched, thread).map_err(refused)?;
         let sender = commands.commands();
         let shared = self.shared;
         LiveBody::start(feed, Some(sender), move || {
@@ -261,13 +276,13 @@ impl OdometryReader {
     }
 }
 
-fn subscribe_clock(node: &mut RosNode, shared: &Arc<Shared>) -> Result<(), Ros2Error> {
+fn subscribe_clock(node: &mut RosNode, shared: &Arc<Shared>) -> Result<Arc<TopicMonitor>, Ros2Error> {
     let shared = Arc::clone(shared);
     let on_clock = move |message: Clock| {
         let time = stamp::from_ros(&message.clock).and_then(|time| shared.clock.set(time));
         shared.accept("/clock", time);
     };
-    node.subscribe("/clock", &qos::sensor(1), Some(Duration::from_secs(1)), on_clock).map(drop)
+    node.subscribe("/clock", &qos::sensor(1), Some(MAX_CLOCK_SILENCE), on_clock)
 }
 
 fn subscribe_frames(node: &mut RosNode, shared: &Arc<Shared>) -> Result<(), Ros2Error> {
@@ -282,61 +297,4 @@ fn subscribe_frames(node: &mut RosNode, shared: &Arc<Shared>) -> Result<(), Ros2
         node.subscribe(topic, &qos, None, on_frames)?;
     }
     Ok(())
-}
-
-/// Reports the loss and the return of base and laser, and the death of the node.
-struct LinkWatch {
-    is_over: Arc<AtomicBool>,
-    thread: Option<std::thread::JoinHandle<()>>,
-}
-
-impl LinkWatch {
-    fn start(shared: Arc<Shared>, monitors: BaseMonitors, node: Arc<NodeThread>) -> Result<Self, Ros2Error> {
-        let is_over = Arc::<AtomicBool>::default();
-        let over = Arc::clone(&is_over);
-        let mut links = vec![WatchedLink::new(Device::Base, monitors.odom)];
-        links.extend(monitors.scan.map(|monitor| WatchedLink::new(Device::Laser, monitor)));
-        let watch = move || {
-            while !over.load(Ordering::Relaxed) {
-                links.iter_mut().for_each(|link| link.check(&shared, &node));
-                std::thread::sleep(LINK_PERIOD);
-            }
-        };
-        let thread = std::thread::Builder::new().name("ros2-links".to_owned()).spawn(watch)?;
-        Ok(Self { is_over, thread: Some(thread) })
-    }
-}
-
-impl Drop for LinkWatch {
-    fn drop(&mut self) {
-        self.is_over.store(true, Ordering::Relaxed);
-        if self.thread.take().is_some_and(|thread| thread.join().is_err()) {
-            tracing::error!("the thread that watches the ROS 2 links panicked");
-        }
-    }
-}
-
-struct WatchedLink {
-    device: Device,
-    monitor: Arc<TopicMonitor>,
-    is_up: bool,
-}
-
-impl WatchedLink {
-    fn new(device: Device, monitor: Arc<TopicMonitor>) -> Self {
-        Self { device, monitor, is_up: true }
-    }
-
-    fn check(&mut self, shared: &Shared, node: &NodeThread) {
-        let problem = node.death().or_else(|| self.monitor.stall(Instant::now()));
-        let is_up = problem.is_none();
-        if let Some(problem) = problem {
-            shared.diagnostics.report(&self.monitor.name, Level::Error, problem);
-        }
-        if is_up != self.is_up {
-            self.is_up = is_up;
-            let kind = BodyEventKind::Link(Link { device: self.device, is_up });
-            shared.send(SensorEvent::Body(BodyEvent { stamp: shared.clock.now(), kind }));
-        }
-    }
 }

@@ -4,6 +4,7 @@ use super::endpoints::{Served, ServerHandle, Subscribed};
 use super::event_loop::{Endpoint, NodeThread, Ticker};
 use super::{Diagnostics, Level, Names, Networks, Readers, TopicMonitor, middleware_death, qos};
 use crate::Ros2Error;
+use crate::clock::RosClock;
 use crate::interface::{ActionType, MessageType, ServiceType};
 use ros2_client::action::{ActionServer, ActionServerQosPolicies};
 use ros2_client::dds::rustdds::DomainParticipantBuilder;
@@ -47,6 +48,7 @@ pub struct RosNode {
     monitors: Vec<Arc<TopicMonitor>>,
     readers: Vec<Readers>,
     diagnostics: Diagnostics,
+    clock: RosClock,
 }
 
 impl RosNode {
@@ -82,6 +84,7 @@ impl RosNode {
             monitors: Vec::new(),
             readers: Vec::new(),
             diagnostics: Diagnostics::default(),
+            clock: RosClock::system(),
         })
     }
 
@@ -89,6 +92,11 @@ impl RosNode {
     #[must_use]
     pub fn diagnostics(&self) -> Diagnostics {
         self.diagnostics.clone()
+    }
+
+    /// Measures the silence of topics by this clock, for subscriptions from here on. At first it is the computer's.
+    pub fn measure_silence_by(&mut self, clock: RosClock) {
+        self.clock = clock;
     }
 
     /// Namespace, node name and rules.
@@ -138,6 +146,7 @@ impl RosNode {
             name.clone(),
             MessageTypeName::new(M::PACKAGE, M::NAME).dds_msg_type(),
             limit,
+            self.clock.clone(),
         ));
         self.monitors.push(Arc::clone(&monitor));
         let diagnostics = self.diagnostics.clone();
@@ -209,7 +218,7 @@ impl RosNode {
         tickers.push(Box::new(move |now| {
             if now >= due {
                 due = now + CHECK_PERIOD;
-                check_topics(&checked, &monitors, &diagnostics, now);
+                check_topics(&checked, &monitors, &diagnostics);
                 find_readers(&checked, &readers);
             }
         }));
@@ -241,9 +250,9 @@ fn find_readers(context: &Context, watched: &[Readers]) {
 }
 
 /// Reports topics that stalled, and topics under which others publish another type.
-fn check_topics(context: &Context, monitors: &[Arc<TopicMonitor>], diagnostics: &Diagnostics, now: Instant) {
+fn check_topics(context: &Context, monitors: &[Arc<TopicMonitor>], diagnostics: &Diagnostics) {
     for monitor in monitors {
-        if let Some(stall) = monitor.stall(now) {
+        if let Some(stall) = monitor.stall() {
             diagnostics.report(&monitor.name, Level::Error, stall);
         }
     }

@@ -1,7 +1,9 @@
 //! Silence of topics: which topic stopped, and for how long.
 
+use crate::clock::RosClock;
 use std::sync::Mutex;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use trundle_core::Stamp;
 
 /// When a topic's newest message came.
 #[derive(Debug)]
@@ -12,17 +14,19 @@ pub struct TopicMonitor {
     pub type_name: String,
     /// Silence after which the topic counts as stalled; `None`: it may be silent.
     limit: Option<Duration>,
-    newest: Mutex<Option<Instant>>,
+    /// Measures the silence. A slow simulator is not silent.
+    clock: RosClock,
+    newest: Mutex<Option<Stamp>>,
 }
 
 impl TopicMonitor {
-    pub(super) fn new(name: String, type_name: String, limit: Option<Duration>) -> Self {
-        Self { name, type_name, limit, newest: Mutex::new(None) }
+    pub(super) fn new(name: String, type_name: String, limit: Option<Duration>, clock: RosClock) -> Self {
+        Self { name, type_name, limit, clock, newest: Mutex::new(None) }
     }
 
     /// Notes a message.
     pub(super) fn on_message(&self) {
-        *self.newest() = Some(Instant::now());
+        *self.newest() = Some(self.clock.now());
     }
 
     /// Whether any message has come.
@@ -33,16 +37,15 @@ impl TopicMonitor {
 
     /// The sentence of a topic that had messages and has none for too long.
     #[must_use]
-    pub fn stall(&self, now: Instant) -> Option<String> {
-        let (limit, newest) = (self.limit?, (*self.newest())?);
-        let silence = now.saturating_duration_since(newest);
+    pub fn stall(&self) -> Option<String> {
+        let (limit, newest) = (self.limit?.as_secs_f64(), (*self.newest())?);
+        let silence = self.clock.now() - newest;
         (silence > limit).then(|| {
-            let (silent, expected) = (silence.as_secs_f64(), limit.as_secs_f64());
-            format!("no message for {silent:.1} s, expected one within {expected:.1} s: is its publisher alive, is the link up?")
+            format!("no message for {silence:.1} s, expected one within {limit:.1} s: is its publisher alive, is the link up?")
         })
     }
 
-    fn newest(&self) -> std::sync::MutexGuard<'_, Option<Instant>> {
+    fn newest(&self) -> std::sync::MutexGuard<'_, Option<Stamp>> {
         self.newest.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
     }
 }
@@ -52,12 +55,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_topic_stalls_after_its_limit_and_not_before_its_first_message() {
-        let monitor = TopicMonitor::new("/image".into(), "x".into(), Some(Duration::from_millis(500)));
-        let later = Instant::now() + Duration::from_secs(2);
-        assert_eq!(monitor.stall(later), None);
+    fn a_topic_stalls_after_its_limit_of_the_clock_and_not_before_its_first_message() {
+        let clock = RosClock::simulated();
+        clock.set(Stamp::default()).unwrap();
+        let monitor =
+            TopicMonitor::new("/image".into(), "x".into(), Some(Duration::from_millis(500)), clock.clone());
+        clock.set(Stamp::default().after(2.0)).unwrap();
+        assert_eq!(monitor.stall(), None);
         monitor.on_message();
-        assert_eq!(monitor.stall(Instant::now()), None);
-        assert!(monitor.stall(later).unwrap().contains("expected one within 0.5 s"));
+        clock.set(Stamp::default().after(2.4)).unwrap();
+        assert_eq!(monitor.stall(), None);
+        clock.set(Stamp::default().after(2.6)).unwrap();
+        assert!(monitor.stall().unwrap().contains("no message for 0.6 s, expected one within 0.5 s"));
     }
 }

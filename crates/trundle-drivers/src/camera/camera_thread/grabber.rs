@@ -8,7 +8,7 @@ use crate::camera::frame_monitor::faults_of_info;
 use crate::camera::{CameraError, CameraFault, CameraFrame, CameraInfo, DepthCamera, FrameMonitor};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use trundle_core::Stamp;
 
 /// Longest wait for one frame \[ms\]; the thread looks for the end of the program in between. Source: ours.
@@ -45,7 +45,8 @@ struct OpenCamera {
     monitor: FrameMonitor,
     stamps: StampMap,
     generation: u64,
-    last_good: Instant,
+    /// Arrival of the newest good frame on the host's clock.
+    last_good: Stamp,
 }
 
 impl Grabber {
@@ -109,7 +110,7 @@ impl Grabber {
         let monitor =
             FrameMonitor::new(&info, self.config.expects_noise && info.is_live).following(self.last_stamps);
         let (stamps, generation) = ((self.stamps)(&info), self.outbox.generation());
-        OpenCamera { camera, info, monitor, stamps, generation, last_good: Instant::now() }
+        OpenCamera { camera, info, monitor, stamps, generation, last_good: (self.clock)() }
     }
 
     /// Hands a frame on; a fault that ends the use of the camera.
@@ -131,7 +132,7 @@ impl Grabber {
             return None;
         }
         let (info, generation) = (open.info.clone(), open.generation);
-        open.last_good = Instant::now();
+        open.last_good = (self.clock)();
         self.attempts = 0;
         if self.mailbox.put(GrabbedFrame { frame, stamp, info, generation }) {
             self.outbox.on_dropped();
@@ -141,7 +142,7 @@ impl Grabber {
 
     /// The sentence of a live camera that was silent, or whose frames are all broken.
     fn silence(&self, open: &OpenCamera) -> Option<String> {
-        let silent_s = open.last_good.elapsed().as_secs_f64();
+        let silent_s = (self.clock)() - open.last_good;
         let broken = self.outbox.broken_in_row();
         if open.info.is_live && silent_s > self.config.max_silence_s {
             let silence = format!("{} delivered no good frame for {silent_s:.1} s", open.info.name);
