@@ -33,8 +33,10 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, AppError> {
     let mut setup = RunSetup::new(&scene.name, mission, robot.with_seed(args.place.seed));
     setup.seed = args.place.seed;
     setup.map_from_world = scene.start.inverse();
-    setup.time_limit = args.time_limit.unwrap_or_else(|| time_limit(&setup.mission));
-    setup.real_time = args.real_time;
+    setup.is_operated = args.live.live.is_some();
+    let limit = if setup.is_operated { f64::MAX } else { time_limit(&setup.mission) };
+    setup.time_limit = args.time_limit.unwrap_or(limit);
+    setup.real_time = args.real_time || setup.is_operated;
     setup.recording = args.record;
     if let Some(file) = &args.vocabulary {
         setup = setup.with_vocabulary(&read_vocabulary(file)?);
@@ -47,7 +49,7 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, AppError> {
         require_free("goal", &scene, scene.start * goal, &setup.robot)?;
     }
     scene.start = args.state.resume.map_or(scene.start, |pose| pose.0);
-    let body = if args.real_time { simulated_real_time_body } else { simulated_body };
+    let body = if setup.real_time { simulated_real_time_body } else { simulated_body };
     let body =
         Simulator::new(scene, body(&setup.robot, faults)?, args.place.seed).map_err(AppError::input)?;
     drive(args, &setup, body)
@@ -70,15 +72,17 @@ fn drive(args: &DemoArgs, setup: &RunSetup, mut body: Simulator) -> Result<Outco
     if args.state.resume.is_none() {
         checkpoint.map_or(Ok(()), keep_aside)?;
     }
-    if args.real_time {
+    let (page, front_end) = args.live.beside(setup, progress, None, true)?;
+    if setup.real_time {
         let start = |events, place| SimulatedRealTimeBody::start(body, events, place);
-        let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), progress);
+        let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), front_end);
         line.finish_and_clear();
+        drop(page);
         let (run, timing) = run?;
         return run_output::write(setup, run, Some(&timing), folder, args.common.quiet);
     }
     let recorder = RunRecorder::of_content(setup.recording, &folder)?.with_checkpoint_file(checkpoint)?;
-    let run = run_on_body(setup, &mut body, recorder, RunLog::default(), progress);
+    let run = run_on_body(setup, &mut body, recorder, RunLog::default(), front_end);
     line.finish_and_clear();
     run_output::write(setup, run?, None, folder, args.common.quiet)
 }

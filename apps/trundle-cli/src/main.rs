@@ -11,6 +11,7 @@ mod devices;
 mod dock;
 mod eval;
 mod experiment;
+mod live;
 mod logging;
 mod map;
 mod outcome;

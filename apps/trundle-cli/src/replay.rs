@@ -1,6 +1,7 @@
 //! `trundle replay`: the robot again, on a recording.
 
 use crate::common_args::Common;
+use crate::live::LiveArgs;
 use crate::outcome::Outcome;
 use crate::output_args::OutputDirArg;
 use crate::{console, logging, run_output};
@@ -20,6 +21,9 @@ pub struct ReplayArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/replay")]
     pub out: OutputDirArg,
+    /// The live page: it shows, and takes no commands.
+    #[command(flatten)]
+    pub live: LiveArgs,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
@@ -33,8 +37,10 @@ pub fn run(args: &ReplayArgs) -> Result<Outcome, AppError> {
     let folder = logging::output_folder(&args.out)?;
     let recorder = RunRecorder::to_folder(&folder)?;
     let (line, progress) = console::progress(args.common.quiet);
-    let run = run_on_body(&setup, &mut body, recorder, RunLog::default(), progress);
+    let (page, front_end) = args.live.beside(&setup, progress, None, false)?;
+    let run = run_on_body(&setup, &mut body, recorder, RunLog::default(), front_end);
     line.finish_and_clear();
+    drop(page);
     let run = run.map_err(|error| error.in_context(&name))?;
     if let Err(problem) = body.read_to_end() {
         console::warn(&format!("the run was over before, but {}", problem.in_context(&name)));

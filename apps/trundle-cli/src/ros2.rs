@@ -7,7 +7,6 @@ pub use args::Ros2Args;
 use crate::outcome::Outcome;
 use crate::{console, logging, run_output};
 use std::time::Duration;
-use trundle::app::operator::FrontEnd;
 use trundle::app::real_time::run_in_real_time;
 use trundle::app::report::mission_text;
 use trundle::app::{AppError, RunLog, stop};
@@ -47,16 +46,11 @@ pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
     }
     let (line, progress) = console::progress(args.options.common.quiet);
     let log = if args.stays() { RunLog::brief() } else { RunLog::default() };
+    let (page, front_end) = args.live.beside(&setup, progress, Some(link), true)?;
     let start = |events, _place| body.start(events);
-    let run = run_in_real_time(
-        &setup,
-        start,
-        &folder,
-        args.options.checkpoint.as_deref(),
-        log,
-        FrontEnd { progress, operator: Some(link) },
-    );
+    let run = run_in_real_time(&setup, start, &folder, args.options.checkpoint.as_deref(), log, front_end);
     line.finish_and_clear();
+    drop(page);
     drop(node);
     let (run, timing) = run?;
     run_output::write(&setup, run, Some(&timing), folder, args.options.common.quiet)

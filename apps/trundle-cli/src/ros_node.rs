@@ -3,8 +3,8 @@
 use crate::console;
 use clap::Args;
 use std::time::Instant;
-use trundle::app::operator::FrontEnd;
-use trundle::app::{AppError, Progress};
+use trundle::app::AppError;
+use trundle::app::operator::OperatorLink;
 use trundle::ros2::node::Networks;
 use trundle::ros2::{RobotNode, Ros2Options};
 use trundle::runtime::RobotConfig;
@@ -33,13 +33,11 @@ impl RosArgs {
     }
 }
 
-/// A node beside `trundle run`, and what accompanies the run then.
+/// A node beside `trundle run`, and the run's end of the link to it.
 pub fn beside(
     args: &RosArgs,
     robot: &RobotConfig,
     origin: Instant,
-    progress: Progress,
-) -> Result<(RobotNode, FrontEnd), AppError> {
-    let (node, link) = RobotNode::offer(&args.options()?, robot, origin)?;
-    Ok((node, FrontEnd { progress, operator: Some(link) }))
+) -> Result<(RobotNode, OperatorLink), AppError> {
+    Ok(RobotNode::offer(&args.options()?, robot, origin)?)
 }

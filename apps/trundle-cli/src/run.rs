@@ -31,9 +31,10 @@ pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
     camera.require_live()?;
     robot.camera = camera.intrinsics(args.robot_camera(&robot).as_ref())?;
     let mut setup = args.options.setup(RUN_COMMAND, &args.base.to_string(), mission, robot)?;
+    setup.is_operated = args.live.live.is_some();
     #[cfg(feature = "ros2")]
     {
-        setup.is_operated = args.ros2;
+        setup.is_operated |= args.ros2;
     }
     if let Some((_, bytes)) = &resumed {
         setup = setup.resumed_from(bytes);
@@ -54,17 +55,13 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
     let (line, progress) = console::progress(args.options.common.quiet);
     let origin = Instant::now();
     #[cfg(feature = "ros2")]
-    let (node, front_end) = match args.ros2 {
-        true => {
-            let (node, front_end) = crate::ros_node::beside(&args.ros, &setup.robot, origin, progress)?;
-            (Some(node), front_end)
-        }
-        false => (None, progress.into()),
-    };
+    let (node, link) =
+        args.ros2.then(|| crate::ros_node::beside(&args.ros, &setup.robot, origin)).transpose()?.unzip();
     #[cfg(feature = "ros2")]
     let observer = node.as_ref().and_then(trundle::ros2::RobotNode::observer);
     #[cfg(not(feature = "ros2"))]
-    let (front_end, observer) = (progress, None);
+    let (link, observer) = (None, None);
+    let (page, front_end) = args.live.beside(setup, progress, link, true)?;
     let start = |events, _place| {
         let body = start_hardware(&args.base, camera, setup.robot.camera, events, origin, observer)?;
         // A run that is refused leaves the checkpoint where it is.
@@ -75,6 +72,7 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
     };
     let run = run_in_real_time(setup, start, &folder, checkpoint, RunLog::default(), front_end);
     line.finish_and_clear();
+    drop(page);
     #[cfg(feature = "ros2")]
     drop(node);
     let (run, timing) = run?;

@@ -7,10 +7,12 @@ mod link;
 mod request;
 mod run_view;
 mod view_feed;
+mod visual_map_feed;
 
 pub use link::{Operator, OperatorError, OperatorLink, operator_link};
 pub use request::OperatorRequest;
-pub use run_view::{MapView, MissionView, RunView};
+pub use run_view::{ImageView, MapView, MissionView, RunCounts, RunView, SurroundingsView, VisualMapView};
+pub use visual_map_feed::VISUAL_MAP_PERIOD_S;
 
 use crate::Progress;
 

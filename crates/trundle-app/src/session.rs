@@ -193,6 +193,9 @@ impl<'s> RunSession<'s> {
             // The recording holds the stamp of the driver, so that a replay corrects the stamp once as well.
             image.stamp = image.stamp.after(-self.setup.robot.image_delay);
             self.view.on_image(&image);
+            if let Some(link) = &mut self.operator {
+                link.note_image(image.stamp, &image.color_jpeg);
+            }
             let stamp = image.stamp;
             if let Some(sentence) = self.overload.on_image(stamp, self.robot.dropped_images().len()) {
                 tracing::warn!("{:.3} s: {sentence}", stamp.as_secs());

@@ -32,6 +32,7 @@ use crate::{
     stage::{Stage, StageTimes},
     workers::decision_worker::DecisionWorker,
     workers::perception_worker::{PerceptionResult, PerceptionWorker},
+    workers::teleop_controller::TeleopController,
 };
 use background::Background;
 use body_state::BodyState;
@@ -86,6 +87,8 @@ pub struct Robot {
     /// None while a decision job runs.
     decision_worker: Option<Box<DecisionWorker>>,
     background: Background,
+    /// Drives by the twists of an operator.
+    teleop: TeleopController,
     latest: Latest,
     times: StageTimes,
 }
@@ -172,6 +175,7 @@ impl Robot {
             redrawn_within: REDRAW_COMMANDS,
             decision_worker: Some(Box::new(DecisionWorker::new(&config, &footprint)?)),
             background: Background::default(),
+            teleop: TeleopController::new(&config, &footprint)?,
             latest: Latest::default(),
             times: StageTimes::default(),
         })
@@ -332,6 +336,8 @@ impl Robot {
                 report.twist = times.measure(Stage::Control, || background.steer(decision_worker, &world));
             }
         }
+        let by_hand = WorldState { hold: self.latest.body.hold_besides_pause(self.range_source), ..world };
+        report.twist = self.teleop.step(&by_hand).or(report.twist);
         report.twist.into_iter().for_each(|twist| self.odometry.set_command(twist));
         self.redraw();
     }

@@ -38,6 +38,7 @@
 //! | drive real hardware | [`drivers`] |
 //! | simulate, evaluate, draw | [`sim`], [`eval`], [`viz`] |
 //! | read and write files | [`io`] |
+//! | show a run in a browser | [`live`] |
 //! | speak ROS 2 | `ros2`, with the feature `ros2` |
 //!
 //! Eight numbered examples stand in `crates/trundle/examples`.
@@ -52,6 +53,7 @@ pub use trundle_eval as eval;
 pub use trundle_experiments as experiments;
 pub use trundle_grid as grid;
 pub use trundle_io as io;
+pub use trundle_live as live;
 pub use trundle_localization as localization;
 pub use trundle_mapping as mapping;
 pub use trundle_optim as optim;

@@ -18,6 +18,8 @@ pub const EDGES: [&str; 5] = ["trundle-sim", "trundle-io", "trundle-drivers", "t
 /// Crates that may read TOML or command lines.
 const SETTINGS_CRATES: [&str; 6] =
     ["trundle-runtime", "trundle-app", "trundle-cli", "trundle-io", "trundle-fuzz", "xtask"];
+/// Packages that speak HTTP.
+const HTTP_PACKAGES: [&str; 5] = ["axum", "hyper", "hyper-util", "tokio", "tokio-tungstenite"];
 
 /// Checks every arrow between packages.
 pub fn check(tree: &Tree) -> Vec<Finding> {
@@ -53,6 +55,11 @@ fn check_package(tree: &Tree, package: &Package) -> Vec<Finding> {
                 );
                 findings.push(Finding::error(&path, line, message));
             }
+            if HTTP_PACKAGES.contains(&dependency.as_str()) && name != "trundle-live" {
+                let message =
+                    format!("{name} must not depend on {dependency}: only trundle-live speaks HTTP");
+                findings.push(Finding::error(&path, line, message));
+            }
         }
     }
     findings
@@ -74,6 +81,7 @@ fn is_known(name: &str) -> bool {
             "trundle-app",
             "trundle-experiments",
             "trundle-ros2",
+            "trundle-live",
             "trundle",
             "trundle-cli",
             "xtask",
@@ -84,9 +92,10 @@ fn is_known(name: &str) -> bool {
         .contains(&name)
 }
 
-/// The simulator as the body of the app's examples and tests.
+/// The simulator as the body of the app's examples and tests; output folders for the runs behind the live page's tests.
 fn may_test_with(from: &str, to: &str, kind: &str) -> bool {
-    kind == "dev-dependencies" && from == "trundle-app" && to == "trundle-sim"
+    let pairs = [("trundle-app", "trundle-sim"), ("trundle-live", "trundle-io")];
+    kind == "dev-dependencies" && pairs.contains(&(from, to))
 }
 
 /// The arrows of the design.
@@ -112,6 +121,7 @@ fn may_know(from: &str, to: &str) -> bool {
                 || edges.contains(&to)
                 || ["trundle-runtime", "trundle-app"].contains(&to)
         }
+        "trundle-live" => base || ["trundle-planning", "trundle-runtime", "trundle-app"].contains(&to),
         "trundle" => !["trundle", "trundle-cli"].contains(&to),
         "trundle-cli" | "trundle-fuzz" => to == "trundle",
         "trundle-libfuzzer" => to == "trundle-fuzz",
@@ -165,6 +175,13 @@ mod tests {
         assert_eq!(messages("trundle-planning", "toml.workspace = true").len(), 1);
         assert_eq!(messages("trundle-viz", "clap.workspace = true").len(), 1);
         assert!(messages("trundle-io", "toml.workspace = true").is_empty());
+    }
+
+    #[test]
+    fn http_is_for_the_live_page() {
+        assert_eq!(messages("trundle-app", "axum.workspace = true").len(), 1);
+        assert!(messages("trundle-live", "axum.workspace = true\ntrundle-app.workspace = true").is_empty());
+        assert_eq!(messages("trundle-live", "trundle-sim.workspace = true").len(), 1);
     }
 
     #[test]

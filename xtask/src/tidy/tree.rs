@@ -38,7 +38,7 @@ pub struct Source<'a> {
 }
 
 /// Folders that hold nothing of ours.
-const SKIPPED: [&str; 4] = ["target", "out", ".git", ".scratch"];
+const SKIPPED: [&str; 5] = ["target", "out", ".git", ".scratch", "node_modules"];
 /// Files that are read.
 const EXTENSIONS: [&str; 6] = ["rs", "toml", "md", "lock", "sh", "yml"];
 

@@ -1,6 +1,7 @@
 //! The command line of `trundle demo`.
 
 use crate::common_args::{Common, NumberArg, PlaceArgs, PoseArg, RobotArgs, choice};
+use crate::live::LiveArgs;
 use crate::output_args::{OutputDirArg, OutputFileArg};
 use clap::Args;
 use std::path::PathBuf;
@@ -44,6 +45,9 @@ pub struct DemoArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/demo")]
     pub out: OutputDirArg,
+    /// The live page; with it the demo is in real time.
+    #[command(flatten)]
+    pub live: LiveArgs,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,

@@ -1,6 +1,7 @@
 //! The command line of `trundle ros2`.
 
 use crate::common_args::{NumberArg, PoseArg};
+use crate::live::LiveArgs;
 use crate::output_args::OutputDirArg;
 use crate::ros_node::RosArgs;
 use crate::run::RunOptions;
@@ -53,6 +54,9 @@ pub struct Ros2Args {
     /// Files, time and settings.
     #[command(flatten)]
     pub options: RunOptions,
+    /// The live page.
+    #[command(flatten)]
+    pub live: LiveArgs,
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/ros2")]
     pub out: OutputDirArg,
@@ -74,7 +78,7 @@ impl Ros2Args {
 
     /// Whether the run goes on after its mission.
     pub fn stays(&self) -> bool {
-        self.stay || self.request().is_empty()
+        self.stay || self.live.live.is_some() || self.request().is_empty()
     }
 
     /// The mission that is asked for.

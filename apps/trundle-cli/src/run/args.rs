@@ -1,6 +1,7 @@
 //! The command line of `trundle run`.
 
 use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs, choice};
+use crate::live::LiveArgs;
 use crate::output_args::{ContinuedFileArg, OutputDirArg, OutputFileArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -34,6 +35,9 @@ pub struct RunArgs {
     /// Files, time and settings.
     #[command(flatten)]
     pub options: RunOptions,
+    /// The live page.
+    #[command(flatten)]
+    pub live: LiveArgs,
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/run")]
     pub out: OutputDirArg,

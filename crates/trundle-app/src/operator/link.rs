@@ -3,6 +3,7 @@
 use super::request::OperatorRequest;
 use super::run_view::RunView;
 use super::view_feed::ViewFeed;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use thiserror::Error;
@@ -11,6 +12,8 @@ use trundle_runtime::{OperatorCommand, Robot, StepReport};
 
 /// Largest number of requests that wait for the run. A run takes one at each step. Source: ours.
 const MAX_WAITING_REQUESTS: usize = 64;
+/// Steps without a question for a view after which nobody watches the run: more than a second of events. Source: ours.
+const UNWATCHED_STEPS: u32 = 200;
 
 /// A front end's end of the link. Clones share it.
 #[derive(Debug, Clone)]
@@ -24,6 +27,8 @@ pub struct OperatorLink {
     requests: Receiver<OperatorRequest>,
     shared: Arc<Shared>,
     feed: ViewFeed,
+    /// Steps since a front end last asked for a view.
+    unwatched_steps: u32,
 }
 
 #[derive(Debug)]
@@ -31,6 +36,8 @@ struct Shared {
     /// The sender, and the number of the last request.
     requests: Mutex<(SyncSender<OperatorRequest>, u64)>,
     view: Mutex<Option<Arc<RunView>>>,
+    /// Whether a front end has asked for a view since the last step.
+    is_asked: AtomicBool,
 }
 
 /// Why a request does not reach the run.
@@ -51,8 +58,11 @@ pub enum OperatorError {
 #[must_use]
 pub fn operator_link() -> (Operator, OperatorLink) {
     let (sender, requests) = sync_channel(MAX_WAITING_REQUESTS);
-    let shared = Arc::new(Shared { requests: Mutex::new((sender, 0)), view: Mutex::default() });
-    (Operator { shared: Arc::clone(&shared) }, OperatorLink { requests, shared, feed: ViewFeed::default() })
+    let (requests_in, view) = (Mutex::new((sender, 0)), Mutex::default());
+    let shared = Arc::new(Shared { requests: requests_in, view, is_asked: AtomicBool::new(false) });
+    let link =
+        OperatorLink { requests, shared: Arc::clone(&shared), feed: ViewFeed::default(), unwatched_steps: 0 };
+    (Operator { shared }, link)
 }
 
 impl Operator {
@@ -75,14 +85,38 @@ impl Operator {
         }
     }
 
-    /// The newest view; `None` before the first step.
+    /// The newest view without a wish for its large parts: scan, image and map may be old.
+    #[must_use]
+    pub fn glance(&self) -> Option<Arc<RunView>> {
+        self.shared.view.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// The newest view; `None` before the first step. Scan, image and map are kept up to date while somebody asks at least once a second.
     #[must_use]
     pub fn view(&self) -> Option<Arc<RunView>> {
-        self.shared.view.lock().unwrap_or_else(PoisonError::into_inner).clone()
+        self.shared.is_asked.store(true, Ordering::Relaxed);
+        self.glance()
     }
 }
 
 impl OperatorLink {
+    /// Another front end's end of this link.
+    #[must_use]
+    pub fn operator(&self) -> Operator {
+        Operator { shared: Arc::clone(&self.shared) }
+    }
+
+    /// Takes an image of the camera over into later views, where somebody watches.
+    pub(crate) fn note_image(&mut self, stamp: Stamp, jpeg: &[u8]) {
+        if self.is_watched() {
+            self.feed.note_image(stamp, jpeg);
+        }
+    }
+
+    fn is_watched(&self) -> bool {
+        self.unwatched_steps < UNWATCHED_STEPS
+    }
+
     /// The next request, where one waits.
     pub(crate) fn next_request(&self) -> Option<OperatorRequest> {
         self.requests.try_recv().ok()
@@ -95,7 +129,9 @@ impl OperatorLink {
 
     /// Publishes the state of the robot after a step.
     pub(crate) fn publish(&mut self, stamp: Stamp, robot: &Robot, report: &StepReport) {
-        if let Some(view) = self.feed.view(stamp, robot, report) {
+        let is_asked = self.shared.is_asked.swap(false, Ordering::Relaxed);
+        self.unwatched_steps = if is_asked { 0 } else { self.unwatched_steps.saturating_add(1) };
+        if let Some(view) = self.feed.view(stamp, robot, report, self.is_watched()) {
             *self.shared.view.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(view));
         }
     }

@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use trundle_core::{Battery, OccupancyGrid, Odometry, PoseEstimate, Scan, Stamp, Trajectory, Twist2};
+use trundle_core::{
+    Battery, OccupancyGrid, Odometry, Pose2, PoseEstimate, Scan, Stamp, Trajectory, Twist2, Vector3,
+};
+use trundle_planning::MovingObstacle;
 use trundle_runtime::{DriveState, MotionHold, Task, TaskRecord};
 
 /// State of a run after a step. Large parts are shared with earlier views in which they are the same.
@@ -26,10 +29,60 @@ pub struct RunView {
     pub hold: Option<MotionHold>,
     /// The newest scan, base frame at its stamp.
     pub scan: Option<Arc<Scan>>,
+    /// `map_from_base` at that scan, by the present estimate.
+    pub scan_pose: Option<Pose2>,
     /// The newest plan, map frame.
     pub plan: Option<Arc<Trajectory>>,
     /// The map, at most one second old.
     pub map: Option<Arc<MapView>>,
+    /// What is around the robot besides the map.
+    pub surroundings: SurroundingsView,
+    /// How often stages ran so far.
+    pub counts: RunCounts,
+}
+
+/// What is around a robot besides the map.
+#[derive(Debug, Clone, Default)]
+pub struct SurroundingsView {
+    /// The newest colour image.
+    pub image: Option<Arc<ImageView>>,
+    /// The visual map, at most [`super::VISUAL_MAP_PERIOD_S`] old.
+    pub visual_map: Option<Arc<VisualMapView>>,
+    /// Dynamic obstacles near by.
+    pub movers: Vec<MovingObstacle>,
+    /// `map_from_station` of the charging station; `None` before its light was seen.
+    pub station: Option<Pose2>,
+}
+
+/// The visual map in the map frame.
+#[derive(Debug, Clone, Default)]
+pub struct VisualMapView {
+    /// Poses of the keyframes' cameras on the floor; the heading is that of the optical axis.
+    pub keyframes: Vec<Pose2>,
+    /// Positions of landmarks \[m\]; of a large map a part.
+    pub landmarks: Vec<Vector3>,
+}
+
+/// How often parts of the robot ran since its start. The difference of two views gives a rate.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct RunCounts {
+    /// Camera poses by SLAM.
+    pub slam: u64,
+    /// Scans drawn into the map.
+    pub mapping: u64,
+    /// Control steps.
+    pub control: u64,
+    /// Images that a newer one replaced before they were processed.
+    pub dropped_images: u64,
+}
+
+/// A colour image of the camera.
+#[derive(Debug, Clone)]
+pub struct ImageView {
+    /// Time of the image.
+    pub stamp: Stamp,
+    /// The bytes of a JPEG.
+    pub jpeg: Vec<u8>,
 }
 
 /// A mission as a run shows it.
@@ -39,6 +92,8 @@ pub struct MissionView {
     pub id: u64,
     /// The present task.
     pub task: Option<Task>,
+    /// The tasks that have not ended, the present one first.
+    pub left: Arc<Vec<Task>>,
     /// The tasks that have ended.
     pub ended: Arc<Vec<TaskRecord>>,
     /// Whether all tasks have ended. An empty mission is not over.

@@ -1,13 +1,17 @@
 //! Makes the views of a run.
 
 use super::request::OperatorRequest;
-use super::run_view::{MapView, MissionView, RunView};
+use super::run_view::{ImageView, MapView, MissionView, RunCounts, RunView, SurroundingsView};
+use super::visual_map_feed::VisualMapFeed;
 use std::sync::Arc;
 use trundle_core::{Scan, Stamp, Trajectory, Twist2};
 use trundle_runtime::{OperatorCommand, Robot, Stage, StepReport};
 
 /// Time between two copies of the map \[s\]. A map of 100 x 100 m is 4 million cells, a copy of 1 ms. Source: ours.
 const MAP_PERIOD_S: f64 = 1.0;
+
+/// Time between two copies of the camera's image \[s\]. A copy of 100 kB takes 10 us. Source: ours.
+const IMAGE_PERIOD_S: f64 = 0.1;
 
 /// Makes the views of a run: keeps the large parts that did not change.
 #[derive(Debug, Default)]
@@ -18,6 +22,8 @@ pub(super) struct ViewFeed {
     plan: Option<Arc<Trajectory>>,
     map: Option<Arc<MapView>>,
     map_copied: Option<Stamp>,
+    image: Option<Arc<ImageView>>,
+    visual_map: VisualMapFeed,
 }
 
 impl ViewFeed {
@@ -29,17 +35,34 @@ impl ViewFeed {
         }
     }
 
-    /// The view after a step; `None` after a step without command or result.
-    pub(super) fn view(&mut self, stamp: Stamp, robot: &Robot, report: &StepReport) -> Option<RunView> {
-        let is_shown = report.twist.is_some() || report.track.is_some() || report.finished;
+    /// Keeps a copy of an image where the last one is old.
+    pub(super) fn note_image(&mut self, stamp: Stamp, jpeg: &[u8]) {
+        if self.image.as_ref().is_none_or(|image| stamp - image.stamp >= IMAGE_PERIOD_S) {
+            self.image = Some(Arc::new(ImageView { stamp, jpeg: jpeg.to_vec() }));
+        }
+    }
+
+    /// The view after a step; `None` after a step without command or result. Scan and map are copied where the run `is_watched`.
+    pub(super) fn view(
+        &mut self,
+        stamp: Stamp,
+        robot: &Robot,
+        report: &StepReport,
+        is_watched: bool,
+    ) -> Option<RunView> {
+        let is_result = report.track.is_some() || report.replanned || report.finished;
+        let is_shown = report.twist.is_some() || is_result;
         if !is_shown {
             return None;
         }
         self.twist = report.twist.unwrap_or(self.twist);
         self.update_mission(robot, report);
         self.update_plan(robot, report);
-        self.update_scan(robot);
-        self.update_map(stamp, robot);
+        if is_watched {
+            self.update_scan(robot);
+            self.update_map(stamp, robot);
+            self.visual_map.update(stamp, robot);
+        }
         Some(RunView {
             stamp,
             estimate: robot.estimate(),
@@ -50,8 +73,16 @@ impl ViewFeed {
             battery: robot.battery(),
             hold: robot.hold(),
             scan: self.scan.clone(),
+            scan_pose: robot.scan_pose(),
             plan: self.plan.clone(),
             map: self.map.clone(),
+            surroundings: SurroundingsView {
+                image: self.image.clone(),
+                visual_map: self.visual_map.newest(),
+                movers: robot.moving_obstacles().to_vec(),
+                station: robot.station().map(|station| station.pose),
+            },
+            counts: counts(robot),
         })
     }
 
@@ -59,6 +90,10 @@ impl ViewFeed {
     fn update_mission(&mut self, robot: &Robot, report: &StepReport) {
         self.mission.is_over = report.finished;
         let Some(progress) = robot.mission_progress() else { return };
+        let is_new = progress.task != self.mission.task || progress.ended.len() != self.mission.ended.len();
+        if is_new || self.mission.left.is_empty() {
+            self.mission.left = Arc::new(robot.tasks_left().unwrap_or_default());
+        }
         self.mission.task = progress.task;
         if progress.ended.len() != self.mission.ended.len() {
             self.mission.ended = Arc::new(progress.ended.to_vec());
@@ -85,5 +120,15 @@ impl ViewFeed {
             self.map = Some(Arc::new(MapView { revision, grid: robot.grid().clone() }));
             self.map_copied = Some(now);
         }
+    }
+}
+
+fn counts(robot: &Robot) -> RunCounts {
+    let runs = |stage| robot.times().runs(stage);
+    RunCounts {
+        slam: runs(Stage::Slam),
+        mapping: runs(Stage::Mapping),
+        control: runs(Stage::Control),
+        dropped_images: robot.dropped_images().len() as u64,
     }
 }

@@ -4,7 +4,7 @@ use crate::body::{GOAL, StillBody, setup};
 use std::path::Path;
 use trundle_app::operator::{FrontEnd, MissionView, Operator, operator_link};
 use trundle_app::{FinishedRun, Progress, RunLog, RunRecorder, RunReplayer, RunSetup, run_on_body};
-use trundle_core::Pose2;
+use trundle_core::{Pose2, Twist2};
 use trundle_io::OutputFolder;
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, PoseGuess, Task};
 
@@ -69,4 +69,30 @@ fn a_given_pose_replaces_the_estimate_and_a_replay_gives_the_same() {
     assert_eq!(replay.robot.estimate(), run.robot.estimate());
     assert_eq!(replay.log.state, run.log.state);
     assert_eq!(replay.robot.hold(), Some(MotionHold::Paused));
+}
+
+#[test]
+fn driving_by_hand_pauses_the_mission_and_a_replay_does_so_too() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("run");
+    let drive = OperatorCommand::Drive(Twist2::new(0.2, 0.1));
+    let (run, operator) = run_with(&[go(1.0), drive], &folder);
+    let view = operator.view().unwrap();
+    assert_eq!(view.hold, Some(MotionHold::Paused));
+    assert_eq!(view.mission.left.len(), 1, "the mission is kept");
+    assert_eq!(view.twist, Twist2::ZERO, "silence and a missing camera stop the robot");
+    let (mut replayer, setup) = RunReplayer::open(&folder.join("recording.mcap")).unwrap();
+    let other = OutputFolder::create(&place.path().join("replay")).unwrap();
+    let recorder = RunRecorder::to_folder(&other).unwrap();
+    let replay = run_on_body(&setup, &mut replayer, recorder, RunLog::default(), Progress::hidden()).unwrap();
+    assert_eq!(replay.robot.hold(), Some(MotionHold::Paused));
+    assert_eq!(replay.robot.estimate(), run.robot.estimate());
+}
+
+#[test]
+fn a_second_front_end_shares_the_link() {
+    let (_, link) = operator_link();
+    let (first, second) = (link.operator(), link.operator());
+    assert_eq!(first.send(go(1.0)).unwrap(), 1);
+    assert_eq!(second.send(OperatorCommand::Pause).unwrap(), 2);
 }

@@ -8,7 +8,7 @@ mod plan_in_view;
 mod plans;
 mod seek_viewpoint;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
 mod viewpoint;

@@ -119,6 +119,11 @@ impl MissionExecutor {
         self.current.as_ref().map(|current| current.entry.task)
     }
 
+    /// The tasks that have not ended, the present one first.
+    pub(crate) fn tasks_left(&self) -> impl Iterator<Item = Task> {
+        self.current.iter().map(|current| &current.entry).chain(&self.queue).map(|entry| entry.task)
+    }
+
     /// How far the mission has come.
     pub(crate) fn mission(&self) -> MissionState {
         let entries = self.current.iter().map(|current| &current.entry).chain(&self.queue);

@@ -64,6 +64,12 @@ impl BodyState {
     /// The first condition under which no wheel may turn; `None` where the robot may drive. The visual map needs the camera whatever
     /// measures the ranges.
     pub(super) fn hold(&self, range_source: RangeSource) -> Option<MotionHold> {
+        let paused = self.is_paused.then_some(MotionHold::Paused);
+        self.hold_besides_pause(range_source).or(paused)
+    }
+
+    /// The same of a robot that a person drives by hand, whose mission is paused.
+    pub(super) fn hold_besides_pause(&self, range_source: RangeSource) -> Option<MotionHold> {
         let needed = |device: &Device| *device != Device::Laser || range_source == RangeSource::Laser;
         let lost = self.lost.iter().copied().find(needed).map(MotionHold::DeviceLost);
         let battery = |is: fn(&Battery) -> bool| self.battery.as_ref().is_some_and(is);
@@ -72,7 +78,6 @@ impl BodyState {
             (self.over_current.any(), MotionHold::OverCurrent),
             (battery(|b| b.source == PowerSource::Adapter), MotionHold::AdapterConnected),
             (battery(is_empty), MotionHold::BatteryEmpty),
-            (self.is_paused, MotionHold::Paused),
         ];
         lost.or_else(|| conditions.into_iter().find_map(|(holds, hold)| holds.then_some(hold)))
     }

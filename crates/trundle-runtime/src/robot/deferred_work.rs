@@ -118,6 +118,7 @@ impl Robot {
 
     /// A reading of the bumper.
     pub(super) fn forward_touch(&mut self, pressed: bool) {
+        self.teleop.touched = pressed;
         match &mut self.decision_worker {
             Some(decision_worker) => decision_worker.navigator.touch(pressed),
             None => self.background.felt.push(Felt::Touched(pressed)),
@@ -129,6 +130,7 @@ impl Robot {
 
     /// A reading of the cliff sensors.
     pub(super) fn on_cliff(&mut self, over_edge: bool) {
+        self.teleop.over_edge = over_edge;
         match &mut self.decision_worker {
             Some(decision_worker) => decision_worker.navigator.cliff(over_edge),
             None => self.background.felt.push(Felt::OverEdge(over_edge)),

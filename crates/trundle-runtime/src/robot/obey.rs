@@ -19,6 +19,7 @@ impl Robot {
         let mut report = StepReport::default();
         match command.validated()? {
             OperatorCommand::Begin(mission) => {
+                self.teleop.release();
                 self.latest.state.1 = false;
                 self.restore_mission(MissionState::new(mission).of_operator());
             }
@@ -26,6 +27,10 @@ impl Robot {
             OperatorCommand::Continue => self.pause(false, now, &mut report),
             OperatorCommand::SetPose(guess) => self.take_pose(&guess, now),
             OperatorCommand::Change(setting) => self.change(setting, now),
+            OperatorCommand::Drive(twist) => {
+                self.pause(true, now, &mut report);
+                self.teleop.drive(twist, now);
+            }
         }
         self.complete(&mut report);
         Ok(report)
@@ -40,6 +45,7 @@ impl Robot {
     }
 
     fn pause(&mut self, is_paused: bool, now: Stamp, report: &mut StepReport) {
+        self.teleop.release();
         let before = self.latest.body.hold(self.range_source);
         self.latest.body.set_paused(is_paused);
         self.on_hold(before, now, report);

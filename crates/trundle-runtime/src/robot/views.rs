@@ -7,9 +7,9 @@ use crate::{
     stage::StageTimes,
 };
 use trundle_control::MotionHold;
-use trundle_core::{Battery, OccupancyGrid, Odometry, Pose3, PoseEstimate, Scan};
+use trundle_core::{Battery, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, Scan};
 use trundle_localization::StationEstimate;
-use trundle_planning::PlanResult;
+use trundle_planning::{MovingObstacle, PlanResult};
 use trundle_slam::RgbdSlam;
 
 /// How far a mission has come.
@@ -53,6 +53,11 @@ impl Robot {
         Some(MissionProgress { task: executor.task(), ended: executor.records() })
     }
 
+    /// The tasks of the mission that have not ended, the present one first; none while a decision job runs.
+    pub fn tasks_left(&self) -> Option<Vec<Task>> {
+        Some(self.decision_worker.as_ref()?.executor.tasks_left().collect())
+    }
+
     /// Report of turns and straight moves for the present goal, or for the last goal with such a request; none while a decision job
     /// runs.
     pub fn docking(&self) -> Option<&GoalApproachReport> {
@@ -74,6 +79,12 @@ impl Robot {
         self.latest.scan.as_ref()
     }
 
+    /// `map_from_base` at the newest scan, by the newest estimate; none where no odometry carries the scan.
+    pub fn scan_pose(&self) -> Option<Pose2> {
+        let carried = self.latest.scan_with_odometry()?;
+        Some(self.localizer.estimate().pose * carried.odom_now.inverse() * carried.odom_at_scan)
+    }
+
     /// Images that were left out because they were the last one again though the robot had moved.
     pub fn frozen_images(&self) -> usize {
         self.latest.frozen
@@ -82,6 +93,11 @@ impl Robot {
     /// The battery; none where the body has not reported it.
     pub fn battery(&self) -> Option<Battery> {
         self.latest.body.battery()
+    }
+
+    /// Dynamic obstacles near by, forecast to the newest decision.
+    pub fn moving_obstacles(&self) -> &[MovingObstacle] {
+        &self.latest.movers
     }
 
     /// The charging station; none before its light was seen.

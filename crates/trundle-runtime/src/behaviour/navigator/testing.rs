@@ -7,7 +7,7 @@ use trundle_control::MotionSense;
 use trundle_core::{Cell, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
 
 /// Known floor, 6 x 4 m about (3, 2); unknown where `hidden` is true.
-pub(super) fn floor(hidden: impl Fn(Vector2) -> bool) -> OccupancyGrid {
+pub(crate) fn floor(hidden: impl Fn(Vector2) -> bool) -> OccupancyGrid {
     let mut grid = OccupancyGrid::from_ascii(0.05, &vec![".".repeat(120); 80].join("\n")).unwrap();
     let geometry = *grid.geometry();
     for k in 0..geometry.len() {
@@ -25,7 +25,7 @@ pub(super) fn navigator() -> Navigator {
     Navigator::new(&config, &footprint).unwrap()
 }
 
-pub(super) fn at_rest(grid: &OccupancyGrid, now: Stamp, pose: Pose2) -> WorldState<'_> {
+pub(crate) fn at_rest(grid: &OccupancyGrid, now: Stamp, pose: Pose2) -> WorldState<'_> {
     let covariance = nalgebra::Matrix3::from_diagonal_element(1e-6);
     WorldState {
         now,

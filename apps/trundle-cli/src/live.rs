@@ -1,0 +1,40 @@
+//! The option --live: a page that shows the run and steers it.
+
+use crate::console;
+use clap::Args;
+use std::path::PathBuf;
+use trundle::app::operator::{FrontEnd, OperatorLink, operator_link};
+use trundle::app::{AppError, Progress, RunSetup};
+use trundle::live::{LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
+
+/// The live page of a run.
+#[derive(Debug, Args)]
+pub struct LiveArgs {
+    /// Show the run in a browser and steer it there: prints the link; the run goes on after its mission until Ctrl-C. ADDR is IP:PORT
+    /// [default: 127.0.0.1:8642, or a free port where it is in use]
+    #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = LiveAddress::DEFAULT)]
+    pub live: Option<LiveAddress>,
+    /// Keep the tokens of the links in FILE, so that links stay valid over restarts.
+    #[arg(long, value_name = "FILE", requires = "live")]
+    pub live_tokens: Option<PathBuf>,
+}
+
+impl LiveArgs {
+    /// The page beside a run, where one is asked for, and what accompanies the run then. `link`: that of another front end. A run
+    /// that is not steered takes no commands.
+    pub fn beside(
+        &self,
+        setup: &RunSetup,
+        progress: Progress,
+        link: Option<OperatorLink>,
+        is_steered: bool,
+    ) -> Result<(Option<LivePage>, FrontEnd), AppError> {
+        let Some(address) = self.live else { return Ok((None, FrontEnd { progress, operator: link })) };
+        let link = link.unwrap_or_else(|| operator_link().1);
+        let tokens = self.live_tokens.as_deref().map_or_else(Tokens::random, Tokens::of_file)?;
+        let options = LiveOptions { address, tokens, is_steered };
+        let page = LivePage::start(options, link.operator(), RunFacts::of(setup)?)?;
+        console::print(&page.announcement());
+        Ok((Some(page), FrontEnd { progress, operator: Some(link) }))
+    }
+}

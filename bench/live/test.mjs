@@ -1,0 +1,361 @@
+// The live page in a real browser: `node test.mjs TRUNDLE [PICTURES]`. Prints one line for each thing that holds; ends with 1 where one does not.
+import assert from "node:assert/strict";
+import { existsSync, mkdirSync, mkdtempSync } from "node:fs";
+import { createServer } from "node:http";
+import { connect, createServer as createTcpServer } from "node:net";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { chromium } from "playwright-core";
+import { start } from "./program.mjs";
+
+const [trundle, pictures = mkdtempSync(join(tmpdir(), "live-pictures-"))] = process.argv.slice(2);
+const CHROMIUM = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
+if (!trundle || !existsSync(trundle)) throw new Error("usage: node test.mjs TRUNDLE [PICTURES]");
+if (!CHROMIUM) {
+  console.log("skipped: live page in a browser (no chromium: apt-get install chromium)");
+  process.exit(0);
+}
+mkdirSync(pictures, { recursive: true });
+const place = mkdtempSync(join(tmpdir(), "live-run-"));
+const browser = await chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox", "--enable-unsafe-swiftshader"] });
+const problems = [];
+
+/** A page whose console must stay clean, and the states that it is sent. */
+async function open(link, options = {}) {
+  const context = await browser.newContext({ viewport: { width: 1440, height: 900 }, colorScheme: "dark", ...options });
+  const page = await context.newPage();
+  const watch = { page, context, state: null, states: [], mayFail: false };
+  page.on("console", (message) => {
+    if (message.type() === "error" && !watch.mayFail) problems.push(message.text());
+  });
+  page.on("pageerror", (error) => problems.push(String(error)));
+  page.on("websocket", (socket) =>
+    socket.on("framereceived", ({ payload }) => {
+      if (typeof payload !== "string" || !payload.startsWith('{"type":"state"')) return;
+      watch.state = JSON.parse(payload);
+      watch.states.push({ at: performance.now(), state: watch.state });
+    }),
+  );
+  await page.goto(link);
+  return watch;
+}
+
+async function until(what, is, seconds = 20) {
+  const start = performance.now();
+  while (!(await is())) {
+    assert(performance.now() - start < 1000 * seconds, `${what}: not within ${seconds} s`);
+    await new Promise((resolve) => setTimeout(resolve, 20));
+  }
+  return (performance.now() - start) / 1000;
+}
+
+const text = (page, id) => page.locator(`#${id}`).innerText();
+const speed = (watch) => Math.hypot(...watch.state.command);
+let failures = 0;
+
+/** A way to the program that carries so many bytes a second. */
+async function throttle(url, bytesPerSecond) {
+  const TICK_MS = 50;
+  const sockets = new Set();
+  const server = createTcpServer((client) => {
+    const robot = connect(Number(url.port), url.hostname);
+    const slowly = (from, to) => {
+      let waiting = Buffer.alloc(0);
+      from.on("data", (data) => {
+        waiting = Buffer.concat([waiting, data]);
+        if (waiting.length > 16_000) from.pause();
+      });
+      const timer = setInterval(() => {
+        const part = waiting.subarray(0, (bytesPerSecond * TICK_MS) / 1000);
+        waiting = waiting.subarray(part.length);
+        if (part.length) to.write(part);
+        if (waiting.length <= 16_000) from.resume();
+      }, TICK_MS);
+      from.on("error", () => {});
+      from.on("close", () => (clearInterval(timer), to.end(waiting)));
+    };
+    slowly(robot, client);
+    slowly(client, robot);
+    sockets.add(client).add(robot);
+  });
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  const close = () => (sockets.forEach((socket) => socket.destroy()), server.close());
+  return { link: `http://127.0.0.1:${server.address().port}/${url.hash}`, close };
+}
+
+async function check(name, work) {
+  const start = performance.now();
+  try {
+    const note = await work();
+    console.log(`ok   ${name}${note ? `: ${note}` : ""} (${((performance.now() - start) / 1000).toFixed(1)} s)`);
+  } catch (error) {
+    failures += 1;
+    const doing = main.state ? ` (the robot: ${main.state.state}, ${main.state.reason ?? main.state.hold ?? "no reason"})` : "";
+    console.log(`FAIL ${name}: ${error.message}${doing}`);
+    // What follows begins without keys that are down, and without other pages.
+    await page.keyboard.up("w");
+    await page.keyboard.press("Escape");
+    for (const context of browser.contexts()) if (context !== main.context) await context.close();
+  }
+}
+
+const tokens = join(place, "tokens");
+const quiet = ["--direct", "--goal", "0.2,0,0"];
+let program = await start(trundle, ["--live", "127.0.0.1:0", "--live-tokens", tokens, ...quiet], join(place, "run"));
+const main = await open(program.drive);
+const { page } = main;
+const picture = (name, of = page) => of.screenshot({ path: join(pictures, `${name}.png`) });
+
+await check("the page loads and says what the robot does", async () => {
+  await until("a state", () => main.state !== null);
+  assert.equal(await page.locator("body").getAttribute("data-link"), "open");
+  assert.match(await page.title(), /demo/);
+});
+
+await check("the map appears", async () => {
+  const known = () =>
+    page.evaluate(() => {
+      const canvas = document.getElementById("map");
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      let count = 0;
+      for (let i = 3; i < data.length; i += 4) count += data[i] === 255 ? 1 : 0;
+      return count;
+    });
+  await until("floor on the canvas", async () => (await known()) > 20_000);
+  return `${await known()} pixels`;
+});
+
+await check("a click sends a goal and the robot arrives", async () => {
+  await until("rest", () => main.state.over || main.state.state === "arrived", 60);
+  await page.keyboard.press("g");
+  await page.keyboard.press("f");
+  await page.keyboard.press("f");
+  await page.waitForTimeout(600);
+  const [x, y, theta] = main.state.pose;
+  const robot = await page.evaluate(([x, y]) => window.trundle.map.toWindow([x, y]), [x, y]);
+  const ahead = await page.evaluate(([x, y]) => window.trundle.map.toWindow([x, y]), [
+    x + 0.8 * Math.cos(theta),
+    y + 0.8 * Math.sin(theta),
+  ]);
+  assert(Math.hypot(ahead[0] - robot[0], ahead[1] - robot[1]) > 10);
+  await page.mouse.move(...ahead);
+  await page.mouse.down();
+  await page.mouse.move(ahead[0], ahead[1] - 60, { steps: 5 });
+  await picture("goal");
+  await page.mouse.up();
+  await until("the goal", () => main.state.left.length > 0);
+  const goal = main.state.left[0].goal;
+  assert(Math.abs(goal[2] - Math.PI / 2) < 0.1, `heading ${goal[2]} rad`);
+  const seconds = await until("arrival", () => main.state.over, 90);
+  const away = Math.hypot(main.state.pose[0] - goal[0], main.state.pose[1] - goal[1]);
+  assert(away < 0.05, `${away} m from the goal`);
+  return `${(1000 * away).toFixed(0)} mm from the goal after ${seconds.toFixed(1)} s`;
+});
+
+await check("a goal in a wall is refused with the reason beside the click", async () => {
+  await page.keyboard.press("0");
+  await page.waitForTimeout(400);
+  const wall = await page.evaluate(() => window.trundle.wallPixel());
+  assert(wall, "a wall is in sight");
+  await page.keyboard.press("g");
+  await page.mouse.click(wall[0], wall[1]);
+  await page.locator("#bubble").waitFor({ state: "visible" });
+  assert.match(await text(page, "bubble"), /obstacle reaches \d+ cm/);
+  await picture("refused");
+});
+
+await check("the space bar stops the robot within 0.2 s", async () => {
+  await page.locator("#goal-x").fill("2.5");
+  await page.locator("#goal-y").fill("0");
+  await page.locator("#goal-form button").click();
+  await until("motion", () => main.state.command[0] > 0.15, 30);
+  const before = main.states.length;
+  const pressed = performance.now();
+  await page.keyboard.press(" ");
+  await until("zero", () => main.states.slice(before).some(({ state }) => Math.hypot(...state.command) === 0), 5);
+  const zero = main.states.slice(before).find(({ state }) => Math.hypot(...state.command) === 0);
+  const seconds = (zero.at - pressed) / 1000;
+  assert(seconds < 0.35, `${seconds} s until the page shows it`);
+  await until("no mission", () => main.state.left.length === 0);
+  return `${seconds.toFixed(2)} s from the key to the page that shows zero, 0.1 s of it the period of views`;
+});
+
+await check("driving by keys, and silence stops", async () => {
+  const other = await open(program.view);
+  await until("a state", () => other.state !== null);
+  await page.bringToFront();
+  await page.keyboard.press("t");
+  await page.keyboard.down("w");
+  await until("motion", () => other.state.command[0] > 0.1, 10);
+  await picture("drive");
+  assert(speed(other) > 0.1, "it still drives");
+  // A page that computes sends nothing: the key is still down.
+  const from = other.state.time;
+  const silent = page.evaluate(() => {
+    const start = performance.now();
+    while (performance.now() - start < 2500);
+  });
+  const start = performance.now();
+  await until("stop", () => speed(other) === 0, 5);
+  const seconds = (performance.now() - start) / 1000;
+  const robotSeconds = other.state.time - from;
+  await silent;
+  await page.keyboard.up("w");
+  await page.keyboard.press("Escape");
+  await other.context.close();
+  assert(robotSeconds > 0.05 && robotSeconds < 0.7, `${robotSeconds} s`);
+  return `${robotSeconds.toFixed(2)} s of the robot's time until a viewer sees it at rest, ${seconds.toFixed(2)} s by the clock`;
+});
+
+await check("a second viewer sees who holds the wheel and drives nothing", async () => {
+  const viewer = await open(program.view);
+  await until("the wheel", async () => (await text(viewer.page, "wheel-text")).includes("holds the wheel"));
+  assert.equal(await viewer.page.locator("#stop").isVisible(), false);
+  assert.equal(await viewer.page.locator("#explore").isVisible(), false);
+  await viewer.page.keyboard.press(" ");
+  await picture("view-only", viewer.page);
+  await viewer.context.close();
+  const driver = await open(program.drive);
+  await until("a state", () => driver.state !== null);
+  await driver.page.locator("#wheel-take").click();
+  await until("the wheel", () => driver.state.wheel?.is_you === true);
+  await until("the other sees it", () => main.state.wheel?.is_you === false);
+  await driver.context.close();
+  await until("a free wheel", () => main.state.wheel === null);
+});
+
+await check("a page of another origin can neither look nor drive", async () => {
+  const server = createServer((_, response) => response.end("<!doctype html><title>foreign</title>"));
+  await new Promise((resolve) => server.listen(0, "127.0.0.1", resolve));
+  const context = await browser.newContext();
+  const foreign = await context.newPage();
+  await foreign.goto(`http://127.0.0.1:${server.address().port}/`);
+  const { host, hash } = new URL(program.drive);
+  const result = await foreign.evaluate(
+    async ([host, token]) => {
+      const socket = new WebSocket(`ws://${host}/live`);
+      const link = await new Promise((resolve) => {
+        socket.onopen = () => resolve("open");
+        socket.onerror = () => resolve("refused");
+      });
+      const read = await fetch(`http://${host}/`).then(() => "read", () => "refused");
+      const stop = await fetch(`http://${host}/stop`, { method: "POST", mode: "no-cors" }).then((r) => r.type, () => "refused");
+      const token_stop = await fetch(`http://${host}/stop`, { method: "POST", headers: { Authorization: `Bearer ${token}` } }).then(() => "sent", () => "refused");
+      return { link, read, stop, token_stop };
+    },
+    [host, hash.slice(1)],
+  );
+  assert.deepEqual({ ...result, stop: "" }, { link: "refused", read: "refused", stop: "", token_stop: "refused" });
+  assert.equal(main.state.paused, main.states.at(-1).state.paused);
+  await context.close();
+  server.close();
+});
+
+await check("exploring: the map grows", async () => {
+  await page.locator("#explore").click();
+  await until("exploring", () => main.state.left.some((task) => task.text === "explore"));
+  await page.keyboard.press("m");
+  await page.waitForTimeout(20_000);
+  await page.locator("#fit").click();
+  await page.waitForTimeout(500);
+  await picture("explore-dark");
+  await page.locator("#theme").click();
+  await page.waitForTimeout(300);
+  await picture("explore-light");
+  await page.locator("#theme").click();
+  assert(await page.locator("#camera").isVisible(), "the camera's image is shown");
+});
+
+await check("landmarks and keyframes", async () => {
+  await page.evaluate(() => document.querySelector("[data-layer=visual]").click());
+  const count = () => page.evaluate(() => window.trundle.map.landmarks.length / 3);
+  await until("landmarks", async () => (await count()) > 100, 15);
+  await page.waitForTimeout(300);
+  await picture("landmarks");
+  const landmarks = await count();
+  await page.evaluate(() => document.querySelector("[data-layer=visual]").click());
+  await page.keyboard.press("3");
+  await page.waitForTimeout(1500);
+  await picture("space");
+  const drawn = await page.evaluate(() => !document.getElementById("space").hidden);
+  await page.keyboard.press("3");
+  return `${landmarks} landmarks, ${drawn ? "in space too" : "no WebGL here"}`;
+});
+
+await check("a network of 40 kB/s gets fewer views, none of them old", async () => {
+  const slow = await throttle(new URL(program.view), 40_000);
+  const viewer = await open(slow.link);
+  await until("a state", () => viewer.state !== null, 30);
+  await page.waitForTimeout(6000);
+  const before = viewer.states.length;
+  const lags = [];
+  for (let i = 0; i < 20; i++) {
+    await page.waitForTimeout(200);
+    lags.push(main.state.time - viewer.state.time);
+  }
+  const rate = (viewer.states.length - before) / 4;
+  await viewer.context.close();
+  slow.close();
+  lags.sort((a, b) => a - b);
+  assert(lags.at(-1) < 4 && rate > 0.3, `${lags.at(-1)} s late, ${rate} views/s`);
+  return `with the camera's image ${rate.toFixed(1)} views/s, late by ${lags[10].toFixed(1)} s, at most ${lags.at(-1).toFixed(1)} s`;
+});
+
+await check("a map of 100 x 100 m pans", async () => {
+  const viewer = await open(program.view);
+  await until("a state", () => viewer.state !== null);
+  const times = await viewer.page.evaluate(async () => {
+    const { map } = window.trundle;
+    const cells = new Uint8Array(1024).map((_, i) => (i % 37 === 0 ? 0xaa : 0x55));
+    const tiles = [];
+    for (let row = -16; row < 16; row++) for (let column = -16; column < 16; column++) tiles.push({ column, row, cells });
+    map.tiles.add({ kind: "tiles", generation: 99, resolution: 0.05, origin: [0, 0], tiles });
+    map.fit();
+    const times = [];
+    let last = performance.now();
+    for (let i = 0; i < 120; i++) {
+      map.pan(i % 40 < 20 ? 6 : -6, 3);
+      await new Promise(requestAnimationFrame);
+      times.push(performance.now() - last);
+      last = performance.now();
+    }
+    return times.sort((a, b) => a - b);
+  });
+  await viewer.context.close();
+  const [median, p95] = [times[60], times[114]];
+  assert(median < 200, `${median} ms a frame`);
+  return `${median.toFixed(1)} ms a frame, 95 % within ${p95.toFixed(1)} ms, drawn by the processor`;
+});
+
+await check("on a phone", async () => {
+  const phone = await open(program.drive, { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true });
+  await until("a state", () => phone.state !== null);
+  await phone.page.waitForTimeout(1500);
+  await picture("phone", phone.page);
+  await phone.page.locator("#panel-open").click();
+  await phone.page.waitForTimeout(800);
+  await picture("phone-panel", phone.page);
+  const stop = await phone.page.locator("#stop").boundingBox();
+  assert(stop.width >= 80 && stop.height >= 80, "the stop is large enough for a thumb");
+  await phone.context.close();
+});
+
+await check("the page comes back after a restart of the program", async () => {
+  main.mayFail = true;
+  const { host } = new URL(program.drive);
+  await program.end();
+  await until("no link", async () => (await page.locator("body").getAttribute("data-link")) === "lost", 10);
+  await picture("lost");
+  program = await start(trundle, ["--live", host, "--live-tokens", tokens, ...quiet], join(place, "run"));
+  const before = main.states.length;
+  const seconds = await until("states again", () => main.states.length > before, 20);
+  main.mayFail = false;
+  return `after ${seconds.toFixed(1)} s`;
+});
+
+await check("no error in the console", async () => assert.deepEqual(problems, []));
+
+await program.end();
+await browser.close();
+console.log(`pictures: ${pictures}`);
+process.exit(failures ? 1 : 0);

@@ -1,0 +1,434 @@
+// The live page: what the robot sees, and how it is steered.
+
+import { Link, type LinkState } from "./link";
+import { MapView, type Layers } from "./map_view";
+import { addToLog, element, Panel } from "./panel";
+import { Teleop } from "./teleop";
+import { SpaceView } from "./space_view";
+import { startTheme, toggleTheme } from "./theme";
+import { Timeline } from "./timeline";
+import { MapTools, type Tool } from "./tools";
+import type { ByteMessage, Pose, Reply, RobotState, Welcome } from "./wire";
+
+startTheme(() => map.recolor());
+const canvas = element<HTMLCanvasElement>("map");
+const map = new MapView(canvas);
+const space = new SpaceView(element<HTMLCanvasElement>("space"), map);
+const panel = new Panel();
+const timeline = new Timeline((pose) => {
+  map.past = pose;
+  map.dirty();
+});
+/** Way of the map for a press of an arrow key [pixels]. */
+const PAN_PX = 80;
+let welcome: Welcome | null = null;
+let state: RobotState | null = null;
+/** What a refusal beside the map refers to. */
+let refused: { text: string; at: Pose } | null = null;
+
+const link = new Link(location.hash.slice(1), viewerName(), {
+  onState: showLink,
+  onReply,
+  onBytes,
+});
+const tools = new MapTools(canvas, map, () => state?.pose[2] ?? 0, {
+  onGoal: (pose, append) => void go(pose, append),
+  onPose: (pose) => void request({ type: "set_pose", pose: asGoal(pose) }, pose),
+});
+const teleop = new Teleop(element("stick"), element("knob"), (v, omega) => link.send({ type: "drive", v, omega }));
+
+/** For tests in a browser, and for the curious: the map, and a place of the window where a wall is drawn. */
+Object.assign(window, { trundle: { map, wallPixel } });
+
+map.onMove = placeOverlays;
+connectButtons();
+selectTool("move");
+if (link && location.hash.length > 1) link.connect();
+else showLink("refused", "This link has no token. Open the link that the program prints.");
+
+function onReply(reply: Reply): void {
+  switch (reply.type) {
+    case "welcome":
+      welcome = reply;
+      map.setRobot(reply.footprint);
+      document.title = `${reply.title} – trundle`;
+      element("title").textContent = reply.title;
+      document.body.dataset["access"] = reply.drives ? "drive" : "view";
+      element("log").replaceChildren();
+      sendCamera();
+      sendVisualMap();
+      break;
+    case "state":
+      state = reply;
+      map.setState(reply);
+      panel.show(reply, welcome?.max_v ?? 1);
+      timeline.add(reply);
+      showWheel(reply);
+      showPause(reply);
+      break;
+    case "states":
+      addToLog(reply.states, (time) => timeline.look(time));
+      timeline.addStates(reply.states);
+      break;
+    case "refused":
+      toast(reply.refusal, "warn");
+      break;
+    case "answer":
+      break;
+  }
+}
+
+function onBytes(message: ByteMessage): void {
+  switch (message.kind) {
+    case "tiles":
+      map.tiles.add(message);
+      map.mapChanged();
+      break;
+    case "scan":
+      map.setScan(message.points);
+      break;
+    case "plan":
+      map.setPlan(message.points);
+      break;
+    case "trail":
+      map.setTrail(message.poses);
+      timeline.begin(message.poses);
+      break;
+    case "visual":
+      map.setVisualMap(message.keyframes, message.landmarks);
+      break;
+    case "image":
+      showImage(message.jpeg);
+      break;
+  }
+}
+
+// ---- requests
+
+/** Asks, and shows a refusal: beside the place that it concerns, or as a note. */
+async function request(message: object, at?: Pose): Promise<boolean> {
+  hideRefusal();
+  const answer = await link.ask(message);
+  if (!answer.refusal) return true;
+  if (at) showRefusal(answer.refusal, at);
+  else toast(answer.refusal, "warn");
+  return false;
+}
+
+async function go(pose: Pose, append: boolean): Promise<void> {
+  if (await request({ type: "go", goals: [asGoal(pose)], append }, pose)) {
+    const [x, y] = pose;
+    toast(`${append ? "Queued" : "Driving to"} ${x.toFixed(2)}, ${y.toFixed(2)} m`, "good");
+  }
+}
+
+async function stop(): Promise<void> {
+  teleop.release();
+  tools.cancel();
+  const answer = await link.stop();
+  if (answer.refusal) toast(`Not stopped: ${answer.refusal}`, "bad");
+}
+
+function asGoal([x, y, theta]: Pose): { x: number; y: number; theta: number } {
+  return { x, y, theta };
+}
+
+// ---- controls
+
+function connectButtons(): void {
+  const press = (id: string, act: () => void) => element(id).addEventListener("click", act);
+  press("stop", () => void stop());
+  press("explore", () => void request({ type: "explore" }));
+  press("return", () => void request({ type: "return" }));
+  press("dock", () => void request({ type: "dock" }));
+  press("pause", () => void request({ type: state?.paused ? "continue" : "pause" }));
+  press("wheel-take", () => void request({ type: "take_wheel" }));
+  press("theme", () => {
+    toggleTheme();
+    map.recolor();
+  });
+  press("fit", () => {
+    map.fit();
+    showFollow();
+  });
+  press("follow", toggleFollow);
+  press("zoom-in", () => zoom(1.4));
+  press("zoom-out", () => zoom(1 / 1.4));
+  press("space-toggle", toggleSpace);
+  element("space-toggle").hidden = !space.isPossible;
+  press("help-open", () => toggle("help", "help-open"));
+  press("help-close", () => toggle("help", "help-open"));
+  press("camera-toggle", toggleCamera);
+  press("panel-open", () => {
+    const isOpen = document.body.dataset["panel"] !== "open";
+    document.body.dataset["panel"] = isOpen ? "open" : "";
+    element("panel-open").setAttribute("aria-expanded", String(isOpen));
+    sendCamera();
+    if (map.follows) map.dirty();
+    else map.fit();
+  });
+  document.querySelectorAll<HTMLElement>("[data-tool]").forEach((button) => {
+    button.addEventListener("click", () => selectTool(button.dataset["tool"] as Tool));
+  });
+  document.querySelectorAll<HTMLInputElement>("[data-layer]").forEach((box) => {
+    box.addEventListener("change", () => {
+      map.layers[box.dataset["layer"] as keyof Layers] = box.checked;
+      sendVisualMap();
+      map.dirty();
+    });
+  });
+  element("goal-form").addEventListener("submit", (event) => {
+    event.preventDefault();
+    typedGoal();
+  });
+  window.addEventListener("keydown", onKey, { capture: true });
+  // A button would take the release of the space bar for a click.
+  window.addEventListener("keyup", (event) => event.code === "Space" && event.preventDefault(), { capture: true });
+  new MutationObserver(showFollow).observe(document.body, { attributeFilter: ["data-follow"] });
+}
+
+function onKey(event: KeyboardEvent): void {
+  if (event.code === "Space") {
+    event.preventDefault();
+    event.stopPropagation();
+    if (!event.repeat && document.body.dataset["access"] !== "view") void stop();
+    return;
+  }
+  if (event.target instanceof HTMLInputElement && event.target.type !== "checkbox") return;
+  if (event.ctrlKey || event.metaKey || event.altKey || event.repeat) return;
+  const isDriving = tools.tool === "drive";
+  const actions: Record<string, () => void> = {
+    m: () => selectTool("move"),
+    g: () => selectTool("goal"),
+    p: () => selectTool("pose"),
+    t: () => selectTool("drive"),
+    escape: () => selectTool("move"),
+    f: toggleFollow,
+    "0": () => map.fit(),
+    "3": toggleSpace,
+    "+": () => zoom(1.4),
+    "=": () => zoom(1.4),
+    "-": () => zoom(1 / 1.4),
+    "?": () => toggle("help", "help-open"),
+  };
+  const pans: Record<string, [number, number]> = {
+    ArrowLeft: [PAN_PX, 0],
+    ArrowRight: [-PAN_PX, 0],
+    ArrowUp: [0, PAN_PX],
+    ArrowDown: [0, -PAN_PX],
+  };
+  const pan = pans[event.key];
+  if (pan && !isDriving && event.target === canvas) return map.pan(...pan);
+  if (isDriving && "wasd".includes(event.key.toLowerCase())) return;
+  actions[event.key.toLowerCase()]?.();
+}
+
+function zoom(factor: number): void {
+  if (space.isShown) space.zoom(1 / factor);
+  else map.zoom(factor);
+}
+
+/** Shows the view of space or the map. Goals are set on the map. */
+function toggleSpace(): void {
+  space.show(!space.isShown);
+  element("space-toggle").setAttribute("aria-pressed", String(space.isShown));
+  sendVisualMap();
+}
+
+function selectTool(tool: Tool): void {
+  const isDenied = document.body.dataset["access"] === "view" && tool !== "move";
+  const chosen = isDenied ? "move" : tool;
+  if (space.isShown && (chosen === "goal" || chosen === "pose")) toggleSpace();
+  tools.tool = chosen;
+  tools.cancel();
+  hideRefusal();
+  teleop.enabled = chosen === "drive";
+  element("stick").hidden = chosen !== "drive";
+  document.body.dataset["tool"] = chosen;
+  document.querySelectorAll<HTMLElement>("[data-tool]").forEach((button) => {
+    button.setAttribute("aria-pressed", String(button.dataset["tool"] === chosen));
+  });
+}
+
+function toggleFollow(): void {
+  map.follows = !map.follows;
+  map.dirty();
+  showFollow();
+}
+
+function showFollow(): void {
+  element("follow").setAttribute("aria-pressed", String(map.follows));
+}
+
+function typedGoal(): void {
+  const number = (id: string) => {
+    const text = element<HTMLInputElement>(id).value.trim().replace(",", ".");
+    return text === "" ? 0 : Number(text);
+  };
+  const pose: Pose = [number("goal-x"), number("goal-y"), (number("goal-heading") * Math.PI) / 180];
+  if (pose.every(Number.isFinite)) void go(pose, false);
+  else toast("A goal is three numbers: x and y in metres, the heading in degrees.", "warn");
+}
+
+function toggle(id: string, button: string): void {
+  const target = element(id);
+  target.hidden = !target.hidden;
+  element(button).setAttribute("aria-expanded", String(!target.hidden));
+}
+
+// ---- camera
+
+let pictureUrl = "";
+
+function showImage(jpeg: Uint8Array<ArrayBuffer>): void {
+  const picture = element<HTMLImageElement>("camera");
+  const old = pictureUrl;
+  pictureUrl = URL.createObjectURL(new Blob([jpeg], { type: "image/jpeg" }));
+  picture.onload = picture.onerror = () => URL.revokeObjectURL(old);
+  picture.src = pictureUrl;
+  picture.hidden = false;
+  element("camera-none").hidden = true;
+}
+
+function toggleCamera(): void {
+  const body = element("camera-body");
+  body.hidden = !body.hidden;
+  const button = element("camera-toggle");
+  button.textContent = body.hidden ? "Show" : "Hide";
+  button.setAttribute("aria-expanded", String(!body.hidden));
+  sendCamera();
+}
+
+/** Images are sent only while they can be seen. */
+function sendCamera(): void {
+  const isShown = element("camera-card").offsetParent !== null && !element("camera-body").hidden && !document.hidden;
+  link.send({ type: "camera", on: isShown });
+}
+document.addEventListener("visibilitychange", sendCamera);
+
+function sendVisualMap(): void {
+  link.send({ type: "visual_map", on: map.layers.visual || space.isShown });
+}
+
+/** A place in the middle of the window where the map has a wall [CSS pixels]. */
+function wallPixel(): [number, number] | null {
+  const box = canvas.getBoundingClientRect();
+  for (let ring = 20; ring < box.height / 2 - 130; ring += 2) {
+    for (let turn = 0; turn < 2 * Math.PI; turn += 0.02) {
+      const [x, y] = [box.width / 2 - 100 + ring * Math.cos(turn), box.height / 2 + ring * Math.sin(turn)];
+      if (map.tiles.isWall(map.toMap(x, y))) return [x, y];
+    }
+  }
+  return null;
+}
+
+// ---- what the page says
+
+function showLink(next: LinkState, reason: string): void {
+  document.body.dataset["link"] = next;
+  const meter = element("link");
+  const texts = { connecting: "connecting", open: "live", lost: "no link", refused: "refused" };
+  meter.dataset["tone"] = next === "open" ? "good" : next === "connecting" ? "warn" : "bad";
+  meter.querySelector("span")!.textContent = texts[next];
+  meter.title = texts[next];
+  if (next === "open") return;
+  if (next === "connecting" && state) return;
+  element("status").dataset["tone"] = next === "connecting" ? "idle" : "bad";
+  element("state").textContent = next === "connecting" ? "Connecting" : next === "refused" ? "Not let in" : "No link";
+  const lost = "The program has ended or the network is gone. Trying again.";
+  element("reason").textContent = next === "refused" ? reason : next === "lost" ? lost : "";
+}
+
+function showWheel(now: RobotState): void {
+  const wheel = element("wheel");
+  const others = now.viewers > 1 ? `, ${now.viewers} viewers` : "";
+  const take = element("wheel-take");
+  take.hidden = !(welcome?.drives && now.wheel && !now.wheel.is_you);
+  wheel.dataset["holds"] = now.wheel ? (now.wheel.is_you ? "you" : "other") : "nobody";
+  const free = welcome?.drives ? "The wheel is free" : "Looking only";
+  const text = now.wheel ? (now.wheel.is_you ? "You hold the wheel" : `${now.wheel.name} holds the wheel`) : free;
+  const shown = text + others;
+  const target = element("wheel-text");
+  if (target.textContent !== shown) target.textContent = shown;
+}
+
+function showPause(now: RobotState): void {
+  const button = element("pause");
+  const text = now.paused ? "Continue" : "Pause";
+  const label = button.querySelector("span")!;
+  if (label.textContent === text) return;
+  label.textContent = text;
+  button.querySelector("use")!.setAttribute("href", now.paused ? "#i-play" : "#i-pause");
+  button.classList.toggle("call", now.paused);
+}
+
+function toast(text: string, tone: "good" | "warn" | "bad"): void {
+  const note = document.createElement("div");
+  note.className = "toast";
+  note.dataset["tone"] = tone;
+  note.textContent = text;
+  const notes = element("toasts");
+  notes.append(note);
+  while (notes.children.length > 3) notes.firstElementChild?.remove();
+  setTimeout(() => note.remove(), tone === "good" ? 2500 : 6000);
+}
+
+function showRefusal(text: string, at: Pose): void {
+  refused = { text, at };
+  element("bubble").textContent = text;
+  element("bubble").hidden = false;
+  placeOverlays();
+  setTimeout(() => refused?.text === text && hideRefusal(), 7000);
+}
+
+function hideRefusal(): void {
+  refused = null;
+  element("bubble").hidden = true;
+}
+
+/** Moves what is bound to the map: the refusal and the scale. */
+function placeOverlays(): void {
+  if (refused) {
+    const [x, y] = map.toWindow([refused.at[0], refused.at[1]]);
+    const bubble = element("bubble");
+    bubble.style.left = `${x}px`;
+    bubble.style.top = `${y}px`;
+  }
+  showFollow();
+  showScale();
+}
+
+let shownScale = "";
+
+function showScale(): void {
+  const metres = map.metresOf100Pixels;
+  const steps = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];
+  const length = steps.findLast((step) => step <= 1.2 * metres) ?? steps[0]!;
+  const text = length < 1 ? `${Math.round(100 * length)} cm` : `${length} m`;
+  const width = `${((100 * length) / metres).toFixed(0)}px`;
+  if (shownScale === text + width) return;
+  shownScale = text + width;
+  element("scale-text").textContent = text;
+  element("scale-bar").style.width = width;
+}
+
+/** How other viewers see this one. */
+function viewerName(): string {
+  const agent = navigator.userAgent;
+  const of = (names: [RegExp, string][]) => names.find(([pattern]) => pattern.test(agent))?.[1] ?? "";
+  const browser = of([
+    [/Firefox/, "Firefox"],
+    [/Edg\//, "Edge"],
+    [/Chrom/, "Chrome"],
+    [/Safari/, "Safari"],
+  ]);
+  const system = of([
+    [/iPhone/, "iPhone"],
+    [/iPad/, "iPad"],
+    [/Android/, "Android"],
+    [/Windows/, "Windows"],
+    [/Mac OS/, "Mac"],
+    [/Linux/, "Linux"],
+  ]);
+  return `${browser || "A browser"} on ${system || "a computer"}`;
+}

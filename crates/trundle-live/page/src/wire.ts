@@ -1,0 +1,146 @@
+// The messages between page and server. The server's side is crates/trundle-live/src/wire.
+
+export const WIRE_VERSION = 1;
+
+export type Pose = [x: number, y: number, theta: number];
+export type Point = [x: number, y: number];
+
+export interface Task {
+  text: string;
+  goal?: Pose;
+}
+
+export interface RobotState {
+  type: "state";
+  batch: number;
+  time: number;
+  pose: Pose;
+  covariance: [xx: number, xy: number, yy: number, heading: number];
+  twist: [v: number, omega: number];
+  command: [v: number, omega: number];
+  state: string;
+  reason: string | null;
+  hold: string | null;
+  paused: boolean;
+  left: Task[];
+  ended: string[];
+  over: boolean;
+  charge: number | null;
+  voltage: number | null;
+  charging: boolean;
+  movers: [x: number, y: number, radius: number, laterX: number, laterY: number][];
+  station: Pose | null;
+  counts: [slam: number, mapping: number, control: number, dropped: number];
+  wheel: { name: string; is_you: boolean } | null;
+  viewers: number;
+}
+
+export interface Welcome {
+  type: "welcome";
+  version: number;
+  program: string;
+  title: string;
+  drives: boolean;
+  is_steered: boolean;
+  footprint: { disc: number } | { polygon: Point[] };
+  max_v: number;
+  max_omega: number;
+}
+
+export interface StateEntry {
+  time: number;
+  name: string;
+  reason?: string;
+}
+
+export type Reply =
+  | RobotState
+  | Welcome
+  | { type: "answer"; id: number; refusal?: string; goal?: number }
+  | { type: "refused"; refusal: string }
+  | { type: "states"; states: StateEntry[] };
+
+export const TILE_CELLS = 64;
+const TILE_BYTES = (TILE_CELLS * TILE_CELLS) / 4;
+
+export interface TileMessage {
+  kind: "tiles";
+  generation: number;
+  resolution: number;
+  origin: Point;
+  tiles: { column: number; row: number; cells: Uint8Array }[];
+}
+
+export type ByteMessage =
+  | TileMessage
+  | { kind: "scan"; pose: Pose; points: Float32Array }
+  | { kind: "plan"; points: Float32Array }
+  | { kind: "trail"; poses: Float32Array }
+  | { kind: "visual"; keyframes: Float32Array; landmarks: Float32Array }
+  | { kind: "image"; jpeg: Uint8Array<ArrayBuffer> };
+
+/** Reads a message of bytes; null for a kind that this page does not know. */
+export function readBytes(buffer: ArrayBuffer): ByteMessage | null {
+  const view = new DataView(buffer);
+  switch (view.getUint8(0)) {
+    case 1:
+      return readTiles(view, buffer);
+    case 2:
+      return readScan(view);
+    case 3:
+      return { kind: "plan", points: new Float32Array(buffer.slice(4)) };
+    case 4:
+      return { kind: "image", jpeg: new Uint8Array(buffer, 16) };
+    case 5:
+      return { kind: "trail", poses: new Float32Array(buffer.slice(4)) };
+    case 6:
+      return readVisualMap(view);
+    default:
+      return null;
+  }
+}
+
+/** Keyframes as x, y, heading; landmarks as x, y, z. */
+function readVisualMap(view: DataView): ByteMessage {
+  const count = 3 * view.getUint32(4, true);
+  const total = (view.byteLength - 8) / 2;
+  const read = (from: number, to: number, unit: (i: number) => number) =>
+    Float32Array.from({ length: to - from }, (_, i) => view.getInt16(8 + 2 * (from + i), true) * unit(i));
+  return {
+    kind: "visual",
+    keyframes: read(0, count, (i) => (i % 3 === 2 ? 1e-4 : 0.01)),
+    landmarks: read(count, total, () => 0.01),
+  };
+}
+
+function readTiles(view: DataView, buffer: ArrayBuffer): TileMessage {
+  const tiles = [];
+  const count = view.getUint16(2, true);
+  for (let i = 0; i < count; i++) {
+    const at = 32 + i * (8 + TILE_BYTES);
+    const cells = new Uint8Array(buffer.slice(at + 8, at + 8 + TILE_BYTES));
+    tiles.push({ column: view.getInt32(at, true), row: view.getInt32(at + 4, true), cells });
+  }
+  return {
+    kind: "tiles",
+    generation: view.getUint32(4, true),
+    resolution: view.getFloat64(8, true),
+    origin: [view.getFloat64(16, true), view.getFloat64(24, true)],
+    tiles,
+  };
+}
+
+/** The points of a scan, turned into the map frame. */
+function readScan(view: DataView): ByteMessage {
+  const pose: Pose = [view.getFloat64(4, true), view.getFloat64(12, true), view.getFloat64(20, true)];
+  const count = (view.byteLength - 28) / 4;
+  const points = new Float32Array(2 * count);
+  const [cos, sin] = [Math.cos(pose[2]), Math.sin(pose[2])];
+  for (let i = 0; i < count; i++) {
+    const x = view.getInt16(28 + 4 * i, true) / 1000;
+    const y = view.getInt16(30 + 4 * i, true) / 1000;
+    points[2 * i] = pose[0] + cos * x - sin * y;
+    points[2 * i + 1] = pose[1] + sin * x + cos * y;
+  }
+  return { kind: "scan", pose, points };
+}

@@ -1,0 +1,79 @@
+//! Where the live page is served.
+
+use std::fmt;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::str::FromStr;
+
+/// Port of the live page where none is given. Source: ours; IANA has it unassigned.
+const DEFAULT_PORT: u16 = 8642;
+
+/// Where the live page is served: an address of this machine and a port.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct LiveAddress {
+    /// The address.
+    pub socket: SocketAddr,
+    /// Whether another port may be taken where this one is in use.
+    pub takes_another_port: bool,
+}
+
+impl LiveAddress {
+    /// The text that stands for the default: loopback, port 8642, or a free port where it is in use.
+    pub const DEFAULT: &'static str = "loopback";
+
+    /// Whether other machines can reach the page.
+    #[must_use]
+    pub fn is_shared(&self) -> bool {
+        !self.socket.ip().is_loopback()
+    }
+}
+
+impl Default for LiveAddress {
+    fn default() -> Self {
+        let socket = SocketAddr::from((Ipv4Addr::LOCALHOST, DEFAULT_PORT));
+        Self { socket, takes_another_port: true }
+    }
+}
+
+impl FromStr for LiveAddress {
+    type Err = String;
+
+    /// `loopback`, `IP:PORT`, or a port of the loopback address.
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        if text == Self::DEFAULT {
+            return Ok(Self::default());
+        }
+        let loopback = |port: u16| SocketAddr::from((Ipv4Addr::LOCALHOST, port));
+        let whole_ip = |ip: IpAddr| SocketAddr::from((ip, DEFAULT_PORT));
+        let socket = text.parse::<SocketAddr>();
+        let socket = socket.or_else(|_| text.parse::<u16>().map(loopback));
+        let socket = socket.or_else(|_| text.parse::<IpAddr>().map(whole_ip));
+        let socket = socket.map_err(|_| {
+            format!("'{text}': expected IP:PORT, as 127.0.0.1:8642; 0.0.0.0:8642 serves every network of this machine")
+        })?;
+        Ok(Self { socket, takes_another_port: false })
+    }
+}
+
+impl fmt::Display for LiveAddress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.socket.fmt(f)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_is_read_and_loopback_is_not_shared() {
+        let read = |text: &str| text.parse::<LiveAddress>();
+        assert_eq!(read("loopback").unwrap(), LiveAddress::default());
+        assert_eq!(read("9000").unwrap().socket.to_string(), "127.0.0.1:9000");
+        assert_eq!(read("0.0.0.0").unwrap().socket.to_string(), "0.0.0.0:8642");
+        assert!(read("0.0.0.0:8642").unwrap().is_shared() && read("192.168.1.4:80").unwrap().is_shared());
+        assert!(!read("[::1]:80").unwrap().is_shared() && !LiveAddress::default().is_shared());
+        for wrong in ["", "recording.mcap", "70000", "robot.local:80", "1.2.3:80"] {
+            assert!(read(wrong).unwrap_err().contains("expected IP:PORT"), "{wrong}");
+        }
+    }
+}

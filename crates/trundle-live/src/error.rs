@@ -1,0 +1,42 @@
+//! Why the live page cannot be served.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use thiserror::Error;
+use trundle_app::AppError;
+
+/// Why the live page cannot be served.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum LiveError {
+    /// The address is in use, or is none of this machine.
+    #[error(
+        "--live {address}: {problem}; give another address, as --live 127.0.0.1:0 (the system takes a free port)"
+    )]
+    Address {
+        /// The address.
+        address: SocketAddr,
+        /// What the system says.
+        problem: std::io::Error,
+    },
+    /// The system refuses a thread or random bytes.
+    #[error("the live page cannot start: {0}")]
+    System(String),
+    /// A file of tokens cannot be used.
+    #[error("token file {}: {problem}", file.display())]
+    TokenFile {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong with it, and what is expected.
+        problem: String,
+    },
+}
+
+impl From<LiveError> for AppError {
+    fn from(error: LiveError) -> Self {
+        match error {
+            LiveError::System(_) => Self::Environment(error.to_string()),
+            _ => Self::Input(error.to_string()),
+        }
+    }
+}

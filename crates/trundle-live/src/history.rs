@@ -1,0 +1,65 @@
+//! The last ten minutes of a run: the driven path and the states.
+
+use crate::wire::StateEntry;
+use std::collections::VecDeque;
+use std::time::Duration;
+use trundle_app::operator::RunView;
+use trundle_core::Pose2;
+
+/// Period of looks at the run.
+pub const HISTORY_PERIOD: Duration = Duration::from_millis(200);
+/// Points that are kept: ten minutes of driving. Source: ours.
+const MAX_POINTS: usize = 3000;
+/// States that are kept. Source: ours.
+const MAX_STATES: usize = 200;
+/// Distance from the last point from which on another is kept \[m\]. Source: ours; less than a pixel of a usual screen.
+const POINT_DISTANCE_M: f64 = 0.02;
+/// The same for the heading \[rad\]. Source: ours.
+const POINT_TURN_RAD: f64 = 0.05;
+
+/// The last ten minutes of a run.
+#[derive(Debug, Default)]
+pub struct History {
+    points: VecDeque<(f64, Pose2)>,
+    states: VecDeque<StateEntry>,
+    /// States so far, those included that are not kept.
+    states_so_far: usize,
+}
+
+impl History {
+    /// Takes a view over.
+    pub fn add(&mut self, view: &RunView) {
+        let (time, pose) = (view.stamp.as_secs(), view.estimate.pose);
+        let is_far = |last: &Pose2| {
+            last.distance(&pose) > POINT_DISTANCE_M || (last.inverse() * pose).theta.abs() > POINT_TURN_RAD
+        };
+        if self.points.back().is_none_or(|(_, last)| is_far(last)) {
+            self.points.push_back((time, pose));
+        }
+        let (name, reason) = (view.state.name(), view.state.reason().map(ToString::to_string));
+        // A reason that only counts on is the same state.
+        if self.states.back().is_none_or(|last| last.name != name) {
+            self.states.push_back(StateEntry { time, name: name.to_owned(), reason });
+            self.states_so_far += 1;
+        } else if let Some(last) = self.states.back_mut() {
+            last.reason = reason.or(last.reason.take());
+        }
+        while self.points.len() > MAX_POINTS {
+            self.points.pop_front();
+        }
+        while self.states.len() > MAX_STATES {
+            self.states.pop_front();
+        }
+    }
+
+    /// The driven path: times \[s\] and poses.
+    pub fn points(&self) -> impl Iterator<Item = (f64, Pose2)> + '_ {
+        self.points.iter().copied()
+    }
+
+    /// The states after the first `known`, and their number so far.
+    pub fn states_after(&self, known: usize) -> (Vec<StateEntry>, usize) {
+        let missing = self.states_so_far.saturating_sub(known).min(self.states.len());
+        (self.states.iter().skip(self.states.len() - missing).cloned().collect(), self.states_so_far)
+    }
+}

@@ -1,0 +1,54 @@
+//! Accepts connections: a bounded number, each with a bounded time for its request.
+
+use axum::Router;
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
+use std::sync::Arc;
+use std::time::Duration;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::sync::Semaphore;
+
+/// Most connections at once that have not become a viewer's link. More are closed at once. Source: ours.
+const MAX_CONNECTIONS: usize = 48;
+/// Longest wait for the head of a request, also between two requests. Source: ours.
+const REQUEST_TIMEOUT: Duration = Duration::from_secs(5);
+/// Longest head of a request \[bytes\].
+const MAX_HEAD_BYTES: usize = 16 * 1024;
+/// Wait after a refused accept, as where no file descriptor is left.
+const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
+
+/// Serves the routes until the task is dropped.
+pub async fn serve(listener: TcpListener, router: Router) {
+    let slots = Arc::new(Semaphore::new(MAX_CONNECTIONS));
+    loop {
+        let Ok((stream, _)) = listener.accept().await else {
+            tokio::time::sleep(ACCEPT_PAUSE).await;
+            continue;
+        };
+        let Ok(slot) = Arc::clone(&slots).try_acquire_owned() else {
+            drop(stream);
+            continue;
+        };
+        let router = router.clone();
+        tokio::spawn(async move {
+            serve_connection(stream, router).await;
+            drop(slot);
+        });
+    }
+}
+
+async fn serve_connection(stream: TcpStream, router: Router) {
+    if let Err(error) = stream.set_nodelay(true) {
+        tracing::debug!("live page: {error}");
+    }
+    let served = http1::Builder::new()
+        .timer(TokioTimer::new())
+        .header_read_timeout(REQUEST_TIMEOUT)
+        .max_buf_size(MAX_HEAD_BYTES)
+        .serve_connection(TokioIo::new(stream), TowerToHyperService::new(router))
+        .with_upgrades();
+    if let Err(error) = served.await {
+        tracing::debug!("live page: a connection ended: {error}");
+    }
+}

@@ -1,0 +1,117 @@
+//! What every answer must pass: a Host that is this machine, and headers that keep other pages away.
+
+use crate::page_state::PageState;
+use axum::extract::{Request, State};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use std::net::IpAddr;
+use std::sync::Arc;
+
+/// Checks the Host of a request and adds the headers of every answer.
+pub async fn check(State(state): State<Arc<PageState>>, request: Request, next: Next) -> Response {
+    let host = host_of(request.headers()).map(str::to_owned);
+    let Some(host) = host.filter(|host| is_own_host(host, state.is_shared)) else {
+        let text = "this name is none of the robot: use its address, as the program prints it";
+        return with_headers((StatusCode::MISDIRECTED_REQUEST, text).into_response(), "");
+    };
+    with_headers(next.run(request).await, &host)
+}
+
+/// Whether a request comes from the page itself: a page of another origin says so in this header. A request without it is none of a
+/// browser's page and is refused too.
+pub fn is_own_origin(headers: &HeaderMap) -> bool {
+    let origin = headers.get(header::ORIGIN).and_then(|origin| origin.to_str().ok());
+    let own = host_of(headers).map(|host| format!("http://{host}"));
+    origin.is_some() && origin == own.as_deref()
+}
+
+fn host_of(headers: &HeaderMap) -> Option<&str> {
+    headers.get(header::HOST)?.to_str().ok()
+}
+
+/// Whether a Host names this machine. A page that rebinds its own name to this machine sends that name. An address cannot be rebound.
+fn is_own_host(host: &str, is_shared: bool) -> bool {
+    let (name, port) = match host.strip_prefix('[') {
+        Some(rest) => rest.split_once(']').unwrap_or_default(),
+        None => host.split_at(host.rfind(':').unwrap_or(host.len())),
+    };
+    let is_port = |port: &str| port.strip_prefix(':').is_some_and(|port| port.parse::<u16>().is_ok());
+    if !port.is_empty() && !is_port(port) {
+        return false;
+    }
+    match name.parse::<IpAddr>() {
+        Ok(address) => is_shared || address.is_loopback(),
+        Err(_) => name.eq_ignore_ascii_case("localhost") || is_shared && is_machine_name(name),
+    }
+}
+
+/// Whether a name is that of this machine, plain or on the local network.
+fn is_machine_name(name: &str) -> bool {
+    let own = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
+    let own = own.trim();
+    let plain = name.strip_suffix(".local").unwrap_or(name);
+    !own.is_empty() && plain.eq_ignore_ascii_case(own)
+}
+
+fn with_headers(mut response: Response, host: &str) -> Response {
+    let policy = format!(
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; \
+         connect-src 'self' ws://{host}; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    );
+    let fixed = [
+        (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+        (header::X_FRAME_OPTIONS, "DENY"),
+        (header::REFERRER_POLICY, "no-referrer"),
+        (header::CACHE_CONTROL, "no-store"),
+    ];
+    let headers = response.headers_mut();
+    if let Ok(policy) = HeaderValue::from_str(&policy) {
+        headers.insert(header::CONTENT_SECURITY_POLICY, policy);
+    }
+    for (name, value) in fixed {
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    for name in ["cross-origin-opener-policy", "cross-origin-resource-policy"] {
+        headers.insert(name, HeaderValue::from_static("same-origin"));
+    }
+    response
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_names_that_cannot_be_rebound_are_own() {
+        for own in ["127.0.0.1:8642", "localhost:8642", "LOCALHOST", "[::1]:8642", "127.9.9.9"] {
+            assert!(is_own_host(own, false), "{own}");
+        }
+        for foreign in [
+            "evil.example:8642",
+            "192.168.1.4:8642",
+            "",
+            "127.0.0.1.evil.example",
+            "[::2]:1",
+            "127.0.0.1:8642; x",
+            "[::1",
+        ] {
+            assert!(!is_own_host(foreign, false), "{foreign}");
+        }
+        assert!(is_own_host("192.168.1.4:8642", true) && !is_own_host("evil.example", true));
+    }
+
+    #[test]
+    fn another_origin_and_none_are_foreign() {
+        let headers = |origin: Option<&'static str>| {
+            let mut headers = HeaderMap::new();
+            headers.insert(header::HOST, HeaderValue::from_static("127.0.0.1:8642"));
+            origin.map(|origin| headers.insert(header::ORIGIN, HeaderValue::from_static(origin)));
+            headers
+        };
+        assert!(is_own_origin(&headers(Some("http://127.0.0.1:8642"))));
+        for foreign in [None, Some("http://evil.example"), Some("null"), Some("http://127.0.0.1:8643")] {
+            assert!(!is_own_origin(&headers(foreign)), "{foreign:?}");
+        }
+    }
+}

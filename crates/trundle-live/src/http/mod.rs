@@ -1,0 +1,69 @@
+//! HTTP: the page's files, the link to a viewer, the stop that needs no link.
+
+mod assets;
+mod connections;
+mod guard;
+
+pub use connections::serve;
+
+use crate::access::Access;
+use crate::page_state::PageState;
+use crate::viewer;
+use axum::Router;
+use axum::extract::State;
+use axum::extract::ws::{WebSocketUpgrade, rejection::WebSocketUpgradeRejection};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::middleware::from_fn_with_state;
+use axum::response::{IntoResponse, Response};
+use axum::routing::{get, post};
+use std::sync::Arc;
+
+/// Largest message of a viewer \[bytes\]: 50 goals are 4 kB.
+const MAX_MESSAGE_BYTES: usize = 16 * 1024;
+
+/// The routes of the page.
+pub fn router(state: Arc<PageState>) -> Router {
+    Router::new()
+        .route("/live", get(open_link))
+        .route("/stop", post(stop))
+        .fallback(get(assets::file))
+        .layer(from_fn_with_state(Arc::clone(&state), guard::check))
+        .with_state(state)
+}
+
+/// A viewer's link.
+async fn open_link(
+    State(state): State<Arc<PageState>>,
+    headers: HeaderMap,
+    upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
+) -> Response {
+    if !guard::is_own_origin(&headers) {
+        return (StatusCode::FORBIDDEN, "this page may not open a link to the robot").into_response();
+    }
+    let upgrade = match upgrade {
+        Ok(upgrade) => upgrade,
+        Err(rejection) => return rejection.into_response(),
+    };
+    let Some(id) = state.roster().enter() else {
+        return (StatusCode::SERVICE_UNAVAILABLE, "too many viewers: close another page").into_response();
+    };
+    let failed = Arc::clone(&state);
+    upgrade
+        .max_message_size(MAX_MESSAGE_BYTES)
+        .max_frame_size(MAX_MESSAGE_BYTES)
+        .on_failed_upgrade(move |_| _ = failed.roster().leave(id))
+        .on_upgrade(move |socket| viewer::serve(socket, state, id))
+}
+
+/// The stop without a link, for a page whose link hangs.
+async fn stop(State(state): State<Arc<PageState>>, headers: HeaderMap) -> Response {
+    let token = headers.get(header::AUTHORIZATION).and_then(|value| value.to_str().ok());
+    let access = token.and_then(|token| state.tokens.access(token.strip_prefix("Bearer ")?));
+    if !guard::is_own_origin(&headers) || access != Some(Access::Drive) || !state.is_steered {
+        return (StatusCode::FORBIDDEN, "this link may not stop the robot").into_response();
+    }
+    match state.steering.stop() {
+        Ok(()) => (StatusCode::OK, "stopped").into_response(),
+        Err(refusal) => (StatusCode::CONFLICT, refusal.text).into_response(),
+    }
+}

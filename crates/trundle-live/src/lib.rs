@@ -1,0 +1,36 @@
+//! The live page: shows a run in a browser while it goes, and steers it.
+//!
+//! [`LivePage::start`] serves the page from a thread of its own. The page reads views of the run and sends commands by
+//! `trundle_app::operator`; the robot never waits for it. Without viewers nothing is computed but a short history.
+//!
+//! | part | what it does |
+//! |---|---|
+//! | `access` | tokens of 128 bits: one drives, one only looks |
+//! | `http` | the page's files, the checks of Host and Origin, limits of connections |
+//! | `viewer` | one browser: what it is sent, what it may ask |
+//! | `wire` | the messages |
+//! | `steering` | who holds the wheel; from a request to commands of the robot |
+//!
+//! The source of the page itself is `page/` (TypeScript); `assets/` holds it as built.
+
+mod access;
+mod address;
+mod error;
+mod history;
+mod http;
+mod options;
+mod page_state;
+mod roster;
+mod run_facts;
+mod server;
+mod steering;
+mod viewer;
+mod wire;
+
+pub use access::{Access, Tokens};
+pub use address::LiveAddress;
+pub use error::LiveError;
+pub use options::LiveOptions;
+pub use run_facts::RunFacts;
+pub use server::LivePage;
+pub use wire::WIRE_VERSION;

@@ -1,0 +1,14 @@
+//! How the live page is served.
+
+use crate::{LiveAddress, Tokens};
+
+/// How the live page is served.
+#[derive(Debug, Clone)]
+pub struct LiveOptions {
+    /// Where.
+    pub address: LiveAddress,
+    /// Who may drive and who may look.
+    pub tokens: Tokens,
+    /// Whether the run takes commands; a replay takes none.
+    pub is_steered: bool,
+}

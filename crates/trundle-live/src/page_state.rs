@@ -1,0 +1,62 @@
+//! What all viewers of a page share.
+
+use crate::history::History;
+use crate::roster::Roster;
+use crate::run_facts::RunFacts;
+use crate::steering::RunSteering;
+use crate::wire::MapTiles;
+use crate::{LiveOptions, Tokens};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use trundle_app::operator::Operator;
+
+/// What all viewers of a page share. They are served by one thread; no lock is held while it waits.
+#[derive(Debug)]
+pub struct PageState {
+    /// The run.
+    pub operator: Operator,
+    /// Who may drive and who may look.
+    pub tokens: Tokens,
+    /// Whether the run takes commands.
+    pub is_steered: bool,
+    /// Whether other machines can reach the page.
+    pub is_shared: bool,
+    /// What the run tells once.
+    pub facts: RunFacts,
+    /// Sends commands.
+    pub steering: RunSteering,
+    roster: Mutex<Roster>,
+    tiles: Mutex<MapTiles>,
+    history: Mutex<History>,
+}
+
+impl PageState {
+    /// The state of a page without viewers.
+    pub fn new(options: LiveOptions, operator: Operator, facts: RunFacts) -> Self {
+        Self {
+            steering: RunSteering::new(operator.clone(), &facts),
+            operator,
+            tokens: options.tokens,
+            is_steered: options.is_steered,
+            is_shared: options.address.is_shared(),
+            facts,
+            roster: Mutex::default(),
+            tiles: Mutex::default(),
+            history: Mutex::default(),
+        }
+    }
+
+    /// Who watches.
+    pub fn roster(&self) -> MutexGuard<'_, Roster> {
+        self.roster.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The newest map.
+    pub fn tiles(&self) -> MutexGuard<'_, MapTiles> {
+        self.tiles.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The last minutes.
+    pub fn history(&self) -> MutexGuard<'_, History> {
+        self.history.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

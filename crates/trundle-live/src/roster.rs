@@ -1,0 +1,112 @@
+//! Who watches, and who holds the wheel.
+
+use std::collections::BTreeMap;
+
+/// Most viewers at once. Source: ours; ten are measured not to disturb the robot.
+const MAX_VIEWERS: usize = 24;
+/// Longest name of a viewer \[characters\].
+const MAX_NAME_CHARS: usize = 24;
+
+/// Number of a viewer.
+pub type ViewerId = u64;
+
+/// Who watches, and who holds the wheel: at most one.
+#[derive(Debug, Default)]
+pub struct Roster {
+    names: BTreeMap<ViewerId, String>,
+    last: ViewerId,
+    wheel: Option<ViewerId>,
+}
+
+impl Roster {
+    /// A viewer comes; its number. `None` where there are too many.
+    pub fn enter(&mut self) -> Option<ViewerId> {
+        if self.names.len() >= MAX_VIEWERS {
+            return None;
+        }
+        self.last += 1;
+        self.names.insert(self.last, format!("viewer {}", self.last));
+        Some(self.last)
+    }
+
+    /// Gives a viewer its name.
+    pub fn rename(&mut self, id: ViewerId, name: &str) {
+        let clean: String = name.chars().filter(|c| !c.is_control()).take(MAX_NAME_CHARS).collect();
+        if !clean.trim().is_empty() {
+            self.names.insert(id, clean.trim().to_owned());
+        }
+    }
+
+    /// A viewer goes; whether it held the wheel.
+    pub fn leave(&mut self, id: ViewerId) -> bool {
+        self.names.remove(&id);
+        self.release(id)
+    }
+
+    /// Gives the wheel to a viewer, whoever held it.
+    pub fn take(&mut self, id: ViewerId) {
+        self.wheel = Some(id);
+    }
+
+    /// Leaves the wheel; whether this viewer held it.
+    pub fn release(&mut self, id: ViewerId) -> bool {
+        let held = self.wheel == Some(id);
+        if held {
+            self.wheel = None;
+        }
+        held
+    }
+
+    /// Gives a free wheel to a viewer.
+    ///
+    /// # Errors
+    /// The name of another viewer that holds it.
+    pub fn require(&mut self, id: ViewerId) -> Result<(), String> {
+        match self.wheel {
+            Some(holder) if holder != id => Err(self.name_of(holder)),
+            _ => {
+                self.wheel = Some(id);
+                Ok(())
+            }
+        }
+    }
+
+    /// Number and name of the viewer at the wheel.
+    pub fn holder(&self) -> Option<(ViewerId, String)> {
+        self.wheel.map(|id| (id, self.name_of(id)))
+    }
+
+    /// Number of viewers.
+    pub fn count(&self) -> usize {
+        self.names.len()
+    }
+
+    fn name_of(&self, id: ViewerId) -> String {
+        self.names.get(&id).cloned().unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_holds_the_wheel_until_it_leaves_or_another_takes_it() {
+        let mut roster = Roster::default();
+        let (anna, bert) = (roster.enter().unwrap(), roster.enter().unwrap());
+        roster.rename(anna, " Anna\u{7} ");
+        assert_eq!(roster.require(anna), Ok(()));
+        assert_eq!(roster.require(bert), Err("Anna".to_owned()));
+        roster.take(bert);
+        assert_eq!(roster.holder(), Some((bert, "viewer 2".to_owned())));
+        assert!(!roster.leave(anna) && roster.leave(bert));
+        assert_eq!((roster.holder(), roster.count()), (None, 0));
+    }
+
+    #[test]
+    fn viewers_are_limited() {
+        let mut roster = Roster::default();
+        let entered = std::iter::from_fn(|| roster.enter()).take(1000).count();
+        assert_eq!(entered, MAX_VIEWERS);
+    }
+}

@@ -1,0 +1,149 @@
+//! The server of the live page, in a thread of its own.
+
+use crate::access::Access;
+use crate::history::HISTORY_PERIOD;
+use crate::http;
+use crate::page_state::PageState;
+use crate::run_facts::RunFacts;
+use crate::{LiveError, LiveOptions};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
+use std::sync::Arc;
+use std::thread::JoinHandle;
+use tokio::sync::oneshot;
+use trundle_app::operator::Operator;
+use trundle_runtime::real_time::ThreadPlacement;
+
+/// Niceness of the page's thread above that of the robot's threads. Source: ours.
+const PAGE_NICENESS: i32 = 10;
+
+/// A live page that is served. Dropping it ends the page's thread and all its links.
+#[derive(Debug)]
+pub struct LivePage {
+    address: SocketAddr,
+    is_shared: bool,
+    drive_token: Option<String>,
+    view_token: String,
+    end: Option<oneshot::Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl LivePage {
+    /// Serves the page of a run.
+    ///
+    /// # Errors
+    /// When the address cannot be used, or the system refuses a thread.
+    pub fn start(options: LiveOptions, operator: Operator, facts: RunFacts) -> Result<Self, LiveError> {
+        let listener = bind(&options)?;
+        let address = listener.local_addr().map_err(system)?;
+        listener.set_nonblocking(true).map_err(system)?;
+        let is_shared = options.address.is_shared();
+        let drive_token = options.is_steered.then(|| options.tokens.of(Access::Drive).to_owned());
+        let view_token = options.tokens.of(Access::View).to_owned();
+        let state = Arc::new(PageState::new(options, operator, facts));
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(system)?;
+        let (end, ended) = oneshot::channel();
+        let work = move || {
+            // Where the system refuses the niceness, the page is served all the same.
+            _ = ThreadPlacement { nice: PAGE_NICENESS, ..ThreadPlacement::default() }.take();
+            runtime.block_on(serve(listener, state, ended));
+        };
+        let thread = std::thread::Builder::new().name("live-page".to_owned()).spawn(work).map_err(system)?;
+        Ok(Self { address, is_shared, drive_token, view_token, end: Some(end), thread: Some(thread) })
+    }
+
+    /// Where the page is served.
+    #[must_use]
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// The link of an access; `None` for a driving link where the run takes no commands. Browsers do not send the part behind `#`.
+    #[must_use]
+    pub fn link(&self, access: Access) -> Option<String> {
+        let token = match access {
+            Access::Drive => self.drive_token.as_ref()?,
+            Access::View => &self.view_token,
+        };
+        let mut address = self.address;
+        if address.ip().is_unspecified() {
+            address.set_ip(own_address().unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)));
+        }
+        Some(format!("http://{address}/#{token}"))
+    }
+
+    /// What a person must know: the links, and a warning where other machines can reach the page.
+    #[must_use]
+    pub fn announcement(&self) -> String {
+        let mut lines = Vec::new();
+        if let Some(link) = self.link(Access::Drive) {
+            lines.push(format!("Live page: {link}"));
+        }
+        if let Some(link) = self.link(Access::View) {
+            lines.push(format!("  to look only: {link}"));
+        }
+        if self.is_shared {
+            lines.push(
+                "warning: other machines can reach the live page, and its network is not encrypted: who reads the link can drive the robot"
+                    .to_owned(),
+            );
+        }
+        lines.join("\n")
+    }
+}
+
+impl Drop for LivePage {
+    fn drop(&mut self) {
+        drop(self.end.take());
+        if self.thread.take().is_some_and(|thread| thread.join().is_err()) {
+            tracing::error!("the thread of the live page panicked");
+        }
+    }
+}
+
+/// Serves until the page is dropped.
+async fn serve(listener: TcpListener, state: Arc<PageState>, ended: oneshot::Receiver<()>) {
+    let listener = match tokio::net::TcpListener::from_std(listener) {
+        Ok(listener) => listener,
+        Err(error) => return tracing::error!("the live page cannot be served: {error}"),
+    };
+    let router = http::router(Arc::clone(&state));
+    tokio::select! {
+        () = http::serve(listener, router) => {}
+        () = keep_history(&state) => {}
+        _ = ended => {}
+    }
+}
+
+/// Looks at the run from time to time, also without viewers.
+async fn keep_history(state: &PageState) {
+    let mut ticks = tokio::time::interval(HISTORY_PERIOD);
+    ticks.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
+    loop {
+        ticks.tick().await;
+        if let Some(view) = state.operator.glance() {
+            state.history().add(&view);
+        }
+    }
+}
+
+fn bind(options: &LiveOptions) -> Result<TcpListener, LiveError> {
+    let address = options.address.socket;
+    let free = SocketAddr::new(address.ip(), 0);
+    let bound = TcpListener::bind(address);
+    let bound =
+        if options.address.takes_another_port { bound.or_else(|_| TcpListener::bind(free)) } else { bound };
+    bound.map_err(|problem| LiveError::Address { address, problem })
+}
+
+/// The address by which other machines reach this one. The socket sends nothing: it only asks the system for its route.
+fn own_address() -> Option<IpAddr> {
+    /// An address of documentation. Source: RFC 5737.
+    const FAR_AWAY: (Ipv4Addr, u16) = (Ipv4Addr::new(192, 0, 2, 1), 9);
+    let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, 0)).ok()?;
+    socket.connect(FAR_AWAY).ok()?;
+    Some(socket.local_addr().ok()?.ip())
+}
+
+fn system(error: std::io::Error) -> LiveError {
+    LiveError::System(error.to_string())
+}

@@ -1,0 +1,52 @@
+//! The first message of a viewer: version and token.
+
+use crate::access::Access;
+use crate::page_state::PageState;
+use crate::roster::ViewerId;
+use crate::wire::{Reply, Request, WIRE_VERSION, Welcome};
+use axum::extract::ws::{CloseFrame, Message, WebSocket};
+use std::time::Duration;
+
+/// Longest wait for the hello. Source: ours.
+const HELLO_TIMEOUT: Duration = Duration::from_secs(5);
+/// Close code of a wrong token. Source: ours, of the range for applications.
+const WRONG_TOKEN: u16 = 4401;
+/// Close code of another version of the messages.
+const OTHER_VERSION: u16 = 4406;
+/// Close code of a link without hello.
+const NO_HELLO: u16 = 4408;
+
+/// Receives the hello and welcomes the viewer; `None` where it may not look.
+pub async fn receive(socket: &mut WebSocket, state: &PageState, id: ViewerId) -> Option<Access> {
+    let first = tokio::time::timeout(HELLO_TIMEOUT, socket.recv()).await;
+    let Ok(Some(Ok(Message::Text(text)))) = first else {
+        return refuse(socket, NO_HELLO, "a hello with the token comes first").await;
+    };
+    let Ok(Request::Hello { version, token, name }) = serde_json::from_str(&text) else {
+        return refuse(socket, NO_HELLO, "a hello with the token comes first").await;
+    };
+    let Some(access) = state.tokens.access(&token) else {
+        return refuse(socket, WRONG_TOKEN, "the token is wrong: open the link that the program prints")
+            .await;
+    };
+    if version != WIRE_VERSION {
+        return refuse(socket, OTHER_VERSION, "the page is of another version: load it anew").await;
+    }
+    state.roster().rename(id, &name);
+    let welcome = Welcome {
+        drives: access == Access::Drive && state.is_steered,
+        is_steered: state.is_steered,
+        ..Welcome::new(state.facts.title.clone(), &state.facts.footprint, state.facts.limits)
+    };
+    let text = serde_json::to_string(&Reply::Welcome(Box::new(welcome))).ok()?;
+    let sent = tokio::time::timeout(HELLO_TIMEOUT, socket.send(Message::Text(text.into()))).await;
+    matches!(sent, Ok(Ok(()))).then_some(access)
+}
+
+async fn refuse(socket: &mut WebSocket, code: u16, reason: &'static str) -> Option<Access> {
+    let close = Message::Close(Some(CloseFrame { code, reason: reason.into() }));
+    if !matches!(tokio::time::timeout(HELLO_TIMEOUT, socket.send(close)).await, Ok(Ok(()))) {
+        tracing::debug!("live page: a viewer went before its refusal");
+    }
+    None
+}

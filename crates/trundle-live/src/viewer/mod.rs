@@ -1,0 +1,39 @@
+//! One browser: its hello, then what it is sent beside what it asks.
+
+mod hello;
+mod outbox;
+mod progress;
+mod rate_limit;
+mod requests;
+mod updates;
+
+use crate::page_state::PageState;
+use crate::roster::ViewerId;
+use axum::extract::ws::WebSocket;
+use futures_util::StreamExt;
+use outbox::Outbox;
+use progress::ViewProgress;
+use std::sync::Arc;
+use tokio::sync::mpsc;
+
+/// Most answers that wait for a viewer. A viewer with more is slower than its own requests, and its link ends. Source: ours.
+const MAX_WAITING_ANSWERS: usize = 64;
+
+/// Serves a viewer until it goes, is silent or breaks a rule.
+pub async fn serve(mut socket: WebSocket, state: Arc<PageState>, id: ViewerId) {
+    if let Some(access) = hello::receive(&mut socket, &state, id).await {
+        let (sink, stream) = socket.split();
+        let (answers, waiting) = mpsc::channel(MAX_WAITING_ANSWERS);
+        let progress = ViewProgress::default();
+        let mut outbox = Outbox::new(sink);
+        let reason = tokio::select! {
+            reason = requests::receive(stream, requests::Viewer { state: &state, id, access, progress: &progress, answers }) => reason,
+            reason = updates::send(&mut outbox, &state, id, &progress, waiting) => reason,
+        };
+        tracing::debug!("live page: viewer {id}: {reason}");
+        outbox.close(reason).await;
+    }
+    if state.roster().leave(id) {
+        state.steering.end_of_hand();
+    }
+}

@@ -1,0 +1,53 @@
+//! Sends messages to a viewer, each within a bounded time.
+
+use axum::extract::ws::{CloseFrame, Message, WebSocket};
+use futures_util::SinkExt;
+use futures_util::stream::SplitSink;
+use serde::Serialize;
+use std::time::Duration;
+
+/// Longest time of one message: a viewer that takes none for so long is gone. Source: ours.
+const SEND_TIMEOUT: Duration = Duration::from_secs(20);
+/// Close code of a viewer that broke a rule. Source: RFC 6455, 7.4.1.
+const POLICY_CLOSE_CODE: u16 = 1008;
+
+/// Sends messages to a viewer.
+pub struct Outbox {
+    sink: SplitSink<WebSocket, Message>,
+}
+
+impl Outbox {
+    /// The sending half of a link.
+    pub fn new(sink: SplitSink<WebSocket, Message>) -> Self {
+        Self { sink }
+    }
+
+    /// Sends bytes; whether the viewer took them.
+    pub async fn send_bytes(&mut self, bytes: Vec<u8>) -> bool {
+        self.send(Message::Binary(bytes.into())).await
+    }
+
+    /// Sends a value as JSON; whether the viewer took it.
+    pub async fn send_json(&mut self, value: &impl Serialize) -> bool {
+        match serde_json::to_string(value) {
+            Ok(text) => self.send(Message::Text(text.into())).await,
+            Err(error) => {
+                tracing::error!("live page: a message has no JSON: {error}");
+                false
+            }
+        }
+    }
+
+    /// Closes the link.
+    pub async fn close(&mut self, reason: &'static str) {
+        let close = Message::Close(Some(CloseFrame { code: POLICY_CLOSE_CODE, reason: reason.into() }));
+        let closing = tokio::time::timeout(Duration::from_secs(1), self.sink.send(close));
+        if !matches!(closing.await, Ok(Ok(()))) {
+            tracing::debug!("live page: a viewer went without a close");
+        }
+    }
+
+    async fn send(&mut self, message: Message) -> bool {
+        matches!(tokio::time::timeout(SEND_TIMEOUT, self.sink.send(message)).await, Ok(Ok(())))
+    }
+}

@@ -1,0 +1,14 @@
+//! What the two halves of a viewer's link share.
+
+use std::sync::atomic::{AtomicBool, AtomicU64};
+
+/// What the two halves of a viewer's link share.
+#[derive(Debug, Default)]
+pub struct ViewProgress {
+    /// Number of the last view that the page has drawn.
+    pub seen: AtomicU64,
+    /// Whether the page wants images.
+    pub wants_images: AtomicBool,
+    /// Whether the page wants the visual map.
+    pub wants_visual_map: AtomicBool,
+}

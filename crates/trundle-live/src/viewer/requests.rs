@@ -1,0 +1,124 @@
+//! What a viewer asks: who may, at what rate, with which answer.
+
+use super::progress::ViewProgress;
+use super::rate_limit::RateLimit;
+use crate::access::Access;
+use crate::page_state::PageState;
+use crate::roster::ViewerId;
+use crate::steering::CommandRefusal;
+use crate::wire::{Reply, Request};
+use axum::extract::ws::{Message, WebSocket};
+use futures_util::StreamExt;
+use futures_util::stream::SplitStream;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+use tokio::sync::mpsc::Sender;
+
+/// Longest silence of a viewer: it answers ten views a second. Source: ours; a tab in the background answers once a second at least.
+const SILENCE_TIMEOUT: Duration = Duration::from_secs(60);
+
+/// A viewer that asks.
+pub struct Viewer<'a> {
+    /// What all share.
+    pub state: &'a PageState,
+    /// Its number.
+    pub id: ViewerId,
+    /// What it may do.
+    pub access: Access,
+    /// How far it has seen.
+    pub progress: &'a ViewProgress,
+    /// Where answers go.
+    pub answers: Sender<Reply>,
+}
+
+/// Receives requests until the link ends; why it ends.
+pub async fn receive(mut stream: SplitStream<WebSocket>, viewer: Viewer<'_>) -> &'static str {
+    let mut rate = RateLimit::new(Instant::now());
+    loop {
+        let text = match tokio::time::timeout(SILENCE_TIMEOUT, stream.next()).await {
+            Err(_) => return "the viewer is silent",
+            Ok(None | Some(Err(_) | Ok(Message::Close(_)))) => return "the viewer is gone",
+            Ok(Some(Ok(Message::Text(text)))) => text,
+            Ok(Some(Ok(Message::Binary(_)))) => return "messages of bytes are not taken",
+            Ok(Some(Ok(Message::Ping(_) | Message::Pong(_)))) => String::new().into(),
+        };
+        if !rate.take(Instant::now()) {
+            return "too many requests a second";
+        }
+        if text.is_empty() {
+            continue;
+        }
+        let Ok(request) = serde_json::from_str::<Request>(&text) else {
+            return "a message is no request of this version";
+        };
+        if let Some(reply) = viewer.reply(&request)
+            && viewer.answers.try_send(reply).is_err()
+        {
+            return "answers are not read";
+        }
+    }
+}
+
+impl Viewer<'_> {
+    /// Obeys a request; the answer, where there is one.
+    fn reply(&self, request: &Request) -> Option<Reply> {
+        match request {
+            Request::Seen { batch } => {
+                self.progress.seen.fetch_max(*batch, Ordering::Relaxed);
+                return None;
+            }
+            Request::Camera { on } => {
+                self.progress.wants_images.store(*on, Ordering::Relaxed);
+                return None;
+            }
+            Request::VisualMap { on } => {
+                self.progress.wants_visual_map.store(*on, Ordering::Relaxed);
+                return None;
+            }
+            _ => {}
+        }
+        let result = self.obey(request);
+        let (refusal, goal) = match result {
+            Ok(()) => (None, None),
+            Err(refusal) => (Some(refusal.text), refusal.goal),
+        };
+        match (request.id(), refusal) {
+            (Some(id), refusal) => Some(Reply::Answer { id, refusal, goal }),
+            (None, Some(refusal)) => Some(Reply::Refused { refusal }),
+            (None, None) => None,
+        }
+    }
+
+    fn obey(&self, request: &Request) -> Result<(), CommandRefusal> {
+        let state = self.state;
+        if !state.is_steered {
+            return Err(CommandRefusal::of("A replay takes no commands."));
+        }
+        if self.access != Access::Drive {
+            return Err(CommandRefusal::of(
+                "This link only looks. The program prints another link that drives.",
+            ));
+        }
+        match request {
+            // Whoever may drive may stop.
+            Request::Stop { .. } => {}
+            Request::TakeWheel { .. } => {
+                state.roster().take(self.id);
+                return Ok(());
+            }
+            Request::LeaveWheel { .. } => {
+                if state.roster().release(self.id) {
+                    state.steering.end_of_hand();
+                }
+                return Ok(());
+            }
+            _ => {
+                let free = state.roster().require(self.id);
+                free.map_err(|holder| {
+                    CommandRefusal::of(format!("{holder} holds the wheel. Take it over first."))
+                })?;
+            }
+        }
+        state.steering.obey(request)
+    }
+}

@@ -1,0 +1,183 @@
+//! What a viewer is sent: the newest of each kind, and never more than it takes.
+
+use super::outbox::Outbox;
+use super::progress::ViewProgress;
+use crate::page_state::PageState;
+use crate::roster::ViewerId;
+use crate::wire::{
+    Reply, StateMessage, TileCursor, WheelText, image_message, path_message, scan_message, trail_message,
+    visual_map_message,
+};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+use tokio::sync::mpsc::Receiver;
+use tokio::time::{Instant, MissedTickBehavior, interval};
+use trundle_app::operator::{RunView, VisualMapView};
+use trundle_core::{Stamp, Trajectory};
+
+/// Period of views.
+const VIEW_PERIOD: Duration = Duration::from_millis(100);
+/// Views on the way that the page has not drawn yet. Beyond it nothing is sent, so that a slow network holds no old views. Source: ours;
+/// three views hide a delay of 0.3 s.
+const MAX_UNSEEN: u64 = 3;
+/// Period of images.
+const IMAGE_PERIOD: Duration = Duration::from_millis(180);
+/// Longest time without a message where nothing changes: the page then knows that the link is well.
+const QUIET_PERIOD: Duration = Duration::from_secs(1);
+
+/// Sends answers and views until the viewer takes none; why it ends.
+pub async fn send(
+    outbox: &mut Outbox,
+    state: &PageState,
+    id: ViewerId,
+    progress: &ViewProgress,
+    mut answers: Receiver<Reply>,
+) -> &'static str {
+    const GONE: &str = "the viewer takes no messages";
+    let mut updates = Updates::new(id);
+    let mut ticks = interval(VIEW_PERIOD);
+    ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    if !updates.begin(outbox, state).await {
+        return GONE;
+    }
+    loop {
+        let is_taken = tokio::select! {
+            biased;
+            Some(answer) = answers.recv() => outbox.send_json(&answer).await,
+            _ = ticks.tick() => updates.send(outbox, state, progress).await,
+        };
+        if !is_taken {
+            return GONE;
+        }
+    }
+}
+
+/// What a viewer has been sent.
+struct Updates {
+    id: ViewerId,
+    batch: u64,
+    view: Option<Arc<RunView>>,
+    view_sent: Instant,
+    tiles: TileCursor,
+    scan: Option<Stamp>,
+    plan: Option<Arc<Trajectory>>,
+    image: Option<Stamp>,
+    image_sent: Instant,
+    visual_map: Option<Arc<VisualMapView>>,
+    states: usize,
+}
+
+impl Updates {
+    fn new(id: ViewerId) -> Self {
+        let now = Instant::now();
+        Self {
+            id,
+            batch: 0,
+            view: None,
+            view_sent: now,
+            tiles: TileCursor::default(),
+            scan: None,
+            plan: None,
+            image: None,
+            image_sent: now,
+            visual_map: None,
+            states: 0,
+        }
+    }
+
+    /// What happened before the viewer came.
+    async fn begin(&mut self, outbox: &mut Outbox, state: &PageState) -> bool {
+        let trail = trail_message(state.history().points());
+        outbox.send_bytes(trail).await
+    }
+
+    /// Sends what is new, where the viewer has drawn what came before; whether it took it.
+    async fn send(&mut self, outbox: &mut Outbox, state: &PageState, progress: &ViewProgress) -> bool {
+        if self.batch.saturating_sub(progress.seen.load(Ordering::Relaxed)) >= MAX_UNSEEN {
+            return true;
+        }
+        let Some(view) = state.operator.view() else { return true };
+        let is_new = self.view.as_ref().is_none_or(|last| !Arc::ptr_eq(last, &view));
+        if !is_new && self.view_sent.elapsed() < QUIET_PERIOD {
+            return true;
+        }
+        self.batch += 1;
+        self.view_sent = Instant::now();
+        let parts = self.parts(&view, state, progress);
+        let message = self.state_message(&view, state);
+        self.view = Some(view);
+        let (states, so_far) = state.history().states_after(self.states);
+        self.states = so_far;
+        if !outbox.send_json(&message).await
+            || !states.is_empty() && !outbox.send_json(&Reply::States { states }).await
+        {
+            return false;
+        }
+        for part in parts {
+            if !outbox.send_bytes(part).await {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn state_message(&self, view: &RunView, state: &PageState) -> StateMessage {
+        let roster = state.roster();
+        let wheel = roster.holder().map(|(id, name)| WheelText { name, is_you: id == self.id });
+        StateMessage::of(view, self.batch, wheel, roster.count())
+    }
+
+    /// The messages of bytes with what the viewer lacks.
+    fn parts(&mut self, view: &RunView, state: &PageState, progress: &ViewProgress) -> Vec<Vec<u8>> {
+        let mut parts = Vec::new();
+        parts.extend(self.scan_part(view));
+        parts.extend(self.plan_part(view));
+        if let Some(map) = &view.map {
+            let mut tiles = state.tiles();
+            tiles.update(map);
+            parts.extend(tiles.message(&mut self.tiles));
+        }
+        if progress.wants_images.load(Ordering::Relaxed) {
+            parts.extend(self.image_part(view));
+        }
+        if progress.wants_visual_map.load(Ordering::Relaxed) {
+            parts.extend(self.visual_map_part(view));
+        }
+        parts
+    }
+
+    fn scan_part(&mut self, view: &RunView) -> Option<Vec<u8>> {
+        let (scan, pose) = (view.scan.as_ref()?, view.scan_pose?);
+        let is_new = self.scan.replace(scan.stamp()) != Some(scan.stamp());
+        is_new.then(|| scan_message(scan, pose))
+    }
+
+    /// A plan that is the same is the same allocation.
+    fn plan_part(&mut self, view: &RunView) -> Option<Vec<u8>> {
+        let is_same = match (&self.plan, &view.plan) {
+            (Some(known), Some(plan)) => Arc::ptr_eq(known, plan),
+            (None, None) => true,
+            _ => false,
+        };
+        self.plan.clone_from(&view.plan);
+        (!is_same).then(|| path_message(view.plan.as_deref()))
+    }
+
+    fn image_part(&mut self, view: &RunView) -> Option<Vec<u8>> {
+        let image = view.surroundings.image.as_ref()?;
+        if self.image == Some(image.stamp) || self.image_sent.elapsed() < IMAGE_PERIOD {
+            return None;
+        }
+        self.image = Some(image.stamp);
+        self.image_sent = Instant::now();
+        Some(image_message(image))
+    }
+
+    fn visual_map_part(&mut self, view: &RunView) -> Option<Vec<u8>> {
+        let map = view.surroundings.visual_map.as_ref()?;
+        let is_new = self.visual_map.as_ref().is_none_or(|known| !Arc::ptr_eq(known, map));
+        self.visual_map = Some(Arc::clone(map));
+        is_new.then(|| visual_map_message(map))
+    }
+}

@@ -1,0 +1,43 @@
+//! The messages of the page: text as JSON, large parts as bytes.
+//!
+//! The page sends [`Request`]s as JSON. The server sends [`Reply`]s as JSON, and messages of bytes, little-endian, whose first byte is
+//! their [`Kind`]. Frames: map frame where nothing else is said; m and rad.
+
+mod image;
+mod map_tiles;
+mod path;
+mod reply;
+mod request;
+mod scan;
+mod state;
+mod visual_map;
+
+pub use image::image_message;
+pub use map_tiles::{MapTiles, TileCursor};
+pub use path::{path_message, trail_message};
+pub use reply::{Reply, StateEntry, Welcome};
+pub use request::{Goal, Request};
+pub use scan::scan_message;
+pub use state::{StateMessage, WheelText};
+pub use visual_map::visual_map_message;
+
+/// Version of the messages. A page of another version loads itself anew.
+pub const WIRE_VERSION: u32 = 1;
+
+/// First byte of a message of bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Kind {
+    /// Tiles of the map.
+    MapTiles = 1,
+    /// The points of a scan.
+    Scan = 2,
+    /// The planned path.
+    Plan = 3,
+    /// A colour image.
+    Image = 4,
+    /// The driven path.
+    Trail = 5,
+    /// Keyframes and landmarks.
+    VisualMap = 6,
+}

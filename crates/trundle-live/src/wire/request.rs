@@ -1,0 +1,165 @@
+//! What a page asks.
+
+use serde::Deserialize;
+
+/// A request of a page. `id` names it in the answer.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Request {
+    /// First of all: version and token.
+    Hello {
+        /// Version of the messages that the page speaks.
+        version: u32,
+        /// The token of the link.
+        token: String,
+        /// How others shall see this viewer.
+        #[serde(default)]
+        name: String,
+    },
+    /// The page has drawn the views up to this one.
+    Seen {
+        /// Number of the view.
+        batch: u64,
+    },
+    /// Send images of the camera, or do not.
+    Camera {
+        /// Whether to send them.
+        on: bool,
+    },
+    /// Send the visual map, or do not.
+    VisualMap {
+        /// Whether to send it.
+        on: bool,
+    },
+    /// Drive to goals, one after the other.
+    Go {
+        /// Of the request.
+        id: u64,
+        /// The goals.
+        goals: Vec<Goal>,
+        /// Whether they come after the tasks that are left.
+        #[serde(default)]
+        append: bool,
+    },
+    /// Explore until the map is complete.
+    Explore {
+        /// Of the request.
+        id: u64,
+    },
+    /// Drive back to the start.
+    Return {
+        /// Of the request.
+        id: u64,
+    },
+    /// Drive onto the charging station.
+    Dock {
+        /// Of the request.
+        id: u64,
+    },
+    /// Stop at once and drop the mission.
+    Stop {
+        /// Of the request.
+        id: u64,
+    },
+    /// Stop and keep the mission.
+    Pause {
+        /// Of the request.
+        id: u64,
+    },
+    /// Go on after a pause.
+    Continue {
+        /// Of the request.
+        id: u64,
+    },
+    /// Drive by hand. Silence of 0.3 s stops the robot.
+    Drive {
+        /// Part of the highest speed, -1 to 1, ahead positive.
+        v: f64,
+        /// Part of the highest turn rate, -1 to 1, to the left positive.
+        omega: f64,
+    },
+    /// Where the robot stands.
+    SetPose {
+        /// Of the request.
+        id: u64,
+        /// The pose.
+        pose: Goal,
+    },
+    /// Hold the wheel, whoever holds it.
+    TakeWheel {
+        /// Of the request.
+        id: u64,
+    },
+    /// Leave the wheel to others.
+    LeaveWheel {
+        /// Of the request.
+        id: u64,
+    },
+}
+
+/// A pose in the map frame.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Goal {
+    /// \[m\]
+    pub x: f64,
+    /// \[m\]
+    pub y: f64,
+    /// Heading \[rad\].
+    pub theta: f64,
+}
+
+impl Request {
+    /// Number by which the answer names the request; `None` for a request without an answer.
+    pub fn id(&self) -> Option<u64> {
+        match self {
+            Self::Hello { .. }
+            | Self::Seen { .. }
+            | Self::Camera { .. }
+            | Self::VisualMap { .. }
+            | Self::Drive { .. } => None,
+            Self::Go { id, .. }
+            | Self::Explore { id }
+            | Self::Return { id }
+            | Self::Dock { id }
+            | Self::Stop { id }
+            | Self::Pause { id }
+            | Self::Continue { id }
+            | Self::SetPose { id, .. }
+            | Self::TakeWheel { id }
+            | Self::LeaveWheel { id } => Some(*id),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Option<Request> {
+        serde_json::from_str(text).ok()
+    }
+
+    #[test]
+    fn requests_are_read_and_broken_ones_refused() {
+        let goal = Goal { x: 1.0, y: -2.0, theta: 0.5 };
+        let go = r#"{"type":"go","id":7,"goals":[{"x":1,"y":-2,"theta":0.5}]}"#;
+        assert_eq!(read(go), Some(Request::Go { id: 7, goals: vec![goal], append: false }));
+        assert_eq!(read(r#"{"type":"stop","id":8}"#).unwrap().id(), Some(8));
+        assert_eq!(read(r#"{"type":"drive","v":0.5,"omega":0}"#).unwrap().id(), None);
+        let nested = format!(r#"{{"type":"go","id":1,"goals":{}"#, "[".repeat(4000));
+        for wrong in [
+            "",
+            "[]",
+            r#"{"type":"fly","id":1}"#,
+            r#"{"type":"stop"}"#,
+            r#"{"type":"stop","id":-1}"#,
+            r#"{"type":"stop","id":1,"more":2}"#,
+            r#"{"type":"drive","v":NaN,"omega":0}"#,
+            r#"{"type":"drive","v":1e999,"omega":0}"#,
+            &nested,
+        ] {
+            assert_eq!(read(wrong), None, "{wrong:.60}");
+        }
+    }
+}

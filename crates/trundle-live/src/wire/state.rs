@@ -1,0 +1,178 @@
+//! The state of the robot as JSON.
+
+use serde::Serialize;
+use trundle_app::operator::RunView;
+use trundle_planning::MovingObstacle;
+use trundle_runtime::Task;
+
+/// The state of the robot, sent up to ten times a second.
+#[derive(Debug, Clone, Serialize)]
+#[serde(tag = "type", rename = "state")]
+pub struct StateMessage {
+    /// Number of this view; the page gives it back.
+    pub batch: u64,
+    /// Time of the robot \[s\].
+    pub time: f64,
+    /// Pose and speed.
+    #[serde(flatten)]
+    pub motion: MotionText,
+    /// What the robot does.
+    #[serde(flatten)]
+    pub activity: ActivityText,
+    /// The battery.
+    #[serde(flatten)]
+    pub power: PowerText,
+    /// Dynamic obstacles: x, y \[m\], radius \[m\], x and y in [`FORECAST_S`] \[m\].
+    pub movers: Vec<[f64; 5]>,
+    /// The charging station: x \[m\], y \[m\], heading out of its front \[rad\].
+    pub station: Option<[f64; 3]>,
+    /// Runs of SLAM, mapping and control so far, and dropped images.
+    pub counts: [u64; 4],
+    /// Who holds the wheel; `None`: nobody.
+    pub wheel: Option<WheelText>,
+    /// Number of viewers.
+    pub viewers: usize,
+}
+
+/// Pose and speed of the robot.
+#[derive(Debug, Clone, Serialize)]
+pub struct MotionText {
+    /// `map_from_base`: x \[m\], y \[m\], heading \[rad\].
+    pub pose: [f64; 3],
+    /// Covariance of the position in the map frame, xx, xy, yy \[m^2\], and variance of the heading \[rad^2\].
+    pub covariance: [f64; 4],
+    /// Measured speed \[m/s\] and turn rate \[rad/s\].
+    pub twist: [f64; 2],
+    /// Commanded speed \[m/s\] and turn rate \[rad/s\].
+    pub command: [f64; 2],
+}
+
+/// What the robot does.
+#[derive(Debug, Clone, Serialize)]
+pub struct ActivityText {
+    /// The state in one or two words.
+    pub state: &'static str,
+    /// Why the robot does not move on.
+    pub reason: Option<String>,
+    /// The condition under which no wheel may turn.
+    pub hold: Option<String>,
+    /// Whether a person paused the robot.
+    pub paused: bool,
+    /// The tasks that have not ended, the present one first.
+    pub left: Vec<TaskText>,
+    /// The last tasks that have ended, with their ends.
+    pub ended: Vec<String>,
+    /// Whether all tasks have ended.
+    pub over: bool,
+}
+
+/// The battery of the robot.
+#[derive(Debug, Clone, Serialize)]
+pub struct PowerText {
+    /// Charge, 0 to 1.
+    pub charge: Option<f64>,
+    /// Voltage \[V\].
+    pub voltage: Option<f64>,
+    /// Whether the battery is being charged.
+    pub charging: bool,
+}
+
+/// Who holds the wheel.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WheelText {
+    /// How the viewer is called.
+    pub name: String,
+    /// Whether the reader of this message holds it.
+    pub is_you: bool,
+}
+
+/// A task in words, and its goal.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TaskText {
+    /// In words.
+    pub text: String,
+    /// Its goal: x \[m\], y \[m\], heading \[rad\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub goal: Option<[f64; 3]>,
+}
+
+/// Time of the forecast of dynamic obstacles that is shown \[s\]. Source: ours; the planner's horizon is longer.
+const FORECAST_S: f64 = 1.0;
+/// Number of ended tasks that are sent.
+const SHOWN_ENDED_TASKS: usize = 5;
+
+impl StateMessage {
+    /// The state of a view.
+    pub fn of(view: &RunView, batch: u64, wheel: Option<WheelText>, viewers: usize) -> Self {
+        let (around, counts) = (&view.surroundings, &view.counts);
+        Self {
+            batch,
+            time: view.stamp.as_secs(),
+            motion: MotionText::of(view),
+            activity: ActivityText::of(view),
+            power: PowerText {
+                charge: view.battery.and_then(|battery| battery.charge),
+                voltage: view.battery.map(|battery| battery.voltage_v),
+                charging: view.battery.is_some_and(|battery| battery.is_charging),
+            },
+            movers: around.movers.iter().map(mover_text).collect(),
+            station: around.station.map(|station| [station.x, station.y, station.theta]),
+            counts: [counts.slam, counts.mapping, counts.control, counts.dropped_images],
+            wheel,
+            viewers,
+        }
+    }
+}
+
+impl MotionText {
+    fn of(view: &RunView) -> Self {
+        let estimate = &view.estimate;
+        Self {
+            pose: [estimate.pose.x, estimate.pose.y, estimate.pose.theta],
+            covariance: map_covariance(view),
+            twist: [estimate.twist.v, estimate.twist.omega],
+            command: [view.twist.v, view.twist.omega],
+        }
+    }
+}
+
+impl ActivityText {
+    fn of(view: &RunView) -> Self {
+        let ended = &view.mission.ended;
+        let shown = ended.len().saturating_sub(SHOWN_ENDED_TASKS);
+        Self {
+            state: view.state.name(),
+            reason: view.state.reason().map(ToString::to_string),
+            hold: view.hold.map(|hold| hold.to_string()),
+            paused: view.hold == Some(trundle_runtime::MotionHold::Paused),
+            left: view.mission.left.iter().map(TaskText::of).collect(),
+            ended: ended[shown..].iter().map(|record| format!("{}: {}", record.task, record.end)).collect(),
+            over: view.mission.is_over,
+        }
+    }
+}
+
+impl TaskText {
+    fn of(task: &Task) -> Self {
+        let goal = trundle_app::RunSetup::goal_of(task).map(|goal| [goal.x, goal.y, goal.theta]);
+        Self { text: task.to_string(), goal }
+    }
+}
+
+fn mover_text(mover: &MovingObstacle) -> [f64; 5] {
+    let (now, later) = (mover.at(0.0), mover.at(FORECAST_S));
+    [now.x, now.y, mover.radius(), later.x, later.y]
+}
+
+/// The covariance of the estimate, turned from the base frame into the map frame.
+fn map_covariance(view: &RunView) -> [f64; 4] {
+    let (sin, cos) = view.estimate.pose.theta.sin_cos();
+    let c = &view.estimate.covariance;
+    let (xx, xy, yy) = (c[(0, 0)], c[(0, 1)], c[(1, 1)]);
+    [
+        cos * cos * xx - 2.0 * sin * cos * xy + sin * sin * yy,
+        sin * cos * (xx - yy) + (cos * cos - sin * sin) * xy,
+        sin * sin * xx + 2.0 * sin * cos * xy + cos * cos * yy,
+        c[(2, 2)],
+    ]
+}

@@ -1,0 +1,7 @@
+//! Tests of the live page as a browser and as an attacker see it, on a run of a base at rest.
+
+mod browser;
+mod guard;
+mod live_run;
+mod steering;
+mod viewers;

@@ -1,0 +1,73 @@
+//! Several viewers: one holds the wheel, others look, a slow one delays nobody.
+
+use crate::browser::Browser;
+use crate::live_run::LiveRun;
+use serde_json::json;
+use std::time::{Duration, Instant};
+use trundle_live::Access;
+
+#[test]
+fn a_link_that_looks_drives_nothing() {
+    let run = LiveRun::start();
+    let mut viewer = Browser::enter(&run, Access::View, "viewer");
+    for kind in ["explore", "return", "dock", "stop", "pause", "continue", "take_wheel"] {
+        let refusal = viewer.ask(json!({"type": kind})).unwrap();
+        assert!(refusal.contains("only looks"), "{kind}: {refusal}");
+    }
+    viewer.send(&json!({"type": "drive", "v": 1.0, "omega": 0.0}));
+    assert!(viewer.wait_for("refused")["refusal"].as_str().unwrap().contains("only looks"));
+    assert!(viewer.wait_for("state")["wheel"].is_null());
+}
+
+#[test]
+fn a_replay_takes_no_commands() {
+    let run = LiveRun::with_steering(false);
+    assert_eq!(run.page.link(Access::Drive), None);
+    let mut viewer = Browser::enter(&run, Access::Drive, "viewer");
+    assert!(viewer.ask(json!({"type": "stop"})).unwrap().contains("takes no commands"));
+}
+
+#[test]
+fn one_holds_the_wheel_and_the_other_sees_who() {
+    let run = LiveRun::start();
+    let mut anna = Browser::enter(&run, Access::Drive, "Anna");
+    let mut bert = Browser::enter(&run, Access::Drive, "Bert");
+    assert_eq!(anna.ask(json!({"type": "pause"})), None);
+    assert_eq!(bert.ask(json!({"type": "explore"})).unwrap(), "Anna holds the wheel. Take it over first.");
+    let state = std::iter::from_fn(|| Some(bert.wait_for("state"))).find(|state| !state["wheel"].is_null());
+    assert_eq!(state.unwrap()["wheel"], json!({"name": "Anna", "is_you": false}));
+    assert_eq!(bert.ask(json!({"type": "stop"})), None, "whoever may drive may stop");
+    assert_eq!(bert.ask(json!({"type": "take_wheel"})), None);
+    assert_eq!(bert.ask(json!({"type": "explore"})), None);
+    assert!(anna.ask(json!({"type": "explore"})).unwrap().starts_with("Bert holds"));
+    drop(bert);
+    let start = Instant::now();
+    while anna.ask(json!({"type": "pause"})).is_some() {
+        assert!(start.elapsed() < Duration::from_secs(5), "a wheel that was left is free");
+    }
+}
+
+#[test]
+fn a_viewer_that_draws_nothing_is_sent_three_views_and_the_others_go_on() {
+    let run = LiveRun::start();
+    let mut slow = Browser::enter(&run, Access::View, "slow");
+    slow.draws = false;
+    let mut fast = Browser::enter(&run, Access::View, "fast");
+    let last = (0..15).map(|_| fast.wait_for("state")["batch"].as_u64().unwrap()).last().unwrap();
+    assert!(last >= 15, "{last}");
+    assert_eq!((0..3).map(|_| slow.wait_for("state")["batch"].as_u64().unwrap()).last(), Some(3));
+    slow.send(&json!({"type": "seen", "batch": 3}));
+    let fresh = slow.wait_for("state");
+    assert_eq!(fresh["batch"], 4);
+    let (newest, shown) = (run.operator.glance().unwrap().stamp.as_secs(), fresh["time"].as_f64().unwrap());
+    assert!(newest - shown < 0.5, "the newest view, not one that waited: {newest} s, {shown} s");
+}
+
+#[test]
+fn a_page_that_comes_again_after_a_restart_is_welcome_with_its_token() {
+    let run = LiveRun::start();
+    let mut page = Browser::enter(&run, Access::Drive, "page");
+    page.wait_for("state");
+    drop(run);
+    assert!(page.wait_for_close().0 < 4400, "the page may try again");
+}
