@@ -52,7 +52,7 @@ impl Navigator {
             DriveState::FinalApproach if self.goal_approach.holds() => Twist2::ZERO,
             DriveState::Maneuvering if self.station_goal().is_some() => self.drive_at_station(s),
             DriveState::Maneuvering if self.relative_motion().is_some() => self.drive_relative(s),
-            DriveState::Maneuvering if self.is_blind(s) => Twist2::ZERO,
+            DriveState::Maneuvering if self.is_blind(s) => self.recover_sight(s),
             DriveState::Maneuvering => times.measure(Stage::Control, || self.maneuver(s)),
             _ => follow.twist,
         }
@@ -104,7 +104,10 @@ impl Navigator {
     /// One step of turns and straight moves.
     fn maneuver(&mut self, s: &WorldState<'_>) -> Twist2 {
         match self.goal_approach.step(s) {
-            Progress::Moving(twist) => return twist,
+            Progress::Moving(twist) => {
+                self.sight_recovery.held(twist);
+                return twist;
+            }
             Progress::Settled => self.state = DriveState::Arrived,
             Progress::GivenUp(failure) => {
                 self.state = DriveState::Stopped { reason: Reason::FinalApproach(failure) };

@@ -4,6 +4,7 @@ use super::testing::{at_rest, floor, navigator};
 use super::*;
 use crate::reason::ReasonKind;
 use proptest::prelude::*;
+use std::f64::consts::FRAC_PI_2;
 use trundle_control::{SafetyScan, StopReason};
 use trundle_core::{Beam, Cell, CellIndex, DriveLimits, OccupancyGrid, Scan};
 
@@ -276,6 +277,27 @@ fn a_safety_stop_holds_a_driving_robot_and_ends_with_its_cause() {
     assert!((1.1..1.3).contains(age), "{age} s");
     assert_eq!(base.run_to("driving"), Some(0), "with the first image that shows something");
     assert!(base.run_to("arrived").is_some() && base.pose.distance(&AHEAD) < 0.03, "{:?}", base.pose);
+}
+
+#[test]
+fn a_maneuver_whose_straight_move_ends_before_a_wall_goes_on_by_a_turn() {
+    let goal = Pose2::new(3.0, 2.38, 0.0);
+    let mut base = Base::to(Goal::Align(goal));
+    base.run_to("maneuvering").unwrap();
+    let (mut seen, mut blind_steps) = (base.now, 0);
+    for _ in 0..6000 {
+        // Beside the goal a wall is nearer than the camera measures.
+        let faces_wall = (base.pose.theta - FRAC_PI_2).abs() < 0.5 && base.pose.y > goal.y - 0.05;
+        blind_steps += usize::from(faces_wall);
+        seen = if faces_wall { seen } else { base.now };
+        base.step_with(|s| s.seen = Some(seen));
+        if base.navigator.state().is_over() {
+            break;
+        }
+    }
+    assert_eq!(base.navigator.state().name(), "arrived", "{} {:?}", base.navigator.state(), base.pose);
+    assert!(base.pose.distance(&goal) < 0.03, "{:?}", base.pose);
+    assert!(blind_steps as f64 * STEP_S > 3.0, "{blind_steps}");
 }
 
 #[test]
