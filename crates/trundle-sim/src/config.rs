@@ -59,9 +59,12 @@ impl Default for SimConfig {
     }
 }
 
+/// A preset of a front end: name, help text, and what makes it.
+pub type Preset<T> = (&'static str, &'static str, fn() -> T);
+
 impl SimConfig {
     /// The cameras of a front end: name, help text, robot with it.
-    pub const CAMERAS: [(&'static str, &'static str, fn() -> Self); 2] = [
+    pub const CAMERAS: [Preset<Self>; 2] = [
         ("kinect-v2", "Kinect V2: 512 x 424", Self::kinect_v2),
         ("kinect-v1", "Kinect v1, as of TUM's sequences: 640 x 480", Self::kinect_v1),
     ];

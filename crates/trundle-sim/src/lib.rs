@@ -33,7 +33,7 @@ mod world;
 
 pub use camera::{ColorNoise, DepthNoise, Exposure, Renderer, RgbdSensor, View, blend};
 pub use charging_station::StationConfig;
-pub use config::{SimConfig, camera_mount};
+pub use config::{Preset, SimConfig, camera_mount};
 pub use drive::{CommandScript, Following, TimedCommand, WaypointFollower, WaypointFollowerConfig};
 pub use faults::{Fault, FaultKind, FaultSchedule, WheelSide};
 pub use kobuki::{KobukiConfig, TrueWheels};

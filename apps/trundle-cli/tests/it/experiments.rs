@@ -34,5 +34,5 @@ fn a_course_of_mrpb_is_driven() {
 fn what_the_data_does_not_have_is_said() {
     assert!(refusal(&["experiment", "barn", "--data", "/nonexistent"]).contains("worlds.csv"));
     assert!(refusal(&["experiment", "mrpb", "--data", "/nonexistent"]).contains("start_goal.csv"));
-    assert!(refusal(&["experiment", "barn", "--worlds", "5-2"]).contains("A not above B"));
+    assert!(refusal(&["experiment", "barn", "--worlds", "5-2"]).contains("the last not below the first"));
 }

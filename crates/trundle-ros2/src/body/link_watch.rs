@@ -68,12 +68,10 @@ impl WatchedLink {
     }
 
     fn check(&mut self, shared: &Shared, node: &NodeThread) {
-        let is_dead = node.is_dead();
+        let death = node.death();
         let mut is_up = true;
         for monitor in &self.monitors {
-            let death =
-                is_dead.then(|| "the thread of the ROS 2 node has died: start the program anew".to_owned());
-            if let Some(problem) = death.or_else(|| monitor.stall()) {
+            if let Some(problem) = death.clone().or_else(|| monitor.stall()) {
                 is_up = false;
                 shared.diagnostics.report(&monitor.name, Level::Error, problem);
             }

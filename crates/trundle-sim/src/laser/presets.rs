@@ -1,6 +1,7 @@
 //! Presets of laser range finders from their data sheets.
 
 use super::LaserConfig;
+use crate::config::Preset;
 use std::f64::consts::TAU;
 
 /// Angle between beams of Hokuyo's URG series: 1024 a turn.
@@ -10,7 +11,7 @@ const URG_STEP: f64 = TAU / 1024.0;
 /// third of it where the sheet gives no standard deviation.
 impl LaserConfig {
     /// The lasers of a front end: name, help text, configuration.
-    pub const PRESETS: [(&'static str, &'static str, fn() -> Self); 4] = [
+    pub const PRESETS: [Preset<Self>; 4] = [
         ("rplidar-a1", "Slamtec RPLIDAR A1: all around, 12 m", Self::rplidar_a1),
         ("urg-04lx", "Hokuyo URG-04LX: 240 deg, 5.6 m", Self::urg_04lx),
         ("ust-10lx", "Hokuyo UST-10LX: 270 deg, 10 m", Self::ust_10lx),
