@@ -121,7 +121,9 @@ mod tests {
                 prop_assert!(twist.v == 0.0 && twist.omega.abs() <= SPIN_RATE_RAD_S);
                 pose = pose.advance(twist, COMMAND_PERIOD_S);
                 let left = wrap_angle(heading - pose.theta);
-                prop_assert!(left.abs() <= off.abs() && left * off >= 0.0, "{off} rad became {left} rad");
+                // An angle is wrapped at each step: it keeps 12 digits.
+                let is_nearer = left.abs() <= off.abs() + 1e-12;
+                prop_assert!(is_nearer && left * off >= 0.0, "{off} rad became {left} rad");
                 off = left;
             }
             prop_assert!(off.abs() <= FACING_TOLERANCE_RAD);
