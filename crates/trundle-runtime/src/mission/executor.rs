@@ -121,13 +121,16 @@ impl MissionExecutor {
 
     /// The tasks that have not ended, the present one first.
     pub(crate) fn tasks_left(&self) -> impl Iterator<Item = Task> {
-        self.current.iter().map(|current| &current.entry).chain(&self.queue).map(|entry| entry.task)
+        self.entries_left().map(|entry| entry.task)
+    }
+
+    fn entries_left(&self) -> impl Iterator<Item = &Entry> {
+        self.current.iter().map(|current| &current.entry).chain(&self.queue)
     }
 
     /// How far the mission has come.
     pub(crate) fn mission(&self) -> MissionState {
-        let entries = self.current.iter().map(|current| &current.entry).chain(&self.queue);
-        let (places, tasks) = entries.map(|entry| (entry.index, entry.task)).unzip();
+        let (places, tasks) = self.entries_left().map(|entry| (entry.index, entry.task)).unzip();
         let left = Mission::new(tasks).expect("invariant: these tasks are of a mission");
         MissionState { left, places, ended: self.records.clone(), by_operator: self.by_operator }
     }
