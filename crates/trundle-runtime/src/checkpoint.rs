@@ -6,7 +6,7 @@ use crate::mission::MissionState;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, Vector2};
-use trundle_localization::{StationEstimate, VisualAnchor};
+use trundle_estimation::{StationEstimate, VisualAnchor};
 use trundle_slam::MapFileError;
 
 /// State of a robot across a restart: its maps, their poses, and the state of its mission.

@@ -10,7 +10,7 @@ use trundle_core::{
     DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera, Vector2, footprint_corners,
     number_list, require_in,
 };
-use trundle_localization::{LocalizerConfig, OdometryConfig, StationLightConfig};
+use trundle_estimation::{LocalizerConfig, OdometryConfig, StationLightConfig};
 use trundle_mapping::{DepthScanConfig, MapperConfig, ScanMatchConfig};
 use trundle_planning::{ObstacleTrackerConfig, PlannerConfig};
 use trundle_slam::SlamConfig;

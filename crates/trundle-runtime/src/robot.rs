@@ -44,7 +44,7 @@ use trundle_core::{
     BodyEvent, BodyEventKind, Footprint, GyroRate, Invalid, OccupancyGrid, Odometry, Pose2, Pose3, RgbdImage,
     Scan, SensorEvent, Stamp, Vector2, WheelTicks,
 };
-use trundle_localization::{
+use trundle_estimation::{
     Correction, Localizer, OdometryState, StationEstimator, VisualPose, VisualQuality, WheelOdometry,
 };
 use trundle_mapping::{LiveMapper, MapperConfig, ScanMatcher};

@@ -2,7 +2,7 @@
 
 use trundle_control::{MotionHold, MotionSense, SafetyScan};
 use trundle_core::{OccupancyGrid, Pose2, PoseEstimate, Scan, Stamp, Vector2};
-use trundle_localization::StationEstimate;
+use trundle_estimation::StationEstimate;
 use trundle_planning::MovingObstacle;
 
 /// State of robot and surroundings at a decision.

@@ -31,7 +31,7 @@
 //! | run a robot with recording and report | [`app`], [`runtime`] |
 //! | track a camera | [`slam`], features by [`vision`] |
 //! | turn depth into scans and scans into a map | [`mapping`], cells by [`grid`] |
-//! | fuse wheels, gyro and camera | [`localization`] |
+//! | fuse wheels, gyro and camera | [`estimation`] |
 //! | plan a path | [`planning`] |
 //! | follow it | [`control`] |
 //! | settle in tight places | [`docking`] |
@@ -49,12 +49,12 @@ pub use trundle_control as control;
 pub use trundle_core as core;
 pub use trundle_docking as docking;
 pub use trundle_drivers as drivers;
+pub use trundle_estimation as estimation;
 pub use trundle_eval as eval;
 pub use trundle_experiments as experiments;
 pub use trundle_grid as grid;
 pub use trundle_io as io;
 pub use trundle_live as live;
-pub use trundle_localization as localization;
 pub use trundle_mapping as mapping;
 pub use trundle_optim as optim;
 pub use trundle_planning as planning;

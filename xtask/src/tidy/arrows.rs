@@ -8,7 +8,7 @@ pub const ALGORITHM_CRATES: [&str; 7] = [
     "trundle-vision",
     "trundle-slam",
     "trundle-mapping",
-    "trundle-localization",
+    "trundle-estimation",
     "trundle-planning",
     "trundle-control",
     "trundle-docking",

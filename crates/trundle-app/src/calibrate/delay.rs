@@ -4,7 +4,7 @@ use super::camera_track::track_camera;
 use super::recording::CalibrationInput;
 use super::values::{CalibratedValue, Calibration};
 use crate::{AppError, StepProgress};
-use trundle_localization::{estimate_image_delay, turn_axis};
+use trundle_estimation::{estimate_image_delay, turn_axis};
 
 /// Delay of the image stamps against the gyro, s, with scale and bias of the gyro.
 ///

@@ -4,8 +4,8 @@ use crate::AppError;
 use crate::sequence_input::{SequenceInput, SequenceOptions};
 use std::path::Path;
 use trundle_core::{GyroRate, Vector3, WheelTicks};
+use trundle_estimation::{GyroAngle, WheelAngles};
 use trundle_io::{EncodedEvent, FileKind, RecordedMessage, RecordingReader};
-use trundle_localization::{GyroAngle, WheelAngles};
 
 /// A recording of a drive with images, wheels and gyro.
 pub struct CalibrationInput {

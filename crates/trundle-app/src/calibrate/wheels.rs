@@ -5,7 +5,7 @@ use super::recording::CalibrationInput;
 use super::values::{CalibratedValue, Calibration};
 use crate::{AppError, StepProgress};
 use trundle_core::{Pose3, Stamp, Vector3};
-use trundle_localization::{
+use trundle_estimation::{
     CalibrationError, Estimate, WheelCameraFit, fit_gyro, fit_wheels_and_camera, turn_axis,
 };
 

@@ -8,7 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 use trundle_core::{PinholeCamera, Vector3};
 use trundle_drivers::BaseSpec;
-use trundle_localization::FloorMount;
+use trundle_estimation::FloorMount;
 use trundle_runtime::RobotConfig;
 
 /// Part of the camera's own rate below which images are too few. Source: ours.

@@ -5,7 +5,7 @@ use trundle_core::{
     Battery, BodyEventKind, DifferentialDrive, GyroRate, PerWheel, PinholeCamera, RgbdImage, SensorEvent,
     Stamp, Vector3, WheelTicks,
 };
-use trundle_localization::FloorSearch;
+use trundle_estimation::FloorSearch;
 
 /// Images from one whose floor is fitted to the next. Source: ours.
 const FLOOR_STEP_IMAGES: usize = 5;

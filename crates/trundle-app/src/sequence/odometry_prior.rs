@@ -2,7 +2,7 @@
 
 use crate::sequence_input::SequenceInput;
 use trundle_core::{CameraMotion, Pose2, Pose3, Stamp};
-use trundle_localization::OdometryConfig;
+use trundle_estimation::OdometryConfig;
 
 /// The camera's motion by the odometry of a sequence, where it has one; the camera is mounted as on the sequence's robot.
 pub struct OdometryPrior<'a> {

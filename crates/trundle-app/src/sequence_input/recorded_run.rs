@@ -4,8 +4,8 @@ use crate::setup::RunSetup;
 use crate::{AppError, RecordingContent};
 use std::path::{Path, PathBuf};
 use trundle_core::{Pose2, Pose3, Scan, Stamp};
+use trundle_estimation::WheelOdometry;
 use trundle_io::{EncodedEvent, RecordedMessage, RecordingReader};
-use trundle_localization::WheelOdometry;
 use trundle_runtime::RobotConfig;
 
 /// A recording of a run, read once without its images.

@@ -4,7 +4,7 @@ use crate::laser_run::hokuyo;
 use crate::simulated::simulated_body;
 use trundle_control::{FollowerConfig, SafetyConfig};
 use trundle_core::{DifferentialDrive, DriveLimits, Invalid};
-use trundle_localization::OdometryConfig;
+use trundle_estimation::OdometryConfig;
 use trundle_mapping::MapperConfig;
 use trundle_planning::{ClearanceCostConfig, PlannerConfig, TimingConfig};
 use trundle_runtime::{RangeSource, RobotConfig};

@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 use trundle_app::{AppError, FreeSpace};
 use trundle_core::{OccupancyGrid, Pose2, Pose3, RgbdImage, SensorEvent, Stamp, Vector2};
+use trundle_estimation::{OdometryConfig, WheelOdometry};
 use trundle_io::{CarmenLog, IoError, OutputFolder, Summary, TumFrame, TumWriter, write_map};
-use trundle_localization::{OdometryConfig, WheelOdometry};
 use trundle_sim::Simulator;
 use trundle_viz::{Color, LineStyle, MapPicture, PoseStyle};
 

@@ -21,7 +21,7 @@ use trundle_core::{
     BodyEventKind, DifferentialDrive, Odometry, PinholeCamera, Pose2, Pose3, RobotBody, SensorEvent, Stamp,
     Twist2,
 };
-use trundle_localization::{OdometryConfig, WheelOdometry};
+use trundle_estimation::{OdometryConfig, WheelOdometry};
 
 /// Time after the newest command for which the base obeys it. Source: ours; Nav2 sends 20 a second.
 const COMMAND_LIFETIME: Duration = Duration::from_millis(500);

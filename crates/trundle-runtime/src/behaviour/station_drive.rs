@@ -6,7 +6,7 @@ use crate::world_state::WorldState;
 use std::f64::consts::PI;
 use trundle_control::StationMotion;
 use trundle_core::{Pose2, Stamp, Twist2, difference_of_angles};
-use trundle_localization::StationEstimate;
+use trundle_estimation::StationEstimate;
 
 /// A motion at a charging station.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -10,7 +10,7 @@ use crate::schedule::Ticker;
 use crate::world_state::WorldState;
 use std::f64::consts::PI;
 use trundle_core::Pose2;
-use trundle_localization::StationEstimate;
+use trundle_estimation::StationEstimate;
 use trundle_planning::{Exploration, Explorer, Frontier};
 
 /// Poses from which the axis is surveyed, station frame \[m, m, rad\]: paths between them cross the edges of the light. Source: ours.

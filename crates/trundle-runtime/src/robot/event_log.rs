@@ -6,7 +6,7 @@ use crate::operator::{PoseGuess, RunSetting};
 use crate::reason::Reason;
 use trundle_control::MotionHold;
 use trundle_core::{Pose2, Stamp, difference_of_angles};
-use trundle_localization::{WheelCounts, WheelReport};
+use trundle_estimation::{WheelCounts, WheelReport};
 
 /// Correction of the pose estimate \[m\] above which the correction is logged. Source: ours, the size of a grid cell.
 const LOGGED_CORRECTION_M: f64 = 0.05;

@@ -6,7 +6,7 @@ use crate::{
     monitors::scan_map_consistency::Fit, range_source::RangeSource,
 };
 use trundle_core::Scan;
-use trundle_localization::{Correction, Localizer};
+use trundle_estimation::{Correction, Localizer};
 
 impl Robot {
     /// A scan of a laser that is the range source.

@@ -8,7 +8,7 @@ use crate::{
 };
 use std::sync::Arc;
 use trundle_core::{Invalid, OccupancyGrid};
-use trundle_localization::Localizer;
+use trundle_estimation::Localizer;
 use trundle_mapping::{LiveMapper, MapperConfig};
 use trundle_vision::Vocabulary;
 

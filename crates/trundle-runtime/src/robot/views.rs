@@ -8,7 +8,7 @@ use crate::{
 };
 use trundle_control::MotionHold;
 use trundle_core::{Battery, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, Scan};
-use trundle_localization::StationEstimate;
+use trundle_estimation::StationEstimate;
 use trundle_planning::{MovingObstacle, PlanResult};
 use trundle_slam::RgbdSlam;
 

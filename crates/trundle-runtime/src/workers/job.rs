@@ -10,7 +10,7 @@ use crate::{
 };
 use serde::{Deserialize, Serialize};
 use trundle_core::Stamp;
-use trundle_localization::OdometryState;
+use trundle_estimation::OdometryState;
 
 /// The worker of a job. Each worker runs one job at a time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

@@ -11,7 +11,7 @@ use crate::{
 };
 use std::sync::Arc;
 use trundle_core::{CameraMotion, Invalid, Pose2, Pose3, RgbdImage, Scan, Stamp};
-use trundle_localization::OdometryState;
+use trundle_estimation::OdometryState;
 use trundle_mapping::DepthScanner;
 use trundle_slam::{MapFileError, RgbdSlam, TrackReport};
 use trundle_vision::Vocabulary;

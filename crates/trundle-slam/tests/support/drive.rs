@@ -77,7 +77,7 @@ impl Drive {
     }
 }
 
-/// How far off wheels without a gyro are, as `OdometryConfig` of trundle-localization has it.
+/// How far off wheels without a gyro are, as `OdometryConfig` of trundle-estimation has it.
 fn noise(motion: &Pose2) -> Matrix3<f64> {
     let (way, turn) = (motion.x.hypot(motion.y), motion.theta.abs());
     let spot = 0.002_f64.powi(2) * turn;

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{Odometry, Pose2, Pose3, Stamp, Twist2};
-use trundle_localization::{Localizer, LocalizerConfig};
+use trundle_estimation::{Localizer, LocalizerConfig};
 
 /// Sigmas of a step of odometry and of a measurement.
 const STEP: [f64; 3] = [0.003, 0.001, 0.002];

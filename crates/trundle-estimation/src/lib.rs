@@ -10,7 +10,7 @@
 //!
 //! ```
 //! use trundle_core::{DifferentialDrive, GyroRate, Pose3, Stamp, Vector3, WheelTicks};
-//! use trundle_localization::{Localizer, LocalizerConfig, OdometryConfig, WheelOdometry};
+//! use trundle_estimation::{Localizer, LocalizerConfig, OdometryConfig, WheelOdometry};
 //!
 //! let mut wheels = WheelOdometry::new(DifferentialDrive::KOBUKI, OdometryConfig::default())?;
 //! let base_from_camera = Pose3::new(Default::default(), Vector3::new(0.05, 0.0, 0.45));

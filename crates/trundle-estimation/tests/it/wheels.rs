@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use trundle_core::{
     DifferentialDrive, GyroRate, Odometry, Pose2, Pose3, Stamp, Twist2, Vector3, WheelTicks, wrap_angle,
 };
-use trundle_localization::{OdometryConfig, WheelOdometry, WheelReport};
+use trundle_estimation::{OdometryConfig, WheelOdometry, WheelReport};
 
 const DT: f64 = 0.02;
 

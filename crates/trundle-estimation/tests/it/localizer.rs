@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Matrix6, UnitQuaternion};
 use proptest::prelude::*;
 use trundle_core::{Odometry, Pose2, Pose3, Stamp, Twist2, Vector3, wrap_angle};
-use trundle_localization::{
+use trundle_estimation::{
     Correction, Localizer, LocalizerConfig, Prediction, VisualPose, VisualQuality, planar_covariance,
 };
 
