@@ -34,6 +34,7 @@ mod odometry;
 mod odometry_config;
 mod odometry_noise;
 mod planar;
+mod pose_monitor;
 
 pub use calibration::batch::error::CalibrationError;
 pub use calibration::batch::estimate::Estimate;
@@ -54,3 +55,5 @@ pub use odometry::state::OdometryState;
 pub use odometry::wheel_odometry::WheelOdometry;
 pub use odometry_config::OdometryConfig;
 pub use planar::planar_covariance;
+pub use pose_monitor::config::PoseMonitorConfig;
+pub use pose_monitor::monitor::{PoseDecision, PoseMonitor, PoseState, PoseStatus};

@@ -1,4 +1,3 @@
-//! Monitors of the sensors: a frozen camera, scans that contradict the map.
+//! Monitors of the sensors: a frozen camera.
 
 pub(crate) mod camera_health;
-pub(crate) mod scan_map_consistency;

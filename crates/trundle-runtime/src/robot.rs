@@ -24,7 +24,6 @@ use crate::{
     config::RobotConfig,
     mission::{Mission, MissionState, Task},
     monitors::camera_health::CameraHealth,
-    monitors::scan_map_consistency::ScanMapConsistency,
     range_source::RangeSource,
     report::StepReport,
     scan_pose_log::ScanPoseLog,
@@ -45,7 +44,8 @@ use trundle_core::{
     Scan, SensorEvent, Stamp, Vector2, WheelTicks,
 };
 use trundle_estimation::{
-    Correction, Localizer, OdometryState, StationEstimator, VisualPose, VisualQuality, WheelOdometry,
+    Correction, Localizer, OdometryState, PoseMonitor, StationEstimator, VisualPose, VisualQuality,
+    WheelOdometry,
 };
 use trundle_mapping::{LiveMapper, MapperConfig, ScanMatcher};
 use trundle_planning::{MovingObstacle, MovingObstacleTracker};
@@ -75,6 +75,7 @@ pub struct Robot {
     matcher: ScanMatcher,
     obstacle_tracker: MovingObstacleTracker,
     localizer: Localizer,
+    pose_monitor: PoseMonitor,
     /// Pose of the charging station.
     station: StationEstimator,
     /// `base_from_station` of a robot on the contacts.
@@ -105,11 +106,8 @@ struct Latest {
     /// `odom_from_base` when it was taken.
     scan_odometry: Option<Pose2>,
     camera_health: CameraHealth,
-    /// Start of the time in which images show enough and are not located.
-    unlocated: Option<Stamp>,
     /// Stamp of the newest image that was located.
     located: Option<Stamp>,
-    scan_map_consistency: ScanMapConsistency,
     /// Images that were left out because the camera was frozen.
     frozen: usize,
     /// The newest state, and whether the mission is over.
@@ -124,8 +122,6 @@ struct Latest {
     unconfirmed: Vec<Vector2>,
 }
 
-/// Time without a located image \[s\] after which images with enough features count as images of another place than the estimate. Source: ours.
-const UNLOCATED_WITH_FEATURES_S: f64 = 0.3;
 /// Largest age of a located image \[s\] that still measures the robot's motion. Source: ours.
 const MAX_VISUAL_MOTION_AGE_S: f64 = 0.8;
 /// Correction of the pose \[m\] above which obstacle tracks restart: motion is not measured from scans on both sides of a jump. Source: ours.
@@ -167,6 +163,7 @@ impl Robot {
             matcher: ScanMatcher::new(config.scan_match.clone())?,
             obstacle_tracker: MovingObstacleTracker::new(config.movers)?,
             localizer: Localizer::new(config.localization.clone(), base_from_camera)?,
+            pose_monitor: PoseMonitor::new(config.pose_monitor)?,
             map_due: Ticker::new(config.schedule.validated()?.map_hz),
             station: StationEstimator::new(config.station, STATION_SEED)?,
             docked: Pose2::new(bumper::front_of(&footprint), 0.0, std::f64::consts::PI),
@@ -266,6 +263,9 @@ impl Robot {
     fn on_body(&mut self, event: &BodyEvent, report: &mut StepReport) {
         let before = self.latest.body.hold(self.range_source);
         self.latest.body.update(event.kind);
+        if self.latest.body.is_lifted() {
+            self.pose_monitor.set_lifted();
+        }
         if matches!(event.kind, BodyEventKind::Battery(_)) && self.latest.body.is_docked() {
             self.station.add_contact(self.localizer.estimate().pose * self.docked);
         }
@@ -309,7 +309,7 @@ impl Robot {
             grid: self.mapper.grid(),
             scan: self.latest.scan_with_odometry(),
             seen: self.latest.camera_health.seen(),
-            unlocated: self.latest.unlocated.map_or(0.0, |since| now - since),
+            pose_status: self.pose_monitor.status(now),
             wheels: self.latest.odometry.as_ref().map(|odometry| odometry.stamp),
             hold: self.latest.body.hold(self.range_source),
             motion: self.motion_sense(now),
@@ -386,22 +386,10 @@ impl Robot {
 
     /// Applies the result of an image: the visual pose corrects the estimate; at the grid's rate the scan does too, and enters the grid.
     fn apply_perception(&mut self, result: PerceptionResult, report: &mut StepReport) {
-        let PerceptionResult {
-            odom_from_base,
-            track,
-            scan,
-            place,
-            unlocated,
-            is_carried_away,
-            corrected_trajectory,
-            visual_snapshot,
-        } = result;
-        self.latest.unlocated = unlocated;
+        let PerceptionResult { odom_from_base, track, scan, place, corrected_trajectory, visual_snapshot } =
+            result;
         if track.tracking.is_located() {
             self.latest.located = self.latest.located.max(Some(track.stamp));
-        }
-        if is_carried_away {
-            self.lose_pose();
         }
         let (times, localizer) = (&mut self.times, &mut self.localizer);
         let before = localizer.estimate().pose;
@@ -409,6 +397,7 @@ impl Robot {
             correct_by_visual_pose(localizer, &track, corrected_trajectory.is_some())
         });
         event_log::correction(track.stamp, "the visual pose", before, self.localizer.estimate().pose);
+        self.add_image_evidence(&track, correction);
         if correction == Some(Correction::Reanchored) {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
             self.scan_poses = ScanPoseLog::default();
@@ -461,8 +450,7 @@ impl Robot {
 
     /// Whether the pose is known well enough for scans to enter the grid.
     fn is_pose_known(&self, now: Stamp) -> bool {
-        let is_unlocated = self.latest.unlocated.is_some_and(|since| now - since > UNLOCATED_WITH_FEATURES_S);
-        !is_unlocated
+        self.pose_monitor.status(now).is_believed()
             && !self.latest.body.is_lifted()
             && position_sigma(&self.localizer.estimate()) < self.lost_sigma
     }

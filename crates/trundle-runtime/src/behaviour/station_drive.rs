@@ -225,7 +225,7 @@ mod tests {
             grid,
             scan: None,
             seen: None,
-            unlocated: 0.0,
+            pose_status: trundle_estimation::PoseStatus::CERTAIN,
             wheels: Some(now),
             hold: None,
             motion: trundle_control::MotionSense::Wheels,

@@ -5,6 +5,7 @@ use crate::world_state::WorldState;
 use clock::{slowness, timed};
 use trundle_core::{OccupancyGrid, PoseEstimate};
 use trundle_docking::Method;
+use trundle_estimation::PoseStatus;
 
 #[path = "../../../../bench/docking/clock.rs"]
 mod clock;
@@ -24,7 +25,7 @@ fn world(grid: &OccupancyGrid, pose: Pose2, time: f64) -> WorldState<'_> {
         grid,
         scan: None,
         seen: None,
-        unlocated: 0.0,
+        pose_status: PoseStatus::CERTAIN,
         wheels: Some(now),
         hold: None,
         motion: trundle_control::MotionSense::Wheels,

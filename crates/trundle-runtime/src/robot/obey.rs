@@ -2,7 +2,6 @@
 
 use super::{Robot, event_log};
 use crate::{
-    global_localization::LocalizedPose,
     mission::MissionState,
     operator::{OperatorCommand, PoseGuess, RunSetting},
     report::StepReport,
@@ -56,11 +55,8 @@ impl Robot {
         let variances =
             Vector3::new(guess.position_sigma, guess.position_sigma, guess.heading_sigma).map(|s| s * s);
         event_log::pose_given(now, guess);
-        self.lose_pose();
-        self.apply_global_localization(Some(LocalizedPose {
-            stamp: now,
-            map_from_base: guess.pose,
-            covariance: nalgebra::Matrix3::from_diagonal(&variances),
-        }));
+        self.clear_dynamic_obstacles();
+        self.set_pose(now, guess.pose, &nalgebra::Matrix3::from_diagonal(&variances), "the operator");
+        self.apply_global_localization(None);
     }
 }

@@ -1,12 +1,14 @@
 //! Detection of an unknown pose, and global localization by scans.
 
-use super::{MAX_VISUAL_MOTION_AGE_S, Robot, event_log};
+use super::{Robot, event_log};
 use crate::{
-    behaviour::navigator::position_sigma, global_localization::LocalizedPose,
-    monitors::scan_map_consistency::Fit, range_source::RangeSource,
+    behaviour::navigator::position_sigma, global_localization::LocalizedPose, range_source::RangeSource,
+    workers::perception_worker::shows_enough,
 };
-use trundle_core::Scan;
-use trundle_estimation::{Correction, Localizer};
+use nalgebra::Matrix3;
+use trundle_core::{Pose2, PoseEstimate, Scan, Stamp};
+use trundle_estimation::{Correction, Localizer, PoseDecision, PoseState};
+use trundle_slam::TrackReport;
 
 impl Robot {
     /// A scan of a laser that is the range source.
@@ -21,21 +23,12 @@ impl Robot {
 
     /// While the pose is unknown, applies the pose that global localization found, or begins the search.
     pub(super) fn apply_global_localization(&mut self, place: Option<LocalizedPose>) {
-        let is_lost = |localizer: &Localizer| position_sigma(&localizer.estimate()) >= self.lost_sigma;
-        if let Some(LocalizedPose { stamp, map_from_base, covariance }) = place
+        let lost_sigma = self.lost_sigma;
+        let is_lost = |localizer: &Localizer| position_sigma(&localizer.estimate()) >= lost_sigma;
+        if let Some(place) = place
             && is_lost(&self.localizer)
         {
-            let before = self.localizer.estimate().pose;
-            let correction = self.localizer.correct_scan(stamp, map_from_base, &covariance);
-            event_log::correction(stamp, "global localization", before, self.localizer.estimate().pose);
-            match correction {
-                Correction::Applied { .. } => {
-                    self.latest.unlocated = None;
-                    self.perception.iter_mut().for_each(|perception| perception.localized_by_scans());
-                }
-                // The found pose contradicts the estimate, whatever its uncertainty: the next scan gives the pose.
-                _ => self.localizer.set_pose_unknown(),
-            }
+            self.take_found_pose(&place);
         }
         let is_lost = is_lost(&self.localizer);
         let Some(perception) = &mut self.perception else { return };
@@ -47,30 +40,75 @@ impl Robot {
         }
     }
 
-    /// Whether a scan is consistent with the map at the estimated pose. While images are located, it counts as consistent. Without a
-    /// located image for 0.8 s, a contradiction means that the robot was carried away.
-    pub(super) fn is_consistent_with_map(&mut self, scan: &Scan) -> bool {
-        let (now, watch) = (scan.stamp(), &mut self.latest.scan_map_consistency);
+    /// Takes a found pose over where it agrees with the estimate, or is far more probable than the estimate and any other place.
+    fn take_found_pose(&mut self, found: &LocalizedPose) {
+        let now = found.stamp;
+        let Some(odometer) = self.odometry_at(now) else { return };
+        let odom_from_map = |pose: Pose2| pose * odometer.pose.inverse();
+        let here = self.localizer.pose_at(now).map_or(Pose2::IDENTITY, odom_from_map);
+        let map_from_odom = odom_from_map(found.map_from_base);
+        let grid = self.mapper.grid();
+        let probability = self.pose_monitor.probability_of(grid, map_from_odom, here, now);
+        if self.pose_monitor.is_enough(probability) {
+            self.set_pose(now, found.map_from_base, &found.covariance, "global localization");
+        } else {
+            event_log::found_pose_refused(now, found.map_from_base, probability);
+        }
+    }
+
+    /// A pose in place of the estimate.
+    pub(super) fn set_pose(&mut self, at: Stamp, pose: Pose2, covariance: &Matrix3<f64>, source: &str) {
+        let before = self.localizer.estimate().pose;
+        self.localizer.set_pose_unknown();
+        self.localizer.correct_scan(at, pose, covariance);
+        self.pose_monitor.set_pose();
+        event_log::correction(at, source, before, self.localizer.estimate().pose);
+    }
+
+    /// An image as evidence for the estimate, or against it. A located image gives an unknown pose.
+    pub(super) fn add_image_evidence(&mut self, track: &TrackReport, correction: Option<Correction>) {
+        let is_applied = correction.is_some_and(|correction| correction.is_applied());
+        let is_located =
+            is_applied || matches!(correction, Some(Correction::Anchored | Correction::Reanchored));
+        let state = self.pose_monitor.status(track.stamp).state;
+        if is_applied && matches!(state, PoseState::Displaced | PoseState::Unknown) {
+            self.pose_monitor.set_pose();
+        }
+        self.pose_monitor.add_image(track.stamp, shows_enough(track), is_located);
+        self.review_pose(track.stamp);
+    }
+
+    /// A scan as evidence for the estimate, or against it.
+    pub(super) fn add_scan_evidence(&mut self, scan: &Scan) {
+        let now = scan.stamp();
         if self.range_source == RangeSource::Laser {
-            return true;
+            return;
         }
-        if self.latest.located.is_some_and(|located| now - located <= MAX_VISUAL_MOTION_AGE_S) {
-            watch.forget();
-            return true;
+        let (Ok(pose), Some(odometer)) = (self.localizer.pose_at(now), self.odometry_at(now)) else { return };
+        let estimate = PoseEstimate { stamp: now, pose, ..self.localizer.estimate() };
+        self.pose_monitor.add_scan(self.mapper.grid(), &estimate, odometer.pose, scan);
+        self.review_pose(now);
+    }
+
+    /// Keeps the estimate, gives it up, or restores it.
+    fn review_pose(&mut self, now: Stamp) {
+        let (Ok(pose), Some(odometer)) = (self.localizer.pose_at(now), self.odometry_at(now)) else { return };
+        match self.pose_monitor.review(now, pose * odometer.pose.inverse()) {
+            PoseDecision::Keep => {}
+            PoseDecision::GiveUp => self.lose_pose(),
+            PoseDecision::Restore { map_from_odom, covariance } => {
+                self.localizer.set_pose_unknown();
+                self.localizer.correct_scan(now, map_from_odom * odometer.pose, &covariance);
+                event_log::pose_restored(now);
+            }
         }
-        let Ok(pose) = self.localizer.pose_at(now) else { return true };
-        let fit = watch.judge(self.mapper.grid(), pose, scan);
-        if fit == Fit::Elsewhere {
-            self.lose_pose();
-            self.perception.iter_mut().for_each(|perception| perception.kidnapped());
-        }
-        fit == Fit::Fits
     }
 
     /// It was carried away.
     pub(super) fn lose_pose(&mut self) {
+        event_log::pose_given_up(self.latest.sensors.newest());
         self.localizer.set_pose_unknown();
-        self.latest.scan_map_consistency.forget();
         self.clear_dynamic_obstacles();
+        self.perception.iter_mut().for_each(|perception| perception.kidnapped());
     }
 }
