@@ -20,6 +20,8 @@ const BOX_HEIGHT_M: f64 = 0.8;
 const SPEED_RANGE_M_S: (f64, f64) = (0.3, 1.2);
 /// Range of the time that people stand at a way-point, s.
 const PAUSE_RANGE_S: (f64, f64) = (0.0, 20.0);
+/// Smallest distance of people's way-points from the robot's start, m. The smallest room has corners farther off.
+const CLEAR_START_M: f64 = 0.9;
 /// Number of way-points of a person.
 const WAYPOINTS: usize = 3;
 
@@ -43,7 +45,7 @@ pub fn plain_room(seed: u64, people: usize) -> Result<Scene, Invalid> {
     }
     let room = (length, width);
     let (start, goal) = (place(&mut build, room), place(&mut build, room));
-    let people = (0..people).map(|_| walker(&mut build, room)).collect();
+    let people = (0..people).map(|_| walker(&mut build, room, start)).collect();
     Ok(Scene {
         name: format!("plain room {seed}"),
         world: World::new(build.solids, seed)?,
@@ -62,8 +64,11 @@ fn place(build: &mut Builder, (length, width): (f64, f64)) -> Pose2 {
     Pose2::new(x, y, between(build, (-PI, PI)))
 }
 
-fn walker(build: &mut Builder, room: (f64, f64)) -> Person {
-    let waypoints = (0..WAYPOINTS).map(|_| place(build, room)).map(|at| [at.x, at.y]).collect();
+/// A person whose way-points keep off the robot's start.
+fn walker(build: &mut Builder, room: (f64, f64), start: Pose2) -> Person {
+    let places = std::iter::repeat_with(|| place(build, room));
+    let free = places.filter(|at| at.distance(&start) > CLEAR_START_M).take(WAYPOINTS);
+    let waypoints = free.map(|at| [at.x, at.y]).collect();
     let (speed, pause) = (between(build, SPEED_RANGE_M_S), between(build, PAUSE_RANGE_S));
     Person { waypoints, speed, pause, around: true, ..Person::default() }
 }
