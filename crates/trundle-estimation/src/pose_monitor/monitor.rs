@@ -15,7 +15,7 @@ use trundle_core::{Cell, Invalid, OccupancyGrid, Pose2, PoseEstimate, Scan, Stam
 ///
 /// ```text
 /// w(H) = exp(v(H))                  v: scans against the map, nats, each patch of surface once
-/// w(U) = d                          d = rate x window x exp(images + lift)
+/// w(U) = d                          d = window / interval x exp(images + lift)
 /// w(F) = d exp(v(F)) / N            N: number of poses that the free area holds
 /// ```
 ///
@@ -87,9 +87,7 @@ const LIFTED_NATS: f64 = 4.0;
 /// Area of a place that a search tells from its neighbours \[m^2\]. Source: ours.
 const PLACE_AREA_M2: f64 = 0.25;
 /// Number of headings that a search tells apart. Source: ours, 10 deg.
-const HEADINGS: f64 = 36.0;
-/// Seconds in an hour.
-const SECONDS_PER_HOUR: f64 = 3600.0;
+const HEADING_COUNT: f64 = 36.0;
 
 impl PoseMonitor {
     /// A monitor of a robot that knows its pose.
@@ -210,7 +208,7 @@ impl PoseMonitor {
 
     /// Logarithm of the odds of another place, without the scans.
     fn displaced_nats(&self, now: Stamp) -> f64 {
-        let prior = (self.config.displacements_per_h * WINDOW_S / SECONDS_PER_HOUR).ln();
+        let prior = (WINDOW_S / self.config.displacement_interval).ln();
         let lift = if self.was_lifted { LIFTED_NATS } else { 0.0 };
         prior + lift + self.images.nats(now)
     }
@@ -235,7 +233,7 @@ const GIVEN_UP_SIGMA_RAD: f64 = 0.03;
 /// Number of poses that a search tells apart in the free area of a map, at least one.
 fn number_of_places(grid: &OccupancyGrid) -> f64 {
     let free = grid.cells().iter().filter(|cell| **cell == Cell::Free).count() as f64;
-    (free * grid.geometry().resolution.powi(2) / PLACE_AREA_M2).max(1.0) * HEADINGS
+    (free * grid.geometry().resolution.powi(2) / PLACE_AREA_M2).max(1.0) * HEADING_COUNT
 }
 
 #[cfg(test)]

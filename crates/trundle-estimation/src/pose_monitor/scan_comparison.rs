@@ -147,7 +147,7 @@ fn verdict(
     let tolerance = 2.0 * (view.position_sigma + range * view.heading_sigma);
     let tolerance = (MIN_TOLERANCE_M + tolerance).min(MAX_TOLERANCE_M);
     let (from, to) = (view.map_from_base.transform(origin), view.map_from_base.transform(end));
-    let mut around = Surroundings::default();
+    let mut around = CellCounts::default();
     around.count(grid, to, tolerance);
     if is_hit && around.occupied > 0 {
         return Verdict::Agrees;
@@ -172,12 +172,12 @@ fn first_occupied(grid: &OccupancyGrid, from: Vector2, to: Vector2, tolerance: f
 
 /// Cells about a point.
 #[derive(Debug, Default)]
-struct Surroundings {
+struct CellCounts {
     occupied: usize,
     unknown: usize,
 }
 
-impl Surroundings {
+impl CellCounts {
     /// Counts the cells within `reach` of a point, as a square; those off the map are unknown.
     fn count(&mut self, grid: &OccupancyGrid, at: Vector2, reach: f64) {
         let geometry = grid.geometry();

@@ -23,7 +23,7 @@ const PAUSE_RANGE_S: (f64, f64) = (0.0, 20.0);
 /// Smallest distance of people's way-points from the robot's start, m. The smallest room has corners farther off.
 const CLEAR_START_M: f64 = 0.9;
 /// Number of way-points of a person.
-const WAYPOINTS: usize = 3;
+const WAYPOINT_COUNT: usize = 3;
 
 /// A room of 3 to 6 m with walls of one colour, and `people` who walk about.
 ///
@@ -67,7 +67,7 @@ fn place(build: &mut Builder, (length, width): (f64, f64)) -> Pose2 {
 /// A person whose way-points keep off the robot's start.
 fn walker(build: &mut Builder, room: (f64, f64), start: Pose2) -> Person {
     let places = std::iter::repeat_with(|| place(build, room));
-    let free = places.filter(|at| at.distance(&start) > CLEAR_START_M).take(WAYPOINTS);
+    let free = places.filter(|at| at.distance(&start) > CLEAR_START_M).take(WAYPOINT_COUNT);
     let waypoints = free.map(|at| [at.x, at.y]).collect();
     let (speed, pause) = (between(build, SPEED_RANGE_M_S), between(build, PAUSE_RANGE_S));
     Person { waypoints, speed, pause, around: true, ..Person::default() }
