@@ -56,4 +56,4 @@ pub use odometry::wheel_odometry::WheelOdometry;
 pub use odometry_config::OdometryConfig;
 pub use planar::planar_covariance;
 pub use pose_monitor::config::PoseMonitorConfig;
-pub use pose_monitor::monitor::{PoseDecision, PoseMonitor, PoseState, PoseStatus};
+pub use pose_monitor::monitor::{PoseDecision, PoseMonitor, PoseSource, PoseState, PoseStatus};

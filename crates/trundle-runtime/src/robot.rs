@@ -391,11 +391,16 @@ impl Robot {
         if track.tracking.is_located() {
             self.latest.located = self.latest.located.max(Some(track.stamp));
         }
+        let is_false = self.is_false_recognition(&track, odom_from_base);
         let (times, localizer) = (&mut self.times, &mut self.localizer);
         let before = localizer.estimate().pose;
         let correction = times.measure(Stage::Localization, || {
-            correct_by_visual_pose(localizer, &track, corrected_trajectory.is_some())
+            let correct = || correct_by_visual_pose(localizer, &track, corrected_trajectory.is_some());
+            (!is_false).then(correct).flatten()
         });
+        if is_false {
+            self.perception.iter_mut().for_each(|perception| perception.kidnapped());
+        }
         event_log::correction(track.stamp, "the visual pose", before, self.localizer.estimate().pose);
         self.add_image_evidence(&track, correction);
         if correction == Some(Correction::Reanchored) {

@@ -16,7 +16,7 @@ use trundle_core::{Cell, Invalid, OccupancyGrid, Pose2, PoseEstimate, Scan, Stam
 /// ```text
 /// w(H) = exp(v(H))                  v: scans against the map, nats, each patch of surface once
 /// w(U) = d                          d = window / interval x exp(images + lift)
-/// w(F) = d exp(v(F)) / N            N: number of poses that the free area holds
+/// w(F) = d exp(v(F) + r) / N           N: number of poses that the free area holds
 /// ```
 ///
 /// Cost: a scan is linear in its beams' lengths in cells; a found pose is that for 24 scans.
@@ -38,6 +38,15 @@ enum State {
     Displaced { map_from_odom: Pose2 },
     /// There is no estimate.
     Unknown,
+}
+
+/// What found a pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PoseSource {
+    /// A search of the whole map by scans.
+    Scans,
+    /// An image of a known place.
+    Images,
 }
 
 /// How the pose is known.
@@ -84,6 +93,8 @@ const GIVE_UP_PROBABILITY: f64 = 0.1;
 const BELIEVED_PROBABILITY: f64 = 0.95;
 /// Log-likelihood ratio of a wheel that hung, for another place \[nats\]. Source: ours.
 const LIFTED_NATS: f64 = 4.0;
+/// Log-likelihood ratio of a place that an image recognises \[nats\]. Source: ours: a place in 160,000 looks like another.
+const RECOGNISED_NATS: f64 = 12.0;
 /// Area of a place that a search tells from its neighbours \[m^2\]. Source: ours.
 const PLACE_AREA_M2: f64 = 0.25;
 /// Number of headings that a search tells apart. Source: ours, 10 deg.
@@ -167,10 +178,18 @@ impl PoseMonitor {
         PoseStatus { state, probability: self.probability(now) }
     }
 
-    /// Probability of a pose that a search found, `map_from_odom`, among the estimate and all other places.
-    pub fn probability_of(&self, grid: &OccupancyGrid, map_from_odom: Pose2, here: Pose2, now: Stamp) -> f64 {
+    /// Probability of a found pose, `map_from_odom`, among the estimate `here` and all other places.
+    pub fn probability_of(
+        &self,
+        grid: &OccupancyGrid,
+        (map_from_odom, source): (Pose2, PoseSource),
+        here: Pose2,
+        now: Stamp,
+    ) -> f64 {
         let displaced = self.displaced_nats(now);
-        let found = displaced + self.view.nats_at(grid, map_from_odom) - number_of_places(grid).ln();
+        let recognised = if source == PoseSource::Images { RECOGNISED_NATS } else { 0.0 };
+        let found =
+            displaced + recognised + self.view.nats_at(grid, map_from_odom) - number_of_places(grid).ln();
         let here = match self.state {
             State::Unknown => f64::NEG_INFINITY,
             State::Displaced { map_from_odom } => self.view.nats_at(grid, map_from_odom),
@@ -318,15 +337,19 @@ mod tests {
         (0..60_u32).for_each(|i| {
             here.step(0.1 * f64::from(i), None, false);
         });
-        let probability = here.monitor.probability_of(&here.grid, at, at, here.now());
+        let probability = here.monitor.probability_of(&here.grid, (at, PoseSource::Scans), at, here.now());
         assert!(probability < 0.5, "the same pose: {probability}");
         let elsewhere = Pose2::new(4.8, 2.0, -2.0);
         let mut away = Run::new(elsewhere, at);
         (0..60_u32).for_each(|i| {
             away.step(0.1 * f64::from(i), None, false);
         });
-        let probability = away.monitor.probability_of(&away.grid, elsewhere, at, away.now());
-        assert!(away.monitor.is_enough(probability), "{probability}");
+        for source in [PoseSource::Scans, PoseSource::Images] {
+            let probability = away.monitor.probability_of(&away.grid, (elsewhere, source), at, away.now());
+            assert!(away.monitor.is_enough(probability), "{source:?}: {probability}");
+            let probability = here.monitor.probability_of(&here.grid, (elsewhere, source), at, here.now());
+            assert!(probability < 1e-3, "{source:?}: {probability}");
+        }
     }
 
     #[test]

@@ -7,8 +7,13 @@ use crate::{
 };
 use nalgebra::Matrix3;
 use trundle_core::{Pose2, PoseEstimate, Scan, Stamp};
-use trundle_estimation::{Correction, Localizer, PoseDecision, PoseState};
+use trundle_estimation::{Correction, Localizer, PoseDecision, PoseSource, PoseState};
 use trundle_slam::TrackReport;
+
+/// Distance of a recognised place from the estimate within which it is taken without the scans \[m\]: the drift of the wheels. Source: ours.
+const NEAR_RECOGNITION_M: f64 = 1.0;
+/// The same for the heading \[rad\]: 20 deg. Source: ours.
+const NEAR_RECOGNITION_RAD: f64 = 0.35;
 
 impl Robot {
     /// A scan of a laser that is the range source.
@@ -44,16 +49,38 @@ impl Robot {
     fn take_found_pose(&mut self, found: &LocalizedPose) {
         let now = found.stamp;
         let Some(odometer) = self.odometry_at(now) else { return };
-        let odom_from_map = |pose: Pose2| pose * odometer.pose.inverse();
-        let here = self.localizer.pose_at(now).map_or(Pose2::IDENTITY, odom_from_map);
-        let map_from_odom = odom_from_map(found.map_from_base);
-        let grid = self.mapper.grid();
-        let probability = self.pose_monitor.probability_of(grid, map_from_odom, here, now);
-        if self.pose_monitor.is_enough(probability) {
+        if self.is_far_more_probable(now, found.map_from_base, odometer.pose, PoseSource::Scans) {
             self.set_pose(now, found.map_from_base, &found.covariance, "global localization");
-        } else {
-            event_log::found_pose_refused(now, found.map_from_base, probability);
         }
+    }
+
+    /// Whether a found pose of the base is far more probable than the estimate and any other place.
+    fn is_far_more_probable(&self, now: Stamp, found: Pose2, odometer: Pose2, source: PoseSource) -> bool {
+        let map_from_odom = |pose: Pose2| pose * odometer.inverse();
+        let here = self.localizer.pose_at(now).map_or(Pose2::IDENTITY, map_from_odom);
+        let found_odom = map_from_odom(found);
+        let probability =
+            self.pose_monitor.probability_of(self.mapper.grid(), (found_odom, source), here, now);
+        let is_enough = self.pose_monitor.is_enough(probability);
+        if !is_enough {
+            event_log::found_pose_refused(now, found, probability);
+        }
+        is_enough
+    }
+
+    /// Whether an image recognises a place far from an estimate that is believed, and the scans do not speak for that place.
+    pub(super) fn is_false_recognition(&self, track: &TrackReport, odom_from_base: Pose2) -> bool {
+        let now = track.stamp;
+        if !track.relocalised || !self.pose_monitor.status(now).is_believed() {
+            return false;
+        }
+        let anchor = self.localizer.visual_maps().get(&track.map.number()).copied();
+        let (Some(anchor), Ok(here)) = (anchor, self.localizer.pose_at(now)) else { return false };
+        let camera_from_base = self.base_from_camera.inverse();
+        let found = (anchor.map_from_visual * track.visual_from_camera * camera_from_base).to_pose2();
+        let off = here.inverse() * found;
+        let is_near = off.position().norm() <= NEAR_RECOGNITION_M && off.theta.abs() <= NEAR_RECOGNITION_RAD;
+        !is_near && !self.is_far_more_probable(now, found, odom_from_base, PoseSource::Images)
     }
 
     /// A pose in place of the estimate.
