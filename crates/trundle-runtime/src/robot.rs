@@ -36,6 +36,7 @@ use crate::{
 use background::Background;
 use body_state::BodyState;
 use event_log::DroppedImage;
+use pose_monitor::Objection;
 use sensor_watch::SensorWatch;
 use std::sync::Arc;
 use trundle_control::{MotionHold, MotionSense, SafetyScan};
@@ -391,14 +392,16 @@ impl Robot {
         if track.tracking.is_located() {
             self.latest.located = self.latest.located.max(Some(track.stamp));
         }
-        let is_false = self.is_false_recognition(&track, odom_from_base);
-        let (times, localizer) = (&mut self.times, &mut self.localizer);
-        let before = localizer.estimate().pose;
-        let correction = times.measure(Stage::Localization, || {
-            let correct = || correct_by_visual_pose(localizer, &track, corrected_trajectory.is_some());
-            (!is_false).then(correct).flatten()
+        let objection = self.objection(&track, odom_from_base);
+        let before = self.localizer.estimate().pose;
+        let visual = visual_pose(&track, corrected_trajectory.is_some());
+        let localizer = &mut self.localizer;
+        let correction = self.times.measure(Stage::Localization, || match (visual, objection) {
+            (None, _) | (_, Some(Objection::FalseRecognition)) => None,
+            (Some(visual), Some(Objection::FrameMoved)) => Some(localizer.anchor_again(&visual)),
+            (Some(visual), None) => Some(localizer.correct_visual(&visual)),
         });
-        if is_false {
+        if objection == Some(Objection::FalseRecognition) {
             self.perception.iter_mut().for_each(|perception| perception.kidnapped());
         }
         event_log::correction(track.stamp, "the visual pose", before, self.localizer.estimate().pose);
@@ -537,23 +540,19 @@ fn inscribed_radius(footprint: &Footprint) -> f64 {
     }
 }
 
-/// Gives the visual pose, where there is one, to the localizer. A pose in a map that was just corrected counts as recognised.
-fn correct_by_visual_pose(
-    localizer: &mut Localizer,
-    track: &TrackReport,
-    is_corrected: bool,
-) -> Option<Correction> {
+/// The visual pose, where there is one. A pose in a map that was just corrected counts as recognised.
+fn visual_pose(track: &TrackReport, is_corrected: bool) -> Option<VisualPose> {
     let quality = match track.tracking {
         Tracking::Ok => VisualQuality::Ok,
         Tracking::Weak => VisualQuality::Weak,
         Tracking::DeadReckoning | Tracking::Lost => return None,
     };
-    Some(localizer.correct_visual(&VisualPose {
+    Some(VisualPose {
         stamp: track.stamp,
         visual_from_camera: track.visual_from_camera,
         covariance: track.covariance,
         quality,
         map: track.map.number(),
         recognised: track.relocalised || is_corrected,
-    }))
+    })
 }

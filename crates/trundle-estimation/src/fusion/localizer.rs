@@ -141,6 +141,23 @@ impl Localizer {
         }
     }
 
+    /// Anchors the frame of a visual map anew, so that this pose of it agrees with the estimate: the frame has moved, and the estimate is
+    /// right.
+    pub fn anchor_again(&mut self, visual: &VisualPose) -> Correction {
+        if !(visual.visual_from_camera.is_finite() && visual.covariance.iter().all(|v| v.is_finite())) {
+            return Correction::NotFinite;
+        }
+        match self.find(visual.stamp) {
+            Ok(moment) => {
+                self.visual.anchor(&moment.belief, visual);
+                self.divergence = DivergenceCheck::default();
+                self.visual_motion.restart();
+                Correction::Reanchored
+            }
+            Err(rejection) => rejection,
+        }
+    }
+
     /// Leaves a visual pose out while images follow something that moves, and anchors the visual frame anew afterwards.
     fn check_visual_motion(
         &mut self,

@@ -198,6 +198,11 @@ impl PoseMonitor {
         1.0 / (1.0 + (here - found).exp() + (displaced - found).exp())
     }
 
+    /// Log-likelihood ratio of the newest scans at a pose, `map_from_odom`, against another place \[nats\].
+    pub fn scan_nats_at(&self, grid: &OccupancyGrid, map_from_odom: Pose2) -> f64 {
+        self.view.nats_at(grid, map_from_odom)
+    }
+
     /// Whether a probability suffices to take a found pose over.
     pub fn is_enough(&self, probability: f64) -> bool {
         probability >= self.config.accept_probability

@@ -10,10 +10,25 @@ use trundle_core::{Pose2, PoseEstimate, Scan, Stamp};
 use trundle_estimation::{Correction, Localizer, PoseDecision, PoseSource, PoseState};
 use trundle_slam::TrackReport;
 
-/// Distance of a recognised place from the estimate within which it is taken without the scans \[m\]: the drift of the wheels. Source: ours.
-const NEAR_RECOGNITION_M: f64 = 1.0;
+/// Distance of a visual pose from the estimate within which the localizer alone decides \[m\]. Source: ours.
+const NEAR_M: f64 = 0.25;
+/// The same for the heading \[rad\]: 6 deg. Source: ours.
+const NEAR_RAD: f64 = 0.1;
+/// Distance that the estimate may have drifted without a sign of it \[m\]. Source: ours.
+const DRIFT_M: f64 = 1.0;
 /// The same for the heading \[rad\]: 20 deg. Source: ours.
-const NEAR_RECOGNITION_RAD: f64 = 0.35;
+const DRIFT_RAD: f64 = 0.35;
+/// Log-likelihood ratio of the scans for the estimate above which they object to a visual pose within the drift \[nats\]. Source: ours.
+const OBJECTION_NATS: f64 = 6.0;
+
+/// Why scans object to a visual pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Objection {
+    /// An image recognises a place where the robot is not.
+    FalseRecognition,
+    /// The visual map followed something that moves: its frame lies elsewhere.
+    FrameMoved,
+}
 
 impl Robot {
     /// A scan of a laser that is the range source.
@@ -68,19 +83,32 @@ impl Robot {
         is_enough
     }
 
-    /// Whether an image recognises a place far from an estimate that is believed, and the scans do not speak for that place.
-    pub(super) fn is_false_recognition(&self, track: &TrackReport, odom_from_base: Pose2) -> bool {
+    /// The objection of the scans to a visual pose far from an estimate that is believed.
+    pub(super) fn objection(&self, track: &TrackReport, odom_from_base: Pose2) -> Option<Objection> {
         let now = track.stamp;
-        if !track.relocalised || !self.pose_monitor.status(now).is_believed() {
-            return false;
+        if !track.tracking.is_located() || !self.pose_monitor.status(now).is_believed() {
+            return None;
         }
-        let anchor = self.localizer.visual_maps().get(&track.map.number()).copied();
-        let (Some(anchor), Ok(here)) = (anchor, self.localizer.pose_at(now)) else { return false };
+        let anchor = *self.localizer.visual_maps().get(&track.map.number())?;
+        let here = self.localizer.pose_at(now).ok()?;
         let camera_from_base = self.base_from_camera.inverse();
         let found = (anchor.map_from_visual * track.visual_from_camera * camera_from_base).to_pose2();
         let off = here.inverse() * found;
-        let is_near = off.position().norm() <= NEAR_RECOGNITION_M && off.theta.abs() <= NEAR_RECOGNITION_RAD;
-        !is_near && !self.is_far_more_probable(now, found, odom_from_base, PoseSource::Images)
+        let is_within =
+            |distance: f64, turn: f64| off.position().norm() <= distance && off.theta.abs() <= turn;
+        if is_within(NEAR_M, NEAR_RAD) {
+            return None;
+        }
+        let kind = if track.relocalised { Objection::FalseRecognition } else { Objection::FrameMoved };
+        let is_refused = if is_within(DRIFT_M, DRIFT_RAD) {
+            let nats_at = |pose: Pose2| {
+                self.pose_monitor.scan_nats_at(self.mapper.grid(), pose * odom_from_base.inverse())
+            };
+            nats_at(here) - nats_at(found) > OBJECTION_NATS
+        } else {
+            !self.is_far_more_probable(now, found, odom_from_base, PoseSource::Images)
+        };
+        is_refused.then_some(kind)
     }
 
     /// A pose in place of the estimate.
