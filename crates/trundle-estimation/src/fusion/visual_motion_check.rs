@@ -14,10 +14,19 @@ pub(crate) struct VisualMotionCheck {
     /// Number of the visual map of the window.
     map: u32,
     scans: MotionWindow,
-    /// When scans last agreed with the wheels.
-    wheels_confirmed: Option<Stamp>,
-    /// When images last contradicted the confirmed wheels, since the visual frame was last anchored.
+    /// The newest verdict of a scan on the wheels.
+    verdict: Option<(Stamp, WheelVerdict)>,
+    /// Since when images contradict the wheels.
+    doubt: Option<Stamp>,
+    /// When images last contradicted wheels that scans confirm, since the visual frame was last anchored.
     conflict: Option<Stamp>,
+}
+
+/// Verdict of scans on the motion by wheels and gyro.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum WheelVerdict {
+    Confirmed,
+    Refuted,
 }
 
 /// Verdict on a visual pose.
@@ -35,8 +44,12 @@ pub(crate) enum VisualMotion {
 const CONFLICT_DISTANCE: f64 = 5.0;
 /// The same within which scans confirm the wheels. Source: ours.
 const CONFIRMED_DISTANCE: f64 = 3.0;
-/// Time for which scans confirm the wheels \[s\]. Source: ours.
-const CONFIRMED_FOR_S: f64 = 1.0;
+/// Smallest time from the begin of a contradiction to a scan that decides it \[s\]: a scan before it shows nothing of it. Source: ours.
+const MIN_VERDICT_DELAY_S: f64 = 0.1;
+/// Age of the newest verdict up to which another one is expected \[s\]. Source: ours.
+const MAX_VERDICT_AGE_S: f64 = 1.0;
+/// Time for which images are left out while no scan has decided \[s\]. Source: ours, two scans.
+const MAX_DOUBT_S: f64 = 0.5;
 /// Time without a contradiction after which the visual map stands still again \[s\]. Source: the window's length.
 const CALM_S: f64 = 1.5;
 /// Noise of a visual position within one visual map \[m\]. Source: ours.
@@ -58,9 +71,19 @@ impl VisualMotionCheck {
             self.restart();
         }
         let distance = self.images.add(stamp, pose, noise(), odometry).unwrap_or(0.0);
-        let is_confirmed = self.wheels_confirmed.is_some_and(|at| (stamp - at).abs() <= CONFIRMED_FOR_S);
-        if distance > CONFLICT_DISTANCE && is_confirmed {
-            self.conflict = Some(stamp);
+        if distance <= CONFLICT_DISTANCE {
+            self.doubt = None;
+        } else {
+            let since = *self.doubt.get_or_insert(stamp);
+            let decided = self.verdict.filter(|(at, _)| *at - since >= MIN_VERDICT_DELAY_S);
+            match decided.map(|(_, verdict)| verdict) {
+                Some(WheelVerdict::Confirmed) => self.conflict = Some(stamp),
+                Some(WheelVerdict::Refuted) => self.conflict = None,
+                None if self.has_scans(stamp) && stamp - since <= MAX_DOUBT_S => {
+                    return VisualMotion::Contradicts(distance);
+                }
+                None => {}
+            }
         }
         match self.conflict {
             None => VisualMotion::Agrees,
@@ -78,13 +101,22 @@ impl VisualMotionCheck {
         odometry: OdometryState,
     ) {
         let Some(distance) = self.scans.add(stamp, pose, covariance + noise(), odometry) else { return };
-        self.wheels_confirmed = (distance <= CONFIRMED_DISTANCE).then_some(stamp);
+        self.verdict = match distance {
+            _ if distance <= CONFIRMED_DISTANCE => Some((stamp, WheelVerdict::Confirmed)),
+            _ if distance > CONFLICT_DISTANCE => Some((stamp, WheelVerdict::Refuted)),
+            _ => self.verdict,
+        };
+    }
+
+    /// Whether scans come that may decide.
+    fn has_scans(&self, now: Stamp) -> bool {
+        self.verdict.is_some_and(|(at, _)| now - at <= MAX_VERDICT_AGE_S)
     }
 
     /// The visual frame was anchored anew.
     pub(crate) fn restart(&mut self) {
         self.images.clear();
-        self.conflict = None;
+        (self.doubt, self.conflict) = (None, None);
     }
 }
 
@@ -125,6 +157,8 @@ mod tests {
 
     #[test]
     fn images_and_scans_against_the_wheels_mean_that_the_wheels_slip() {
-        assert!(verdicts(false).iter().all(|verdict| *verdict == VisualMotion::Agrees));
+        let verdicts = verdicts(false);
+        let left_out = verdicts.iter().filter(|verdict| **verdict != VisualMotion::Agrees).count();
+        assert!(left_out <= 2, "{left_out} images until a scan decides");
     }
 }

@@ -57,10 +57,16 @@ impl ImageEvidence {
 
     /// Log-likelihood ratio for another place than the estimate \[nats\].
     pub(crate) fn nats(&self, now: Stamp) -> f64 {
+        self.nats_since(now.after(-self.outage_s), now)
+    }
+
+    /// The same for a robot that was carried away at a moment: what the outage had lasted by then is no sign of it.
+    pub(crate) fn nats_since(&self, moment: Stamp, now: Stamp) -> f64 {
         if self.is_located(now) {
             return -LOCATED_NATS;
         }
-        self.alpha * (self.outage_s / self.beta_s).ln_1p()
+        let before = (self.outage_s - (now - moment)).max(0.0);
+        self.alpha * ((self.beta_s + self.outage_s) / (self.beta_s + before)).ln()
     }
 
     /// Whether an image was recognised shortly before.

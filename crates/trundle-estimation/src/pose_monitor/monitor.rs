@@ -14,9 +14,9 @@ use trundle_core::{Cell, Invalid, OccupancyGrid, Pose2, PoseEstimate, Scan, Stam
 /// Hypotheses: the estimated pose H, some other place U, and a found pose F. Their weights:
 ///
 /// ```text
-/// w(H) = exp(v(H))                  v: scans against the map, nats, each patch of surface once
-/// w(U) = d                          d = window / interval x exp(images + lift)
-/// w(F) = d exp(v(F) + r) / N           N: number of poses that the free area holds
+/// w(H) = exp(min over t of (v(H, t) - i(t)))   v: scans since t against the map, i: images since t, nats
+/// w(U) = d                                     d = window / interval x exp(lift)
+/// w(F) = d exp(i + v(F) + r) / N               r: image that recognises F, N: number of poses in the free area
 /// ```
 ///
 /// Cost: a scan is linear in its beams' lengths in cells; a found pose is that for 24 scans.
@@ -91,6 +91,8 @@ pub enum PoseDecision {
 const GIVE_UP_PROBABILITY: f64 = 0.1;
 /// Probability of the estimate above which it is believed, and scans are drawn at it. Source: ours.
 const BELIEVED_PROBABILITY: f64 = 0.95;
+/// Logarithm of the odds of another place when the estimate is given up \[nats\]: that of [`GIVE_UP_PROBABILITY`].
+const GIVEN_UP_NATS: f64 = 2.2;
 /// Log-likelihood ratio of a wheel that hung, for another place \[nats\]. Source: ours.
 const LIFTED_NATS: f64 = 4.0;
 /// Log-likelihood ratio of a place that an image recognises \[nats\]. Source: ours: a place in 160,000 looks like another.
@@ -155,6 +157,7 @@ impl PoseMonitor {
         match self.state {
             State::Believed if probability < GIVE_UP_PROBABILITY => {
                 self.state = State::Displaced { map_from_odom };
+                self.view.forget_before(self.worst_since(now).1);
                 PoseDecision::GiveUp
             }
             State::Displaced { map_from_odom } if probability > BELIEVED_PROBABILITY => {
@@ -224,17 +227,29 @@ impl PoseMonitor {
 
     /// Probability of the estimate, against all other places.
     fn probability(&self, now: Stamp) -> f64 {
-        match self.state {
-            State::Unknown => 0.0,
-            _ => 1.0 / (1.0 + (self.displaced_nats(now) - self.view.nats()).exp()),
-        }
+        let odds_of_another = match self.state {
+            State::Unknown => return 0.0,
+            State::Believed => self.prior_nats() - self.worst_since(now).0,
+            State::Displaced { .. } => GIVEN_UP_NATS + self.images.nats(now) - self.view.nats(),
+        };
+        1.0 / (1.0 + odds_of_another.exp())
+    }
+
+    /// Worst evidence for the estimate since any moment, and that moment.
+    fn worst_since(&self, now: Stamp) -> (f64, Stamp) {
+        self.view.worst_since(now, |moment| self.images.nats_since(moment, now))
     }
 
     /// Logarithm of the odds of another place, without the scans.
     fn displaced_nats(&self, now: Stamp) -> f64 {
+        self.prior_nats() + self.images.nats(now)
+    }
+
+    /// Logarithm of the odds of another place, without images and scans.
+    fn prior_nats(&self) -> f64 {
         let prior = (WINDOW_S / self.config.displacement_interval).ln();
         let lift = if self.was_lifted { LIFTED_NATS } else { 0.0 };
-        prior + lift + self.images.nats(now)
+        prior + lift
     }
 }
 

@@ -57,9 +57,34 @@ impl ViewEvidence {
         self.previous = Some(scan);
     }
 
-    /// Log-likelihood ratio of the scans at the estimated pose, against another place \[nats\].
+    /// Smallest log-likelihood ratio at the estimated pose, against a robot that was carried away at any one moment \[nats\], and that
+    /// moment. `images` is the ratio of the images since a moment, for another place.
+    ///
+    /// What agreed before the moment says nothing. At most 0, which is that of the present moment.
+    pub(crate) fn worst_since(&self, now: Stamp, images: impl Fn(Stamp) -> f64) -> (f64, Stamp) {
+        let mut newest: Vec<(Stamp, PatchKind)> = self.patches.0.values().copied().collect();
+        newest.sort_by(|a, b| b.cmp(a));
+        let (mut sum, mut worst) = (0.0, (-images(now), now));
+        for (i, (stamp, kind)) in newest.iter().enumerate() {
+            sum += nats(*kind);
+            let is_first_of_scan = newest.get(i + 1).is_none_or(|(next, _)| next != stamp);
+            if is_first_of_scan && sum - images(*stamp) < worst.0 {
+                worst = (sum - images(*stamp), *stamp);
+            }
+        }
+        let before = now.after(-WINDOW_S);
+        if sum - images(before) < worst.0 { (sum - images(before), before) } else { worst }
+    }
+
+    /// Log-likelihood ratio of all scans at the estimated pose, against another place \[nats\].
     pub(crate) fn nats(&self) -> f64 {
         self.patches.nats()
+    }
+
+    /// Drops what came before a moment: the robot was elsewhere then.
+    pub(crate) fn forget_before(&mut self, moment: Stamp) {
+        self.patches.0.retain(|_, (stamp, _)| *stamp >= moment);
+        self.kept.retain(|kept| kept.scan.stamp() >= moment);
     }
 
     /// The same of the kept scans at any pose of the odometry's frame in the map.
