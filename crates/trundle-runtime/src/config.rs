@@ -10,7 +10,7 @@ use trundle_core::{
     DifferentialDrive, DriveLimits, Footprint, Invalid, PinholeCamera, Vector2, footprint_corners,
     number_list, require_in,
 };
-use trundle_estimation::{LocalizerConfig, OdometryConfig, PoseMonitorConfig, StationLightConfig};
+use trundle_estimation::{LocalizerConfig, OdometryConfig, StationLightConfig};
 use trundle_mapping::{DepthScanConfig, MapperConfig, ScanMatchConfig};
 use trundle_planning::{ObstacleTrackerConfig, PlannerConfig};
 use trundle_slam::SlamConfig;
@@ -51,8 +51,6 @@ pub struct RobotConfig {
     pub scan_match: ScanMatchConfig,
     /// Fusion.
     pub localization: LocalizerConfig,
-    /// Whether the robot is where the estimate says.
-    pub pose_monitor: PoseMonitorConfig,
     /// Occupancy grid.
     pub mapping: MapperConfig,
     /// Who moves near by, found in the scans.
@@ -110,7 +108,6 @@ impl Default for RobotConfig {
             scan: DepthScanConfig::default(),
             scan_match: ScanMatchConfig::default(),
             localization: LocalizerConfig::default(),
-            pose_monitor: PoseMonitorConfig::default(),
             mapping: MapperConfig::default(),
             movers: ObstacleTrackerConfig::default(),
             planning: PlannerConfig::default(),

@@ -24,6 +24,7 @@ use crate::{
     config::RobotConfig,
     mission::{Mission, MissionState, Task},
     monitors::camera_health::CameraHealth,
+    monitors::scan_map_consistency::ScanMapConsistency,
     range_source::RangeSource,
     report::StepReport,
     scan_pose_log::ScanPoseLog,
@@ -36,7 +37,6 @@ use crate::{
 use background::Background;
 use body_state::BodyState;
 use event_log::DroppedImage;
-use pose_monitor::Objection;
 use sensor_watch::SensorWatch;
 use std::sync::Arc;
 use trundle_control::{MotionHold, MotionSense, SafetyScan};
@@ -45,8 +45,7 @@ use trundle_core::{
     Scan, SensorEvent, Stamp, Vector2, WheelTicks,
 };
 use trundle_estimation::{
-    Correction, Localizer, OdometryState, PoseMonitor, StationEstimator, VisualPose, VisualQuality,
-    WheelOdometry,
+    Correction, Localizer, OdometryState, StationEstimator, VisualPose, VisualQuality, WheelOdometry,
 };
 use trundle_mapping::{LiveMapper, MapperConfig, ScanMatcher};
 use trundle_planning::{MovingObstacle, MovingObstacleTracker};
@@ -76,7 +75,6 @@ pub struct Robot {
     matcher: ScanMatcher,
     obstacle_tracker: MovingObstacleTracker,
     localizer: Localizer,
-    pose_monitor: PoseMonitor,
     /// Pose of the charging station.
     station: StationEstimator,
     /// `base_from_station` of a robot on the contacts.
@@ -107,8 +105,11 @@ struct Latest {
     /// `odom_from_base` when it was taken.
     scan_odometry: Option<Pose2>,
     camera_health: CameraHealth,
+    /// Start of the time in which images show enough and are not located.
+    unlocated: Option<Stamp>,
     /// Stamp of the newest image that was located.
     located: Option<Stamp>,
+    scan_map_consistency: ScanMapConsistency,
     /// Images that were left out because the camera was frozen.
     frozen: usize,
     /// The newest state, and whether the mission is over.
@@ -123,6 +124,8 @@ struct Latest {
     unconfirmed: Vec<Vector2>,
 }
 
+/// Time without a located image \[s\] after which images with enough features count as images of another place than the estimate. Source: ours.
+const UNLOCATED_WITH_FEATURES_S: f64 = 0.3;
 /// Largest age of a located image \[s\] that still measures the robot's motion. Source: ours.
 const MAX_VISUAL_MOTION_AGE_S: f64 = 0.8;
 /// Correction of the pose \[m\] above which obstacle tracks restart: motion is not measured from scans on both sides of a jump. Source: ours.
@@ -164,7 +167,6 @@ impl Robot {
             matcher: ScanMatcher::new(config.scan_match.clone())?,
             obstacle_tracker: MovingObstacleTracker::new(config.movers)?,
             localizer: Localizer::new(config.localization.clone(), base_from_camera)?,
-            pose_monitor: PoseMonitor::new(config.pose_monitor)?,
             map_due: Ticker::new(config.schedule.validated()?.map_hz),
             station: StationEstimator::new(config.station, STATION_SEED)?,
             docked: Pose2::new(bumper::front_of(&footprint), 0.0, std::f64::consts::PI),
@@ -264,9 +266,6 @@ impl Robot {
     fn on_body(&mut self, event: &BodyEvent, report: &mut StepReport) {
         let before = self.latest.body.hold(self.range_source);
         self.latest.body.update(event.kind);
-        if self.latest.body.is_lifted() {
-            self.pose_monitor.set_lifted();
-        }
         if matches!(event.kind, BodyEventKind::Battery(_)) && self.latest.body.is_docked() {
             self.station.add_contact(self.localizer.estimate().pose * self.docked);
         }
@@ -310,7 +309,7 @@ impl Robot {
             grid: self.mapper.grid(),
             scan: self.latest.scan_with_odometry(),
             seen: self.latest.camera_health.seen(),
-            pose_status: self.pose_monitor.status(now),
+            unlocated: self.latest.unlocated.map_or(0.0, |since| now - since),
             wheels: self.latest.odometry.as_ref().map(|odometry| odometry.stamp),
             hold: self.latest.body.hold(self.range_source),
             motion: self.motion_sense(now),
@@ -387,25 +386,29 @@ impl Robot {
 
     /// Applies the result of an image: the visual pose corrects the estimate; at the grid's rate the scan does too, and enters the grid.
     fn apply_perception(&mut self, result: PerceptionResult, report: &mut StepReport) {
-        let PerceptionResult { odom_from_base, track, scan, place, corrected_trajectory, visual_snapshot } =
-            result;
+        let PerceptionResult {
+            odom_from_base,
+            track,
+            scan,
+            place,
+            unlocated,
+            is_carried_away,
+            corrected_trajectory,
+            visual_snapshot,
+        } = result;
+        self.latest.unlocated = unlocated;
         if track.tracking.is_located() {
             self.latest.located = self.latest.located.max(Some(track.stamp));
         }
-        let objection = self.objection(&track, odom_from_base);
-        let before = self.localizer.estimate().pose;
-        let visual = visual_pose(&track, corrected_trajectory.is_some());
-        let localizer = &mut self.localizer;
-        let correction = self.times.measure(Stage::Localization, || match (visual, objection) {
-            (None, _) | (_, Some(Objection::FalseRecognition)) => None,
-            (Some(visual), Some(Objection::FrameMoved)) => Some(localizer.anchor_again(&visual)),
-            (Some(visual), None) => Some(localizer.correct_visual(&visual)),
-        });
-        if objection == Some(Objection::FalseRecognition) {
-            self.perception.iter_mut().for_each(|perception| perception.kidnapped());
+        if is_carried_away {
+            self.lose_pose();
         }
+        let (times, localizer) = (&mut self.times, &mut self.localizer);
+        let before = localizer.estimate().pose;
+        let correction = times.measure(Stage::Localization, || {
+            correct_by_visual_pose(localizer, &track, corrected_trajectory.is_some())
+        });
         event_log::correction(track.stamp, "the visual pose", before, self.localizer.estimate().pose);
-        self.add_image_evidence(&track, correction);
         if correction == Some(Correction::Reanchored) {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
             self.scan_poses = ScanPoseLog::default();
@@ -458,7 +461,8 @@ impl Robot {
 
     /// Whether the pose is known well enough for scans to enter the grid.
     fn is_pose_known(&self, now: Stamp) -> bool {
-        self.pose_monitor.status(now).is_believed()
+        let is_unlocated = self.latest.unlocated.is_some_and(|since| now - since > UNLOCATED_WITH_FEATURES_S);
+        !is_unlocated
             && !self.latest.body.is_lifted()
             && position_sigma(&self.localizer.estimate()) < self.lost_sigma
     }
@@ -540,19 +544,23 @@ fn inscribed_radius(footprint: &Footprint) -> f64 {
     }
 }
 
-/// The visual pose, where there is one. A pose in a map that was just corrected counts as recognised.
-fn visual_pose(track: &TrackReport, is_corrected: bool) -> Option<VisualPose> {
+/// Gives the visual pose, where there is one, to the localizer. A pose in a map that was just corrected counts as recognised.
+fn correct_by_visual_pose(
+    localizer: &mut Localizer,
+    track: &TrackReport,
+    is_corrected: bool,
+) -> Option<Correction> {
     let quality = match track.tracking {
         Tracking::Ok => VisualQuality::Ok,
         Tracking::Weak => VisualQuality::Weak,
         Tracking::DeadReckoning | Tracking::Lost => return None,
     };
-    Some(VisualPose {
+    Some(localizer.correct_visual(&VisualPose {
         stamp: track.stamp,
         visual_from_camera: track.visual_from_camera,
         covariance: track.covariance,
         quality,
         map: track.map.number(),
         recognised: track.relocalised || is_corrected,
-    })
+    }))
 }

@@ -2,7 +2,7 @@
 
 use trundle_control::{MotionHold, MotionSense, SafetyScan};
 use trundle_core::{OccupancyGrid, Pose2, PoseEstimate, Scan, Stamp, Vector2};
-use trundle_estimation::{PoseStatus, StationEstimate};
+use trundle_estimation::StationEstimate;
 use trundle_planning::MovingObstacle;
 
 /// State of robot and surroundings at a decision.
@@ -15,8 +15,8 @@ pub(crate) struct WorldState<'a> {
     pub(crate) scan: Option<SafetyScan<'a>>,
     /// Stamp of the newest scan with content.
     pub(crate) seen: Option<Stamp>,
-    /// Whether the robot is where the estimate says.
-    pub(crate) pose_status: PoseStatus,
+    /// For how long images that show enough have not been located, s.
+    pub(crate) unlocated: f64,
     /// Stamp of the newest reading of the wheels; none before the first.
     pub(crate) wheels: Option<Stamp>,
     /// A condition of the body under which no wheel may turn.
@@ -62,7 +62,7 @@ pub(crate) struct OwnedWorldState {
     /// With `odom_from_base` when it was taken, and now.
     scan: Option<(Scan, Pose2, Pose2)>,
     seen: Option<Stamp>,
-    pose_status: PoseStatus,
+    unlocated: f64,
     wheels: Option<Stamp>,
     hold: Option<MotionHold>,
     motion: MotionSense,
@@ -80,7 +80,7 @@ impl From<&WorldState<'_>> for OwnedWorldState {
             grid: s.grid.clone(),
             scan: s.scan.map(|seen| (seen.scan.clone(), seen.odom_at_scan, seen.odom_now)),
             seen: s.seen,
-            pose_status: s.pose_status,
+            unlocated: s.unlocated,
             wheels: s.wheels,
             hold: s.hold,
             motion: s.motion,
@@ -109,7 +109,7 @@ impl OwnedWorldState {
                 odom_now: *odom_now,
             }),
             seen: self.seen,
-            pose_status: self.pose_status,
+            unlocated: self.unlocated,
             wheels: self.wheels,
             hold: self.hold,
             motion: self.motion,
@@ -127,7 +127,6 @@ impl OwnedWorldState {
 mod tests {
     use super::*;
     use trundle_core::{Beam, CellIndex, Twist2};
-    use trundle_estimation::PoseState;
 
     fn estimate() -> PoseEstimate {
         let (pose, covariance) = (Pose2::new(1.0, 2.0, 0.3), nalgebra::Matrix3::identity());
@@ -152,7 +151,7 @@ mod tests {
                 odom_now: Pose2::new(0.2, 0.0, 0.0),
             }),
             seen: Some(Stamp::from_nanos(4)),
-            pose_status: PoseStatus { state: PoseState::DeadReckoned, probability: 0.4 },
+            unlocated: 0.4,
             wheels: Some(Stamp::from_nanos(8)),
             hold: Some(MotionHold::Paused),
             motion: MotionSense::Sight,
@@ -167,8 +166,8 @@ mod tests {
         let copy = owned.as_world_state();
         assert_eq!((copy.now, copy.estimate, copy.grid), (original.now, original.estimate, original.grid));
         assert_eq!(
-            (copy.seen, copy.pose_status, copy.motion, copy.wheels, copy.hold),
-            (original.seen, original.pose_status, original.motion, original.wheels, original.hold)
+            (copy.seen, copy.unlocated, copy.motion, copy.wheels, copy.hold),
+            (original.seen, original.unlocated, original.motion, original.wheels, original.hold)
         );
         let (carried, kept) = (copy.scan.unwrap(), original.scan.unwrap());
         assert_eq!(carried.scan, kept.scan);

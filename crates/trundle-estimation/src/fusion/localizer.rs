@@ -7,7 +7,6 @@ use crate::{
     fusion::divergence_check::{DivergenceAction, DivergenceCheck},
     fusion::measurement_buffer::{MeasurementBuffer, Moment},
     fusion::visual_frame::{VisualAnchor, VisualFrame},
-    fusion::visual_motion_check::{VisualMotion, VisualMotionCheck},
     odometry::state::OdometryState,
 };
 use nalgebra::{Matrix3, Vector3};
@@ -37,7 +36,6 @@ pub struct Localizer {
     buffer: Option<MeasurementBuffer>,
     visual: VisualFrame,
     divergence: DivergenceCheck,
-    visual_motion: VisualMotionCheck,
 }
 
 /// Variances of an unknown pose, m^2, m^2, rad^2: 100 m cover a building. Smaller ones would reject a relocalisation by the
@@ -56,14 +54,7 @@ impl Localizer {
         }
         let visual = VisualFrame::new(base_from_camera);
         let start = Belief { pose: Pose2::IDENTITY, covariance: Matrix3::zeros() };
-        Ok(Self {
-            config,
-            start,
-            buffer: None,
-            visual,
-            divergence: DivergenceCheck::default(),
-            visual_motion: VisualMotionCheck::default(),
-        })
+        Ok(Self { config, start, buffer: None, visual, divergence: DivergenceCheck::default() })
     }
 
     /// The localizer of a resumed run in a known map: the poses of the visual maps (by number) are known, the robot's pose is
@@ -112,9 +103,6 @@ impl Localizer {
             return Correction::Anchored;
         };
         self.divergence.add(&self.config, visual.stamp, measurement.pose, moment.odometry.pose);
-        if let Some(rejection) = self.check_visual_motion(visual, &measurement, &moment) {
-            return rejection;
-        }
         let correction = self.apply(&moment, measurement);
         let Correction::Gated { distance } = correction else {
             self.visual.refine(&moment.belief, &measurement);
@@ -131,53 +119,11 @@ impl Localizer {
             DivergenceAction::Reanchor => {
                 self.visual.anchor(&moment.belief, visual);
                 self.divergence = DivergenceCheck::default();
-                self.visual_motion.restart();
                 Correction::Reanchored
             }
             DivergenceAction::AcceptVisual => {
                 self.apply_inflated(&moment, measurement);
                 Correction::Recovered { distance }
-            }
-        }
-    }
-
-    /// Anchors the frame of a visual map anew, so that this pose of it agrees with the estimate: the frame has moved, and the estimate is
-    /// right.
-    pub fn anchor_again(&mut self, visual: &VisualPose) -> Correction {
-        if !(visual.visual_from_camera.is_finite() && visual.covariance.iter().all(|v| v.is_finite())) {
-            return Correction::NotFinite;
-        }
-        match self.find(visual.stamp) {
-            Ok(moment) => {
-                self.visual.anchor(&moment.belief, visual);
-                self.divergence = DivergenceCheck::default();
-                self.visual_motion.restart();
-                Correction::Reanchored
-            }
-            Err(rejection) => rejection,
-        }
-    }
-
-    /// Leaves a visual pose out while images follow something that moves, and anchors the visual frame anew afterwards.
-    fn check_visual_motion(
-        &mut self,
-        visual: &VisualPose,
-        measurement: &Measurement,
-        moment: &Moment,
-    ) -> Option<Correction> {
-        if visual.recognised {
-            self.visual_motion.restart();
-            return None;
-        }
-        let (stamp, odometry) = (visual.stamp, moment.odometry);
-        match self.visual_motion.add_image(stamp, visual.map, measurement.pose, odometry) {
-            VisualMotion::Agrees => None,
-            VisualMotion::Contradicts(distance) => Some(Correction::Gated { distance }),
-            VisualMotion::FrameMoved => {
-                self.visual.anchor(&moment.belief, visual);
-                self.visual_motion.restart();
-                self.divergence = DivergenceCheck::default();
-                Some(Correction::Reanchored)
             }
         }
     }
@@ -195,7 +141,6 @@ impl Localizer {
         let noise = self.config.scan_noise() + covariance;
         match self.find(stamp) {
             Ok(moment) => {
-                self.visual_motion.add_scan(stamp, map_from_base, covariance, moment.odometry);
                 let (prior_inflation, variance_floor) = (Matrix3::zeros(), Vector3::zeros());
                 self.apply(
                     &moment,

@@ -6,6 +6,4 @@ pub(crate) mod correction;
 pub(crate) mod divergence_check;
 pub(crate) mod localizer;
 pub(crate) mod measurement_buffer;
-pub(crate) mod motion_window;
 pub(crate) mod visual_frame;
-pub(crate) mod visual_motion_check;

@@ -91,7 +91,6 @@ impl VisualFrame {
         let map_from_visual = (map_from_camera * visual.visual_from_camera.inverse()).renormalized();
         let to_map = adjoint(&belief.pose);
         let covariance = symmetric(to_map * belief.covariance * to_map.transpose());
-        self.current = visual.map;
         self.anchors.insert(visual.map, Anchor { map_from_visual, covariance });
     }
 

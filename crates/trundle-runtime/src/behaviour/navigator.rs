@@ -32,11 +32,11 @@ use crate::{
     reason::Reason,
     schedule::Ticker,
     stage::{Stage, StageTimes},
+    workers::perception_worker::POSE_UNKNOWN_AFTER_S,
 };
 use camera_fov::CameraFov;
 use trundle_control::{FollowPhase, FollowReport, Follower, MotionSense, SafetyMonitor};
 use trundle_core::{Footprint, Invalid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
-use trundle_estimation::PoseState;
 use trundle_planning::{PlanResult, Planner};
 use viewpoint::Viewpoint;
 use visibility_constraint::VisibilityConstraint;
@@ -328,9 +328,6 @@ impl Navigator {
 
     /// The reason for which the pose counts as unknown; none while it is known.
     fn lost_reason(&self, s: &WorldState<'_>) -> Option<Reason> {
-        if s.pose_status.state == PoseState::Displaced {
-            return Some(Reason::ViewContradictsMap);
-        }
         let sigma = position_sigma(&s.estimate);
         if sigma > UNKNOWN_POSITION_SIGMA_M {
             return Some(Reason::PoseUnknown);
@@ -343,7 +340,7 @@ impl Navigator {
                 Reason::PoseUncertain { sigma }
             });
         }
-        None
+        (s.unlocated > POSE_UNKNOWN_AFTER_S).then_some(Reason::ViewContradictsMap)
     }
 
     fn stop_without_progress(&mut self, stood: f64) {

@@ -5,7 +5,6 @@ use crate::world_state::WorldState;
 use clock::{slowness, timed};
 use trundle_core::{OccupancyGrid, PoseEstimate};
 use trundle_docking::Method;
-use trundle_estimation::PoseStatus;
 
 #[path = "../../../../bench/docking/clock.rs"]
 mod clock;
@@ -25,7 +24,7 @@ fn world(grid: &OccupancyGrid, pose: Pose2, time: f64) -> WorldState<'_> {
         grid,
         scan: None,
         seen: None,
-        pose_status: PoseStatus::CERTAIN,
+        unlocated: 0.0,
         wheels: Some(now),
         hold: None,
         motion: trundle_control::MotionSense::Wheels,

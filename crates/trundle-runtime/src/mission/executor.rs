@@ -343,7 +343,7 @@ mod tests {
             grid,
             scan: None,
             seen: None,
-            pose_status: trundle_estimation::PoseStatus::CERTAIN,
+            unlocated: 0.0,
             wheels: Some(stamp),
             hold: None,
             motion: trundle_control::MotionSense::Wheels,

@@ -92,33 +92,6 @@ pub(super) fn correction(at: Stamp, source: &str, old: Pose2, new: Pose2) {
     }
 }
 
-/// Logs that the evidence is against the estimated pose.
-pub(super) fn pose_given_up(at: Stamp) {
-    tracing::warn!(
-        "{:.3} s: images and scans contradict the map at the estimated pose: the pose is given up",
-        at.as_secs()
-    );
-}
-
-/// Logs that the evidence is for the pose that was given up.
-pub(super) fn pose_restored(at: Stamp) {
-    tracing::info!(
-        "{:.3} s: scans agree with the map at the pose that was given up: it is restored",
-        at.as_secs()
-    );
-}
-
-/// Logs a pose that scans found, and that is not probable enough.
-pub(super) fn found_pose_refused(at: Stamp, pose: Pose2, probability: f64) {
-    tracing::debug!(
-        "{:.3} s: the scans fit ({:.2} m, {:.2} m, {:.0} deg), but other places too: probability {probability:.3}",
-        at.as_secs(),
-        pose.x,
-        pose.y,
-        pose.theta.to_degrees()
-    );
-}
-
 /// Logs a condition of the body that holds the robot, or its end.
 pub(super) fn hold(at: Stamp, hold: Option<MotionHold>) {
     match hold {

@@ -2,6 +2,7 @@
 
 use super::{Robot, event_log};
 use crate::{
+    global_localization::LocalizedPose,
     mission::MissionState,
     operator::{OperatorCommand, PoseGuess, RunSetting},
     report::StepReport,
@@ -55,8 +56,11 @@ impl Robot {
         let variances =
             Vector3::new(guess.position_sigma, guess.position_sigma, guess.heading_sigma).map(|s| s * s);
         event_log::pose_given(now, guess);
-        self.clear_dynamic_obstacles();
-        self.set_pose(now, guess.pose, &nalgebra::Matrix3::from_diagonal(&variances), "the operator");
-        self.apply_global_localization(None);
+        self.lose_pose();
+        self.apply_global_localization(Some(LocalizedPose {
+            stamp: now,
+            map_from_base: guess.pose,
+            covariance: nalgebra::Matrix3::from_diagonal(&variances),
+        }));
     }
 }

@@ -26,7 +26,6 @@ impl Robot {
         robot.set_map(&config, &checkpoint.grid)?;
         robot.localizer = Localizer::new(config.localization, robot.base_from_camera)?
             .resumed(checkpoint.visual_maps.clone());
-        robot.pose_monitor.forget_pose();
         checkpoint.station.iter().for_each(|station| robot.station.restore(station));
         robot.restore_mission(checkpoint.mission.clone().after_restart());
         Ok(robot)
@@ -75,9 +74,7 @@ impl Robot {
         // The grid that fits it.
         self.mapper.work_within(usize::MAX, 1);
         let now = self.localizer.estimate().stamp;
-        // Before the first reading of the wheels the robot has changed nothing.
-        let is_known = self.latest.odometry.is_none() || self.is_pose_known(now);
-        is_known.then(|| self.checkpoint_with(visual))
+        self.is_pose_known(now).then(|| self.checkpoint_with(visual))
     }
 
     pub(super) fn checkpoint_with(&mut self, visual: Vec<u8>) -> Checkpoint {

@@ -7,11 +7,8 @@ use trundle_core::Scan;
 impl Robot {
     /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each. Whether it was drawn.
     pub(super) fn on_scan(&mut self, scan: Scan) -> bool {
-        let is_due = self.map_due.due(scan.stamp());
-        if is_due {
-            self.add_scan_evidence(&scan);
-        }
-        let is_due = is_due && self.is_pose_known(scan.stamp());
+        let is_due = self.map_due.due(scan.stamp()) && self.is_pose_known(scan.stamp());
+        let is_due = is_due && self.is_consistent_with_map(&scan);
         if is_due {
             self.correct_by_scan(&scan);
             self.integrate_scan(&scan);

@@ -5,7 +5,6 @@ use crate::config::RobotConfig;
 use crate::world_state::{DynamicObstacles, WorldState};
 use trundle_control::MotionSense;
 use trundle_core::{Cell, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
-use trundle_estimation::PoseStatus;
 
 /// Known floor, 6 x 4 m about (3, 2); unknown where `hidden` is true.
 pub(crate) fn floor(hidden: impl Fn(Vector2) -> bool) -> OccupancyGrid {
@@ -34,7 +33,7 @@ pub(crate) fn at_rest(grid: &OccupancyGrid, now: Stamp, pose: Pose2) -> WorldSta
         grid,
         scan: None,
         seen: None,
-        pose_status: PoseStatus::CERTAIN,
+        unlocated: 0.0,
         wheels: Some(now),
         hold: None,
         motion: MotionSense::Wheels,

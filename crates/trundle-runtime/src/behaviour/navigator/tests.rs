@@ -7,7 +7,6 @@ use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 use trundle_control::{SafetyScan, StopReason};
 use trundle_core::{Beam, Cell, CellIndex, DriveLimits, OccupancyGrid, Scan};
-use trundle_estimation::PoseState;
 
 /// Period of the control loop \[s\].
 const STEP_S: f64 = 0.02;
@@ -215,9 +214,8 @@ fn each_cause_of_a_lost_pose_has_its_own_reason() {
         base.navigator.state().reason().map(Reason::kind)
     };
     let unsure = nalgebra::Matrix3::from_diagonal_element(1.0);
-    let with = |state| move |s: &mut WorldState<'_>| s.pose_status.state = state;
-    assert_eq!(lost(&with(PoseState::DeadReckoned)), None);
-    assert_eq!(lost(&with(PoseState::Displaced)), Some(ReasonKind::ViewContradictsMap));
+    assert_eq!(lost(&|s| s.unlocated = 0.9 * POSE_UNKNOWN_AFTER_S), None);
+    assert_eq!(lost(&|s| s.unlocated = 1.1 * POSE_UNKNOWN_AFTER_S), Some(ReasonKind::ViewContradictsMap));
     let wheels = |s: &mut WorldState<'_>| {
         (s.estimate.covariance, s.motion) = (unsure, MotionSense::Sight);
     };
@@ -232,7 +230,7 @@ fn a_robot_that_loses_its_pose_on_the_way_brakes_and_then_turns_on_the_spot() {
     base.run(1.0);
     let mut twists = Vec::new();
     for _ in 0..150 {
-        twists.push(base.step_with(|s| s.pose_status.state = PoseState::Displaced).twist);
+        twists.push(base.step_with(|s| s.unlocated = 5.0).twist);
     }
     assert_eq!(base.navigator.state().name(), "lost");
     assert!(base.navigator.plan().is_none(), "a plan is of a place that is known");
@@ -439,16 +437,14 @@ proptest! {
 
     #[test]
     fn without_a_goal_nothing_that_is_seen_or_felt_moves_the_robot(
-        is_displaced in any::<bool>(), sigma in 0.0..90.0_f64, is_seen in any::<bool>(), pressed in any::<bool>(),
+        unlocated in 0.0..9.0_f64, sigma in 0.0..90.0_f64, is_seen in any::<bool>(), pressed in any::<bool>(),
     ) {
         let mut base = Base::new(AHEAD);
         base.navigator.touch(pressed);
         base.navigator.cliff(!pressed);
         for _ in 0..300 {
             let decision = base.step_with(|s| {
-                if is_displaced {
-                    s.pose_status.state = PoseState::Displaced;
-                }
+                s.unlocated = unlocated;
                 s.estimate.covariance = nalgebra::Matrix3::from_diagonal_element(sigma * sigma);
                 s.seen = s.seen.filter(|_| is_seen);
             });
