@@ -21,8 +21,6 @@ const LEAVING_COST_PERCENT: u8 = 100;
 pub(crate) struct RobotZones {
     annotations: Arc<MapAnnotations>,
     check: FootprintCheck,
-    /// Distance of the outline's farthest point from the base's origin \[m\].
-    radius: f64,
     /// Overlap with an obstacle from which the planner leaves it \[m\].
     escape: f64,
     /// The no-go zones that the robot stands in and leaves.
@@ -70,7 +68,6 @@ impl RobotZones {
         Self {
             annotations: Arc::default(),
             check: FootprintCheck::new(footprint),
-            radius: footprint.circumscribed_radius(),
             escape,
             left: Vec::new(),
             masks: None,

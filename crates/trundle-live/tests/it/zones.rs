@@ -1,7 +1,6 @@
 //! Zones, places, settings and saved maps as a page uses them.
 
-use crate::browser::Browser;
-use crate::guard::fetch;
+use crate::browser::{Browser, fetch};
 use crate::live_run::LiveRun;
 use serde_json::json;
 use trundle_core::ZoneKind;
@@ -26,7 +25,12 @@ fn zones_and_places_are_drawn_changed_and_deleted_and_every_viewer_sees_them() {
     assert!(run.operator.annotations().is_empty());
     let refusal = page.ask(json!({"type": "remove_place", "number": 2})).unwrap();
     assert!(refusal.contains("another viewer may have deleted it"), "{refusal}");
-    assert!(other.ask(json!({"type": "set_zone", "zone": zone(0, json!("area"))})).unwrap().contains("only looks"));
+    assert!(
+        other
+            .ask(json!({"type": "set_zone", "zone": zone(0, json!("area"))}))
+            .unwrap()
+            .contains("only looks")
+    );
 }
 
 #[test]
@@ -66,7 +70,7 @@ fn the_map_is_saved_by_whoever_may_look() {
     let address = run.page.address();
     let (host, bearer) = (address.to_string(), format!("Bearer {}", run.token(Access::View)));
     let get = |name: &str, bearer: &str| {
-        fetch(address, &format!("GET /files/{name}"), &[("Host", &host), ("Authorization", bearer)])
+        fetch(address, &format!("GET /files/{name}"), &[("Host", host.as_str()), ("Authorization", bearer)])
     };
     run.wait_for("a map", |view| view.map.is_some());
     let (head, body) = get("map.yaml", &bearer);

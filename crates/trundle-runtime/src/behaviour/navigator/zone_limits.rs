@@ -67,7 +67,8 @@ mod tests {
         let s = WorldState { zones: slow.view(), ..at_rest(&grid, Stamp::default(), START) };
         let slowly = sent_to(GOAL, &s).plan.unwrap();
         let points = slowly.trajectory.points().iter().filter(|point| inside(point.pose));
-        let speeds: Vec<f64> = points.filter(|p| (2.55..3.45).contains(&p.pose.x)).map(|p| p.twist.v).collect();
+        let speeds: Vec<f64> =
+            points.filter(|p| (2.55..3.45).contains(&p.pose.x)).map(|p| p.twist.v).collect();
         assert!(!speeds.is_empty() && speeds.iter().all(|v| *v < 0.11), "{speeds:?}");
         assert!(slowly.length < around.length);
     }
