@@ -72,13 +72,13 @@ impl Zone {
         Ok(self)
     }
 
-    /// What messages call it: `zone 'stairs'`, or `zone 3`.
+    /// What messages call it: `zone 'stairs'`, `zone 3`, or `the new zone` where it has no number yet.
     #[must_use]
     pub fn label(&self) -> String {
-        if self.name.trim().is_empty() {
-            format!("zone {}", self.id)
-        } else {
-            format!("zone '{}'", self.name)
+        match self.name.trim() {
+            "" if self.id == 0 => "the new zone".to_owned(),
+            "" => format!("zone {}", self.id),
+            _ => format!("zone '{}'", self.name),
         }
     }
 

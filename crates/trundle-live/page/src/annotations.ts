@@ -131,7 +131,9 @@ export class Annotations {
     }
     const kind = chosenKind();
     const zone = { ...subject.zone, name, kind, outline: subject.zone.outline.map(rounded) };
-    const [x, y] = middle(zone.outline);
+    const x = middle(zone.outline)[0];
+    // Above the drawing, which stays in sight.
+    const y = Math.max(...zone.outline.map((corner) => corner[1]));
     if (zone.outline.length > MAX_CORNERS) return this.finish(`A zone has at most ${MAX_CORNERS} corners.`);
     if (typeof kind !== "string" && !Number.isFinite(kind.slow)) return this.finish("The speed is a number in m/s.");
     const refusal = await this.events.ask({ type: "set_zone", zone }, [x, y, 0]);
