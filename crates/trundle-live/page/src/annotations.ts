@@ -109,6 +109,8 @@ export class Annotations {
     element("note-title").textContent = `${entry.id === 0 ? "New " : ""}${isZone ? "zone" : "place"}`;
     element("note-delete").hidden = entry.id === 0;
     element("note-form").hidden = false;
+    // On a phone the form is in a panel that may be closed.
+    if (element("note-form").offsetParent === null) element("panel-open").click();
     showProblem("");
     this.onKind();
     element("note-form").scrollIntoView({ block: "nearest" });
