@@ -396,6 +396,23 @@ await check("exploring: the map grows", async () => {
   assert(await page.locator("#camera").isVisible(), "the camera's image is shown");
 });
 
+await check("features over the camera's image, and the time of the stages", async () => {
+  await page.locator("#features-toggle").click();
+  const drawn = () =>
+    page.evaluate(() => {
+      const canvas = document.getElementById("camera-features");
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      return data.filter((value, i) => i % 4 === 3 && value > 0).length;
+    });
+  await until("features", async () => (await drawn()) > 200, 10);
+  await page.locator("#camera-card").scrollIntoViewIfNeeded();
+  await picture("features");
+  await page.locator("#features-toggle").click();
+  const stages = await page.locator("#stages").innerText();
+  assert.match(stages, /slam\s+[\d.]+ %/);
+  return stages.split("\n").slice(0, 2).join(" ");
+});
+
 await check("landmarks and keyframes", async () => {
   await page.evaluate(() => document.querySelector("[data-layer=visual]").click());
   const count = () => page.evaluate(() => window.trundle.map.landmarks.length / 3);

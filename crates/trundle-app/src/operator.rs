@@ -15,7 +15,7 @@ mod visual_map_feed;
 
 pub use annotation_edit::AnnotationEdit;
 pub use link::{Operator, OperatorError, OperatorLink, operator_link};
-pub use map_file::map_file;
+pub use map_file::{ZONES_FILE, map_file};
 pub use request::OperatorRequest;
 pub use run_view::{
     ClosedLoop, FeatureSpot, FeatureView, ImageView, MapView, MissionView, RunCounts, RunView,

@@ -1,6 +1,6 @@
 //! The world state: what a decision needs, by reference and as a copy for a decision that runs beside the control loop.
 
-use crate::zones::ZoneMasks;
+use crate::zones::{ZoneMasks, ZoneView};
 use std::sync::Arc;
 use trundle_control::{MotionHold, MotionSense, SafetyScan};
 use trundle_core::{OccupancyGrid, Pose2, PoseEstimate, Scan, Stamp, Vector2};
@@ -28,17 +28,6 @@ pub(crate) struct WorldState<'a> {
     pub(crate) dynamic_obstacles: DynamicObstacles<'a>,
     pub(crate) station: StationState,
     pub(crate) zones: ZoneView<'a>,
-}
-
-/// The zones of the map, as they count for the robot at its present pose.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct ZoneView<'a> {
-    /// Speed limits and costs, and the no-go zones; none before there was a zone.
-    pub(crate) masks: Option<&'a Arc<ZoneMasks>>,
-    /// The map with the no-go zones occupied; none where they forbid nothing.
-    pub(crate) grid: Option<&'a OccupancyGrid>,
-    /// The same of the map without what moves; none where nothing moves.
-    pub(crate) static_grid: Option<&'a OccupancyGrid>,
 }
 
 /// The charging station, as far as the robot knows it.

@@ -4,7 +4,6 @@
 //! may leave it: until it is out, the zone is costly and slow floor for it, and all other zones count. A goal in a no-go zone is refused
 //! also then.
 
-use crate::world_state::ZoneView;
 use std::sync::Arc;
 use trundle_core::{
     Cell, Footprint, GridGeometry, MapAnnotations, OccupancyGrid, Pose2, Stamp, Twist2, Zone, ZoneKind,
@@ -40,6 +39,17 @@ pub(crate) struct ZoneMasks {
     pub(crate) costs: Option<CostMask>,
     no_go: Vec<Zone>,
     check: Option<(FootprintCheck, GridGeometry)>,
+}
+
+/// The zones of the map, as they count for the robot at its present pose.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct ZoneView<'a> {
+    /// Speed limits and costs, and the no-go zones; none before there was a zone.
+    pub(crate) masks: Option<&'a Arc<ZoneMasks>>,
+    /// The map with the no-go zones occupied; none where they forbid nothing.
+    pub(crate) grid: Option<&'a OccupancyGrid>,
+    /// The same of the map without what moves; none where nothing moves.
+    pub(crate) static_grid: Option<&'a OccupancyGrid>,
 }
 
 /// The map that zones are drawn over.
@@ -186,12 +196,16 @@ impl ZoneMasks {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::behaviour::navigator::testing::floor;
     use trundle_core::Vector2;
 
     fn zone(id: u32, kind: ZoneKind, low: [f64; 2], high: [f64; 2]) -> Zone {
         let outline = vec![low, [high[0], low[1]], high, [low[0], high[1]]];
         Zone { id, name: String::new(), kind, outline }
+    }
+
+    /// Known floor, 6 x 4 m.
+    fn floor() -> OccupancyGrid {
+        OccupancyGrid::from_ascii(0.05, &vec![".".repeat(120); 80].join("\n")).unwrap()
     }
 
     fn zones(list: Vec<Zone>) -> RobotZones {
@@ -206,7 +220,7 @@ mod tests {
 
     #[test]
     fn a_no_go_zone_is_an_obstacle_of_plans_and_follows_the_map() {
-        let (mut grid, at) = (floor(|_| false), Vector2::new(3.02, 2.02));
+        let (mut grid, at) = (floor(), Vector2::new(3.02, 2.02));
         let mut zones = zones(vec![zone(1, ZoneKind::NoGo, [3.0, 2.0], [4.0, 3.0])]);
         zones.update(Pose2::new(1.0, 1.0, 0.0), &map(&grid, 1));
         assert_eq!(zones.view().grid.unwrap().at(at), Cell::Occupied);
@@ -222,7 +236,7 @@ mod tests {
 
     #[test]
     fn a_robot_in_a_no_go_zone_leaves_it_slowly_and_all_others_count() {
-        let grid = floor(|_| false);
+        let grid = floor();
         let mut zones = zones(vec![
             zone(1, ZoneKind::NoGo, [1.0, 1.0], [2.0, 2.0]),
             zone(2, ZoneKind::NoGo, [3.0, 1.0], [4.0, 2.0]),

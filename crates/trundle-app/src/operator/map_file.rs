@@ -1,8 +1,10 @@
 //! The map of a run as files, while it goes.
 
-use crate::report::ZONES_FILE;
 use trundle_core::{MapAnnotations, OccupancyGrid};
 use trundle_io::{annotations_text, map_pgm, map_yaml};
+
+/// Name of the file with zones and places.
+pub const ZONES_FILE: &str = "zones.geojson";
 
 /// A file of a map by its name: `map.pgm`, `map.yaml` or `zones.geojson`; `None` for another name.
 #[must_use]

@@ -1,12 +1,10 @@
 //! Zones and places of a run as files: GeoJSON, and Nav2's keep-out and speed masks.
 
 use crate::AppError;
+use crate::operator::ZONES_FILE;
 use trundle_core::{GridGeometry, MapAnnotations, ZoneKind};
 use trundle_io::{OutputFolder, annotations_text, write_map, write_speed_mask};
 use trundle_planning::{forbidden_cells, slow_speeds};
-
-/// Name of the file with zones and places.
-pub const ZONES_FILE: &str = "zones.geojson";
 
 /// Writes `zones.geojson`, and over the cells of the map `keepout_mask.yaml` and `speed_mask.yaml` with their pictures, each where there
 /// is something to write. `full_speed`: the robot's highest speed \[m/s\].

@@ -2,8 +2,8 @@
 
 use crate::body::{GOAL, StillBody, setup};
 use std::path::Path;
-use trundle_app::operator::{FrontEnd, MissionView, Operator, operator_link};
-use trundle_app::report::{ZONES_FILE, write_run};
+use trundle_app::operator::{FrontEnd, MissionView, Operator, ZONES_FILE, operator_link};
+use trundle_app::report::write_run;
 use trundle_app::{FinishedRun, Progress, RunLog, RunRecorder, RunReplayer, RunSetup, run_on_body};
 use trundle_core::{MapAnnotations, NamedPlace, Pose2, Twist2, Zone, ZoneKind};
 use trundle_io::{OutputFolder, annotations_text, read_annotations};

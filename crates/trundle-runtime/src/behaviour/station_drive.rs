@@ -231,7 +231,7 @@ mod tests {
             motion: trundle_control::MotionSense::Wheels,
             dynamic_obstacles: DynamicObstacles::default(),
             station: StationState { estimate: Some(station()), is_docked },
-            zones: crate::world_state::ZoneView::default(),
+            zones: crate::zones::ZoneView::default(),
         }
     }
 

@@ -349,7 +349,7 @@ mod tests {
             motion: trundle_control::MotionSense::Wheels,
             dynamic_obstacles: crate::world_state::DynamicObstacles::default(),
             station: crate::world_state::StationState::default(),
-            zones: crate::world_state::ZoneView::default(),
+            zones: crate::zones::ZoneView::default(),
         }
     }
 
