@@ -1,6 +1,6 @@
 // The live page in a real browser: `node test.mjs TRUNDLE [PICTURES]`. Prints one line for each thing that holds; ends with 1 where one does not.
 import assert from "node:assert/strict";
-import { existsSync, mkdirSync, mkdtempSync } from "node:fs";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { connect, createServer as createTcpServer } from "node:net";
 import { tmpdir } from "node:os";
@@ -100,7 +100,8 @@ async function check(name, work) {
 }
 
 const tokens = join(place, "tokens");
-const quiet = ["--direct", "--goal", "0.2,0,0"];
+const zones = join(place, "zones.geojson");
+const quiet = ["--direct", "--goal", "0.2,0,0", "--zones", zones];
 let program = await start(trundle, ["--live", "127.0.0.1:0", "--live-tokens", tokens, ...quiet], join(place, "run"));
 const main = await open(program.drive);
 const { page } = main;
@@ -162,6 +163,135 @@ await check("a goal in a wall is refused with the reason beside the click", asyn
   await page.locator("#bubble").waitFor({ state: "visible" });
   assert.match(await text(page, "bubble"), /obstacle reaches \d+ cm/);
   await picture("refused");
+});
+
+/** Places of the window for points of the robot's frame. */
+const windowOf = (points) => {
+  const [x, y, theta] = main.state.pose;
+  const [cos, sin] = [Math.cos(theta), Math.sin(theta)];
+  const places = points.map(([ahead, left]) => [x + cos * ahead - sin * left, y + sin * ahead + cos * left]);
+  return page.evaluate((places) => places.map((place) => window.trundle.map.toWindow(place)), places);
+};
+const drag = async ([from, to]) => {
+  await page.mouse.move(...from);
+  await page.mouse.down();
+  await page.mouse.move(...to, { steps: 6 });
+  await page.mouse.up();
+};
+const entries = () => page.locator("#notes li").allInnerTexts();
+const readZones = () => JSON.parse(readFileSync(zones, "utf8")).features;
+
+await check("a no-go zone is drawn, kept in its file, and no goal is set in it", async () => {
+  await page.keyboard.press("Escape");
+  await page.keyboard.press("z");
+  const corners = await windowOf([[0.5, -0.4], [1.1, -0.4], [1.1, 0.4], [0.5, 0.4]]);
+  for (const corner of [...corners, corners[0]]) await page.mouse.click(...corner);
+  await page.locator("#note-name").fill("rug");
+  await picture("zone-drawing");
+  await page.locator("#note-form button[type=submit]").click();
+  await until("the zone in the list", async () => (await entries()).some((text) => text.includes("rug")), 5);
+  const [zone] = readZones();
+  assert.deepEqual([zone.properties.kind, zone.properties.name, zone.geometry.coordinates[0].length], ["no_go", "rug", 5]);
+  const [inside] = await windowOf([[0.8, 0]]);
+  await page.keyboard.press("g");
+  await page.mouse.click(...inside);
+  await page.locator("#bubble").waitFor({ state: "visible" });
+  assert.match(await text(page, "bubble"), /no-go zone 'rug'/);
+  await picture("zone-refused");
+});
+
+await check("a plan leads around a no-go zone", async () => {
+  const [beyond] = await windowOf([[1.9, 0]]);
+  await page.keyboard.press("g");
+  await page.mouse.click(...beyond);
+  await until("a plan", async () => (await page.evaluate(() => window.trundle.map.plan.length)) > 8, 30);
+  const inside = await page.evaluate(() => {
+    const { map } = window.trundle;
+    const { outline } = map.zones.zones[0];
+    let count = 0;
+    for (let i = 0; i + 1 < map.plan.length; i += 2) {
+      const [x, y] = [map.plan[i], map.plan[i + 1]];
+      const crossings = outline.filter(([ax, ay], k) => {
+        const [bx, by] = outline[(k + 1) % outline.length];
+        return ay > y !== by > y && x < ax + ((bx - ax) * (y - ay)) / (by - ay);
+      });
+      count += crossings.length % 2;
+    }
+    return count;
+  });
+  await picture("zone-plan");
+  await page.keyboard.press(" ");
+  await until("no mission", () => main.state.left.length === 0);
+  assert.equal(inside, 0, `${inside} points of the plan are in the zone`);
+});
+
+await check("a zone whose sides cross is refused beside the drawing, and a zone is changed and deleted", async () => {
+  await page.keyboard.press("z");
+  const corners = await windowOf([[-0.5, 0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, -0.5]]);
+  for (const corner of corners) await page.mouse.click(...corner);
+  await page.mouse.click(...corners[0]);
+  await page.locator("#note-form button[type=submit]").click();
+  await page.locator("#note-problem").waitFor({ state: "visible" });
+  assert.match(await text(page, "note-problem"), /crossed by itself/);
+  assert.match(await text(page, "bubble"), /crossed by itself/);
+  await picture("zone-crossed");
+  await page.locator("#note-cancel").click();
+  await page.locator("#notes li", { hasText: "rug" }).getByText("Edit").click();
+  await page.locator("#note-kind").selectOption("slow");
+  await page.locator("#note-speed").fill("0.15");
+  await page.locator("#note-form button[type=submit]").click();
+  await until("a slow zone", async () => (await entries()).some((text) => text.includes("0.15 m/s")), 5);
+  assert.equal(readZones()[0].properties.speed_m_s, 0.15);
+  await page.keyboard.press("z");
+  const [[left, top], [right, bottom]] = await windowOf([[-0.3, 0.3], [-1.2, 1]]);
+  await drag([[left, top], [Math.abs(right - left) < 20 ? left + 40 : right, Math.abs(bottom - top) < 20 ? top + 40 : bottom]]);
+  await page.locator("#note-name").fill("hall");
+  await page.locator("#note-kind").selectOption("area");
+  await page.locator("#note-form button[type=submit]").click();
+  await until("a named area", async () => (await entries()).some((text) => text.includes("hall")), 5);
+  await picture("zone-slow");
+  await page.locator("#notes li", { hasText: "hall" }).getByText("Edit").click();
+  await page.locator("#note-delete").click();
+  await until("one zone", async () => (await entries()).length === 1, 5);
+  await page.locator("#notes li", { hasText: "rug" }).getByText("Edit").click();
+  await page.locator("#note-delete").click();
+  await until("no zone", async () => (await entries()).length === 0, 5);
+  assert.deepEqual(readZones(), []);
+});
+
+await check("a place is named, found in the list, and driven to", async () => {
+  await page.keyboard.press("n");
+  await drag(await windowOf([[0.4, 0], [0.4, 0.5]]));
+  await page.locator("#note-name").fill("desk");
+  await page.locator("#note-form button[type=submit]").click();
+  await until("the place", async () => (await entries()).some((text) => text.includes("desk")), 5);
+  const goal = readZones()[0].geometry.coordinates;
+  await page.locator("#notes li", { hasText: "desk" }).getByText("Go").click();
+  const isThere = ([x, y]) => Math.hypot(x - goal[0], y - goal[1]) < 1e-6;
+  await until("the goal", () => main.state.left.some((task) => task.goal && isThere(task.goal)), 5);
+  await picture("place");
+  await page.keyboard.press(" ");
+  await until("no mission", () => main.state.left.length === 0);
+});
+
+await check("a setting changes within its range, and is refused beyond it", async () => {
+  const form = page.locator("#settings form", { has: page.locator("[data-setting='limits.v_m_s']") });
+  await form.locator("input").fill("99");
+  await form.locator("button").click();
+  await form.locator(".problem").waitFor({ state: "visible" });
+  assert.match(await form.locator(".problem").innerText(), /99 m\/s, expected 0.05 to/);
+  const present = await page.evaluate(() => window.trundle.settings?.find((setting) => setting.key === "limits.v_m_s")?.value);
+  await form.locator("input").fill(String(present));
+  await form.locator("button").click();
+  await until("no refusal", async () => !(await form.locator(".problem").isVisible()), 5);
+});
+
+await check("the map is saved as files", async () => {
+  const names = [];
+  page.on("download", (download) => names.push(download.suggestedFilename()));
+  await page.locator("#map-save").click();
+  await until("three files", () => names.length === 3, 10);
+  assert.deepEqual(names.sort(), ["map.pgm", "map.yaml", "zones.geojson"]);
 });
 
 await check("the space bar stops the robot within 0.2 s", async () => {
@@ -266,6 +396,23 @@ await check("exploring: the map grows", async () => {
   assert(await page.locator("#camera").isVisible(), "the camera's image is shown");
 });
 
+await check("features over the camera's image, and the time of the stages", async () => {
+  await page.locator("#features-toggle").click();
+  const drawn = () =>
+    page.evaluate(() => {
+      const canvas = document.getElementById("camera-features");
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      return data.filter((value, i) => i % 4 === 3 && value > 0).length;
+    });
+  await until("features", async () => (await drawn()) > 200, 10);
+  await page.locator("#camera-card").scrollIntoViewIfNeeded();
+  await picture("features");
+  await page.locator("#features-toggle").click();
+  const stages = await page.locator("#stages").innerText();
+  assert.match(stages, /slam\s+[\d.]+ %/);
+  return stages.split("\n").slice(0, 2).join(" ");
+});
+
 await check("landmarks and keyframes", async () => {
   await page.evaluate(() => document.querySelector("[data-layer=visual]").click());
   const count = () => page.evaluate(() => window.trundle.map.landmarks.length / 3);
@@ -350,6 +497,7 @@ await check("the page comes back after a restart of the program", async () => {
   const before = main.states.length;
   const seconds = await until("states again", () => main.states.length > before, 20);
   main.mayFail = false;
+  await until("the place of the file", async () => (await entries()).some((text) => text.includes("desk")), 10);
   return `after ${seconds.toFixed(1)} s`;
 });
 

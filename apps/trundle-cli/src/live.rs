@@ -14,12 +14,26 @@ pub struct LiveArgs {
     /// [default: 127.0.0.1:8642, or a free port where it is in use]
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = LiveAddress::DEFAULT)]
     pub live: Option<LiveAddress>,
+    /// Zones and named places of the map: a GeoJSON file, which keeps the changes of the live page. Without the file the first change
+    /// makes it.
+    #[arg(long, value_name = "FILE")]
+    pub zones: Option<PathBuf>,
     /// Keep the tokens of the links in FILE, so that links stay valid over restarts.
     #[arg(long, value_name = "FILE", requires = "live")]
     pub live_tokens: Option<PathBuf>,
 }
 
 impl LiveArgs {
+    /// Whether there is a live page: the run then takes commands and goes on after its mission.
+    pub fn is_on(&self) -> bool {
+        self.live.is_some()
+    }
+
+    /// The run with the zones that are asked for.
+    pub fn with_zones(&self, setup: RunSetup) -> Result<RunSetup, AppError> {
+        self.zones.as_deref().map_or(Ok(setup.clone()), |file| setup.with_annotations_of(file))
+    }
+
     /// The page beside a run, where one is asked for, and what accompanies the run then. `link`: that of another front end. A run
     /// that is not steered takes no commands.
     pub fn beside(
@@ -29,6 +43,10 @@ impl LiveArgs {
         link: Option<OperatorLink>,
         is_steered: bool,
     ) -> Result<(Option<LivePage>, FrontEnd), AppError> {
+        if let (Some(file), false) = (&self.zones, is_steered) {
+            let problem = "a replay has the zones of its recording: leave --zones out";
+            return Err(AppError::Input(format!("--zones {}: {problem}", file.display())));
+        }
         let Some(address) = self.live else { return Ok((None, FrontEnd { progress, operator: link })) };
         let link = link.unwrap_or_else(|| operator_link().1);
         let tokens = self.live_tokens.as_deref().map_or_else(Tokens::random, Tokens::of_file)?;

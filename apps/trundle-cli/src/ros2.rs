@@ -32,6 +32,7 @@ pub fn run(args: &Ros2Args) -> Result<Outcome, AppError> {
     let (node, link, body) = connected.into_parts();
     let mut setup = args.options.setup("ros2", &options.node.names.node, mission, robot)?;
     setup.is_operated = args.stays();
+    let setup = args.live.with_zones(setup)?;
     let folder = logging::output_folder(&args.out)?;
     if !args.options.common.quiet {
         let mission = if args.stays() {

@@ -3,15 +3,24 @@
 //! A front end (a page, ROS 2) keeps an [`Operator`], the run an [`OperatorLink`]. Requests are recorded at the place at which the robot
 //! obeys them, so a replay obeys them there too. Views cost the robot a few copies at each control step; a slow reader misses views.
 
+mod annotation_edit;
+mod annotation_store;
 mod link;
+mod map_file;
+mod perception_feed;
 mod request;
 mod run_view;
 mod view_feed;
 mod visual_map_feed;
 
+pub use annotation_edit::AnnotationEdit;
 pub use link::{Operator, OperatorError, OperatorLink, operator_link};
+pub use map_file::{ZONES_FILE, map_file};
 pub use request::OperatorRequest;
-pub use run_view::{ImageView, MapView, MissionView, RunCounts, RunView, SurroundingsView, VisualMapView};
+pub use run_view::{
+    ClosedLoop, FeatureSpot, FeatureView, ImageView, MapView, MissionView, RunCounts, RunView,
+    SurroundingsView, VisualMapView,
+};
 pub use visual_map_feed::VISUAL_MAP_PERIOD_S;
 
 use crate::Progress;

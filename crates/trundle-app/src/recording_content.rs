@@ -43,6 +43,12 @@ impl RecordingContent {
         *self == Self::All
     }
 
+    /// Its name, as a user gives it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::CHOICES.iter().find(|(.., content)| *content == self).map_or("all", |(name, ..)| name)
+    }
+
     /// Size of a second of a recording \[bytes\] with images of `camera` at `rate_hz`.
     #[must_use]
     pub fn bytes_per_second(self, camera: &PinholeCamera, rate_hz: f64) -> f64 {

@@ -5,9 +5,11 @@ mod goal_outcome;
 mod run_folder;
 mod run_numbers;
 mod timing_page;
+mod zone_files;
 
 pub use crate::setup::mission_text;
 pub use camera_picture::{camera_view, landmarks_in_map};
 pub use goal_outcome::GoalOutcome;
 pub use run_folder::{RunOutput, write_run};
 pub use run_numbers::{RunEnd, RunNumbers, stage_rows, wall_clock};
+pub use zone_files::write_zones;

@@ -60,7 +60,11 @@ impl<'s> RunSession<'s> {
         let (view, overload) = (BestView::default(), OverloadWatch::default());
         let start = Instant::now();
         let messages = RunMessages::default();
-        let FrontEnd { progress, operator } = front_end;
+        let FrontEnd { progress, mut operator } = front_end;
+        if let Some(link) = &mut operator {
+            link.note_image_size([setup.robot.camera.width(), setup.robot.camera.height()]);
+            link.begin_annotations(robot.annotations(), setup.annotations_file.as_deref());
+        }
         Ok(Self {
             setup,
             robot,

@@ -3,9 +3,10 @@
 use crate::{AppError, RecordingContent};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use trundle_core::Pose2;
+use trundle_core::{MapAnnotations, Pose2};
+use trundle_io::read_annotations;
 use trundle_runtime::settings::with_present_names;
 use trundle_runtime::{Checkpoint, Mission, Robot, RobotConfig, Task};
 use trundle_vision::Vocabulary;
@@ -53,6 +54,12 @@ pub struct RunSetup {
     /// The vocabulary by which places are recognised, as base64 of its bytes. None: the built-in one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub vocabulary: Option<String>,
+    /// Zones and named places of the map. None: those of the checkpoint.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub annotations: Option<MapAnnotations>,
+    /// The file in which changes of zones and places are kept.
+    #[serde(skip)]
+    pub annotations_file: Option<PathBuf>,
 }
 
 fn demo() -> String {
@@ -80,6 +87,8 @@ impl RunSetup {
             recording: RecordingContent::All,
             checkpoint: None,
             vocabulary: None,
+            annotations: None,
+            annotations_file: None,
         }
     }
 
@@ -125,12 +134,25 @@ impl RunSetup {
         Self { vocabulary: Some(BASE64_STANDARD.encode(vocabulary.to_bytes())), ..self }
     }
 
+    /// The same run, with the zones and places of a GeoJSON file, which keeps their changes. Without the file there are those of the
+    /// checkpoint, and the first change makes it.
+    ///
+    /// # Errors
+    /// When the file is there and cannot be used. Names the feature.
+    pub fn with_annotations_of(self, file: &Path) -> Result<Self, AppError> {
+        let annotations = file.exists().then(|| read_annotations(file)).transpose()?;
+        Ok(Self { annotations, annotations_file: Some(file.to_owned()), ..self })
+    }
+
     /// The robot, its mission started.
     ///
     /// # Errors
     /// When a number of the robot is outside its range, or the checkpoint cannot be used.
     pub fn start_robot(&self) -> Result<Robot, AppError> {
-        let robot = self.robot_at_start()?;
+        let mut robot = self.robot_at_start()?;
+        if let Some(annotations) = &self.annotations {
+            robot.annotate(annotations.clone().validated()?);
+        }
         let Some(vocabulary) = &self.vocabulary else { return Ok(robot) };
         let unusable = |error: String| AppError::Input(format!("the vocabulary cannot be used: {error}"));
         let bytes = BASE64_STANDARD.decode(vocabulary).map_err(|error| unusable(error.to_string()))?;

@@ -17,6 +17,7 @@ mod frame;
 mod grid;
 mod image;
 mod invalid;
+mod map_annotations;
 mod odometry;
 mod path;
 mod pose2;
@@ -27,6 +28,7 @@ mod stamp;
 mod toml_words;
 mod trajectory;
 mod twist;
+mod zone;
 
 pub use angle::{difference_of_angles, wrap_angle};
 pub use body::{Cliff, RobotBody, SensorEvent, Touch};
@@ -43,6 +45,7 @@ pub use frame::FrameId;
 pub use grid::{Cell, CellIndex, GridGeometry, OccupancyGrid};
 pub use image::{ColorImage, DepthImage, GrayImage, Image, gray_from_color};
 pub use invalid::{Invalid, require_finite, require_in, require_positive};
+pub use map_annotations::{MapAnnotations, NamedPlace};
 pub use odometry::{GyroRate, Odometry, WheelTicks};
 pub use path::Path;
 pub use pose2::{MAX_COORDINATE_M, Pose2};
@@ -53,6 +56,7 @@ pub use stamp::Stamp;
 pub use toml_words::{TomlProblem, number_list, toml_problem};
 pub use trajectory::{Trajectory, TrajectoryPoint};
 pub use twist::Twist2;
+pub use zone::{MAX_ZONE_CORNERS, SPEED_LIMIT_RANGE_M_S, Zone, ZoneKind};
 
 /// A point or vector in a plane, metres.
 pub type Vector2 = nalgebra::Vector2<f64>;

@@ -1,5 +1,6 @@
 //! Maps in the form of the ROS `map_server`: a picture and a YAML file beside it.
 
+mod annotations;
 mod graph;
 mod mask;
 mod picture;
@@ -8,8 +9,9 @@ mod source;
 mod turned;
 mod yaml;
 
+pub use annotations::{annotations_text, read_annotations};
 pub use graph::{GraphFile, read_graph};
-pub use mask::{KeepOutFile, SpeedFile, read_keep_out_mask, read_speed_mask};
+pub use mask::{KeepOutFile, SpeedFile, read_keep_out_mask, read_speed_mask, write_speed_mask};
 pub use places::read_places;
 
 use crate::codec::encode_grey8;
@@ -175,9 +177,14 @@ fn greys(grid: &OccupancyGrid) -> impl Iterator<Item = u8> + '_ {
 
 /// The picture of a map: a binary PGM, the highest y on top.
 pub fn map_pgm(grid: &OccupancyGrid) -> Vec<u8> {
-    let GridGeometry { width, height, resolution, .. } = *grid.geometry();
+    pgm(grid.geometry(), greys(grid))
+}
+
+/// A binary PGM of greys, row by row from the highest y.
+fn pgm(geometry: &GridGeometry, greys: impl Iterator<Item = u8>) -> Vec<u8> {
+    let GridGeometry { width, height, resolution, .. } = *geometry;
     let mut bytes = format!("P5\n# trundle {resolution} m/px\n{width} {height}\n255\n").into_bytes();
-    bytes.extend(greys(grid));
+    bytes.extend(greys);
     bytes
 }
 

@@ -12,6 +12,8 @@ pub struct RunFacts {
     pub footprint: Footprint,
     /// Limits of its speed.
     pub limits: DriveLimits,
+    /// Content of the recording, in a word.
+    pub recording: &'static str,
 }
 
 impl RunFacts {
@@ -24,6 +26,7 @@ impl RunFacts {
             title: format!("{}: {}", setup.command, setup.scene),
             footprint: setup.robot.footprint()?,
             limits: setup.robot.limits,
+            recording: setup.recording.name(),
         })
     }
 }

@@ -5,7 +5,7 @@ pub(crate) mod schedule;
 use crate::mission::MissionState;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, Vector2};
+use trundle_core::{Cell, GridGeometry, Invalid, MapAnnotations, OccupancyGrid, Vector2};
 use trundle_estimation::{StationEstimate, VisualAnchor};
 use trundle_slam::MapFileError;
 
@@ -25,6 +25,8 @@ pub struct Checkpoint {
     pub mission: MissionState,
     /// The charging station, where the robot knows one.
     pub station: Option<StationEstimate>,
+    /// Zones and named places of the map.
+    pub annotations: MapAnnotations,
 }
 
 /// Why a checkpoint is refused.
@@ -65,6 +67,8 @@ struct Notes {
     mission: MissionState,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     station: Option<StationEstimate>,
+    #[serde(default, skip_serializing_if = "MapAnnotations::is_empty")]
+    annotations: MapAnnotations,
     /// Of the floor map, m.
     resolution: f64,
     /// Lower left corner of the floor map, map frame, m.
@@ -85,6 +89,7 @@ impl Checkpoint {
             visual_maps: self.visual_maps.clone(),
             mission: self.mission.clone(),
             station: self.station,
+            annotations: self.annotations.clone(),
             resolution,
             origin: origin.into(),
             cells: [width, height],
@@ -125,6 +130,7 @@ impl Checkpoint {
             grid: OccupancyGrid::new(geometry, cells)?,
             mission: notes.mission.validated()?,
             station: notes.station,
+            annotations: notes.annotations.validated()?,
         })
     }
 }
@@ -165,7 +171,7 @@ mod tests {
     use super::*;
     use crate::mission::{Mission, Task, TaskEnd, TaskRecord};
     use proptest::prelude::*;
-    use trundle_core::{Pose2, Pose3, Stamp};
+    use trundle_core::{Pose2, Pose3, Stamp, Zone, ZoneKind};
 
     fn anchor(variance: f64) -> VisualAnchor {
         let covariance = nalgebra::Matrix3::from_diagonal_element(variance).into();
@@ -175,6 +181,8 @@ mod tests {
     fn memory() -> Checkpoint {
         let mission = Mission::new(vec![Task::Explore, Task::Go(Pose2::new(1.5, -2.0, 0.25)), Task::Return]);
         let mission = MissionState::new(mission.unwrap());
+        let outline = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        let stairs = Zone { id: 1, name: "stairs".to_owned(), kind: ZoneKind::NoGo, outline };
         let ended = TaskRecord {
             index: 1,
             task: Task::Go(Pose2::new(0.1, 0.2, 0.3)),
@@ -190,6 +198,7 @@ mod tests {
             grid: OccupancyGrid::from_ascii(0.05, "#.#\n?..\n").unwrap(),
             mission: MissionState { places: vec![0, 2, 3], ended: vec![ended], ..mission },
             station: Some(StationEstimate { pose: Pose2::new(1.0, 2.0, 0.5), covariance: [[0.25; 3]; 3] }),
+            annotations: MapAnnotations { zones: vec![stairs], places: vec![] },
         }
     }
 

@@ -217,7 +217,7 @@ impl GoalApproach {
     /// Obstacles and unknown floor around the robot. Unknown floor counts because no camera covers the area behind the robot.
     fn scene_around(&self, s: &WorldState<'_>, goal: &Pose2) -> ObstacleScene {
         let (center, half) = self.config.planner.view(&self.footprint, &s.estimate.pose, goal);
-        ObstacleScene::from_grid(s.grid, center, half, true)
+        ObstacleScene::from_grid(s.permitted_grid(), center, half, true)
     }
 
     /// One control step of the manoeuvre.

@@ -28,6 +28,7 @@ pub mod settings;
 mod stage;
 mod workers;
 mod world_state;
+mod zones;
 
 pub use behaviour::drive_state::DriveState;
 pub use camera_mount::CameraMount;

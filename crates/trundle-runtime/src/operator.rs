@@ -3,7 +3,9 @@
 use crate::Mission;
 use crate::mission::executor_config::PATIENCE_RANGE_S;
 use serde::{Deserialize, Serialize};
-use trundle_core::{Invalid, Pose2, Twist2, require_finite, require_in};
+use trundle_core::{
+    Invalid, MapAnnotations, Pose2, SPEED_LIMIT_RANGE_M_S, Twist2, require_finite, require_in,
+};
 
 /// A command of an operator to a robot that runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -20,6 +22,8 @@ pub enum OperatorCommand {
     SetPose(PoseGuess),
     /// Change a setting, until the run ends.
     Change(RunSetting),
+    /// The zones and named places of the map, in place of the present ones.
+    Annotate(MapAnnotations),
     /// Drive with this twist, below the safety monitor: the mission is paused. Without another one within
     /// [`TELEOP_SILENCE_S`] the robot stops.
     Drive(Twist2),
@@ -45,6 +49,7 @@ impl OperatorCommand {
             Self::Begin(mission) => Ok(Self::Begin(Mission::new(mission.tasks().to_vec())?)),
             Self::SetPose(guess) => Ok(Self::SetPose(guess.validated()?)),
             Self::Change(setting) => Ok(Self::Change(setting.validated()?)),
+            Self::Annotate(annotations) => Ok(Self::Annotate(annotations.validated()?)),
             Self::Drive(twist) => {
                 require_finite("speed of the operator's twist", twist.v, "m/s")?;
                 require_finite("turn rate of the operator's twist", twist.omega, "rad/s")?;
@@ -95,10 +100,24 @@ pub enum RunSetting {
     Patience(f64),
 }
 
-/// Range of a speed limit \[m/s\]. Source: ours; below it a base's wheels stick.
-const SPEED_RANGE_M_S: (f64, f64) = (0.05, 10.0);
-
 impl RunSetting {
+    /// Its key in the robot file.
+    #[must_use]
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Speed(_) => "limits.v_m_s",
+            Self::Patience(_) => "mission_executor.patience_s",
+        }
+    }
+
+    /// Its value, in the unit of the key.
+    #[must_use]
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Speed(value) | Self::Patience(value) => value,
+        }
+    }
+
     /// The setting with a key of the robot file, in the unit of the key; `None` where it cannot change while the robot runs.
     #[must_use]
     pub fn of_key(key: &str, value: f64) -> Option<Self> {
@@ -113,7 +132,7 @@ impl RunSetting {
     #[must_use]
     pub fn range(self) -> (f64, f64) {
         match self {
-            Self::Speed(_) => SPEED_RANGE_M_S,
+            Self::Speed(_) => SPEED_LIMIT_RANGE_M_S,
             Self::Patience(_) => PATIENCE_RANGE_S,
         }
     }
@@ -156,6 +175,10 @@ mod tests {
             assert!(change(key, value).is_err(), "{key} {value}");
         }
         assert_eq!(RunSetting::of_key("drive.wheel_radius_m", 0.1), None);
+        for setting in [RunSetting::Speed(0.25), RunSetting::Patience(8.0)] {
+            assert_eq!(RunSetting::of_key(setting.key(), setting.value()), Some(setting));
+            assert!(crate::settings::reference().iter().any(|known| known.key == setting.key()));
+        }
     }
 
     #[test]

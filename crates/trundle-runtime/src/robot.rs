@@ -25,6 +25,7 @@ use crate::{
     mission::{Mission, MissionState, Task},
     monitors::camera_health::CameraHealth,
     monitors::scan_map_consistency::ScanMapConsistency,
+    operator::RunSetting,
     range_source::RangeSource,
     report::StepReport,
     scan_pose_log::ScanPoseLog,
@@ -33,6 +34,7 @@ use crate::{
     workers::decision_worker::DecisionWorker,
     workers::perception_worker::{PerceptionResult, PerceptionWorker},
     workers::teleop_controller::TeleopController,
+    zones::{RobotZones, ZonedMap},
 };
 use background::Background;
 use body_state::BodyState;
@@ -89,6 +91,9 @@ pub struct Robot {
     background: Background,
     /// Drives by the twists of an operator.
     teleop: TeleopController,
+    zones: RobotZones,
+    /// Present values of the settings that may change while the robot runs.
+    settings: [RunSetting; 2],
     latest: Latest,
     times: StageTimes,
 }
@@ -176,6 +181,11 @@ impl Robot {
             decision_worker: Some(Box::new(DecisionWorker::new(&config, &footprint)?)),
             background: Background::default(),
             teleop: TeleopController::new(&config, &footprint)?,
+            zones: RobotZones::new(&footprint, config.planning.room.escape),
+            settings: [
+                RunSetting::Speed(config.limits.v),
+                RunSetting::Patience(config.mission_executor.patience),
+            ],
             latest: Latest::default(),
             times: StageTimes::default(),
         })
@@ -303,6 +313,7 @@ impl Robot {
     /// Navigation by the state of the world at `now`: a twist leaves.
     fn decide(&mut self, now: Stamp, report: &mut StepReport) {
         self.latest.forecast_movers(&self.obstacle_tracker, now);
+        self.update_zones();
         let world = WorldState {
             now,
             estimate: self.localizer.estimate(),
@@ -322,6 +333,7 @@ impl Robot {
                 estimate: self.station.estimate(),
                 is_docked: self.latest.body.is_docked(),
             },
+            zones: self.zones.view(),
         };
         match self.decision_worker.take() {
             Some(mut decision_worker) if !self.background.is_for(&decision_worker, &world) => {
@@ -337,9 +349,21 @@ impl Robot {
             }
         }
         let by_hand = WorldState { hold: self.latest.body.hold_besides_pause(self.range_source), ..world };
-        report.twist = self.teleop.step(&by_hand).or(report.twist);
+        let by_hand = self.teleop.step(&by_hand).map(|twist| self.zones.slowed(twist, world.estimate.pose));
+        report.twist = by_hand.or(report.twist);
         report.twist.into_iter().for_each(|twist| self.odometry.set_command(twist));
         self.redraw();
+    }
+
+    /// The zones as they count at the present pose, on the present map.
+    fn update_zones(&mut self) {
+        let map = ZonedMap {
+            grid: self.mapper.grid(),
+            revision: self.mapper.revision(),
+            static_grid: self.latest.static_grid.as_ref(),
+            scanned: self.latest.scan.as_ref().map(Scan::stamp),
+        };
+        self.zones.update(self.localizer.estimate().pose, &map);
     }
 
     /// The source that shows how the robot moves.

@@ -127,6 +127,11 @@ impl StageTimes {
         self.spent[stage as usize].count()
     }
 
+    /// The time of all runs of a stage so far, s.
+    pub fn total(&self, stage: Stage) -> f64 {
+        self.spent[stage as usize].sum() * 1e-3
+    }
+
     /// The cost of a stage; `None` when it never ran.
     pub fn cost(&self, stage: Stage) -> Option<StageCost> {
         let spent = &self.spent[stage as usize];

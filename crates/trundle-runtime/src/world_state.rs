@@ -1,5 +1,7 @@
 //! The world state: what a decision needs, by reference and as a copy for a decision that runs beside the control loop.
 
+use crate::zones::{ZoneMasks, ZoneView};
+use std::sync::Arc;
 use trundle_control::{MotionHold, MotionSense, SafetyScan};
 use trundle_core::{OccupancyGrid, Pose2, PoseEstimate, Scan, Stamp, Vector2};
 use trundle_estimation::StationEstimate;
@@ -25,6 +27,7 @@ pub(crate) struct WorldState<'a> {
     pub(crate) motion: MotionSense,
     pub(crate) dynamic_obstacles: DynamicObstacles<'a>,
     pub(crate) station: StationState,
+    pub(crate) zones: ZoneView<'a>,
 }
 
 /// The charging station, as far as the robot knows it.
@@ -47,9 +50,19 @@ pub(crate) struct DynamicObstacles<'a> {
 }
 
 impl<'a> WorldState<'a> {
-    /// The map that plans are made on: what moves is not part of it.
+    /// The map without what moves: what the robot knows of the floor.
     pub(crate) fn floor(&self) -> &'a OccupancyGrid {
         self.dynamic_obstacles.static_grid.unwrap_or(self.grid)
+    }
+
+    /// The map that plans are made on: the floor, its no-go zones occupied.
+    pub(crate) fn permitted_floor(&self) -> &'a OccupancyGrid {
+        self.zones.static_grid.or(self.zones.grid).unwrap_or(self.floor())
+    }
+
+    /// The map with what moves, its no-go zones occupied.
+    pub(crate) fn permitted_grid(&self) -> &'a OccupancyGrid {
+        self.zones.grid.unwrap_or(self.grid)
     }
 }
 
@@ -70,6 +83,9 @@ pub(crate) struct OwnedWorldState {
     unconfirmed: Vec<Vector2>,
     static_grid: Option<OccupancyGrid>,
     station: StationState,
+    zone_masks: Option<Arc<ZoneMasks>>,
+    /// As in [`ZoneView`].
+    zone_grids: [Option<OccupancyGrid>; 2],
 }
 
 impl From<&WorldState<'_>> for OwnedWorldState {
@@ -88,6 +104,8 @@ impl From<&WorldState<'_>> for OwnedWorldState {
             unconfirmed: s.dynamic_obstacles.unconfirmed.to_vec(),
             static_grid: s.dynamic_obstacles.static_grid.cloned(),
             station: s.station,
+            zone_masks: s.zones.masks.cloned(),
+            zone_grids: [s.zones.grid.cloned(), s.zones.static_grid.cloned()],
         }
     }
 }
@@ -119,6 +137,11 @@ impl OwnedWorldState {
                 static_grid: self.static_grid.as_ref(),
             },
             station: self.station,
+            zones: ZoneView {
+                masks: self.zone_masks.as_ref(),
+                grid: self.zone_grids[0].as_ref(),
+                static_grid: self.zone_grids[1].as_ref(),
+            },
         }
     }
 }
@@ -141,6 +164,7 @@ mod tests {
         let scan =
             Scan::new(Stamp::from_nanos(5), Vector2::zeros(), 0.0, 0.1, vec![Beam::Unseen; 4]).unwrap();
         let hits = [Vector2::new(0.5, 0.5)];
+        let (masks, zoned) = (Arc::default(), OccupancyGrid::from_ascii(0.1, "###\n...\n").unwrap());
         let original = WorldState {
             now: Stamp::from_nanos(9),
             estimate: estimate(),
@@ -161,6 +185,7 @@ mod tests {
                 static_grid: Some(&still),
             },
             station: StationState { estimate: None, is_docked: true },
+            zones: ZoneView { masks: Some(&masks), grid: Some(&zoned), static_grid: None },
         };
         let owned = OwnedWorldState::from(&original);
         let copy = owned.as_world_state();
@@ -177,8 +202,12 @@ mod tests {
             (&hits[..], Some(&still))
         );
         assert_eq!((owned.now(), copy.station), (original.now, original.station));
-        assert_eq!(copy.floor(), &still, "plans are made without what moves");
-        let alone = WorldState { dynamic_obstacles: DynamicObstacles::default(), ..copy };
-        assert_eq!(alone.floor(), &grid);
+        assert_eq!(copy.floor(), &still, "the floor is known without what moves");
+        assert_eq!((copy.permitted_floor(), copy.permitted_grid()), (&zoned, &zoned));
+        assert!(copy.zones.masks.is_some_and(|copied| Arc::ptr_eq(copied, &masks)));
+        let alone = WorldState { zones: ZoneView::default(), ..copy };
+        assert_eq!((alone.permitted_floor(), alone.permitted_grid()), (&still, &grid));
+        let alone = WorldState { dynamic_obstacles: DynamicObstacles::default(), ..alone };
+        assert_eq!((alone.floor(), alone.permitted_floor()), (&grid, &grid));
     }
 }

@@ -1,13 +1,15 @@
 //! The two ends of the link between a run and its operator.
 
+use super::annotation_store::AnnotationStore;
 use super::request::OperatorRequest;
 use super::run_view::RunView;
 use super::view_feed::ViewFeed;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use thiserror::Error;
-use trundle_core::{Invalid, Stamp};
+use trundle_core::{Invalid, MapAnnotations, Stamp};
 use trundle_runtime::{OperatorCommand, Robot, StepReport};
 
 /// Largest number of requests that wait for the run. A run takes one at each step. Source: ours.
@@ -38,6 +40,9 @@ struct Shared {
     view: Mutex<Option<Arc<RunView>>>,
     /// Whether a front end has asked for a view since the last step.
     is_asked: AtomicBool,
+    annotations: Mutex<AnnotationStore>,
+    /// Held while zones or places are changed and written.
+    editing: Mutex<()>,
 }
 
 /// Why a request does not reach the run.
@@ -52,6 +57,17 @@ pub enum OperatorError {
     /// The run is over.
     #[error("the run is over")]
     Over,
+    /// Zones or places cannot be written to their file.
+    #[error("the change counts until the run ends, and is not kept: {0}")]
+    NotKept(String),
+    /// There is no place of this name.
+    #[error("no place '{name}'; there are: {}", if known.is_empty() { "none" } else { known })]
+    NoPlace {
+        /// The name.
+        name: String,
+        /// The names that there are.
+        known: String,
+    },
 }
 
 /// A link: the front end's end and the run's end.
@@ -59,7 +75,8 @@ pub enum OperatorError {
 pub fn operator_link() -> (Operator, OperatorLink) {
     let (sender, requests) = sync_channel(MAX_WAITING_REQUESTS);
     let (requests_in, view) = (Mutex::new((sender, 0)), Mutex::default());
-    let shared = Arc::new(Shared { requests: requests_in, view, is_asked: AtomicBool::new(false) });
+    let (is_asked, annotations, editing) = (AtomicBool::new(false), Mutex::default(), Mutex::default());
+    let shared = Arc::new(Shared { requests: requests_in, view, is_asked, annotations, editing });
     let link =
         OperatorLink { requests, shared: Arc::clone(&shared), feed: ViewFeed::default(), unwatched_steps: 0 };
     (Operator { shared }, link)
@@ -83,6 +100,14 @@ impl Operator {
             Err(TrySendError::Full(_)) => Err(OperatorError::Busy),
             Err(TrySendError::Disconnected(_)) => Err(OperatorError::Over),
         }
+    }
+
+    pub(super) fn editing(&self) -> MutexGuard<'_, ()> {
+        self.shared.editing.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn annotation_store(&self) -> MutexGuard<'_, AnnotationStore> {
+        self.shared.annotations.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The newest view without a wish for its large parts: scan, image and map may be old.
@@ -122,9 +147,23 @@ impl OperatorLink {
         self.requests.try_recv().ok()
     }
 
-    /// Notes which request began the present mission.
+    /// Width and height of the camera's images \[px\].
+    pub(crate) fn note_image_size(&mut self, size_px: [usize; 2]) {
+        self.feed.image_size_px = size_px;
+    }
+
+    /// The zones and places with which a run begins, and the file that keeps their changes.
+    pub(crate) fn begin_annotations(&mut self, annotations: &Arc<MapAnnotations>, file: Option<&Path>) {
+        *self.operator().annotation_store() =
+            AnnotationStore::new(Arc::clone(annotations), file.map(Path::to_owned));
+    }
+
+    /// Notes which request began the present mission, and the zones and places of a replay.
     pub(crate) fn note_request(&mut self, request: &OperatorRequest) {
         self.feed.note_request(request);
+        if let OperatorCommand::Annotate(annotations) = &request.command {
+            self.operator().annotation_store().note_obeyed(annotations);
+        }
     }
 
     /// Publishes the state of the robot after a step.

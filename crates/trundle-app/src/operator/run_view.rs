@@ -6,7 +6,7 @@ use trundle_core::{
     Battery, OccupancyGrid, Odometry, Pose2, PoseEstimate, Scan, Stamp, Trajectory, Twist2, Vector3,
 };
 use trundle_planning::MovingObstacle;
-use trundle_runtime::{DriveState, MotionHold, Task, TaskRecord};
+use trundle_runtime::{DriveState, MotionHold, RunSetting, Task, TaskRecord};
 
 /// State of a run after a step. Large parts are shared with earlier views in which they are the same.
 #[derive(Debug, Clone)]
@@ -39,6 +39,8 @@ pub struct RunView {
     pub surroundings: SurroundingsView,
     /// How often stages ran so far.
     pub counts: RunCounts,
+    /// Present values of the settings that may change while the robot runs.
+    pub settings: [RunSetting; 2],
 }
 
 /// What is around a robot besides the map.
@@ -48,10 +50,41 @@ pub struct SurroundingsView {
     pub image: Option<Arc<ImageView>>,
     /// The visual map, at most [`super::VISUAL_MAP_PERIOD_S`] old.
     pub visual_map: Option<Arc<VisualMapView>>,
+    /// Features of the last image that was tracked.
+    pub features: Option<Arc<FeatureView>>,
+    /// The last loops that were closed.
+    pub loops: Vec<ClosedLoop>,
     /// Dynamic obstacles near by.
     pub movers: Vec<MovingObstacle>,
     /// `map_from_station` of the charging station; `None` before its light was seen.
     pub station: Option<Pose2>,
+}
+
+/// Features of an image.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct FeatureView {
+    /// Width and height of the image \[px\].
+    pub size_px: [usize; 2],
+    /// The features.
+    pub features: Vec<FeatureSpot>,
+}
+
+/// A feature of an image.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FeatureSpot {
+    /// Column and row \[px\].
+    pub at_px: [f64; 2],
+    /// Whether it is a landmark that agrees with the pose.
+    pub is_tracked: bool,
+}
+
+/// A loop closure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClosedLoop {
+    /// Of the image by which it was closed.
+    pub stamp: Stamp,
+    /// `map_from_base` after it.
+    pub pose: Pose2,
 }
 
 /// The visual map in the map frame.
@@ -64,7 +97,7 @@ pub struct VisualMapView {
 }
 
 /// How often parts of the robot ran since its start. The difference of two views gives a rate.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct RunCounts {
     /// Camera poses by SLAM.
     pub slam: u64,
@@ -74,6 +107,8 @@ pub struct RunCounts {
     pub control: u64,
     /// Images that a newer one replaced before they were processed.
     pub dropped_images: u64,
+    /// The stages that ran, each with its time so far by the clock \[s\].
+    pub stages: Vec<(&'static str, f64)>,
 }
 
 /// A colour image of the camera.

@@ -1,5 +1,6 @@
 //! Makes the views of a run.
 
+use super::perception_feed::PerceptionFeed;
 use super::request::OperatorRequest;
 use super::run_view::{ImageView, MapView, MissionView, RunCounts, RunView, SurroundingsView};
 use super::visual_map_feed::VisualMapFeed;
@@ -24,6 +25,9 @@ pub(super) struct ViewFeed {
     map_copied: Option<Stamp>,
     image: Option<Arc<ImageView>>,
     visual_map: VisualMapFeed,
+    perception: PerceptionFeed,
+    /// Width and height of the camera's images \[px\].
+    pub(super) image_size_px: [usize; 2],
 }
 
 impl ViewFeed {
@@ -58,7 +62,9 @@ impl ViewFeed {
         self.twist = report.twist.unwrap_or(self.twist);
         self.update_mission(robot, report);
         self.update_plan(robot, report);
+        self.perception.note_loop(robot, report);
         if is_watched {
+            self.perception.update(self.image_size_px, robot, report);
             self.update_scan(robot);
             self.update_map(stamp, robot);
             self.visual_map.update(stamp, robot);
@@ -79,10 +85,13 @@ impl ViewFeed {
             surroundings: SurroundingsView {
                 image: self.image.clone(),
                 visual_map: self.visual_map.newest(),
+                features: self.perception.features(),
+                loops: self.perception.loops().to_vec(),
                 movers: robot.moving_obstacles().to_vec(),
                 station: robot.station().map(|station| station.pose),
             },
             counts: counts(robot),
+            settings: robot.run_settings(),
         })
     }
 
@@ -130,5 +139,6 @@ fn counts(robot: &Robot) -> RunCounts {
         mapping: runs(Stage::Mapping),
         control: runs(Stage::Control),
         dropped_images: robot.dropped_images().len() as u64,
+        stages: Stage::ALL.iter().map(|stage| (stage.name(), robot.times().total(*stage))).collect(),
     }
 }

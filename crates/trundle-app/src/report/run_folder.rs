@@ -1,6 +1,6 @@
 //! The output folder of a run: map, trajectories, report, timing page, summary.
 
-use super::{RunNumbers, camera_view, landmarks_in_map, timing_page};
+use super::{RunNumbers, camera_view, landmarks_in_map, timing_page, write_zones};
 use crate::real_time::RealTimeReport;
 use crate::setup::mission_text;
 use crate::{AppError, FinishedRun, RunSetup};
@@ -37,6 +37,8 @@ pub fn write_run(
     let run = &*run;
     let numbers = RunNumbers::of(setup, run);
     write_map(&folder, "map", run.robot.grid())?;
+    let (zones, map) = (run.robot.annotations(), run.robot.grid().geometry());
+    write_zones(&folder, zones, map, setup.robot.limits.v)?;
     folder.write("trajectory.txt", trajectory_text_from_planar(&run.log.estimates).as_bytes())?;
     if !run.log.truths.is_empty() {
         folder.write("groundtruth.txt", trajectory_text_from_planar(&run.log.truths).as_bytes())?;

@@ -14,6 +14,7 @@ fn checkpoint(number: u8) -> Checkpoint {
         grid: OccupancyGrid::from_ascii(0.05, "#.#\n").unwrap(),
         mission: MissionState::new(Mission::new(vec![Task::Explore]).unwrap()),
         station: None,
+        annotations: trundle_core::MapAnnotations::default(),
     }
 }
 

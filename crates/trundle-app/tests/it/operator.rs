@@ -2,10 +2,11 @@
 
 use crate::body::{GOAL, StillBody, setup};
 use std::path::Path;
-use trundle_app::operator::{FrontEnd, MissionView, Operator, operator_link};
+use trundle_app::operator::{FrontEnd, MissionView, Operator, ZONES_FILE, operator_link};
+use trundle_app::report::write_run;
 use trundle_app::{FinishedRun, Progress, RunLog, RunRecorder, RunReplayer, RunSetup, run_on_body};
-use trundle_core::{Pose2, Twist2};
-use trundle_io::OutputFolder;
+use trundle_core::{MapAnnotations, NamedPlace, Pose2, Twist2, Zone, ZoneKind};
+use trundle_io::{OutputFolder, annotations_text, read_annotations};
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, PoseGuess, Task};
 
 fn operated() -> RunSetup {
@@ -95,4 +96,50 @@ fn a_second_front_end_shares_the_link() {
     let (first, second) = (link.operator(), link.operator());
     assert_eq!(first.send(go(1.0)).unwrap(), 1);
     assert_eq!(second.send(OperatorCommand::Pause).unwrap(), 2);
+}
+
+#[test]
+fn zones_reach_the_robot_its_folder_and_a_replay() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("run");
+    let outline = vec![[1.0, -1.0], [2.0, -1.0], [2.0, 1.0], [1.0, 1.0]];
+    let stairs = Zone { id: 1, name: "stairs".to_owned(), kind: ZoneKind::NoGo, outline };
+    let desk = NamedPlace { id: 2, name: "desk".to_owned(), pose: Pose2::new(-0.5, 0.0, 0.5) };
+    let annotations = MapAnnotations { zones: vec![stairs], places: vec![desk] };
+    let wrong = Zone { outline: vec![], ..annotations.zones[0].clone() };
+    assert!(
+        operator_link()
+            .0
+            .send(OperatorCommand::Annotate(MapAnnotations { zones: vec![wrong], places: vec![] }))
+            .is_err()
+    );
+    let commands = [OperatorCommand::Annotate(annotations.clone()), go(1.5)];
+    let (run, operator) = run_with(&commands, &folder);
+    assert_eq!((&**run.robot.annotations(), &*operator.annotations()), (&annotations, &annotations));
+    assert_eq!(operator.goal_of_place("desk").unwrap(), Pose2::new(-0.5, 0.0, 0.5));
+    let (mut replayer, setup) = RunReplayer::open(&folder.join("recording.mcap")).unwrap();
+    let other = OutputFolder::create(&place.path().join("replay")).unwrap();
+    let recorder = RunRecorder::to_folder(&other).unwrap();
+    let mut replay =
+        run_on_body(&setup, &mut replayer, recorder, RunLog::default(), Progress::hidden()).unwrap();
+    assert_eq!(replay.log.state, run.log.state);
+    let written = write_run(&setup, &mut replay, None, other).unwrap().folder;
+    assert_eq!(read_annotations(&written.join(ZONES_FILE)).unwrap(), annotations);
+    assert!(written.join("keepout_mask.yaml").exists() && !written.join("speed_mask.yaml").exists());
+}
+
+#[test]
+fn a_run_begins_with_the_zones_of_its_file() {
+    let place = tempfile::tempdir().unwrap();
+    let file = place.path().join("zones.geojson");
+    let desk = NamedPlace { id: 2, name: "desk".to_owned(), pose: Pose2::new(-0.5, 0.0, 0.5) };
+    let annotations = MapAnnotations { zones: vec![], places: vec![desk] };
+    assert_eq!(operated().with_annotations_of(&file).unwrap().annotations, None, "no file yet");
+    std::fs::write(&file, annotations_text(&annotations)).unwrap();
+    let setup = operated().with_annotations_of(&file).unwrap();
+    assert_eq!(**setup.start_robot().unwrap().annotations(), annotations);
+    let recorded = serde_json::to_string(&setup).unwrap();
+    assert!(recorded.contains("desk") && !recorded.contains("geojson"), "{recorded}");
+    std::fs::write(&file, "{}").unwrap();
+    assert!(operated().with_annotations_of(&file).is_err());
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use trundle::core::{
-    ColorImage, DepthImage, Distortion, OccupancyGrid, PinholeCamera, Pose2, RgbdImage, Stamp,
+    ColorImage, DepthImage, Distortion, MapAnnotations, OccupancyGrid, PinholeCamera, Pose2, RgbdImage, Stamp,
 };
 use trundle::runtime::{Checkpoint, Mission, MissionState, Task};
 use trundle::slam::{RgbdSlam, SlamConfig};
@@ -38,8 +38,15 @@ pub fn checkpoint() -> Vec<Vec<u8>> {
     let grid = OccupancyGrid::from_ascii(0.05, "###\n#.#\n#??").expect("invariant: the map is valid");
     let mission = MissionState::new(mission.expect("invariant: the goals are finite"));
     vec![
-        Checkpoint { visual: Vec::new(), visual_maps: BTreeMap::new(), grid, mission, station: None }
-            .to_bytes(),
+        Checkpoint {
+            visual: Vec::new(),
+            visual_maps: BTreeMap::new(),
+            grid,
+            mission,
+            station: None,
+            annotations: MapAnnotations::default(),
+        }
+        .to_bytes(),
     ]
 }
 

@@ -3,7 +3,7 @@
 use crate::scratch::{with_file, with_files};
 use crate::seeds::{MAP_YAML, SMALL_PGM};
 use std::path::Path;
-use trundle::io::{read_graph, read_keep_out_mask, read_map, read_places, read_speed_mask};
+use trundle::io::{read_annotations, read_graph, read_keep_out_mask, read_map, read_places, read_speed_mask};
 
 /// The YAML file of a map, beside a small picture.
 pub fn map_yaml(bytes: &[u8]) {
@@ -30,4 +30,5 @@ pub fn graph(bytes: &[u8]) {
 /// Named places.
 pub fn places(bytes: &[u8]) {
     let _ = with_file("places.toml", bytes, read_places);
+    let _ = with_file("zones.geojson", bytes, read_annotations);
 }

@@ -6,8 +6,9 @@ use super::turned::straightened;
 use super::yaml::MapYaml;
 use crate::IoError;
 use crate::yaml_document::YamlDocument;
+use crate::{OutputFolder, map::pgm};
 use std::path::Path;
-use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, require_in};
+use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, require_in};
 
 /// A mask's value that forbids.
 const LETHAL_VALUE: u8 = 100;
@@ -111,6 +112,40 @@ pub fn read_speed_mask(yaml_path: &Path, full_speed: f64) -> Result<SpeedFile, I
     Ok(SpeedFile { geometry, limits, out_of_range })
 }
 
+/// Writes a speed mask as `NAME.pgm` and `NAME.yaml` for Nav2's speed filter: mode `scale`, per cent of `full_speed` \[m/s\] by
+/// `type` 1, `base` 100 and `multiplier` -1, so the filter needs no other numbers. A limit is rounded down to a whole per cent, 1 at least.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write_speed_mask(
+    folder: &OutputFolder,
+    name: &str,
+    geometry: &GridGeometry,
+    limits: impl Fn(CellIndex) -> f64,
+    full_speed: f64,
+) -> Result<(), IoError> {
+    let GridGeometry { resolution, origin, width, height } = *geometry;
+    let cells = (0..height).rev().flat_map(|row| (0..width).map(move |col| CellIndex { col, row }));
+    let greys = cells.map(|cell| grey_of_limit(limits(cell) / full_speed));
+    folder.write(&format!("{name}.pgm"), &pgm(geometry, greys))?;
+    let yaml = format!(
+        "image: {name}.pgm\nmode: scale\nresolution: {resolution:?}\norigin: [{:?}, {:?}, 0.0]\nnegate: 0\n\
+         occupied_thresh: 1.0\nfree_thresh: 0.0\ntype: 1\nbase: 100.0\nmultiplier: -1.0\n",
+        origin.x, origin.y
+    );
+    folder.write(&format!("{name}.yaml"), yaml.as_bytes())
+}
+
+/// Grey of a limit as a part of the full speed, in mode `scale`: the darker the slower, white without a limit.
+fn grey_of_limit(part: f64) -> u8 {
+    if part >= 1.0 {
+        return u8::MAX;
+    }
+    // Rounding of the limit, a f32, is no per cent less.
+    let value = 100.0 - (100.0 * part + 1e-4).floor().clamp(1.0, 99.0);
+    (f64::from(u8::MAX) * (1.0 - value / 100.0)).round() as u8
+}
+
 /// The picture's values, 0 to 100, row by row from the lowest y; `None`: unknown.
 fn values(source: &MapSource) -> Result<(GridGeometry, Vec<Option<u8>>), IoError> {
     let MapSource { yaml, picture, .. } = source;
@@ -160,6 +195,25 @@ mod tests {
         let raw = raw.unwrap();
         assert_eq!(raw.forbidden.cells(), [Free, Free, Occupied, Free]);
         assert_eq!(raw.costs, [0, 99, 0, 0]);
+    }
+
+    #[test]
+    fn a_speed_mask_that_is_written_is_read_back_to_a_per_cent_and_never_faster() {
+        let scratch = tempfile::tempdir().unwrap();
+        let folder = OutputFolder::create(&scratch.path().join("out")).unwrap();
+        let geometry = GridGeometry::new(0.05, trundle_core::Vector2::new(-1.5, 2.0), 100, 2).unwrap();
+        let limit =
+            |cell: CellIndex| if cell.row == 1 { 0.005 * (cell.col + 1) as f64 } else { f64::INFINITY };
+        write_speed_mask(&folder, "speed", &geometry, limit, 0.5).unwrap();
+        let mask = read_speed_mask(&folder.commit().unwrap().join("speed.yaml"), 0.5).unwrap();
+        assert_eq!((mask.geometry, mask.out_of_range), (geometry, 0));
+        assert!(mask.limits[..100].iter().all(|limit| limit.is_infinite()));
+        for (col, found) in mask.limits[100..199].iter().enumerate() {
+            let asked = limit(CellIndex { col, row: 1 });
+            let off = asked - f64::from(*found);
+            assert!((-1e-6..0.0051).contains(&off), "{asked} m/s is {found} m/s");
+        }
+        assert!(mask.limits[199].is_infinite(), "the full speed is no limit");
     }
 
     #[test]

@@ -1,14 +1,18 @@
 // The live page: what the robot sees, and how it is steered.
 
+import { Annotations } from "./annotations";
+import { drawFeatures } from "./camera";
 import { Link, type LinkState } from "./link";
 import { MapView, type Layers } from "./map_view";
 import { addToLog, element, Panel } from "./panel";
 import { Teleop } from "./teleop";
+import { saveMap } from "./map_files";
+import { Settings } from "./settings";
 import { SpaceView } from "./space_view";
 import { startTheme, toggleTheme } from "./theme";
 import { Timeline } from "./timeline";
 import { MapTools, type Tool } from "./tools";
-import type { ByteMessage, Pose, Reply, RobotState, Welcome } from "./wire";
+import type { ByteMessage, Pose, Reply, RobotState, Setting, Welcome } from "./wire";
 
 startTheme(() => map.recolor());
 const canvas = element<HTMLCanvasElement>("map");
@@ -21,6 +25,12 @@ const timeline = new Timeline((pose) => {
 });
 /** Way of the map for a press of an arrow key [pixels]. */
 const PAN_PX = 80;
+/** The recording of the run in words. It cannot be switched while the robot runs: a replay needs it from its start. */
+const RECORDINGS: Record<string, string> = {
+  none: "Nothing is recorded.",
+  events: "Events are recorded, images are not.",
+  all: "Everything is recorded.",
+};
 let welcome: Welcome | null = null;
 let state: RobotState | null = null;
 /** What a refusal beside the map refers to. */
@@ -31,14 +41,24 @@ const link = new Link(location.hash.slice(1), viewerName(), {
   onReply,
   onBytes,
 });
-const tools = new MapTools(canvas, map, () => state?.pose[2] ?? 0, {
+const annotations = new Annotations(map, () => state?.pose ?? null, {
+  ask: async (message, at) => beside((await link.ask(message)).refusal, at),
+  go: (pose) => void go(pose, false),
+  note: (text) => toast(text, "warn"),
+  draw: () => selectTool("zone"),
+  onClosed: () => tools.tool !== "move" && selectTool("move"),
+});
+const settings = new Settings(async (message) => (await link.ask(message)).refusal);
+const tools = new MapTools(canvas, map, () => state?.pose[2] ?? 0, annotations.tool, {
+  onPlace: (pose) => annotations.newPlace(pose),
   onGoal: (pose, append) => void go(pose, append),
   onPose: (pose) => void request({ type: "set_pose", pose: asGoal(pose) }, pose),
 });
 const teleop = new Teleop(element("stick"), element("knob"), (v, omega) => link.send({ type: "drive", v, omega }));
 
 /** For tests in a browser, and for the curious: the map, and a place of the window where a wall is drawn. */
-Object.assign(window, { trundle: { map, wallPixel } });
+const inspected: { map: MapView; wallPixel: typeof wallPixel; settings: Setting[] } = { map, wallPixel, settings: [] };
+Object.assign(window, { trundle: inspected });
 
 map.onMove = placeOverlays;
 connectButtons();
@@ -55,6 +75,7 @@ function onReply(reply: Reply): void {
       element("title").textContent = reply.title;
       document.body.dataset["access"] = reply.drives ? "drive" : "view";
       element("log").replaceChildren();
+      element("recording").textContent = RECORDINGS[reply.recording] ?? reply.recording;
       sendCamera();
       sendVisualMap();
       break;
@@ -65,6 +86,14 @@ function onReply(reply: Reply): void {
       timeline.add(reply);
       showWheel(reply);
       showPause(reply);
+      showLoops(reply);
+      break;
+    case "annotations":
+      annotations.show(reply.zones, reply.places);
+      break;
+    case "settings":
+      settings.show(reply.settings);
+      inspected.settings = reply.settings;
       break;
     case "states":
       addToLog(reply.states, (time) => timeline.look(time));
@@ -97,6 +126,9 @@ function onBytes(message: ByteMessage): void {
     case "visual":
       map.setVisualMap(message.keyframes, message.landmarks);
       break;
+    case "features":
+      drawFeatures(message);
+      break;
     case "image":
       showImage(message.jpeg);
       break;
@@ -113,6 +145,13 @@ async function request(message: object, at?: Pose): Promise<boolean> {
   if (at) showRefusal(answer.refusal, at);
   else toast(answer.refusal, "warn");
   return false;
+}
+
+/** Shows a refusal beside the place that it concerns; the refusal. */
+function beside(refusal: string | undefined, at: Pose): string | undefined {
+  if (refusal) showRefusal(refusal, at);
+  else hideRefusal();
+  return refusal;
 }
 
 async function go(pose: Pose, append: boolean): Promise<void> {
@@ -142,6 +181,12 @@ function connectButtons(): void {
   press("return", () => void request({ type: "return" }));
   press("dock", () => void request({ type: "dock" }));
   press("pause", () => void request({ type: state?.paused ? "continue" : "pause" }));
+  press("map-save", () => void saveMap(location.hash.slice(1)).then((problem) => problem && toast(problem, "bad")));
+  press("features-toggle", () => {
+    const canvas = element("camera-features");
+    canvas.hidden = !canvas.hidden;
+    element("features-toggle").setAttribute("aria-pressed", String(!canvas.hidden));
+  });
   press("wheel-take", () => void request({ type: "take_wheel" }));
   press("theme", () => {
     toggleTheme();
@@ -174,6 +219,7 @@ function connectButtons(): void {
     box.addEventListener("change", () => {
       map.layers[box.dataset["layer"] as keyof Layers] = box.checked;
       sendVisualMap();
+      if (box.dataset["layer"] === "frontiers") map.recolor();
       map.dirty();
     });
   });
@@ -183,18 +229,26 @@ function connectButtons(): void {
   });
   window.addEventListener("keydown", onKey, { capture: true });
   // A button would take the release of the space bar for a click.
-  window.addEventListener("keyup", (event) => event.code === "Space" && event.preventDefault(), { capture: true });
+  const isButton = (target: EventTarget | null) => target instanceof HTMLButtonElement;
+  window.addEventListener("keyup", (event) => event.code === "Space" && isButton(event.target) && event.preventDefault(), {
+    capture: true,
+  });
   new MutationObserver(showFollow).observe(document.body, { attributeFilter: ["data-follow"] });
 }
 
 function onKey(event: KeyboardEvent): void {
+  const isMoving = state !== null && Math.hypot(...state.command) > 0;
+  // A name has blanks: they are typed while the robot stands.
+  if (event.code === "Space" && event.target === element("note-name") && !isMoving) return;
   if (event.code === "Space") {
     event.preventDefault();
     event.stopPropagation();
     if (!event.repeat && document.body.dataset["access"] !== "view") void stop();
     return;
   }
-  if (event.target instanceof HTMLInputElement && event.target.type !== "checkbox") return;
+  const isTyping = event.target instanceof HTMLInputElement || event.target instanceof HTMLSelectElement;
+  if (isTyping && event.key === "Escape") return selectTool("move");
+  if (isTyping && (event.target as HTMLInputElement).type !== "checkbox") return;
   if (event.ctrlKey || event.metaKey || event.altKey || event.repeat) return;
   const isDriving = tools.tool === "drive";
   const actions: Record<string, () => void> = {
@@ -202,6 +256,9 @@ function onKey(event: KeyboardEvent): void {
     g: () => selectTool("goal"),
     p: () => selectTool("pose"),
     t: () => selectTool("drive"),
+    z: () => selectTool("zone"),
+    n: () => selectTool("place"),
+    enter: () => event.target === canvas && annotations.tool.close(),
     escape: () => selectTool("move"),
     f: toggleFollow,
     "0": () => map.fit(),
@@ -238,10 +295,12 @@ function toggleSpace(): void {
 function selectTool(tool: Tool): void {
   const isDenied = document.body.dataset["access"] === "view" && tool !== "move";
   const chosen = isDenied ? "move" : tool;
-  if (space.isShown && (chosen === "goal" || chosen === "pose")) toggleSpace();
+  if (space.isShown && chosen !== "move" && chosen !== "drive") toggleSpace();
+  if (tools.tool !== chosen || chosen === "move") annotations.close(false);
   tools.tool = chosen;
   tools.cancel();
   hideRefusal();
+  if (chosen === "zone") annotations.beginZone();
   teleop.enabled = chosen === "drive";
   element("stick").hidden = chosen !== "drive";
   document.body.dataset["tool"] = chosen;
@@ -396,6 +455,15 @@ function placeOverlays(): void {
   }
   showFollow();
   showScale();
+}
+
+/** Number of closed loops at the last message; null before the first. */
+let shownLoops: number | null = null;
+
+function showLoops(now: RobotState): void {
+  const last = now.loops.at(-1)?.[0] ?? 0;
+  if (shownLoops !== null && last > shownLoops) toast("A loop was closed: the map is corrected.", "good");
+  shownLoops = last;
 }
 
 let shownScale = "";

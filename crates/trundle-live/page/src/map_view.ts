@@ -2,6 +2,7 @@
 
 import { Tiles } from "./tiles";
 import { colors, type Colors } from "./theme";
+import { ZoneLayer, type ZoneScene } from "./zone_layer";
 import type { Point, Pose, RobotState, Welcome } from "./wire";
 
 /** Limits of the zoom [pixels a metre]. */
@@ -11,6 +12,8 @@ const MAX_SCALE = 600;
 const GLIDE_S = 0.08;
 /** Largest difference that glides [m]; a larger one is a jump of the estimate. */
 const JUMP_M = 0.5;
+/** Time for which a closed loop is shown without the landmarks [s]. */
+const SHOWN_LOOP_S = 8;
 
 export interface Layers {
   scan: boolean;
@@ -18,6 +21,8 @@ export interface Layers {
   trail: boolean;
   sigma: boolean;
   visual: boolean;
+  zones: boolean;
+  frontiers: boolean;
 }
 
 /** A goal or pose that is being dragged. */
@@ -38,7 +43,17 @@ export interface Scene {
 
 export class MapView {
   readonly tiles = new Tiles();
-  readonly layers: Layers = { scan: true, plan: true, trail: true, sigma: true, visual: false };
+  readonly layers: Layers = {
+    scan: true,
+    plan: true,
+    trail: true,
+    sigma: true,
+    visual: false,
+    zones: true,
+    frontiers: true,
+  };
+  /** Zones, places and what is being drawn. */
+  readonly zones: ZoneScene = { zones: [], places: [], draft: null, hidden: 0 };
   follows = true;
   ghost: Ghost | null = null;
   /** Where the robot stood at a time of the past that is looked at. */
@@ -46,6 +61,7 @@ export class MapView {
   /** Called after each change of the view, for what is placed by the map's frame. */
   onMove: () => void = () => {};
   private readonly context: CanvasRenderingContext2D;
+  private readonly zoneLayer: ZoneLayer;
   private colors: Colors = colors();
   private scale = 60;
   private center: Point = [0, 0];
@@ -63,6 +79,7 @@ export class MapView {
 
   constructor(private readonly canvas: HTMLCanvasElement) {
     this.context = canvas.getContext("2d")!;
+    this.zoneLayer = new ZoneLayer(this.context);
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.recolor();
     requestAnimationFrame((now) => this.frame(now));
@@ -116,7 +133,7 @@ export class MapView {
 
   recolor(): void {
     this.colors = colors();
-    this.tiles.setColors(this.colors.floor, this.colors.wall);
+    this.tiles.setColors(this.colors.floor, this.colors.wall, this.layers.frontiers ? this.colors.frontier : this.colors.floor);
     this.dirty();
   }
 
@@ -260,7 +277,9 @@ export class MapView {
     context.clearRect(0, 0, canvas.width, canvas.height);
     this.drawGrid();
     this.tiles.draw(context, this.toScreen, this.scale * devicePixelRatio);
+    if (this.layers.zones || this.zones.draft) this.zoneLayer.draw(this.zones, this.colors, this.toScreen);
     if (this.layers.visual) this.drawVisualMap();
+    this.drawLoops();
     if (this.layers.trail) this.drawTrail();
     if (this.layers.plan) this.drawPlan();
     if (this.layers.scan) this.drawScan();
@@ -443,6 +462,23 @@ export class MapView {
       context.stroke();
     }
     context.globalAlpha = 1;
+  }
+
+  /** Closed loops: with the landmarks all, else those of the last seconds. */
+  private drawLoops(): void {
+    const { context } = this;
+    const now = this.state?.time ?? 0;
+    for (const [time, x, y] of this.state?.loops ?? []) {
+      const age = now - time;
+      if (age > SHOWN_LOOP_S && !this.layers.visual) continue;
+      const [left, top] = this.toScreen([x, y]);
+      const radius = (9 + 16 * Math.max(0, 1 - age / SHOWN_LOOP_S)) * devicePixelRatio;
+      context.strokeStyle = this.colors.goal;
+      context.lineWidth = 2.5 * devicePixelRatio;
+      context.beginPath();
+      context.arc(left, top, radius, 0.4, 2 * Math.PI - 0.4);
+      context.stroke();
+    }
   }
 
   /** The charging station: its front, and the light before it. */

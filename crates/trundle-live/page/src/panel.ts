@@ -20,6 +20,8 @@ export const TONES: Record<string, Tone> = {
 
 /** Time between two rates [s]. */
 const RATE_PERIOD_S = 1;
+/** Number of stages that are shown. */
+const SHOWN_STAGES = 6;
 /** Time that the plot of the speed shows [s]. */
 const PLOT_S = 60;
 
@@ -35,7 +37,7 @@ function setText(id: string, text: string): void {
 }
 
 export class Panel {
-  private rated: { time: number; counts: RobotState["counts"] } | null = null;
+  private rated: Pick<RobotState, "time" | "counts" | "stages"> | null = null;
   private speeds: { time: number; measured: number; commanded: number }[] = [];
   private spoken = "";
   private tasks = "";
@@ -94,7 +96,7 @@ export class Panel {
 
   private showRates(state: RobotState): void {
     if (!this.rated || state.time < this.rated.time) {
-      this.rated = { time: state.time, counts: state.counts };
+      this.rated = state;
       return;
     }
     const dt = state.time - this.rated.time;
@@ -104,7 +106,27 @@ export class Panel {
     setText("rate-map", rate(1));
     setText("rate-control", rate(2));
     setText("dropped", String(state.counts[3]));
-    this.rated = { time: state.time, counts: state.counts };
+    this.showStages(state, dt);
+    this.rated = state;
+  }
+
+  /** The part of a core that each stage of the robot takes, the largest first. */
+  private showStages(state: RobotState, dt: number): void {
+    const before = new Map(this.rated?.stages);
+    const parts = state.stages.map(([name, seconds]) => [name, (seconds - (before.get(name) ?? 0)) / dt] as const);
+    const shown = parts.filter(([, part]) => part >= 0.001).sort((a, b) => b[1] - a[1]);
+    const lines = shown.slice(0, SHOWN_STAGES).map(([name, part]) => {
+      const line = document.createElement("div");
+      const bar = document.createElement("b");
+      bar.style.width = `${Math.min(100, 100 * part).toFixed(1)}%`;
+      const words = document.createElement("span");
+      words.textContent = name.replaceAll("_", " ");
+      const number = document.createElement("span");
+      number.textContent = `${(100 * part).toFixed(1)} %`;
+      line.append(words, number, bar);
+      return line;
+    });
+    element("stages").replaceChildren(...lines);
   }
 
   private showBattery(state: RobotState): void {

@@ -15,6 +15,10 @@ export interface Colors {
   goal: string;
   text: string;
   ghost: string;
+  noGo: string;
+  slow: string;
+  area: string;
+  frontier: string;
 }
 
 const KEY = "trundle-theme";
@@ -56,5 +60,9 @@ export function colors(): Colors {
     goal: of("--map-goal"),
     text: of("--text"),
     ghost: of("--map-ghost"),
+    noGo: of("--bad"),
+    slow: of("--warn"),
+    area: of("--map-area"),
+    frontier: of("--map-frontier"),
   };
 }

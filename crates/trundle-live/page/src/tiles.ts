@@ -23,13 +23,16 @@ export class Tiles {
   private readonly chunks = new Map<string, Chunk>();
   private readonly cells = new Map<string, { column: number; row: number; cells: Uint8Array }>();
   private readonly image = new ImageData(TILE_CELLS, TILE_CELLS);
+  /** The colour of free cells beside unknown ones. */
+  private frontier: Rgba = [128, 128, 128, 255];
   private palette: [Rgba, Rgba, Rgba] = [
     [0, 0, 0, 0],
     [128, 128, 128, 255],
     [0, 0, 0, 255],
   ];
 
-  setColors(floor: string, wall: string): void {
+  setColors(floor: string, wall: string, frontier: string): void {
+    this.frontier = rgba(frontier);
     this.palette = [[0, 0, 0, 0], rgba(floor), rgba(wall)];
     this.cells.forEach((tile) => this.paint(tile.column, tile.row, tile.cells));
   }
@@ -42,10 +45,17 @@ export class Tiles {
     }
     this.resolution = message.resolution;
     this.origin = message.origin;
-    for (const tile of message.tiles) {
-      this.cells.set(`${tile.column},${tile.row}`, tile);
-      this.paint(tile.column, tile.row, tile.cells);
+    for (const tile of message.tiles) this.cells.set(`${tile.column},${tile.row}`, tile);
+    const changed = new Map<string, (typeof message.tiles)[number]>();
+    for (const { column, row } of message.tiles) {
+      // The frontier at the border of a tile depends on the tile beside it.
+      for (const [dx, dy] of [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]] as const) {
+        const key = `${column + dx},${row + dy}`;
+        const tile = this.cells.get(key);
+        if (tile) changed.set(key, tile);
+      }
     }
+    changed.forEach((tile) => this.paint(tile.column, tile.row, tile.cells));
   }
 
   /** Whether a point of the map frame is in an occupied cell. */
@@ -105,7 +115,8 @@ export class Tiles {
       for (let x = 0; x < TILE_CELLS; x++) {
         const i = y * TILE_CELLS + x;
         const value = ((cells[i >> 2] ?? 0) >> (2 * (i & 3))) & 3;
-        const color = this.palette[value as 0 | 1 | 2] ?? this.palette[0];
+        const isFrontier = value === 1 && this.isBesideUnknown(column, row, cells, x, y);
+        const color = isFrontier ? this.frontier : (this.palette[value as 0 | 1 | 2] ?? this.palette[0]);
         // Pictures begin at the top, tiles at the bottom.
         const at = 4 * ((TILE_CELLS - 1 - y) * TILE_CELLS + x);
         data[at] = color[0];
@@ -119,6 +130,19 @@ export class Tiles {
     const y = CHUNK_TILES - 1 - (row - chunk.row * CHUNK_TILES);
     chunk.version += 1;
     chunk.context.putImageData(this.image, x * TILE_CELLS, y * TILE_CELLS);
+  }
+
+  /** Whether a cell beside cell (x, y) of a tile is unknown. */
+  private isBesideUnknown(column: number, row: number, cells: Uint8Array, x: number, y: number): boolean {
+    const last = TILE_CELLS - 1;
+    const value = (of: Uint8Array | undefined, i: number) => (of ? ((of[i >> 2] ?? 0) >> (2 * (i & 3))) & 3 : 0);
+    const at = (dx: number, dy: number): number => {
+      const [cx, cy] = [x + dx, y + dy];
+      if (cx >= 0 && cy >= 0 && cx <= last && cy <= last) return value(cells, cy * TILE_CELLS + cx);
+      const beside = this.cells.get(`${column + Math.floor(cx / TILE_CELLS)},${row + Math.floor(cy / TILE_CELLS)}`)?.cells;
+      return value(beside, ((cy + TILE_CELLS) % TILE_CELLS) * TILE_CELLS + ((cx + TILE_CELLS) % TILE_CELLS));
+    };
+    return at(1, 0) === 0 || at(-1, 0) === 0 || at(0, 1) === 0 || at(0, -1) === 0;
   }
 
   private chunk(column: number, row: number): Chunk {

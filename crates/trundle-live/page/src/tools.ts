@@ -1,9 +1,10 @@
-// What a press on the map does: move it, set a goal with its heading, say where the robot stands.
+// What a press on the map does: move it, set a goal with its heading, say where the robot stands, draw a zone, set a place.
 
 import type { MapView } from "./map_view";
 import type { Point, Pose } from "./wire";
+import type { ZoneTool } from "./zone_tool";
 
-export type Tool = "move" | "goal" | "pose" | "drive";
+export type Tool = "move" | "goal" | "pose" | "drive" | "zone" | "place";
 
 /** Length of a drag from which on it gives a heading [pixels]. */
 const HEADING_DRAG_PX = 12;
@@ -11,6 +12,7 @@ const HEADING_DRAG_PX = 12;
 export interface ToolEvents {
   onGoal(pose: Pose, append: boolean): void;
   onPose(pose: Pose): void;
+  onPlace(pose: Pose): void;
 }
 
 export class MapTools {
@@ -22,8 +24,10 @@ export class MapTools {
     private readonly canvas: HTMLCanvasElement,
     private readonly map: MapView,
     private readonly heading: () => number,
+    private readonly zones: ZoneTool,
     private readonly events: ToolEvents,
   ) {
+    canvas.addEventListener("dblclick", () => this.isDrawing && this.zones.close());
     canvas.addEventListener("pointerdown", (event) => this.onDown(event));
     canvas.addEventListener("pointermove", (event) => this.onMove(event));
     canvas.addEventListener("pointerup", (event) => this.onUp(event));
@@ -41,7 +45,11 @@ export class MapTools {
   }
 
   private get isPointing(): boolean {
-    return this.tool === "goal" || this.tool === "pose";
+    return this.tool === "goal" || this.tool === "pose" || this.tool === "place";
+  }
+
+  private get isDrawing(): boolean {
+    return this.tool === "zone";
   }
 
   private onDown(event: PointerEvent): void {
@@ -51,6 +59,8 @@ export class MapTools {
       // Two fingers zoom, whatever the tool.
       this.pressed = null;
       this.map.ghost = null;
+    } else if (this.isDrawing && event.button === 0) {
+      this.zones.down(event.clientX, event.clientY);
     } else if (this.isPointing && event.button === 0) {
       this.pressed = { at: this.map.toMap(event.clientX, event.clientY), start: [event.clientX, event.clientY] };
       this.showGhost(event);
@@ -59,6 +69,7 @@ export class MapTools {
 
   private onMove(event: PointerEvent): void {
     const before = this.pointers.get(event.pointerId);
+    if (this.isDrawing && this.pointers.size < 2) this.zones.move(event.clientX, event.clientY);
     if (!before) return;
     const now: Point = [event.clientX, event.clientY];
     if (this.pointers.size === 2) {
@@ -70,7 +81,7 @@ export class MapTools {
       }
     } else if (this.pressed) {
       this.showGhost(event);
-    } else {
+    } else if (!this.isDrawing || event.buttons !== 1) {
       this.map.pan(now[0] - before[0], now[1] - before[1]);
     }
     this.pointers.set(event.pointerId, now);
@@ -79,8 +90,11 @@ export class MapTools {
   private onUp(event: PointerEvent): void {
     const pose = this.pressed && this.pointedPose(event);
     const isAppended = event.shiftKey;
+    const isDrawn = this.isDrawing && this.pointers.size === 1 && event.button === 0;
     this.cancel(event.pointerId);
+    if (isDrawn) this.zones.up(event.clientX, event.clientY);
     if (!pose) return;
+    if (this.tool === "place") this.events.onPlace(pose);
     if (this.tool === "goal") this.events.onGoal(pose, isAppended);
     if (this.tool === "pose") this.events.onPose(pose);
   }

@@ -1,6 +1,6 @@
 // The messages between page and server. The server's side is crates/trundle-live/src/wire.
 
-export const WIRE_VERSION = 1;
+export const WIRE_VERSION = 2;
 
 export type Pose = [x: number, y: number, theta: number];
 export type Point = [x: number, y: number];
@@ -31,6 +31,8 @@ export interface RobotState {
   movers: [x: number, y: number, radius: number, laterX: number, laterY: number][];
   station: Pose | null;
   counts: [slam: number, mapping: number, control: number, dropped: number];
+  stages: [name: string, seconds: number][];
+  loops: [time: number, x: number, y: number][];
   wheel: { name: string; is_you: boolean } | null;
   viewers: number;
 }
@@ -45,6 +47,7 @@ export interface Welcome {
   footprint: { disc: number } | { polygon: Point[] };
   max_v: number;
   max_omega: number;
+  recording: string;
 }
 
 export interface StateEntry {
@@ -53,11 +56,40 @@ export interface StateEntry {
   reason?: string;
 }
 
+/** The rule of a zone; a slow one has a speed [m/s]. */
+export type ZoneKind = "no_go" | "area" | { slow: number };
+
+/** A zone of the map; number 0 for one that is not kept yet. */
+export interface Zone {
+  id: number;
+  name: string;
+  kind: ZoneKind;
+  outline: Point[];
+}
+
+/** A named place of the map; number 0 for one that is not kept yet. */
+export interface Place {
+  id: number;
+  name: string;
+  pose: { x: number; y: number; theta: number };
+}
+
+export interface Setting {
+  key: string;
+  text: string;
+  unit: string;
+  value: number;
+  min: number;
+  max: number;
+}
+
 export type Reply =
   | RobotState
   | Welcome
   | { type: "answer"; id: number; refusal?: string; goal?: number }
   | { type: "refused"; refusal: string }
+  | { type: "annotations"; zones: Zone[]; places: Place[] }
+  | { type: "settings"; settings: Setting[] }
   | { type: "states"; states: StateEntry[] };
 
 export const TILE_CELLS = 64;
@@ -77,6 +109,7 @@ export type ByteMessage =
   | { kind: "plan"; points: Float32Array }
   | { kind: "trail"; poses: Float32Array }
   | { kind: "visual"; keyframes: Float32Array; landmarks: Float32Array }
+  | { kind: "features"; width: number; height: number; spots: Float32Array; tracked: boolean[] }
   | { kind: "image"; jpeg: Uint8Array<ArrayBuffer> };
 
 /** Reads a message of bytes; null for a kind that this page does not know. */
@@ -95,6 +128,8 @@ export function readBytes(buffer: ArrayBuffer): ByteMessage | null {
       return { kind: "trail", poses: new Float32Array(buffer.slice(4)) };
     case 6:
       return readVisualMap(view);
+    case 7:
+      return readFeatures(view);
     default:
       return null;
   }
@@ -111,6 +146,20 @@ function readVisualMap(view: DataView): ByteMessage {
     keyframes: read(0, count, (i) => (i % 3 === 2 ? 1e-4 : 0.01)),
     landmarks: read(count, total, () => 0.01),
   };
+}
+
+/** Features of the last image: columns and rows in pixels, and whether each agrees with the pose. */
+function readFeatures(view: DataView): ByteMessage {
+  const count = (view.byteLength - 8) / 4;
+  const spots = new Float32Array(2 * count);
+  const tracked: boolean[] = [];
+  for (let i = 0; i < count; i++) {
+    const x = view.getUint16(8 + 4 * i, true);
+    spots[2 * i] = (x & 0x7fff) / 8;
+    spots[2 * i + 1] = view.getUint16(10 + 4 * i, true) / 8;
+    tracked.push(x >= 0x8000);
+  }
+  return { kind: "features", width: view.getUint16(4, true), height: view.getUint16(6, true), spots, tracked };
 }
 
 function readTiles(view: DataView, buffer: ArrayBuffer): TileMessage {

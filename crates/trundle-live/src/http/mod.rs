@@ -2,6 +2,7 @@
 
 mod assets;
 mod connections;
+mod files;
 mod guard;
 
 pub use connections::serve;
@@ -26,6 +27,7 @@ pub fn router(state: Arc<PageState>) -> Router {
     Router::new()
         .route("/live", get(open_link))
         .route("/stop", post(stop))
+        .route("/files/{name}", get(files::file))
         .fallback(get(assets::file))
         .layer(from_fn_with_state(Arc::clone(&state), guard::check))
         .with_state(state)

@@ -1,23 +1,32 @@
-//! Whether the robot could stand at a goal, by the present map.
+//! Whether the robot could stand at a goal, by the present map and its zones.
 
 use super::refusal::CommandRefusal;
-use trundle_collision::RoundedHull;
-use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2};
+use trundle_core::{MapAnnotations, OccupancyGrid, Pose2, ZoneKind};
+use trundle_planning::FootprintCheck;
 
 /// Centimetres of a metre.
 const CM_PER_M: f64 = 100.0;
 
-/// Checks that no occupied cell is inside the outline at a goal. Unknown floor is no reason: the robot observes it when it comes near.
+/// Checks that the outline at a goal reaches into no obstacle of the map and no no-go zone, as the planner does. Unknown floor is no
+/// reason: the robot observes it when it comes near.
 ///
 /// # Errors
-/// When a cell is occupied there.
-pub fn require_free(grid: &OccupancyGrid, hull: &RoundedHull, goal: Pose2) -> Result<(), CommandRefusal> {
-    let geometry = grid.geometry();
-    let base_from_map = goal.inverse();
-    let occupied =
-        cells_about(geometry, goal, hull.outer_radius()).filter(|cell| grid.get(*cell) == Cell::Occupied);
-    let depths = occupied.map(|cell| -hull.signed_distance(base_from_map.transform(geometry.center(cell))));
-    let depth_cm = CM_PER_M * depths.fold(0.0, f64::max);
+/// When it does; names the zone.
+pub fn require_free(
+    grid: &OccupancyGrid,
+    annotations: &MapAnnotations,
+    check: &FootprintCheck,
+    goal: Pose2,
+) -> Result<(), CommandRefusal> {
+    let mut no_go = annotations.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo);
+    if let Some(zone) = no_go.find(|zone| check.overlap_with_zone(zone, grid.geometry(), goal) > 0.0) {
+        let text = format!(
+            "The robot would reach into the no-go {} at this goal: choose a place farther away.",
+            zone.label()
+        );
+        return Err(CommandRefusal::of(text));
+    }
+    let depth_cm = CM_PER_M * check.overlap(grid, goal);
     if depth_cm > 0.0 {
         return Err(CommandRefusal::of(format!(
             "An obstacle reaches {depth_cm:.0} cm into the robot's outline at this goal: choose a place farther away."
@@ -26,31 +35,25 @@ pub fn require_free(grid: &OccupancyGrid, hull: &RoundedHull, goal: Pose2) -> Re
     Ok(())
 }
 
-/// The cells of a square about a goal.
-fn cells_about(geometry: &GridGeometry, goal: Pose2, reach: f64) -> impl Iterator<Item = CellIndex> + use<> {
-    let index = |at: f64, origin: f64| ((at - origin) / geometry.resolution).floor().max(0.0) as usize;
-    let end = |at: f64, origin: f64, cells: usize| index(at, origin).saturating_add(1).min(cells);
-    let origin = geometry.origin;
-    let rows = index(goal.y - reach, origin.y)..end(goal.y + reach, origin.y, geometry.height);
-    let cols = index(goal.x - reach, origin.x)..end(goal.x + reach, origin.x, geometry.width);
-    rows.flat_map(move |row| cols.clone().map(move |col| CellIndex { col, row }))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use trundle_core::Footprint;
+    use trundle_core::{Footprint, Zone};
 
     #[test]
-    fn a_goal_in_a_wall_is_refused_and_one_beside_it_is_not() {
-        let art = [&".".repeat(40)[..]; 20].join("\n") + "\n" + &"#".repeat(40);
+    fn a_goal_in_a_wall_or_a_zone_is_refused_and_one_beside_them_is_not() {
+        let art = [&".".repeat(60)[..]; 40].join("\n") + "\n" + &"#".repeat(60);
         let grid = OccupancyGrid::from_ascii(0.05, &art).unwrap();
-        let hull = RoundedHull::exact(&Footprint::KOBUKI);
-        let at = |y: f64| require_free(&grid, &hull, Pose2::new(1.0, y, 0.0));
-        assert!(at(0.5).is_ok());
-        assert!(at(0.1).unwrap_err().text.contains("An obstacle reaches 10 cm"), "{:?}", at(0.1));
+        let check = FootprintCheck::new(&Footprint::KOBUKI);
+        let outline = vec![[2.0, 1.0], [3.0, 1.0], [3.0, 2.0], [2.0, 2.0]];
+        let rug = Zone { id: 1, name: "rug".to_owned(), kind: ZoneKind::NoGo, outline };
+        let annotations = MapAnnotations { zones: vec![rug], places: vec![] };
+        let at = |x: f64, y: f64| require_free(&grid, &annotations, &check, Pose2::new(x, y, 0.0));
+        assert!(at(1.0, 0.5).is_ok());
+        assert!(at(1.0, 0.1).unwrap_err().text.contains("An obstacle reaches 13 cm"), "{:?}", at(1.0, 0.1));
+        assert!(at(1.9, 1.5).unwrap_err().text.contains("no-go zone 'rug'"), "{:?}", at(1.9, 1.5));
         for far in [1e5, -1e5, f64::NAN] {
-            assert!(at(far).is_ok(), "no map there");
+            assert!(at(1.0, far).is_ok(), "no map there");
         }
     }
 }

@@ -6,13 +6,13 @@ mod refusal;
 pub use refusal::CommandRefusal;
 
 use crate::run_facts::RunFacts;
-use crate::wire::{Goal, Request};
+use crate::wire::{Goal, Request, SettingText};
 use goal_check::require_free;
 use std::sync::atomic::{AtomicBool, Ordering};
-use trundle_app::operator::Operator;
-use trundle_collision::RoundedHull;
-use trundle_core::{DriveLimits, Pose2, Twist2};
-use trundle_runtime::{Mission, OperatorCommand, PoseGuess, Task};
+use trundle_app::operator::{AnnotationEdit, Operator};
+use trundle_core::{DriveLimits, Pose2, Twist2, Zone, require_in};
+use trundle_planning::{FootprintCheck, require_on_map};
+use trundle_runtime::{Mission, OperatorCommand, PoseGuess, RunSetting, Task};
 
 /// Most goals of one request.
 const MAX_GOALS: usize = 50;
@@ -27,7 +27,7 @@ const HAND_SPEED: f64 = 0.6;
 #[derive(Debug)]
 pub struct RunSteering {
     operator: Operator,
-    hull: RoundedHull,
+    check: FootprintCheck,
     limits: DriveLimits,
     /// Whether a stop or a drive by hand of this page paused the robot: the next task of the page ends that pause.
     is_paused_here: AtomicBool,
@@ -36,8 +36,8 @@ pub struct RunSteering {
 impl RunSteering {
     /// The steering of a run.
     pub fn new(operator: Operator, facts: &RunFacts) -> Self {
-        let hull = RoundedHull::exact(&facts.footprint);
-        Self { operator, hull, limits: facts.limits, is_paused_here: AtomicBool::new(false) }
+        let check = FootprintCheck::new(&facts.footprint);
+        Self { operator, check, limits: facts.limits, is_paused_here: AtomicBool::new(false) }
     }
 
     /// Obeys a request; requests that are not for the robot do nothing.
@@ -65,6 +65,11 @@ impl RunSteering {
                 position_sigma: POINTED_POSITION_SIGMA_M,
                 heading_sigma: POINTED_HEADING_SIGMA_RAD,
             })),
+            Request::SetZone { zone, .. } => self.set_zone(zone),
+            Request::RemoveZone { number, .. } => self.edit(&AnnotationEdit::RemoveZone(*number)),
+            Request::SetPlace { place, .. } => self.edit(&AnnotationEdit::SetPlace(place.clone())),
+            Request::RemovePlace { number, .. } => self.edit(&AnnotationEdit::RemovePlace(*number)),
+            Request::Change { key, value, .. } => self.change(key, *value),
             _ => Ok(()),
         }
     }
@@ -92,14 +97,39 @@ impl RunSteering {
         }
         let view = self.operator.glance();
         let map = view.as_ref().and_then(|view| view.map.as_deref());
+        let annotations = self.operator.annotations();
         for (number, goal) in goals.iter().enumerate() {
             let checked = Mission::new(vec![Task::Go(goal.pose())]).map_err(CommandRefusal::from);
-            let checked = checked
-                .and_then(|_| map.map_or(Ok(()), |map| require_free(&map.grid, &self.hull, goal.pose())));
+            let checked = checked.and_then(|_| {
+                map.map_or(Ok(()), |map| require_free(&map.grid, &annotations, &self.check, goal.pose()))
+            });
             checked.map_err(|refusal| CommandRefusal { goal: Some(number), ..refusal })?;
         }
         let left = view.filter(|_| append).map(|view| view.mission.left.to_vec()).unwrap_or_default();
         self.begin(left.into_iter().chain(goals.iter().map(|goal| Task::Go(goal.pose()))).collect())
+    }
+
+    /// A zone beside the map is a slip of the hand.
+    fn set_zone(&self, zone: &Zone) -> Result<(), CommandRefusal> {
+        let zone = zone.clone().validated()?;
+        let view = self.operator.glance();
+        let map = view.as_ref().and_then(|view| view.map.as_deref());
+        map.map_or(Ok(()), |map| require_on_map(&zone, map.grid.geometry()))?;
+        self.edit(&AnnotationEdit::SetZone(zone))
+    }
+
+    fn edit(&self, edit: &AnnotationEdit) -> Result<(), CommandRefusal> {
+        Ok(self.operator.edit_annotations(edit)?)
+    }
+
+    fn change(&self, key: &str, value: f64) -> Result<(), CommandRefusal> {
+        let setting = RunSetting::of_key(key, value);
+        let setting =
+            setting.ok_or_else(|| CommandRefusal::of(format!("{key} cannot change while the robot runs")))?;
+        let (text, (min, max)) =
+            (SettingText::of(setting, &self.limits), SettingText::range(setting, &self.limits));
+        require_in(key, value, text.unit, min, max)?;
+        self.send(OperatorCommand::Change(setting))
     }
 
     fn begin(&self, tasks: Vec<Task>) -> Result<(), CommandRefusal> {
@@ -136,7 +166,7 @@ mod tests {
     fn steering() -> (RunSteering, trundle_app::operator::OperatorLink) {
         let (operator, link) = operator_link();
         let limits = DriveLimits::KOBUKI;
-        let facts = RunFacts { title: String::new(), footprint: Footprint::KOBUKI, limits };
+        let facts = RunFacts { title: String::new(), footprint: Footprint::KOBUKI, limits, recording: "all" };
         (RunSteering::new(operator, &facts), link)
     }
 
@@ -153,6 +183,28 @@ mod tests {
         assert!(steering.obey(&Request::Go { id: 1, goals: vec![], append: false }).is_err());
         let many = vec![Goal { x: 0.0, y: 0.0, theta: 0.0 }; 1000];
         assert!(steering.obey(&Request::Go { id: 1, goals: many, append: true }).is_err());
+    }
+
+    #[test]
+    fn wrong_zones_and_settings_are_refused_with_the_reason() {
+        let (steering, link) = steering();
+        let zone = |outline: &[[f64; 2]]| Zone {
+            id: 0,
+            name: "rug".to_owned(),
+            kind: trundle_core::ZoneKind::Slow(0.2),
+            outline: outline.to_vec(),
+        };
+        let set = |zone| steering.obey(&Request::SetZone { id: 1, zone });
+        let bow = set(zone(&[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]])).unwrap_err().text;
+        assert!(bow.contains("crossed by itself"), "{bow}");
+        assert!(set(zone(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])).is_ok());
+        assert!(steering.obey(&Request::RemoveZone { id: 1, number: 7 }).is_err());
+        let change = |key: &str, value| steering.obey(&Request::Change { id: 1, key: key.to_owned(), value });
+        let fast = change("limits.v_m_s", 5.0).unwrap_err().text;
+        assert_eq!(fast, format!("limits.v_m_s is 5 m/s, expected 0.05 to {}", DriveLimits::KOBUKI.v));
+        assert!(change("drive.wheel_radius_m", 1.0).unwrap_err().text.contains("cannot change"));
+        assert!(change("mission_executor.patience_s", 20.0).is_ok());
+        drop(link);
     }
 
     #[test]

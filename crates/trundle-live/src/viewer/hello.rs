@@ -33,10 +33,11 @@ pub async fn receive(socket: &mut WebSocket, state: &PageState, id: ViewerId) ->
         return refuse(socket, OTHER_VERSION, "the page is of another version: load it anew").await;
     }
     state.roster().rename(id, &name);
+    let facts = &state.facts;
     let welcome = Welcome {
         drives: access == Access::Drive && state.is_steered,
         is_steered: state.is_steered,
-        ..Welcome::new(state.facts.title.clone(), &state.facts.footprint, state.facts.limits)
+        ..Welcome::new(facts.title.clone(), &facts.footprint, facts.limits, facts.recording)
     };
     let text = serde_json::to_string(&Reply::Welcome(Box::new(welcome))).ok()?;
     let sent = tokio::time::timeout(HELLO_TIMEOUT, socket.send(Message::Text(text.into()))).await;

@@ -5,16 +5,17 @@ use super::progress::ViewProgress;
 use crate::page_state::PageState;
 use crate::roster::ViewerId;
 use crate::wire::{
-    Reply, StateMessage, TileCursor, WheelText, image_message, path_message, scan_message, trail_message,
-    visual_map_message,
+    Reply, SettingText, StateMessage, TileCursor, WheelText, features_message, image_message, path_message,
+    scan_message, trail_message, visual_map_message,
 };
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 use tokio::sync::mpsc::Receiver;
 use tokio::time::{Instant, MissedTickBehavior, interval};
-use trundle_app::operator::{RunView, VisualMapView};
-use trundle_core::{Stamp, Trajectory};
+use trundle_app::operator::{FeatureView, RunView, VisualMapView};
+use trundle_core::{MapAnnotations, Stamp, Trajectory};
+use trundle_runtime::RunSetting;
 
 /// Period of views.
 const VIEW_PERIOD: Duration = Duration::from_millis(100);
@@ -64,6 +65,11 @@ struct Updates {
     plan: Option<Arc<Trajectory>>,
     image: Option<Stamp>,
     image_sent: Instant,
+    /// Number of the view with the last image.
+    image_batch: u64,
+    features: Option<Arc<FeatureView>>,
+    annotations: Option<Arc<MapAnnotations>>,
+    settings: Option<[RunSetting; 2]>,
     visual_map: Option<Arc<VisualMapView>>,
     states: usize,
 }
@@ -81,6 +87,10 @@ impl Updates {
             plan: None,
             image: None,
             image_sent: now,
+            image_batch: 0,
+            features: None,
+            annotations: None,
+            settings: None,
             visual_map: None,
             states: 0,
         }
@@ -106,6 +116,7 @@ impl Updates {
         self.view_sent = Instant::now();
         let parts = self.parts(&view, state, progress);
         let message = self.state_message(&view, state);
+        let notes = self.notes(&view, state);
         self.view = Some(view);
         let (states, so_far) = state.history().states_after(self.states);
         self.states = so_far;
@@ -113,6 +124,11 @@ impl Updates {
             || !states.is_empty() && !outbox.send_json(&Reply::States { states }).await
         {
             return false;
+        }
+        for note in notes {
+            if !outbox.send_json(&note).await {
+                return false;
+            }
         }
         for part in parts {
             if !outbox.send_bytes(part).await {
@@ -128,6 +144,19 @@ impl Updates {
         StateMessage::of(view, self.batch, wheel, roster.count())
     }
 
+    /// Zones, places and settings, where they changed.
+    fn notes(&mut self, view: &RunView, state: &PageState) -> Vec<Reply> {
+        let annotations = state.operator.annotations();
+        let is_new = self.annotations.as_ref().is_none_or(|known| !Arc::ptr_eq(known, &annotations));
+        let zones = is_new.then(|| Reply::Annotations { annotations: annotations.as_ref().clone() });
+        self.annotations = Some(annotations);
+        let has_changed = self.settings.replace(view.settings) != Some(view.settings);
+        let limits = &state.facts.limits;
+        let texts = || view.settings.iter().map(|setting| SettingText::of(*setting, limits)).collect();
+        let settings = has_changed.then(|| Reply::Settings { settings: texts() });
+        zones.into_iter().chain(settings).collect()
+    }
+
     /// The messages of bytes with what the viewer lacks.
     fn parts(&mut self, view: &RunView, state: &PageState, progress: &ViewProgress) -> Vec<Vec<u8>> {
         let mut parts = Vec::new();
@@ -139,7 +168,8 @@ impl Updates {
             parts.extend(tiles.message(&mut self.tiles));
         }
         if progress.wants_images.load(Ordering::Relaxed) {
-            parts.extend(self.image_part(view));
+            parts.extend(self.features_part(view));
+            parts.extend(self.image_part(view, progress));
         }
         if progress.wants_visual_map.load(Ordering::Relaxed) {
             parts.extend(self.visual_map_part(view));
@@ -164,14 +194,24 @@ impl Updates {
         (!is_same).then(|| path_message(view.plan.as_deref()))
     }
 
-    fn image_part(&mut self, view: &RunView) -> Option<Vec<u8>> {
+    /// The next image waits until the page has drawn a view that came after the last one: then it has that image too.
+    fn image_part(&mut self, view: &RunView, progress: &ViewProgress) -> Option<Vec<u8>> {
         let image = view.surroundings.image.as_ref()?;
-        if self.image == Some(image.stamp) || self.image_sent.elapsed() < IMAGE_PERIOD {
+        let is_taken = self.image_batch == 0 || progress.seen.load(Ordering::Relaxed) > self.image_batch;
+        if self.image == Some(image.stamp) || self.image_sent.elapsed() < IMAGE_PERIOD || !is_taken {
             return None;
         }
+        self.image_batch = self.batch;
         self.image = Some(image.stamp);
         self.image_sent = Instant::now();
         Some(image_message(image))
+    }
+
+    fn features_part(&mut self, view: &RunView) -> Option<Vec<u8>> {
+        let features = view.surroundings.features.as_ref()?;
+        let is_new = self.features.as_ref().is_none_or(|known| !Arc::ptr_eq(known, features));
+        self.features = Some(Arc::clone(features));
+        is_new.then(|| features_message(features))
     }
 
     fn visual_map_part(&mut self, view: &RunView) -> Option<Vec<u8>> {

@@ -3,26 +3,30 @@
 //! The page sends [`Request`]s as JSON. The server sends [`Reply`]s as JSON, and messages of bytes, little-endian, whose first byte is
 //! their [`Kind`]. Frames: map frame where nothing else is said; m and rad.
 
+mod features;
 mod image;
 mod map_tiles;
 mod path;
 mod reply;
 mod request;
+mod run_setting;
 mod scan;
 mod state;
 mod visual_map;
 
+pub use features::features_message;
 pub use image::image_message;
 pub use map_tiles::{MapTiles, TileCursor};
 pub use path::{path_message, trail_message};
 pub use reply::{Reply, StateEntry, Welcome};
 pub use request::{Goal, Request};
+pub use run_setting::SettingText;
 pub use scan::scan_message;
 pub use state::{StateMessage, WheelText};
 pub use visual_map::visual_map_message;
 
 /// Version of the messages. A page of another version loads itself anew.
-pub const WIRE_VERSION: u32 = 1;
+pub const WIRE_VERSION: u32 = 2;
 
 /// First byte of a message of bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,4 +44,6 @@ pub enum Kind {
     Trail = 5,
     /// Keyframes and landmarks.
     VisualMap = 6,
+    /// Features of the last image, and how often loops were closed.
+    Features = 7,
 }

@@ -1,7 +1,8 @@
 //! What the server tells a page as JSON, besides the state.
 
+use super::SettingText;
 use serde::Serialize;
-use trundle_core::{DriveLimits, Footprint};
+use trundle_core::{DriveLimits, Footprint, MapAnnotations};
 
 /// A message of the server.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -24,6 +25,17 @@ pub enum Reply {
     Refused {
         /// Why.
         refusal: String,
+    },
+    /// Zones and named places of the map.
+    Annotations {
+        /// All of them.
+        #[serde(flatten)]
+        annotations: MapAnnotations,
+    },
+    /// The settings that may change while the robot runs.
+    Settings {
+        /// With their present values.
+        settings: Vec<SettingText>,
     },
     /// States of the robot since some time ago.
     States {
@@ -51,6 +63,8 @@ pub struct Welcome {
     pub max_v: f64,
     /// Highest turn rate \[rad/s\].
     pub max_omega: f64,
+    /// Content of the recording, in a word.
+    pub recording: &'static str,
 }
 
 /// The outline of the robot, base frame \[m\].
@@ -77,7 +91,7 @@ pub struct StateEntry {
 
 impl Welcome {
     /// A welcome with the robot's outline and limits.
-    pub fn new(title: String, footprint: &Footprint, limits: DriveLimits) -> Self {
+    pub fn new(title: String, footprint: &Footprint, limits: DriveLimits, recording: &'static str) -> Self {
         let footprint = match footprint {
             Footprint::Disc { radius } => FootprintText::Disc(*radius),
             Footprint::Polygon { corners } => {
@@ -93,6 +107,7 @@ impl Welcome {
             footprint,
             max_v: limits.v,
             max_omega: limits.omega,
+            recording,
         }
     }
 }

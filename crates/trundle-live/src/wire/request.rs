@@ -1,6 +1,7 @@
 //! What a page asks.
 
 use serde::Deserialize;
+use trundle_core::{NamedPlace, Zone};
 
 /// A request of a page. `id` names it in the answer.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -85,6 +86,43 @@ pub enum Request {
         /// The pose.
         pose: Goal,
     },
+    /// A zone in place of that with its number; number 0: a new one.
+    SetZone {
+        /// Of the request.
+        id: u64,
+        /// The zone.
+        zone: Zone,
+    },
+    /// Delete a zone.
+    RemoveZone {
+        /// Of the request.
+        id: u64,
+        /// Of the zone.
+        number: u32,
+    },
+    /// A named place in place of that with its number; number 0: a new one.
+    SetPlace {
+        /// Of the request.
+        id: u64,
+        /// The place.
+        place: NamedPlace,
+    },
+    /// Delete a named place.
+    RemovePlace {
+        /// Of the request.
+        id: u64,
+        /// Of the place.
+        number: u32,
+    },
+    /// Change a setting.
+    Change {
+        /// Of the request.
+        id: u64,
+        /// Its key in the robot file.
+        key: String,
+        /// Its value, in the unit of the key.
+        value: f64,
+    },
     /// Hold the wheel, whoever holds it.
     TakeWheel {
         /// Of the request.
@@ -126,6 +164,11 @@ impl Request {
             | Self::Pause { id }
             | Self::Continue { id }
             | Self::SetPose { id, .. }
+            | Self::SetZone { id, .. }
+            | Self::RemoveZone { id, .. }
+            | Self::SetPlace { id, .. }
+            | Self::RemovePlace { id, .. }
+            | Self::Change { id, .. }
             | Self::TakeWheel { id }
             | Self::LeaveWheel { id } => Some(*id),
         }
@@ -147,6 +190,10 @@ mod tests {
         assert_eq!(read(go), Some(Request::Go { id: 7, goals: vec![goal], append: false }));
         assert_eq!(read(r#"{"type":"stop","id":8}"#).unwrap().id(), Some(8));
         assert_eq!(read(r#"{"type":"drive","v":0.5,"omega":0}"#).unwrap().id(), None);
+        let zone = r#"{"type":"set_zone","id":9,"zone":{"id":0,"name":"a","kind":{"slow":0.2},"outline":[[0,0],[1,0],[0,1]]}}"#;
+        assert!(matches!(read(zone), Some(Request::SetZone { id: 9, zone: Zone { id: 0, .. } })));
+        assert_eq!(read(&zone.replace("[1,0]", "[1,0,0]")), None);
+        assert_eq!(read(&zone.replace("[1,0]", "[NaN,0]")), None);
         let nested = format!(r#"{{"type":"go","id":1,"goals":{}"#, "[".repeat(4000));
         for wrong in [
             "",

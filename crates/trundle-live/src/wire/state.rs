@@ -28,6 +28,10 @@ pub struct StateMessage {
     pub station: Option<[f64; 3]>,
     /// Runs of SLAM, mapping and control so far, and dropped images.
     pub counts: [u64; 4],
+    /// The stages of the robot with the time of each by the clock so far \[s\].
+    pub stages: Vec<(&'static str, f64)>,
+    /// Loops that were closed: time \[s\], and where the robot stood \[m\].
+    pub loops: Vec<[f64; 3]>,
     /// Who holds the wheel; `None`: nobody.
     pub wheel: Option<WheelText>,
     /// Number of viewers.
@@ -118,6 +122,8 @@ impl StateMessage {
             movers: around.movers.iter().map(mover_text).collect(),
             station: around.station.map(|station| [station.x, station.y, station.theta]),
             counts: [counts.slam, counts.mapping, counts.control, counts.dropped_images],
+            stages: counts.stages.clone(),
+            loops: around.loops.iter().map(|at| [at.stamp.as_secs(), at.pose.x, at.pose.y]).collect(),
             wheel,
             viewers,
         }

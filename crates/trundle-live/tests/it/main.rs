@@ -6,3 +6,4 @@ mod guard;
 mod live_run;
 mod steering;
 mod viewers;
+mod zones;

@@ -39,6 +39,11 @@ struct Leaving {
     slim: RobotShape,
 }
 
+/// By how much a disc overlaps obstacles, m; `None` where it touches none.
+pub(crate) fn missing_about_disc(field: &DistanceField, at: Vector2, radius: f64) -> Option<f64> {
+    (!field.keeps(at, radius)).then(|| radius - field.clearance(at, radius))
+}
+
 impl RobotShape {
     /// The shape of a footprint; a polygon may touch obstacles.
     pub(crate) fn new(footprint: &Footprint) -> Self {
@@ -94,6 +99,16 @@ impl RobotShape {
             if fits(half) { (low, half) } else { (half, high) }
         };
         (0..ROUNDS).fold((0.0, cap), halve).1
+    }
+
+    /// By how much the shape overlaps obstacles at a goal, m; `None` where it stands free there. The one decision behind
+    /// [`Plan::GoalInObstacle`](crate::Plan::GoalInObstacle).
+    pub(crate) fn missing_at_goal(&self, field: &DistanceField, goal: Pose2) -> Option<f64> {
+        if self.is_disc() {
+            return missing_about_disc(field, goal.position(), self.radius);
+        }
+        let is_free = self.gap(field, goal, 1e-3) > 0.0;
+        (!is_free).then(|| self.overlap(field, goal, self.inner.max(MAX_OVERLAP_M)))
     }
 
     /// The same shape, treated as `by` m smaller near `start` against what it overlaps there: it may leave that, and come no deeper.

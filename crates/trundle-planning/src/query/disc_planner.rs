@@ -3,6 +3,7 @@
 use crate::curve::phase::Phase;
 use crate::curve::route::{RouteContext, is_drivable, turn};
 use crate::plan::Plan;
+use crate::polygon::robot_shape::missing_about_disc;
 use crate::query::path_search::find_path;
 use crate::query::plan_query::{MIN_SEARCH_RADIUS_M, PlanQuery, REST_SPEED_M_S, SAME_PLACE_M};
 use crate::search::configuration_space::ConfigurationSpace;
@@ -25,10 +26,10 @@ pub(crate) fn plan_disc(
     }
     let radius = query.shape.radius;
     let space = query.space(radius, start.position());
-    let fits = query.field.keeps(goal.position(), radius);
-    let clearance = || query.field.clearance(goal.position(), radius) - radius;
-    if !fits && tolerance == 0.0 {
-        return Plan::GoalInObstacle { clearance: clearance() };
+    let missing = missing_about_disc(query.field, goal.position(), radius);
+    let in_obstacle = missing.map(|missing| Plan::GoalInObstacle { clearance: -missing });
+    if let (Some(refusal), true) = (&in_obstacle, tolerance == 0.0) {
+        return refusal.clone();
     }
     let nearest = match find_path(query, search, &space, start.position(), goal.position()) {
         Ok(path) => return plan_along(query, search, &space, path, (start, twist), goal),
@@ -47,9 +48,7 @@ pub(crate) fn plan_disc(
         }
     };
     let Plan::Found(mut plan) = plan else { return plan };
-    let refusal =
-        if fits { Plan::Blocked { nearest } } else { Plan::GoalInObstacle { clearance: clearance() } };
-    plan.instead_of = Some(refusal);
+    plan.instead_of = Some(in_obstacle.unwrap_or(Plan::Blocked { nearest }));
     Plan::Found(plan)
 }
 

@@ -2,6 +2,7 @@
 
 pub(crate) mod answer;
 pub(crate) mod disc_planner;
+pub(crate) mod footprint_check;
 pub(crate) mod grid_refinement;
 pub(crate) mod path_search;
 pub(crate) mod plan_query;

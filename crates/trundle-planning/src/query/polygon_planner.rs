@@ -33,12 +33,12 @@ pub(crate) fn plan_polygon(
     by_disc: &Plan,
 ) -> Plan {
     let inner = query.shape.inner.max(MIN_SEARCH_RADIUS_M);
-    let missing = |pose: Pose2| -query.shape.overlap(query.field, pose, query.shape.inner.max(MAX_OVERLAP_M));
     if !query.fits(start) {
-        return Plan::StartInObstacle { clearance: missing(start) };
+        let missing = query.shape.overlap(query.field, start, query.shape.inner.max(MAX_OVERLAP_M));
+        return Plan::StartInObstacle { clearance: -missing };
     }
-    if !query.fits(goal) {
-        return Plan::GoalInObstacle { clearance: missing(goal) };
+    if let Some(missing) = query.shape.missing_at_goal(query.field, goal) {
+        return Plan::GoalInObstacle { clearance: -missing };
     }
     if is_disconnected(query, &mut memory.search, start, goal) {
         return match by_disc {

@@ -23,7 +23,7 @@ pub fn of_no_path(cause: &NoPath) -> u16 {
     match cause {
         NoPath::Blocked { .. } => ComputePathToPoseResult::NO_VALID_PATH,
         NoPath::StartInObstacle { .. } => ComputePathToPoseResult::START_OCCUPIED,
-        NoPath::GoalInObstacle { .. } => ComputePathToPoseResult::GOAL_OCCUPIED,
+        NoPath::GoalInObstacle { .. } | NoPath::GoalInZone { .. } => ComputePathToPoseResult::GOAL_OCCUPIED,
         NoPath::StartOutside => ComputePathToPoseResult::START_OUTSIDE_MAP,
         NoPath::GoalOutside => ComputePathToPoseResult::GOAL_OUTSIDE_MAP,
         _ => ComputePathToPoseResult::UNKNOWN,
@@ -33,7 +33,7 @@ pub fn of_no_path(cause: &NoPath) -> u16 {
 fn of_kind(kind: ReasonKind) -> Option<u16> {
     Some(match kind {
         ReasonKind::PathBlocked => ComputePathToPoseResult::NO_VALID_PATH,
-        ReasonKind::TooLittleRoom => ComputePathToPoseResult::GOAL_OCCUPIED,
+        ReasonKind::TooLittleRoom | ReasonKind::NoGoZone => ComputePathToPoseResult::GOAL_OCCUPIED,
         ReasonKind::OffTheMap => ComputePathToPoseResult::GOAL_OUTSIDE_MAP,
         ReasonKind::PoseUnknown | ReasonKind::PoseUncertain | ReasonKind::ViewContradictsMap => {
             FollowPathResult::TF_ERROR

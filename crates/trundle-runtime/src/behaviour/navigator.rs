@@ -13,6 +13,7 @@ pub(crate) mod testing;
 mod tests;
 mod viewpoint;
 mod visibility_constraint;
+mod zone_limits;
 
 pub(crate) use commands::safety_input;
 
@@ -125,6 +126,10 @@ pub(crate) struct Navigator {
     relative_drive: RelativeMotionDrive,
     /// Twist of the last step before the safety monitor.
     wanted: Twist2,
+    /// Version of the zones that the planner has.
+    zones_version: u64,
+    /// Whether the plan was made before the zones changed.
+    is_before_zones: bool,
 }
 
 /// Number of bumper contacts after which a goal is given up. Source: ours.
@@ -170,6 +175,8 @@ impl Navigator {
             station_drive: StationDrive::default(),
             relative_drive: RelativeMotionDrive::default(),
             wanted: Twist2::ZERO,
+            zones_version: 0,
+            is_before_zones: false,
         })
     }
 
@@ -250,6 +257,7 @@ impl Navigator {
 
     /// One control step: maybe a new plan, then a command, then safety's word on it.
     pub(crate) fn step(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> Decision {
+        self.take_zones(s);
         self.initialize(s);
         self.monitor(s);
         self.monitor_sight(s);

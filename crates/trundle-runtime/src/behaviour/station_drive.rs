@@ -231,6 +231,7 @@ mod tests {
             motion: trundle_control::MotionSense::Wheels,
             dynamic_obstacles: DynamicObstacles::default(),
             station: StationState { estimate: Some(station()), is_docked },
+            zones: crate::zones::ZoneView::default(),
         }
     }
 

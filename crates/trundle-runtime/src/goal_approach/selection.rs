@@ -112,7 +112,7 @@ fn about(s: &WorldState<'_>, arc: &StabilizerPreview, means: &ApproachContext<'_
     let here = s.estimate.pose;
     let reach = arc.poses.iter().map(|p| p.distance(&here)).fold(0.0, f64::max);
     let half = reach + means.footprint.circumscribed_radius() + means.arc_margin + 0.1;
-    ObstacleScene::from_grid(s.grid, here.position(), half, false)
+    ObstacleScene::from_grid(s.permitted_grid(), here.position(), half, false)
 }
 
 /// The rule: an arc that is free (its time, s), when no manoeuvre was found or none that is faster.

@@ -30,6 +30,7 @@ fn world(grid: &OccupancyGrid, pose: Pose2, time: f64) -> WorldState<'_> {
         motion: trundle_control::MotionSense::Wheels,
         dynamic_obstacles: crate::world_state::DynamicObstacles::default(),
         station: crate::world_state::StationState::default(),
+        zones: crate::zones::ZoneView::default(),
     }
 }
 

@@ -242,11 +242,11 @@ impl DockTask {
 
     /// The next place of known floor where light was not yet looked for; else the next viewpoint of unknown floor.
     fn search_on(&mut self, s: &WorldState<'_>) -> DockStep {
-        if let Some(place) = self.search.next_place(s.grid, s.estimate.pose) {
+        if let Some(place) = self.search.next_place(s.permitted_grid(), s.estimate.pose) {
             self.phase = Phase::Searching(None);
             return DockStep::Goal(Goal::Viewpoint(place));
         }
-        match self.explorer.next(s.grid, s.estimate.pose) {
+        match self.explorer.next(s.permitted_grid(), s.estimate.pose) {
             Exploration::Next(view) => {
                 self.phase = Phase::Searching(Some(view.frontier));
                 DockStep::Goal(Goal::Viewpoint(view.pose))

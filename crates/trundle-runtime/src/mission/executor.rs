@@ -254,7 +254,7 @@ impl MissionExecutor {
         if !(over || driving && self.frontier_check_due.due(s.now)) {
             return None;
         }
-        match explorer.next(s.grid, s.estimate.pose) {
+        match explorer.next(s.permitted_grid(), s.estimate.pose) {
             Exploration::Next(view) => {
                 let is_old = |old: &Frontier| view.frontier.is_that_at(old.middle);
                 if !over && frontier.as_ref().is_some_and(is_old) {
@@ -349,6 +349,7 @@ mod tests {
             motion: trundle_control::MotionSense::Wheels,
             dynamic_obstacles: crate::world_state::DynamicObstacles::default(),
             station: crate::world_state::StationState::default(),
+            zones: crate::zones::ZoneView::default(),
         }
     }
 

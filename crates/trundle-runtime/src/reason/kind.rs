@@ -48,6 +48,8 @@ pub enum ReasonKind {
     PathBlocked,
     /// The footprint does not fit at the start or at the goal.
     TooLittleRoom,
+    /// The goal is in a no-go zone.
+    NoGoZone,
     /// Start or goal is off the map.
     OffTheMap,
     /// The planner refuses the query.
@@ -133,6 +135,7 @@ impl ReasonKind {
         match cause {
             NoPath::Blocked { .. } => Self::PathBlocked,
             NoPath::StartInObstacle { .. } | NoPath::GoalInObstacle { .. } => Self::TooLittleRoom,
+            NoPath::GoalInZone { .. } => Self::NoGoZone,
             NoPath::StartOutside | NoPath::GoalOutside => Self::OffTheMap,
             NoPath::Refused(_) => Self::PlanRefused,
         }

@@ -23,6 +23,11 @@ pub enum NoPath {
         /// The missing distance \[m\].
         missing: f64,
     },
+    /// The goal is in a no-go zone.
+    GoalInZone {
+        /// What the zone is called: `zone 'stairs'`.
+        zone: String,
+    },
     /// The start is off the map.
     StartOutside,
     /// The goal is off the map.
@@ -61,6 +66,7 @@ impl fmt::Display for NoPath {
             Self::GoalInObstacle { missing } => {
                 write!(f, "the footprint overlaps an obstacle by {missing:.3} m at the goal")
             }
+            Self::GoalInZone { zone } => write!(f, "the goal is in the no-go {zone}"),
             Self::StartOutside => f.write_str("the robot is off the map"),
             Self::GoalOutside => f.write_str("the goal is off the map"),
             Self::Refused(invalid) => invalid.fmt(f),

@@ -5,7 +5,7 @@ use crate::behaviour::drive_state::DriveState;
 use crate::operator::{PoseGuess, RunSetting};
 use crate::reason::Reason;
 use trundle_control::MotionHold;
-use trundle_core::{Pose2, Stamp, difference_of_angles};
+use trundle_core::{MapAnnotations, Pose2, Stamp, difference_of_angles};
 use trundle_estimation::{WheelCounts, WheelReport};
 
 /// Correction of the pose estimate \[m\] above which the correction is logged. Source: ours, the size of a grid cell.
@@ -71,6 +71,15 @@ pub(super) fn pose_given(at: Stamp, guess: &PoseGuess) {
 /// Logs a setting that an operator changes.
 pub(super) fn setting_changed(at: Stamp, setting: RunSetting) {
     tracing::info!("{:.3} s: the operator changes a setting: {setting:?}", at.as_secs());
+}
+
+/// Logs the zones and places that an operator gives.
+pub(super) fn annotated(at: Stamp, annotations: &MapAnnotations) {
+    let (zones, places) = (annotations.zones.len(), annotations.places.len());
+    tracing::info!(
+        "{:.3} s: the operator gives the map's zones ({zones}) and places ({places})",
+        at.as_secs()
+    );
 }
 
 /// Logs a state that differs from the last one, or has a reason of another kind.

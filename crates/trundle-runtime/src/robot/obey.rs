@@ -7,7 +7,7 @@ use crate::{
     operator::{OperatorCommand, PoseGuess, RunSetting},
     report::StepReport,
 };
-use trundle_core::{Invalid, Stamp, Vector3};
+use trundle_core::{Invalid, MapAnnotations, Stamp, Vector3};
 
 impl Robot {
     /// Obeys an operator, between two events.
@@ -27,6 +27,10 @@ impl Robot {
             OperatorCommand::Continue => self.pause(false, now, &mut report),
             OperatorCommand::SetPose(guess) => self.take_pose(&guess, now),
             OperatorCommand::Change(setting) => self.change(setting, now),
+            OperatorCommand::Annotate(annotations) => {
+                event_log::annotated(now, &annotations);
+                self.annotate(annotations);
+            }
             OperatorCommand::Drive(twist) => {
                 self.pause(true, now, &mut report);
                 self.teleop.drive(twist, now);
@@ -36,8 +40,15 @@ impl Robot {
         Ok(report)
     }
 
+    /// Gives the robot the zones and named places of its map, in place of the present ones.
+    pub fn annotate(&mut self, annotations: MapAnnotations) {
+        self.zones.set(annotations);
+    }
+
     fn change(&mut self, setting: RunSetting, now: Stamp) {
         event_log::setting_changed(now, setting);
+        let is_same = |known: &&mut RunSetting| known.key() == setting.key();
+        self.settings.iter_mut().find(is_same).into_iter().for_each(|known| *known = setting);
         match &mut self.decision_worker {
             Some(decision_worker) => decision_worker.navigator.change(setting),
             None => self.background.changes.push(setting),

@@ -27,6 +27,7 @@ impl Robot {
         robot.localizer = Localizer::new(config.localization, robot.base_from_camera)?
             .resumed(checkpoint.visual_maps.clone());
         checkpoint.station.iter().for_each(|station| robot.station.restore(station));
+        robot.annotate(checkpoint.annotations.clone());
         robot.restore_mission(checkpoint.mission.clone().after_restart());
         Ok(robot)
     }
@@ -92,6 +93,7 @@ impl Robot {
             grid: self.mapper.grid().clone(),
             mission: self.latest.mission.clone(),
             station: self.station.estimate(),
+            annotations: self.annotations().as_ref().clone(),
         }
     }
 }

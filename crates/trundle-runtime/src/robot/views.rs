@@ -4,10 +4,12 @@ use super::Robot;
 use crate::{
     goal_approach::GoalApproachReport,
     mission::{Task, TaskRecord},
+    operator::RunSetting,
     stage::StageTimes,
 };
+use std::sync::Arc;
 use trundle_control::MotionHold;
-use trundle_core::{Battery, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, Scan};
+use trundle_core::{Battery, MapAnnotations, OccupancyGrid, Odometry, Pose2, Pose3, PoseEstimate, Scan};
 use trundle_estimation::StationEstimate;
 use trundle_planning::{MovingObstacle, PlanResult};
 use trundle_slam::RgbdSlam;
@@ -103,6 +105,16 @@ impl Robot {
     /// The charging station; none before its light was seen.
     pub fn station(&self) -> Option<StationEstimate> {
         self.station.estimate()
+    }
+
+    /// Present values of the settings that may change while the robot runs.
+    pub fn run_settings(&self) -> [RunSetting; 2] {
+        self.settings
+    }
+
+    /// Zones and named places of the map.
+    pub fn annotations(&self) -> &Arc<MapAnnotations> {
+        self.zones.annotations()
     }
 
     /// Cost of the stages.

@@ -36,6 +36,7 @@ fn checkpoint() -> Checkpoint {
         grid: OccupancyGrid::from_ascii(0.05, "#.#\n?..\n").unwrap(),
         mission: MissionState { left, places: vec![1, 3], ended, by_operator: false },
         station: None,
+        annotations: trundle_core::MapAnnotations::default(),
     }
 }
 

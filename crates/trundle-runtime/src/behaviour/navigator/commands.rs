@@ -240,16 +240,17 @@ pub(crate) fn safety_input<'a>(
 
 /// Whether the map has nothing occupied where a disc of `radius` goes that backs out.
 fn is_free_behind(s: &WorldState<'_>, radius: f64) -> bool {
-    let geometry = s.grid.geometry();
+    let grid = s.permitted_grid();
+    let geometry = grid.geometry();
     let (here, ahead) = (s.estimate.pose.position(), s.estimate.pose.inverse());
     let is_in_the_way = |at: Vector2| {
         let at = ahead.transform(at);
         // Obstacles beside or ahead of the robot do not block backing out.
         at.x < -0.5 * radius && (at - Vector2::new(at.x.max(-BACK_OUT_CLEARANCE_M), 0.0)).norm() < radius
     };
-    let mut cells = cells_about(s.grid, here, radius + BACK_OUT_CLEARANCE_M);
+    let mut cells = cells_about(grid, here, radius + BACK_OUT_CLEARANCE_M);
     geometry.cell_at(here).is_some()
-        && !cells.any(|cell| s.grid.get(cell) == Cell::Occupied && is_in_the_way(geometry.center(cell)))
+        && !cells.any(|cell| grid.get(cell) == Cell::Occupied && is_in_the_way(geometry.center(cell)))
 }
 
 #[cfg(test)]

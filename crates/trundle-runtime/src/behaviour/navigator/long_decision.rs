@@ -19,6 +19,7 @@ impl Navigator {
             DriveState::Lost { .. } | DriveState::FinalApproach => false,
             DriveState::Maneuvering => true,
             DriveState::Initializing | DriveState::Planning => true,
+            _ if self.has_other_zones(s) => true,
             DriveState::Recovering { .. } | DriveState::Waiting { .. } => self.is_check_due(s.now),
             DriveState::Driving => self.is_check_due(s.now) || self.is_nearly_there(),
         }

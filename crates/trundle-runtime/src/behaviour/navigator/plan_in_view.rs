@@ -36,8 +36,8 @@ impl Navigator {
         let ends = [from, goal].map(|pose| pose.position());
         let bars = self.visibility.bars();
         let best = {
-            let floor = self.with_virtual_obstacles(s.floor(), &bars, ends);
-            let floor = floor.as_ref().unwrap_or(s.floor());
+            let floor = self.with_virtual_obstacles(s.permitted_floor(), &bars, ends);
+            let floor = floor.as_ref().unwrap_or(s.permitted_floor());
             self.planner.plan_among_moving(floor, s.dynamic_obstacles.movers, from, twist, goal)
         };
         let Plan::Found(best) = best else { return self.found(InView::Plan(best)) };
@@ -48,7 +48,7 @@ impl Navigator {
             self.visibility.virtual_obstacles.push(unseen);
         }
         let walls = [bars, self.visibility.virtual_obstacles.clone()].concat();
-        let Some(floor) = self.with_virtual_obstacles(s.floor(), &walls, ends) else {
+        let Some(floor) = self.with_virtual_obstacles(s.permitted_floor(), &walls, ends) else {
             return self.found(InView::Unseen(unseen, None));
         };
         let Plan::Found(plan) =
@@ -82,7 +82,7 @@ impl Navigator {
     /// Whether the rest of a path, from `time` \[s\] on, is free on the newest map, and its floor was seen or will be seen.
     pub(super) fn is_still_good(&self, way: &Trajectory, time: f64, s: &WorldState<'_>) -> bool {
         let rest = &way.points()[way.points().partition_point(|point| point.time < time)..];
-        self.planner.validate_trajectory(s.floor(), way, time).is_ok()
+        self.planner.validate_trajectory(s.permitted_floor(), way, time).is_ok()
             && self.first_unseen(rest, s.floor()).is_none()
     }
 

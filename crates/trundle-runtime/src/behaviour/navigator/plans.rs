@@ -46,7 +46,10 @@ impl Navigator {
                 false
             }
             DriveState::Waiting { .. } => self.check_due.due(s.now),
-            DriveState::Driving => self.check_due.due(s.now) && !self.plan_holds(s),
+            DriveState::Driving => {
+                self.check_due.due(s.now)
+                    && (std::mem::take(&mut self.is_before_zones) || !self.plan_holds(s))
+            }
         }
     }
 
@@ -66,6 +69,11 @@ impl Navigator {
 
     /// Plans from the reference where the robot is on it, else from where it stands; true when there is a new plan.
     pub(super) fn replan(&mut self, goal: Pose2, s: &WorldState<'_>) -> bool {
+        if let Some(zone) = s.zones.masks.and_then(|masks| masks.no_go_zone_at(goal)) {
+            let zone = zone.label();
+            self.without_path(NoPath::GoalInZone { zone }, s);
+            return false;
+        }
         if matches!(self.state, DriveState::Waiting { .. }) && self.starts_maneuver_if_possible(goal, s) {
             return false;
         }
@@ -163,7 +171,7 @@ impl Navigator {
     /// Whether only moving obstacles block the path.
     fn is_free_but_for_movers(&mut self, s: &WorldState<'_>, from: (Pose2, Twist2), goal: Pose2) -> bool {
         !s.dynamic_obstacles.movers.is_empty()
-            && matches!(self.planner.plan(s.floor(), from.0, from.1, goal), Plan::Found(_))
+            && matches!(self.planner.plan(s.permitted_floor(), from.0, from.1, goal), Plan::Found(_))
     }
 
     /// While it drives: a new plan that goes on from the reference and arrives sooner replaces the old one.
@@ -177,7 +185,7 @@ impl Navigator {
         let planner = &mut self.planner;
         let plan = times.measure(Stage::Planning, || {
             planner.plan_among_moving(
-                s.floor(),
+                s.permitted_floor(),
                 s.dynamic_obstacles.movers,
                 reference.pose,
                 reference.twist,

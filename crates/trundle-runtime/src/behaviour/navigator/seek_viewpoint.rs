@@ -66,7 +66,8 @@ impl Navigator {
             self.viewpoint = Viewpoint::Settled;
             return false;
         };
-        if let Plan::Found(plan) = self.planner.plan(s.floor(), s.estimate.pose, Twist2::ZERO, place)
+        if let Plan::Found(plan) =
+            self.planner.plan(s.permitted_floor(), s.estimate.pose, Twist2::ZERO, place)
             && self.first_unseen(plan.trajectory.points(), s.floor()).is_none()
         {
             if let (ViewTarget::UnknownFloor, Some(at)) = (aim, self.blocked_at) {

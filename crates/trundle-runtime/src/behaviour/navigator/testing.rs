@@ -39,5 +39,6 @@ pub(crate) fn at_rest(grid: &OccupancyGrid, now: Stamp, pose: Pose2) -> WorldSta
         motion: MotionSense::Wheels,
         dynamic_obstacles: DynamicObstacles::default(),
         station: crate::world_state::StationState::default(),
+        zones: crate::zones::ZoneView::default(),
     }
 }

@@ -1,0 +1,27 @@
+//! The map as files, for viewers who save it.
+
+use crate::page_state::PageState;
+use axum::extract::{Path, State};
+use axum::http::{HeaderMap, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use std::sync::Arc;
+use trundle_app::operator::map_file;
+
+/// A file of the newest map; for whoever may look.
+pub async fn file(
+    State(state): State<Arc<PageState>>,
+    Path(name): Path<String>,
+    headers: HeaderMap,
+) -> Response {
+    let token = headers.get(header::AUTHORIZATION).and_then(|value| value.to_str().ok());
+    if token.and_then(|token| state.tokens.access(token.strip_prefix("Bearer ")?)).is_none() {
+        return (StatusCode::FORBIDDEN, "this link may not look").into_response();
+    }
+    let Some(map) = state.operator.view().and_then(|view| view.map.clone()) else {
+        return (StatusCode::CONFLICT, "there is no map yet").into_response();
+    };
+    match map_file(&name, &map.grid, &state.operator.annotations()) {
+        Some(bytes) => ([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response(),
+        None => (StatusCode::NOT_FOUND, "there is no such file").into_response(),
+    }
+}

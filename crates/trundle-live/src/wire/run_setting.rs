@@ -1,0 +1,63 @@
+//! A setting that may change while the robot runs, with its text and range.
+
+use serde::Serialize;
+use trundle_core::DriveLimits;
+use trundle_runtime::RunSetting;
+use trundle_runtime::settings::reference;
+
+/// A setting that may change while the robot runs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SettingText {
+    /// Its key in the robot file.
+    pub key: &'static str,
+    /// Its meaning, as the reference of settings has it.
+    pub text: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Present value.
+    pub value: f64,
+    /// Smallest value.
+    pub min: f64,
+    /// Largest value of this robot.
+    pub max: f64,
+}
+
+impl SettingText {
+    /// The setting with its present value, for a robot with these limits.
+    pub fn of(setting: RunSetting, limits: &DriveLimits) -> Self {
+        let known = reference().iter().find(|known| known.key == setting.key());
+        let (min, max) = Self::range(setting, limits);
+        Self {
+            key: setting.key(),
+            text: known.map_or("", |known| known.doc),
+            unit: known.map_or("", |known| known.unit),
+            value: setting.value(),
+            min,
+            max,
+        }
+    }
+
+    /// Smallest and largest value for a robot with these limits: it is never faster than its own speed.
+    pub fn range(setting: RunSetting, limits: &DriveLimits) -> (f64, f64) {
+        let (min, max) = setting.range();
+        match setting {
+            RunSetting::Speed(_) => (min, max.min(limits.v)),
+            _ => (min, max),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_setting_has_text_unit_and_the_range_of_the_robot() {
+        let limits = DriveLimits::KOBUKI;
+        let speed = SettingText::of(RunSetting::Speed(0.25), &limits);
+        assert_eq!((speed.unit, speed.value, speed.max), ("m/s", 0.25, limits.v));
+        assert!(speed.text.contains("forward speed"), "{speed:?}");
+        let patience = SettingText::of(RunSetting::Patience(20.0), &limits);
+        assert_eq!((patience.unit, patience.min, patience.max), ("s", 1.0, 3600.0));
+    }
+}

@@ -1,0 +1,81 @@
+//! Zones, places, settings and saved maps as a page uses them.
+
+use crate::browser::{Browser, fetch};
+use crate::live_run::LiveRun;
+use serde_json::json;
+use trundle_core::ZoneKind;
+use trundle_live::Access;
+
+#[test]
+fn zones_and_places_are_drawn_changed_and_deleted_and_every_viewer_sees_them() {
+    let run = LiveRun::start();
+    let mut page = Browser::enter(&run, Access::Drive, "page");
+    let mut other = Browser::enter(&run, Access::View, "other");
+    let zone = |id: u32, kind: serde_json::Value| json!({"id": id, "name": "rug", "kind": kind, "outline": [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]});
+    assert_eq!(other.wait_for("annotations")["zones"], json!([]));
+    assert_eq!(page.ask(json!({"type": "set_zone", "zone": zone(0, json!("no_go"))})), None);
+    assert_eq!(other.wait_for("annotations")["zones"][0]["id"], 1);
+    let desk = json!({"id": 0, "name": "desk", "pose": {"x": 1.0, "y": 2.0, "theta": 0.5}});
+    assert_eq!(page.ask(json!({"type": "set_place", "place": desk})), None);
+    assert_eq!(page.ask(json!({"type": "set_zone", "zone": zone(1, json!({"slow": 0.2}))})), None);
+    assert_eq!(run.operator.annotations().zones[0].kind, ZoneKind::Slow(0.2));
+    assert_eq!(run.operator.goal_of_place("desk").unwrap().x, 1.0);
+    assert_eq!(page.ask(json!({"type": "remove_zone", "number": 1})), None);
+    assert_eq!(page.ask(json!({"type": "remove_place", "number": 2})), None);
+    assert!(run.operator.annotations().is_empty());
+    let refusal = page.ask(json!({"type": "remove_place", "number": 2})).unwrap();
+    assert!(refusal.contains("another viewer may have deleted it"), "{refusal}");
+    assert!(
+        other
+            .ask(json!({"type": "set_zone", "zone": zone(0, json!("area"))}))
+            .unwrap()
+            .contains("only looks")
+    );
+}
+
+#[test]
+fn a_wrong_zone_is_refused_with_the_reason() {
+    let run = LiveRun::start();
+    let mut page = Browser::enter(&run, Access::Drive, "page");
+    let mut refusal = |outline: serde_json::Value| {
+        let zone = json!({"id": 0, "name": "", "kind": "no_go", "outline": outline});
+        page.ask(json!({"type": "set_zone", "zone": zone})).unwrap()
+    };
+    assert!(refusal(json!([[0, 0], [1, 1], [1, 0], [0, 1]])).contains("crossed by itself"));
+    assert!(refusal(json!([[0, 0], [1, 1]])).contains("expected 3 to 200"));
+    let ring: Vec<[f64; 2]> = (0..300).map(|i| (0.02 * f64::from(i)).sin_cos().into()).collect();
+    assert!(refusal(json!(ring)).contains("expected 3 to 200"));
+    assert!(refusal(json!([[0, 0], [1e9, 0], [0, 1]])).contains("expected -1000000 to 1000000"));
+}
+
+#[test]
+fn settings_have_text_and_range_and_change() {
+    let run = LiveRun::start();
+    let mut page = Browser::enter(&run, Access::Drive, "page");
+    let settings = page.wait_for("settings")["settings"].clone();
+    let speed = settings.as_array().unwrap().iter().find(|s| s["key"] == "limits.v_m_s").unwrap().clone();
+    assert!(speed["text"].as_str().unwrap().contains("speed"));
+    let change = |value: f64| json!({"type": "change", "key": "limits.v_m_s", "value": value});
+    assert!(page.ask(change(99.0)).unwrap().contains("expected 0.05 to"));
+    assert_eq!(page.ask(change(0.2)), None);
+    let changed = std::iter::from_fn(|| Some(page.wait_for("settings"))).next().unwrap();
+    assert!(changed["settings"].as_array().unwrap().iter().any(|s| s["value"] == 0.2), "{changed}");
+}
+
+#[test]
+fn the_map_is_saved_by_whoever_may_look() {
+    let run = LiveRun::start();
+    let mut page = Browser::enter(&run, Access::View, "page");
+    page.wait_for("state");
+    let address = run.page.address();
+    let (host, bearer) = (address.to_string(), format!("Bearer {}", run.token(Access::View)));
+    let get = |name: &str, bearer: &str| {
+        fetch(address, &format!("GET /files/{name}"), &[("Host", host.as_str()), ("Authorization", bearer)])
+    };
+    run.wait_for("a map", |view| view.map.is_some());
+    let (head, body) = get("map.yaml", &bearer);
+    assert!(head.starts_with("HTTP/1.1 200") && body.contains("resolution: 0.05"), "{head} {body}");
+    assert!(get("zones.geojson", &bearer).1.contains("FeatureCollection"));
+    assert!(get("map.yaml", "Bearer 00").0.starts_with("HTTP/1.1 403"));
+    assert!(get("other", &bearer).0.starts_with("HTTP/1.1 404"));
+}
