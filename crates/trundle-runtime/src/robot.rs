@@ -26,7 +26,7 @@ use crate::{
     monitors::camera_health::CameraHealth,
     monitors::scan_map_consistency::ScanMapConsistency,
     range_source::RangeSource,
-    report::StepReport,
+    report::{PoseMeasurements, StepReport},
     scan_pose_log::ScanPoseLog,
     schedule::Ticker,
     stage::{Stage, StageTimes},
@@ -122,6 +122,8 @@ struct Latest {
     static_grid: Option<OccupancyGrid>,
     /// Hits of unconfirmed obstacles, map frame \[m\].
     unconfirmed: Vec<Vector2>,
+    /// Measurements that the estimate received in this step.
+    measurements: PoseMeasurements,
 }
 
 /// Time without a located image \[s\] after which images with enough features count as images of another place than the estimate. Source: ours.
@@ -228,6 +230,7 @@ impl Robot {
     /// Completes a report with estimate and state after the step.
     fn complete(&mut self, report: &mut StepReport) {
         report.estimate = Some(self.localizer.estimate());
+        report.measurements = std::mem::take(&mut self.latest.measurements);
         if let Some(decision_worker) = &self.decision_worker {
             let state = decision_worker.state();
             event_log::state(self.latest.sensors.newest(), &self.latest.state.0, &state.0);
@@ -245,6 +248,7 @@ impl Robot {
     /// A wheel reading: odometry, prediction, then navigation: a twist leaves.
     fn on_wheels(&mut self, wheels: &WheelTicks, report: &mut StepReport) {
         let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
+        self.latest.measurements.motion = self.odometry.increment().copied();
         let changes = self.latest.sensors.on_wheels(wheels.stamp, self.odometry.wheels_are_unresponsive());
         changes.for_each(|change| event_log::sensor_change(wheels.stamp, change));
         event_log::encoder_jump(wheels.stamp, self.odometry.report(), self.odometry.counts());
@@ -405,9 +409,10 @@ impl Robot {
         }
         let (times, localizer) = (&mut self.times, &mut self.localizer);
         let before = localizer.estimate().pose;
-        let correction = times.measure(Stage::Localization, || {
-            correct_by_visual_pose(localizer, &track, corrected_trajectory.is_some())
-        });
+        let visual = visual_pose(&track, corrected_trajectory.is_some());
+        let correct = |visual| times.measure(Stage::Localization, || localizer.correct_visual(visual));
+        let correction = visual.as_ref().map(correct);
+        self.latest.measurements.visual = visual;
         event_log::correction(track.stamp, "the visual pose", before, self.localizer.estimate().pose);
         if correction == Some(Correction::Reanchored) {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
@@ -544,23 +549,19 @@ fn inscribed_radius(footprint: &Footprint) -> f64 {
     }
 }
 
-/// Gives the visual pose, where there is one, to the localizer. A pose in a map that was just corrected counts as recognised.
-fn correct_by_visual_pose(
-    localizer: &mut Localizer,
-    track: &TrackReport,
-    is_corrected: bool,
-) -> Option<Correction> {
+/// The visual pose of a located image. A pose in a map that was just corrected counts as recognised.
+fn visual_pose(track: &TrackReport, is_corrected: bool) -> Option<VisualPose> {
     let quality = match track.tracking {
         Tracking::Ok => VisualQuality::Ok,
         Tracking::Weak => VisualQuality::Weak,
         Tracking::DeadReckoning | Tracking::Lost => return None,
     };
-    Some(localizer.correct_visual(&VisualPose {
+    Some(VisualPose {
         stamp: track.stamp,
         visual_from_camera: track.visual_from_camera,
         covariance: track.covariance,
         quality,
         map: track.map.number(),
         recognised: track.relocalised || is_corrected,
-    }))
+    })
 }

@@ -3,6 +3,7 @@
 use super::{NEARBY_OBSTACLE_M, Robot, event_log};
 use crate::stage::Stage;
 use trundle_core::Scan;
+use trundle_estimation::PlanarMeasurement;
 
 impl Robot {
     /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each. Whether it was drawn.
@@ -50,6 +51,11 @@ impl Robot {
             self.times.measure(Stage::ScanMatch, || self.matcher.refine(self.mapper.mapper(), scan, guess));
         if let Some(found) = found {
             let before = self.localizer.estimate().pose;
+            self.latest.measurements.scan = Some(PlanarMeasurement {
+                stamp: scan.stamp(),
+                pose: found.pose,
+                covariance: found.covariance,
+            });
             self.localizer.correct_scan(scan.stamp(), found.pose, &found.covariance);
             event_log::correction(scan.stamp(), "the scan match", before, self.localizer.estimate().pose);
         }
