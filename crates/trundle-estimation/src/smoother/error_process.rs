@@ -6,7 +6,7 @@
 //! switch says whether the place is right: its weight is the posterior probability against an error of any size.
 
 use super::preintegration::Preintegrated;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
 
 /// Step of the error from the keyframe before.
 #[derive(Debug, Clone, Copy)]
@@ -15,6 +15,8 @@ pub(crate) struct ErrorStep {
     pub(crate) stationary: Matrix3<f64>,
     /// Distance (m) and turn (rad) over which the error decays to 1/e.
     pub(crate) correlation: (f64, f64),
+    /// Displacement of the visual pose since the keyframe before, in the axes of the visual map, m.
+    pub(crate) displacement: Vector2<f64>,
     /// Whether the process starts again here, and how.
     pub(crate) start: Option<ErrorStart>,
 }
@@ -45,8 +47,28 @@ const NEW_MAP_VARIANCE: f64 = 1e-8;
 const MIN_STEP_RATIO: f64 = 1e-4;
 
 impl ErrorStep {
+    /// The error that follows from the one before, and its derivative by it; `trust` is that in the place recognised last.
+    ///
+    /// A part of the map that is turned by an angle moves the visual pose off by the displacement turned by this angle less the displacement.
+    pub(crate) fn moved(
+        &self,
+        before: &Vector3<f64>,
+        motion: &Preintegrated,
+        trust: f64,
+    ) -> (Vector3<f64>, Matrix3<f64>) {
+        let keep = self.keep(motion, trust);
+        let (s, c) = before.z.sin_cos();
+        let (x, y) = (self.displacement.x, self.displacement.y);
+        let straight = Vector2::new(c * x + s * y, c * y - s * x);
+        let off = self.displacement - straight;
+        let moved = Vector3::new(before.x + off.x, before.y + off.y, before.z);
+        let mut by = Matrix3::identity();
+        (by[(0, 2)], by[(1, 2)]) = (-straight.y, straight.x);
+        (moved * keep, by * keep)
+    }
+
     /// The factor of the error before; `trust` is that in the place recognised last.
-    pub(crate) fn keep(&self, motion: &Preintegrated, trust: f64) -> f64 {
+    fn keep(&self, motion: &Preintegrated, trust: f64) -> f64 {
         match self.start {
             Some(_) => 0.0,
             // The error at a wrong place is constant: it does not decay.

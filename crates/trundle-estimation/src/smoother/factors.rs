@@ -36,21 +36,24 @@ pub(crate) struct VisualFactor {
 }
 
 impl VisualFactor {
-    /// Measured less predicted pose in the axes of the visual map, less the error of the visual map.
+    /// Position and heading of the measured pose less those of the predicted one, in the axes of the visual map, less the error of the
+    /// visual pose. Exact for errors of any size.
     pub(crate) fn linearise(&self, state: &ChainState, border: &BorderState) -> Unary {
         let back = Pose2::exp(self.velocity * border.delay);
-        let anchor = border.anchors[self.slot];
-        let difference = (back * state.pose.inverse() * anchor * self.pose).log();
-        let turn = rotation(self.pose.theta);
-        let left = turn * inverse_left_jacobian(&difference);
+        let visual_from_base = border.anchors[self.slot].inverse() * state.pose * back.inverse();
+        let difference = self.pose.inverse() * visual_from_base;
+        let off = rotation(self.pose.theta) * Vector3::new(difference.x, difference.y, difference.theta);
+        let mut residual = -off - state.error;
+        residual.z = wrap_angle(residual.z);
+        let turn = rotation(visual_from_base.theta);
         let mut by_chain = SMatrix::<f64, 3, CHAIN>::zeros();
-        by_chain.fixed_columns_mut::<3>(POSE).copy_from(&(-left * adjoint(&back)));
+        by_chain.fixed_columns_mut::<3>(POSE).copy_from(&-(turn * adjoint(&back)));
         by_chain.fixed_columns_mut::<3>(ERROR).copy_from(&-Matrix3::identity());
         let mut by_border = SMatrix::<f64, 3, BORDER>::zeros();
-        by_border.set_column(DELAY, &(left * self.velocity));
-        let by_anchor = turn * inverse_right_jacobian(&difference) * adjoint(&self.pose.inverse());
+        by_border.set_column(DELAY, &(turn * self.velocity));
+        let by_anchor = turn * adjoint(&visual_from_base.inverse());
         by_border.fixed_columns_mut::<3>(ANCHOR + 3 * self.slot).copy_from(&by_anchor);
-        Unary { residual: turn * difference - state.error, by_chain, by_border }
+        Unary { residual, by_chain, by_border }
     }
 }
 
@@ -157,9 +160,10 @@ impl Link<'_> {
 
     /// The error of the visual poses decays to its mean, with new noise.
     fn add_errors(&self, system: &mut WindowSystem, i: usize, (from, to): (&ChainState, &ChainState)) -> f64 {
-        let keep = self.error.keep(self.motion, self.trust);
         let Some(information) = self.error.information(self.motion) else { return 0.0 };
-        let residual = to.error - from.error * keep;
+        let (expected, by_from) = self.error.moved(&from.error, self.motion, self.trust);
+        let mut residual = to.error - expected;
+        residual.z = wrap_angle(residual.z);
         let put = |block: Matrix3<f64>| {
             let mut whole = ChainBlock::zeros();
             whole.fixed_view_mut::<3, 3>(ERROR, ERROR).copy_from(&block);
@@ -170,10 +174,11 @@ impl Link<'_> {
             whole.fixed_rows_mut::<3>(ERROR).copy_from(&part);
             whole
         };
-        system.add_diagonal(i, &put(information * keep * keep));
+        let weighted = by_from.transpose() * information;
+        system.add_diagonal(i, &put(weighted * by_from));
         system.add_diagonal(i + 1, &put(information));
-        system.add_next(i, &put(-information * keep));
-        system.add_gradient(i, &gradient(information * residual * keep));
+        system.add_next(i, &put(-weighted));
+        system.add_gradient(i, &gradient(weighted * residual));
         system.add_gradient(i + 1, &gradient(-(information * residual)));
         residual.dot(&(information * residual))
     }

@@ -9,11 +9,13 @@ use super::prediction::{Predicted, pose_after};
 use super::preintegration::{Preintegrated, parameters};
 use super::prior::{Prior, PriorSigmas};
 use super::state::{BIAS, BorderState, CHAIN, ChainState, DELAY, SCALE, WHEELS};
-use super::visual_maps::VisualMaps;
+use super::visual_maps::{StoredAnchor, VisualMaps};
 use super::window::Window;
+use crate::fusion::visual_frame::VisualAnchor;
 use crate::odometry::motion_increment::MotionIncrement;
 use crate::odometry_config::OdometryConfig;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
+use std::collections::BTreeMap;
 use trundle_core::{DifferentialDrive, Invalid, Pose2, Pose3, PoseEstimate, Stamp, Twist2};
 
 /// The fixed-lag smoother; see the documentation of its module.
@@ -73,10 +75,18 @@ impl Smoother {
         })
     }
 
-    /// The same, with an unknown pose at the start.
+    /// The smoother of a resumed run in a known map: the poses of the visual maps (by number) are known, the robot's pose is not.
     #[must_use]
-    pub fn at_unknown_pose(mut self) -> Self {
+    pub fn resumed(mut self, visual_maps: &BTreeMap<u32, VisualAnchor>) -> Self {
         self.start = Matrix3::from_diagonal(&UNKNOWN_POSE_VARIANCES);
+        let stored = |anchor: &VisualAnchor| StoredAnchor {
+            level_from_visual: anchor.map_from_visual,
+            anchor: Pose2::IDENTITY,
+            covariance: anchor.covariance.into(),
+        };
+        self.maps = VisualMaps::with_anchors(
+            visual_maps.iter().map(|(map, anchor)| (*map, stored(anchor))).collect(),
+        );
         self
     }
 
@@ -191,7 +201,7 @@ impl Smoother {
             stamp,
             state,
             motion: Preintegrated::new(parameters(state.bias, &border)),
-            error: self.error_step(Matrix3::zeros(), None),
+            error: self.error_step(Matrix3::zeros(), None, Vector2::zeros()),
             trust: 1.0,
             visual: None,
             scan: None,
@@ -204,13 +214,18 @@ impl Smoother {
     }
 
     /// The step of the visual error to a keyframe, with the covariance of the map part there.
-    pub(super) fn error_step(&self, map_part: Matrix3<f64>, start: Option<ErrorStart>) -> ErrorStep {
+    pub(super) fn error_step(
+        &self,
+        map_part: Matrix3<f64>,
+        start: Option<ErrorStart>,
+        displacement: Vector2<f64>,
+    ) -> ErrorStep {
         let (position, heading) =
             (self.config.visual_map_position, self.config.visual_map_heading_deg.to_radians());
         let own =
             Matrix3::from_diagonal(&Vector3::new(position, position, heading).map(|sigma| sigma * sigma));
         let correlation = (self.config.correlation_distance, self.config.correlation_turn);
-        ErrorStep { stationary: own + map_part, correlation, start }
+        ErrorStep { stationary: own + map_part, correlation, displacement, start }
     }
 
     /// A keyframe without measurements, where none was made for long.
@@ -231,11 +246,20 @@ impl Smoother {
         let before = &window.keyframes[k];
         let at = parameters(before.state.bias, &window.border);
         let motion = self.motions.between(before.stamp, stamp, at);
-        let error = ErrorStep { start: None, ..before.error };
-        let keep = error.keep(&motion, before.trust);
         let pose = before.state.pose * motion.corrected(&at);
-        let state = ChainState { pose, error: before.state.error * keep, bias: before.state.bias };
+        let error =
+            ErrorStep { start: None, displacement: self.displacement(window, before, &pose), ..before.error };
+        let (moved, _) = error.moved(&before.state.error, &motion, before.trust);
+        let state = ChainState { pose, error: moved, bias: before.state.bias };
         Keyframe { stamp, state, motion, error, trust: before.trust, visual: None, scan: None }
+    }
+
+    /// Displacement of the visual pose, in the axes of the newest visual map, that the base's motion predicts.
+    fn displacement(&self, window: &Window, before: &Keyframe, pose: &Pose2) -> Vector2<f64> {
+        let Some((_, slot)) = self.maps.newest() else { return Vector2::zeros() };
+        let moved = pose.position() - before.state.pose.position();
+        let turn = before.state.error.z - window.border.anchors[slot].theta;
+        Pose2::new(0.0, 0.0, turn).rotate(moved)
     }
 
     /// Inserts a keyframe after keyframe `k` and solves the window.

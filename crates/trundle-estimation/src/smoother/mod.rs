@@ -15,6 +15,8 @@ mod preintegration;
 mod prior;
 mod scan_intake;
 mod state;
+#[cfg(test)]
+mod tests;
 mod visual_intake;
 mod visual_maps;
 mod window;

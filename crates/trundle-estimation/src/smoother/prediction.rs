@@ -39,11 +39,11 @@ impl Predicted {
         config: &OdometryConfig,
     ) -> Self {
         let (moved, by_chain, by_border) = moved_pose(&self.state, motion, border);
-        let keep = error.keep(motion, trust);
+        let (moved_error, by_error) = error.moved(&self.state.error, motion, trust);
         let mut transition = JointMatrix::identity();
         transition.fixed_view_mut::<3, CHAIN>(POSE, 0).copy_from(&by_chain);
         transition.fixed_view_mut::<3, BORDER>(POSE, CHAIN).copy_from(&by_border);
-        transition.fixed_view_mut::<3, 3>(ERROR, ERROR).copy_from(&(Matrix3::identity() * keep));
+        transition.fixed_view_mut::<3, 3>(ERROR, ERROR).copy_from(&by_error);
         let mut covariance = transition * self.covariance * transition.transpose();
         let mut add = |place: usize, noise: Matrix3<f64>| {
             let mut view = covariance.fixed_view_mut::<3, 3>(place, place);
@@ -52,7 +52,7 @@ impl Predicted {
         add(POSE, motion.noise());
         add(ERROR, error.covariance(motion));
         covariance[(BIAS, BIAS)] += config.gyro_bias_walk.powi(2) * motion.duration;
-        let state = ChainState { pose: moved, error: self.state.error * keep, bias: self.state.bias };
+        let state = ChainState { pose: moved, error: moved_error, bias: self.state.bias };
         Self { state, covariance }
     }
 

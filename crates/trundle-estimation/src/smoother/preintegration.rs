@@ -29,7 +29,7 @@ pub(crate) fn parameters(bias: f64, border: &BorderState) -> Parameters {
 pub(crate) fn spread<const R: usize>(
     by_parameters: &SMatrix<f64, R, PARAMETERS>,
 ) -> (SMatrix<f64, R, CHAIN>, SMatrix<f64, R, BORDER>) {
-    let (mut chain, mut border) = (SMatrix::zeros(), SMatrix::zeros());
+    let (mut chain, mut border) = (SMatrix::<f64, R, CHAIN>::zeros(), SMatrix::<f64, R, BORDER>::zeros());
     chain.set_column(BIAS, &by_parameters.column(PARAMETER_BIAS));
     border.set_column(SCALE, &by_parameters.column(PARAMETER_SCALE));
     for k in 0..3 {

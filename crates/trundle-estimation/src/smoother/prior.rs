@@ -6,6 +6,7 @@ use super::state::{
     JointMatrix, JointVector, POSE, SCALE, WHEELS,
 };
 use nalgebra::{Matrix3, SMatrix, SVector};
+use trundle_core::Pose2;
 use trundle_optim::ArrowMarginal;
 
 /// The prior: information and right side at a fixed point.
@@ -140,6 +141,12 @@ impl Prior {
         let covariance = covariance.map_or(unknown, |known| known + Matrix3::identity() * MIN_SIGMA);
         let information = covariance.try_inverse().unwrap_or_else(Matrix3::zeros);
         self.information.fixed_view_mut::<3, 3>(place, place).copy_from(&information);
+    }
+
+    /// Moves the point of the prior with the map frame.
+    pub(crate) fn move_all(&mut self, new_from_old: &Pose2, fixed_slot: usize) {
+        self.chain.pose = *new_from_old * self.chain.pose;
+        self.border.move_anchors(new_from_old, fixed_slot);
     }
 
     /// Removes three unknowns by a Schur complement.

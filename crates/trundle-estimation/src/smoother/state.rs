@@ -80,7 +80,7 @@ impl ChainState {
 
     /// The step that leads from `from` to here.
     pub(crate) fn since(&self, from: &Self) -> SVector<f64, CHAIN> {
-        let mut step = SVector::zeros();
+        let mut step = SVector::<f64, CHAIN>::zeros();
         step.fixed_rows_mut::<3>(POSE).copy_from(&(from.pose.inverse() * self.pose).log());
         step.fixed_rows_mut::<3>(ERROR).copy_from(&(self.error - from.error));
         step[BIAS] = self.bias - from.bias;
@@ -107,9 +107,18 @@ impl BorderState {
         moved
     }
 
+    /// Moves all anchors but one.
+    pub(crate) fn move_anchors(&mut self, new_from_old: &Pose2, fixed_slot: usize) {
+        for (slot, anchor) in self.anchors.iter_mut().enumerate() {
+            if slot != fixed_slot {
+                *anchor = *new_from_old * *anchor;
+            }
+        }
+    }
+
     /// The step that leads from `from` to here.
     pub(crate) fn since(&self, from: &Self) -> SVector<f64, BORDER> {
-        let mut step = SVector::zeros();
+        let mut step = SVector::<f64, BORDER>::zeros();
         step[SCALE] = self.scale - from.scale;
         step.fixed_rows_mut::<3>(WHEELS).copy_from(&(self.wheels - from.wheels));
         step[DELAY] = self.delay - from.delay;

@@ -1,6 +1,6 @@
 //! Visual poses: keyframe, anchor, gate, switch.
 
-use super::error_process::{ErrorStart, PlaceSwitch};
+use super::error_process::{ErrorStart, ErrorStep, PlaceSwitch};
 use super::factors::{VisualFactor, rotation};
 use super::fixed_lag::Smoother;
 use super::innovation::Innovation;
@@ -13,13 +13,16 @@ use super::visual_maps::SlotFor;
 use super::window::Window;
 use crate::fusion::correction::{VisualPose, VisualQuality};
 use crate::planar::{planar_covariance, symmetric};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
 use trundle_core::{Pose2, Pose3};
 
 /// Probability that a visual pose outside the gate is wrong: the visual frame jumped as likely as the base did. Source: ours.
 const JUMP_WRONG_PROBABILITY: f64 = 0.5;
 /// Weight of a place above which the estimate starts from it. Source: ours.
 const PROBABLY_RIGHT: f64 = 0.5;
+
+/// Variance of the position above which a place sets the pose anew, m^2. Source: ours: a tenth of a room.
+const UNKNOWN_VARIANCE_M2: f64 = 1.0;
 
 /// A visual pose in the frame of its anchor.
 struct Levelled {
@@ -94,23 +97,38 @@ impl Smoother {
     /// A recognised place: the error of the visual poses starts again, with a switch.
     fn enter_place(&mut self, mut entry: Entry, switch: PlaceSwitch) -> MeasurementUse {
         let Some(window) = &self.window else { return MeasurementUse::NoMotion };
-        let stationary = self.error_step(entry.map_part, None).stationary;
+        let stationary = self.error_step(entry.map_part, None, Vector2::zeros()).stationary;
         entry.predicted.forget_error();
         let measured = entry.factor.linearise(&entry.predicted.state, &window.border);
         let without = entry.predicted.spread(&measured, &entry.factor.noise);
         let innovation = Innovation::new(&measured.residual, &symmetric(without + stationary));
         let switch = switch.judged(&measured.residual, &without, &stationary);
-        let error = if switch.weight > PROBABLY_RIGHT { Vector3::zeros() } else { measured.residual };
+        let is_right = switch.weight > PROBABLY_RIGHT;
+        let error = if is_right { Vector3::zeros() } else { measured.residual };
+        if is_right && entry.predicted.covariance[(0, 0)] > UNKNOWN_VARIANCE_M2 {
+            self.start_at(&mut entry);
+        }
         self.enter(entry, Some(ErrorStart::Place(switch)), Some(error));
         MeasurementUse::Switched { innovation, weight: switch.weight }
     }
 
+    /// Moves the whole window so that it agrees with a place: the derivatives at an unknown pose hold for no step of many metres.
+    fn start_at(&mut self, entry: &mut Entry) {
+        let Some(window) = &mut self.window else { return };
+        let found = window.border.anchors[entry.factor.slot] * entry.factor.pose;
+        let moved_from_old = found * entry.predicted.state.pose.inverse();
+        window.move_all(&moved_from_old, entry.factor.slot);
+        if let Some(keyframe) = &mut entry.keyframe {
+            keyframe.state.pose = moved_from_old * keyframe.state.pose;
+        }
+    }
+
     /// Puts a visual factor into the window and solves it.
     fn enter(&mut self, entry: Entry, start: Option<ErrorStart>, error: Option<Vector3<f64>>) {
-        let step = self.error_step(entry.map_part, start);
+        let step = self.error_step(entry.map_part, start, Vector2::zeros());
         let change = |keyframe: &mut Keyframe| {
             keyframe.visual = Some(entry.factor);
-            keyframe.error = step;
+            keyframe.error = ErrorStep { displacement: keyframe.error.displacement, ..step };
             keyframe.trust = keyframe.trust_after(keyframe.trust);
             keyframe.state.error = error.unwrap_or(keyframe.state.error);
         };

@@ -11,7 +11,7 @@ use super::state::{BIAS, BorderState, ChainState, ERROR, POSE};
 use crate::odometry_config::OdometryConfig;
 use crate::planar::symmetric;
 use nalgebra::Matrix3;
-use trundle_core::Stamp;
+use trundle_core::{Pose2, Stamp};
 
 /// Keyframes by stamp, with the common unknowns and what has left the window.
 #[derive(Debug, Clone)]
@@ -180,12 +180,23 @@ impl Window {
         }
     }
 
+    /// Moves all poses and anchors but one by a motion of the map frame: what is known of them relative to each other stays.
+    pub(crate) fn move_all(&mut self, new_from_old: &Pose2, fixed_slot: usize) {
+        self.before.clear();
+        for keyframe in &mut self.keyframes {
+            keyframe.state.pose = *new_from_old * keyframe.state.pose;
+        }
+        self.border.move_anchors(new_from_old, fixed_slot);
+        self.prior.move_all(new_from_old, fixed_slot);
+    }
+
     /// Inserts a keyframe after keyframe `k`; the motion to the one behind it is integrated again.
     pub(crate) fn insert_after(&mut self, k: usize, keyframe: Keyframe, motions: &MotionBuffer) {
         self.before.clear();
         let at = parameters(keyframe.state.bias, &self.border);
         if let Some(later) = self.keyframes.get_mut(k + 1) {
             later.motion = motions.between(keyframe.stamp, later.stamp, at);
+            later.error.displacement -= keyframe.error.displacement;
         }
         self.keyframes.insert(k + 1, keyframe);
     }
