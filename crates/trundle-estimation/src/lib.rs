@@ -3,6 +3,7 @@
 //! - [`WheelOdometry`]: encoder ticks and gyro to a continuous pose that drifts, with its covariance.
 //! - [`Localizer`]: an extended Kalman filter on SE(2). It corrects that odometry by visual poses and scan matches at the stamps
 //!   of their measurement, and yields the one [`trundle_core::PoseEstimate`] that planning and control use.
+//! - [`Smoother`]: poses of the last seconds and calibration by one least-squares problem; it runs beside the localizer.
 //! - [`StationEstimator`]: the pose of a charging station from its infrared light.
 //! - [`OdometryState`]: pose and covariance of the odometry at a stamp. With [`trundle_core::CameraMotion::of_base`] it is the
 //!   motion prior of visual tracking.
@@ -57,7 +58,7 @@ pub use odometry::wheel_odometry::WheelOdometry;
 pub use odometry_config::OdometryConfig;
 pub use planar::planar_covariance;
 pub use smoother::calibration::{SmootherCalibration, WithSigma};
-pub use smoother::config::SmootherConfig;
+pub use smoother::config::{SmootherConfig, SmootherLimits, SmootherNoise, WindowConfig};
 pub use smoother::fixed_lag::Smoother;
 pub use smoother::innovation::Innovation;
 pub use smoother::measurement::{MeasurementUse, PlanarMeasurement};

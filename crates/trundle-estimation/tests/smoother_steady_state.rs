@@ -33,11 +33,10 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Sum and number of the times of the steps that solved the window.
+/// Measurements that solved the window, and the time of the fastest one.
 #[derive(Default)]
 struct Times {
-    sum: Duration,
-    longest: Duration,
+    fastest: Option<Duration>,
     solved: u32,
 }
 
@@ -82,15 +81,16 @@ fn drive(smoother: &mut Smoother, truth: &mut Pose2, steps: std::ops::Range<i64>
 impl Times {
     fn add(&mut self, used: MeasurementUse, time: Duration) {
         if matches!(used, MeasurementUse::Applied(_)) {
-            self.sum += time;
-            self.longest = self.longest.max(time);
+            self.fastest = Some(self.fastest.map_or(time, |fastest| fastest.min(time)));
             self.solved += 1;
         }
     }
 }
 
-/// Largest mean time of a step in a test, on a busy computer and without optimisation; a release takes below 1 ms.
-const MAX_MEAN_STEP: Duration = Duration::from_millis(50);
+/// Largest time of the fastest step in a test, without optimisation; others may wait for the processor. A release takes below 1 ms.
+const MAX_FASTEST_STEP: Duration = Duration::from_millis(20);
+/// Largest number of solutions of the window after a measurement, mean.
+const MAX_SOLUTIONS: f64 = 2.0;
 
 #[test]
 fn a_full_window_allocates_nothing_and_is_solved_within_its_time() {
@@ -99,15 +99,17 @@ fn a_full_window_allocates_nothing_and_is_solved_within_its_time() {
         Smoother::new(config.clone(), odometry, DifferentialDrive::KOBUKI, Pose3::identity()).unwrap();
     let mut truth = Pose2::IDENTITY;
     drive(&mut smoother, &mut truth, 1..1500);
-    assert_eq!(smoother.keyframes().count(), config.max_keyframes, "the window is full");
+    assert_eq!(smoother.keyframes().count(), config.window.max_keyframes, "the window is full");
     let before = ALLOCATIONS.load(Ordering::Relaxed);
+    let solutions = smoother.solutions();
     let times = drive(&mut smoother, &mut truth, 1500..2500);
     assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before);
-    let mean = times.sum / times.solved;
+    let solutions = (smoother.solutions() - solutions) as f64 / f64::from(times.solved);
+    let (count, fastest) = (config.window.max_keyframes, times.fastest.unwrap());
     println!(
-        "{} steps at {} keyframes: mean {mean:?}, longest {:?}",
-        times.solved, config.max_keyframes, times.longest
+        "{} measurements at {count} keyframes: {solutions:.2} solutions each, fastest {fastest:?}",
+        times.solved
     );
-    assert!(times.solved > 100 && mean < MAX_MEAN_STEP, "{mean:?}");
+    assert!(times.solved > 100 && solutions < MAX_SOLUTIONS && fastest < MAX_FASTEST_STEP);
     assert!(smoother.estimate().pose.distance(&truth) < 0.02);
 }

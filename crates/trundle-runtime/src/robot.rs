@@ -26,7 +26,7 @@ use crate::{
     monitors::camera_health::CameraHealth,
     monitors::scan_map_consistency::ScanMapConsistency,
     range_source::RangeSource,
-    report::{PoseMeasurements, StepReport},
+    report::StepReport,
     scan_pose_log::ScanPoseLog,
     schedule::Ticker,
     stage::{Stage, StageTimes},
@@ -122,8 +122,6 @@ struct Latest {
     static_grid: Option<OccupancyGrid>,
     /// Hits of unconfirmed obstacles, map frame \[m\].
     unconfirmed: Vec<Vector2>,
-    /// Measurements that the estimate received in this step.
-    measurements: PoseMeasurements,
 }
 
 /// Time without a located image \[s\] after which images with enough features count as images of another place than the estimate. Source: ours.
@@ -219,7 +217,9 @@ impl Robot {
             SensorEvent::Cliff(cliff) => self.on_cliff(cliff.over_edge),
             SensorEvent::Odometry(odometry) => self.on_odometry(odometry, &mut report),
             SensorEvent::Body(event) => self.on_body(event, &mut report),
-            SensorEvent::Scan(scan) if self.range_source == RangeSource::Laser => self.on_laser(scan),
+            SensorEvent::Scan(scan) if self.range_source == RangeSource::Laser => {
+                self.on_laser(scan, &mut report);
+            }
             // The grid of a robot with a depth camera ignores lasers; truth is for evaluation alone.
             _ => {}
         }
@@ -230,7 +230,6 @@ impl Robot {
     /// Completes a report with estimate and state after the step.
     fn complete(&mut self, report: &mut StepReport) {
         report.estimate = Some(self.localizer.estimate());
-        report.measurements = std::mem::take(&mut self.latest.measurements);
         if let Some(decision_worker) = &self.decision_worker {
             let state = decision_worker.state();
             event_log::state(self.latest.sensors.newest(), &self.latest.state.0, &state.0);
@@ -248,7 +247,7 @@ impl Robot {
     /// A wheel reading: odometry, prediction, then navigation: a twist leaves.
     fn on_wheels(&mut self, wheels: &WheelTicks, report: &mut StepReport) {
         let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
-        self.latest.measurements.motion = self.odometry.increment().copied();
+        report.measurements.motion = self.odometry.increment().copied();
         let changes = self.latest.sensors.on_wheels(wheels.stamp, self.odometry.wheels_are_unresponsive());
         changes.for_each(|change| event_log::sensor_change(wheels.stamp, change));
         event_log::encoder_jump(wheels.stamp, self.odometry.report(), self.odometry.counts());
@@ -412,7 +411,7 @@ impl Robot {
         let visual = visual_pose(&track, corrected_trajectory.is_some());
         let correct = |visual| times.measure(Stage::Localization, || localizer.correct_visual(visual));
         let correction = visual.as_ref().map(correct);
-        self.latest.measurements.visual = visual;
+        report.measurements.visual = visual;
         event_log::correction(track.stamp, "the visual pose", before, self.localizer.estimate().pose);
         if correction == Some(Correction::Reanchored) {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
@@ -436,7 +435,7 @@ impl Robot {
         }
         if let Some(scan) = scan {
             let stamp = scan.stamp();
-            let is_drawn = self.on_scan(scan);
+            let is_drawn = self.on_scan(scan, report);
             if is_drawn
                 && track.tracking.is_located()
                 && self.scan_poses.note(stamp, track.visual_from_camera, || self.mapper.logged_stamps())

@@ -3,7 +3,8 @@
 use super::error_process::ErrorStep;
 use super::preintegration::{Preintegrated, parameters, spread};
 use super::state::{
-    ANCHOR, BIAS, BORDER, BorderState, CHAIN, ChainBlock, ChainState, Coupling, DELAY, ERROR, POSE,
+    BIAS_PLACE, BORDER_SIZE, BorderState, CHAIN_SIZE, ChainBlock, ChainState, Coupling, DELAY_PLACE,
+    ERROR_PLACE, FIRST_ANCHOR_PLACE, POSE_PLACE,
 };
 use crate::odometry_config::OdometryConfig;
 use crate::planar::{adjoint, inverse_left_jacobian, inverse_right_jacobian, right_jacobian};
@@ -12,14 +13,14 @@ use trundle_core::{Pose2, wrap_angle};
 use trundle_optim::ArrowSystem;
 
 /// The normal equations of the window.
-pub(crate) type WindowSystem = ArrowSystem<CHAIN, BORDER>;
+pub(crate) type WindowSystem = ArrowSystem<CHAIN_SIZE, BORDER_SIZE>;
 
 /// A residual of one keyframe, with its derivatives.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Unary {
     pub(crate) residual: Vector3<f64>,
-    pub(crate) by_chain: SMatrix<f64, 3, CHAIN>,
-    pub(crate) by_border: SMatrix<f64, 3, BORDER>,
+    pub(crate) by_chain: SMatrix<f64, 3, CHAIN_SIZE>,
+    pub(crate) by_border: SMatrix<f64, 3, BORDER_SIZE>,
 }
 
 /// A visual pose.
@@ -46,13 +47,13 @@ impl VisualFactor {
         let mut residual = -off - state.error;
         residual.z = wrap_angle(residual.z);
         let turn = rotation(visual_from_base.theta);
-        let mut by_chain = SMatrix::<f64, 3, CHAIN>::zeros();
-        by_chain.fixed_columns_mut::<3>(POSE).copy_from(&-(turn * adjoint(&back)));
-        by_chain.fixed_columns_mut::<3>(ERROR).copy_from(&-Matrix3::identity());
-        let mut by_border = SMatrix::<f64, 3, BORDER>::zeros();
-        by_border.set_column(DELAY, &(turn * self.velocity));
+        let mut by_chain = SMatrix::<f64, 3, CHAIN_SIZE>::zeros();
+        by_chain.fixed_columns_mut::<3>(POSE_PLACE).copy_from(&-(turn * adjoint(&back)));
+        by_chain.fixed_columns_mut::<3>(ERROR_PLACE).copy_from(&-Matrix3::identity());
+        let mut by_border = SMatrix::<f64, 3, BORDER_SIZE>::zeros();
+        by_border.set_column(DELAY_PLACE, &(turn * self.velocity));
         let by_anchor = turn * adjoint(&visual_from_base.inverse());
-        by_border.fixed_columns_mut::<3>(ANCHOR + 3 * self.slot).copy_from(&by_anchor);
+        by_border.fixed_columns_mut::<3>(FIRST_ANCHOR_PLACE + 3 * self.slot).copy_from(&by_anchor);
         Unary { residual, by_chain, by_border }
     }
 }
@@ -70,8 +71,8 @@ impl ScanFactor {
     /// Measured less predicted pose in the axes of the base.
     pub(crate) fn linearise(&self, state: &ChainState) -> Unary {
         let residual = (state.pose.inverse() * self.pose).log();
-        let mut by_chain = SMatrix::<f64, 3, CHAIN>::zeros();
-        by_chain.fixed_columns_mut::<3>(POSE).copy_from(&-inverse_left_jacobian(&residual));
+        let mut by_chain = SMatrix::<f64, 3, CHAIN_SIZE>::zeros();
+        by_chain.fixed_columns_mut::<3>(POSE_PLACE).copy_from(&-inverse_left_jacobian(&residual));
         Unary { residual, by_chain, by_border: SMatrix::zeros() }
     }
 }
@@ -86,8 +87,8 @@ impl Unary {
     /// Adds the factor to keyframe `k`; returns its cost.
     pub(crate) fn add_to(&self, system: &mut WindowSystem, k: usize, noise: &Matrix3<f64>) -> f64 {
         let Some(information) = noise.try_inverse() else { return 0.0 };
-        let weighted: SMatrix<f64, CHAIN, 3> = self.by_chain.transpose() * information;
-        let border: SMatrix<f64, BORDER, 3> = self.by_border.transpose() * information;
+        let weighted: SMatrix<f64, CHAIN_SIZE, 3> = self.by_chain.transpose() * information;
+        let border: SMatrix<f64, BORDER_SIZE, 3> = self.by_border.transpose() * information;
         system.add_diagonal(k, &(weighted * self.by_chain));
         system.add_coupling(k, &(weighted * self.by_border));
         system.add_gradient(k, &-(weighted * self.residual));
@@ -131,9 +132,9 @@ impl Link<'_> {
         let found = linearise_motion(self.motion, (from, to), border);
         let (by_bias, by_border) = spread(&found.by_parameters);
         let mut by_from = by_bias;
-        by_from.fixed_columns_mut::<3>(POSE).copy_from(&found.by_from);
-        let mut by_to = SMatrix::<f64, 3, CHAIN>::zeros();
-        by_to.fixed_columns_mut::<3>(POSE).copy_from(&found.by_to);
+        by_from.fixed_columns_mut::<3>(POSE_PLACE).copy_from(&found.by_from);
+        let mut by_to = SMatrix::<f64, 3, CHAIN_SIZE>::zeros();
+        by_to.fixed_columns_mut::<3>(POSE_PLACE).copy_from(&found.by_to);
         add_pair(system, i, (&by_from, &by_to, &by_border), &information, &found.residual)
     }
 
@@ -151,9 +152,9 @@ impl Link<'_> {
         let turn = wheels.turn + (wheels.by_parameters * off).x;
         let residual = SVector::<f64, 1>::new(wrap_angle(turn - (to.pose.theta - from.pose.theta)));
         let (mut by_from, by_border) = spread(&wheels.by_parameters);
-        by_from[POSE + 2] = 1.0;
-        let mut by_to = RowSVector::<f64, CHAIN>::zeros();
-        by_to[POSE + 2] = -1.0;
+        by_from[POSE_PLACE + 2] = 1.0;
+        let mut by_to = RowSVector::<f64, CHAIN_SIZE>::zeros();
+        by_to[POSE_PLACE + 2] = -1.0;
         let information = SMatrix::<f64, 1, 1>::new(1.0 / variance);
         add_pair(system, i, (&by_from, &by_to, &by_border), &information, &residual)
     }
@@ -166,12 +167,12 @@ impl Link<'_> {
         residual.z = wrap_angle(residual.z);
         let put = |block: Matrix3<f64>| {
             let mut whole = ChainBlock::zeros();
-            whole.fixed_view_mut::<3, 3>(ERROR, ERROR).copy_from(&block);
+            whole.fixed_view_mut::<3, 3>(ERROR_PLACE, ERROR_PLACE).copy_from(&block);
             whole
         };
         let gradient = |part: Vector3<f64>| {
-            let mut whole = SVector::<f64, CHAIN>::zeros();
-            whole.fixed_rows_mut::<3>(ERROR).copy_from(&part);
+            let mut whole = SVector::<f64, CHAIN_SIZE>::zeros();
+            whole.fixed_rows_mut::<3>(ERROR_PLACE).copy_from(&part);
             whole
         };
         let weighted = by_from.transpose() * information;
@@ -193,16 +194,16 @@ impl Link<'_> {
         let measured = if rest.time > 0.0 { rest.turn / rest.time - from.bias } else { 0.0 };
         let mut add = |j: usize, second: f64, first: f64| {
             let mut block = ChainBlock::zeros();
-            block[(BIAS, BIAS)] = second;
-            let mut gradient = SVector::<f64, CHAIN>::zeros();
-            gradient[BIAS] = first;
+            block[(BIAS_PLACE, BIAS_PLACE)] = second;
+            let mut gradient = SVector::<f64, CHAIN_SIZE>::zeros();
+            gradient[BIAS_PLACE] = first;
             system.add_diagonal(j, &block);
             system.add_gradient(j, &gradient);
         };
         add(i, 1.0 / walk + at_rest, off / walk + measured * at_rest);
         add(i + 1, 1.0 / walk, -off / walk);
         let mut block = ChainBlock::zeros();
-        block[(BIAS, BIAS)] = -1.0 / walk;
+        block[(BIAS_PLACE, BIAS_PLACE)] = -1.0 / walk;
         system.add_next(i, &block);
         off * off / walk + measured * measured * at_rest
     }
@@ -238,13 +239,17 @@ pub(crate) fn linearise_motion(
 fn add_pair<const R: usize>(
     system: &mut WindowSystem,
     i: usize,
-    (by_from, by_to, by_border): (&SMatrix<f64, R, CHAIN>, &SMatrix<f64, R, CHAIN>, &SMatrix<f64, R, BORDER>),
+    (by_from, by_to, by_border): (
+        &SMatrix<f64, R, CHAIN_SIZE>,
+        &SMatrix<f64, R, CHAIN_SIZE>,
+        &SMatrix<f64, R, BORDER_SIZE>,
+    ),
     information: &SMatrix<f64, R, R>,
     residual: &SVector<f64, R>,
 ) -> f64 {
-    let from: SMatrix<f64, CHAIN, R> = by_from.transpose() * information;
-    let to: SMatrix<f64, CHAIN, R> = by_to.transpose() * information;
-    let border: SMatrix<f64, BORDER, R> = by_border.transpose() * information;
+    let from: SMatrix<f64, CHAIN_SIZE, R> = by_from.transpose() * information;
+    let to: SMatrix<f64, CHAIN_SIZE, R> = by_to.transpose() * information;
+    let border: SMatrix<f64, BORDER_SIZE, R> = by_border.transpose() * information;
     system.add_diagonal(i, &(from * by_from));
     system.add_next(i, &(from * by_to));
     system.add_diagonal(i + 1, &(to * by_to));

@@ -1,14 +1,14 @@
 //! The fixed-lag smoother: inputs and estimate.
 
 use super::calibration::{SmootherCalibration, WithSigma};
-use super::config::SmootherConfig;
+use super::config::{SmootherConfig, WindowConfig};
 use super::error_process::{ErrorStart, ErrorStep};
 use super::keyframe::Keyframe;
 use super::motion_buffer::MotionBuffer;
 use super::prediction::{Predicted, pose_after};
 use super::preintegration::{Preintegrated, parameters};
 use super::prior::{Prior, PriorSigmas};
-use super::state::{BIAS, BorderState, CHAIN, ChainState, DELAY, SCALE, WHEELS};
+use super::state::{BIAS_PLACE, BorderState, CHAIN_SIZE, ChainState, DELAY_PLACE, SCALE_PLACE, WHEELS_PLACE};
 use super::visual_maps::{StoredAnchor, VisualMaps};
 use super::window::Window;
 use crate::fusion::visual_frame::VisualAnchor;
@@ -124,15 +124,15 @@ impl Smoother {
     pub fn calibration(&self) -> Option<SmootherCalibration> {
         let (window, newest) = (self.window.as_ref()?, self.newest.as_ref()?);
         let sigma = |place: usize| newest.covariance[(place, place)].max(0.0).sqrt();
-        let common = |place: usize, value: f64| WithSigma { value, sigma: sigma(CHAIN + place) };
+        let common = |place: usize, value: f64| WithSigma { value, sigma: sigma(CHAIN_SIZE + place) };
         let border = &window.border;
         Some(SmootherCalibration {
-            gyro_bias: WithSigma { value: newest.state.bias, sigma: sigma(BIAS) },
-            gyro_scale: common(SCALE, border.scale),
-            left_radius: common(WHEELS, border.wheels.x),
-            right_radius: common(WHEELS + 1, border.wheels.y),
-            wheelbase: common(WHEELS + 2, border.wheels.z),
-            camera_delay: common(DELAY, border.delay),
+            gyro_bias: WithSigma { value: newest.state.bias, sigma: sigma(BIAS_PLACE) },
+            gyro_scale: common(SCALE_PLACE, border.scale),
+            left_radius: common(WHEELS_PLACE, border.wheels.x),
+            right_radius: common(WHEELS_PLACE + 1, border.wheels.y),
+            wheelbase: common(WHEELS_PLACE + 2, border.wheels.z),
+            camera_delay: common(DELAY_PLACE, border.delay),
         })
     }
 
@@ -158,6 +158,11 @@ impl Smoother {
         Some(Pose3::from_pose2(anchor) * self.maps.level(slot)?)
     }
 
+    /// Number of times that the normal equations of the window were solved: the work of the smoother.
+    pub fn solutions(&self) -> usize {
+        self.window.as_ref().map_or(0, |window| window.solutions)
+    }
+
     /// Number of measurements after which the window had no solution; the estimate then went on without them.
     pub fn failures(&self) -> usize {
         self.failures
@@ -171,11 +176,11 @@ impl Smoother {
         let variance = |place: usize| newest.covariance[(place, place)].max(0.0).sqrt();
         let sigmas = PriorSigmas {
             pose: Matrix3::from_diagonal(&UNKNOWN_POSE_VARIANCES),
-            bias: variance(BIAS),
-            scale: variance(CHAIN + SCALE),
-            radius: variance(CHAIN + WHEELS),
-            wheelbase: variance(CHAIN + WHEELS + 2),
-            delay: variance(CHAIN + DELAY),
+            bias: variance(BIAS_PLACE),
+            scale: variance(CHAIN_SIZE + SCALE_PLACE),
+            radius: variance(CHAIN_SIZE + WHEELS_PLACE),
+            wheelbase: variance(CHAIN_SIZE + WHEELS_PLACE + 2),
+            delay: variance(CHAIN_SIZE + DELAY_PLACE),
         };
         let state = ChainState { pose: estimate.pose, error: Vector3::zeros(), bias: newest.state.bias };
         self.maps = VisualMaps::default();
@@ -190,8 +195,8 @@ impl Smoother {
             bias: odometry.gyro_bias_sigma,
             scale: odometry.gyro_scale_sigma,
             radius: odometry.wheel_radius_sigma,
-            wheelbase: self.config.wheelbase_sigma,
-            delay: self.config.delay_sigma,
+            wheelbase: self.config.noise.wheelbase_sigma,
+            delay: self.config.noise.delay_sigma,
         };
         self.restart(stamp, ChainState::at(Pose2::IDENTITY), BorderState::default(), &sigmas);
     }
@@ -207,7 +212,7 @@ impl Smoother {
             scan: None,
         };
         let prior = Prior::new(state, border, sigmas);
-        let (count, odometry) = (self.config.max_keyframes, self.motions.config());
+        let (count, odometry) = (self.config.window.max_keyframes, self.motions.config());
         self.window = Some(Window::new(first, border, prior, count, odometry));
         self.motions.forget_before(stamp);
         self.refresh();
@@ -221,19 +226,17 @@ impl Smoother {
         displacement: Vector2<f64>,
     ) -> ErrorStep {
         let (position, heading) =
-            (self.config.visual_map_position, self.config.visual_map_heading_deg.to_radians());
+            (self.config.noise.visual_map_position, self.config.noise.visual_map_heading_deg.to_radians());
         let own =
             Matrix3::from_diagonal(&Vector3::new(position, position, heading).map(|sigma| sigma * sigma));
-        let correlation = (self.config.correlation_distance, self.config.correlation_turn);
+        let correlation = (self.config.noise.correlation_distance, self.config.noise.correlation_turn);
         ErrorStep { stationary: own + map_part, correlation, displacement, start }
     }
 
     /// A keyframe without measurements, where none was made for long.
     fn add_timed_keyframe(&mut self, stamp: Stamp) {
-        let rests = self.head.distance < REST_DISTANCE_M && self.head.turned < REST_TURN_RAD;
-        let factor = if rests { REST_TIME_FACTOR } else { 1.0 };
         let Some(window) = &self.window else { return };
-        if self.head.duration < factor * self.config.keyframe_max_time {
+        if self.head.duration < longest_time(&self.config.window, &self.head) {
             return;
         }
         let last = window.keyframes.len() - 1;
@@ -262,6 +265,22 @@ impl Smoother {
         Pose2::new(0.0, 0.0, turn).rotate(moved)
     }
 
+    /// Inserts a keyframe with an image after keyframe `k` and solves the window. It takes the place of the newest keyframe where that one is
+    /// still near the one before: the newest image counts, and images with the same error count once.
+    pub(super) fn insert_image(&mut self, k: usize, keyframe: Keyframe) {
+        let Some(window) = &mut self.window else { return };
+        let is_newest = k + 1 == window.keyframes.len();
+        if is_newest
+            && keyframe.error.start.is_none()
+            && is_provisional(&self.config.window, &window.keyframes)
+        {
+            window.replace_newest(keyframe, &self.motions);
+            self.solve();
+        } else {
+            self.insert(k, keyframe);
+        }
+    }
+
     /// Inserts a keyframe after keyframe `k` and solves the window.
     pub(super) fn insert(&mut self, k: usize, keyframe: Keyframe) {
         let Some(window) = &mut self.window else { return };
@@ -283,8 +302,9 @@ impl Smoother {
         }
         let newest = window.newest().stamp;
         let is_old = |window: &Window| {
-            window.keyframes.len() > self.config.max_keyframes
-                || window.keyframes.len() > 2 && newest - window.keyframes[1].stamp > self.config.window
+            window.keyframes.len() > self.config.window.max_keyframes
+                || window.keyframes.len() > 2
+                    && newest - window.keyframes[1].stamp > self.config.window.length
         };
         while is_old(window) && window.remove_oldest(self.motions.config()) {}
         let oldest = window.keyframes[0].stamp;
@@ -301,6 +321,23 @@ impl Smoother {
         self.head = self.motions.between(keyframe.stamp, now, at);
         self.newest = Some(window.estimated_newest());
     }
+}
+
+/// Whether the newest keyframe has nothing but an image near that of the keyframe before.
+fn is_provisional(config: &WindowConfig, keyframes: &[Keyframe]) -> bool {
+    let [.., before, newest] = keyframes else { return false };
+    let has_only_image = newest.visual.is_some() && newest.scan.is_none() && newest.error.start.is_none();
+    let motion = &newest.motion;
+    let is_near = motion.distance < config.keyframe_distance
+        && motion.turned < config.keyframe_turn_deg.to_radians()
+        && motion.duration < longest_time(config, motion);
+    before.visual.is_some() && has_only_image && (is_near || motion.duration < config.keyframe_min_time)
+}
+
+/// Largest time between two keyframes with this motion, s.
+fn longest_time(config: &WindowConfig, motion: &Preintegrated) -> f64 {
+    let rests = motion.distance < REST_DISTANCE_M && motion.turned < REST_TURN_RAD;
+    config.keyframe_max_time * if rests { REST_TIME_FACTOR } else { 1.0 }
 }
 
 fn is_usable(increment: &MotionIncrement) -> bool {

@@ -15,11 +15,11 @@ pub(crate) struct MotionBuffer {
 }
 
 /// Increments for which there is room from the start: a window of 20 s at 100 Hz. Source: ours.
-const CAPACITY: usize = 2048;
+const INCREMENT_CAPACITY: usize = 2048;
 
 impl MotionBuffer {
     pub(crate) fn new(drive: DifferentialDrive, config: OdometryConfig) -> Self {
-        Self { drive, config, increments: VecDeque::with_capacity(CAPACITY) }
+        Self { drive, config, increments: VecDeque::with_capacity(INCREMENT_CAPACITY) }
     }
 
     pub(crate) fn config(&self) -> &OdometryConfig {

@@ -1,6 +1,6 @@
 //! Motion between two keyframes by wheels and gyro, with its first-order dependence on their calibration.
 
-use super::state::{BIAS, BORDER, BorderState, CHAIN, SCALE, WHEELS};
+use super::state::{BIAS_PLACE, BORDER_SIZE, BorderState, CHAIN_SIZE, SCALE_PLACE, WHEELS_PLACE};
 use crate::odometry::motion_increment::MotionIncrement;
 use crate::odometry_config::OdometryConfig;
 use crate::odometry_noise::{Step, of_step};
@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, RowSVector, SMatrix, SVector, Vector3};
 use trundle_core::Pose2;
 
 /// Number of calibration parameters: bias, scale, left radius, right radius, wheelbase.
-const PARAMETERS: usize = 5;
+const PARAMETER_COUNT: usize = 5;
 const PARAMETER_BIAS: usize = 0;
 const PARAMETER_SCALE: usize = 1;
 const PARAMETER_LEFT: usize = 2;
@@ -17,7 +17,7 @@ const PARAMETER_RIGHT: usize = 3;
 const PARAMETER_WHEELBASE: usize = 4;
 
 /// Values of the calibration parameters.
-pub(crate) type Parameters = SVector<f64, PARAMETERS>;
+pub(crate) type Parameters = SVector<f64, PARAMETER_COUNT>;
 
 /// The parameters of a keyframe.
 pub(crate) fn parameters(bias: f64, border: &BorderState) -> Parameters {
@@ -27,13 +27,14 @@ pub(crate) fn parameters(bias: f64, border: &BorderState) -> Parameters {
 
 /// Spreads derivatives by the parameters over the unknowns of keyframe and border.
 pub(crate) fn spread<const R: usize>(
-    by_parameters: &SMatrix<f64, R, PARAMETERS>,
-) -> (SMatrix<f64, R, CHAIN>, SMatrix<f64, R, BORDER>) {
-    let (mut chain, mut border) = (SMatrix::<f64, R, CHAIN>::zeros(), SMatrix::<f64, R, BORDER>::zeros());
-    chain.set_column(BIAS, &by_parameters.column(PARAMETER_BIAS));
-    border.set_column(SCALE, &by_parameters.column(PARAMETER_SCALE));
+    by_parameters: &SMatrix<f64, R, PARAMETER_COUNT>,
+) -> (SMatrix<f64, R, CHAIN_SIZE>, SMatrix<f64, R, BORDER_SIZE>) {
+    let (mut chain, mut border) =
+        (SMatrix::<f64, R, CHAIN_SIZE>::zeros(), SMatrix::<f64, R, BORDER_SIZE>::zeros());
+    chain.set_column(BIAS_PLACE, &by_parameters.column(PARAMETER_BIAS));
+    border.set_column(SCALE_PLACE, &by_parameters.column(PARAMETER_SCALE));
     for k in 0..3 {
-        border.set_column(WHEELS + k, &by_parameters.column(PARAMETER_LEFT + k));
+        border.set_column(WHEELS_PLACE + k, &by_parameters.column(PARAMETER_LEFT + k));
     }
     (chain, border)
 }
@@ -46,7 +47,7 @@ pub(crate) struct Preintegrated {
     /// Motion of the base.
     pub(crate) motion: Pose2,
     /// Its derivative by the parameters, as a right perturbation.
-    pub(crate) by_parameters: SMatrix<f64, 3, PARAMETERS>,
+    pub(crate) by_parameters: SMatrix<f64, 3, PARAMETER_COUNT>,
     /// Its covariance as a right perturbation.
     pub(crate) covariance: Matrix3<f64>,
     /// Turn by the wheels, beside that of the gyro.
@@ -67,7 +68,7 @@ pub(crate) struct WheelTurn {
     /// \[rad\].
     pub(crate) turn: f64,
     /// Its derivative by the parameters.
-    pub(crate) by_parameters: RowSVector<f64, PARAMETERS>,
+    pub(crate) by_parameters: RowSVector<f64, PARAMETER_COUNT>,
     /// Variance without slip, rad^2.
     variance: f64,
     /// Turn by slip, rad, without sign.
@@ -122,7 +123,7 @@ impl Preintegrated {
             Some(measured) => turn_by_gyro(at, measured, part.dt),
             None => (by_wheels, by_wheels_by),
         };
-        let mut tangent_by = SMatrix::<f64, 3, PARAMETERS>::zeros();
+        let mut tangent_by = SMatrix::<f64, 3, PARAMETER_COUNT>::zeros();
         tangent_by[(0, PARAMETER_LEFT)] = part.left / 2.0;
         tangent_by[(0, PARAMETER_RIGHT)] = part.right / 2.0;
         tangent_by.set_row(2, &turn_by);
@@ -166,7 +167,7 @@ impl WheelTurn {
         wheelbase: f64,
         part: &MotionIncrement,
         turn: f64,
-        by: &RowSVector<f64, PARAMETERS>,
+        by: &RowSVector<f64, PARAMETER_COUNT>,
     ) {
         self.turn += turn;
         self.by_parameters += by;
@@ -187,7 +188,7 @@ fn turn_by_wheels(
     at: &Parameters,
     wheelbase: f64,
     part: &MotionIncrement,
-) -> (f64, RowSVector<f64, PARAMETERS>) {
+) -> (f64, RowSVector<f64, PARAMETER_COUNT>) {
     let base = wheelbase * at[PARAMETER_WHEELBASE];
     let turn = (at[PARAMETER_RIGHT] * part.right - at[PARAMETER_LEFT] * part.left) / base;
     let mut by = RowSVector::zeros();
@@ -197,7 +198,7 @@ fn turn_by_wheels(
     (turn, by)
 }
 
-fn turn_by_gyro(at: &Parameters, measured: f64, dt: f64) -> (f64, RowSVector<f64, PARAMETERS>) {
+fn turn_by_gyro(at: &Parameters, measured: f64, dt: f64) -> (f64, RowSVector<f64, PARAMETER_COUNT>) {
     let turn = measured - at[PARAMETER_BIAS] * dt;
     let mut by = RowSVector::zeros();
     by[PARAMETER_BIAS] = -at[PARAMETER_SCALE] * dt;

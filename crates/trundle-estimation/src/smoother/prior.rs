@@ -2,8 +2,9 @@
 
 use super::factors::WindowSystem;
 use super::state::{
-    ANCHOR, BIAS, BORDER, BorderBlock, BorderState, CHAIN, ChainState, Coupling, DELAY, ERROR, JOINT,
-    JointMatrix, JointVector, POSE, SCALE, WHEELS,
+    BIAS_PLACE, BORDER_SIZE, BorderBlock, BorderState, CHAIN_SIZE, ChainState, Coupling, DELAY_PLACE,
+    ERROR_PLACE, FIRST_ANCHOR_PLACE, JOINT_SIZE, JointMatrix, JointVector, POSE_PLACE, SCALE_PLACE,
+    WHEELS_PLACE,
 };
 use nalgebra::{Matrix3, SMatrix, SVector};
 use trundle_core::Pose2;
@@ -58,35 +59,39 @@ impl Prior {
         let mut information = JointMatrix::zeros();
         let pose = sigmas.pose + Matrix3::identity() * (START_SIGMA * START_SIGMA);
         let known = pose.try_inverse().unwrap_or_else(Matrix3::zeros);
-        information.fixed_view_mut::<3, 3>(POSE, POSE).copy_from(&known);
+        information.fixed_view_mut::<3, 3>(POSE_PLACE, POSE_PLACE).copy_from(&known);
         let mut set = |place: usize, sigma: f64| {
             information[(place, place)] = sigma.max(MIN_SIGMA).powi(-2);
         };
-        (ERROR..ERROR + 3).for_each(|place| set(place, START_SIGMA));
-        set(BIAS, sigmas.bias);
-        set(CHAIN + SCALE, sigmas.scale);
-        (0..2).for_each(|wheel| set(CHAIN + WHEELS + wheel, sigmas.radius));
-        set(CHAIN + WHEELS + 2, sigmas.wheelbase);
-        set(CHAIN + DELAY, sigmas.delay);
-        (ANCHOR..BORDER).for_each(|place| set(CHAIN + place, UNKNOWN_ANCHOR_SIGMA));
+        (ERROR_PLACE..ERROR_PLACE + 3).for_each(|place| set(place, START_SIGMA));
+        set(BIAS_PLACE, sigmas.bias);
+        set(CHAIN_SIZE + SCALE_PLACE, sigmas.scale);
+        (0..2).for_each(|wheel| set(CHAIN_SIZE + WHEELS_PLACE + wheel, sigmas.radius));
+        set(CHAIN_SIZE + WHEELS_PLACE + 2, sigmas.wheelbase);
+        set(CHAIN_SIZE + DELAY_PLACE, sigmas.delay);
+        (FIRST_ANCHOR_PLACE..BORDER_SIZE).for_each(|place| set(CHAIN_SIZE + place, UNKNOWN_ANCHOR_SIGMA));
         Self { information, gradient: JointVector::zeros(), chain, border }
     }
 
     /// What is left of a keyframe that was removed, at these values; `time` s have passed.
     pub(crate) fn after(
-        marginal: &ArrowMarginal<CHAIN, BORDER>,
+        marginal: &ArrowMarginal<CHAIN_SIZE, BORDER_SIZE>,
         chain: ChainState,
         border: BorderState,
         time: f64,
     ) -> Self {
         let mut information = JointMatrix::zeros();
-        information.fixed_view_mut::<CHAIN, CHAIN>(0, 0).copy_from(&marginal.block);
-        information.fixed_view_mut::<CHAIN, BORDER>(0, CHAIN).copy_from(&marginal.coupling);
-        information.fixed_view_mut::<BORDER, CHAIN>(CHAIN, 0).copy_from(&marginal.coupling.transpose());
-        information.fixed_view_mut::<BORDER, BORDER>(CHAIN, CHAIN).copy_from(&marginal.border);
+        information.fixed_view_mut::<CHAIN_SIZE, CHAIN_SIZE>(0, 0).copy_from(&marginal.block);
+        information.fixed_view_mut::<CHAIN_SIZE, BORDER_SIZE>(0, CHAIN_SIZE).copy_from(&marginal.coupling);
+        information
+            .fixed_view_mut::<BORDER_SIZE, CHAIN_SIZE>(CHAIN_SIZE, 0)
+            .copy_from(&marginal.coupling.transpose());
+        information
+            .fixed_view_mut::<BORDER_SIZE, BORDER_SIZE>(CHAIN_SIZE, CHAIN_SIZE)
+            .copy_from(&marginal.border);
         let mut gradient = JointVector::zeros();
-        gradient.fixed_rows_mut::<CHAIN>(0).copy_from(&marginal.gradient);
-        gradient.fixed_rows_mut::<BORDER>(CHAIN).copy_from(&marginal.border_gradient);
+        gradient.fixed_rows_mut::<CHAIN_SIZE>(0).copy_from(&marginal.gradient);
+        gradient.fixed_rows_mut::<BORDER_SIZE>(CHAIN_SIZE).copy_from(&marginal.border_gradient);
         let mut prior = Self { information, gradient, chain, border };
         prior.walk(time);
         prior
@@ -94,16 +99,18 @@ impl Prior {
 
     /// Adds the random walk of the border over `time` s.
     fn walk(&mut self, time: f64) {
-        let mut inverse_noise = SVector::<f64, BORDER>::repeat(ANCHOR_WALK);
-        inverse_noise[SCALE] = SCALE_WALK;
-        inverse_noise.fixed_rows_mut::<3>(WHEELS).fill(WHEEL_WALK);
-        inverse_noise[DELAY] = DELAY_WALK;
+        let mut inverse_noise = SVector::<f64, BORDER_SIZE>::repeat(ANCHOR_WALK);
+        inverse_noise[SCALE_PLACE] = SCALE_WALK;
+        inverse_noise.fixed_rows_mut::<3>(WHEELS_PLACE).fill(WHEEL_WALK);
+        inverse_noise[DELAY_PLACE] = DELAY_WALK;
         let time = time.max(1e-3);
         inverse_noise.apply(|walk| *walk = 1.0 / (*walk * *walk * time));
-        let rows: SMatrix<f64, BORDER, JOINT> = self.information.fixed_rows::<BORDER>(CHAIN).into();
-        let own: BorderBlock = self.information.fixed_view::<BORDER, BORDER>(CHAIN, CHAIN).into();
+        let rows: SMatrix<f64, BORDER_SIZE, JOINT_SIZE> =
+            self.information.fixed_rows::<BORDER_SIZE>(CHAIN_SIZE).into();
+        let own: BorderBlock =
+            self.information.fixed_view::<BORDER_SIZE, BORDER_SIZE>(CHAIN_SIZE, CHAIN_SIZE).into();
         let Some(lower) = (own + BorderBlock::from_diagonal(&inverse_noise)).cholesky() else { return };
-        let share = lower.solve(&self.gradient.fixed_rows::<BORDER>(CHAIN).into_owned());
+        let share = lower.solve(&self.gradient.fixed_rows::<BORDER_SIZE>(CHAIN_SIZE).into_owned());
         self.gradient -= rows.transpose() * share;
         self.information -= rows.transpose() * lower.solve(&rows);
         self.information = (self.information + self.information.transpose()) * 0.5;
@@ -112,17 +119,17 @@ impl Prior {
     /// Adds the prior to keyframe 0 of a system; returns its cost up to a constant.
     pub(crate) fn add_to(&self, system: &mut WindowSystem, chain: &ChainState, border: &BorderState) -> f64 {
         let mut step = JointVector::zeros();
-        step.fixed_rows_mut::<CHAIN>(0).copy_from(&chain.since(&self.chain));
-        step.fixed_rows_mut::<BORDER>(CHAIN).copy_from(&border.since(&self.border));
+        step.fixed_rows_mut::<CHAIN_SIZE>(0).copy_from(&chain.since(&self.chain));
+        step.fixed_rows_mut::<BORDER_SIZE>(CHAIN_SIZE).copy_from(&border.since(&self.border));
         let moved = self.information * step;
         let gradient = self.gradient - moved;
-        system.add_diagonal(0, &self.information.fixed_view::<CHAIN, CHAIN>(0, 0).into());
-        let coupling: Coupling = self.information.fixed_view::<CHAIN, BORDER>(0, CHAIN).into();
+        system.add_diagonal(0, &self.information.fixed_view::<CHAIN_SIZE, CHAIN_SIZE>(0, 0).into());
+        let coupling: Coupling = self.information.fixed_view::<CHAIN_SIZE, BORDER_SIZE>(0, CHAIN_SIZE).into();
         system.add_coupling(0, &coupling);
-        system.add_gradient(0, &gradient.fixed_rows::<CHAIN>(0).into());
+        system.add_gradient(0, &gradient.fixed_rows::<CHAIN_SIZE>(0).into());
         system.add_border(
-            &self.information.fixed_view::<BORDER, BORDER>(CHAIN, CHAIN).into(),
-            &gradient.fixed_rows::<BORDER>(CHAIN).into(),
+            &self.information.fixed_view::<BORDER_SIZE, BORDER_SIZE>(CHAIN_SIZE, CHAIN_SIZE).into(),
+            &gradient.fixed_rows::<BORDER_SIZE>(CHAIN_SIZE).into(),
         );
         step.dot(&moved) - 2.0 * step.dot(&self.gradient)
     }
@@ -134,7 +141,7 @@ impl Prior {
         anchor: trundle_core::Pose2,
         covariance: Option<Matrix3<f64>>,
     ) {
-        let place = CHAIN + ANCHOR + 3 * slot;
+        let place = CHAIN_SIZE + FIRST_ANCHOR_PLACE + 3 * slot;
         self.forget(place);
         self.border.anchors[slot] = anchor;
         let unknown = Matrix3::identity() * UNKNOWN_ANCHOR_SIGMA.powi(2);
@@ -151,7 +158,7 @@ impl Prior {
 
     /// Removes three unknowns by a Schur complement.
     fn forget(&mut self, place: usize) {
-        let rows: SMatrix<f64, 3, JOINT> = self.information.fixed_rows::<3>(place).into();
+        let rows: SMatrix<f64, 3, JOINT_SIZE> = self.information.fixed_rows::<3>(place).into();
         let own: Matrix3<f64> = self.information.fixed_view::<3, 3>(place, place).into();
         if let Some(inverse) = own.try_inverse() {
             let share = inverse * self.gradient.fixed_rows::<3>(place);

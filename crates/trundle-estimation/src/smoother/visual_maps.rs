@@ -1,6 +1,6 @@
 //! Slots of the anchors, and the visual maps that own them.
 
-use super::state::ANCHORS;
+use super::state::ANCHOR_SLOTS;
 use nalgebra::Matrix3;
 use std::collections::BTreeMap;
 use trundle_core::{Pose2, Pose3};
@@ -8,7 +8,7 @@ use trundle_core::{Pose2, Pose3};
 /// Visual maps with an anchor among the unknowns, and those that had one.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct VisualMaps {
-    slots: [Option<Slot>; ANCHORS],
+    slots: [Option<Slot>; ANCHOR_SLOTS],
     /// Anchors of maps without a slot.
     stored: BTreeMap<u32, StoredAnchor>,
     uses: u64,
@@ -62,7 +62,7 @@ impl VisualMaps {
         if let Some(known) = self.slots.iter().position(owns) {
             return Some(SlotFor::Known(known));
         }
-        let free = (0..ANCHORS).filter(|&slot| self.slots[slot].is_none() || !is_used(slot));
+        let free = (0..ANCHOR_SLOTS).filter(|&slot| self.slots[slot].is_none() || !is_used(slot));
         let oldest = free.min_by_key(|&slot| self.slots[slot].map_or(0, |slot| slot.used + 1))?;
         Some(self.stored.get(&map).map_or(SlotFor::New(oldest), |stored| SlotFor::Stored(oldest, *stored)))
     }

@@ -7,7 +7,7 @@ use super::motion_buffer::MotionBuffer;
 use super::prediction::Predicted;
 use super::preintegration::parameters;
 use super::prior::Prior;
-use super::state::{BIAS, BorderState, ChainState, ERROR, POSE};
+use super::state::{BIAS_PLACE, BorderState, ChainState, ERROR_PLACE, POSE_PLACE};
 use crate::odometry_config::OdometryConfig;
 use crate::planar::symmetric;
 use nalgebra::Matrix3;
@@ -25,12 +25,14 @@ pub(crate) struct Window {
     leaving: WindowSystem,
     /// Values before a step.
     before: Vec<ChainState>,
+    /// Number of solutions.
+    pub(crate) solutions: usize,
 }
 
 /// Largest number of solutions after a measurement. Source: ours; the second one changes little.
 const MAX_STEPS: usize = 3;
 /// A step below which the solution has converged, m, rad, rad/s and ratio. Source: ours: the derivatives change by a thousandth.
-const CONVERGED: f64 = 2e-3;
+const CONVERGED_STEP: f64 = 2e-3;
 /// Rise of the cost, relative, after which a step is taken back. Source: ours: above rounding.
 const MAX_COST_RISE: f64 = 1e-3;
 /// Change of a switch after which the window is solved again. Source: ours.
@@ -39,7 +41,7 @@ const MIN_SWITCH_CHANGE: f64 = 0.01;
 /// informations definite.
 const MIN_OTHER_INFORMATION: f64 = 1e-3;
 /// Damping after a step that raised the cost. Source: Levenberg and Marquardt; the number is ours.
-const DAMPING: f64 = 0.1;
+const FIRST_DAMPING: f64 = 0.1;
 /// Change of the gyro's bias (rad/s) after which a motion is integrated again. Source: ours: 0.5 s at 2 mrad/s.
 const MAX_BIAS_CHANGE: f64 = 2e-3;
 /// Change of scale, radii and wheelbase after which a motion is integrated again, ratio. Source: ours.
@@ -64,6 +66,7 @@ impl Window {
             system: WindowSystem::with_capacity(room),
             leaving: WindowSystem::with_capacity(2),
             before: Vec::with_capacity(room),
+            solutions: 0,
         };
         window.linearise(config);
         window.system.factorise();
@@ -103,7 +106,7 @@ impl Window {
             if next > cost + MAX_COST_RISE * cost.abs().max(1.0) {
                 self.restore(&border_before);
                 cost = self.linearise(motions.config());
-                damping = f64::max(DAMPING, damping * 10.0);
+                damping = f64::max(FIRST_DAMPING, damping * 10.0);
             } else {
                 cost = next;
             }
@@ -113,13 +116,14 @@ impl Window {
                 return false;
             }
             self.system.solve();
+            self.solutions += 1;
             border_before = self.border;
             size = self.take_step();
-            if size < CONVERGED {
+            if size < CONVERGED_STEP {
                 break;
             }
         }
-        let is_factor_old = damping > 0.0 || size >= CONVERGED;
+        let is_factor_old = damping > 0.0 || size >= CONVERGED_STEP;
         !is_factor_old || {
             self.linearise(motions.config());
             self.system.factorise()
@@ -153,7 +157,7 @@ impl Window {
             self.before.push(keyframe.state);
             let step = self.system.step(k);
             keyframe.state = keyframe.state.moved(&step);
-            size = size.max(step.fixed_rows::<3>(POSE).amax()).max(step[BIAS].abs());
+            size = size.max(step.fixed_rows::<3>(POSE_PLACE).amax()).max(step[BIAS_PLACE].abs());
         }
         let step = self.system.border_step();
         self.border = self.border.moved(&step);
@@ -201,6 +205,18 @@ impl Window {
         self.keyframes.insert(k + 1, keyframe);
     }
 
+    /// Replaces the newest keyframe, which has a keyframe before it, by a later one that was predicted from it.
+    pub(crate) fn replace_newest(&mut self, mut keyframe: Keyframe, motions: &MotionBuffer) {
+        self.before.clear();
+        if let Some(replaced) = self.keyframes.pop() {
+            keyframe.error.displacement += replaced.error.displacement;
+        }
+        let before = self.newest();
+        let at = parameters(before.state.bias, &self.border);
+        keyframe.motion = motions.between(before.stamp, keyframe.stamp, at);
+        self.keyframes.push(keyframe);
+    }
+
     /// Removes the oldest keyframe and keeps what it says as the prior of the next one. `false` where there is only one, or its equations
     /// have no solution.
     pub(crate) fn remove_oldest(&mut self, config: &OdometryConfig) -> bool {
@@ -233,7 +249,8 @@ impl Window {
     /// The switch of keyframe `k`, by the error of the visual pose without the place: the factor of the place is taken from the posterior.
     fn judged(&self, k: usize, switch: &PlaceSwitch) -> Option<PlaceSwitch> {
         let keyframe = &self.keyframes[k];
-        let posterior: Matrix3<f64> = self.system.covariance(k).block.fixed_view::<3, 3>(ERROR, ERROR).into();
+        let posterior: Matrix3<f64> =
+            self.system.covariance(k).block.fixed_view::<3, 3>(ERROR_PLACE, ERROR_PLACE).into();
         let with = posterior.try_inverse()?;
         let without = with - keyframe.error.information(&keyframe.motion)?;
         let floor = wrong_place().try_inverse()? * MIN_OTHER_INFORMATION;

@@ -5,7 +5,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{DifferentialDrive, Pose2, Pose3, Stamp};
 use trundle_estimation::{
-    MotionIncrement, OdometryConfig, PlanarMeasurement, Smoother, SmootherConfig, VisualPose, VisualQuality,
+    MeasurementUse, MotionIncrement, OdometryConfig, PlanarMeasurement, Smoother, SmootherConfig, VisualPose,
+    VisualQuality,
 };
 
 /// Time between two readings of the wheels, s.
@@ -29,7 +30,7 @@ impl TrueCalibration {
             scale: 1.0 + odometry.gyro_scale_sigma * normal(rng),
             left: 1.0 + odometry.wheel_radius_sigma * normal(rng),
             right: 1.0 + odometry.wheel_radius_sigma * normal(rng),
-            wheelbase: 1.0 + config.wheelbase_sigma * normal(rng),
+            wheelbase: 1.0 + config.noise.wheelbase_sigma * normal(rng),
         }
     }
 }
@@ -49,6 +50,8 @@ pub struct Drive {
     pub is_lit: bool,
     /// Number of the visual map.
     pub map: u32,
+    /// Sum and number of the normalised squared innovations of visual poses.
+    pub innovations: (f64, f64),
     /// Distance (m) and turn (rad) since the last image.
     since_image: (f64, f64),
     /// Position at the last image.
@@ -74,6 +77,7 @@ impl Drive {
             visual_error: Vector3::zeros(),
             is_lit: true,
             map: 0,
+            innovations: (0.0, 0.0),
             since_image: (0.0, 0.0),
             at_image: Vector2::zeros(),
         }
@@ -92,7 +96,10 @@ impl Drive {
             assert!(self.smoother.add_motion(&increment));
             if self.is_lit && self.steps % 3 == 0 {
                 let visual = self.visual();
-                self.smoother.add_visual(&visual);
+                if let MeasurementUse::Applied(innovation) = self.smoother.add_visual(&visual) {
+                    self.innovations.0 += innovation.squared;
+                    self.innovations.1 += 1.0;
+                }
             }
         }
     }
@@ -143,10 +150,13 @@ impl Drive {
     /// The visual pose of the present image: correlated error and white noise.
     pub fn visual(&mut self) -> VisualPose {
         let (distance, turned) = std::mem::take(&mut self.since_image);
-        let keep =
-            (-distance / self.config.correlation_distance - turned / self.config.correlation_turn).exp();
-        let map_part = sigmas(self.config.visual_map_position, self.config.visual_map_heading_deg);
-        let white = sigmas(self.config.visual_white_position, self.config.visual_white_heading_deg);
+        let keep = (-distance / self.config.noise.correlation_distance
+            - turned / self.config.noise.correlation_turn)
+            .exp();
+        let map_part =
+            sigmas(self.config.noise.visual_map_position, self.config.noise.visual_map_heading_deg);
+        let white =
+            sigmas(self.config.noise.visual_white_position, self.config.noise.visual_white_heading_deg);
         let new = map_part * (1.0 - keep * keep).max(0.0).sqrt();
         let turned = {
             let (e, moved) = (self.visual_error, self.truth.position() - self.at_image);
@@ -156,6 +166,8 @@ impl Drive {
         self.at_image = self.truth.position();
         self.visual_error =
             if self.steps <= 3 { Vector3::zeros() } else { turned * keep + self.normals(new) };
+        // The first image defines the visual frame.
+        let white = if self.steps <= 3 { Vector3::zeros() } else { white };
         let error = self.visual_error + self.normals(white);
         self.visual_at(self.truth, error)
     }
@@ -175,7 +187,7 @@ impl Drive {
 
     /// A scan match without correlated errors.
     pub fn scan(&mut self) -> PlanarMeasurement {
-        let error = self.normals(sigmas(self.config.scan_position, self.config.scan_heading_deg));
+        let error = self.normals(sigmas(self.config.noise.scan_position, self.config.noise.scan_heading_deg));
         PlanarMeasurement {
             stamp: self.now(),
             pose: self.truth * Pose2::exp(error),

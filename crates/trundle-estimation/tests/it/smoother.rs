@@ -1,17 +1,27 @@
 //! The smoother on simulated drives: consistency, darkness, faults, recognised places, the marginalised window.
 
+#![allow(clippy::print_stdout, reason = "the tests report statistics")]
+
 use crate::drive::Drive;
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::{Pose2, Pose3};
-use trundle_estimation::{MeasurementUse, SmootherConfig, VisualAnchor, VisualPose};
+use trundle_estimation::{MeasurementUse, SmootherConfig, VisualAnchor, VisualPose, WindowConfig};
+
+/// A window of this length with keyframes 0.1 m apart.
+fn windowed(length: f64, max_keyframes: usize) -> SmootherConfig {
+    let (keyframe_distance, keyframe_turn_deg) = (0.1, 10.0);
+    let window = WindowConfig {
+        length,
+        max_keyframes,
+        keyframe_distance,
+        keyframe_turn_deg,
+        ..WindowConfig::default()
+    };
+    SmootherConfig { window, ..SmootherConfig::default() }
+}
 
 fn config() -> SmootherConfig {
-    SmootherConfig {
-        window: 10.0,
-        keyframe_distance: 0.1,
-        keyframe_turn_deg: 10.0,
-        ..SmootherConfig::default()
-    }
+    windowed(10.0, 100)
 }
 
 /// Half of the 99.9 % band of the mean of `runs` normalised squared errors with three degrees of freedom, by the normal limit.
@@ -22,7 +32,7 @@ fn band(runs: usize) -> f64 {
 #[test]
 fn the_squared_error_is_inside_its_band_before_in_and_after_darkness() {
     const RUNS: usize = 200;
-    let mut sums = [0.0; 3];
+    let (mut sums, mut innovations) = ([0.0; 3], (0.0, 0.0));
     for seed in 0..RUNS as u64 {
         let mut drive = Drive::new(seed, config());
         drive.go(15.0);
@@ -34,7 +44,11 @@ fn the_squared_error_is_inside_its_band_before_in_and_after_darkness() {
         drive.go(5.0);
         sums[2] += drive.nees();
         assert_eq!(drive.smoother.failures(), 0);
+        innovations = (innovations.0 + drive.innovations.0, innovations.1 + drive.innovations.1);
     }
+    let mean = innovations.0 / innovations.1;
+    println!("mean squared innovation of {} visual poses: {mean:.2}", innovations.1);
+    assert!((mean - 3.0).abs() < 0.3, "{mean:.2}");
     for (sum, when) in sums.iter().zip(["in light", "after 5 to 60 s of darkness", "in light again"]) {
         let mean = sum / RUNS as f64;
         println!("mean squared error {when}: {mean:.2}");
@@ -71,7 +85,7 @@ fn calibration_is_found_with_its_sigmas() {
 #[test]
 fn a_marginalised_window_agrees_with_the_full_batch() {
     let run = |window: f64| {
-        let mut drive = Drive::new(3, SmootherConfig { window, max_keyframes: 400, ..config() });
+        let mut drive = Drive::new(3, windowed(window, 400));
         drive.go(25.0);
         (drive.smoother.estimate(), drive.smoother.keyframes().count())
     };

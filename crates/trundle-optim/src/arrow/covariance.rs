@@ -2,7 +2,7 @@
 
 use super::system::ArrowSystem;
 use crate::block::{Block, Column, solve_lower, solve_upper};
-use nalgebra::SMatrix;
+use nalgebra::{ArrayStorage, SMatrix};
 
 /// Joint covariance of a block and the border.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,52 +15,52 @@ pub struct ArrowCovariance<const N: usize, const B: usize> {
     pub border: SMatrix<f64, B, B>,
 }
 
-impl<const N: usize, const B: usize> ArrowSystem<N, B> {
-    /// Joint covariance of block `k` and the border, by a recursion from the newest block to `k` (Takahashi et al. 1973). The system must be
-    /// factorised, and `k` below [`ArrowSystem::count`].
-    pub fn covariance(&self, k: usize) -> ArrowCovariance<N, B> {
-        let border = self.border_covariance();
-        let mut found = self.newest(border);
-        for i in (k..self.count - 1).rev() {
-            found = self.before(i, &found);
-        }
-        found
+/// Joint covariance of block `k` of a factorised system and the border, by a recursion from the newest block to `k` \[Takahashi73\].
+pub(super) fn of_block<const N: usize, const B: usize>(
+    system: &ArrowSystem<N, B>,
+    k: usize,
+) -> ArrowCovariance<N, B> {
+    let mut found = newest(system, of_border(system));
+    for i in (k..system.count - 1).rev() {
+        found = before(system, i, &found);
     }
+    found
+}
 
-    /// The inverse of the border's Schur complement.
-    fn border_covariance(&self) -> SMatrix<f64, B, B> {
-        let column = |j: usize| {
-            let mut column = [0.0; B];
-            column[j] = 1.0;
-            solve_lower(&self.border, &mut column);
-            solve_upper(&self.border, &mut column);
-            column
-        };
-        let mut inverse = [[0.0; B]; B];
-        for (j, stored) in inverse.iter_mut().enumerate() {
-            *stored = column(j);
-        }
-        matrix(&inverse)
+/// The inverse of the border's Schur complement.
+fn of_border<const N: usize, const B: usize>(system: &ArrowSystem<N, B>) -> SMatrix<f64, B, B> {
+    let mut inverse = SMatrix::<f64, B, B>::identity();
+    for column in &mut inverse.data.0 {
+        solve_lower(&system.border, column);
+        solve_upper(&system.border, column);
     }
+    inverse
+}
 
-    fn newest(&self, border: SMatrix<f64, B, B>) -> ArrowCovariance<N, B> {
-        let link = &self.links[self.count - 1];
-        let coupling = SMatrix::<f64, N, B>::from_fn(|row, column| link.border[column][row]);
-        let through = coupling * border;
-        let inner = SMatrix::<f64, N, N>::identity() + through * coupling.transpose();
-        finish(&link.diagonal, inner, through, border)
-    }
+fn newest<const N: usize, const B: usize>(
+    system: &ArrowSystem<N, B>,
+    border: SMatrix<f64, B, B>,
+) -> ArrowCovariance<N, B> {
+    let link = &system.links[system.count - 1];
+    let coupling: SMatrix<f64, N, B> = matrix(&link.border);
+    let through = coupling * border;
+    let inner = SMatrix::<f64, N, N>::identity() + through * coupling.transpose();
+    finish(&link.diagonal, inner, through, border)
+}
 
-    /// The covariance of block `i` from that of block `i + 1`.
-    fn before(&self, i: usize, later: &ArrowCovariance<N, B>) -> ArrowCovariance<N, B> {
-        let link = &self.links[i];
-        let coupling = SMatrix::<f64, N, B>::from_fn(|row, column| link.border[column][row]);
-        let next: SMatrix<f64, N, N> = matrix(&link.next);
-        let through_next = next.transpose() * later.block + coupling * later.cross.transpose();
-        let through = next.transpose() * later.cross + coupling * later.border;
-        let inner = SMatrix::<f64, N, N>::identity() + through_next * next + through * coupling.transpose();
-        finish(&link.diagonal, inner, through, later.border)
-    }
+/// The covariance of block `i` from that of block `i + 1`.
+fn before<const N: usize, const B: usize>(
+    system: &ArrowSystem<N, B>,
+    i: usize,
+    later: &ArrowCovariance<N, B>,
+) -> ArrowCovariance<N, B> {
+    let link = &system.links[i];
+    let coupling: SMatrix<f64, N, B> = matrix(&link.border);
+    let next: SMatrix<f64, N, N> = matrix(&link.next);
+    let through_next = next.transpose() * later.block + coupling * later.cross.transpose();
+    let through = next.transpose() * later.cross + coupling * later.border;
+    let inner = SMatrix::<f64, N, N>::identity() + through_next * next + through * coupling.transpose();
+    finish(&link.diagonal, inner, through, later.border)
 }
 
 /// The covariance `L'^-1 inner L^-1` of a block, and `-L'^-1 through` with the border.
@@ -86,5 +86,5 @@ fn solved_upper<const N: usize, const C: usize>(
 }
 
 fn matrix<const R: usize, const C: usize>(columns: &[Column<R>; C]) -> SMatrix<f64, R, C> {
-    SMatrix::from_fn(|row, column| columns[column][row])
+    SMatrix::from_data(ArrayStorage(*columns))
 }

@@ -2,79 +2,88 @@
 
 use super::system::{ArrowSystem, Link};
 use crate::block::{
-    divide_by_transposed, factorise, solve_lower, solve_upper, subtract_outer, subtract_product,
+    self, Column, divide_by_transposed, solve_lower, solve_upper, subtract_outer, subtract_product,
     subtract_transposed_product,
 };
 
-impl<const N: usize, const B: usize> ArrowSystem<N, B> {
-    /// Turns the system into its Cholesky factor; `false` when it is not positive definite.
-    pub fn factorise(&mut self) -> bool {
-        #[cfg(target_arch = "x86_64")]
-        if std::arch::is_x86_feature_detected!("avx") {
-            // SAFETY: the processor has the one feature that the function is compiled for.
-            return unsafe { self.factorise_by_avx() };
-        }
-        self.factorise_plainly()
-    }
-
-    /// The same as [`ArrowSystem::factorise_plainly`] with four numbers to an operation.
+/// Turns a system into its Cholesky factor; whether it is positive definite.
+pub(super) fn factorise<const N: usize, const B: usize>(system: &mut ArrowSystem<N, B>) -> bool {
     #[cfg(target_arch = "x86_64")]
-    #[target_feature(enable = "avx")]
-    fn factorise_by_avx(&mut self) -> bool {
-        self.factorise_plainly()
+    if std::arch::is_x86_feature_detected!("avx") {
+        // SAFETY: the processor has the one feature that the function is compiled for.
+        return unsafe { factorise_by_avx(system) };
     }
+    factorise_plainly(system)
+}
 
-    #[inline(always)]
-    fn factorise_plainly(&mut self) -> bool {
-        for i in 0..self.count {
-            let (done, rest) = self.links.split_at_mut(i + 1);
-            let link = &mut done[i];
-            if !eliminate(link) {
-                return false;
-            }
-            if i + 1 < self.count {
-                carry(link, &mut rest[0]);
-            }
-            subtract_gram(&mut self.border, &link.border);
+/// The same as [`factorise_plainly`] with four numbers to an operation.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx")]
+fn factorise_by_avx<const N: usize, const B: usize>(system: &mut ArrowSystem<N, B>) -> bool {
+    factorise_plainly(system)
+}
+
+#[inline(always)]
+fn factorise_plainly<const N: usize, const B: usize>(system: &mut ArrowSystem<N, B>) -> bool {
+    let ArrowSystem { links, count, border, .. } = system;
+    for i in 0..*count {
+        let (done, rest) = links[..*count].split_at_mut(i + 1);
+        let link = &mut done[i];
+        if !eliminate(link) {
+            return false;
         }
-        factorise(&mut self.border)
+        if let Some(next) = rest.first_mut() {
+            carry(link, next);
+        }
+        subtract_gram(border, &link.border);
     }
+    block::factorise(border)
+}
 
-    /// Solves by the factor: [`ArrowSystem::step`] and [`ArrowSystem::border_step`] then hold the solution.
-    pub fn solve(&mut self) {
-        for i in 0..self.count {
-            let (done, rest) = self.links.split_at_mut(i + 1);
-            let link = &mut done[i];
-            solve_lower(&link.diagonal, &mut link.rhs);
-            if i + 1 < self.count {
-                subtract_product(&mut rest[0].rhs, &link.next, &link.rhs);
-            }
-            for (sum, column) in self.border_rhs.iter_mut().zip(&link.border) {
-                *sum -= dot(column, &link.rhs);
+/// Solves a factorised system: right sides become solutions.
+pub(super) fn solve<const N: usize, const B: usize>(system: &mut ArrowSystem<N, B>) {
+    let ArrowSystem { links, count, border, border_rhs } = system;
+    let links = &mut links[..*count];
+    forward(links, border_rhs);
+    solve_lower(border, border_rhs);
+    solve_upper(border, border_rhs);
+    backward(links, border_rhs);
+}
+
+fn forward<const N: usize, const B: usize>(links: &mut [Link<N, B>], border_rhs: &mut Column<B>) {
+    for i in 0..links.len() {
+        let (done, rest) = links.split_at_mut(i + 1);
+        let link = &mut done[i];
+        solve_lower(&link.diagonal, &mut link.rhs);
+        if let Some(next) = rest.first_mut() {
+            subtract_product(&mut next.rhs, &link.next, &link.rhs);
+        }
+        for (sum, column) in border_rhs.iter_mut().zip(&link.border) {
+            *sum -= dot(column, &link.rhs);
+        }
+    }
+}
+
+fn backward<const N: usize, const B: usize>(links: &mut [Link<N, B>], border: &Column<B>) {
+    for i in (0..links.len()).rev() {
+        let (done, rest) = links.split_at_mut(i + 1);
+        let link = &mut done[i];
+        if let Some(next) = rest.first() {
+            subtract_transposed_product(&mut link.rhs, &link.next, &next.rhs);
+        }
+        for (factor, column) in border.iter().zip(&link.border) {
+            for (sum, value) in link.rhs.iter_mut().zip(column) {
+                *sum -= value * factor;
             }
         }
-        solve_lower(&self.border, &mut self.border_rhs);
-        solve_upper(&self.border, &mut self.border_rhs);
-        for i in (0..self.count).rev() {
-            let (done, rest) = self.links.split_at_mut(i + 1);
-            let link = &mut done[i];
-            if i + 1 < self.count {
-                subtract_transposed_product(&mut link.rhs, &link.next, &rest[0].rhs);
-            }
-            for (factor, column) in self.border_rhs.iter().zip(&link.border) {
-                for (sum, value) in link.rhs.iter_mut().zip(column) {
-                    *sum -= value * factor;
-                }
-            }
-            solve_upper(&link.diagonal, &mut link.rhs);
-        }
+        solve_upper(&link.diagonal, &mut link.rhs);
     }
 }
 
 /// Factorises the diagonal of a link and divides its couplings by the factor.
 #[inline(always)]
-fn eliminate<const N: usize, const B: usize>(link: &mut Link<N, B>) -> bool {
-    if !factorise(&mut link.diagonal) {
+pub(super) fn eliminate<const N: usize, const B: usize>(link: &mut Link<N, B>) -> bool {
+    if !block::factorise(&mut link.diagonal) {
         return false;
     }
     divide_by_transposed(&mut link.next, &link.diagonal);
@@ -86,7 +95,7 @@ fn eliminate<const N: usize, const B: usize>(link: &mut Link<N, B>) -> bool {
 
 /// Subtracts what an eliminated link explains of the next one.
 #[inline(always)]
-fn carry<const N: usize, const B: usize>(link: &Link<N, B>, next: &mut Link<N, B>) {
+pub(super) fn carry<const N: usize, const B: usize>(link: &Link<N, B>, next: &mut Link<N, B>) {
     subtract_outer(&mut next.diagonal, &link.next, &link.next);
     for (sum, column) in next.border.iter_mut().zip(&link.border) {
         subtract_product(sum, &link.next, column);
@@ -95,7 +104,10 @@ fn carry<const N: usize, const B: usize>(link: &Link<N, B>, next: &mut Link<N, B
 
 /// `border -= columns' columns`, the lower half.
 #[inline(always)]
-fn subtract_gram<const N: usize, const B: usize>(border: &mut [[f64; B]; B], columns: &[[f64; N]; B]) {
+pub(super) fn subtract_gram<const N: usize, const B: usize>(
+    border: &mut [[f64; B]; B],
+    columns: &[[f64; N]; B],
+) {
     for (j, stored) in border.iter_mut().enumerate() {
         for (i, sum) in stored.iter_mut().enumerate().skip(j) {
             *sum -= dot(&columns[i], &columns[j]);
@@ -104,6 +116,6 @@ fn subtract_gram<const N: usize, const B: usize>(border: &mut [[f64; B]; B], col
 }
 
 #[inline(always)]
-fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+pub(super) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

@@ -8,6 +8,7 @@
 mod covariance;
 mod factor;
 mod marginal;
+mod solver;
 mod system;
 #[cfg(test)]
 mod tests;

@@ -2,7 +2,7 @@
 
 use super::super::error_process::ErrorStart;
 use super::super::fixed_lag::Smoother;
-use super::super::state::{BORDER, BorderState, CHAIN, ChainState};
+use super::super::state::{BORDER_SIZE, BorderState, CHAIN_SIZE, ChainState};
 use super::fixture::driven;
 use nalgebra::{DMatrix, DVector, Matrix3, SVector, Vector3};
 use trundle_core::{Pose2, wrap_angle};
@@ -16,9 +16,10 @@ struct Values {
 
 impl Values {
     fn moved(&self, step: &DVector<f64>) -> Self {
-        let part = |k: usize| SVector::<f64, CHAIN>::from(step.fixed_rows::<CHAIN>(k * CHAIN));
+        let part = |k: usize| SVector::<f64, CHAIN_SIZE>::from(step.fixed_rows::<CHAIN_SIZE>(k * CHAIN_SIZE));
         let chain = self.chain.iter().enumerate().map(|(k, state)| state.moved(&part(k))).collect();
-        let border = SVector::<f64, BORDER>::from(step.fixed_rows::<BORDER>(self.chain.len() * CHAIN));
+        let border =
+            SVector::<f64, BORDER_SIZE>::from(step.fixed_rows::<BORDER_SIZE>(self.chain.len() * CHAIN_SIZE));
         Self { chain, border: self.border.moved(&border) }
     }
 }
@@ -59,8 +60,8 @@ fn prior(smoother: &Smoother, values: &Values) -> Vec<f64> {
     all.push((border.scale - 1.0) / odometry.gyro_scale_sigma);
     all.push((border.wheels.x - 1.0) / odometry.wheel_radius_sigma);
     all.push((border.wheels.y - 1.0) / odometry.wheel_radius_sigma);
-    all.push((border.wheels.z - 1.0) / smoother.config.wheelbase_sigma);
-    all.push(border.delay / smoother.config.delay_sigma);
+    all.push((border.wheels.z - 1.0) / smoother.config.noise.wheelbase_sigma);
+    all.push(border.delay / smoother.config.noise.delay_sigma);
     all.extend(border.anchors.iter().flat_map(|anchor| anchor.log().data.0[0]).map(|x| x / 1e3));
     all
 }
@@ -105,7 +106,7 @@ fn link(smoother: &Smoother, values: &Values, k: usize) -> Vec<f64> {
 }
 
 fn derivatives(smoother: &Smoother, values: &Values) -> DMatrix<f64> {
-    let size = values.chain.len() * CHAIN + BORDER;
+    let size = values.chain.len() * CHAIN_SIZE + BORDER_SIZE;
     let rows = residuals(smoother, values).len();
     let mut jacobian = DMatrix::zeros(rows, size);
     for column in 0..size {
@@ -138,8 +139,8 @@ fn a_window_agrees_with_the_dense_solution_of_all_factors() {
     for (k, (found, expected)) in start.chain.iter().zip(&values.chain).enumerate() {
         let off = found.since(expected);
         let covariance = smoother.window.as_ref().unwrap().estimated(k).covariance;
-        for i in 0..CHAIN {
-            let sigma = inverse[(k * CHAIN + i, k * CHAIN + i)].sqrt();
+        for i in 0..CHAIN_SIZE {
+            let sigma = inverse[(k * CHAIN_SIZE + i, k * CHAIN_SIZE + i)].sqrt();
             assert!(off[i].abs() < 0.01 * sigma, "keyframe {k}, unknown {i}: {} of {sigma}", off[i]);
             let ratio = covariance[(i, i)].sqrt() / sigma;
             assert!((ratio - 1.0).abs() < 0.01, "keyframe {k}, unknown {i}: sigma {ratio}");

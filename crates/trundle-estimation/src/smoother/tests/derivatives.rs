@@ -2,15 +2,15 @@
 
 use super::super::factors::{ScanFactor, VisualFactor, linearise_motion};
 use super::super::preintegration::{Parameters, Preintegrated, spread};
-use super::super::state::{BORDER, BorderState, CHAIN, ChainState, POSE};
+use super::super::state::{BORDER_SIZE, BorderState, CHAIN_SIZE, ChainState, POSE_PLACE};
 use super::fixture::{increment, wave};
 use crate::odometry_config::OdometryConfig;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use trundle_core::Pose2;
 
 /// Step of the differences, and the largest error of a derivative, relative.
-const STEP: f64 = 1e-6;
-const TOLERANCE: f64 = 2e-5;
+const DIFFERENCE_STEP: f64 = 1e-6;
+const SLOPE_TOLERANCE: f64 = 2e-5;
 
 fn chain(i: i64) -> ChainState {
     ChainState {
@@ -32,29 +32,29 @@ fn border(i: i64) -> BorderState {
 
 fn unit<const N: usize>(k: usize) -> SVector<f64, N> {
     let mut step = SVector::<f64, N>::zeros();
-    step[k] = STEP;
+    step[k] = DIFFERENCE_STEP;
     step
 }
 
 /// Checks derivatives by keyframe and border of a residual.
 fn check(
     residual: impl Fn(&ChainState, &BorderState) -> Vector3<f64>,
-    (by_chain, by_border): (SMatrix<f64, 3, CHAIN>, SMatrix<f64, 3, BORDER>),
+    (by_chain, by_border): (SMatrix<f64, 3, CHAIN_SIZE>, SMatrix<f64, 3, BORDER_SIZE>),
     (state, common): (&ChainState, &BorderState),
 ) {
-    for k in 0..CHAIN {
+    for k in 0..CHAIN_SIZE {
         let slope = (residual(&state.moved(&unit(k)), common) - residual(&state.moved(&-unit(k)), common))
-            / (2.0 * STEP);
+            / (2.0 * DIFFERENCE_STEP);
         assert!(
-            (slope - by_chain.column(k)).norm() < TOLERANCE * (1.0 + slope.norm()),
+            (slope - by_chain.column(k)).norm() < SLOPE_TOLERANCE * (1.0 + slope.norm()),
             "keyframe {k}: {slope}"
         );
     }
-    for k in 0..BORDER {
+    for k in 0..BORDER_SIZE {
         let slope = (residual(state, &common.moved(&unit(k))) - residual(state, &common.moved(&-unit(k))))
-            / (2.0 * STEP);
+            / (2.0 * DIFFERENCE_STEP);
         assert!(
-            (slope - by_border.column(k)).norm() < TOLERANCE * (1.0 + slope.norm()),
+            (slope - by_border.column(k)).norm() < SLOPE_TOLERANCE * (1.0 + slope.norm()),
             "border {k}: {slope}"
         );
     }
@@ -103,12 +103,12 @@ fn of_motions_by_both_keyframes_and_the_border() {
         let to = ChainState { pose: from.pose * motion.motion * off, ..chain(i + 1) };
         let found = linearise_motion(&motion, (&from, &to), &common);
         let (mut by_from, by_border) = spread(&found.by_parameters);
-        by_from.fixed_columns_mut::<3>(POSE).copy_from(&found.by_from);
+        by_from.fixed_columns_mut::<3>(POSE_PLACE).copy_from(&found.by_from);
         let residual =
             |from: &ChainState, common: &BorderState| linearise_motion(&motion, (from, &to), common).residual;
         check(residual, (by_from, by_border), (&from, &common));
-        let mut by_to = SMatrix::<f64, 3, CHAIN>::zeros();
-        by_to.fixed_columns_mut::<3>(POSE).copy_from(&found.by_to);
+        let mut by_to = SMatrix::<f64, 3, CHAIN_SIZE>::zeros();
+        by_to.fixed_columns_mut::<3>(POSE_PLACE).copy_from(&found.by_to);
         let residual =
             |to: &ChainState, common: &BorderState| linearise_motion(&motion, (&from, to), common).residual;
         check(residual, (by_to, by_border), (&to, &common));
@@ -121,16 +121,16 @@ fn of_preintegrated_motions_by_the_calibration() {
     let motion = integrated(at);
     for k in 0..5 {
         let mut step = Parameters::zeros();
-        step[k] = STEP;
+        step[k] = DIFFERENCE_STEP;
         let (more, less) = (integrated(at + step), integrated(at - step));
-        let slope = (less.motion.inverse() * more.motion).log() / (2.0 * STEP);
+        let slope = (less.motion.inverse() * more.motion).log() / (2.0 * DIFFERENCE_STEP);
         assert!(
-            (slope - motion.by_parameters.column(k)).norm() < TOLERANCE * (1.0 + slope.norm()),
+            (slope - motion.by_parameters.column(k)).norm() < SLOPE_TOLERANCE * (1.0 + slope.norm()),
             "{k}: {slope}"
         );
-        let turn = (more.wheels.turn - less.wheels.turn) / (2.0 * STEP);
+        let turn = (more.wheels.turn - less.wheels.turn) / (2.0 * DIFFERENCE_STEP);
         assert!(
-            (turn - motion.wheels.by_parameters[k]).abs() < TOLERANCE * (1.0 + turn.abs()),
+            (turn - motion.wheels.by_parameters[k]).abs() < SLOPE_TOLERANCE * (1.0 + turn.abs()),
             "{k}: {turn}"
         );
     }

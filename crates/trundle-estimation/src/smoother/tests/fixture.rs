@@ -1,6 +1,6 @@
 //! A short drive for the tests of the parts.
 
-use super::super::config::SmootherConfig;
+use super::super::config::{SmootherConfig, WindowConfig};
 use super::super::fixed_lag::Smoother;
 use super::super::measurement::PlanarMeasurement;
 use crate::fusion::correction::{VisualPose, VisualQuality};
@@ -31,7 +31,8 @@ pub(super) fn increment(i: i64) -> MotionIncrement {
 
 /// Drives for `steps` readings of the wheels, with images and scan matches that err.
 pub(super) fn driven(steps: i64) -> Smoother {
-    let config = SmootherConfig { window: 60.0, keyframe_distance: 0.03, ..SmootherConfig::default() };
+    let window = WindowConfig { length: 60.0, keyframe_distance: 0.03, ..WindowConfig::default() };
+    let config = SmootherConfig { window, ..SmootherConfig::default() };
     let drive = DifferentialDrive::KOBUKI;
     let mut smoother = Smoother::new(config, OdometryConfig::default(), drive, Pose3::identity()).unwrap();
     let mut truth = Pose2::IDENTITY;
