@@ -127,10 +127,11 @@ fn start_at(smoother: &mut Smoother, entry: &mut Entry) {
 
 /// Puts a visual factor into the window and solves it.
 fn enter(smoother: &mut Smoother, entry: Entry, start: Option<ErrorStart>, error: Option<Vector3<f64>>) {
+    let moved = measured_displacement(smoother, &entry);
     let step = smoother.error_step(entry.map_part, start, Vector2::zeros());
     let change = |keyframe: &mut Keyframe| {
         keyframe.visual = Some(entry.factor);
-        keyframe.error = ErrorStep { displacement: keyframe.error.displacement, ..step };
+        keyframe.error = ErrorStep { displacement: moved.unwrap_or(keyframe.error.displacement), ..step };
         keyframe.trust = keyframe.trust_after(keyframe.trust);
         keyframe.state.error = error.unwrap_or(keyframe.state.error);
     };
@@ -145,6 +146,16 @@ fn enter(smoother: &mut Smoother, entry: Entry, start: Option<ErrorStart>, error
         }
         (Target::New { .. }, None) => {}
     }
+}
+
+/// Displacement from the visual pose of the keyframe before, where that one is of the same map.
+fn measured_displacement(smoother: &Smoother, entry: &Entry) -> Option<Vector2<f64>> {
+    let before = match entry.target {
+        Target::New { k } => k,
+        Target::Existing { k, .. } => k.checked_sub(1)?,
+    };
+    let before = smoother.window.as_ref()?.keyframes[before].visual?;
+    (before.slot == entry.factor.slot).then(|| entry.factor.pose.position() - before.pose.position())
 }
 
 /// The first visual pose of a map: its anchor is where the base is.

@@ -56,9 +56,9 @@ pub(super) fn driven(steps: i64) -> Smoother {
 
 fn visual(i: i64, truth: Pose2) -> VisualPose {
     let pose = Pose2::new(
-        truth.x + 0.004 * wave(i, 0.7),
-        truth.y + 0.004 * wave(i, 0.8),
-        truth.theta + 0.002 * wave(i, 0.9),
+        truth.x + 0.001 * wave(i, 0.7),
+        truth.y + 0.001 * wave(i, 0.8),
+        truth.theta + 0.0005 * wave(i, 0.9),
     );
     VisualPose {
         stamp: Stamp::from_nanos(i * 20_000_000),
