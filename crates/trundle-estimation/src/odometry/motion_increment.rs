@@ -18,7 +18,7 @@ pub struct MotionIncrement {
     pub turn_by_gyro: Option<f64>,
     /// Difference of the distances by wheels and gyro during a slip, m, 0 or more.
     pub slip: f64,
-    /// Whether the robot is at rest: no tick for a while, and no rate beyond the gyro's noise.
+    /// Whether the robot is at rest: no tick for a while or since the start, and no rate beyond the noise of the gyro.
     pub is_at_rest: bool,
     /// Covariance of motion that no sensor measured (a gap, a command without a tick), as a right perturbation (x m, y m, theta rad).
     pub unobserved: Matrix3<f64>,

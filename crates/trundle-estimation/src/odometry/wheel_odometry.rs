@@ -285,7 +285,7 @@ impl WheelOdometry {
             right: wheels.right / right,
             turn_by_gyro: measured_turn,
             slip,
-            is_at_rest: is_noise && self.is_at_rest(stamp),
+            is_at_rest: is_noise,
             unobserved,
         });
         if slips { WheelReport::Slipping { rate: slip_rate } } else { WheelReport::Used }

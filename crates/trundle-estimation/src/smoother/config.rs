@@ -48,10 +48,10 @@ pub struct SmootherNoise {
     pub visual_map_heading_deg: f64,
     /// Factor on the sigma of the white noise of a weak visual pose, 1 to 100. Default 3.
     pub weak_factor: f64,
-    /// Distance over which errors of visual poses and scan matches are correlated (factor 1/e), m, 0.01 to 100. Default 3: drives in
-    /// the simulator.
+    /// Distance over which errors of visual poses and scan matches are correlated (factor 1/e), m, 0.01 to 100. Default 10: drives
+    /// in the simulator.
     pub correlation_distance: f64,
-    /// Turn over which they are correlated, rad, 0.01 to 100. Default 2: the camera views another part of the map.
+    /// Turn over which they are correlated, rad, 0.01 to 100. Default 4: the camera views another part of the map.
     pub correlation_turn: f64,
     /// Noise of a scan match's position added to its covariance (one sigma), m, 0.001 to 1. Default 0.02.
     pub scan_position: f64,
@@ -96,8 +96,8 @@ impl Default for SmootherNoise {
             visual_map_position: 0.001,
             visual_map_heading_deg: 0.03,
             weak_factor: 3.0,
-            correlation_distance: 3.0,
-            correlation_turn: 2.0,
+            correlation_distance: 10.0,
+            correlation_turn: 4.0,
             scan_position: 0.02,
             scan_heading_deg: 0.5,
             wheelbase_sigma: 0.005,
