@@ -48,7 +48,7 @@ pub struct SmootherNoise {
     pub visual_map_heading_deg: f64,
     /// Factor on the sigma of the white noise of a weak visual pose, 1 to 100. Default 3.
     pub weak_factor: f64,
-    /// Distance over which errors of visual poses and scan matches are correlated (factor 1/e), m, 0.01 to 100. Default 10: drives
+    /// Distance over which errors of visual poses are correlated (factor 1/e), m, 0.01 to 100. Default 10: drives
     /// in the simulator.
     pub correlation_distance: f64,
     /// Turn over which they are correlated, rad, 0.01 to 100. Default 4: the camera views another part of the map.
@@ -57,6 +57,10 @@ pub struct SmootherNoise {
     pub scan_position: f64,
     /// Noise of a scan match's heading added to its covariance (one sigma), deg, 0.01 to 30. Default 0.5.
     pub scan_heading_deg: f64,
+    /// Distance over which errors of scan matches are correlated (factor 1/e), m, 0.01 to 100. Default 0.3: a scan's hits move on.
+    pub scan_correlation_distance: f64,
+    /// Turn over which they are correlated, rad, 0.01 to 100. Default 0.3.
+    pub scan_correlation_turn: f64,
     /// Prior sigma of the wheelbase's error, ratio, 0.0001 to 0.1. Default 0.005.
     pub wheelbase_sigma: f64,
     /// Prior sigma of the camera's delay, s, 1e-5 to 0.5. Default 0.003.
@@ -100,6 +104,8 @@ impl Default for SmootherNoise {
             correlation_turn: 4.0,
             scan_position: 0.02,
             scan_heading_deg: 0.5,
+            scan_correlation_distance: 0.3,
+            scan_correlation_turn: 0.3,
             wheelbase_sigma: 0.005,
             delay_sigma: 0.003,
         }
@@ -147,6 +153,8 @@ impl SmootherNoise {
         require_in("noise.correlation_turn", self.correlation_turn, "rad", 0.01, 100.0)?;
         require_in("noise.scan_position", self.scan_position, "m", 0.001, 1.0)?;
         require_in("noise.scan_heading_deg", self.scan_heading_deg, "deg", 0.01, 30.0)?;
+        require_in("noise.scan_correlation_distance", self.scan_correlation_distance, "m", 0.01, 100.0)?;
+        require_in("noise.scan_correlation_turn", self.scan_correlation_turn, "rad", 0.01, 100.0)?;
         require_in("noise.wheelbase_sigma", self.wheelbase_sigma, "", 1e-4, 0.1)?;
         require_in("noise.delay_sigma", self.delay_sigma, "s", 1e-5, 0.5).map(drop)
     }

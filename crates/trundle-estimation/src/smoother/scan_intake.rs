@@ -28,8 +28,8 @@ pub(super) fn add(smoother: &mut Smoother, scan: &PlanarMeasurement) -> Measurem
     let Some(window) = &smoother.window else { return MeasurementUse::NoMotion };
     let has_scan = |keyframe: &Keyframe| keyframe.scan.is_some();
     let correlated = intake::path_since(smoother, window, &at, has_scan).map_or(0.0, |path| {
-        (-path.distance / smoother.config.noise.correlation_distance
-            - path.turned / smoother.config.noise.correlation_turn)
+        (-path.distance / smoother.config.noise.scan_correlation_distance
+            - path.turned / smoother.config.noise.scan_correlation_turn)
             .exp()
     });
     let is_before_another = window.keyframes[at.before + 1..].iter().any(has_scan);
