@@ -3,6 +3,7 @@
 //! - [`WheelOdometry`]: encoder ticks and gyro to a continuous pose that drifts, with its covariance.
 //! - [`Localizer`]: an extended Kalman filter on SE(2). It corrects that odometry by visual poses and scan matches at the stamps
 //!   of their measurement, and yields the one [`trundle_core::PoseEstimate`] that planning and control use.
+//! - [`Smoother`]: poses of the last seconds and calibration by one least-squares problem; it runs beside the localizer.
 //! - [`StationEstimator`]: the pose of a charging station from its infrared light.
 //! - [`OdometryState`]: pose and covariance of the odometry at a stamp. With [`trundle_core::CameraMotion::of_base`] it is the
 //!   motion prior of visual tracking.
@@ -35,6 +36,7 @@ mod odometry_config;
 mod odometry_noise;
 mod planar;
 mod pose_monitor;
+mod smoother;
 
 pub use calibration::batch::error::CalibrationError;
 pub use calibration::batch::estimate::Estimate;
@@ -50,6 +52,7 @@ pub use fusion::config::LocalizerConfig;
 pub use fusion::correction::{Correction, Prediction, VisualPose, VisualQuality};
 pub use fusion::localizer::Localizer;
 pub use fusion::visual_frame::VisualAnchor;
+pub use odometry::motion_increment::MotionIncrement;
 pub use odometry::report::{WheelCounts, WheelReport};
 pub use odometry::state::OdometryState;
 pub use odometry::wheel_odometry::WheelOdometry;
@@ -57,3 +60,8 @@ pub use odometry_config::OdometryConfig;
 pub use planar::planar_covariance;
 pub use pose_monitor::config::PoseMonitorConfig;
 pub use pose_monitor::monitor::{PoseDecision, PoseMonitor, PoseSource, PoseState, PoseStatus};
+pub use smoother::calibration::{SmootherCalibration, WithSigma};
+pub use smoother::config::{SmootherConfig, SmootherLimits, SmootherNoise, WindowConfig};
+pub use smoother::fixed_lag::Smoother;
+pub use smoother::innovation::Innovation;
+pub use smoother::measurement::{MeasurementUse, PlanarMeasurement};

@@ -2,7 +2,7 @@
 //!
 //! [`PoseProblem`] refines one camera pose against known points (tracking). [`BundleProblem`] refines several poses and the points
 //! together by the Schur complement (bundle adjustment, Triggs et al. 2000). [`PoseGraph`] distributes the correction of a closed loop
-//! over poses with relative constraints. The first two share the residual of [`PointObservation`] (rectified pixel and inverse depth, each
+//! over poses with relative constraints. [`ArrowSystem`] solves a chain of states with common parameters (fixed-lag smoothing). The first two share the residual of [`PointObservation`] (rectified pixel and inverse depth, each
 //! in its standard deviations), the Huber loss and the perturbation: poses are `world_from_camera`, perturbed on the right, translation
 //! first, so that a covariance is that of the camera in its own frame. Everything runs on one thread in a fixed order: the same input
 //! gives the same bits.
@@ -27,6 +27,7 @@
 //! # Ok::<(), trundle_core::Invalid>(())
 //! ```
 
+mod arrow;
 mod block;
 mod block_cholesky;
 mod bundle;
@@ -42,6 +43,7 @@ mod pose;
 mod pose_graph;
 mod pose_prior;
 
+pub use arrow::{ArrowCovariance, ArrowMarginal, ArrowSystem};
 pub use block_cholesky::BlockMatrix;
 pub use bundle::{BundleConfig, BundleObservation, BundlePose, BundleProblem, BundleSolution};
 pub use bundle_solver::BundleSolver;

@@ -43,7 +43,7 @@ pub use mission::{DockFailure, Mission, MissionState, Task, TaskEnd, TaskRecord}
 pub use operator::{OperatorCommand, PoseGuess, RunSetting, TELEOP_SILENCE_S};
 pub use range_source::RangeSource;
 pub use reason::{NoPath, Reason, ReasonKind, TaskFailure};
-pub use report::StepReport;
+pub use report::{PoseMeasurements, StepReport};
 pub use robot::{MissionProgress, Robot};
 pub use schedule::Schedule;
 pub use stage::{Stage, StageCost, StageTimes};

@@ -3,6 +3,7 @@
 use crate::{behaviour::drive_state::DriveState, checkpoint::Checkpoint};
 use std::sync::Arc;
 use trundle_core::{PoseEstimate, Stamp, Twist2};
+use trundle_estimation::{MotionIncrement, PlanarMeasurement, VisualPose};
 use trundle_slam::TrackReport;
 
 /// Report of one step of the robot.
@@ -19,6 +20,8 @@ pub struct StepReport {
     pub broken_image: Option<String>,
     /// Report of the visual tracker, on images.
     pub track: Option<TrackReport>,
+    /// Measurements that the estimate received in this step.
+    pub measurements: PoseMeasurements,
     /// A checkpoint, every 3 to 10 s, after [`crate::Robot::with_checkpoints`].
     pub checkpoint: Option<Arc<Checkpoint>>,
     /// State of the robot.
@@ -27,4 +30,15 @@ pub struct StepReport {
     pub replanned: bool,
     /// Whether the mission is over; `state` then holds its outcome.
     pub finished: bool,
+}
+
+/// Measurements that the pose estimate received in a step, for a second estimator beside it.
+#[derive(Debug, Clone, Default)]
+pub struct PoseMeasurements {
+    /// Motion by wheels and gyro.
+    pub motion: Option<MotionIncrement>,
+    /// Visual pose.
+    pub visual: Option<VisualPose>,
+    /// Scan match.
+    pub scan: Option<PlanarMeasurement>,
 }

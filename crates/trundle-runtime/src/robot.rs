@@ -227,7 +227,9 @@ impl Robot {
             SensorEvent::Cliff(cliff) => self.on_cliff(cliff.over_edge),
             SensorEvent::Odometry(odometry) => self.on_odometry(odometry, &mut report),
             SensorEvent::Body(event) => self.on_body(event, &mut report),
-            SensorEvent::Scan(scan) if self.range_source == RangeSource::Laser => self.on_laser(scan),
+            SensorEvent::Scan(scan) if self.range_source == RangeSource::Laser => {
+                self.on_laser(scan, &mut report);
+            }
             // The grid of a robot with a depth camera ignores lasers; truth is for evaluation alone.
             _ => {}
         }
@@ -255,6 +257,7 @@ impl Robot {
     /// A wheel reading: odometry, prediction, then navigation: a twist leaves.
     fn on_wheels(&mut self, wheels: &WheelTicks, report: &mut StepReport) {
         let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
+        report.measurements.motion = self.odometry.increment().copied();
         let changes = self.latest.sensors.on_wheels(wheels.stamp, self.odometry.wheels_are_unresponsive());
         changes.for_each(|change| event_log::sensor_change(wheels.stamp, change));
         event_log::encoder_jump(wheels.stamp, self.odometry.report(), self.odometry.counts());
@@ -429,9 +432,10 @@ impl Robot {
         }
         let (times, localizer) = (&mut self.times, &mut self.localizer);
         let before = localizer.estimate().pose;
-        let correction = times.measure(Stage::Localization, || {
-            correct_by_visual_pose(localizer, &track, corrected_trajectory.is_some())
-        });
+        let visual = visual_pose(&track, corrected_trajectory.is_some());
+        let correct = |visual| times.measure(Stage::Localization, || localizer.correct_visual(visual));
+        let correction = visual.as_ref().map(correct);
+        report.measurements.visual = visual;
         event_log::correction(track.stamp, "the visual pose", before, self.localizer.estimate().pose);
         if correction == Some(Correction::Reanchored) {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
@@ -455,7 +459,7 @@ impl Robot {
         }
         if let Some(scan) = scan {
             let stamp = scan.stamp();
-            let is_drawn = self.on_scan(scan);
+            let is_drawn = self.on_scan(scan, report);
             if is_drawn
                 && track.tracking.is_located()
                 && self.scan_poses.note(stamp, track.visual_from_camera, || self.mapper.logged_stamps())
@@ -568,23 +572,19 @@ fn inscribed_radius(footprint: &Footprint) -> f64 {
     }
 }
 
-/// Gives the visual pose, where there is one, to the localizer. A pose in a map that was just corrected counts as recognised.
-fn correct_by_visual_pose(
-    localizer: &mut Localizer,
-    track: &TrackReport,
-    is_corrected: bool,
-) -> Option<Correction> {
+/// The visual pose of a located image. A pose in a map that was just corrected counts as recognised.
+fn visual_pose(track: &TrackReport, is_corrected: bool) -> Option<VisualPose> {
     let quality = match track.tracking {
         Tracking::Ok => VisualQuality::Ok,
         Tracking::Weak => VisualQuality::Weak,
         Tracking::DeadReckoning | Tracking::Lost => return None,
     };
-    Some(localizer.correct_visual(&VisualPose {
+    Some(VisualPose {
         stamp: track.stamp,
         visual_from_camera: track.visual_from_camera,
         covariance: track.covariance,
         quality,
         map: track.map.number(),
         recognised: track.relocalised || is_corrected,
-    }))
+    })
 }

@@ -1,5 +1,6 @@
 //! Odometry of wheels and gyro.
 
+pub(crate) mod motion_increment;
 pub(crate) mod ready_odometry;
 pub(crate) mod report;
 pub(crate) mod state;

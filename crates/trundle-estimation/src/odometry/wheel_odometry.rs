@@ -7,6 +7,7 @@ use crate::{
         wheel_calibration::{WheelCalibration, WheelStep},
     },
     faults::{gyro_fault::GyroFault, wheel_fault::WheelFault},
+    odometry::motion_increment::MotionIncrement,
     odometry::report::{ReportLog, WheelCounts, WheelReport},
     odometry::turn_integral::TurnIntegral,
     odometry_config::OdometryConfig,
@@ -44,6 +45,8 @@ pub struct WheelOdometry {
     pub(super) path_length: f64,
     pub(super) odometry: Odometry,
     pub(super) reports: ReportLog,
+    /// Motion of the newest reading, where it counted.
+    pub(super) increment: Option<MotionIncrement>,
 }
 
 /// The newest input of each kind.
@@ -91,6 +94,7 @@ impl WheelOdometry {
                 covariance: Matrix3::zeros(),
             },
             reports: ReportLog::default(),
+            increment: None,
         })
     }
 
@@ -122,6 +126,7 @@ impl WheelOdometry {
     /// Adds a reading of the wheels and returns the odometry after it; [`WheelOdometry::report`] holds how the reading was used. A
     /// rejected reading leaves the pose unchanged.
     pub fn step_wheels(&mut self, ticks: &WheelTicks) -> Odometry {
+        self.increment = None;
         let report = match self.last.ticks {
             None => self.start(ticks),
             Some(last) if ticks.stamp <= last.stamp => {
@@ -136,6 +141,11 @@ impl WheelOdometry {
     /// The odometry after the newest reading.
     pub fn odometry(&self) -> &Odometry {
         &self.odometry
+    }
+
+    /// Motion between the newest reading of the wheels and the one before, without calibration; `None` where the newest reading was not used.
+    pub fn increment(&self) -> Option<&MotionIncrement> {
+        self.increment.as_ref()
     }
 
     /// Use of the newest reading of the wheels.
@@ -241,7 +251,8 @@ impl WheelOdometry {
         // Wheels that count nothing and a gyro that does not change may both be at fault: neither proves the other right.
         let is_frozen = self.gyro_fault.contradicts(turn_by_wheels / wheels.dt, self.gyro_calibration.bias())
             || is_unresponsive && self.gyro_fault.is_suspect();
-        let turn_by_gyro = self.turn_by_gyro(stamp, wheels.dt).filter(|_| !is_frozen);
+        let measured_turn = self.measured_turn(stamp, wheels.dt).filter(|_| !is_frozen);
+        let turn_by_gyro = measured_turn.map(|turn| self.gyro_calibration.corrected_turn(turn, wheels.dt));
         // The gyro's noise does not turn a robot at rest. One reading without a tick does not show rest: slow wheels have it too.
         let may_rest = rests && (self.is_at_rest(stamp) || !self.gyro_calibration.is_measured());
         let is_noise = may_rest && turn_by_gyro.is_some_and(|turn| self.is_noise(turn / wheels.dt));
@@ -264,7 +275,19 @@ impl WheelOdometry {
             self.wheel_calibration.add_step(self.drive.wheelbase, step);
         }
         self.move_by(stamp, &Step { distance, turn, dt: wheels.dt, by_gyro, slip });
-        self.odometry.covariance += unobserved.covariance(by_gyro.is_some());
+        let unobserved = unobserved.covariance(by_gyro.is_some());
+        self.odometry.covariance += unobserved;
+        let (left, right) = self.wheel_calibration.ratios();
+        self.increment = Some(MotionIncrement {
+            stamp,
+            dt: wheels.dt,
+            left: wheels.left / left,
+            right: wheels.right / right,
+            turn_by_gyro: measured_turn,
+            slip,
+            is_at_rest: is_noise,
+            unobserved,
+        });
         if slips { WheelReport::Slipping { rate: slip_rate } } else { WheelReport::Used }
     }
 
@@ -278,10 +301,10 @@ impl WheelOdometry {
         odometry.covariance = transported(&odometry.covariance, &motion) + of_step(&self.config, step);
     }
 
-    /// The gyro's turn over the last `dt` s, corrected by bias and scale, rad; `None` where the gyro does not cover them.
-    fn turn_by_gyro(&mut self, stamp: Stamp, dt: f64) -> Option<f64> {
+    /// The gyro's turn over the last `dt` s, with bias and scale, rad; `None` where the gyro does not cover them.
+    fn measured_turn(&mut self, stamp: Stamp, dt: f64) -> Option<f64> {
         let (turn, covered) = self.integral.turn_until(stamp, self.config.gyro_timeout)?;
-        ((covered - dt).abs() < 1e-6).then(|| self.gyro_calibration.corrected_turn(turn, dt))
+        ((covered - dt).abs() < 1e-6).then_some(turn)
     }
 
     fn is_noise(&self, rate_without_bias: f64) -> bool {
@@ -317,5 +340,6 @@ impl WheelOdometry {
         self.odometry.stamp = ticks.stamp;
         self.odometry.twist = Twist2::ZERO;
         self.odometry.covariance += of_gap(&self.config, dt);
+        self.increment = Some(MotionIncrement::unknown(ticks.stamp, dt, of_gap(&self.config, dt)));
     }
 }

@@ -3,5 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod consistency;
+mod drive;
 mod localizer;
+mod smoother;
 mod wheels;

@@ -3,20 +3,20 @@
 use super::{MAX_VISUAL_MOTION_AGE_S, Robot, event_log};
 use crate::{
     behaviour::navigator::position_sigma, global_localization::LocalizedPose,
-    monitors::scan_map_consistency::Fit, range_source::RangeSource,
+    monitors::scan_map_consistency::Fit, range_source::RangeSource, report::StepReport,
 };
 use trundle_core::Scan;
 use trundle_estimation::{Correction, Localizer};
 
 impl Robot {
     /// A scan of a laser that is the range source.
-    pub(super) fn on_laser(&mut self, scan: &Scan) {
+    pub(super) fn on_laser(&mut self, scan: &Scan, report: &mut StepReport) {
         let odometer = self.odometry_at(scan.stamp());
         if let (Some(perception), Some(odometer)) = (&mut self.perception, odometer) {
             let place = perception.search_pose(odometer.pose, scan, true, &mut self.times);
             self.apply_global_localization(place);
         }
-        self.on_scan(scan.clone());
+        self.on_scan(scan.clone(), report);
     }
 
     /// While the pose is unknown, applies the pose that global localization found, or begins the search.

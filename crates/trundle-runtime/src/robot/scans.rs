@@ -1,16 +1,18 @@
 //! Scans: correction of the estimate, map, dynamic obstacles.
 
 use super::{NEARBY_OBSTACLE_M, Robot, event_log};
+use crate::report::StepReport;
 use crate::stage::Stage;
 use trundle_core::Scan;
+use trundle_estimation::PlanarMeasurement;
 
 impl Robot {
     /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each. Whether it was drawn.
-    pub(super) fn on_scan(&mut self, scan: Scan) -> bool {
+    pub(super) fn on_scan(&mut self, scan: Scan, report: &mut StepReport) -> bool {
         let is_due = self.map_due.due(scan.stamp()) && self.is_pose_known(scan.stamp());
         let is_due = is_due && self.is_consistent_with_map(&scan);
         if is_due {
-            self.correct_by_scan(&scan);
+            report.measurements.scan = self.correct_by_scan(&scan);
             self.integrate_scan(&scan);
         }
         self.track_dynamic_obstacles(&scan);
@@ -43,16 +45,17 @@ impl Robot {
         });
     }
 
-    /// Corrects the estimate by where the scan fits the map.
-    fn correct_by_scan(&mut self, scan: &Scan) {
-        let Ok(guess) = self.localizer.pose_at(scan.stamp()) else { return };
-        let found =
-            self.times.measure(Stage::ScanMatch, || self.matcher.refine(self.mapper.mapper(), scan, guess));
-        if let Some(found) = found {
-            let before = self.localizer.estimate().pose;
-            self.localizer.correct_scan(scan.stamp(), found.pose, &found.covariance);
-            event_log::correction(scan.stamp(), "the scan match", before, self.localizer.estimate().pose);
-        }
+    /// Corrects the estimate by where the scan fits the map; returns this measurement.
+    fn correct_by_scan(&mut self, scan: &Scan) -> Option<PlanarMeasurement> {
+        let stamp = scan.stamp();
+        let guess = self.localizer.pose_at(stamp).ok()?;
+        let found = self
+            .times
+            .measure(Stage::ScanMatch, || self.matcher.refine(self.mapper.mapper(), scan, guess))?;
+        let before = self.localizer.estimate().pose;
+        self.localizer.correct_scan(stamp, found.pose, &found.covariance);
+        event_log::correction(stamp, "the scan match", before, self.localizer.estimate().pose);
+        Some(PlanarMeasurement { stamp, pose: found.pose, covariance: found.covariance })
     }
 
     /// Draws the scan, and the floor that the robot stands on, into the map; not when no pose is known for its time.

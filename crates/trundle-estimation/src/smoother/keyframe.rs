@@ -1,0 +1,33 @@
+//! A keyframe of the window.
+
+use super::error_process::{ErrorStart, ErrorStep};
+use super::factors::{ScanFactor, VisualFactor};
+use super::preintegration::Preintegrated;
+use super::state::ChainState;
+use trundle_core::Stamp;
+
+/// A keyframe: a stamp with its unknowns, the link from the keyframe before, and its measurements.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Keyframe {
+    pub(crate) stamp: Stamp,
+    pub(crate) state: ChainState,
+    /// Motion from the keyframe before.
+    pub(crate) motion: Preintegrated,
+    /// Step of the visual error from the keyframe before.
+    pub(crate) error: ErrorStep,
+    /// Probability that the place recognised last, here or before, is right.
+    pub(crate) trust: f64,
+    pub(crate) visual: Option<VisualFactor>,
+    pub(crate) scan: Option<ScanFactor>,
+}
+
+impl Keyframe {
+    /// The trust after this keyframe, for the trust before it.
+    pub(crate) fn trust_after(&self, before: f64) -> f64 {
+        match self.error.start {
+            Some(ErrorStart::Place(switch)) => switch.weight,
+            Some(ErrorStart::NewMap) => 1.0,
+            None => before,
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! Measurements of the smoother, and the use that was made of each.
+
+use super::innovation::Innovation;
+use nalgebra::Matrix3;
+use trundle_core::{Pose2, Stamp};
+
+/// A pose of the base measured in the map frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanarMeasurement {
+    /// Stamp of the measurement.
+    pub stamp: Stamp,
+    /// `map_from_base`.
+    pub pose: Pose2,
+    /// Its covariance as a right perturbation (x m, y m, theta rad).
+    pub covariance: Matrix3<f64>,
+}
+
+/// Use of a measurement by the smoother.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum MeasurementUse {
+    /// First visual pose of a visual map: it anchors the map.
+    Anchored,
+    /// A factor of the window.
+    Applied(Innovation),
+    /// The visual pose is a recognised place, or far from the prediction: a factor with a switch.
+    Switched {
+        /// How it fits the prediction.
+        innovation: Innovation,
+        /// Probability that the place is right, 0 to 1.
+        weight: f64,
+    },
+    /// Outside the gate: unused.
+    Gated(Innovation),
+    /// Too near another measurement of its kind, whose error it shares: unused.
+    Redundant,
+    /// Older than the window: unused.
+    TooOld {
+        /// By how much, s.
+        by: f64,
+    },
+    /// Too far ahead of the newest motion: unused.
+    TooNew {
+        /// By how much, s.
+        by: f64,
+    },
+    /// No motion has arrived: unused.
+    NoMotion,
+    /// The window holds other visual maps: unused.
+    TooManyMaps,
+    /// Pose or covariance is not finite or not positive: unused.
+    Invalid,
+}
+
+impl MeasurementUse {
+    /// The innovation, where the measurement was compared with the estimate.
+    pub fn innovation(&self) -> Option<&Innovation> {
+        match self {
+            Self::Applied(innovation) | Self::Gated(innovation) | Self::Switched { innovation, .. } => {
+                Some(innovation)
+            }
+            _ => None,
+        }
+    }
+}

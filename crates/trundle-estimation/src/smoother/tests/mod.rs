@@ -1,0 +1,5 @@
+//! The smoother against numeric differences and a dense batch solution.
+
+mod batch;
+mod derivatives;
+mod fixture;
