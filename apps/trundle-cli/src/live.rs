@@ -1,4 +1,4 @@
-//! The option --live: a page that shows the run and steers it.
+//! What stands beside a run: --live, a page that shows it and steers it, and --mqtt.
 
 use crate::console;
 use clap::Args;
@@ -17,10 +17,31 @@ pub struct LiveArgs {
     /// Keep the tokens of the links in FILE, so that links stay valid over restarts.
     #[arg(long, value_name = "FILE", requires = "live")]
     pub live_tokens: Option<PathBuf>,
+    /// Home and fleet.
+    #[cfg(feature = "mqtt")]
+    #[command(flatten)]
+    pub mqtt: crate::mqtt::MqttArgs,
+}
+
+/// What stands beside a run; dropping it ends it.
+#[derive(Default)]
+pub struct Beside {
+    _page: Option<LivePage>,
+    #[cfg(feature = "mqtt")]
+    _fleet: Option<trundle::fleet::FleetLink>,
 }
 
 impl LiveArgs {
-    /// The page beside a run, where one is asked for, and what accompanies the run then. `link`: that of another front end. A run
+    /// Whether somebody may give the run commands while it goes.
+    pub fn is_operated(&self) -> bool {
+        #[cfg(feature = "mqtt")]
+        if self.mqtt.mqtt.is_some() {
+            return true;
+        }
+        self.live.is_some()
+    }
+
+    /// The page and the link to a broker beside a run, where they are asked for, and what accompanies the run then. `link`: that of another front end. A run
     /// that is not steered takes no commands.
     pub fn beside(
         &self,
@@ -28,13 +49,30 @@ impl LiveArgs {
         progress: Progress,
         link: Option<OperatorLink>,
         is_steered: bool,
-    ) -> Result<(Option<LivePage>, FrontEnd), AppError> {
-        let Some(address) = self.live else { return Ok((None, FrontEnd { progress, operator: link })) };
+    ) -> Result<(Beside, FrontEnd), AppError> {
+        if !self.is_operated() {
+            return Ok((Beside::default(), FrontEnd { progress, operator: link }));
+        }
         let link = link.unwrap_or_else(|| operator_link().1);
+        let beside = Beside {
+            _page: self.page(setup, &link, is_steered)?,
+            #[cfg(feature = "mqtt")]
+            _fleet: self.mqtt.join(setup, &link, is_steered)?,
+        };
+        Ok((beside, FrontEnd { progress, operator: Some(link) }))
+    }
+
+    fn page(
+        &self,
+        setup: &RunSetup,
+        link: &OperatorLink,
+        is_steered: bool,
+    ) -> Result<Option<LivePage>, AppError> {
+        let Some(address) = self.live else { return Ok(None) };
         let tokens = self.live_tokens.as_deref().map_or_else(Tokens::random, Tokens::of_file)?;
         let options = LiveOptions { address, tokens, is_steered };
         let page = LivePage::start(options, link.operator(), RunFacts::of(setup)?)?;
         console::print(&page.announcement());
-        Ok((Some(page), FrontEnd { progress, operator: Some(link) }))
+        Ok(Some(page))
     }
 }

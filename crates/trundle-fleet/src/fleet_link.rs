@@ -1,0 +1,59 @@
+//! The link of a robot to a broker, in a thread of its own.
+
+use crate::worker::Worker;
+use crate::{FleetError, FleetOptions, Places, RobotFacts};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use trundle_app::operator::Operator;
+
+/// The link of a robot to a broker. Dropping it says goodbye to the broker and ends the thread.
+#[derive(Debug)]
+pub struct FleetLink {
+    options: FleetOptions,
+    is_over: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl FleetLink {
+    /// Joins a broker, or tries until it answers. A warning in the log says when the broker is gone and when it is back.
+    ///
+    /// # Errors
+    /// When a password has no user, or the system refuses a thread.
+    pub fn start(
+        options: FleetOptions,
+        operator: Operator,
+        facts: RobotFacts,
+        places: Box<dyn Places>,
+    ) -> Result<Self, FleetError> {
+        if options.password.is_some() && options.broker.user.is_none() {
+            return Err(FleetError::PasswordWithoutUser);
+        }
+        let is_over = Arc::new(AtomicBool::new(false));
+        let worker = Worker::new(&options, operator, facts, places);
+        let ends = Arc::clone(&is_over);
+        let work = move || worker.run(|| ends.load(Ordering::Relaxed));
+        let thread = std::thread::Builder::new().name("fleet".to_owned()).spawn(work)?;
+        Ok(Self { options, is_over, thread: Some(thread) })
+    }
+
+    /// What a person must know: the broker, the name of the robot, and a warning where the network is open.
+    #[must_use]
+    pub fn announcement(&self) -> String {
+        let FleetOptions { broker, name, map_id, .. } = &self.options;
+        let warning = match broker.is_local() {
+            true => "",
+            false => "\nwarning: the connection to the broker is not encrypted: who reads or joins its network can drive the robot",
+        };
+        format!("MQTT: {broker}, robot {name}, map '{map_id}'{warning}")
+    }
+}
+
+impl Drop for FleetLink {
+    fn drop(&mut self) {
+        self.is_over.store(true, Ordering::Relaxed);
+        if self.thread.take().is_some_and(|thread| thread.join().is_err()) {
+            tracing::error!("the thread of the link to the broker panicked");
+        }
+    }
+}
