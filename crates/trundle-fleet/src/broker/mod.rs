@@ -39,7 +39,6 @@ pub enum BrokerEvent {
 }
 
 /// A connection that begins again when it ends.
-#[derive(Debug)]
 pub struct Broker {
     options: SessionOptions,
     session: Option<Session>,

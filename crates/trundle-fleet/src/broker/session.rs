@@ -36,7 +36,6 @@ pub struct SessionOptions {
 }
 
 /// One session with a broker.
-#[derive(Debug)]
 pub struct Session {
     client: Client,
     events: Receiver<BrokerEvent>,
