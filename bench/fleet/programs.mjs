@@ -42,7 +42,7 @@ topic read uagv/v2/+/+/connection
 export function configure(broker, port) {
   const file = (name, text) => (writeFileSync(join(place, name), text, { mode: 0o600 }), join(place, name));
   const passwords = file("passwords", Object.entries(PASSWORDS).map(([user, password]) => `${user}:${password}\n`).join(""));
-  const maker = [join(dirname(dirname(broker)), "bin", "mosquitto_passwd"), "/usr/bin/mosquitto_passwd", "mosquitto_passwd"];
+  const maker = [join(dirname(broker), "root/usr/bin/mosquitto_passwd"), "/usr/bin/mosquitto_passwd", "mosquitto_passwd"];
   const made = maker.some((program) => spawnSync(program, ["-U", passwords]).status === 0);
   if (!made) throw new Error("mosquitto_passwd cannot be run");
   const user = process.getuid() === 0 ? "user root\n" : "";

@@ -90,7 +90,9 @@ mod tests {
         assert_eq!(read("mqtt://[::1]:1883").unwrap(), "mqtt://[::1]:1883");
         assert!(read("mqtt://robot:secret@broker").unwrap_err().contains("TRUNDLE_MQTT_PASSWORD"));
         assert!(read("mqtts://broker").unwrap_err().contains("does not encrypt"));
-        for wrong in ["", "broker", "http://broker", "mqtt://", "mqtt://@broker", "mqtt://broker:70000", "mqtt://a/b"] {
+        for wrong in
+            ["", "broker", "http://broker", "mqtt://", "mqtt://@broker", "mqtt://broker:70000", "mqtt://a/b"]
+        {
             assert!(read(wrong).unwrap_err().contains("expected mqtt://"), "{wrong}");
         }
     }

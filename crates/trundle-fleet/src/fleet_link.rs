@@ -43,7 +43,9 @@ impl FleetLink {
         let FleetOptions { broker, name, map_id, .. } = &self.options;
         let warning = match broker.is_local() {
             true => "",
-            false => "\nwarning: the connection to the broker is not encrypted: who reads or joins its network can drive the robot",
+            false => {
+                "\nwarning: the connection to the broker is not encrypted: who reads or joins its network can drive the robot"
+            }
         };
         format!("MQTT: {broker}, robot {name}, map '{map_id}'{warning}")
     }

@@ -2,6 +2,7 @@
 
 use crate::broker::Publication;
 use crate::robot_commands::RobotCommands;
+use crate::robot_view::RobotView;
 use crate::vda5050::limits::{MIN_STATE_PERIOD, MOVING_STATE_PERIOD, STATE_PERIOD, VISUALIZATION_PERIOD};
 use crate::vda5050::message::{
     ConnectionMessage, ConnectionState, Factsheet, HeaderCounter, Identity, State, Topic, Visualization,
@@ -11,7 +12,6 @@ use crate::worker::json_publication;
 use crate::{FleetOptions, RobotFacts};
 use std::cell::RefCell;
 use std::time::Duration;
-use trundle_app::operator::RunView;
 
 /// A vehicle on its topics.
 #[derive(Debug)]
@@ -81,7 +81,7 @@ impl MasterLink {
         &mut self,
         topic: &str,
         payload: &[u8],
-        view: &RunView,
+        view: &RobotView,
         robot: &mut dyn RobotCommands,
     ) -> bool {
         if topic == self.topic(Topic::Order) {
@@ -95,12 +95,12 @@ impl MasterLink {
     }
 
     /// Goes on with the order, also without a broker.
-    pub fn step(&mut self, passed: Duration, view: &RunView, robot: &mut dyn RobotCommands) {
+    pub fn step(&mut self, passed: Duration, view: &RobotView, robot: &mut dyn RobotCommands) {
         self.vehicle.step(passed, view, robot);
     }
 
     /// The messages that are due.
-    pub fn publications(&mut self, passed: Duration, view: &RunView) -> Vec<Publication> {
+    pub fn publications(&mut self, passed: Duration, view: &RobotView) -> Vec<Publication> {
         self.since_state += passed;
         self.since_position += passed;
         let is_new = std::mem::take(&mut self.is_new);
@@ -110,7 +110,11 @@ impl MasterLink {
         }
         if self.vehicle.take_factsheet_wish() || is_new {
             let header = self.headers.borrow_mut().header(Topic::Factsheet);
-            due.push(json_publication(self.topic(Topic::Factsheet), &Factsheet::of(header, &self.facts), true));
+            due.push(json_publication(
+                self.topic(Topic::Factsheet),
+                &Factsheet::of(header, &self.facts),
+                true,
+            ));
         }
         due.extend(self.due_state(view));
         due.extend(self.due_position(view));
@@ -118,7 +122,7 @@ impl MasterLink {
     }
 
     /// The state, where it changed, or was sent long ago.
-    fn due_state(&mut self, view: &RunView) -> Option<Publication> {
+    fn due_state(&mut self, view: &RobotView) -> Option<Publication> {
         let is_wanted = self.vehicle.take_state_wish();
         if self.sent.is_some() && self.since_state < MIN_STATE_PERIOD && !is_wanted {
             return None;
@@ -140,7 +144,7 @@ impl MasterLink {
     }
 
     /// The position, often while the robot moves.
-    fn due_position(&mut self, view: &RunView) -> Option<Publication> {
+    fn due_position(&mut self, view: &RobotView) -> Option<Publication> {
         let is_driving = self.sent.as_ref().is_some_and(|state| state.driving);
         let period = if is_driving { VISUALIZATION_PERIOD } else { STATE_PERIOD };
         if self.since_position < period {

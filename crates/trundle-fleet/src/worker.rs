@@ -4,7 +4,7 @@ use crate::broker::{Broker, BrokerEvent, Publication, SessionOptions};
 use crate::home::Home;
 use crate::master_link::MasterLink;
 use crate::vda5050::message::ConnectionState;
-use crate::{FleetOptions, Places, RobotFacts};
+use crate::{FleetOptions, Places, RobotFacts, RobotView};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_app::operator::{Operator, RunView};
@@ -13,7 +13,7 @@ use trundle_runtime::real_time::ThreadPlacement;
 /// Period of looks at the run. Source: ours.
 const PERIOD: Duration = Duration::from_millis(50);
 /// Largest number of messages that are handled in a period; more wait at the broker. Source: ours.
-const MAX_MESSAGES_OF_PERIOD: usize = 32;
+const MAX_MESSAGES_OF_PERIOD: usize = 200;
 
 /// Brings broker, home and master together.
 pub struct Worker {
@@ -83,7 +83,9 @@ impl Worker {
             BrokerEvent::Lost(reason) => {
                 if !self.is_reported {
                     let address = &self.address;
-                    tracing::warn!("MQTT: no connection to {address} ({reason}): the robot goes on and tries again");
+                    tracing::warn!(
+                        "MQTT: no connection to {address} ({reason}): the robot goes on and tries again"
+                    );
                 }
                 (self.is_joined, self.is_reported) = (false, true);
             }
@@ -93,19 +95,26 @@ impl Worker {
 
     fn on_message(&mut self, topic: &str, payload: &[u8]) {
         // A command that comes before the first view waits for nothing: the robot has no pose yet.
-        let Some(view) = self.view() else { return tracing::debug!("MQTT: a message before the first view") };
+        let Some(view) = self.operator.glance() else {
+            return tracing::debug!("MQTT: a message before the first view");
+        };
+        let view = RobotView::from(&*view);
         if !self.master.on_message(topic, payload, &view, &mut self.operator) {
             self.home.on_message(topic, payload, &view, &mut self.operator);
         }
     }
 
     fn step(&mut self, passed: Duration) {
-        let Some(view) = self.view() else { return };
+        let Some(run) = self.view() else { return };
+        let view = RobotView::from(&*run);
         self.master.step(passed, &view, &mut self.operator);
         if !self.is_joined {
             return;
         }
-        let publications = [self.master.publications(passed, &view), self.home.publications(passed, &view)];
+        let publications = [
+            self.master.publications(passed, &view),
+            self.home.publications(passed, &view, run.map.as_deref()),
+        ];
         for publication in publications.into_iter().flatten() {
             let topic = publication.topic.clone();
             if !self.broker.publish(publication) {

@@ -93,8 +93,16 @@ impl Session {
             return;
         }
         let until = Instant::now() + FAREWELL;
-        let is_lost = |events: &[BrokerEvent]| events.iter().any(|event| matches!(event, BrokerEvent::Lost(_)));
+        let is_lost =
+            |events: &[BrokerEvent]| events.iter().any(|event| matches!(event, BrokerEvent::Lost(_)));
         while Instant::now() < until && !is_lost(&self.events(until, 1)) {}
+    }
+}
+
+impl Drop for Session {
+    /// A session that has ended already takes no goodbye.
+    fn drop(&mut self) {
+        _ = self.client.try_disconnect();
     }
 }
 

@@ -85,7 +85,11 @@ fn of_goal(command: &CommandText) -> Result<HomeCommand, String> {
     let coordinate = |name: &str, value: Option<f64>| {
         let value = value.ok_or_else(|| format!("go needs {name} or place; expected {WORDS}"))?;
         let is_usable = value.abs() <= MAX_COORDINATE_M;
-        if is_usable { Ok(value) } else { Err(format!("{name} is {value} m, expected up to {MAX_COORDINATE_M}")) }
+        if is_usable {
+            Ok(value)
+        } else {
+            Err(format!("{name} is {value} m, expected up to {MAX_COORDINATE_M}"))
+        }
     };
     let heading_deg = command.heading_deg.unwrap_or(0.0);
     let pose = Pose2::new(coordinate("x", command.x)?, coordinate("y", command.y)?, heading_deg.to_radians());

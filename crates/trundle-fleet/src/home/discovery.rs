@@ -71,16 +71,28 @@ fn components(id: &str, topics: &DiscoveryTopics, places: &[String]) -> Map<Stri
         all.insert(key.to_owned(), component);
     };
     add("vacuum", vacuum(topics));
-    add("map", json!({ "platform": "image", "name": "Map", "image_topic": topics.map, "content_type": "image/png" }));
+    add(
+        "map",
+        json!({ "platform": "image", "name": "Map", "image_topic": topics.map, "content_type": "image/png" }),
+    );
     for (key, sensor) in sensors(topics) {
         add(key, sensor);
     }
-    for (key, title) in [("explore", "Explore"), ("return", "Return"), ("dock", "Dock"), ("continue", "Continue")] {
-        add(key, json!({ "platform": "button", "name": title, "command_topic": topics.command, "payload_press": key }));
+    for (key, title) in
+        [("explore", "Explore"), ("return", "Return"), ("dock", "Dock"), ("continue", "Continue")]
+    {
+        add(
+            key,
+            json!({ "platform": "button", "name": title, "command_topic": topics.command, "payload_press": key }),
+        );
     }
     // A component without all but its platform takes an earlier one away.
     let place = if places.is_empty() { json!({ "platform": "select" }) } else { select(topics, places) };
-    if places.is_empty() { all.insert("place".to_owned(), place); } else { add("place", place); }
+    if places.is_empty() {
+        all.insert("place".to_owned(), place);
+    } else {
+        add("place", place);
+    }
     all
 }
 
@@ -145,14 +157,20 @@ mod tests {
             height_m: 1.0,
         };
         let places: Vec<String> = places.iter().map(ToString::to_string).collect();
-        discovery(&name, &facts, &DiscoveryTopics::of(&name, "uagv/v2/acme/r1/connection".to_owned()), &places)
+        discovery(
+            &name,
+            &facts,
+            &DiscoveryTopics::of(&name, "uagv/v2/acme/r1/connection".to_owned()),
+            &places,
+        )
     }
 
     #[test]
     fn each_component_has_a_platform_and_a_name_of_its_own() {
         let found = of(&["kitchen"]);
         let components = found["components"].as_object().unwrap();
-        let ids: std::collections::BTreeSet<_> = components.values().map(|c| c["unique_id"].as_str().unwrap()).collect();
+        let ids: std::collections::BTreeSet<_> =
+            components.values().map(|c| c["unique_id"].as_str().unwrap()).collect();
         assert_eq!(ids.len(), components.len());
         assert!(components.values().all(|c| c["platform"].is_string()));
         assert_eq!(components["place"]["options"], json!(["kitchen"]));

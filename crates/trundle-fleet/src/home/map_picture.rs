@@ -2,7 +2,8 @@
 
 use crate::RobotFacts;
 use std::time::Duration;
-use trundle_app::operator::RunView;
+use trundle_app::operator::MapView;
+use trundle_core::Pose2;
 use trundle_viz::{Color, MapPicture, PoseStyle};
 
 /// Shortest time between two pictures. Source: ours; a picture of a house takes 20 ms.
@@ -30,15 +31,21 @@ impl MapPictures {
     }
 
     /// A PNG, where it is time for one and it differs from the last.
-    pub fn due(&mut self, passed: Duration, view: &RunView, facts: &RobotFacts) -> Option<Vec<u8>> {
+    pub fn due(
+        &mut self,
+        passed: Duration,
+        map: Option<&MapView>,
+        pose: Pose2,
+        facts: &RobotFacts,
+    ) -> Option<Vec<u8>> {
         self.since_picture += passed;
-        let map = view.map.as_ref().filter(|_| self.is_due())?;
+        let map = map.filter(|_| self.is_due())?;
+        self.since_picture = Duration::ZERO;
         if self.last.as_ref().is_some_and(|(revision, _)| *revision == map.revision) {
             return None;
         }
-        self.since_picture = Duration::ZERO;
         let style = PoseStyle::named(Color::BLUE).nameless().with_footprint(facts.footprint.clone());
-        let png = MapPicture::over(&map.grid).pose("robot", view.estimate.pose, style).without_legend().to_png();
+        let png = MapPicture::over(&map.grid).pose("robot", pose, style).without_legend().to_png();
         let is_same = self.last.as_ref().is_some_and(|(_, last)| *last == png);
         self.last = Some((map.revision, png.clone()));
         (!is_same).then_some(png)

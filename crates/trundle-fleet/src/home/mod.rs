@@ -10,6 +10,7 @@ pub use command::{HomeCommand, read_home_command};
 
 use crate::broker::Publication;
 use crate::robot_commands::RobotCommands;
+use crate::robot_view::RobotView;
 use crate::worker::json_publication;
 use crate::{Places, RobotFacts, RobotName};
 use discovery::{DiscoveryTopics, discovery};
@@ -17,7 +18,7 @@ use home_state::HomeState;
 use map_picture::MapPictures;
 use serde_json::json;
 use std::time::Duration;
-use trundle_app::operator::RunView;
+use trundle_app::operator::MapView;
 
 /// Time between two states while the robot moves. Source: ours.
 const STATE_PERIOD: Duration = Duration::from_secs(1);
@@ -39,7 +40,12 @@ pub struct Home {
 
 impl Home {
     /// The robot `name`. The broker says on `connection_topic` whether the robot is connected.
-    pub fn new(name: &RobotName, facts: RobotFacts, places: Box<dyn Places>, connection_topic: String) -> Self {
+    pub fn new(
+        name: &RobotName,
+        facts: RobotFacts,
+        places: Box<dyn Places>,
+        connection_topic: String,
+    ) -> Self {
         Self {
             name: name.clone(),
             topics: DiscoveryTopics::of(name, connection_topic),
@@ -76,7 +82,7 @@ impl Home {
         &mut self,
         topic: &str,
         payload: &[u8],
-        view: &RunView,
+        view: &RobotView,
         robot: &mut dyn RobotCommands,
     ) {
         if topic != self.topics.command {
@@ -92,7 +98,12 @@ impl Home {
     }
 
     /// The messages that are due.
-    pub fn publications(&mut self, passed: Duration, view: &RunView) -> Vec<Publication> {
+    pub fn publications(
+        &mut self,
+        passed: Duration,
+        view: &RobotView,
+        map: Option<&MapView>,
+    ) -> Vec<Publication> {
         self.since_state += passed;
         let mut due = std::mem::take(&mut self.replies);
         let places = self.places.names();
@@ -102,7 +113,7 @@ impl Home {
             self.known_places = places;
         }
         due.extend(self.due_state(view));
-        let picture = self.pictures.due(passed, view, &self.facts);
+        let picture = self.pictures.due(passed, map, view.estimate.pose, &self.facts);
         due.extend(picture.map(|payload| Publication {
             topic: self.topics.map.clone(),
             payload,
@@ -111,7 +122,7 @@ impl Home {
         due
     }
 
-    fn due_state(&mut self, view: &RunView) -> Option<Publication> {
+    fn due_state(&mut self, view: &RobotView) -> Option<Publication> {
         let state = HomeState::of(view);
         let is_due = match &self.sent {
             None => true,

@@ -3,7 +3,7 @@
 use super::command::HomeCommand;
 use crate::Places;
 use crate::robot_commands::RobotCommands;
-use trundle_app::operator::RunView;
+use crate::robot_view::RobotView;
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task};
 
 /// Obeys a command; in words what the robot does now.
@@ -12,7 +12,7 @@ use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task};
 /// Why the robot cannot obey.
 pub fn obey(
     command: &HomeCommand,
-    view: &RunView,
+    view: &RobotView,
     places: &dyn Places,
     robot: &mut dyn RobotCommands,
 ) -> Result<String, String> {
@@ -23,7 +23,8 @@ pub fn obey(
         HomeCommand::Start if is_paused => OperatorCommand::Continue,
         HomeCommand::Stop => OperatorCommand::cancel(),
         task => {
-            let mission = Mission::new(vec![task_of(task, view, places)?]).map_err(|error| error.to_string())?;
+            let mission =
+                Mission::new(vec![task_of(task, view, places)?]).map_err(|error| error.to_string())?;
             OperatorCommand::Begin(mission)
         }
     };
@@ -36,11 +37,11 @@ pub fn obey(
     Ok(text)
 }
 
-fn task_of(command: &HomeCommand, view: &RunView, places: &dyn Places) -> Result<Task, String> {
+fn task_of(command: &HomeCommand, view: &RobotView, places: &dyn Places) -> Result<Task, String> {
     Ok(match command {
         HomeCommand::Return => Task::Return,
         HomeCommand::Dock => Task::Dock,
-        HomeCommand::GoHome if view.surroundings.station.is_some() => Task::Dock,
+        HomeCommand::GoHome if view.station.is_some() => Task::Dock,
         HomeCommand::GoHome => Task::Return,
         HomeCommand::GoTo(pose) => Task::Go(*pose),
         HomeCommand::GoToPlace(name) => {

@@ -134,7 +134,10 @@ fn require_able_on(edge: &Edge, facts: &RobotFacts) -> Result<(), ErrorReport> {
         return refuse("maxSpeed", format!("maxSpeed is {speed} m/s, expected {MIN_EDGE_SPEED_M_S} or more"));
     }
     if let Some(height) = edge.max_height.filter(|height| *height < facts.height_m) {
-        return refuse("maxHeight", format!("maxHeight is {height} m, the robot is {} m high", facts.height_m));
+        return refuse(
+            "maxHeight",
+            format!("maxHeight is {height} m, the robot is {} m high", facts.height_m),
+        );
     }
     match edge.actions.first() {
         Some(action) => refuse("actions", format!("this robot cannot do {} on an edge", action.action_type)),

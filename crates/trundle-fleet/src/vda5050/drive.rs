@@ -2,8 +2,8 @@
 
 use super::message::Node;
 use crate::robot_commands::RobotCommands;
+use crate::robot_view::RobotView;
 use std::time::Duration;
-use trundle_app::operator::RunView;
 use trundle_core::Pose2;
 use trundle_runtime::{Mission, OperatorCommand, Task, TaskEnd};
 
@@ -55,7 +55,7 @@ impl Drive {
     }
 
     /// Looks how far the drive is.
-    pub fn step(&mut self, passed: Duration, view: &RunView) -> DriveEnd {
+    pub fn step(&mut self, passed: Duration, view: &RobotView) -> DriveEnd {
         if let Some(since) = &mut self.failed {
             *since += passed;
             self.is_due = *since >= RETRY_PERIOD;

@@ -3,8 +3,8 @@
 use super::abilities::wait_s;
 use super::message::Action;
 use crate::robot_commands::RobotCommands;
+use crate::robot_view::RobotView;
 use std::time::Duration;
-use trundle_app::operator::RunView;
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task, TaskEnd};
 
 /// An action at a node, under way.
@@ -67,7 +67,7 @@ impl NodeAction {
     }
 
     /// Goes on with the action, `passed` after the last step. A pause stops its time.
-    pub fn step(&mut self, passed: Duration, view: &RunView) -> ActionEnd {
+    pub fn step(&mut self, passed: Duration, view: &RobotView) -> ActionEnd {
         match &mut self.work {
             Work::Nothing => ActionEnd::Done,
             Work::Wait(left) => {

@@ -88,9 +88,11 @@ impl OrderBook {
         released.map(|node| (node.node_id.as_str(), node.sequence_id)).or(self.last_node())
     }
 
-    /// Takes a new order over in place of the last one.
+    /// Takes a new order over in place of the last one. Instant actions that have ended are forgotten.
     pub fn begin(&mut self, order: Order) {
-        *self = Self { last_node: self.last_node.take(), ..Self::default() };
+        let mut instant_actions = std::mem::take(&mut self.instant_actions);
+        instant_actions.retain(|action| !action.action_status.is_over());
+        *self = Self { last_node: self.last_node.take(), instant_actions, ..Self::default() };
         self.order_id = order.order_id;
         self.update_id = order.order_update_id;
         self.add_actions(order.nodes.iter().flat_map(|node| &node.actions));
@@ -122,7 +124,8 @@ impl OrderBook {
             None => {
                 let status = |id: &str| self.actions.iter().find(|state| state.action_id == id);
                 let is_new = |action: &Action| {
-                    status(&action.action_id).is_some_and(|state| state.action_status == ActionStatus::Waiting)
+                    status(&action.action_id)
+                        .is_some_and(|state| state.action_status == ActionStatus::Waiting)
                 };
                 let new: Vec<Action> = stitch.actions.into_iter().filter(is_new).collect();
                 self.at_node.extend(new);
@@ -131,8 +134,12 @@ impl OrderBook {
     }
 
     fn drop_horizon(&mut self) {
-        let horizon: Vec<String> = self.nodes.iter().filter(|node| !node.released)
-            .flat_map(|node| node.actions.iter().map(|action| action.action_id.clone())).collect();
+        let horizon: Vec<String> = self
+            .nodes
+            .iter()
+            .filter(|node| !node.released)
+            .flat_map(|node| node.actions.iter().map(|action| action.action_id.clone()))
+            .collect();
         self.actions.retain(|state| !horizon.contains(&state.action_id));
         self.nodes.retain(|node| node.released);
         self.edges.retain(|edge| edge.released);

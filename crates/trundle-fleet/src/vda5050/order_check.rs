@@ -12,8 +12,7 @@ use trundle_core::MAX_COORDINATE_M;
 /// What is not of the standard's form, as the error that is reported.
 pub fn read_order(payload: &[u8]) -> Result<Order, ErrorReport> {
     require_size(payload, Topic::Order)?;
-    let order: Order =
-        serde_json::from_slice(payload).map_err(|error| invalid(error, Topic::Order))?;
+    let order: Order = serde_json::from_slice(payload).map_err(|error| invalid(error, Topic::Order))?;
     check(&order).map_err(|text| {
         invalid(text, Topic::Order)
             .about("orderId", shortened(&order.order_id))
@@ -98,7 +97,10 @@ fn check_nodes(order: &Order) -> Result<(), String> {
         }
         let actions = node.actions.len();
         if actions > MAX_ACTIONS_OF_NODE {
-            return Err(format!("node {}: {actions} actions, expected up to {MAX_ACTIONS_OF_NODE}", node.node_id));
+            return Err(format!(
+                "node {}: {actions} actions, expected up to {MAX_ACTIONS_OF_NODE}",
+                node.node_id
+            ));
         }
     }
     Ok(())

@@ -6,7 +6,7 @@ use super::message::{
     Velocity,
 };
 use super::vehicle::Vehicle;
-use trundle_app::operator::RunView;
+use crate::robot_view::RobotView;
 use trundle_core::wrap_angle;
 use trundle_runtime::{DriveState, MotionHold};
 
@@ -16,7 +16,7 @@ const UNKNOWN_CHARGE: f64 = 80.0;
 impl Vehicle {
     /// The state after a view of the run.
     #[must_use]
-    pub fn state(&self, header: Header, view: &RunView) -> State {
+    pub fn state(&self, header: Header, view: &RobotView) -> State {
         let (book, last_node) = (&self.book, self.book.last_node().unwrap_or_default());
         State {
             header,
@@ -49,7 +49,7 @@ impl Vehicle {
 
 /// Where the robot is.
 #[must_use]
-pub fn robot_position(view: &RunView, map_id: &str) -> RobotPosition {
+pub fn robot_position(view: &RobotView, map_id: &str) -> RobotPosition {
     let (pose, covariance) = (view.estimate.pose, view.estimate.covariance);
     let (xx, yy, xy) = (covariance[(0, 0)], covariance[(1, 1)], covariance[(0, 1)]);
     let largest_variance = (xx + yy) / 2.0 + ((xx - yy) / 2.0).hypot(xy);
@@ -65,12 +65,12 @@ pub fn robot_position(view: &RunView, map_id: &str) -> RobotPosition {
 
 /// How fast the robot moves.
 #[must_use]
-pub fn velocity(view: &RunView) -> Velocity {
+pub fn velocity(view: &RobotView) -> Velocity {
     let twist = view.estimate.twist;
     Velocity { vx: twist.v, vy: 0.0, omega: twist.omega }
 }
 
-fn battery_state(view: &RunView) -> BatteryState {
+fn battery_state(view: &RobotView) -> BatteryState {
     let charge = view.battery.and_then(|battery| battery.charge);
     BatteryState {
         battery_charge: charge.map_or(UNKNOWN_CHARGE, |charge| 100.0 * charge),
@@ -80,13 +80,13 @@ fn battery_state(view: &RunView) -> BatteryState {
 }
 
 /// Stops by safety: conditions of the body, but for a pause.
-fn safety_state(view: &RunView) -> SafetyState {
+fn safety_state(view: &RobotView) -> SafetyState {
     let field_violation = view.hold.is_some_and(|hold| hold != MotionHold::Paused);
     SafetyState { e_stop: "NONE", field_violation }
 }
 
 /// What the robot does, why it does not move on, and what it does not know.
-fn information(view: &RunView) -> Vec<Information> {
+fn information(view: &RobotView) -> Vec<Information> {
     let info = |info_type, info_description| Information { info_type, info_description, info_level: "INFO" };
     let mut all = vec![info("driveState", view.state.to_string())];
     all.extend(view.hold.map(|hold| info("hold", hold.to_string())));

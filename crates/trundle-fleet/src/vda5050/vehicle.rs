@@ -10,8 +10,8 @@ use super::order_decision::{OrderDecision, decide, is_within_deviation};
 use super::{abilities::require_able, message::ActionStatus};
 use crate::robot_commands::RobotCommands;
 use crate::robot_facts::RobotFacts;
+use crate::robot_view::RobotView;
 use std::time::Duration;
-use trundle_app::operator::RunView;
 use trundle_runtime::OperatorCommand;
 
 /// A robot of a fleet.
@@ -67,7 +67,7 @@ impl Vehicle {
     }
 
     /// Takes a message of the topic `order`.
-    pub fn on_order(&mut self, payload: &[u8], view: &RunView) {
+    pub fn on_order(&mut self, payload: &[u8], view: &RobotView) {
         let order = match read_order(payload) {
             Ok(order) => order,
             Err(error) => return self.errors.add(error),
@@ -79,7 +79,7 @@ impl Vehicle {
         }
     }
 
-    fn accept(&mut self, order: Order, view: &RunView) -> Result<(), ErrorReport> {
+    fn accept(&mut self, order: Order, view: &RobotView) -> Result<(), ErrorReport> {
         let decision = decide(&order, &self.book, view.estimate.pose)?;
         if decision == OrderDecision::Discard {
             return Ok(());
@@ -97,7 +97,7 @@ impl Vehicle {
     }
 
     /// A robot that is being cancelled or driven by a person takes no order.
-    fn require_free(&self, view: &RunView) -> Result<(), ErrorReport> {
+    fn require_free(&self, view: &RobotView) -> Result<(), ErrorReport> {
         if self.is_cancelling() {
             return Err(ErrorReport::warning("orderError", "the present order is being cancelled"));
         }
@@ -122,14 +122,19 @@ impl Vehicle {
 
     /// Who controls the robot: a person where another front end gave the present mission.
     #[must_use]
-    pub fn mode(&self, view: &RunView) -> OperatingMode {
+    pub fn mode(&self, view: &RobotView) -> OperatingMode {
         let is_foreign = view.mission.id > self.own_mission;
         let is_open = view.mission.task.is_some() && !view.mission.is_over;
         if is_foreign && is_open { OperatingMode::Manual } else { OperatingMode::Automatic }
     }
 
+    /// Whether the robot still follows a mission of the master, or the one that it began with.
+    fn is_under_way(&self, view: &RobotView) -> bool {
+        view.mission.id != self.own_mission || (view.mission.task.is_some() && !view.mission.is_over)
+    }
+
     /// Goes on with the order and the instant actions, `passed` after the last step.
-    pub fn step(&mut self, passed: Duration, view: &RunView, robot: &mut dyn RobotCommands) {
+    pub fn step(&mut self, passed: Duration, view: &RobotView, robot: &mut dyn RobotCommands) {
         if self.book.is_active() && view.mission.id > self.own_mission {
             self.abort();
         }
@@ -154,6 +159,7 @@ impl Vehicle {
     /// Ends the drive and the actions of the order. Its nodes stay until the robot is at rest.
     pub(super) fn begin_cancel(&mut self) {
         (self.drive, self.action) = (None, None);
+        self.errors.remove("driveError");
         self.book.fail_actions();
     }
 
@@ -164,7 +170,7 @@ impl Vehicle {
     }
 
     /// The action at the last node, and the next one when it has ended.
-    fn follow_action(&mut self, passed: Duration, view: &RunView, robot: &mut dyn RobotCommands) {
+    fn follow_action(&mut self, passed: Duration, view: &RobotView, robot: &mut dyn RobotCommands) {
         if let Some(action) = &mut self.action {
             match action.step(passed, view) {
                 ActionEnd::Open => return,
@@ -203,12 +209,13 @@ impl Vehicle {
         self.book.set_status(id, status, reason);
     }
 
-    fn follow_drive(&mut self, passed: Duration, view: &RunView) {
+    fn follow_drive(&mut self, passed: Duration, view: &RobotView) {
         let Some(drive) = &mut self.drive else { return };
-        let rolls_on = !self.book.is_at_end_of_base()
-            && self.book.nodes().front().is_some_and(|node| {
-                node.actions.is_empty() && is_within_deviation(node, view.estimate.pose)
-            });
+        let rolls_on =
+            !self.book.is_at_end_of_base()
+                && self.book.nodes().front().is_some_and(|node| {
+                    node.actions.is_empty() && is_within_deviation(node, view.estimate.pose)
+                });
         let end = drive.step(passed, view);
         let is_due_again = drive.is_due_again();
         match end {
@@ -236,24 +243,27 @@ impl Vehicle {
     }
 
     fn may_drive(&self) -> bool {
-        let blocks = |action: &Action| action.blocking_type != BlockingType::None || NodeAction::drives(action);
+        let blocks =
+            |action: &Action| action.blocking_type != BlockingType::None || NodeAction::drives(action);
         let present = self.action.as_ref().map(NodeAction::action);
-        self.drive.is_none() && !self.is_cancelling() && !present.into_iter().chain(self.book.next_action()).any(blocks)
+        self.drive.is_none()
+            && !self.is_cancelling()
+            && !present.into_iter().chain(self.book.next_action()).any(blocks)
     }
 
     /// Begins the drive to the next node of the base, or reaches it at once.
-    fn drive_on(&mut self, view: &RunView, robot: &mut dyn RobotCommands) {
+    fn drive_on(&mut self, view: &RobotView, robot: &mut dyn RobotCommands) {
         let Some((node, edge)) = self.book.next_stop() else { return };
-        if is_within_deviation(node, view.estimate.pose) {
+        if !self.is_under_way(view) && is_within_deviation(node, view.estimate.pose) {
             return self.reach();
         }
         let limit = edge.and_then(|edge| edge.max_speed).unwrap_or(f64::MAX).min(self.facts.limits.v);
-        let drive = Drive::begin(node, view.estimate.pose, robot);
         if (limit - self.speed).abs() > f64::EPSILON
             && robot.send(OperatorCommand::Change(trundle_runtime::RunSetting::Speed(limit))).is_ok()
         {
             self.speed = limit;
         }
+        let drive = Drive::begin(node, view.estimate.pose, robot);
         match drive {
             Ok(drive) => {
                 self.note_own_mission(drive.mission());

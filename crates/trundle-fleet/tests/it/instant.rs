@@ -21,7 +21,10 @@ fn a_cancelled_order_ends_when_the_robot_is_at_rest() {
     assert_eq!(errors(&state), ["orderError"], "no order while the robot still stops");
     robot.view.estimate.twist = Twist2::new(0.0, 0.0);
     let state = robot.step();
-    assert_eq!((status(&state, "c"), nodes(&state), &state["orderId"]), (Some("FINISHED"), vec![], &json!("a")));
+    assert_eq!(
+        (status(&state, "c"), nodes(&state), &state["orderId"]),
+        (Some("FINISHED"), vec![], &json!("a"))
+    );
     assert_eq!(robot.sent.last(), Some(&OperatorCommand::cancel()));
 }
 
@@ -67,7 +70,10 @@ fn a_pose_is_given_by_its_numbers_and_map() {
     assert!(matches!(robot.sent.last(), Some(OperatorCommand::SetPose(guess)) if guess.pose.y == 2.5));
     for (id, wrong) in [("j", pose(json!("east"), MAP)), ("k", pose(json!(1), "attic")), ("l", none())] {
         let state = robot.instant(id, "initPosition", &wrong);
-        assert_eq!((status(&state, id), errors(&state).last()), (Some("FAILED"), Some(&"instantActionError")));
+        assert_eq!(
+            (status(&state, id), errors(&state).last()),
+            (Some("FAILED"), Some(&"instantActionError"))
+        );
     }
 }
 
@@ -94,7 +100,8 @@ fn charging_ends_with_the_mission() {
 #[test]
 fn garbage_and_floods_are_reported_and_bounded() {
     let mut robot = TestRobot::new();
-    let many: Vec<Value> = (0..100).map(|i| crate::robot::action(&i.to_string(), "stateRequest", "NONE", &none())).collect();
+    let many: Vec<Value> =
+        (0..100).map(|i| crate::robot::action(&i.to_string(), "stateRequest", "NONE", &none())).collect();
     let many = with_header(json!({ "actions": many })).to_string();
     let deep = "[".repeat(100_000);
     let large = vec![b' '; 1_000_000];
@@ -106,5 +113,8 @@ fn garbage_and_floods_are_reported_and_bounded() {
         robot.instant(&format!("s{i}"), "dance", &none());
     }
     let state = robot.state();
-    assert!(state["errors"].as_array().unwrap().len() <= 10 && state["actionStates"].as_array().unwrap().len() <= 33);
+    assert!(
+        state["errors"].as_array().unwrap().len() <= 10
+            && state["actionStates"].as_array().unwrap().len() <= 33
+    );
 }

@@ -28,7 +28,11 @@ fn a_node_within_its_deviation_is_reached_without_a_stop() {
         (position["allowedDeviationXY"], position["allowedDeviationTheta"]) = (json!(0.5), json!(3.14));
     }
     robot.order(&rolling);
-    assert_eq!(robot.goal().map(|goal| goal.x), Some(2.0), "the first node is reached where the robot stands");
+    assert_eq!(
+        robot.goal().map(|goal| goal.x),
+        Some(2.0),
+        "the first node is reached where the robot stands"
+    );
     robot.view.estimate.pose.x = 1.6;
     robot.step();
     assert_eq!(robot.goal().map(|goal| goal.x), Some(4.0));
@@ -44,7 +48,10 @@ fn actions_at_a_node_hold_the_robot_by_their_blocking_type() {
     let state = robot.order(&order);
     assert_eq!(status(&state, "w"), Some("WAITING"));
     let state = robot.arrive();
-    assert_eq!((status(&state, "w"), status(&state, "p"), robot.goal()), (Some("RUNNING"), Some("WAITING"), None));
+    assert_eq!(
+        (status(&state, "w"), status(&state, "p"), robot.goal()),
+        (Some("RUNNING"), Some("WAITING"), None)
+    );
     robot.step_by(Duration::from_secs(1));
     let state = robot.step();
     assert_eq!((status(&state, "w"), status(&state, "p")), (Some("FINISHED"), Some("FINISHED")));
@@ -117,7 +124,10 @@ fn orders_of_another_form_are_rejected() {
     ];
     for change in changes {
         let error = rejected(change);
-        assert_eq!((error["errorType"].as_str(), error["errorLevel"].as_str()), (Some("validationError"), Some("WARNING")));
+        assert_eq!(
+            (error["errorType"].as_str(), error["errorLevel"].as_str()),
+            (Some("validationError"), Some("WARNING"))
+        );
         assert_eq!(reference(&error, "topic"), Some("order"));
     }
 }
@@ -135,20 +145,30 @@ fn orders_that_the_robot_cannot_do_are_rejected_with_the_field() {
             "actionType",
             "pick",
         ),
-        (|order| order["nodes"][1]["actions"] = json!([action("w", "wait", "HARD", &json!([]))]), "actionId", "w"),
+        (
+            |order| order["nodes"][1]["actions"] = json!([action("w", "wait", "HARD", &json!([]))]),
+            "actionId",
+            "w",
+        ),
     ];
     for (change, key, value) in changes {
         let error = rejected(change);
         assert_eq!(error["errorType"], "orderError", "{error}");
         assert_eq!(reference(&error, key), Some(value), "{error}");
-        assert_eq!((reference(&error, "orderId"), reference(&error, "orderUpdateId")), (Some("a"), Some("0")));
+        assert_eq!(
+            (reference(&error, "orderId"), reference(&error, "orderUpdateId")),
+            (Some("a"), Some("0"))
+        );
     }
 }
 
 #[test]
 fn an_order_must_begin_where_the_robot_stands() {
     let error = rejected(|order| order["nodes"][0]["nodePosition"]["x"] = json!(1.0));
-    assert_eq!((error["errorType"].as_str(), reference(&error, "nodeId")), (Some("noRouteError"), Some("n0")));
+    assert_eq!(
+        (error["errorType"].as_str(), reference(&error, "nodeId")),
+        (Some("noRouteError"), Some("n0"))
+    );
 }
 
 #[test]

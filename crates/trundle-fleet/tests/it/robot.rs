@@ -1,15 +1,14 @@
 //! A robot that obeys at once, and messages to it.
 
-use nalgebra::Matrix3;
 use serde_json::{Value, json};
 use std::sync::Arc;
 use std::time::Duration;
-use trundle_app::operator::{MissionView, RunCounts, RunView, SurroundingsView};
-use trundle_core::{DriveLimits, Footprint, Pose2, PoseEstimate, Stamp, Twist2};
+use trundle_app::operator::MissionView;
+use trundle_core::{DriveLimits, Footprint, Pose2};
 use trundle_fleet::vda5050::Vehicle;
 use trundle_fleet::vda5050::message::{HeaderCounter, Identity, Topic};
-use trundle_fleet::{RobotCommands, RobotFacts};
-use trundle_runtime::{DriveState, Mission, MotionHold, OperatorCommand, Task, TaskEnd, TaskRecord};
+use trundle_fleet::{RobotCommands, RobotFacts, RobotView};
+use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task, TaskEnd, TaskRecord};
 
 /// The map of the tests.
 pub const MAP: &str = "hall";
@@ -17,13 +16,13 @@ pub const MAP: &str = "hall";
 /// A robot that obeys at once but drives only when a test says so.
 pub struct TestRobot {
     pub vehicle: Vehicle,
-    pub view: RunView,
+    pub view: RobotView,
     pub sent: Vec<OperatorCommand>,
     headers: HeaderCounter,
 }
 
 struct Commands<'a> {
-    view: &'a mut RunView,
+    view: &'a mut RobotView,
     sent: &'a mut Vec<OperatorCommand>,
 }
 
@@ -57,7 +56,7 @@ impl TestRobot {
         };
         let identity = Identity { manufacturer: "trundle".to_owned(), serial_number: "r1".to_owned() };
         let (vehicle, headers) = (Vehicle::new(facts, MAP), HeaderCounter::new(identity));
-        Self { vehicle, view: view_at(Pose2::new(0.0, 0.0, 0.0)), sent: Vec::new(), headers }
+        Self { vehicle, view: RobotView::at_rest(Pose2::new(0.0, 0.0, 0.0)), sent: Vec::new(), headers }
     }
 
     /// A message of the master on the topic `order`.
@@ -118,7 +117,7 @@ impl TestRobot {
     /// The present task ends.
     pub fn end_task(&mut self, end: TaskEnd) {
         let task = self.view.mission.task.take().unwrap();
-        let (stamp, pose) = (self.view.stamp, self.view.estimate.pose);
+        let (stamp, pose) = (self.view.estimate.stamp, self.view.estimate.pose);
         let record = TaskRecord { index: 0, task, end, from: stamp, to: stamp, pose, before_restart: false };
         self.view.mission.ended = Arc::new(vec![record]);
         self.view.mission.is_over = true;
@@ -127,26 +126,6 @@ impl TestRobot {
     /// Another front end gives the robot a mission.
     pub fn another_mission(&mut self) {
         self.view.mission = mission_view(1000, &Mission::new(vec![Task::Explore]).unwrap());
-    }
-}
-
-fn view_at(pose: Pose2) -> RunView {
-    let (stamp, twist) = (Stamp::from_secs(0.0), Twist2::new(0.0, 0.0));
-    RunView {
-        stamp,
-        estimate: PoseEstimate { stamp, pose, twist, covariance: Matrix3::zeros() },
-        odometry: None,
-        twist,
-        state: DriveState::Idle,
-        mission: MissionView::default(),
-        battery: None,
-        hold: None,
-        scan: None,
-        scan_pose: None,
-        plan: None,
-        map: None,
-        surroundings: SurroundingsView::default(),
-        counts: RunCounts::default(),
     }
 }
 
@@ -163,7 +142,8 @@ pub fn with_header(mut message: Value) -> Value {
 /// An order over the x axis: nodes at these positions, the first `released` of them in the base. `first` is the place of the first
 /// node among all nodes of the order.
 pub fn order(id: &str, update: u32, first: u32, positions: &[f64], released: usize) -> Value {
-    let nodes: Vec<Value> = positions.iter().enumerate().map(|(i, x)| node(first + i as u32, *x, i < released)).collect();
+    let nodes: Vec<Value> =
+        positions.iter().enumerate().map(|(i, x)| node(first + i as u32, *x, i < released)).collect();
     let edges: Vec<Value> = (1..positions.len())
         .map(|i| {
             let place = first + i as u32;

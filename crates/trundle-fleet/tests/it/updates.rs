@@ -12,7 +12,10 @@ fn an_update_while_driving_continues_the_base_and_replaces_the_horizon() {
     assert_eq!(state["newBaseRequest"], true, "the robot drives to the last node of its base");
     let commands = robot.sent.len();
     let state = robot.order(&order("a", 1, 1, &[2.0, 4.0], 2));
-    assert_eq!((nodes(&state), &state["orderUpdateId"], robot.sent.len()), (vec!["n1", "n2"], &json!(1), commands));
+    assert_eq!(
+        (nodes(&state), &state["orderUpdateId"], robot.sent.len()),
+        (vec!["n1", "n2"], &json!(1), commands)
+    );
     assert_eq!(state["nodeStates"][1]["nodePosition"]["x"], 4.0);
     robot.arrive();
     assert_eq!(robot.goal().map(|goal| goal.x), Some(4.0));
@@ -44,7 +47,9 @@ fn updates_that_do_not_fit_are_rejected_and_the_order_goes_on() {
     let mut robot = TestRobot::new();
     robot.order(&order("a", 3, 0, &[0.0, 2.0], 2));
     robot.arrive();
-    for (update, wrong) in [("old", order("a", 2, 1, &[2.0, 4.0], 2)), ("place", order("a", 4, 2, &[4.0, 6.0], 2))] {
+    for (update, wrong) in
+        [("old", order("a", 2, 1, &[2.0, 4.0], 2)), ("place", order("a", 4, 2, &[4.0, 6.0], 2))]
+    {
         let state = robot.order(&wrong);
         assert_eq!(errors(&state).last(), Some(&"orderUpdateError"), "{update}");
         assert_eq!((nodes(&state), &state["orderUpdateId"]), (vec!["n1"], &json!(3)));

@@ -2,8 +2,7 @@
 
 use super::texts;
 
-const HEADER: &str =
-    r#""headerId":1,"timestamp":"2026-11-26T16:00:00.00Z","version":"2.1.0","manufacturer":"trundle","serialNumber":"r1""#;
+const HEADER: &str = r#""headerId":1,"timestamp":"2026-11-26T16:00:00.00Z","version":"2.1.0","manufacturer":"trundle","serialNumber":"r1""#;
 
 /// An order of two nodes with an action, an update of it, and instant actions.
 pub fn vda5050() -> Vec<Vec<u8>> {
@@ -21,9 +20,12 @@ pub fn vda5050() -> Vec<Vec<u8>> {
     };
     let pose = r#"[{"key":"x","value":1.0},{"key":"y","value":"2"},{"key":"theta","value":0},{"key":"mapId","value":"map"}]"#;
     let action = |kind: &str, parameters: &str| {
-        format!(r#"{{"actionId":"{kind}","actionType":"{kind}","blockingType":"HARD","actionParameters":{parameters}}}"#)
+        format!(
+            r#"{{"actionId":"{kind}","actionType":"{kind}","blockingType":"HARD","actionParameters":{parameters}}}"#
+        )
     };
-    let actions = [action("initPosition", pose), action("cancelOrder", "[]"), action("startCharging", "[]")].join(",");
+    let actions =
+        [action("initPosition", pose), action("cancelOrder", "[]"), action("startCharging", "[]")].join(",");
     texts(&[
         &order(0, &[node(0, 0.0, wait), node(1, 2.0, "")], edge),
         &order(1, &[node(1, 2.0, wait)], ""),

@@ -1,12 +1,11 @@
 //! Messages of a broker: orders and instant actions of a master, commands of a home.
 
 use std::time::Duration;
-use trundle::app::operator::{MissionView, RunCounts, RunView, SurroundingsView};
-use trundle::core::{DriveLimits, Footprint, Pose2, PoseEstimate, Stamp, Twist2};
+use trundle::core::{DriveLimits, Footprint, Pose2};
 use trundle::fleet::vda5050::Vehicle;
 use trundle::fleet::vda5050::message::{HeaderCounter, Identity, Topic};
-use trundle::fleet::{RobotCommands, RobotFacts, read_home_command};
-use trundle::runtime::{DriveState, OperatorCommand};
+use trundle::fleet::{RobotCommands, RobotFacts, RobotView, read_home_command};
+use trundle::runtime::OperatorCommand;
 
 /// A robot that takes every command and does nothing.
 #[derive(Default)]
@@ -22,7 +21,8 @@ impl RobotCommands for Obedient {
 
 /// A message as an order, then as instant actions; the state after each must be JSON.
 pub fn vda5050(bytes: &[u8]) {
-    let (mut vehicle, view, mut robot) = (Vehicle::new(facts(), "map"), view(), Obedient::default());
+    let view = RobotView::at_rest(Pose2::new(0.0, 0.0, 0.0));
+    let (mut vehicle, mut robot) = (Vehicle::new(facts(), "map"), Obedient::default());
     let identity = Identity { manufacturer: "trundle".to_owned(), serial_number: "r1".to_owned() };
     let mut headers = HeaderCounter::new(identity);
     for is_order in [true, false, true] {
@@ -46,26 +46,4 @@ pub fn home_command(bytes: &[u8]) {
 fn facts() -> RobotFacts {
     let (footprint, limits) = (Footprint::KOBUKI, DriveLimits::KOBUKI);
     RobotFacts { title: String::new(), footprint, limits, height_m: 0.5 }
-}
-
-/// A robot at rest at the origin.
-fn view() -> RunView {
-    let (stamp, twist) = (Stamp::from_nanos(0), Twist2::new(0.0, 0.0));
-    let pose = Pose2::new(0.0, 0.0, 0.0);
-    RunView {
-        stamp,
-        estimate: PoseEstimate { stamp, pose, twist, covariance: Default::default() },
-        odometry: None,
-        twist,
-        state: DriveState::Idle,
-        mission: MissionView::default(),
-        battery: None,
-        hold: None,
-        scan: None,
-        scan_pose: None,
-        plan: None,
-        map: None,
-        surroundings: SurroundingsView::default(),
-        counts: RunCounts::default(),
-    }
 }

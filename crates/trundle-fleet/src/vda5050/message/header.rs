@@ -59,7 +59,12 @@ impl Identity {
     /// The whole name of a topic.
     #[must_use]
     pub fn topic(&self, topic: Topic) -> String {
-        format!("{INTERFACE_NAME}/{MAJOR_VERSION}/{}/{}/{}", self.manufacturer, self.serial_number, topic.name())
+        format!(
+            "{INTERFACE_NAME}/{MAJOR_VERSION}/{}/{}/{}",
+            self.manufacturer,
+            self.serial_number,
+            topic.name()
+        )
     }
 }
 

@@ -63,11 +63,4 @@ impl ErrorReport {
         self.error_hint = Some(hint.into());
         self
     }
-
-    /// The same, where a person must help.
-    #[must_use]
-    pub fn fatal(mut self) -> Self {
-        self.error_level = ErrorLevel::Fatal;
-        self
-    }
 }

@@ -60,7 +60,10 @@ impl State {
             agv_position: other.agv_position.clone(),
             velocity: other.velocity.clone(),
             information: other.information.clone(),
-            battery_state: BatteryState { charging: state.battery_state.charging, ..other.battery_state.clone() },
+            battery_state: BatteryState {
+                charging: state.battery_state.charging,
+                ..other.battery_state.clone()
+            },
             ..state.clone()
         };
         same(self) == *other
