@@ -5,4 +5,6 @@ mod browser;
 mod guard;
 mod live_run;
 mod steering;
+#[cfg(feature = "tls")]
+mod tls;
 mod viewers;
