@@ -47,8 +47,8 @@ impl LiveArgs {
         self.live.is_some()
     }
 
-    /// The page and the link to a broker beside a run, where they are asked for, and what accompanies the run then. `link`: that of another front end. A run
-    /// that is not steered takes no commands.
+    /// The page and the link to a broker beside a run, where they are asked for, and what accompanies the run then. `link`: that of
+    /// another front end. A run that is not steered takes no commands.
     pub fn beside(
         &self,
         setup: &RunSetup,

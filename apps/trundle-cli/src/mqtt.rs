@@ -1,11 +1,10 @@
 //! The option --mqtt: a robot at home and in a fleet.
 
-use crate::console;
 use clap::Args;
 use std::path::PathBuf;
 use trundle::app::operator::OperatorLink;
 use trundle::app::{AppError, RunSetup};
-use trundle::fleet::{BrokerAddress, FleetLink, FleetOptions, NoPlaces, Password, RobotFacts, RobotName};
+use trundle::fleet::{BrokerAddress, FleetLink, RobotName};
 
 /// Home and fleet.
 #[derive(Debug, Args)]
@@ -32,18 +31,10 @@ impl MqttArgs {
         link: &OperatorLink,
         is_steered: bool,
     ) -> Result<Option<FleetLink>, AppError> {
-        let Some(broker) = &self.mqtt else { return Ok(None) };
-        if !is_steered {
-            return Err(AppError::input("--mqtt: a replay takes no commands; use it with demo, run or ros2"));
-        }
-        let options = FleetOptions {
-            broker: broker.clone(),
-            password: Password::read(self.mqtt_password_file.as_deref())?,
-            name: self.mqtt_name.clone().unwrap_or_default(),
-            map_id: self.mqtt_map.clone(),
-        };
-        let fleet = FleetLink::start(options, link.operator(), RobotFacts::of(setup)?, Box::new(NoPlaces))?;
-        console::print(&fleet.announcement());
+        let Some(broker) = self.mqtt.clone() else { return Ok(None) };
+        let (file, name) = (self.mqtt_password_file.as_deref(), self.mqtt_name.as_ref());
+        let fleet = FleetLink::beside(setup, link, is_steered, broker, file, name, &self.mqtt_map)?;
+        crate::console::print(&fleet.announcement());
         Ok(Some(fleet))
     }
 }

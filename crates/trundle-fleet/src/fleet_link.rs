@@ -1,11 +1,13 @@
 //! The link of a robot to a broker, in a thread of its own.
 
 use crate::worker::Worker;
-use crate::{FleetError, FleetOptions, Places, RobotFacts};
+use crate::{BrokerAddress, FleetError, FleetOptions, NoPlaces, Password, Places, RobotFacts, RobotName};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
-use trundle_app::operator::Operator;
+use trundle_app::operator::{Operator, OperatorLink};
+use trundle_app::{AppError, RunSetup};
 
 /// The link of a robot to a broker. Dropping it says goodbye to the broker and ends the thread.
 #[derive(Debug)]
@@ -35,6 +37,28 @@ impl FleetLink {
         let work = move || worker.run(|| ends.load(Ordering::Relaxed));
         let thread = std::thread::Builder::new().name("fleet".to_owned()).spawn(work)?;
         Ok(Self { options, is_over, thread: Some(thread) })
+    }
+
+    /// The link beside a run of a setup, as the options of a command line ask for it.
+    ///
+    /// # Errors
+    /// As [`FleetLink::start`]; when the password file or the robot's outline cannot be used, or the run takes no commands.
+    pub fn beside(
+        setup: &RunSetup,
+        link: &OperatorLink,
+        is_steered: bool,
+        broker: BrokerAddress,
+        password_file: Option<&Path>,
+        name: Option<&RobotName>,
+        map_id: &str,
+    ) -> Result<Self, AppError> {
+        if !is_steered {
+            return Err(AppError::input("--mqtt: this run is a replay, which takes no commands"));
+        }
+        let password = Password::read(password_file)?;
+        let (name, map_id) = (name.cloned().unwrap_or_default(), map_id.to_owned());
+        let options = FleetOptions { broker, password, name, map_id };
+        Ok(Self::start(options, link.operator(), RobotFacts::of(setup)?, Box::new(NoPlaces))?)
     }
 
     /// What a person must know: the broker, the name of the robot, and a warning where the network is open.

@@ -11,7 +11,7 @@ use trundle_app::operator::{Operator, RunView};
 use trundle_runtime::real_time::ThreadPlacement;
 
 /// Period of looks at the run. Source: ours.
-const PERIOD: Duration = Duration::from_millis(50);
+const LOOK_PERIOD: Duration = Duration::from_millis(50);
 /// Largest number of messages that are handled in a period; more wait at the broker. Source: ours.
 const MAX_MESSAGES_OF_PERIOD: usize = 200;
 
@@ -51,10 +51,10 @@ impl Worker {
     /// Works until `is_over`; then says goodbye.
     pub fn run(mut self, is_over: impl Fn() -> bool) {
         // Where the system refuses the niceness, the link works all the same.
-        _ = ThreadPlacement { nice: crate::broker::NICENESS, ..ThreadPlacement::default() }.take();
+        _ = ThreadPlacement { nice: crate::broker::LINK_NICENESS, ..ThreadPlacement::default() }.take();
         let mut last = Instant::now();
         while !is_over() {
-            for event in self.broker.events(PERIOD, MAX_MESSAGES_OF_PERIOD) {
+            for event in self.broker.events(LOOK_PERIOD, MAX_MESSAGES_OF_PERIOD) {
                 self.on_event(event);
             }
             let passed = last.elapsed();

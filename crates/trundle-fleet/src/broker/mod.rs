@@ -8,7 +8,7 @@ use back_off::BackOff;
 use session::Session;
 use std::time::{Duration, Instant};
 
-pub(crate) use reader::NICENESS;
+pub(crate) use reader::LINK_NICENESS;
 pub use session::SessionOptions;
 
 /// A message to a broker.

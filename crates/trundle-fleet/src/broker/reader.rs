@@ -6,12 +6,12 @@ use std::sync::mpsc::SyncSender;
 use trundle_runtime::real_time::ThreadPlacement;
 
 /// Niceness of the threads of this crate above that of the robot's threads. Source: ours.
-pub(crate) const NICENESS: i32 = 10;
+pub(crate) const LINK_NICENESS: i32 = 10;
 
 /// Carries a session until its first error, or until nobody waits for its events. A full queue holds the broker back.
 pub fn read(mut connection: Connection, events: &SyncSender<BrokerEvent>) {
     // Where the system refuses the niceness, the session goes on all the same.
-    _ = ThreadPlacement { nice: NICENESS, ..ThreadPlacement::default() }.take();
+    _ = ThreadPlacement { nice: LINK_NICENESS, ..ThreadPlacement::default() }.take();
     for event in connection.iter() {
         let event = match event {
             Ok(Event::Incoming(Packet::ConnAck(_))) => BrokerEvent::Joined,

@@ -18,7 +18,7 @@ const MAX_SENT_BYTES: usize = 16 * 1024 * 1024;
 /// Time after which each side asks whether the other is there. Source: ours.
 const KEEP_ALIVE: Duration = Duration::from_secs(10);
 /// Time in which the last message leaves.
-const FAREWELL: Duration = Duration::from_secs(1);
+const FAREWELL_TIME: Duration = Duration::from_secs(1);
 
 /// What a session needs.
 #[derive(Debug, Clone)]
@@ -92,7 +92,7 @@ impl Session {
         if self.client.try_disconnect().is_err() {
             return;
         }
-        let until = Instant::now() + FAREWELL;
+        let until = Instant::now() + FAREWELL_TIME;
         let is_lost =
             |events: &[BrokerEvent]| events.iter().any(|event| matches!(event, BrokerEvent::Lost(_)));
         while Instant::now() < until && !is_lost(&self.events(until, 1)) {}
