@@ -97,7 +97,7 @@ async function instant(done, seconds = 15) {
   let end = null;
   await master.initiateInstantActions(
     ROBOT,
-    { actions: [done] },
+    { instantActions: [done] },
     {
       onActionStateChanged: (state, error) => {
         if (["FINISHED", "FAILED"].includes(state.actionStatus)) end = { status: state.actionStatus, error };

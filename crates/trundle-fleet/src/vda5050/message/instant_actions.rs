@@ -10,6 +10,7 @@ pub struct InstantActions {
     /// The header.
     #[serde(flatten)]
     pub header: Header,
-    /// The actions.
+    /// The actions. Masters of version 1.1, and some of 2.0, name the field `instantActions`.
+    #[serde(alias = "instantActions")]
     pub actions: Vec<Action>,
 }
