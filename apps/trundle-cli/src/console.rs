@@ -4,7 +4,7 @@
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::OnceLock;
-use trundle::app::{AppError, Progress, StepProgress};
+use trundle::app::{AppError, Progress, StepProgress, aligned_table};
 
 /// The first refusal of standard output.
 static PRINT_FAILURE: OnceLock<std::io::Error> = OnceLock::new();
@@ -43,25 +43,7 @@ pub fn print_failure() -> Option<&'static std::io::Error> {
 
 /// Prints a table of two columns or more on standard output, columns aligned: the first one and texts to the left, numbers to the right.
 pub fn print_table(rows: &[Vec<String>]) {
-    aligned(rows).iter().for_each(|line| print(line));
-}
-
-/// Width of a column from which it holds text, not numbers \[characters\]. Source: ours.
-const MIN_TEXT_WIDTH: usize = 60;
-
-/// The lines of a table.
-fn aligned(rows: &[Vec<String>]) -> Vec<String> {
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let width = |c: usize| {
-        rows.iter().filter_map(|row| row.get(c)).map(|cell| cell.chars().count()).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let cell = |(c, (cell, &w)): (usize, (&String, &usize))| {
-        if c == 0 || w >= MIN_TEXT_WIDTH { format!("{cell:<w$}") } else { format!("{cell:>w$}") }
-    };
-    let line =
-        |row: &Vec<String>| row.iter().zip(&widths).enumerate().map(cell).collect::<Vec<_>>().join("  ");
-    rows.iter().map(|row| format!("  {}", line(row)).trim_end().to_owned()).collect()
+    aligned_table(rows).iter().for_each(|line| print(line));
 }
 
 /// A line of progress: a spinner with a message, and the progress that sets it. Clear the line when the work has ended.
@@ -153,19 +135,6 @@ mod tests {
     use indicatif::TermLike;
     use std::io;
     use std::sync::{Arc, Mutex};
-
-    #[test]
-    fn numbers_stand_to_the_right_and_texts_to_the_left() {
-        let table = |rows: &[[&str; 2]]| {
-            aligned(&rows.iter().map(|row| row.map(str::to_owned).to_vec()).collect::<Vec<_>>())
-        };
-        assert_eq!(
-            table(&[["time", "9.5 s"], ["contacts", "0"]]),
-            ["  time      9.5 s", "  contacts      0"]
-        );
-        let long = "x".repeat(60);
-        assert_eq!(table(&[["base", "none"], ["camera", &long]])[0], "  base    none");
-    }
 
     /// A terminal of some width that keeps the lines drawn.
     #[derive(Debug, Clone)]

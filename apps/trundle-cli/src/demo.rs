@@ -33,7 +33,7 @@ pub fn run(args: &DemoArgs) -> Result<Outcome, AppError> {
     let mut setup = RunSetup::new(&scene.name, mission, robot.with_seed(args.place.seed));
     setup.seed = args.place.seed;
     setup.map_from_world = scene.start.inverse();
-    setup.is_operated = args.live.is_on();
+    setup.is_operated = args.live.is_operated();
     let limit = if setup.is_operated { f64::MAX } else { time_limit(&setup.mission) };
     setup.time_limit = args.time_limit.unwrap_or(limit);
     setup.real_time = args.real_time || setup.is_operated;

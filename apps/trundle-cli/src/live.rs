@@ -1,11 +1,11 @@
-//! The option --live: a page that shows the run and steers it.
+//! What stands beside a run: --live, a page that shows it and steers it, and --mqtt.
 
 use crate::console;
 use clap::Args;
 use std::path::PathBuf;
 use trundle::app::operator::{FrontEnd, OperatorLink, operator_link};
 use trundle::app::{AppError, Progress, RunSetup};
-use trundle::live::{LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
+use trundle::live::{LiveAddress, LiveOptions, LivePage, RunFacts, TlsIdentity, Tokens};
 
 /// The live page of a run.
 #[derive(Debug, Args)]
@@ -21,11 +21,33 @@ pub struct LiveArgs {
     /// Keep the tokens of the links in FILE, so that links stay valid over restarts.
     #[arg(long, value_name = "FILE", requires = "live")]
     pub live_tokens: Option<PathBuf>,
+    /// Encrypt the live page by this certificate: PEM, its chain behind it.
+    #[arg(long, value_name = "FILE", requires_all = ["live", "live_tls_key"], hide_short_help = true)]
+    pub live_tls_cert: Option<PathBuf>,
+    /// The private key of the certificate: PEM.
+    #[arg(long, value_name = "FILE", requires = "live_tls_cert", hide_short_help = true)]
+    pub live_tls_key: Option<PathBuf>,
+    /// Home and fleet.
+    #[cfg(feature = "mqtt")]
+    #[command(flatten)]
+    pub mqtt: crate::mqtt::MqttArgs,
+}
+
+/// What stands beside a run; dropping it ends it.
+#[derive(Default)]
+pub struct Beside {
+    _page: Option<LivePage>,
+    #[cfg(feature = "mqtt")]
+    _fleet: Option<trundle::fleet::FleetLink>,
 }
 
 impl LiveArgs {
-    /// Whether there is a live page: the run then takes commands and goes on after its mission.
-    pub fn is_on(&self) -> bool {
+    /// Whether somebody may give the run commands while it goes.
+    pub fn is_operated(&self) -> bool {
+        #[cfg(feature = "mqtt")]
+        if self.mqtt.mqtt.is_some() {
+            return true;
+        }
         self.live.is_some()
     }
 
@@ -34,25 +56,44 @@ impl LiveArgs {
         self.zones.as_deref().map_or(Ok(setup.clone()), |file| setup.with_annotations_of(file))
     }
 
-    /// The page beside a run, where one is asked for, and what accompanies the run then. `link`: that of another front end. A run
-    /// that is not steered takes no commands.
+    /// The page and the link to a broker beside a run, where they are asked for, and what accompanies the run then. `link`: that of
+    /// another front end. A run that is not steered takes no commands.
     pub fn beside(
         &self,
         setup: &RunSetup,
         progress: Progress,
         link: Option<OperatorLink>,
         is_steered: bool,
-    ) -> Result<(Option<LivePage>, FrontEnd), AppError> {
+    ) -> Result<(Beside, FrontEnd), AppError> {
         if let (Some(file), false) = (&self.zones, is_steered) {
             let problem = "a replay has the zones of its recording: leave --zones out";
             return Err(AppError::Input(format!("--zones {}: {problem}", file.display())));
         }
-        let Some(address) = self.live else { return Ok((None, FrontEnd { progress, operator: link })) };
+        if !self.is_operated() {
+            return Ok((Beside::default(), FrontEnd { progress, operator: link }));
+        }
         let link = link.unwrap_or_else(|| operator_link().1);
+        let beside = Beside {
+            _page: self.page(setup, &link, is_steered)?,
+            #[cfg(feature = "mqtt")]
+            _fleet: self.mqtt.join(setup, &link, is_steered)?,
+        };
+        Ok((beside, FrontEnd { progress, operator: Some(link) }))
+    }
+
+    fn page(
+        &self,
+        setup: &RunSetup,
+        link: &OperatorLink,
+        is_steered: bool,
+    ) -> Result<Option<LivePage>, AppError> {
+        let Some(address) = self.live else { return Ok(None) };
         let tokens = self.live_tokens.as_deref().map_or_else(Tokens::random, Tokens::of_file)?;
-        let options = LiveOptions { address, tokens, is_steered };
+        let files = self.live_tls_cert.as_deref().zip(self.live_tls_key.as_deref());
+        let tls = files.map(|(certificate, key)| TlsIdentity::read(certificate, key)).transpose()?;
+        let options = LiveOptions { address, tokens, is_steered, tls };
         let page = LivePage::start(options, link.operator(), RunFacts::of(setup)?)?;
         console::print(&page.announcement());
-        Ok((Some(page), FrontEnd { progress, operator: Some(link) }))
+        Ok(Some(page))
     }
 }

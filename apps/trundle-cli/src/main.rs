@@ -14,6 +14,8 @@ mod experiment;
 mod live;
 mod logging;
 mod map;
+#[cfg(feature = "mqtt")]
+mod mqtt;
 mod outcome;
 mod output_args;
 mod plan;

@@ -31,7 +31,7 @@ pub fn run(args: &RunArgs) -> Result<Outcome, AppError> {
     camera.require_live()?;
     robot.camera = camera.intrinsics(args.robot_camera(&robot).as_ref())?;
     let mut setup = args.options.setup(RUN_COMMAND, &args.base.to_string(), mission, robot)?;
-    setup.is_operated = args.live.is_on();
+    setup.is_operated = args.live.is_operated();
     #[cfg(feature = "ros2")]
     {
         setup.is_operated |= args.ros2;

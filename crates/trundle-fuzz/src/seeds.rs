@@ -2,12 +2,14 @@
 
 mod binary;
 mod drivers;
+mod fleet;
 mod pictures;
 mod saved;
 mod text;
 
 pub use binary::{bag, cdr, gltf, laser_log, recording, sqlite};
 pub use drivers::{camera_stream, kinect2_dump, kinect2_usb, kobuki, mission};
+pub use fleet::{home_command, vda5050};
 pub(crate) use pictures::small_png;
 pub use pictures::{color_image, depth_file, depth_image, map_picture};
 pub(crate) use saved::small_camera;

@@ -112,7 +112,7 @@ const JSON: &[&str] =
     &["{", "}", "[", "]", "null", "-1", "1e400", "\"\\ud800\"", "18446744073709551615", "\"\"", "4294967295"];
 
 /// Every target.
-pub const TARGETS: [FuzzTarget; 34] = [
+pub const TARGETS: [FuzzTarget; 36] = [
     text("map_yaml", targets::map_yaml, seeds::map_yaml, MAP_YAML, &["map.yaml", "mask.yaml"]),
     compressed("map_picture", targets::map_picture, seeds::map_picture, &[".pgm", "map.png", ".bmp"]),
     text("graph", targets::graph, seeds::graph, JSON, &[".geojson"]),
@@ -175,5 +175,7 @@ pub const TARGETS: [FuzzTarget; 34] = [
     text("kinect2_dump", targets::kinect2_dump, seeds::kinect2_dump, JSON, NO_WORDS),
     text("kinect2_usb", targets::kinect2_usb, seeds::kinect2_usb, NO_WORDS, NO_WORDS),
     text("mission", targets::mission, seeds::mission, SETTINGS, &["mission.toml"]),
+    text("vda5050", targets::vda5050, seeds::vda5050, JSON, NO_WORDS),
+    text("home_command", targets::home_command, seeds::home_command, JSON, NO_WORDS),
     text("dbow2", targets::dbow2, seeds::dbow2, NUMBERS, &["dbow2.txt"]),
 ];

@@ -1,6 +1,7 @@
 //! The readers, each as a function of bytes.
 
 mod drivers;
+mod fleet;
 mod logs;
 mod maps;
 mod saved;
@@ -8,6 +9,7 @@ mod sequences;
 mod settings;
 
 pub use drivers::{camera_stream, kinect2_dump, kinect2_usb, kobuki, mission};
+pub use fleet::{home_command, vda5050};
 pub use logs::{bag, cdr, file_kind, laser_log, recording};
 pub use maps::{graph, map_picture, map_yaml, places};
 pub use saved::{checkpoint, dbow2, visual_map, vocabulary};

@@ -39,6 +39,7 @@
 //! | simulate, evaluate, draw | [`sim`], [`eval`], [`viz`] |
 //! | read and write files | [`io`] |
 //! | show a run in a browser | [`live`] |
+//! | join a home or a fleet by MQTT | `fleet`, with the feature `mqtt` |
 //! | speak ROS 2 | `ros2`, with the feature `ros2` |
 //!
 //! Eight numbered examples stand in `crates/trundle/examples`.
@@ -52,6 +53,8 @@ pub use trundle_drivers as drivers;
 pub use trundle_estimation as estimation;
 pub use trundle_eval as eval;
 pub use trundle_experiments as experiments;
+#[cfg(feature = "mqtt")]
+pub use trundle_fleet as fleet;
 pub use trundle_grid as grid;
 pub use trundle_io as io;
 pub use trundle_live as live;

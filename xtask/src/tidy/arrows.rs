@@ -82,6 +82,7 @@ fn is_known(name: &str) -> bool {
             "trundle-experiments",
             "trundle-ros2",
             "trundle-live",
+            "trundle-fleet",
             "trundle",
             "trundle-cli",
             "xtask",
@@ -122,6 +123,7 @@ fn may_know(from: &str, to: &str) -> bool {
                 || ["trundle-runtime", "trundle-app"].contains(&to)
         }
         "trundle-live" => base || ["trundle-planning", "trundle-runtime", "trundle-app"].contains(&to),
+        "trundle-fleet" => base || ["trundle-runtime", "trundle-app", "trundle-viz"].contains(&to),
         "trundle" => !["trundle", "trundle-cli"].contains(&to),
         "trundle-cli" | "trundle-fuzz" => to == "trundle",
         "trundle-libfuzzer" => to == "trundle-fuzz",

@@ -78,7 +78,7 @@ impl Ros2Args {
 
     /// Whether the run goes on after its mission.
     pub fn stays(&self) -> bool {
-        self.stay || self.live.is_on() || self.request().is_empty()
+        self.stay || self.live.is_operated() || self.request().is_empty()
     }
 
     /// The mission that is asked for.

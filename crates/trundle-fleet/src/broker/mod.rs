@@ -1,0 +1,97 @@
+//! The connection to a broker.
+
+mod back_off;
+mod reader;
+mod session;
+
+use back_off::BackOff;
+use session::Session;
+use std::time::{Duration, Instant};
+
+pub(crate) use reader::LINK_NICENESS;
+pub use session::SessionOptions;
+
+/// A message to a broker.
+#[derive(Debug, Clone)]
+pub struct Publication {
+    /// Where.
+    pub topic: String,
+    /// What.
+    pub payload: Vec<u8>,
+    /// Whether the broker keeps it for those who join later.
+    pub is_retained: bool,
+}
+
+/// What a connection reports.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BrokerEvent {
+    /// The broker accepted the robot.
+    Joined,
+    /// A message on a topic that the robot listens to.
+    Message {
+        /// Where.
+        topic: String,
+        /// What.
+        payload: Vec<u8>,
+    },
+    /// The connection ended, or could not begin.
+    Lost(String),
+}
+
+/// A connection that begins again when it ends.
+pub struct Broker {
+    options: SessionOptions,
+    session: Option<Session>,
+    back_off: BackOff,
+    due: Instant,
+}
+
+impl Broker {
+    /// A connection that begins at the first look at it.
+    #[must_use]
+    pub fn new(options: SessionOptions) -> Self {
+        Self { options, session: None, back_off: BackOff::default(), due: Instant::now() }
+    }
+
+    /// Waits up to `wait` for events; at most `max` are taken, so that a flood cannot hold the caller.
+    pub fn events(&mut self, wait: Duration, max: usize) -> Vec<BrokerEvent> {
+        let until = Instant::now() + wait;
+        if self.session.is_none() && Instant::now() >= self.due {
+            match Session::begin(&self.options) {
+                Ok(session) => self.session = Some(session),
+                Err(error) => return vec![self.lose(error.to_string())],
+            }
+        }
+        let Some(session) = &self.session else {
+            std::thread::sleep(wait);
+            return Vec::new();
+        };
+        let events = session.events(until, max);
+        if events.contains(&BrokerEvent::Joined) {
+            self.back_off = BackOff::default();
+        }
+        if events.iter().any(|event| matches!(event, BrokerEvent::Lost(_))) {
+            self.lose(String::new());
+        }
+        events
+    }
+
+    /// Ends the session; the next one begins after a while.
+    fn lose(&mut self, reason: String) -> BrokerEvent {
+        self.session = None;
+        self.due = Instant::now() + self.back_off.next_wait();
+        BrokerEvent::Lost(reason)
+    }
+
+    /// Sends a message; whether there was room for it. The call does not wait.
+    pub fn publish(&self, publication: Publication) -> bool {
+        self.session.as_ref().is_some_and(|session| session.publish(publication))
+    }
+
+    /// Says goodbye with a last message, waiting a moment for it to leave.
+    pub fn leave(mut self, last: Publication) {
+        if let Some(session) = self.session.take() {
+            session.leave(last);
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! The link of a robot to a broker, in a thread of its own.
+
+use crate::worker::Worker;
+use crate::{BrokerAddress, FleetError, FleetOptions, NoPlaces, Password, Places, RobotFacts, RobotName};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use trundle_app::operator::{Operator, OperatorLink};
+use trundle_app::{AppError, RunSetup};
+
+/// The link of a robot to a broker. Dropping it says goodbye to the broker and ends the thread.
+#[derive(Debug)]
+pub struct FleetLink {
+    options: FleetOptions,
+    is_over: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl FleetLink {
+    /// Joins a broker, or tries until it answers. A warning in the log says when the broker is gone and when it is back.
+    ///
+    /// # Errors
+    /// When a password has no user, or the system refuses a thread.
+    pub fn start(
+        options: FleetOptions,
+        operator: Operator,
+        facts: RobotFacts,
+        places: Box<dyn Places>,
+    ) -> Result<Self, FleetError> {
+        if options.password.is_some() && options.broker.user.is_none() {
+            return Err(FleetError::PasswordWithoutUser);
+        }
+        let is_over = Arc::new(AtomicBool::new(false));
+        let worker = Worker::new(&options, operator, facts, places);
+        let ends = Arc::clone(&is_over);
+        let work = move || worker.run(|| ends.load(Ordering::Relaxed));
+        let thread = std::thread::Builder::new().name("fleet".to_owned()).spawn(work)?;
+        Ok(Self { options, is_over, thread: Some(thread) })
+    }
+
+    /// The link beside a run of a setup, as the options of a command line ask for it.
+    ///
+    /// # Errors
+    /// As [`FleetLink::start`]; when the password file or the robot's outline cannot be used, or the run takes no commands.
+    pub fn beside(
+        setup: &RunSetup,
+        link: &OperatorLink,
+        is_steered: bool,
+        broker: BrokerAddress,
+        password_file: Option<&Path>,
+        name: Option<&RobotName>,
+        map_id: &str,
+    ) -> Result<Self, AppError> {
+        if !is_steered {
+            return Err(AppError::input("--mqtt: this run is a replay, which takes no commands"));
+        }
+        let password = Password::read(password_file)?;
+        let (name, map_id) = (name.cloned().unwrap_or_default(), map_id.to_owned());
+        let options = FleetOptions { broker, password, name, map_id };
+        Ok(Self::start(options, link.operator(), RobotFacts::of(setup)?, Box::new(NoPlaces))?)
+    }
+
+    /// What a person must know: the broker, the name of the robot, and a warning where the network is open.
+    #[must_use]
+    pub fn announcement(&self) -> String {
+        let FleetOptions { broker, name, map_id, .. } = &self.options;
+        let warning = match broker.is_local() {
+            true => "",
+            false => {
+                "\nwarning: the connection to the broker is not encrypted: who reads or joins its network can drive the robot"
+            }
+        };
+        format!("MQTT: {broker}, robot {name}, map '{map_id}'{warning}")
+    }
+}
+
+impl Drop for FleetLink {
+    fn drop(&mut self) {
+        self.is_over.store(true, Ordering::Relaxed);
+        if self.thread.take().is_some_and(|thread| thread.join().is_err()) {
+            tracing::error!("the thread of the link to the broker panicked");
+        }
+    }
+}

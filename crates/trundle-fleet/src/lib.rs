@@ -1,0 +1,36 @@
+//! trundle by MQTT: a robot at home and in a fleet, by one connection to a broker.
+//!
+//! [`FleetLink::start`] joins a broker from a thread of its own. It reads views of the run and sends commands by `trundle_app::operator`;
+//! the robot never waits for it, and goes on when the broker is gone.
+//!
+//! | part | what it does |
+//! |---|---|
+//! | `broker` | the connection: bounded queues, size limits, back-off |
+//! | `home` | state, map picture, places and commands for a home; Home Assistant's discovery |
+//! | [`vda5050`] | orders and states of VDA 5050 2.1 for a master control |
+//! | `worker` | the thread that brings them together |
+
+mod address;
+mod broker;
+mod error;
+mod fleet_link;
+mod home;
+mod master_link;
+mod options;
+mod places;
+mod robot_commands;
+mod robot_facts;
+mod robot_view;
+mod timestamp;
+pub mod vda5050;
+mod worker;
+
+pub use address::BrokerAddress;
+pub use error::FleetError;
+pub use fleet_link::FleetLink;
+pub use home::{HomeCommand, read_home_command};
+pub use options::{FleetOptions, Password, RobotName};
+pub use places::{NoPlaces, Places};
+pub use robot_commands::RobotCommands;
+pub use robot_facts::RobotFacts;
+pub use robot_view::RobotView;

@@ -1,0 +1,25 @@
+//! Named places of a run.
+
+use trundle_core::Pose2;
+
+/// Named places, where the program has them. They may change while a run goes.
+pub trait Places: Send {
+    /// The names, in the order in which they are shown.
+    fn names(&self) -> Vec<String>;
+    /// Pose of a place, map frame.
+    fn pose(&self, name: &str) -> Option<Pose2>;
+}
+
+/// No places.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NoPlaces;
+
+impl Places for NoPlaces {
+    fn names(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    fn pose(&self, _: &str) -> Option<Pose2> {
+        None
+    }
+}

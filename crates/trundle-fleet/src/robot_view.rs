@@ -1,0 +1,51 @@
+//! What home and master need of a view of the run.
+
+use trundle_app::operator::{MissionView, RunView};
+use trundle_core::{Battery, Pose2, PoseEstimate, Stamp, Twist2};
+use trundle_runtime::{DriveState, MotionHold};
+
+/// What home and master need of a view of the run.
+#[derive(Debug, Clone)]
+pub struct RobotView {
+    /// `map_from_base` and twist.
+    pub estimate: PoseEstimate,
+    /// State of the robot.
+    pub state: DriveState,
+    /// The mission.
+    pub mission: MissionView,
+    /// The battery; `None` where the body has not reported it.
+    pub battery: Option<Battery>,
+    /// The condition under which no wheel may turn.
+    pub hold: Option<MotionHold>,
+    /// `map_from_station` of the charging station.
+    pub station: Option<Pose2>,
+}
+
+impl RobotView {
+    /// A robot at rest that knows its pose and has no mission.
+    #[must_use]
+    pub fn at_rest(pose: Pose2) -> Self {
+        let (stamp, twist) = (Stamp::from_nanos(0), Twist2::new(0.0, 0.0));
+        Self {
+            estimate: PoseEstimate { stamp, pose, twist, covariance: Default::default() },
+            state: DriveState::Idle,
+            mission: MissionView::default(),
+            battery: None,
+            hold: None,
+            station: None,
+        }
+    }
+}
+
+impl From<&RunView> for RobotView {
+    fn from(view: &RunView) -> Self {
+        Self {
+            estimate: view.estimate,
+            state: view.state.clone(),
+            mission: view.mission.clone(),
+            battery: view.battery,
+            hold: view.hold,
+            station: view.surroundings.station,
+        }
+    }
+}

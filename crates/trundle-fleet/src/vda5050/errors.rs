@@ -1,0 +1,46 @@
+//! The errors that a robot reports until it accepts an order.
+
+use super::message::ErrorReport;
+
+/// Largest number of errors of a state. Source: ours; older ones are dropped.
+const MAX_ERRORS: usize = 10;
+
+/// The errors that a robot reports until it accepts an order.
+#[derive(Debug, Default)]
+pub struct ErrorBook {
+    errors: Vec<ErrorReport>,
+}
+
+impl ErrorBook {
+    /// Adds an error; one that is there already is moved to the end.
+    pub fn add(&mut self, error: ErrorReport) {
+        tracing::debug!("VDA 5050: {}: {}", error.error_type, error.error_description);
+        self.errors.retain(|known| *known != error);
+        self.errors.push(error);
+        if self.errors.len() > MAX_ERRORS {
+            self.errors.remove(0);
+        }
+    }
+
+    /// Adds an error in place of the others of its type.
+    pub fn replace(&mut self, error: ErrorReport) {
+        self.remove(&error.error_type.clone());
+        self.add(error);
+    }
+
+    /// Removes the errors of a type.
+    pub fn remove(&mut self, error_type: &str) {
+        self.errors.retain(|known| known.error_type != error_type);
+    }
+
+    /// Removes all errors.
+    pub fn clear(&mut self) {
+        self.errors.clear();
+    }
+
+    /// The errors, oldest first.
+    #[must_use]
+    pub fn all(&self) -> &[ErrorReport] {
+        &self.errors
+    }
+}

@@ -1,0 +1,16 @@
+//! Actions that are done at once.
+
+use super::header::Header;
+use super::order::Action;
+use serde::Deserialize;
+
+/// Actions that are done at once.
+#[derive(Debug, Clone, Deserialize)]
+pub struct InstantActions {
+    /// The header.
+    #[serde(flatten)]
+    pub header: Header,
+    /// The actions. Masters of version 1.1, and some of 2.0, name the field `instantActions`.
+    #[serde(alias = "instantActions")]
+    pub actions: Vec<Action>,
+}

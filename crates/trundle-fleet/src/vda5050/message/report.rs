@@ -1,0 +1,66 @@
+//! Errors as a master reads them.
+
+use serde::Serialize;
+
+/// An error in the state of a robot.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct ErrorReport {
+    /// One of the standard's words, or one of ours.
+    pub error_type: String,
+    /// What it refers to.
+    pub error_references: Vec<ErrorReference>,
+    /// In a sentence.
+    pub error_description: String,
+    /// What to do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_hint: Option<String>,
+    /// Whether the robot can go on.
+    pub error_level: ErrorLevel,
+}
+
+/// What an error refers to: the name of a field and its value.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct ErrorReference {
+    reference_key: String,
+    reference_value: String,
+}
+
+/// Whether the robot can go on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub enum ErrorLevel {
+    /// It can.
+    Warning,
+    /// A person must help.
+    Fatal,
+}
+
+impl ErrorReport {
+    /// An error after which the robot can go on.
+    pub fn warning(error_type: &str, description: impl Into<String>) -> Self {
+        Self {
+            error_type: error_type.to_owned(),
+            error_references: Vec::new(),
+            error_description: description.into(),
+            error_hint: None,
+            error_level: ErrorLevel::Warning,
+        }
+    }
+
+    /// The same with what it refers to.
+    #[must_use]
+    pub fn about(mut self, key: &str, value: impl ToString) -> Self {
+        let (reference_key, reference_value) = (key.to_owned(), value.to_string());
+        self.error_references.push(ErrorReference { reference_key, reference_value });
+        self
+    }
+
+    /// The same with what to do.
+    #[must_use]
+    pub fn hint(mut self, hint: impl Into<String>) -> Self {
+        self.error_hint = Some(hint.into());
+        self
+    }
+}

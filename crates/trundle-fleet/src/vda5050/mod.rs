@@ -1,0 +1,32 @@
+//! VDA 5050, version 2.1: a robot under a master control.
+//!
+//! [`Vehicle`] takes orders and instant actions and gives commands to the robot, one node at a time. It knows no network and no clock, so
+//! that its tests and the fuzzer need none. Source: VDA 5050, version 2.1, "Interface for the communication between automated guided
+//! vehicles (AGV) and a master control".
+//!
+//! | part | what it does |
+//! |---|---|
+//! | `message` | the messages |
+//! | `order_check` | whether a message is of the standard's form |
+//! | `order_decision` | whether an order is accepted |
+//! | `abilities` | what the robot can do, and what it must refuse |
+//! | `order_book` | what is left of an order, and the states of its actions |
+//! | `drive`, `node_action` | the drive to a node and what is done there |
+//! | `instant` | instant actions |
+//! | `state_message` | the state that a master reads |
+
+mod abilities;
+mod drive;
+mod errors;
+mod instant;
+pub(crate) mod limits;
+pub mod message;
+mod node_action;
+mod order_book;
+mod order_check;
+mod order_decision;
+mod state_message;
+mod vehicle;
+
+pub use state_message::{robot_position, velocity};
+pub use vehicle::Vehicle;
