@@ -8,8 +8,8 @@ use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 use trundle::app::{AppError, Progress, stop};
 use trundle::experiments::{
-    ExperimentReport, IndexRange, RunsRequest, barn, corridor, docking_station, fault_scenarios, missions,
-    mrpb, people, poses, real_time,
+    ExperimentReport, IndexRange, RunsRequest, barn, corridor, docking_station, fault_scenarios, look_alikes,
+    missions, mrpb, people, poses, real_time,
 };
 use trundle::io::OutputFolder;
 
@@ -34,6 +34,8 @@ pub enum Which {
     Faults(RunsArgs),
     /// Somebody steps into the robot's way a metre before it, one a run.
     People(RunsArgs),
+    /// Plain rooms that look alike from several poses, alone, with people, and carried away.
+    LookAlikes(RunsArgs),
     /// Drives onto a charging station by its infrared light, from a start for each seed.
     DockingStation(RunsArgs),
     /// The worlds of the BARN challenge, crossed at up to 2 m/s with a 2-D laser.
@@ -187,6 +189,7 @@ impl ExperimentArgs {
             Which::Obstacles(args)
             | Which::Faults(args)
             | Which::People(args)
+            | Which::LookAlikes(args)
             | Which::DockingStation(args) => &args.common,
             Which::House(args) => &args.runs.common,
             Which::Barn(args) => &args.common,
@@ -208,6 +211,7 @@ pub fn run(args: &ExperimentArgs) -> Result<Outcome, AppError> {
         }
         Which::Faults(args) => runs(args, fault_scenarios::run),
         Which::People(args) => runs(args, people::run),
+        Which::LookAlikes(args) => runs(args, look_alikes::run),
         Which::DockingStation(args) => runs(args, docking_station::run),
         Which::Barn(args) => run_barn(args),
         Which::Mrpb(args) => run_mrpb(args),

@@ -35,6 +35,7 @@ mod odometry;
 mod odometry_config;
 mod odometry_noise;
 mod planar;
+mod pose_monitor;
 mod smoother;
 
 pub use calibration::batch::error::CalibrationError;
@@ -57,6 +58,8 @@ pub use odometry::state::OdometryState;
 pub use odometry::wheel_odometry::WheelOdometry;
 pub use odometry_config::OdometryConfig;
 pub use planar::planar_covariance;
+pub use pose_monitor::config::PoseMonitorConfig;
+pub use pose_monitor::monitor::{PoseDecision, PoseMonitor, PoseSource, PoseState, PoseStatus};
 pub use smoother::calibration::{SmootherCalibration, WithSigma};
 pub use smoother::config::{SmootherConfig, SmootherLimits, SmootherNoise, WindowConfig};
 pub use smoother::fixed_lag::Smoother;

@@ -22,6 +22,7 @@ mod experiment_report;
 pub mod fault_scenarios;
 mod index_range;
 mod laser_run;
+pub mod look_alikes;
 pub mod missions;
 pub mod mrpb;
 pub mod people;

@@ -40,7 +40,7 @@ pub use kobuki::{KobukiConfig, TrueWheels};
 pub use laser::LaserConfig;
 pub use materials::{Finish, Paint};
 pub use people::Person;
-pub use scenes::Scene;
+pub use scenes::{Scene, plain_room};
 pub use simulator::{CameraAside, Shot, SimError, Simulator};
 pub use world::{
     Cuboid, Cylinder, HeightBand, Hit, Lamp, Lights, Material, Mesh, Mover, Obstacles, SceneSnapshot, Shape,

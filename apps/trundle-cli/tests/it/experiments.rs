@@ -31,6 +31,18 @@ fn a_course_of_mrpb_is_driven() {
 }
 
 #[test]
+fn a_plain_room_without_people_has_no_false_arrival() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    let runs = ["--seeds", "1", "--only", "alone, seed 1", "--out", text(&out)];
+    let output = trundle(&[&["experiment", "look-alikes"], &runs[..]].concat());
+    let found = summary(&out);
+    assert!(output.status.success(), "{found}");
+    assert_eq!((found["false_arrivals"].as_u64(), found["jumps"].as_u64()), (Some(0), Some(0)));
+    assert_eq!(found["arrivals"].as_u64(), Some(3), "{found}");
+}
+
+#[test]
 fn what_the_data_does_not_have_is_said() {
     assert!(refusal(&["experiment", "barn", "--data", "/nonexistent"]).contains("worlds.csv"));
     assert!(refusal(&["experiment", "mrpb", "--data", "/nonexistent"]).contains("start_goal.csv"));
