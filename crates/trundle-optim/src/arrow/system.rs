@@ -13,8 +13,8 @@ use nalgebra::{SMatrix, SVector};
 /// let mut system = ArrowSystem::<2, 1>::with_capacity(2);
 /// system.reset(2);
 /// for i in 0..2 {
-///     system.add_diagonal(i, &(Matrix2::identity() * 2.0));
-///     system.add_gradient(i, &Vector2::repeat(2.0));
+///     system.add_diagonal(i, &(Matrix2::identity() * 4.0));
+///     system.add_gradient(i, &Vector2::repeat(4.0));
 /// }
 /// system.add_border(&SMatrix::from_element(1.0), &SMatrix::from_element(3.0));
 /// assert!(system.factorise());
