@@ -5,6 +5,7 @@
 
 mod annotation_edit;
 mod annotation_store;
+mod annotations;
 mod link;
 mod map_file;
 mod perception_feed;

@@ -1,0 +1,101 @@
+//! Zones and named places as front ends read and change them.
+
+use super::annotation_edit::AnnotationEdit;
+use super::link::{Operator, OperatorError};
+use std::sync::Arc;
+use trundle_core::{MapAnnotations, Pose2};
+use trundle_io::{annotations_text, replace_file};
+use trundle_runtime::OperatorCommand;
+
+impl Operator {
+    /// Zones and named places of the map. Those that are the same are the same allocation.
+    #[must_use]
+    pub fn annotations(&self) -> Arc<MapAnnotations> {
+        Arc::clone(&self.annotation_store().newest)
+    }
+
+    /// Changes zones or places: sends them to the robot, and writes the file that keeps them.
+    ///
+    /// # Errors
+    /// When the change cannot be accepted, the run takes no command, or the file cannot be written. In the last case the change counts
+    /// until the run ends.
+    pub fn edit_annotations(&self, edit: &AnnotationEdit) -> Result<(), OperatorError> {
+        // The file is written without the lock of the store, for which the run may wait.
+        let _one_at_a_time = self.editing();
+        let (text, file) = {
+            let mut store = self.annotation_store();
+            let next = edit.applied_to(&store.newest)?;
+            self.send(OperatorCommand::Annotate(next.clone()))?;
+            store.waiting += 1;
+            store.newest = Arc::new(next);
+            (annotations_text(&store.newest), store.file.clone())
+        };
+        let kept = file.map_or(Ok(()), |file| replace_file(&file, text.as_bytes()));
+        kept.map_err(|error| OperatorError::NotKept(error.to_string()))
+    }
+
+    /// The goal pose of the place of this name, map frame.
+    ///
+    /// # Errors
+    /// When there is no such place; names those that there are.
+    pub fn goal_of_place(&self, name: &str) -> Result<Pose2, OperatorError> {
+        let annotations = self.annotations();
+        annotations.pose_of(name).ok_or_else(|| {
+            let known: Vec<&str> = annotations.places.iter().map(|place| place.name.as_str()).collect();
+            OperatorError::NoPlace { name: name.to_owned(), known: known.join(", ") }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::operator_link;
+    use super::*;
+    use trundle_core::NamedPlace;
+    use trundle_io::read_annotations;
+
+    fn desk() -> NamedPlace {
+        NamedPlace { id: 0, name: "desk".to_owned(), pose: Pose2::new(1.0, 2.0, 0.5) }
+    }
+
+    #[test]
+    fn a_change_reaches_the_robot_and_the_file_and_two_changes_at_once_are_both_kept() {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("zones.geojson");
+        let (operator, link) = operator_link();
+        operator.annotation_store().file = Some(file.clone());
+        operator.edit_annotations(&AnnotationEdit::SetPlace(desk())).unwrap();
+        let door = NamedPlace { name: "door".to_owned(), ..desk() };
+        operator.edit_annotations(&AnnotationEdit::SetPlace(door)).unwrap();
+        assert_eq!(read_annotations(&file).unwrap().places.len(), 2);
+        assert_eq!(operator.goal_of_place("door").unwrap(), Pose2::new(1.0, 2.0, 0.5));
+        link.next_request();
+        let Some(OperatorCommand::Annotate(sent)) = link.next_request().map(|request| request.command) else {
+            panic!("a command")
+        };
+        assert_eq!(sent, *operator.annotations());
+    }
+
+    #[test]
+    fn an_unknown_place_and_a_wrong_change_are_refused_and_change_nothing() {
+        let (operator, link) = operator_link();
+        operator.edit_annotations(&AnnotationEdit::SetPlace(desk())).unwrap();
+        let refusal = operator.goal_of_place("Desk").unwrap_err().to_string();
+        assert_eq!(refusal, "no place 'Desk'; there are: desk");
+        assert!(operator.edit_annotations(&AnnotationEdit::SetPlace(desk())).is_err());
+        drop(link);
+        assert!(matches!(
+            operator.edit_annotations(&AnnotationEdit::RemovePlace(1)),
+            Err(OperatorError::Over)
+        ));
+        assert_eq!(operator.annotations().places.len(), 1);
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_written_is_named() {
+        let (operator, _link) = operator_link();
+        operator.annotation_store().file = Some("/proc/nowhere/zones.geojson".into());
+        let error = operator.edit_annotations(&AnnotationEdit::SetPlace(desk())).unwrap_err().to_string();
+        assert!(error.contains("until the run ends") && error.contains("/proc/nowhere"), "{error}");
+    }
+}
