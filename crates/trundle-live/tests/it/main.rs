@@ -5,6 +5,4 @@ mod browser;
 mod guard;
 mod live_run;
 mod steering;
-#[cfg(feature = "tls")]
-mod tls;
 mod viewers;
