@@ -5,7 +5,7 @@ use clap::Args;
 use std::path::PathBuf;
 use trundle::app::operator::{FrontEnd, OperatorLink, operator_link};
 use trundle::app::{AppError, Progress, RunSetup};
-use trundle::live::{LiveAddress, LiveOptions, LivePage, RunFacts, TlsIdentity, Tokens};
+use trundle::live::{LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
 
 /// The live page of a run.
 #[derive(Debug, Args)]
@@ -21,12 +21,6 @@ pub struct LiveArgs {
     /// Keep the tokens of the links in FILE, so that links stay valid over restarts.
     #[arg(long, value_name = "FILE", requires = "live")]
     pub live_tokens: Option<PathBuf>,
-    /// Encrypt the live page by this certificate: PEM, its chain behind it.
-    #[arg(long, value_name = "FILE", requires_all = ["live", "live_tls_key"], hide_short_help = true)]
-    pub live_tls_cert: Option<PathBuf>,
-    /// The private key of the certificate: PEM.
-    #[arg(long, value_name = "FILE", requires = "live_tls_cert", hide_short_help = true)]
-    pub live_tls_key: Option<PathBuf>,
     /// Home and fleet.
     #[cfg(feature = "mqtt")]
     #[command(flatten)]
@@ -89,9 +83,7 @@ impl LiveArgs {
     ) -> Result<Option<LivePage>, AppError> {
         let Some(address) = self.live else { return Ok(None) };
         let tokens = self.live_tokens.as_deref().map_or_else(Tokens::random, Tokens::of_file)?;
-        let files = self.live_tls_cert.as_deref().zip(self.live_tls_key.as_deref());
-        let tls = files.map(|(certificate, key)| TlsIdentity::read(certificate, key)).transpose()?;
-        let options = LiveOptions { address, tokens, is_steered, tls };
+        let options = LiveOptions { address, tokens, is_steered };
         let page = LivePage::start(options, link.operator(), RunFacts::of(setup)?)?;
         console::print(&page.announcement());
         Ok(Some(page))

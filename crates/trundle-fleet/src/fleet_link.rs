@@ -1,6 +1,6 @@
 //! The link of a robot to a broker, in a thread of its own.
 
-use crate::worker::Worker;
+use crate::worker::FleetWorker;
 use crate::{BrokerAddress, FleetError, FleetOptions, NoPlaces, Password, Places, RobotFacts, RobotName};
 use std::path::Path;
 use std::sync::Arc;
@@ -32,7 +32,7 @@ impl FleetLink {
             return Err(FleetError::PasswordWithoutUser);
         }
         let is_over = Arc::new(AtomicBool::new(false));
-        let worker = Worker::new(&options, operator, facts, places);
+        let worker = FleetWorker::new(&options, operator, facts, places);
         let ends = Arc::clone(&is_over);
         let work = move || worker.run(|| ends.load(Ordering::Relaxed));
         let thread = std::thread::Builder::new().name("fleet".to_owned()).spawn(work)?;

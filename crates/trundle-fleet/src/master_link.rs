@@ -2,13 +2,13 @@
 
 use crate::broker::Publication;
 use crate::robot_commands::RobotCommands;
-use crate::robot_view::RobotView;
+use crate::robot_glance::RobotGlance;
 use crate::vda5050::limits::{MIN_STATE_PERIOD, MOVING_STATE_PERIOD, STATE_PERIOD, VISUALIZATION_PERIOD};
 use crate::vda5050::message::{
-    ConnectionMessage, ConnectionState, Factsheet, HeaderCounter, Identity, State, Topic, Visualization,
+    ConnectionMessage, ConnectionState, Factsheet, HeaderCounter, Identity, Topic, VehicleState,
+    Visualization,
 };
-use crate::vda5050::{Vehicle, robot_position, velocity};
-use crate::worker::json_publication;
+use crate::vda5050::{Vehicle, robot_position, vehicle_state, velocity};
 use crate::{FleetOptions, RobotFacts};
 use std::cell::RefCell;
 use std::time::Duration;
@@ -21,7 +21,7 @@ pub struct MasterLink {
     map_id: String,
     headers: RefCell<HeaderCounter>,
     /// The last state that was sent.
-    sent: Option<State>,
+    sent: Option<VehicleState>,
     /// Time since the last state and since the last position.
     since_state: Duration,
     since_position: Duration,
@@ -67,7 +67,7 @@ impl MasterLink {
     #[must_use]
     pub fn connection(&self, connection_state: ConnectionState) -> Publication {
         let header = self.headers.borrow_mut().header(Topic::Connection);
-        json_publication(self.connection_topic(), &ConnectionMessage { header, connection_state }, true)
+        Publication::json(self.connection_topic(), &ConnectionMessage { header, connection_state }, true)
     }
 
     /// The broker accepted the robot: all is sent anew.
@@ -81,7 +81,7 @@ impl MasterLink {
         &mut self,
         topic: &str,
         payload: &[u8],
-        view: &RobotView,
+        view: &RobotGlance,
         robot: &mut dyn RobotCommands,
     ) -> bool {
         if topic == self.topic(Topic::Order) {
@@ -95,12 +95,12 @@ impl MasterLink {
     }
 
     /// Goes on with the order, also without a broker.
-    pub fn step(&mut self, passed: Duration, view: &RobotView, robot: &mut dyn RobotCommands) {
+    pub fn step(&mut self, passed: Duration, view: &RobotGlance, robot: &mut dyn RobotCommands) {
         self.vehicle.step(passed, view, robot);
     }
 
     /// The messages that are due.
-    pub fn publications(&mut self, passed: Duration, view: &RobotView) -> Vec<Publication> {
+    pub fn publications(&mut self, passed: Duration, view: &RobotGlance) -> Vec<Publication> {
         self.since_state += passed;
         self.since_position += passed;
         let is_new = std::mem::take(&mut self.is_new);
@@ -110,7 +110,7 @@ impl MasterLink {
         }
         if self.vehicle.take_factsheet_wish() || is_new {
             let header = self.headers.borrow_mut().header(Topic::Factsheet);
-            due.push(json_publication(
+            due.push(Publication::json(
                 self.topic(Topic::Factsheet),
                 &Factsheet::of(header, &self.facts),
                 true,
@@ -122,29 +122,29 @@ impl MasterLink {
     }
 
     /// The state, where it changed, or was sent long ago.
-    fn due_state(&mut self, view: &RobotView) -> Option<Publication> {
+    fn due_state(&mut self, view: &RobotGlance) -> Option<Publication> {
         let is_wanted = self.vehicle.take_state_wish();
         if self.sent.is_some() && self.since_state < MIN_STATE_PERIOD && !is_wanted {
             return None;
         }
-        let is_busy = |state: &State| state.driving || !state.node_states.is_empty();
-        let period = |state: &State| if is_busy(state) { MOVING_STATE_PERIOD } else { STATE_PERIOD };
+        let is_busy = |state: &VehicleState| state.driving || !state.order.node_states.is_empty();
+        let period = |state: &VehicleState| if is_busy(state) { MOVING_STATE_PERIOD } else { STATE_PERIOD };
         let is_same = self.sent.as_ref().is_some_and(|sent| {
-            let state = self.vehicle.state(sent.header.clone(), view);
+            let state = vehicle_state(&self.vehicle, sent.header.clone(), view);
             state.is_like(sent) && self.since_state < period(&state)
         });
         if is_same && !is_wanted {
             return None;
         }
         let header = self.headers.borrow_mut().header(Topic::State);
-        let state = self.vehicle.state(header, view);
-        let publication = json_publication(self.topic(Topic::State), &state, false);
+        let state = vehicle_state(&self.vehicle, header, view);
+        let publication = Publication::json(self.topic(Topic::State), &state, false);
         (self.sent, self.since_state) = (Some(state), Duration::ZERO);
         Some(publication)
     }
 
     /// The position, often while the robot moves.
-    fn due_position(&mut self, view: &RobotView) -> Option<Publication> {
+    fn due_position(&mut self, view: &RobotGlance) -> Option<Publication> {
         let is_driving = self.sent.as_ref().is_some_and(|state| state.driving);
         let period = if is_driving { VISUALIZATION_PERIOD } else { STATE_PERIOD };
         if self.since_position < period {
@@ -154,6 +154,6 @@ impl MasterLink {
         let header = self.headers.borrow_mut().header(Topic::Visualization);
         let (agv_position, velocity) = (robot_position(view, &self.map_id), velocity(view));
         let message = Visualization { header, agv_position, velocity };
-        Some(json_publication(self.topic(Topic::Visualization), &message, false))
+        Some(Publication::json(self.topic(Topic::Visualization), &message, false))
     }
 }

@@ -1,10 +1,10 @@
 //! The thread that brings broker, home and master together.
 
-use crate::broker::{Broker, BrokerEvent, Publication, SessionOptions};
+use crate::broker::{Broker, BrokerEvent, SessionOptions};
 use crate::home::Home;
 use crate::master_link::MasterLink;
 use crate::vda5050::message::ConnectionState;
-use crate::{FleetOptions, Places, RobotFacts, RobotView};
+use crate::{FleetOptions, Places, RobotFacts, RobotGlance};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_app::operator::{Operator, RunView};
@@ -16,7 +16,7 @@ const LOOK_PERIOD: Duration = Duration::from_millis(50);
 const MAX_MESSAGES_OF_PERIOD: usize = 200;
 
 /// Brings broker, home and master together.
-pub struct Worker {
+pub struct FleetWorker {
     operator: Operator,
     broker: Broker,
     home: Home,
@@ -27,7 +27,7 @@ pub struct Worker {
     is_reported: bool,
 }
 
-impl Worker {
+impl FleetWorker {
     /// The worker of a robot.
     pub fn new(
         options: &FleetOptions,
@@ -98,7 +98,7 @@ impl Worker {
         let Some(view) = self.operator.glance() else {
             return tracing::debug!("MQTT: a message before the first view");
         };
-        let view = RobotView::from(&*view);
+        let view = RobotGlance::from(&*view);
         if !self.master.on_message(topic, payload, &view, &mut self.operator) {
             self.home.on_message(topic, payload, &view, &mut self.operator);
         }
@@ -106,7 +106,7 @@ impl Worker {
 
     fn step(&mut self, passed: Duration) {
         let Some(run) = self.view() else { return };
-        let view = RobotView::from(&*run);
+        let view = RobotGlance::from(&*run);
         self.master.step(passed, &view, &mut self.operator);
         if !self.is_joined {
             return;
@@ -127,13 +127,4 @@ impl Worker {
     fn view(&self) -> Option<Arc<RunView>> {
         if self.is_joined && self.home.wants_map() { self.operator.view() } else { self.operator.glance() }
     }
-}
-
-/// A message with a payload of JSON. A value that cannot be written is a fault of this crate, and is logged.
-pub fn json_publication(topic: String, value: &impl serde::Serialize, is_retained: bool) -> Publication {
-    let payload = serde_json::to_vec(value).unwrap_or_else(|error| {
-        tracing::error!("MQTT: {topic}: {error}");
-        b"{}".to_vec()
-    });
-    Publication { topic, payload, is_retained }
 }

@@ -22,14 +22,6 @@ pub enum LiveError {
     /// The system refuses a thread or random bytes.
     #[error("the live page cannot start: {0}")]
     System(String),
-    /// A certificate or its key cannot be used.
-    #[error("{}: {problem}", file.display())]
-    Certificate {
-        /// The file.
-        file: PathBuf,
-        /// What is wrong with it, and what is expected.
-        problem: String,
-    },
     /// A file of tokens cannot be used.
     #[error("token file {}: {problem}", file.display())]
     TokenFile {

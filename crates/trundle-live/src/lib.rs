@@ -9,7 +9,6 @@
 //! | `http` | the page's files, the checks of Host and Origin, limits of connections |
 //! | `viewer` | one browser: what it is sent, what it may ask |
 //! | `wire` | the messages |
-//! | `tls` | encryption by a given certificate |
 //! | `steering` | who holds the wheel; from a request to commands of the robot |
 //!
 //! The source of the page itself is `page/` (TypeScript); `assets/` holds it as built.
@@ -25,7 +24,6 @@ mod roster;
 mod run_facts;
 mod server;
 mod steering;
-mod tls;
 mod viewer;
 mod wire;
 
@@ -35,5 +33,4 @@ pub use error::LiveError;
 pub use options::LiveOptions;
 pub use run_facts::RunFacts;
 pub use server::LivePage;
-pub use tls::TlsIdentity;
 pub use wire::WIRE_VERSION;

@@ -1,6 +1,6 @@
 //! How the live page is served.
 
-use crate::{LiveAddress, TlsIdentity, Tokens};
+use crate::{LiveAddress, Tokens};
 
 /// How the live page is served.
 #[derive(Debug, Clone)]
@@ -11,6 +11,4 @@ pub struct LiveOptions {
     pub tokens: Tokens,
     /// Whether the run takes commands; a replay takes none.
     pub is_steered: bool,
-    /// The certificate with which the page is encrypted.
-    pub tls: Option<TlsIdentity>,
 }

@@ -20,8 +20,6 @@ pub struct PageState {
     pub is_steered: bool,
     /// Whether other machines can reach the page.
     pub is_shared: bool,
-    /// Whether the page is encrypted.
-    pub is_encrypted: bool,
     /// What the run tells once.
     pub facts: RunFacts,
     /// Sends commands.
@@ -40,7 +38,6 @@ impl PageState {
             tokens: options.tokens,
             is_steered: options.is_steered,
             is_shared: options.address.is_shared(),
-            is_encrypted: options.tls.is_some(),
             facts,
             roster: Mutex::default(),
             tiles: Mutex::default(),

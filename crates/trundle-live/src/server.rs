@@ -5,7 +5,7 @@ use crate::history::HISTORY_PERIOD;
 use crate::http;
 use crate::page_state::PageState;
 use crate::run_facts::RunFacts;
-use crate::{LiveError, LiveOptions, TlsIdentity};
+use crate::{LiveError, LiveOptions};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::sync::Arc;
 use std::thread::JoinHandle;
@@ -21,7 +21,6 @@ const PAGE_NICENESS: i32 = 10;
 pub struct LivePage {
     address: SocketAddr,
     is_shared: bool,
-    is_encrypted: bool,
     drive_token: Option<String>,
     view_token: String,
     end: Option<oneshot::Sender<()>>,
@@ -37,8 +36,7 @@ impl LivePage {
         let listener = bind(&options)?;
         let address = listener.local_addr().map_err(system)?;
         listener.set_nonblocking(true).map_err(system)?;
-        let (is_shared, tls) = (options.address.is_shared(), options.tls.clone());
-        let is_encrypted = tls.is_some();
+        let is_shared = options.address.is_shared();
         let drive_token = options.is_steered.then(|| options.tokens.of(Access::Drive).to_owned());
         let view_token = options.tokens.of(Access::View).to_owned();
         let state = Arc::new(PageState::new(options, operator, facts));
@@ -47,18 +45,10 @@ impl LivePage {
         let work = move || {
             // Where the system refuses the niceness, the page is served all the same.
             _ = ThreadPlacement { nice: PAGE_NICENESS, ..ThreadPlacement::default() }.take();
-            runtime.block_on(serve(listener, state, tls, ended));
+            runtime.block_on(serve(listener, state, ended));
         };
         let thread = std::thread::Builder::new().name("live-page".to_owned()).spawn(work).map_err(system)?;
-        Ok(Self {
-            address,
-            is_shared,
-            is_encrypted,
-            drive_token,
-            view_token,
-            end: Some(end),
-            thread: Some(thread),
-        })
+        Ok(Self { address, is_shared, drive_token, view_token, end: Some(end), thread: Some(thread) })
     }
 
     /// Where the page is served.
@@ -78,8 +68,7 @@ impl LivePage {
         if address.ip().is_unspecified() {
             address.set_ip(own_address().unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)));
         }
-        let scheme = if self.is_encrypted { "https" } else { "http" };
-        Some(format!("{scheme}://{address}/#{token}"))
+        Some(format!("http://{address}/#{token}"))
     }
 
     /// What a person must know: the links, and a warning where other machines can reach the page.
@@ -92,7 +81,7 @@ impl LivePage {
         if let Some(link) = self.link(Access::View) {
             lines.push(format!("  to look only: {link}"));
         }
-        if self.is_shared && !self.is_encrypted {
+        if self.is_shared {
             lines.push(
                 "warning: other machines can reach the live page, and its network is not encrypted: who reads the link can drive the robot"
                     .to_owned(),
@@ -112,19 +101,14 @@ impl Drop for LivePage {
 }
 
 /// Serves until the page is dropped.
-async fn serve(
-    listener: TcpListener,
-    state: Arc<PageState>,
-    tls: Option<TlsIdentity>,
-    ended: oneshot::Receiver<()>,
-) {
+async fn serve(listener: TcpListener, state: Arc<PageState>, ended: oneshot::Receiver<()>) {
     let listener = match tokio::net::TcpListener::from_std(listener) {
         Ok(listener) => listener,
         Err(error) => return tracing::error!("the live page cannot be served: {error}"),
     };
     let router = http::router(Arc::clone(&state));
     tokio::select! {
-        () = http::serve(listener, router, tls) => {}
+        () = http::serve(listener, router) => {}
         () = keep_history(&state) => {}
         _ = ended => {}
     }

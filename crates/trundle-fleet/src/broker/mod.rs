@@ -1,6 +1,7 @@
 //! The connection to a broker.
 
 mod back_off;
+mod event;
 mod reader;
 mod session;
 
@@ -8,35 +9,9 @@ use back_off::BackOff;
 use session::Session;
 use std::time::{Duration, Instant};
 
+pub use event::{BrokerEvent, Publication};
 pub(crate) use reader::LINK_NICENESS;
 pub use session::SessionOptions;
-
-/// A message to a broker.
-#[derive(Debug, Clone)]
-pub struct Publication {
-    /// Where.
-    pub topic: String,
-    /// What.
-    pub payload: Vec<u8>,
-    /// Whether the broker keeps it for those who join later.
-    pub is_retained: bool,
-}
-
-/// What a connection reports.
-#[derive(Debug, Clone, PartialEq)]
-pub enum BrokerEvent {
-    /// The broker accepted the robot.
-    Joined,
-    /// A message on a topic that the robot listens to.
-    Message {
-        /// Where.
-        topic: String,
-        /// What.
-        payload: Vec<u8>,
-    },
-    /// The connection ended, or could not begin.
-    Lost(String),
-}
 
 /// A connection that begins again when it ends.
 pub struct Broker {

@@ -1,6 +1,6 @@
 //! The thread that carries a session.
 
-use super::BrokerEvent;
+use super::event::BrokerEvent;
 use rumqttc::{Connection, Event, Packet};
 use std::sync::mpsc::SyncSender;
 use trundle_runtime::real_time::ThreadPlacement;

@@ -1,7 +1,7 @@
 //! One session with a broker: from the connection to its end.
 
+use super::event::{BrokerEvent, Publication};
 use super::reader::read;
-use super::{BrokerEvent, Publication};
 use crate::{BrokerAddress, Password};
 use rumqttc::{Client, LastWill, MqttOptions, QoS, SubscribeFilter};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};

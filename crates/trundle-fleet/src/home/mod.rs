@@ -10,8 +10,7 @@ pub use command::{HomeCommand, read_home_command};
 
 use crate::broker::Publication;
 use crate::robot_commands::RobotCommands;
-use crate::robot_view::RobotView;
-use crate::worker::json_publication;
+use crate::robot_glance::RobotGlance;
 use crate::{Places, RobotFacts, RobotName};
 use discovery::{DiscoveryTopics, discovery};
 use home_state::HomeState;
@@ -82,7 +81,7 @@ impl Home {
         &mut self,
         topic: &str,
         payload: &[u8],
-        view: &RobotView,
+        view: &RobotGlance,
         robot: &mut dyn RobotCommands,
     ) {
         if topic != self.topics.command {
@@ -94,14 +93,14 @@ impl Home {
             Ok(text) => json!({ "accepted": true, "text": text }),
             Err(text) => json!({ "accepted": false, "text": text }),
         };
-        self.replies.push(json_publication(self.topics.reply.clone(), &reply, false));
+        self.replies.push(Publication::json(self.topics.reply.clone(), &reply, false));
     }
 
     /// The messages that are due.
     pub fn publications(
         &mut self,
         passed: Duration,
-        view: &RobotView,
+        view: &RobotGlance,
         map: Option<&MapView>,
     ) -> Vec<Publication> {
         self.since_state += passed;
@@ -109,7 +108,7 @@ impl Home {
         let places = self.places.names();
         if std::mem::take(&mut self.is_new) || places != self.known_places {
             let discovered = discovery(&self.name, &self.facts, &self.topics, &places);
-            due.push(json_publication(self.topics.discovery.clone(), &discovered, true));
+            due.push(Publication::json(self.topics.discovery.clone(), &discovered, true));
             self.known_places = places;
         }
         due.extend(self.due_state(view));
@@ -122,7 +121,7 @@ impl Home {
         due
     }
 
-    fn due_state(&mut self, view: &RobotView) -> Option<Publication> {
+    fn due_state(&mut self, view: &RobotGlance) -> Option<Publication> {
         let state = HomeState::of(view);
         let is_due = match &self.sent {
             None => true,
@@ -131,7 +130,7 @@ impl Home {
         if !is_due {
             return None;
         }
-        let publication = json_publication(self.topics.state.clone(), &state, true);
+        let publication = Publication::json(self.topics.state.clone(), &state, true);
         (self.sent, self.since_state) = (Some(state), Duration::ZERO);
         Some(publication)
     }

@@ -3,7 +3,7 @@
 use super::command::HomeCommand;
 use crate::Places;
 use crate::robot_commands::RobotCommands;
-use crate::robot_view::RobotView;
+use crate::robot_glance::RobotGlance;
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task};
 
 /// Obeys a command; in words what the robot does now.
@@ -12,7 +12,7 @@ use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task};
 /// Why the robot cannot obey.
 pub fn obey(
     command: &HomeCommand,
-    view: &RobotView,
+    view: &RobotGlance,
     places: &dyn Places,
     robot: &mut dyn RobotCommands,
 ) -> Result<String, String> {
@@ -37,7 +37,7 @@ pub fn obey(
     Ok(text)
 }
 
-fn task_of(command: &HomeCommand, view: &RobotView, places: &dyn Places) -> Result<Task, String> {
+fn task_of(command: &HomeCommand, view: &RobotGlance, places: &dyn Places) -> Result<Task, String> {
     Ok(match command {
         HomeCommand::Return => Task::Return,
         HomeCommand::Dock => Task::Dock,

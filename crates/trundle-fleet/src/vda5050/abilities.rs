@@ -1,6 +1,6 @@
 //! What a robot can do for a master, and what it must refuse.
 
-use super::message::{Action, Edge, ErrorReport, Node, Order};
+use super::message::{Action, ErrorReport, Order, OrderEdge, OrderNode};
 use crate::robot_facts::RobotFacts;
 
 /// An action that the robot can do.
@@ -84,7 +84,7 @@ fn refusal(description: String) -> ErrorReport {
     ErrorReport::warning("orderError", description)
 }
 
-fn require_able_at(node: &Node, map_id: &str) -> Result<(), ErrorReport> {
+fn require_able_at(node: &OrderNode, map_id: &str) -> Result<(), ErrorReport> {
     let id = &node.node_id;
     let about = |error: ErrorReport| error.about("nodeId", id);
     let Some(position) = &node.node_position else {
@@ -119,7 +119,7 @@ pub fn wait_s(action: &Action) -> Option<f64> {
     action.number("duration").filter(|time| (0.0..=MAX_WAIT_S).contains(time))
 }
 
-fn require_able_on(edge: &Edge, facts: &RobotFacts) -> Result<(), ErrorReport> {
+fn require_able_on(edge: &OrderEdge, facts: &RobotFacts) -> Result<(), ErrorReport> {
     let id = &edge.edge_id;
     let refuse = |field: &str, text: String| {
         Err(refusal(format!("edge {id}: {text}")).about("edgeId", id).about("field", field))
@@ -145,14 +145,15 @@ fn require_able_on(edge: &Edge, facts: &RobotFacts) -> Result<(), ErrorReport> {
     }
 }
 
-fn unusable_field(edge: &Edge) -> Option<&'static str> {
+fn unusable_field(edge: &OrderEdge) -> Option<&'static str> {
+    let fields = &edge.unusable;
     let given = [
-        edge.trajectory,
-        edge.orientation,
-        edge.direction,
-        edge.corridor,
-        edge.max_rotation_speed,
-        edge.min_height,
+        fields.trajectory,
+        fields.orientation,
+        fields.direction,
+        fields.corridor,
+        fields.max_rotation_speed,
+        fields.min_height,
     ];
     UNUSABLE_EDGE_FIELDS.into_iter().zip(given).find(|(_, given)| given.is_some()).map(|(field, _)| field)
 }

@@ -1,8 +1,8 @@
 //! The drive to a node.
 
-use super::message::Node;
+use super::message::OrderNode;
 use crate::robot_commands::RobotCommands;
-use crate::robot_view::RobotView;
+use crate::robot_glance::RobotGlance;
 use std::time::Duration;
 use trundle_core::Pose2;
 use trundle_runtime::{Mission, OperatorCommand, Task, TaskEnd};
@@ -35,7 +35,7 @@ impl Drive {
     ///
     /// # Errors
     /// When the robot takes no command.
-    pub fn begin(node: &Node, pose: Pose2, robot: &mut dyn RobotCommands) -> Result<Self, String> {
+    pub fn begin(node: &OrderNode, pose: Pose2, robot: &mut dyn RobotCommands) -> Result<Self, String> {
         let goal = goal_of(node, pose).ok_or_else(|| format!("node {} has no position", node.node_id))?;
         let mission = Mission::new(vec![Task::Go(goal)]).map_err(|error| error.to_string())?;
         let mission = robot.send(OperatorCommand::Begin(mission))?;
@@ -55,7 +55,7 @@ impl Drive {
     }
 
     /// Looks how far the drive is.
-    pub fn step(&mut self, passed: Duration, view: &RobotView) -> DriveEnd {
+    pub fn step(&mut self, passed: Duration, view: &RobotGlance) -> DriveEnd {
         if let Some(since) = &mut self.failed {
             *since += passed;
             self.is_due = *since >= RETRY_PERIOD;
@@ -76,7 +76,7 @@ impl Drive {
 }
 
 /// The pose of a node. Without a heading the robot keeps the one in which it comes from `pose`.
-fn goal_of(node: &Node, pose: Pose2) -> Option<Pose2> {
+fn goal_of(node: &OrderNode, pose: Pose2) -> Option<Pose2> {
     let position = node.node_position.as_ref()?;
     let (dx, dy) = (position.x - pose.x, position.y - pose.y);
     let heading = if dx.hypot(dy) > f64::EPSILON { dy.atan2(dx) } else { pose.theta };

@@ -28,5 +28,5 @@ mod order_decision;
 mod state_message;
 mod vehicle;
 
-pub use state_message::{robot_position, velocity};
+pub use state_message::{robot_position, vehicle_state, velocity};
 pub use vehicle::Vehicle;

@@ -3,7 +3,7 @@
 use super::abilities::wait_s;
 use super::message::Action;
 use crate::robot_commands::RobotCommands;
-use crate::robot_view::RobotView;
+use crate::robot_glance::RobotGlance;
 use std::time::Duration;
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task, TaskEnd};
 
@@ -67,7 +67,7 @@ impl NodeAction {
     }
 
     /// Goes on with the action, `passed` after the last step. A pause stops its time.
-    pub fn step(&mut self, passed: Duration, view: &RobotView) -> ActionEnd {
+    pub fn step(&mut self, passed: Duration, view: &RobotGlance) -> ActionEnd {
         match &mut self.work {
             Work::Nothing => ActionEnd::Done,
             Work::Wait(left) => {

@@ -1,6 +1,6 @@
 //! The present order: what is left of it, and the states of its actions.
 
-use super::message::{Action, ActionState, ActionStatus, Edge, Node, Order};
+use super::message::{Action, ActionState, ActionStatus, Order, OrderEdge, OrderNode};
 use std::collections::VecDeque;
 
 /// Largest number of ended instant actions that are kept. Source: ours.
@@ -12,8 +12,8 @@ pub struct OrderBook {
     order_id: String,
     update_id: u32,
     last_node: Option<(String, u32)>,
-    nodes: VecDeque<Node>,
-    edges: VecDeque<Edge>,
+    nodes: VecDeque<OrderNode>,
+    edges: VecDeque<OrderEdge>,
     /// Actions of the last node that are not begun.
     at_node: VecDeque<Action>,
     actions: Vec<ActionState>,
@@ -41,13 +41,13 @@ impl OrderBook {
 
     /// Nodes that are still to be reached, the horizon's included.
     #[must_use]
-    pub fn nodes(&self) -> &VecDeque<Node> {
+    pub fn nodes(&self) -> &VecDeque<OrderNode> {
         &self.nodes
     }
 
     /// Edges that are still to be driven.
     #[must_use]
-    pub fn edges(&self) -> &VecDeque<Edge> {
+    pub fn edges(&self) -> &VecDeque<OrderEdge> {
         &self.edges
     }
 
@@ -64,7 +64,7 @@ impl OrderBook {
 
     /// The next node, where it may be driven to, and the edge that leads there.
     #[must_use]
-    pub fn next_stop(&self) -> Option<(&Node, Option<&Edge>)> {
+    pub fn next_stop(&self) -> Option<(&OrderNode, Option<&OrderEdge>)> {
         let node = self.nodes.front().filter(|node| node.released)?;
         Some((node, self.edges.front().filter(|edge| edge.sequence_id < node.sequence_id)))
     }
@@ -114,7 +114,7 @@ impl OrderBook {
     }
 
     /// Actions of an update's first node that are new come after those that the node has.
-    fn stitch(&mut self, stitch: Node) {
+    fn stitch(&mut self, stitch: OrderNode) {
         match self.nodes.back_mut() {
             Some(end) => {
                 let known: Vec<String> = end.actions.iter().map(|action| action.action_id.clone()).collect();

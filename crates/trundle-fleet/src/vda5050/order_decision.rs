@@ -1,6 +1,6 @@
 //! Whether an order is accepted. Source: VDA 5050 2.1, figure 8; the numbers in brackets are those of the figure.
 
-use super::message::{ErrorReport, Node, Order};
+use super::message::{ErrorReport, Order, OrderNode};
 use super::order_book::OrderBook;
 use trundle_core::{Pose2, difference_of_angles};
 
@@ -65,7 +65,7 @@ fn decide_new(order: &Order, book: &OrderBook, pose: Pose2) -> Result<OrderDecis
 }
 
 /// Whether a robot stands at a node of which the heading does not matter.
-fn stands_at(node: &Node, pose: Pose2) -> bool {
+fn stands_at(node: &OrderNode, pose: Pose2) -> bool {
     let Some(position) = &node.node_position else { return false };
     let deviation = position.allowed_deviation_xy.unwrap_or(0.0).max(START_DEVIATION_M);
     (position.x - pose.x).hypot(position.y - pose.y) <= deviation
@@ -73,7 +73,7 @@ fn stands_at(node: &Node, pose: Pose2) -> bool {
 
 /// Whether a robot has reached a node by its deviations. Without an allowed one the robot must drive to the pose itself.
 #[must_use]
-pub fn is_within_deviation(node: &Node, pose: Pose2) -> bool {
+pub fn is_within_deviation(node: &OrderNode, pose: Pose2) -> bool {
     let Some(position) = &node.node_position else { return false };
     let allowed = position.allowed_deviation_xy.unwrap_or(0.0);
     let heading_error = position.theta.map_or(0.0, |theta| difference_of_angles(theta, pose.theta).abs());

@@ -2,54 +2,59 @@
 
 use super::instant::is_at_rest;
 use super::message::{
-    BatteryState, EdgeState, Header, Information, LoadedMap, NodeState, RobotPosition, SafetyState, State,
-    Velocity,
+    ChargeState, EdgeState, Information, LoadedMap, MessageHeader, NodeState, OrderProgress, RobotPosition,
+    SafetyState, VehicleState, Velocity,
 };
+use super::order_book::OrderBook;
 use super::vehicle::Vehicle;
-use crate::robot_view::RobotView;
+use crate::robot_glance::RobotGlance;
 use trundle_core::wrap_angle;
 use trundle_runtime::{DriveState, MotionHold};
 
 /// Charge of a battery that does not report one \[%\]. Source: VDA 5050 2.1: 80 % stands for "good".
 const UNKNOWN_CHARGE: f64 = 80.0;
 
-impl Vehicle {
-    /// The state after a view of the run.
-    #[must_use]
-    pub fn state(&self, header: Header, view: &RobotView) -> State {
-        let (book, last_node) = (&self.book, self.book.last_node().unwrap_or_default());
-        State {
-            header,
-            maps: vec![self.map()],
-            order_id: book.order_id().to_owned(),
-            order_update_id: book.update_id(),
-            last_node_id: last_node.0.to_owned(),
-            last_node_sequence_id: last_node.1,
-            node_states: book.nodes().iter().map(NodeState::from).collect(),
-            edge_states: book.edges().iter().map(EdgeState::from).collect(),
-            agv_position: robot_position(view, &self.map_id),
-            velocity: velocity(view),
-            loads: [],
-            driving: !is_at_rest(view),
-            paused: view.hold == Some(MotionHold::Paused),
-            new_base_request: book.has_horizon() && book.is_at_end_of_base(),
-            action_states: book.action_states().cloned().collect(),
-            battery_state: battery_state(view),
-            operating_mode: self.mode(view),
-            errors: self.errors.all().to_vec(),
-            information: information(view),
-            safety_state: safety_state(view),
-        }
+/// The state of a vehicle after a view of the run.
+#[must_use]
+pub fn vehicle_state(vehicle: &Vehicle, header: MessageHeader, view: &RobotGlance) -> VehicleState {
+    VehicleState {
+        header,
+        maps: vec![LoadedMap {
+            map_id: vehicle.map_id.clone(),
+            map_version: "1".to_owned(),
+            map_status: "ENABLED",
+        }],
+        order: order_progress(&vehicle.book),
+        agv_position: robot_position(view, &vehicle.map_id),
+        velocity: velocity(view),
+        loads: [],
+        driving: !is_at_rest(view),
+        paused: view.hold == Some(MotionHold::Paused),
+        battery_state: battery_state(view),
+        operating_mode: vehicle.mode(view),
+        errors: vehicle.errors.all().to_vec(),
+        information: information(view),
+        safety_state: safety_state(view),
     }
+}
 
-    fn map(&self) -> LoadedMap {
-        LoadedMap { map_id: self.map_id.clone(), map_version: "1".to_owned(), map_status: "ENABLED" }
+fn order_progress(book: &OrderBook) -> OrderProgress {
+    let last_node = book.last_node().unwrap_or_default();
+    OrderProgress {
+        order_id: book.order_id().to_owned(),
+        order_update_id: book.update_id(),
+        last_node_id: last_node.0.to_owned(),
+        last_node_sequence_id: last_node.1,
+        node_states: book.nodes().iter().map(NodeState::from).collect(),
+        edge_states: book.edges().iter().map(EdgeState::from).collect(),
+        new_base_request: book.has_horizon() && book.is_at_end_of_base(),
+        action_states: book.action_states().cloned().collect(),
     }
 }
 
 /// Where the robot is.
 #[must_use]
-pub fn robot_position(view: &RobotView, map_id: &str) -> RobotPosition {
+pub fn robot_position(view: &RobotGlance, map_id: &str) -> RobotPosition {
     let (pose, covariance) = (view.estimate.pose, view.estimate.covariance);
     let (xx, yy, xy) = (covariance[(0, 0)], covariance[(1, 1)], covariance[(0, 1)]);
     let largest_variance = (xx + yy) / 2.0 + ((xx - yy) / 2.0).hypot(xy);
@@ -65,14 +70,14 @@ pub fn robot_position(view: &RobotView, map_id: &str) -> RobotPosition {
 
 /// How fast the robot moves.
 #[must_use]
-pub fn velocity(view: &RobotView) -> Velocity {
+pub fn velocity(view: &RobotGlance) -> Velocity {
     let twist = view.estimate.twist;
     Velocity { vx: twist.v, vy: 0.0, omega: twist.omega }
 }
 
-fn battery_state(view: &RobotView) -> BatteryState {
+fn battery_state(view: &RobotGlance) -> ChargeState {
     let charge = view.battery.and_then(|battery| battery.charge);
-    BatteryState {
+    ChargeState {
         battery_charge: charge.map_or(UNKNOWN_CHARGE, |charge| 100.0 * charge),
         battery_voltage: view.battery.map(|battery| battery.voltage_v),
         charging: view.battery.is_some_and(|battery| battery.is_charging),
@@ -80,13 +85,13 @@ fn battery_state(view: &RobotView) -> BatteryState {
 }
 
 /// Stops by safety: conditions of the body, but for a pause.
-fn safety_state(view: &RobotView) -> SafetyState {
+fn safety_state(view: &RobotGlance) -> SafetyState {
     let field_violation = view.hold.is_some_and(|hold| hold != MotionHold::Paused);
     SafetyState { e_stop: "NONE", field_violation }
 }
 
 /// What the robot does, why it does not move on, and what it does not know.
-fn information(view: &RobotView) -> Vec<Information> {
+fn information(view: &RobotGlance) -> Vec<Information> {
     let info = |info_type, info_description| Information { info_type, info_description, info_level: "INFO" };
     let mut all = vec![info("driveState", view.state.to_string())];
     all.extend(view.hold.map(|hold| info("hold", hold.to_string())));

@@ -28,6 +28,7 @@ fn a_node_within_its_deviation_is_reached_without_a_stop() {
         (position["allowedDeviationXY"], position["allowedDeviationTheta"]) = (json!(0.5), json!(3.14));
     }
     robot.order(&rolling);
+    robot.step();
     assert_eq!(
         robot.goal().map(|goal| goal.x),
         Some(2.0),

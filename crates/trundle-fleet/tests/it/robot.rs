@@ -5,9 +5,9 @@ use std::sync::Arc;
 use std::time::Duration;
 use trundle_app::operator::MissionView;
 use trundle_core::{DriveLimits, Footprint, Pose2};
-use trundle_fleet::vda5050::Vehicle;
 use trundle_fleet::vda5050::message::{HeaderCounter, Identity, Topic};
-use trundle_fleet::{RobotCommands, RobotFacts, RobotView};
+use trundle_fleet::vda5050::{Vehicle, vehicle_state};
+use trundle_fleet::{RobotCommands, RobotFacts, RobotGlance};
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task, TaskEnd, TaskRecord};
 
 /// The map of the tests.
@@ -16,13 +16,13 @@ pub const MAP: &str = "hall";
 /// A robot that obeys at once but drives only when a test says so.
 pub struct TestRobot {
     pub vehicle: Vehicle,
-    pub view: RobotView,
+    pub view: RobotGlance,
     pub sent: Vec<OperatorCommand>,
     headers: HeaderCounter,
 }
 
 struct Commands<'a> {
-    view: &'a mut RobotView,
+    view: &'a mut RobotGlance,
     sent: &'a mut Vec<OperatorCommand>,
 }
 
@@ -56,7 +56,7 @@ impl TestRobot {
         };
         let identity = Identity { manufacturer: "trundle".to_owned(), serial_number: "r1".to_owned() };
         let (vehicle, headers) = (Vehicle::new(facts, MAP), HeaderCounter::new(identity));
-        Self { vehicle, view: RobotView::at_rest(Pose2::new(0.0, 0.0, 0.0)), sent: Vec::new(), headers }
+        Self { vehicle, view: RobotGlance::at_rest(Pose2::new(0.0, 0.0, 0.0)), sent: Vec::new(), headers }
     }
 
     /// A message of the master on the topic `order`.
@@ -95,7 +95,7 @@ impl TestRobot {
     /// The state as JSON.
     pub fn state(&mut self) -> Value {
         let header = self.headers.header(Topic::State);
-        serde_json::to_value(self.vehicle.state(header, &self.view)).unwrap()
+        serde_json::to_value(vehicle_state(&self.vehicle, header, &self.view)).unwrap()
     }
 
     /// The goal that the robot drives to.

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 use trundle::core::{DriveLimits, Footprint, Pose2};
-use trundle::fleet::vda5050::Vehicle;
 use trundle::fleet::vda5050::message::{HeaderCounter, Identity, Topic};
-use trundle::fleet::{RobotCommands, RobotFacts, RobotView, read_home_command};
+use trundle::fleet::vda5050::{Vehicle, vehicle_state};
+use trundle::fleet::{RobotCommands, RobotFacts, RobotGlance, read_home_command};
 use trundle::runtime::OperatorCommand;
 
 /// A robot that takes every command and does nothing.
@@ -21,7 +21,7 @@ impl RobotCommands for Obedient {
 
 /// A message as an order, then as instant actions; the state after each must be JSON.
 pub fn vda5050(bytes: &[u8]) {
-    let view = RobotView::at_rest(Pose2::new(0.0, 0.0, 0.0));
+    let view = RobotGlance::at_rest(Pose2::new(0.0, 0.0, 0.0));
     let (mut vehicle, mut robot) = (Vehicle::new(facts(), "map"), Obedient::default());
     let identity = Identity { manufacturer: "trundle".to_owned(), serial_number: "r1".to_owned() };
     let mut headers = HeaderCounter::new(identity);
@@ -33,7 +33,7 @@ pub fn vda5050(bytes: &[u8]) {
         for _ in 0..3 {
             vehicle.step(Duration::from_secs(7), &view, &mut robot);
         }
-        let state = serde_json::to_string(&vehicle.state(headers.header(Topic::State), &view));
+        let state = serde_json::to_string(&vehicle_state(&vehicle, headers.header(Topic::State), &view));
         assert!(state.is_ok(), "{state:?}");
     }
 }

@@ -1,13 +1,11 @@
 //! Accepts connections: a bounded number, each with a bounded time for its request.
 
-use crate::TlsIdentity;
 use axum::Router;
 use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
 use std::sync::Arc;
 use std::time::Duration;
-use tokio::io::{AsyncRead, AsyncWrite};
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Semaphore;
 
@@ -20,8 +18,8 @@ const MAX_HEAD_BYTES: usize = 16 * 1024;
 /// Wait after a refused accept, as where no file descriptor is left.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 
-/// Serves the routes until the task is dropped; encrypted, where there is a certificate.
-pub async fn serve(listener: TcpListener, router: Router, tls: Option<TlsIdentity>) {
+/// Serves the routes until the task is dropped.
+pub async fn serve(listener: TcpListener, router: Router) {
     let slots = Arc::new(Semaphore::new(MAX_CONNECTIONS));
     loop {
         let Ok((stream, _)) = listener.accept().await else {
@@ -32,27 +30,18 @@ pub async fn serve(listener: TcpListener, router: Router, tls: Option<TlsIdentit
             drop(stream);
             continue;
         };
-        let (router, tls) = (router.clone(), tls.clone());
+        let router = router.clone();
         tokio::spawn(async move {
-            serve_client(stream, router, tls).await;
+            serve_connection(stream, router).await;
             drop(slot);
         });
     }
 }
 
-async fn serve_client(stream: TcpStream, router: Router, tls: Option<TlsIdentity>) {
+async fn serve_connection(stream: TcpStream, router: Router) {
     if let Err(error) = stream.set_nodelay(true) {
         tracing::debug!("live page: {error}");
     }
-    let Some(tls) = tls else { return serve_connection(stream, router).await };
-    match tokio::time::timeout(REQUEST_TIMEOUT, tls.accept(stream)).await {
-        Ok(Ok(stream)) => serve_connection(stream, router).await,
-        Ok(Err(error)) => tracing::debug!("live page: no encrypted connection: {error}"),
-        Err(_) => tracing::debug!("live page: a client did not finish its handshake"),
-    }
-}
-
-async fn serve_connection(stream: impl AsyncRead + AsyncWrite + Send + Unpin + 'static, router: Router) {
     let served = http1::Builder::new()
         .timer(TokioTimer::new())
         .header_read_timeout(REQUEST_TIMEOUT)

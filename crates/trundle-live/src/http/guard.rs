@@ -13,17 +13,16 @@ pub async fn check(State(state): State<Arc<PageState>>, request: Request, next: 
     let host = host_of(request.headers()).map(str::to_owned);
     let Some(host) = host.filter(|host| is_own_host(host, state.is_shared)) else {
         let text = "this name is none of the robot: use its address, as the program prints it";
-        return with_headers((StatusCode::MISDIRECTED_REQUEST, text).into_response(), "", state.is_encrypted);
+        return with_headers((StatusCode::MISDIRECTED_REQUEST, text).into_response(), "");
     };
-    with_headers(next.run(request).await, &host, state.is_encrypted)
+    with_headers(next.run(request).await, &host)
 }
 
 /// Whether a request comes from the page itself: a page of another origin says so in this header. A request without it is none of a
 /// browser's page and is refused too.
-pub fn is_own_origin(headers: &HeaderMap, is_encrypted: bool) -> bool {
+pub fn is_own_origin(headers: &HeaderMap) -> bool {
     let origin = headers.get(header::ORIGIN).and_then(|origin| origin.to_str().ok());
-    let scheme = if is_encrypted { "https" } else { "http" };
-    let own = host_of(headers).map(|host| format!("{scheme}://{host}"));
+    let own = host_of(headers).map(|host| format!("http://{host}"));
     origin.is_some() && origin == own.as_deref()
 }
 
@@ -55,11 +54,10 @@ fn is_machine_name(name: &str) -> bool {
     !own.is_empty() && plain.eq_ignore_ascii_case(own)
 }
 
-fn with_headers(mut response: Response, host: &str, is_encrypted: bool) -> Response {
-    let link = if is_encrypted { "wss" } else { "ws" };
+fn with_headers(mut response: Response, host: &str) -> Response {
     let policy = format!(
         "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; \
-         connect-src 'self' {link}://{host}; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+         connect-src 'self' ws://{host}; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
     );
     let fixed = [
         (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
@@ -111,11 +109,9 @@ mod tests {
             origin.map(|origin| headers.insert(header::ORIGIN, HeaderValue::from_static(origin)));
             headers
         };
-        assert!(is_own_origin(&headers(Some("http://127.0.0.1:8642")), false));
-        assert!(is_own_origin(&headers(Some("https://127.0.0.1:8642")), true));
-        assert!(!is_own_origin(&headers(Some("http://127.0.0.1:8642")), true));
+        assert!(is_own_origin(&headers(Some("http://127.0.0.1:8642"))));
         for foreign in [None, Some("http://evil.example"), Some("null"), Some("http://127.0.0.1:8643")] {
-            assert!(!is_own_origin(&headers(foreign), false), "{foreign:?}");
+            assert!(!is_own_origin(&headers(foreign)), "{foreign:?}");
         }
     }
 }

@@ -52,22 +52,12 @@ impl LiveRun {
 
     /// A run, steered or not.
     pub fn with_steering(is_steered: bool) -> Self {
-        Self::with(is_steered, None)
-    }
-
-    /// A run whose page is encrypted by a certificate.
-    #[cfg(feature = "tls")]
-    pub fn encrypted(tls: trundle_live::TlsIdentity) -> Self {
-        Self::with(true, Some(tls))
-    }
-
-    fn with(is_steered: bool, tls: Option<trundle_live::TlsIdentity>) -> Self {
         let place = tempfile::tempdir().unwrap();
         let setup = RunSetup::new("nowhere", Mission::default(), RobotConfig::default()).operated();
         let (operator, link) = operator_link();
         let tokens = Tokens::random().unwrap();
         let address = "127.0.0.1:0".parse().unwrap();
-        let options = LiveOptions { address, tokens: tokens.clone(), is_steered, tls };
+        let options = LiveOptions { address, tokens: tokens.clone(), is_steered };
         let page = LivePage::start(options, operator.clone(), RunFacts::of(&setup).unwrap()).unwrap();
         let is_over = Arc::<AtomicBool>::default();
         let mut body = PacedBody { step: 0, is_over: Arc::clone(&is_over) };

@@ -1,6 +1,6 @@
 //! Whether the robot is connected.
 
-use super::header::Header;
+use super::header::MessageHeader;
 use serde::Serialize;
 
 /// Whether the robot is connected.
@@ -9,7 +9,7 @@ use serde::Serialize;
 pub struct ConnectionMessage {
     /// The header.
     #[serde(flatten)]
-    pub header: Header,
+    pub header: MessageHeader,
     /// Whether it is.
     pub connection_state: ConnectionState,
 }

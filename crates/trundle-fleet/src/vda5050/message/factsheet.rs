@@ -1,6 +1,6 @@
 //! What the robot can do, for the master.
 
-use super::header::Header;
+use super::header::MessageHeader;
 use crate::robot_facts::RobotFacts;
 use crate::vda5050::abilities::{ABILITIES, UNUSABLE_EDGE_FIELDS};
 use crate::vda5050::limits::{
@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 pub struct Factsheet {
     /// The header.
     #[serde(flatten)]
-    header: Header,
+    header: MessageHeader,
     type_specification: Value,
     physical_parameters: Value,
     protocol_limits: Value,
@@ -28,7 +28,7 @@ pub struct Factsheet {
 impl Factsheet {
     /// The factsheet of a robot.
     #[must_use]
-    pub fn of(header: Header, facts: &RobotFacts) -> Self {
+    pub fn of(header: MessageHeader, facts: &RobotFacts) -> Self {
         Self {
             header,
             type_specification: json!({

@@ -71,7 +71,7 @@ impl Identity {
 /// The header of a message.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub struct Header {
+pub struct MessageHeader {
     /// Number of the message in its topic.
     pub header_id: u32,
     /// When it was sent: ISO 8601, UTC.
@@ -105,11 +105,11 @@ impl HeaderCounter {
     }
 
     /// The header of the next message of a topic.
-    pub fn header(&mut self, topic: Topic) -> Header {
+    pub fn header(&mut self, topic: Topic) -> MessageHeader {
         let next = &mut self.next[topic as usize];
         let header_id = *next;
         *next = next.wrapping_add(1);
-        Header {
+        MessageHeader {
             header_id,
             timestamp: utc_text(SystemTime::now()),
             version: PROTOCOL_VERSION.to_owned(),

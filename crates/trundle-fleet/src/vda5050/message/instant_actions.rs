@@ -1,6 +1,6 @@
 //! Actions that are done at once.
 
-use super::header::Header;
+use super::header::MessageHeader;
 use super::order::Action;
 use serde::Deserialize;
 
@@ -9,7 +9,7 @@ use serde::Deserialize;
 pub struct InstantActions {
     /// The header.
     #[serde(flatten)]
-    pub header: Header,
+    pub header: MessageHeader,
     /// The actions. Masters of version 1.1, and some of 2.0, name the field `instantActions`.
     #[serde(alias = "instantActions")]
     pub actions: Vec<Action>,

@@ -11,12 +11,14 @@ mod visualization;
 
 pub use connection::{ConnectionMessage, ConnectionState};
 pub use factsheet::Factsheet;
-pub use header::{Header, HeaderCounter, Identity, PROTOCOL_VERSION, Topic};
+pub use header::{HeaderCounter, Identity, MessageHeader, PROTOCOL_VERSION, Topic};
 pub use instant_actions::InstantActions;
-pub use order::{Action, ActionParameter, BlockingType, Edge, Node, NodePosition, Order};
+pub use order::{
+    Action, ActionParameter, BlockingType, NodePosition, Order, OrderEdge, OrderNode, UnusableFields,
+};
 pub use report::{ErrorLevel, ErrorReport};
 pub use state::{
-    ActionState, ActionStatus, BatteryState, EdgeState, Information, LoadedMap, NodeState, OperatingMode,
-    RobotPosition, SafetyState, State, Velocity,
+    ActionState, ActionStatus, ChargeState, EdgeState, Information, LoadedMap, NodeState, OperatingMode,
+    OrderProgress, RobotPosition, SafetyState, VehicleState, Velocity,
 };
 pub use visualization::Visualization;

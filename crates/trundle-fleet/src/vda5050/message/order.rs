@@ -1,6 +1,6 @@
 //! An order of a master: nodes to reach and edges between them.
 
-use super::header::Header;
+use super::header::MessageHeader;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
@@ -10,21 +10,21 @@ use serde::{Deserialize, Serialize};
 pub struct Order {
     /// The header.
     #[serde(flatten)]
-    pub header: Header,
+    pub header: MessageHeader,
     /// Name of the order.
     pub order_id: String,
     /// Number of the update, from 0.
     pub order_update_id: u32,
     /// Nodes in the order in which they are reached.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<OrderNode>,
     /// Edges between the nodes, one fewer.
-    pub edges: Vec<Edge>,
+    pub edges: Vec<OrderEdge>,
 }
 
 /// A place to reach.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub struct Node {
+pub struct OrderNode {
     /// Name.
     pub node_id: String,
     /// Place among the nodes and edges of the order.
@@ -63,7 +63,7 @@ pub struct NodePosition {
 /// A way between two nodes.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub struct Edge {
+pub struct OrderEdge {
     /// Name.
     pub edge_id: String,
     /// Place among the nodes and edges of the order.
@@ -84,17 +84,26 @@ pub struct Edge {
     pub rotation_allowed: Option<bool>,
     /// What is done on the edge.
     pub actions: Vec<Action>,
-    /// A field that this robot cannot use.
+    /// Fields that this robot cannot use.
+    #[serde(flatten)]
+    pub unusable: UnusableFields,
+}
+
+/// Fields of an edge that this robot cannot use.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct UnusableFields {
+    /// A curve.
     pub trajectory: Option<IgnoredAny>,
-    /// A field that this robot cannot use.
+    /// A heading on the edge.
     pub orientation: Option<IgnoredAny>,
-    /// A field that this robot cannot use.
+    /// A direction at junctions of lines.
     pub direction: Option<IgnoredAny>,
-    /// A field that this robot cannot use.
+    /// Boundaries about the edge.
     pub corridor: Option<IgnoredAny>,
-    /// A field that this robot cannot use.
+    /// Highest turn rate.
     pub max_rotation_speed: Option<IgnoredAny>,
-    /// A field that this robot cannot use.
+    /// Lowest height of a load.
     pub min_height: Option<IgnoredAny>,
 }
 

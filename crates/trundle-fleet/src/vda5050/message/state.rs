@@ -1,19 +1,48 @@
 //! The state of a robot as a master reads it.
 
-use super::header::Header;
-use super::order::{Edge, Node, NodePosition};
+use super::header::MessageHeader;
+use super::order::{NodePosition, OrderEdge, OrderNode};
 use super::report::ErrorReport;
 use serde::Serialize;
 
 /// The state of a robot.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
-pub struct State {
+pub struct VehicleState {
     /// The header.
     #[serde(flatten)]
-    pub header: Header,
+    pub header: MessageHeader,
     /// The maps that the robot has.
     pub maps: Vec<LoadedMap>,
+    /// The order.
+    #[serde(flatten)]
+    pub order: OrderProgress,
+    /// Where the robot is.
+    pub agv_position: RobotPosition,
+    /// How fast it moves.
+    pub velocity: Velocity,
+    /// What it carries: nothing.
+    pub loads: [(); 0],
+    /// Whether it drives or turns.
+    pub driving: bool,
+    /// Whether it is paused.
+    pub paused: bool,
+    /// The battery.
+    pub battery_state: ChargeState,
+    /// Who controls the robot.
+    pub operating_mode: OperatingMode,
+    /// What is wrong.
+    pub errors: Vec<ErrorReport>,
+    /// What else a person may want to know.
+    pub information: Vec<Information>,
+    /// Stops by safety.
+    pub safety_state: SafetyState,
+}
+
+/// How far an order is.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub struct OrderProgress {
     /// The present or last order; empty before the first.
     pub order_id: String,
     /// Its last update.
@@ -26,33 +55,13 @@ pub struct State {
     pub node_states: Vec<NodeState>,
     /// Edges that are still to be driven.
     pub edge_states: Vec<EdgeState>,
-    /// Where the robot is.
-    pub agv_position: RobotPosition,
-    /// How fast it moves.
-    pub velocity: Velocity,
-    /// What it carries: nothing.
-    pub loads: [(); 0],
-    /// Whether it drives or turns.
-    pub driving: bool,
-    /// Whether it is paused.
-    pub paused: bool,
     /// Whether it comes to the end of the base while there is a horizon.
     pub new_base_request: bool,
     /// The actions of the order and those done at once.
     pub action_states: Vec<ActionState>,
-    /// The battery.
-    pub battery_state: BatteryState,
-    /// Who controls the robot.
-    pub operating_mode: OperatingMode,
-    /// What is wrong.
-    pub errors: Vec<ErrorReport>,
-    /// What else a person may want to know.
-    pub information: Vec<Information>,
-    /// Stops by safety.
-    pub safety_state: SafetyState,
 }
 
-impl State {
+impl VehicleState {
     /// Whether nothing changed that a master must know at once: all but position, speed, charge and texts for people.
     #[must_use]
     pub fn is_like(&self, other: &Self) -> bool {
@@ -60,7 +69,7 @@ impl State {
             agv_position: other.agv_position.clone(),
             velocity: other.velocity.clone(),
             information: other.information.clone(),
-            battery_state: BatteryState {
+            battery_state: ChargeState {
                 charging: state.battery_state.charging,
                 ..other.battery_state.clone()
             },
@@ -95,8 +104,8 @@ pub struct NodeState {
     node_position: Option<NodePosition>,
 }
 
-impl From<&Node> for NodeState {
-    fn from(node: &Node) -> Self {
+impl From<&OrderNode> for NodeState {
+    fn from(node: &OrderNode) -> Self {
         Self {
             node_id: node.node_id.clone(),
             sequence_id: node.sequence_id,
@@ -118,8 +127,8 @@ pub struct EdgeState {
     released: bool,
 }
 
-impl From<&Edge> for EdgeState {
-    fn from(edge: &Edge) -> Self {
+impl From<&OrderEdge> for EdgeState {
+    fn from(edge: &OrderEdge) -> Self {
         Self {
             edge_id: edge.edge_id.clone(),
             sequence_id: edge.sequence_id,
@@ -201,7 +210,7 @@ impl ActionStatus {
 /// The battery.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
-pub struct BatteryState {
+pub struct ChargeState {
     /// Charge \[%\].
     pub battery_charge: f64,
     /// Voltage \[V\].

@@ -1,6 +1,6 @@
 //! The position of the robot, for pictures.
 
-use super::header::Header;
+use super::header::MessageHeader;
 use super::state::{RobotPosition, Velocity};
 use serde::Serialize;
 
@@ -10,7 +10,7 @@ use serde::Serialize;
 pub struct Visualization {
     /// The header.
     #[serde(flatten)]
-    pub header: Header,
+    pub header: MessageHeader,
     /// Where the robot is.
     pub agv_position: RobotPosition,
     /// How fast it moves.

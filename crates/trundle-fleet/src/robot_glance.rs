@@ -6,7 +6,7 @@ use trundle_runtime::{DriveState, MotionHold};
 
 /// What home and master need of a view of the run.
 #[derive(Debug, Clone)]
-pub struct RobotView {
+pub struct RobotGlance {
     /// `map_from_base` and twist.
     pub estimate: PoseEstimate,
     /// State of the robot.
@@ -21,7 +21,7 @@ pub struct RobotView {
     pub station: Option<Pose2>,
 }
 
-impl RobotView {
+impl RobotGlance {
     /// A robot at rest that knows its pose and has no mission.
     #[must_use]
     pub fn at_rest(pose: Pose2) -> Self {
@@ -37,7 +37,7 @@ impl RobotView {
     }
 }
 
-impl From<&RunView> for RobotView {
+impl From<&RunView> for RobotGlance {
     fn from(view: &RunView) -> Self {
         Self {
             estimate: view.estimate,

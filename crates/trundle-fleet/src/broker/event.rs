@@ -1,0 +1,41 @@
+//! What goes to a broker and what comes from it.
+
+use serde::Serialize;
+
+/// A message to a broker.
+#[derive(Debug, Clone)]
+pub struct Publication {
+    /// Where.
+    pub topic: String,
+    /// What.
+    pub payload: Vec<u8>,
+    /// Whether the broker keeps it for those who join later.
+    pub is_retained: bool,
+}
+
+impl Publication {
+    /// A message with a payload of JSON. A value that cannot be written is a fault of this crate, and is logged.
+    pub fn json(topic: String, value: &impl Serialize, is_retained: bool) -> Self {
+        let payload = serde_json::to_vec(value).unwrap_or_else(|error| {
+            tracing::error!("MQTT: {topic}: {error}");
+            b"{}".to_vec()
+        });
+        Self { topic, payload, is_retained }
+    }
+}
+
+/// What a connection reports.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BrokerEvent {
+    /// The broker accepted the robot.
+    Joined,
+    /// A message on a topic that the robot listens to.
+    Message {
+        /// Where.
+        topic: String,
+        /// What.
+        payload: Vec<u8>,
+    },
+    /// The connection ended, or could not begin.
+    Lost(String),
+}
