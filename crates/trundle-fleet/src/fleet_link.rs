@@ -1,7 +1,7 @@
 //! The link of a robot to a broker, in a thread of its own.
 
 use crate::worker::FleetWorker;
-use crate::{BrokerAddress, FleetError, FleetOptions, NoPlaces, Password, Places, RobotFacts, RobotName};
+use crate::{BrokerAddress, FleetError, FleetOptions, Password, Places, RobotFacts, RobotName};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -58,7 +58,7 @@ impl FleetLink {
         let password = Password::read(password_file)?;
         let (name, map_id) = (name.cloned().unwrap_or_default(), map_id.to_owned());
         let options = FleetOptions { broker, password, name, map_id };
-        Ok(Self::start(options, link.operator(), RobotFacts::of(setup)?, Box::new(NoPlaces))?)
+        Ok(Self::start(options, link.operator(), RobotFacts::of(setup)?, Box::new(link.operator()))?)
     }
 
     /// What a person must know: the broker, the name of the robot, and a warning where the network is open.

@@ -1,5 +1,6 @@
 //! Named places of a run.
 
+use trundle_app::operator::Operator;
 use trundle_core::Pose2;
 
 /// Named places, where the program has them. They may change while a run goes.
@@ -8,6 +9,17 @@ pub trait Places: Send {
     fn names(&self) -> Vec<String>;
     /// Pose of a place, map frame.
     fn pose(&self, name: &str) -> Option<Pose2>;
+}
+
+/// The places that are kept with the map of a run.
+impl Places for Operator {
+    fn names(&self) -> Vec<String> {
+        self.annotations().places.iter().map(|place| place.name.clone()).collect()
+    }
+
+    fn pose(&self, name: &str) -> Option<Pose2> {
+        self.goal_of_place(name).ok()
+    }
 }
 
 /// No places.
