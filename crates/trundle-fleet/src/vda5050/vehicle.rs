@@ -178,7 +178,7 @@ impl Vehicle {
                 ActionEnd::Failed(reason) => self.end_action(ActionStatus::Failed, Some(reason)),
             }
         }
-        let needs_rest = self.book.next_action().is_some_and(|action| NodeAction::drives(action));
+        let needs_rest = self.book.next_action().is_some_and(NodeAction::drives);
         if needs_rest && self.drive.is_some() {
             return;
         }

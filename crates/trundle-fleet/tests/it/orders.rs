@@ -25,7 +25,7 @@ fn a_node_within_its_deviation_is_reached_without_a_stop() {
     let mut rolling = order("a", 0, 0, &[0.0, 2.0, 4.0], 3);
     for i in 0..2 {
         let position = &mut rolling["nodes"][i]["nodePosition"];
-        (position["allowedDeviationXY"], position["allowedDeviationTheta"]) = (json!(0.5), json!(3.14));
+        (position["allowedDeviationXY"], position["allowedDeviationTheta"]) = (json!(0.5), json!(3.0));
     }
     robot.order(&rolling);
     robot.step();
@@ -65,7 +65,8 @@ fn the_speed_limit_of_an_edge_holds_on_that_edge() {
     let mut slow = order("a", 0, 0, &[0.0, 2.0, 4.0], 3);
     slow["edges"][0]["maxSpeed"] = json!(0.2);
     robot.order(&slow);
-    (robot.arrive(), robot.arrive());
+    robot.arrive();
+    robot.arrive();
     let limits: Vec<f64> = robot
         .sent
         .iter()
@@ -135,7 +136,8 @@ fn orders_of_another_form_are_rejected() {
 
 #[test]
 fn orders_that_the_robot_cannot_do_are_rejected_with_the_field() {
-    let changes: [(fn(&mut Value), &str, &str); 7] = [
+    type Change = fn(&mut Value);
+    let changes: [(Change, &str, &str); 7] = [
         (|order| order["nodes"][1]["nodePosition"]["mapId"] = json!("attic"), "nodePosition.mapId", "attic"),
         (|order| order["edges"][0]["trajectory"] = json!({ "degree": 1 }), "field", "trajectory"),
         (|order| order["edges"][0]["rotationAllowed"] = json!(false), "field", "rotationAllowed"),

@@ -37,7 +37,8 @@ fn the_robot_waits_at_the_end_of_its_base_for_the_horizon() {
 fn an_order_that_is_done_is_continued_from_its_last_node() {
     let mut robot = TestRobot::new();
     robot.order(&order("a", 0, 0, &[0.0, 2.0], 2));
-    (robot.arrive(), robot.arrive());
+    robot.arrive();
+    robot.arrive();
     robot.order(&order("a", 1, 1, &[2.0, 4.0], 2));
     assert_eq!(robot.goal().map(|goal| goal.x), Some(4.0));
 }
@@ -66,7 +67,8 @@ fn another_order_waits_until_the_present_one_is_done() {
     robot.order(&order("a", 0, 0, &[0.0, 2.0], 2));
     let state = robot.order(&order("b", 0, 0, &[0.0, 1.0], 2));
     assert_eq!((errors(&state), &state["orderId"]), (vec!["orderError"], &json!("a")));
-    (robot.arrive(), robot.arrive());
+    robot.arrive();
+    robot.arrive();
     let state = robot.order(&order("b", 0, 0, &[2.0, 1.0], 2));
     assert_eq!((errors(&state).len(), &state["orderId"]), (0, &json!("b")));
 }
