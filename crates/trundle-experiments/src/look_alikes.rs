@@ -16,8 +16,9 @@ const FALSE_ARRIVAL_M: f64 = 0.3;
 const FALSE_ARRIVAL_DEG: f64 = 20.0;
 /// Change of the estimate's error between two images that counts as a jump away from the truth, m.
 const JUMP_M: f64 = 0.3;
-/// Time at which the robot is carried away, s, and how long that takes.
+/// Time at which the robot is carried away, s.
 const CARRIED_AT_S: f64 = 40.0;
+/// How long that takes, s.
 const CARRIED_FOR_S: f64 = 0.1;
 
 /// What happens in a room.
@@ -95,6 +96,11 @@ impl Score {
         }
     }
 
+    /// Whether no arrival is false, the estimate did not jump off, and nothing was touched.
+    fn is_right(self) -> bool {
+        self.false_arrivals == 0 && self.jumps == 0 && self.contacts == 0
+    }
+
     fn plus(self, other: Self) -> Self {
         Self {
             arrivals: self.arrivals + other.arrivals,
@@ -138,8 +144,7 @@ const HEADER: [&str; 7] =
 
 impl ExperimentReport for LookAlikesOutcome {
     fn is_success(&self) -> bool {
-        let sum = self.sum();
-        sum.false_arrivals == 0 && sum.jumps == 0 && sum.contacts == 0
+        self.sum().is_right()
     }
 
     fn table(&self) -> Vec<Vec<String>> {
@@ -175,18 +180,11 @@ impl ExperimentReport for LookAlikesOutcome {
             .subtitle("The robot explores, goes to a goal, back to its start, and to the goal again.")
             .verdict(verdict)
             .table(table);
-        let wrong = self.trials.iter().filter(|trial| Score::of(trial) != Score::right(trial));
+        let wrong = self.trials.iter().filter(|trial| !Score::of(trial).is_right());
         let report = wrong.fold(report, |report, trial| report.table(trial.state_table()));
         folder.write("report.html", report.to_html().as_bytes())?;
         folder.write("summary.json", self.summary().to_json().as_bytes())?;
         Ok(())
-    }
-}
-
-impl Score {
-    /// That of a run in which nothing is false.
-    fn right(trial: &Trial) -> Self {
-        Self { false_arrivals: 0, jumps: 0, contacts: 0, ..Self::of(trial) }
     }
 }
 

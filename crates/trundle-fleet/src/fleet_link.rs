@@ -1,7 +1,7 @@
 //! The link of a robot to a broker, in a thread of its own.
 
 use crate::worker::FleetWorker;
-use crate::{BrokerAddress, FleetError, FleetOptions, Password, Places, RobotFacts, RobotName};
+use crate::{BrokerAddress, FleetError, FleetOptions, Password, RobotFacts, RobotName};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,17 +22,12 @@ impl FleetLink {
     ///
     /// # Errors
     /// When a password has no user, or the system refuses a thread.
-    pub fn start(
-        options: FleetOptions,
-        operator: Operator,
-        facts: RobotFacts,
-        places: Box<dyn Places>,
-    ) -> Result<Self, FleetError> {
+    pub fn start(options: FleetOptions, operator: Operator, facts: RobotFacts) -> Result<Self, FleetError> {
         if options.password.is_some() && options.broker.user.is_none() {
             return Err(FleetError::PasswordWithoutUser);
         }
         let is_over = Arc::new(AtomicBool::new(false));
-        let worker = FleetWorker::new(&options, operator, facts, places);
+        let worker = FleetWorker::new(&options, operator, facts);
         let ends = Arc::clone(&is_over);
         let work = move || worker.run(|| ends.load(Ordering::Relaxed));
         let thread = std::thread::Builder::new().name("fleet".to_owned()).spawn(work)?;
@@ -58,7 +53,7 @@ impl FleetLink {
         let password = Password::read(password_file)?;
         let (name, map_id) = (name.cloned().unwrap_or_default(), map_id.to_owned());
         let options = FleetOptions { broker, password, name, map_id };
-        Ok(Self::start(options, link.operator(), RobotFacts::of(setup)?, Box::new(link.operator()))?)
+        Ok(Self::start(options, link.operator(), RobotFacts::of(setup)?)?)
     }
 
     /// What a person must know: the broker, the name of the robot, and a warning where the network is open.

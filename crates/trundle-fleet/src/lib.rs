@@ -30,7 +30,7 @@ pub use error::FleetError;
 pub use fleet_link::FleetLink;
 pub use home::{HomeCommand, read_home_command};
 pub use options::{FleetOptions, Password, RobotName};
-pub use places::{NoPlaces, Places};
+pub use places::Places;
 pub use robot_commands::RobotCommands;
 pub use robot_facts::RobotFacts;
 pub use robot_glance::RobotGlance;

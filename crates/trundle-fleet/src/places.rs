@@ -21,17 +21,3 @@ impl Places for Operator {
         self.goal_of_place(name).ok()
     }
 }
-
-/// No places.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct NoPlaces;
-
-impl Places for NoPlaces {
-    fn names(&self) -> Vec<String> {
-        Vec::new()
-    }
-
-    fn pose(&self, _: &str) -> Option<Pose2> {
-        None
-    }
-}

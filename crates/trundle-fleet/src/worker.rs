@@ -4,7 +4,7 @@ use crate::broker::{Broker, BrokerEvent, SessionOptions};
 use crate::home::Home;
 use crate::master_link::MasterLink;
 use crate::vda5050::message::ConnectionState;
-use crate::{FleetOptions, Places, RobotFacts, RobotGlance};
+use crate::{FleetOptions, RobotFacts, RobotGlance};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_app::operator::{Operator, RunView};
@@ -29,12 +29,8 @@ pub struct FleetWorker {
 
 impl FleetWorker {
     /// The worker of a robot.
-    pub fn new(
-        options: &FleetOptions,
-        operator: Operator,
-        facts: RobotFacts,
-        places: Box<dyn Places>,
-    ) -> Self {
+    pub fn new(options: &FleetOptions, operator: Operator, facts: RobotFacts) -> Self {
+        let places = Box::new(operator.clone());
         let master = MasterLink::new(options, facts.clone());
         let home = Home::new(&options.name, facts, places, master.connection_topic());
         let session = SessionOptions {

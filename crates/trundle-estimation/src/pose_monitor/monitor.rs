@@ -201,11 +201,6 @@ impl PoseMonitor {
         1.0 / (1.0 + (here - found).exp() + (displaced - found).exp())
     }
 
-    /// Log-likelihood ratio of the newest scans at a pose, `map_from_odom`, against another place \[nats\].
-    pub fn scan_nats_at(&self, grid: &OccupancyGrid, map_from_odom: Pose2) -> f64 {
-        self.view.nats_at(grid, map_from_odom)
-    }
-
     /// Whether a probability suffices to take a found pose over.
     pub fn is_enough(&self, probability: f64) -> bool {
         probability >= self.config.accept_probability
@@ -254,9 +249,6 @@ impl PoseMonitor {
 }
 
 impl PoseStatus {
-    /// Of a pose without any doubt.
-    pub const CERTAIN: Self = Self { state: PoseState::Tracked, probability: 1.0 };
-
     /// Whether scans may be drawn at the estimated pose.
     pub fn is_believed(&self) -> bool {
         let has_estimate = matches!(self.state, PoseState::Tracked | PoseState::DeadReckoned);
