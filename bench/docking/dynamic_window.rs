@@ -1,8 +1,8 @@
 //! A dynamic-window controller [Fox97], written plainly: a baseline for the table.
 //!
-//! Every 0.1 s it samples speeds and turn rates that the next tenth of a second can reach, follows each arc for a second,
-//! drops those that touch something or could not stop, and takes the best by distance, heading and clearance, forward or
-//! backward. On the goal's place it stops and turns to the goal's heading, as navigation stacks do.
+//! Every 0.1 s it samples speeds and turn rates that the next tenth of a second can reach, and follows each arc for a second.
+//! It drops those that touch something or could not stop, and takes the best by distance, heading and clearance, forward or
+//! backward. At the goal's position it stops and turns to the goal's heading, as navigation stacks do.
 
 use trundle_core::{Footprint, Pose2, Twist2, wrap_angle};
 use trundle_docking::corridor::Problem;

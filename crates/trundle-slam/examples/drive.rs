@@ -4,9 +4,9 @@
 //! the ATE after a rigid alignment, how much of it is up and down, and median, 99th percentile and most of the processor
 //! time, in ms, of the features alone, of a whole step, and of those that made keyframes. Wheels are used where the folder
 //! has them, unless `--motion_unknown`; N is the seed of what is drawn at random, X `orb.min_texture`. Loading images is not timed. Without `camera.toml` the camera is that of freiburg1.
-//! `TRUNDLE_FRAMES=FILE` writes of each frame: time, state, whether it is a keyframe, inliers, how far off it
-//! was told at once (m, rad, the first one being right), how uncertain that was told to be (m, rad, one standard deviation), the
-//! normalised squared error of this (6 is true), the error after all corrections (mm, aligned), and what it took (ms).
+//! `TRUNDLE_FRAMES=FILE` writes of each frame: time, state, whether it is a keyframe, inliers; the error of the pose at its
+//! time (m, rad, relative to the first one) with its standard deviation (m, rad) and normalised squared error (expected 6).
+//! Then the error after all corrections (mm, aligned), and the processor time (ms).
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a bench program")]
 
 #[path = "../tests/support/align.rs"]
@@ -88,7 +88,7 @@ fn main() {
     }
 }
 
-/// How far off the pose of frame `i` is as it is told at once, if the first one is right.
+/// Error of the pose of frame `i` at its time, relative to the first one.
 fn off_since_start(drive: &Drive, i: usize, pose: Pose3) -> Option<Pose3> {
     let truth = drive.frames[0].truth?.inverse() * drive.frames[i].truth?;
     Some(truth.inverse() * pose)

@@ -1,8 +1,8 @@
 //! Kidnapped into a saved map: is the camera recognised, and never somewhere else?
 //!
-//! Maps one recorded drive (a TUM RGB-D folder of the simulator, with its wheels where it has `odometry.txt`), saves and
-//! loads the map, then takes random views of another drive through the same scene and lets the camera see each and up to 1 s of what follows,
-//! until it is located. Printed are how many were, how many of them wrongly, and what a frame cost meanwhile.
+//! Maps one recorded drive (a TUM RGB-D folder of the simulator, with its wheels where it has `odometry.txt`), saves the map and
+//! loads it. Then it takes random views of another drive through the same scene, each with up to 1 s of images after it, until
+//! the camera is located. Printed: located views, wrongly located ones, and the cost of a frame.
 //!
 //! `cargo run --release -p trundle-slam --example kidnap -- MAPPED OTHER [VIEWS] [MAP_FILE]`; a MAP_FILE that exists is
 //! used, else written.

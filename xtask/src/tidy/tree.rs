@@ -37,6 +37,16 @@ pub struct Source<'a> {
     pub code: Code,
 }
 
+/// Folder of code that `cargo xtask ros-interfaces` writes: names and fields of its types are those of ROS 2's messages.
+const GENERATED_FOLDER: &str = "/src/generated/";
+
+impl Source<'_> {
+    /// Whether a program wrote the file, from definitions that are not the project's.
+    pub fn is_generated(&self) -> bool {
+        self.file.path.contains(GENERATED_FOLDER)
+    }
+}
+
 /// Folders that hold nothing of ours.
 const SKIPPED: [&str; 5] = ["target", "out", ".git", ".scratch", "node_modules"];
 /// Files that are read.

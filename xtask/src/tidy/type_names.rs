@@ -1,4 +1,4 @@
-//! One name, one type: no two crates of the facade define a public type of the same name.
+//! One name, one type: no two crates of the facade define a public type of the same name. Generated messages are not exported by it.
 
 use super::finding::{Finding, Rule};
 use super::source::definitions;
@@ -10,7 +10,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     let mut first: BTreeMap<String, (&str, String)> = BTreeMap::new();
     let mut findings = Vec::new();
     for package in tree.packages.iter().filter(|package| package.folder.starts_with("crates/")) {
-        for source in tree.sources(package) {
+        for source in tree.sources(package).filter(|source| !source.is_generated()) {
             for (line, name) in public_types(source.code.text()) {
                 let path = &source.file.path;
                 let (owner, other) =

@@ -1,3 +1,5 @@
+//! What users of the planner call: plans from pose to pose, through zones and around moving obstacles.
+
 use crate::config::PlannerConfig;
 use crate::curve::fit::config::CurveConfig;
 use crate::masks::cost_mask::CostMask;

@@ -20,9 +20,9 @@ pub struct OrbConfig {
     /// Side of the cells in which the lower threshold is resorted to, px of the level, 8 to 65535. Default 32: about the size
     /// of a descriptor's patch.
     pub cell_px: usize,
-    /// A corner is one of something where the smoothed image around it (15 x 15 px of its level) has at least this gradient in every
-    /// direction, root mean square, in standard deviations of the image's own noise a px, 0 to 100; 0 takes corners of noise and steps
-    /// along edges too. Default 0.5: swept in docs/results.md.
+    /// Smallest gradient in every direction of the smoothed image around a corner (15 x 15 px of its level), root mean square, in
+    /// standard deviations of the image's own noise a px, 0 to 100. 0 accepts corners of noise and steps along edges too.
+    /// Default 0.5. Source: ours, swept on simulated drives.
     pub min_texture: f64,
 }
 

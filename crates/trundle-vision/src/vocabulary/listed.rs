@@ -19,8 +19,8 @@ impl Vocabulary {
     /// A tree from its nodes but the root, which may stand in any order with parents before children.
     ///
     /// # Errors
-    /// When the shape is out of range, there is no node, a parent does not come before its child or is a leaf, a node
-    /// has too many children or lies too deep, an inner node has none, or a weight is negative or not finite; the
+    /// When the shape is out of range or there is no node. When a parent does not come before its child, or is a leaf. When a node
+    /// has too many children or lies too deep, or an inner node has none. When a weight is negative or not finite. The
     /// message names the node.
     pub(super) fn from_list(branching: usize, depth: usize, list: &[ListedNode]) -> Result<Self, Invalid> {
         check_shape(branching, depth)?;
