@@ -1,18 +1,16 @@
-//! Work that runs beside the control loop, and what arrives while it runs.
+//! A decision that runs beside the control loop, and what arrives while it runs.
 
-use super::event_log::{self, DroppedImage};
 use crate::world_state::{OwnedWorldState, WorldState};
 use crate::{
-    lazy_image::LazyImage,
     mission::MissionState,
     operator::RunSetting,
     workers::decision_worker::DecisionWorker,
     workers::fallback_controller::FallbackController,
     workers::job::{Job, Work},
 };
-use trundle_core::{Stamp, Twist2};
+use trundle_core::Twist2;
 
-/// Work that runs beside the control loop.
+/// A decision that runs beside the control loop.
 #[derive(Debug, Default)]
 pub(super) struct Background {
     pub(super) is_used: bool,
@@ -26,11 +24,9 @@ pub(super) struct Background {
     pub(super) changes: Vec<RunSetting>,
     /// Readings of bumper and cliff sensors while the decision worker is away.
     pub(super) felt: Vec<Felt>,
-    /// The newest image that is not processed yet.
-    pub(super) waiting: Option<LazyImage>,
-    pub(super) dropped: Vec<Stamp>,
 }
 
+/// A reading of a sensor of contact or floor.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Felt {
     Touched(bool),
@@ -73,18 +69,5 @@ impl Background {
     /// Whether wheel readings or a mission came that a running decision job does not include.
     pub(super) fn knows_more(&self) -> bool {
         !self.felt.is_empty() || self.orders.is_some()
-    }
-
-    /// Queues an image. The newest replaces the one that waits, which is dropped.
-    pub(super) fn queue_image(&mut self, image: LazyImage) {
-        if let Some(old) = self.waiting.replace(image) {
-            self.drop_image(old.stamp(), DroppedImage::Replaced);
-        }
-    }
-
-    /// Keeps the stamp of an image that is dropped.
-    pub(super) fn drop_image(&mut self, stamp: Stamp, why: DroppedImage) {
-        event_log::dropped_image(stamp, why);
-        self.dropped.push(stamp);
     }
 }

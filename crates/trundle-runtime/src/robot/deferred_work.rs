@@ -1,21 +1,20 @@
 //! Jobs of the robot: given out, run anywhere, and their results applied between two events.
 
-use super::{Robot, background::Felt, event_log::DroppedImage};
+use super::{Robot, event_log::DroppedImage};
 use crate::{
     lazy_image::LazyImage,
     report::StepReport,
     stage::Stage,
-    workers::decision_worker::DecisionWorker,
     workers::job::{Answer, Job, Outcome, Work},
 };
-use trundle_core::{Stamp, Twist2};
+use trundle_core::Stamp;
 
 impl Robot {
     /// The robot with its long work as jobs: fetch each with [`Robot::next_job`], run it anywhere, give the result to
     /// [`Robot::apply_answer`].
     #[must_use]
     pub fn with_background_jobs(mut self) -> Self {
-        self.background.is_used = true;
+        self.steering.background.is_used = true;
         self
     }
 
@@ -23,8 +22,8 @@ impl Robot {
     /// [`Robot::dropped_images`]. A robot without background jobs processes the image at once.
     pub fn queue_image(&mut self, image: LazyImage) -> StepReport {
         let mut report = StepReport::default();
-        if self.background.is_used() {
-            self.background.queue_image(image);
+        if self.steering.background.is_used() {
+            self.images.push(image);
         } else {
             match self.times.measure(Stage::Decoding, || image.load()) {
                 Ok(image) => self.on_image(&image, &mut report),
@@ -38,13 +37,13 @@ impl Robot {
     /// The next work that shall be done in the background, after every event and every answer; none where there is none, or
     /// the robot does not defer.
     pub fn next_job(&mut self) -> Option<Job> {
-        if let Some(job) = self.background.decision.take() {
+        if let Some(job) = self.steering.next_job() {
             return Some(job);
         }
         self.perception.as_ref()?;
-        let image = self.background.waiting.take()?;
+        let image = self.images.take()?;
         let Some(odometer) = self.odometry_at(image.stamp()) else {
-            self.background.drop_image(image.stamp(), DroppedImage::NoOdometry);
+            self.images.drop_image(image.stamp(), DroppedImage::NoOdometry);
             return None;
         };
         let perception = self.perception.take()?;
@@ -72,10 +71,8 @@ impl Robot {
             Outcome::Decided { decision_worker, decision, asked } => {
                 let is_newest = self.latest.odometry.is_some_and(|odometry| odometry.stamp == asked);
                 let is_held = self.latest.body.hold(self.range_source).is_some();
-                let is_current = is_newest && !is_held && !self.background.knows_more();
-                report.twist = is_current.then_some(decision.twist);
+                report.twist = self.steering.on_decided(decision_worker, &decision, is_newest && !is_held);
                 report.twist.into_iter().for_each(|twist| self.odometry.set_command(twist));
-                self.return_decision_worker(decision_worker, report.twist);
                 report.replanned = decision.replanned;
             }
         }
@@ -85,58 +82,13 @@ impl Robot {
 
     /// Stamps of the images that a newer one replaced before they were processed.
     pub fn dropped_images(&self) -> &[Stamp] {
-        &self.background.dropped
+        self.images.dropped()
     }
 
     /// Drops the queued image, if there is one: the run is over.
     pub fn drop_queued_image(&mut self) {
-        if let Some(image) = self.background.waiting.take() {
-            self.background.drop_image(image.stamp(), DroppedImage::RunOver);
-        }
-    }
-
-    /// The decision worker is back: it receives the readings and the mission that came meanwhile, and the last command.
-    fn return_decision_worker(&mut self, mut decision_worker: Box<DecisionWorker>, sent: Option<Twist2>) {
-        let fallback = self.background.fallback.take();
-        if let Some(sent) = sent.or(fallback.map(|fallback| fallback.sent)) {
-            decision_worker.navigator.sent(sent);
-        }
-        for felt in self.background.felt.drain(..) {
-            match felt {
-                Felt::Touched(pressed) => decision_worker.navigator.touch(pressed),
-                Felt::OverEdge(over_edge) => decision_worker.navigator.cliff(over_edge),
-            }
-        }
-        let navigator = &mut decision_worker.navigator;
-        self.background.changes.drain(..).for_each(|setting| navigator.change(setting));
-        if let Some(mission) = self.background.orders.take() {
-            decision_worker.begin(&mission);
-        }
-        self.latest.mission = decision_worker.executor.mission();
-        self.decision_worker = Some(decision_worker);
-    }
-
-    /// A reading of the bumper.
-    pub(super) fn forward_touch(&mut self, pressed: bool) {
-        self.teleop.touched = pressed;
-        match &mut self.decision_worker {
-            Some(decision_worker) => decision_worker.navigator.touch(pressed),
-            None => self.background.felt.push(Felt::Touched(pressed)),
-        }
-        if let Some(fallback) = &mut self.background.fallback {
-            fallback.touched = pressed;
-        }
-    }
-
-    /// A reading of the cliff sensors.
-    pub(super) fn on_cliff(&mut self, over_edge: bool) {
-        self.teleop.over_edge = over_edge;
-        match &mut self.decision_worker {
-            Some(decision_worker) => decision_worker.navigator.cliff(over_edge),
-            None => self.background.felt.push(Felt::OverEdge(over_edge)),
-        }
-        if let Some(fallback) = &mut self.background.fallback {
-            fallback.over_edge = over_edge;
+        if let Some(image) = self.images.take() {
+            self.images.drop_image(image.stamp(), DroppedImage::RunOver);
         }
     }
 }

@@ -19,9 +19,7 @@ impl Robot {
         let mut report = StepReport::default();
         match command.validated()? {
             OperatorCommand::Begin(mission) => {
-                self.teleop.release();
-                self.latest.state.1 = false;
-                self.restore_mission(MissionState::new(mission).of_operator());
+                self.steering.begin_for_operator(MissionState::new(mission));
             }
             OperatorCommand::Pause => self.pause(true, now, &mut report),
             OperatorCommand::Continue => self.pause(false, now, &mut report),
@@ -33,7 +31,7 @@ impl Robot {
             }
             OperatorCommand::Drive(twist) => {
                 self.pause(true, now, &mut report);
-                self.teleop.drive(twist, now);
+                self.steering.teleop.drive(twist, now);
             }
         }
         self.complete(&mut report);
@@ -49,14 +47,11 @@ impl Robot {
         event_log::setting_changed(now, setting);
         let is_same = |known: &&mut RunSetting| known.key() == setting.key();
         self.settings.iter_mut().find(is_same).into_iter().for_each(|known| *known = setting);
-        match &mut self.decision_worker {
-            Some(decision_worker) => decision_worker.navigator.change(setting),
-            None => self.background.changes.push(setting),
-        }
+        self.steering.change(setting);
     }
 
     fn pause(&mut self, is_paused: bool, now: Stamp, report: &mut StepReport) {
-        self.teleop.release();
+        self.steering.teleop.release();
         let before = self.latest.body.hold(self.range_source);
         self.latest.body.set_paused(is_paused);
         self.on_hold(before, now, report);

@@ -40,8 +40,8 @@ impl Robot {
         let is_lost = is_lost(&self.localizer);
         let Some(perception) = &mut self.perception else { return };
         match (is_lost, perception.global_localization.is_sought()) {
-            (true, false) if self.mapper.is_redrawing() => {}
-            (true, false) => perception.global_localization.search_pose(self.mapper.grid().clone()),
+            (true, false) if self.mapping.mapper.is_redrawing() => {}
+            (true, false) => perception.global_localization.search_pose(self.mapping.grid().clone()),
             (false, true) => perception.global_localization.end(),
             _ => {}
         }
@@ -59,7 +59,7 @@ impl Robot {
             return true;
         }
         let Ok(pose) = self.localizer.pose_at(now) else { return true };
-        let fit = watch.judge(self.mapper.grid(), pose, scan);
+        let fit = watch.judge(self.mapping.grid(), pose, scan);
         if fit == Fit::Elsewhere {
             self.lose_pose();
             self.perception.iter_mut().for_each(|perception| perception.kidnapped());
@@ -71,6 +71,6 @@ impl Robot {
     pub(super) fn lose_pose(&mut self) {
         self.localizer.set_pose_unknown();
         self.latest.scan_map_consistency.forget();
-        self.clear_dynamic_obstacles();
+        self.obstacles.clear();
     }
 }

@@ -28,7 +28,7 @@ impl Robot {
             .resumed(checkpoint.visual_maps.clone());
         checkpoint.station.iter().for_each(|station| robot.station.restore(station));
         robot.annotate(checkpoint.annotations.clone());
-        robot.restore_mission(checkpoint.mission.clone().after_restart());
+        robot.steering.begin(checkpoint.mission.clone().after_restart());
         Ok(robot)
     }
 
@@ -55,7 +55,7 @@ impl Robot {
     fn set_map(&mut self, config: &RobotConfig, grid: &OccupancyGrid) -> Result<(), Invalid> {
         let blind_range = self.perception.as_ref().map_or(0.0, |perception| perception.blind_range());
         let mapping = MapperConfig { blind_range, ..config.mapping.clone() };
-        self.mapper = LiveMapper::from_grid(mapping, grid)?;
+        self.mapping.mapper = LiveMapper::from_grid(mapping, grid)?;
         Ok(())
     }
 
@@ -73,15 +73,12 @@ impl Robot {
     pub fn checkpoint(&mut self) -> Option<Checkpoint> {
         let visual = self.perception.as_ref()?.slam().save();
         // The grid that fits it.
-        self.mapper.work_within(usize::MAX, 1);
+        self.mapping.mapper.work_within(usize::MAX, 1);
         let now = self.localizer.estimate().stamp;
         self.is_pose_known(now).then(|| self.checkpoint_with(visual))
     }
 
     pub(super) fn checkpoint_with(&mut self, visual: Vec<u8>) -> Checkpoint {
-        if let Some(decision_worker) = &self.decision_worker {
-            self.latest.mission = decision_worker.executor.mission();
-        }
         let mut visual_maps = self.localizer.visual_maps();
         if let Some(slam) = self.slam() {
             let maps: Vec<u32> = slam.maps().iter().map(|map| map.number()).collect();
@@ -90,8 +87,8 @@ impl Robot {
         Checkpoint {
             visual,
             visual_maps,
-            grid: self.mapper.grid().clone(),
-            mission: self.latest.mission.clone(),
+            grid: self.mapping.grid().clone(),
+            mission: self.steering.mission().clone(),
             station: self.station.estimate(),
             annotations: self.annotations().as_ref().clone(),
         }

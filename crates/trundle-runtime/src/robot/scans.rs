@@ -1,6 +1,6 @@
 //! Scans: correction of the estimate, map, dynamic obstacles.
 
-use super::{NEARBY_OBSTACLE_M, Robot, event_log};
+use super::{Robot, event_log};
 use crate::report::StepReport;
 use crate::stage::Stage;
 use trundle_core::Scan;
@@ -9,7 +9,7 @@ use trundle_estimation::PlanarMeasurement;
 impl Robot {
     /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each. Whether it was drawn.
     pub(super) fn on_scan(&mut self, scan: Scan, report: &mut StepReport) -> bool {
-        let is_due = self.map_due.due(scan.stamp()) && self.is_pose_known(scan.stamp());
+        let is_due = self.mapping.is_due(scan.stamp()) && self.is_pose_known(scan.stamp());
         let is_due = is_due && self.is_consistent_with_map(&scan);
         if is_due {
             report.measurements.scan = self.correct_by_scan(&scan);
@@ -28,30 +28,18 @@ impl Robot {
     fn track_dynamic_obstacles(&mut self, scan: &Scan) {
         let now = scan.stamp();
         if !self.is_pose_known(now) {
-            // Hits of unconfirmed obstacles are in the map frame; they expire.
-            let here = self.localizer.estimate().pose.position();
-            self.latest.unconfirmed = self.obstacle_tracker.unconfirmed_hits(now, here, NEARBY_OBSTACLE_M);
-            return self.latest.clear_movers();
+            return self.obstacles.skip_scan(now, self.localizer.estimate().pose.position());
         }
         let Ok(pose) = self.localizer.pose_at(now) else { return };
-        let (times, obstacle_tracker, latest) =
-            (&mut self.times, &mut self.obstacle_tracker, &mut self.latest);
-        times.measure(Stage::DynamicObstacles, || {
-            obstacle_tracker.add_scan(pose, scan);
-            latest.movers = obstacle_tracker.moving_obstacles(now);
-            latest.unconfirmed = obstacle_tracker.unconfirmed_hits(now, pose.position(), NEARBY_OBSTACLE_M);
-            latest.static_grid =
-                (!latest.movers.is_empty()).then(|| obstacle_tracker.static_grid(self.mapper.grid()));
-        });
+        let (obstacles, grid) = (&mut self.obstacles, self.mapping.grid());
+        self.times.measure(Stage::DynamicObstacles, || obstacles.add_scan(pose, scan, grid));
     }
 
     /// Corrects the estimate by where the scan fits the map; returns this measurement.
     fn correct_by_scan(&mut self, scan: &Scan) -> Option<PlanarMeasurement> {
         let stamp = scan.stamp();
         let guess = self.localizer.pose_at(stamp).ok()?;
-        let found = self
-            .times
-            .measure(Stage::ScanMatch, || self.matcher.refine(self.mapper.mapper(), scan, guess))?;
+        let found = self.times.measure(Stage::ScanMatch, || self.mapping.matched(scan, guess))?;
         let before = self.localizer.estimate().pose;
         self.localizer.correct_scan(stamp, found.pose, &found.covariance);
         event_log::correction(stamp, "the scan match", before, self.localizer.estimate().pose);
@@ -61,10 +49,6 @@ impl Robot {
     /// Draws the scan, and the floor that the robot stands on, into the map; not when no pose is known for its time.
     fn integrate_scan(&mut self, scan: &Scan) {
         let Ok(pose) = self.localizer.pose_at(scan.stamp()) else { return };
-        let (mapper, radius) = (&mut self.mapper, self.inscribed_radius);
-        self.times.measure(Stage::Mapping, || {
-            mapper.insert(pose, scan);
-            mapper.mark_free_disc(pose, radius);
-        });
+        self.times.measure(Stage::Mapping, || self.mapping.draw(pose, scan));
     }
 }

@@ -2,8 +2,8 @@
 
 use super::*;
 use proptest::prelude::*;
-use trundle_core::{Beam, Twist2};
-use trundle_planning::ObstacleTrackerConfig;
+use trundle_core::{Beam, Footprint, OccupancyGrid, Twist2, Vector2};
+use trundle_planning::{MovingObstacleTracker, ObstacleTrackerConfig};
 
 fn scan(stamp: Stamp) -> Scan {
     Scan::new(stamp, Vector2::zeros(), 0.0, 0.1, vec![Beam::Free { range: 3.0 }; 20]).unwrap()
@@ -36,14 +36,14 @@ fn dynamic_obstacles_move_on_while_scans_are_recent_and_are_dropped_when_none_co
     let movers = tracker.moving_obstacles(last);
     assert_eq!(movers.len(), 1, "{movers:?}");
     let grid = OccupancyGrid::from_ascii(0.1, "..\n..\n").unwrap();
-    let mut latest = Latest { movers, scan: Some(scan(last)), static_grid: Some(grid), ..Latest::default() };
-    let before = latest.movers[0].at(0.0);
-    latest.forecast_movers(&tracker, last.after(0.5));
-    let moved = latest.movers[0].at(0.0) - before;
+    let mut tracks = ObstacleTracks::tracking(tracker, movers, grid);
+    let before = tracks.movers[0].at(0.0);
+    tracks.forecast(Some(last), last.after(0.5));
+    let moved = tracks.movers[0].at(0.0) - before;
     assert!((moved - Vector2::new(0.0, 0.4)).norm() < 0.15, "{moved}");
-    assert!(latest.static_grid.is_some());
-    latest.forecast_movers(&tracker, last.after(1.1 * MAX_TRACK_AGE_S));
-    assert!(latest.movers.is_empty() && latest.static_grid.is_none(), "where it is nothing says");
+    assert!(tracks.static_grid.is_some());
+    tracks.forecast(Some(last), last.after(1.1 * obstacles::MAX_TRACK_AGE_S));
+    assert!(tracks.movers.is_empty() && tracks.static_grid.is_none(), "where it is nothing says");
 }
 
 #[test]
@@ -92,8 +92,8 @@ proptest! {
         let corners = [(front, left), (-back, left), (-back, -right), (front, -right)];
         let outline = Footprint::polygon(corners.map(|(x, y)| Vector2::new(x, y)).to_vec()).unwrap();
         let nearest = front.min(back).min(left).min(right);
-        prop_assert!((inscribed_radius(&outline) - nearest).abs() < 1e-9);
-        prop_assert_eq!(inscribed_radius(&Footprint::disc(front).unwrap()), front);
+        prop_assert!((mapping::inscribed_radius(&outline) - nearest).abs() < 1e-9);
+        prop_assert_eq!(mapping::inscribed_radius(&Footprint::disc(front).unwrap()), front);
         prop_assert!(bumper::ahead_of(&outline).iter().all(|point| point.norm() > nearest));
     }
 }

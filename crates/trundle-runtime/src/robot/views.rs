@@ -31,7 +31,7 @@ impl Robot {
 
     /// The map.
     pub fn grid(&self) -> &OccupancyGrid {
-        self.mapper.grid()
+        self.mapping.grid()
     }
 
     /// The visual tracker with its landmark map; none while a perception job runs.
@@ -51,19 +51,19 @@ impl Robot {
 
     /// How far the mission has come; none while a decision job runs.
     pub fn mission_progress(&self) -> Option<MissionProgress<'_>> {
-        let executor = &self.decision_worker.as_ref()?.executor;
+        let executor = &self.steering.decision_worker.as_ref()?.executor;
         Some(MissionProgress { task: executor.task(), ended: executor.records() })
     }
 
     /// The tasks of the mission that have not ended, the present one first; none while a decision job runs.
     pub fn tasks_left(&self) -> Option<Vec<Task>> {
-        Some(self.decision_worker.as_ref()?.executor.tasks_left().collect())
+        Some(self.steering.decision_worker.as_ref()?.executor.tasks_left().collect())
     }
 
     /// Report of turns and straight moves for the present goal, or for the last goal with such a request; none while a decision job
     /// runs.
     pub fn docking(&self) -> Option<&GoalApproachReport> {
-        Some(self.decision_worker.as_ref()?.navigator.docking())
+        Some(self.steering.decision_worker.as_ref()?.navigator.docking())
     }
 
     /// The present task; none while a decision job runs.
@@ -73,7 +73,7 @@ impl Robot {
 
     /// The newest plan; none while a decision is made in the background.
     pub fn plan(&self) -> Option<&PlanResult> {
-        self.decision_worker.as_ref()?.navigator.plan()
+        self.steering.decision_worker.as_ref()?.navigator.plan()
     }
 
     /// The newest scan.
@@ -99,7 +99,7 @@ impl Robot {
 
     /// Dynamic obstacles near by, forecast to the newest decision.
     pub fn moving_obstacles(&self) -> &[MovingObstacle] {
-        &self.latest.movers
+        &self.obstacles.movers
     }
 
     /// The charging station; none before its light was seen.

@@ -1,0 +1,115 @@
+//! The grid of the robot: scans that are matched and drawn, and the redraw after a correction.
+
+use crate::bumper;
+use crate::scan_pose_log::ScanPoseLog;
+use crate::schedule::Ticker;
+use std::collections::BTreeMap;
+use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, Pose3, Scan, Stamp, Vector2};
+use trundle_mapping::{LiveMapper, MapperConfig, ScanMatch, ScanMatchConfig, ScanMatcher};
+
+/// Smallest number of cells of a corrected grid that are redrawn after each command: about 1.5 ms of depth scans. Source: ours.
+const MIN_REDRAWN_CELLS: usize = 60_000;
+/// Number of commands over which the rest of a corrected grid is redrawn: 1.8 s. Source: ours.
+const REDRAW_COMMANDS: usize = 90;
+
+/// The grid, and what is needed to keep it.
+#[derive(Debug)]
+pub(super) struct GridMapping {
+    pub(super) mapper: LiveMapper,
+    matcher: ScanMatcher,
+    pub(super) scan_poses: ScanPoseLog,
+    /// Commands within which a corrected grid is redrawn.
+    redrawn_within: usize,
+    due: Ticker,
+    /// Radius of the largest disc inside the footprint \[m\].
+    inscribed_radius: f64,
+    /// Points at which an obstacle presses the bumper, base frame \[m\].
+    bumper: Vec<Vector2>,
+}
+
+impl GridMapping {
+    /// An empty grid, drawn `map_hz` times a second by a robot of this footprint.
+    ///
+    /// # Errors
+    /// When a number of a configuration is outside its range.
+    pub(super) fn new(
+        mapping: MapperConfig,
+        matching: ScanMatchConfig,
+        map_hz: f64,
+        footprint: &Footprint,
+    ) -> Result<Self, Invalid> {
+        Ok(Self {
+            mapper: LiveMapper::new(mapping)?,
+            matcher: ScanMatcher::new(matching)?,
+            scan_poses: ScanPoseLog::default(),
+            redrawn_within: REDRAW_COMMANDS,
+            due: Ticker::new(map_hz),
+            inscribed_radius: inscribed_radius(footprint),
+            bumper: bumper::ahead_of(footprint),
+        })
+    }
+
+    /// The grid.
+    pub(super) fn grid(&self) -> &OccupancyGrid {
+        self.mapper.grid()
+    }
+
+    /// Whether a scan of `now` is to be drawn, by the rate of the map.
+    pub(super) fn is_due(&mut self, now: Stamp) -> bool {
+        self.due.due(now)
+    }
+
+    /// Where the scan fits the grid, near `guess`.
+    pub(super) fn matched(&self, scan: &Scan, guess: Pose2) -> Option<ScanMatch> {
+        self.matcher.refine(self.mapper.mapper(), scan, guess)
+    }
+
+    /// Draws a scan that was taken at `pose`, and the floor that the robot stands on.
+    pub(super) fn draw(&mut self, pose: Pose2, scan: &Scan) {
+        self.mapper.insert(pose, scan);
+        self.mapper.mark_free_disc(pose, self.inscribed_radius);
+    }
+
+    /// The bumper is pressed: an obstacle ahead, which the camera may be blind for.
+    pub(super) fn mark_touch(&mut self, pose: Pose2) {
+        self.mapper.mark_occupied(pose, &self.bumper);
+    }
+
+    /// Notes the pose of a drawn scan in the visual map. Whether the log was thinned.
+    pub(super) fn note_scan_pose(&mut self, stamp: Stamp, visual_from_camera: Pose3) -> bool {
+        self.scan_poses.note(stamp, visual_from_camera, || self.mapper.logged_stamps())
+    }
+
+    /// Applies a corrected visual trajectory: whether the grid is redrawn from the corrected poses of its scans.
+    pub(super) fn correct(
+        &mut self,
+        trajectory: &[(Stamp, Pose3)],
+        visual_base: impl Fn(&Pose3) -> Option<Pose2>,
+    ) -> bool {
+        let moved: BTreeMap<Stamp, Pose2> = self.scan_poses.follow(trajectory, visual_base);
+        let redrawn =
+            self.mapper.correct(|stamp, pose| moved.get(&stamp).map_or(pose, |moved| *moved * pose));
+        if redrawn > 0 {
+            self.redrawn_within = REDRAW_COMMANDS;
+        }
+        redrawn > 0
+    }
+
+    /// Redraws a slice of a corrected grid.
+    pub(super) fn redraw_slice(&mut self) {
+        self.mapper.work_within(MIN_REDRAWN_CELLS, self.redrawn_within);
+        self.redrawn_within = self.redrawn_within.saturating_sub(1).max(1);
+    }
+}
+
+/// Of the largest disc about the base's origin that is inside the footprint, m; 0 where the origin is outside.
+pub(super) fn inscribed_radius(footprint: &Footprint) -> f64 {
+    match footprint {
+        Footprint::Disc { radius } => *radius,
+        Footprint::Polygon { corners } => {
+            let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+            let from_side = |(a, b): (&Vector2, &Vector2)| (b - a).perp(&-a) / (b - a).norm();
+            sides.map(from_side).fold(f64::INFINITY, f64::min).max(0.0)
+        }
+    }
+}
