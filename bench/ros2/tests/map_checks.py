@@ -5,7 +5,7 @@ import numpy as np
 import rclpy
 import yaml
 from nav2_msgs.srv import ClearCostmapAroundRobot, ClearEntireCostmap, LoadMap, SaveMap
-from nav2_user import LATCHED
+from nav2_user import LATCHED, NEAR, outcome, status
 from nav_msgs.msg import OccupancyGrid
 from PIL import Image
 from rclpy.executors import SingleThreadedExecutor
@@ -89,11 +89,21 @@ def save_map(checks, user, options):
 
 
 def load_map(checks, user, options):
-    """The saved map can be loaded; a file that is not there has its code."""
+    """The saved map can be loaded: its pose is unknown then, and after an initial pose it reaches a goal. A file that is not there has its code."""
     url = pathlib.Path(options.out).resolve() / "saved.yaml"
+    if not url.exists():
+        save_map(checks, user, options)
     answer = user.call(LoadMap, "map_server/load_map", LoadMap.Request(map_url=str(url)))
     checks.check("load_map of the saved map succeeds", answer is not None and answer.result == LoadMap.Response.RESULT_SUCCESS,
                  f"result {answer.result if answer else None}")
+    user.wait_simulated(0.5)
+    variance = user.last["amcl_pose"].pose.covariance[0] if "amcl_pose" in user.last else None
+    checks.check("the pose in the loaded map is unknown", variance is not None and variance > 1, f"variance of x {variance} m2")
+    user.set_pose(user.truth())
+    result = user.go(NEAR).wait(180)
+    distance, angle = user.error_to(NEAR)
+    checks.check("on the loaded map the robot reaches a goal after initialpose", status(result) == "SUCCEEDED" and distance < 0.05 and angle < 3,
+                 f"{outcome(result)}, {100 * distance:.1f} cm, {angle:.2f} deg")
     answer = user.call(LoadMap, "map_server/load_map", LoadMap.Request(map_url="/nowhere/map.yaml"))
     code = LoadMap.Response.RESULT_MAP_DOES_NOT_EXIST
     checks.check("load_map of a missing file says so", answer is not None and answer.result == code, f"result {answer.result if answer else None}")

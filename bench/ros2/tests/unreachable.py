@@ -9,12 +9,11 @@ import tempfile
 
 import goals
 from harness import Checks
-from nav2_user import User, outcome, status
+from nav2_user import NEAR, User, outcome, status
 
 # Simulated time within which a goal without a path ends, s: two seconds of plans, and the robot's stop.
 LIMIT_S = 6.0
-# A place near the start, and places in the flat's west wall, world frame.
-NEAR = (2.2, 1.1, 0.0)
+# Places in the flat's west wall, world frame.
 PLACES = {"inside the wall": (0.02, 1.1, 0.0), "half in the wall": (0.12, 1.4, 0.0)}
 # GOAL_OUTSIDE_MAP, GOAL_OCCUPIED, NO_VALID_PATH of ComputePathToPose.
 CODES = {204, 206, 208}

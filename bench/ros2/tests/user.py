@@ -14,13 +14,11 @@ from geometry_msgs.msg import Point, PoseStamped
 from harness import Checks, planar, relative, seconds
 from map_checks import clear_costmaps, late_joiner, load_map, save_map
 from mujoco_robot import worlds
-from nav2_msgs.srv import ManageLifecycleNodes, SetInitialPose
-from nav2_user import User, outcome, status
+from nav2_msgs.srv import ManageLifecycleNodes
+from nav2_user import FAR, NEAR, User, outcome, status
 from nav_msgs.msg import Path
 from node_checks import lifecycle_states, parameters, transforms
 
-# Places of the flat, world frame: near the start, and far enough to be stopped on the way.
-NEAR, FAR = (2.2, 1.1, 0.0), (3.6, 1.7, 0.0)
 # Codes of an unreachable goal: GOAL_OUTSIDE_MAP, GOAL_OCCUPIED, NO_VALID_PATH of ComputePathToPose.
 UNREACHABLE_CODES = {204, 206, 208}
 
@@ -180,11 +178,7 @@ def topics(checks, user, options):
 
 def initial_pose(checks, user, options):
     """set_initial_pose at the true pose is answered and keeps the robot where it is."""
-    request = SetInitialPose.Request()
-    here = user.map_pose(user.truth())
-    request.pose.header, request.pose.pose.pose = here.header, here.pose
-    request.pose.pose.covariance[[0, 7, 35]] = (0.04, 0.04, 0.02)
-    checks.check("set_initial_pose is answered", user.call(SetInitialPose, "set_initial_pose", request) is not None)
+    checks.check("set_initial_pose is answered", user.set_pose(user.truth()) is not None)
     result = user.go(NEAR).wait()
     distance, _ = user.error_to(NEAR)
     checks.check("goals are reached after set_initial_pose", status(result) == "SUCCEEDED" and distance < 0.1, f"{100 * distance:.1f} cm")

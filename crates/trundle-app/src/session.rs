@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use trundle_core::{Stamp, Twist2};
 use trundle_io::EncodedEvent;
 use trundle_runtime::{
-    Answer, DriveState, LazyImage, OperatorCommand, Reason, Robot, Stage, StepReport, TaskRecord, Worker,
+    Answer, DriveState, LazyImage, Reason, Robot, Stage, StepReport, TaskRecord, Worker,
 };
 
 /// A run in progress: feeds the robot and records each input and output.
@@ -223,10 +223,14 @@ impl<'s> RunSession<'s> {
         if let Some(link) = &mut self.operator {
             link.note_request(&request);
         }
-        if matches!(request.command, OperatorCommand::Begin(_)) {
+        if request.command.replaces_mission() {
             self.earlier_tasks.extend_from_slice(self.robot.tasks_ended());
         }
-        Ok(self.robot.obey(request.command)?)
+        let report = self.robot.obey(request.command)?;
+        if let (true, Some(link)) = (report.map_replaced, &mut self.operator) {
+            link.note_map_replaced();
+        }
+        Ok(report)
     }
 
     fn record_mark(&mut self, mark: RunMark) {

@@ -1,5 +1,6 @@
 //! The occupancy grid: its cells, its geometry, and conversion between cells and points of the map frame.
 
+use crate::grid_text::GridText;
 use crate::{Invalid, Vector2, require_finite, require_positive};
 use serde::{Deserialize, Serialize};
 
@@ -40,6 +41,11 @@ pub struct GridGeometry {
 /// 2^40: f64 resolves the position in such a cell to 1/4096 of its side.
 const FARTHEST_CELLS: f64 = 1_099_511_627_776.0;
 
+/// Largest difference \[m\] of two resolutions that count as one: what text of 9 decimals loses. Source: ours.
+const MAX_RESOLUTION_ERROR_M: f64 = 1e-9;
+/// Largest distance \[cells\] of a corner from the lattice. Source: ours; 50 um with cells of 5 cm.
+const MAX_CORNER_ERROR_CELLS: f64 = 1e-3;
+
 impl GridGeometry {
     /// Checked geometry: resolution in m, origin in m, size in cells.
     ///
@@ -60,6 +66,22 @@ impl GridGeometry {
             return Err(Invalid::new("grid size", format!("{width} x {height}"), "cells", "1 to 2^31 cells"));
         }
         Ok(Self { resolution, origin, width, height })
+    }
+
+    /// Requires that the cells are those of the lattice of this resolution \[m\] with a corner at the origin, as a map that grows has them.
+    ///
+    /// # Errors
+    /// When the resolution is another one, or the origin is no multiple of it.
+    pub fn require_lattice(&self, resolution: f64) -> Result<(), Invalid> {
+        if (self.resolution - resolution).abs() > MAX_RESOLUTION_ERROR_M {
+            return Err(Invalid::new("resolution of the map", self.resolution, "m", format!("{resolution}")));
+        }
+        let corner = self.origin / resolution;
+        if (corner - corner.map(f64::round)).norm() > MAX_CORNER_ERROR_CELLS {
+            let value = format!("({}, {})", self.origin.x, self.origin.y);
+            return Err(Invalid::new("origin of the map", value, "m", format!("multiples of {resolution}")));
+        }
+        Ok(())
     }
 
     /// The number of cells.
@@ -98,7 +120,8 @@ impl GridGeometry {
 }
 
 /// A 2-D occupancy grid in the map frame, row-major from the lowest y.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "GridText", into = "GridText")]
 pub struct OccupancyGrid {
     geometry: GridGeometry,
     cells: Vec<Cell>,

@@ -4,7 +4,8 @@ use crate::Mission;
 use crate::mission::executor_config::PATIENCE_RANGE_S;
 use serde::{Deserialize, Serialize};
 use trundle_core::{
-    Invalid, MapAnnotations, Pose2, SPEED_LIMIT_RANGE_M_S, Twist2, require_finite, require_in,
+    Invalid, MAX_TEXT_CELLS, MapAnnotations, OccupancyGrid, Pose2, SPEED_LIMIT_RANGE_M_S, Twist2,
+    require_finite, require_in,
 };
 
 /// A command of an operator to a robot that runs.
@@ -24,6 +25,10 @@ pub enum OperatorCommand {
     Change(RunSetting),
     /// The zones and named places of the map, in place of the present ones.
     Annotate(MapAnnotations),
+    /// Another map in place of the present one, with the robot file's resolution. Its frame is the map frame from now on, and the pose is
+    /// unknown. The mission is cancelled; zones, places and charging station of the old map are dropped. The robot keeps its own map
+    /// where the cells do not fit ([`crate::StepReport::map_replaced`]).
+    LoadMap(Box<OccupancyGrid>),
     /// Drive with this twist, below the safety monitor: the mission is paused. Without another one within
     /// [`TELEOP_SILENCE_S`] the robot stops.
     Drive(Twist2),
@@ -38,6 +43,12 @@ impl OperatorCommand {
     #[must_use]
     pub fn cancel() -> Self {
         Self::Begin(Mission::default())
+    }
+
+    /// Whether what is left of the present mission is dropped.
+    #[must_use]
+    pub fn replaces_mission(&self) -> bool {
+        matches!(self, Self::Begin(_) | Self::LoadMap(_))
     }
 
     /// The command, its numbers checked.
@@ -55,9 +66,20 @@ impl OperatorCommand {
                 require_finite("turn rate of the operator's twist", twist.omega, "rad/s")?;
                 Ok(self)
             }
+            Self::LoadMap(grid) => Ok(Self::LoadMap(require_sendable(grid)?)),
             Self::Pause | Self::Continue => Ok(self),
         }
     }
+}
+
+/// A map that a recording can hold.
+fn require_sendable(grid: Box<OccupancyGrid>) -> Result<Box<OccupancyGrid>, Invalid> {
+    let cells = grid.geometry().len();
+    if cells > MAX_TEXT_CELLS {
+        let expected = format!("at most {MAX_TEXT_CELLS}");
+        return Err(Invalid::new("number of cells of the map", cells, "", expected));
+    }
+    Ok(grid)
 }
 
 /// A pose of the robot with its uncertainty, as an operator knows it.

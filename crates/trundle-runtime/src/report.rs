@@ -28,6 +28,8 @@ pub struct StepReport {
     pub state: DriveState,
     /// Whether the step made a new plan.
     pub replanned: bool,
+    /// Whether another map stands in place of the one before, by an operator's command.
+    pub map_replaced: bool,
     /// Whether the mission is over; `state` then holds its outcome.
     pub finished: bool,
 }

@@ -285,7 +285,7 @@ impl Robot {
     fn update_zones(&mut self) {
         let map = ZonedMap {
             grid: self.mapping.grid(),
-            revision: self.mapping.mapper.revision(),
+            revision: self.mapping.revision(),
             static_grid: self.obstacles.static_grid.as_ref(),
             scanned: self.latest.scan.as_ref().map(Scan::stamp),
         };

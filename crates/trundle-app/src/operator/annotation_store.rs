@@ -27,4 +27,9 @@ impl AnnotationStore {
             self.newest = Arc::new(annotations.clone());
         }
     }
+
+    /// Begins without annotations and without a file: those of the old map do not belong to the new one.
+    pub(super) fn note_map_replaced(&mut self) {
+        *self = Self { waiting: self.waiting, ..Self::default() };
+    }
 }

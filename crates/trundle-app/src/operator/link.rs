@@ -166,6 +166,11 @@ impl OperatorLink {
         }
     }
 
+    /// Zones and places belong to the map: a robot on another map has none, and the file of the old ones stays as it is.
+    pub(crate) fn note_map_replaced(&mut self) {
+        self.operator().annotation_store().note_map_replaced();
+    }
+
     /// Publishes the state of the robot after a step.
     pub(crate) fn publish(&mut self, stamp: Stamp, robot: &Robot, report: &StepReport) {
         let is_asked = self.shared.is_asked.swap(false, Ordering::Relaxed);

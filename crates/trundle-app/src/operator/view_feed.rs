@@ -6,7 +6,7 @@ use super::run_view::{ImageView, MapView, MissionView, RunCounts, RunView, Surro
 use super::visual_map_feed::VisualMapFeed;
 use std::sync::Arc;
 use trundle_core::{Scan, Stamp, Trajectory, Twist2};
-use trundle_runtime::{OperatorCommand, Robot, Stage, StepReport};
+use trundle_runtime::{Robot, Stage, StepReport};
 
 /// Time between two copies of the map \[s\]. A map of 100 x 100 m is 4 million cells, a copy of 1 ms. Source: ours.
 const MAP_PERIOD_S: f64 = 1.0;
@@ -33,7 +33,7 @@ pub(super) struct ViewFeed {
 impl ViewFeed {
     /// Notes which request began the present mission.
     pub(super) fn note_request(&mut self, request: &OperatorRequest) {
-        if matches!(request.command, OperatorCommand::Begin(_)) {
+        if request.command.replaces_mission() {
             self.mission = MissionView { id: request.id, ..MissionView::default() };
             self.plan = None;
         }

@@ -198,6 +198,11 @@ impl Localizer {
         self.divergence = DivergenceCheck::default();
     }
 
+    /// Forgets the poses of the visual maps in the map, as after the map was replaced. Each is anchored anew by its next pose.
+    pub fn forget_visual_maps(&mut self) {
+        self.visual.set_anchors(BTreeMap::new());
+    }
+
     /// The anchor of every visual map, by its number.
     pub fn visual_maps(&self) -> BTreeMap<u32, VisualAnchor> {
         self.visual.maps()

@@ -28,17 +28,11 @@ impl GridMapper {
 
 /// Lowest and highest cell that a grid of this geometry covers.
 fn cells_of(config: &MapperConfig, geometry: &GridGeometry) -> Result<(GridCell, GridCell), Invalid> {
-    let GridGeometry { resolution, origin, width, height } = *geometry;
+    let GridGeometry { origin, width, height, .. } = *geometry;
     let own = config.resolution;
-    if (resolution - own).abs() > 1e-9 {
-        return Err(Invalid::new("resolution of the map", resolution, "m", format!("{own}")));
-    }
+    geometry.require_lattice(own)?;
     let (corner, size) = (origin / own, Vector2::new(width as f64, height as f64));
     let rounded = corner.map(f64::round);
-    if (corner - rounded).norm() > 1e-3 {
-        let value = format!("({}, {})", origin.x, origin.y);
-        return Err(Invalid::new("origin of the map", value, "m", format!("multiples of {own}")));
-    }
     let limit = config.half_extent / own;
     if rounded.amax() > limit || (rounded + size).amax() > limit {
         let value = format!("{width} x {height} cells from ({}, {})", origin.x, origin.y);

@@ -1,8 +1,9 @@
 //! Services of the map: get, save, and the clearing of costmaps.
 
+use super::active_goal::ActiveGoal;
 use crate::Ros2Error;
 use crate::convert::grid;
-use crate::generated::nav_msgs::{GetMap, GetMapResponse};
+use crate::generated::nav_msgs::{GetMap, GetMapResponse, OccupancyGrid as RosGrid};
 use crate::generated::nav2_msgs::{
     ClearCostmapAroundRobot, ClearCostmapAroundRobotResponse, ClearCostmapExceptRegion,
     ClearCostmapExceptRegionResponse, ClearEntireCostmap, ClearEntireCostmapResponse, LoadMap,
@@ -11,13 +12,20 @@ use crate::generated::nav2_msgs::{
 use crate::node::{Diagnostics, RosNode, arrives};
 use crate::outputs::{FrameNames, PublishedMap};
 use std::path::Path;
+use trundle_core::{OccupancyGrid, Stamp};
 use trundle_io::{MapImage, map_picture, map_yaml, read_map, replace_file};
+use trundle_runtime::OperatorCommand;
 
 /// Offers `map_server/map`, `map_saver/save_map`, `map_server/load_map` and the clearing of both costmaps.
 ///
 /// # Errors
 /// When a service cannot be made.
-pub fn offer(node: &mut RosNode, published: &PublishedMap, frames: &FrameNames) -> Result<(), Ros2Error> {
+pub fn offer(
+    node: &mut RosNode,
+    robot: &ActiveGoal,
+    published: &PublishedMap,
+    frames: &FrameNames,
+) -> Result<(), Ros2Error> {
     let (map, frame, diagnostics) = (published.clone(), frames.map.clone(), node.diagnostics());
     node.serve::<GetMap>("map_server/map", move |_| get(&map, &frame, &diagnostics))?;
     let (map, diagnostics) = (published.clone(), node.diagnostics());
@@ -26,8 +34,14 @@ pub fn offer(node: &mut RosNode, published: &PublishedMap, frames: &FrameNames) 
         saved.as_ref().err().into_iter().for_each(|why| diagnostics.warn("map_saver/save_map", why));
         SaveMapResponse { result: saved.is_ok() }
     })?;
-    let diagnostics = node.diagnostics();
-    node.serve::<LoadMap>("map_server/load_map", move |request| refuse_load(&request, &diagnostics))?;
+    let (robot, map, frame, diagnostics) =
+        (robot.clone(), published.clone(), frames.map.clone(), node.diagnostics());
+    node.serve::<LoadMap>("map_server/load_map", move |request| {
+        load(&request, &robot, &map, &frame).unwrap_or_else(|(result, why)| {
+            diagnostics.warn("map_server/load_map", why);
+            LoadMapResponse { result, ..LoadMapResponse::default() }
+        })
+    })?;
     for costmap in ["global_costmap", "local_costmap"] {
         // The costs follow the map at each second: there is nothing to clear.
         let clear = |service: &str| format!("{costmap}/{service}_{costmap}");
@@ -47,17 +61,12 @@ pub fn offer(node: &mut RosNode, published: &PublishedMap, frames: &FrameNames) 
 /// The map of the topic, as far as a reply has room for it. The frame of an empty map names the topic that has it.
 fn get(published: &PublishedMap, frame: &str, diagnostics: &Diagnostics) -> GetMapResponse {
     let map = published.newest().map(|(map, at)| grid::to_ros(&map.grid, at, frame)).unwrap_or_default();
-    if arrives(&map) {
-        return GetMapResponse { map };
+    let had_none = map.data.is_empty();
+    let map = fitting(map);
+    if map.data.is_empty() && !had_none {
+        diagnostics.warn("map_server/map", &*map.header.frame_id);
     }
-    let message = format!(
-        "the map has {} cells, more than a reply has room for: read the topic map, which late subscribers receive too",
-        map.data.len()
-    );
-    diagnostics.warn("map_server/map", &message);
-    let mut empty = GetMapResponse::default();
-    empty.map.header.frame_id = message;
-    empty
+    GetMapResponse { map }
 }
 
 /// Writes the map of the topic to `map_url.yaml` and its picture beside it.
@@ -82,22 +91,53 @@ fn save(request: &SaveMapRequest, published: &PublishedMap) -> Result<(), String
         .map_err(|error| error.to_string())
 }
 
-/// The map of a running robot stays; the result says whether the file could be read.
-fn refuse_load(request: &LoadMapRequest, diagnostics: &Diagnostics) -> LoadMapResponse {
-    let path = Path::new(request.map_url.trim_start_matches("file://"));
-    let (result, message) = match read_map(path) {
-        _ if !path.exists() => {
-            (LoadMapResponse::RESULT_MAP_DOES_NOT_EXIST, format!("there is no file {}", path.display()))
-        }
-        Err(error) => (LoadMapResponse::RESULT_INVALID_MAP_DATA, error.to_string()),
-        Ok(_) => {
-            let message =
-                "the map of a running robot cannot be replaced: start trundle with --resume CHECKPOINT";
-            (LoadMapResponse::RESULT_UNDEFINED_FAILURE, message.to_owned())
-        }
-    };
-    diagnostics.warn("map_server/load_map", message);
-    LoadMapResponse { result, ..LoadMapResponse::default() }
+/// Why a map is not loaded: the code of Nav2 and the sentence.
+type LoadRefusal = (u8, String);
+
+/// Gives the robot the map of a file in place of its own. The topic has it from then on; the reply has it where it has room for it.
+fn load(
+    request: &LoadMapRequest,
+    robot: &ActiveGoal,
+    published: &PublishedMap,
+    frame: &str,
+) -> Result<LoadMapResponse, LoadRefusal> {
+    let (newest, at) = published.newest().map_or((None, Stamp::default()), |(map, at)| (Some(map), at));
+    let grid = read_for(&request.map_url, newest.as_ref().map(|map| map.grid.geometry().resolution))?;
+    let map = fitting(grid::to_ros(&grid, at, frame));
+    robot
+        .send(OperatorCommand::LoadMap(Box::new(grid)))
+        .map_err(|error| (LoadMapResponse::RESULT_UNDEFINED_FAILURE, error.to_string()))?;
+    Ok(LoadMapResponse { result: LoadMapResponse::RESULT_SUCCESS, map })
+}
+
+/// The map of a file, with cells that fit those of a robot with this resolution \[m\].
+fn read_for(map_url: &str, resolution: Option<f64>) -> Result<OccupancyGrid, LoadRefusal> {
+    let path = Path::new(map_url.trim_start_matches("file://"));
+    if !path.exists() {
+        return Err((
+            LoadMapResponse::RESULT_MAP_DOES_NOT_EXIST,
+            format!("there is no file {}", path.display()),
+        ));
+    }
+    let grid =
+        read_map(path).map_err(|error| (LoadMapResponse::RESULT_INVALID_MAP_DATA, error.to_string()))?;
+    resolution
+        .map_or(Ok(()), |resolution| grid.geometry().require_lattice(resolution))
+        .map_err(|problem| (LoadMapResponse::RESULT_INVALID_MAP_METADATA, problem.to_string()))?;
+    Ok(grid)
+}
+
+/// The map where a reply has room for it; else an empty one, whose frame names the topic that has it.
+fn fitting(map: RosGrid) -> RosGrid {
+    if arrives(&map) {
+        return map;
+    }
+    let mut empty = RosGrid::default();
+    empty.header.frame_id = format!(
+        "the map has {} cells, more than a reply has room for: read the topic map, which late subscribers receive too",
+        map.data.len()
+    );
+    empty
 }
 
 #[cfg(test)]
@@ -105,7 +145,6 @@ mod tests {
     use super::*;
     use std::sync::Arc;
     use trundle_app::operator::MapView;
-    use trundle_core::{OccupancyGrid, Stamp};
 
     fn published(text: &str) -> PublishedMap {
         let published = PublishedMap::default();
@@ -136,5 +175,27 @@ mod tests {
         let large = get(&published(&row.repeat(60)), "map", &diagnostics);
         assert!(large.map.data.is_empty() && large.map.header.frame_id.contains("topic map"));
         assert!(diagnostics.summary().contains("map_server/map: the map has 3600 cells"));
+    }
+
+    #[test]
+    fn a_map_is_loaded_where_its_cells_fit_the_robot() {
+        let folder = std::env::temp_dir().join(format!("trundle-load-map-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let url = |name: &str| folder.join(name).display().to_string();
+        let request = |map_url| SaveMapRequest { map_url, ..SaveMapRequest::default() };
+        save(&request(url("room")), &published("#..\n#??\n###")).unwrap();
+        let yaml = url("room.yaml");
+        let grid = read_for(&format!("file://{yaml}"), Some(0.05)).unwrap();
+        assert_eq!(grid.cells(), published("#..\n#??\n###").newest().unwrap().0.grid.cells());
+        let code = |url: &str, resolution| read_for(url, resolution).unwrap_err();
+        let (missing, why) = code("/nowhere/map.yaml", None);
+        assert_eq!(missing, LoadMapResponse::RESULT_MAP_DOES_NOT_EXIST);
+        assert!(why.contains("/nowhere/map.yaml"));
+        let (other, why) = code(&yaml, Some(0.1));
+        assert_eq!(other, LoadMapResponse::RESULT_INVALID_MAP_METADATA);
+        assert!(why.contains("resolution of the map is 0.05 m, expected 0.1"), "{why}");
+        std::fs::write(&yaml, "image: [").unwrap();
+        assert_eq!(code(&yaml, None).0, LoadMapResponse::RESULT_INVALID_MAP_DATA);
+        std::fs::remove_dir_all(&folder).unwrap();
     }
 }

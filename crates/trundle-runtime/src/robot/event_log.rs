@@ -5,7 +5,7 @@ use crate::behaviour::drive_state::DriveState;
 use crate::operator::{PoseGuess, RunSetting};
 use crate::reason::Reason;
 use trundle_control::MotionHold;
-use trundle_core::{MapAnnotations, Pose2, Stamp, difference_of_angles};
+use trundle_core::{GridGeometry, Invalid, MapAnnotations, Pose2, Stamp, difference_of_angles};
 use trundle_estimation::{WheelCounts, WheelReport};
 
 /// Correction of the pose estimate \[m\] above which the correction is logged. Source: ours, the size of a grid cell.
@@ -66,6 +66,19 @@ pub(super) fn pose_given(at: Stamp, guess: &PoseGuess) {
         pose.x,
         pose.y
     );
+}
+
+/// Logs a map that an operator gives, and why it is refused where it is.
+pub(super) fn map_given(at: Stamp, geometry: &GridGeometry, refused: Option<&Invalid>) {
+    let (at, GridGeometry { width, height, .. }) = (at.as_secs(), geometry);
+    match refused {
+        None => tracing::info!(
+            "{at:.3} s: the operator gives another map of {width} x {height} cells: the pose in it is unknown"
+        ),
+        Some(why) => {
+            tracing::warn!("{at:.3} s: the operator's map is refused, the robot keeps its own: {why}")
+        }
+    }
 }
 
 /// Logs a setting that an operator changes.

@@ -25,6 +25,10 @@ pub(super) struct GridMapping {
     inscribed_radius: f64,
     /// Points at which an obstacle presses the bumper, base frame \[m\].
     bumper: Vec<Vector2>,
+    /// Number of revisions of the maps that stood here before the present one.
+    earlier_revisions: u64,
+    /// Whether a perception job that runs may search the pose in a map that was replaced.
+    pub(super) voids_search: bool,
 }
 
 impl GridMapping {
@@ -46,12 +50,31 @@ impl GridMapping {
             due: Ticker::new(map_hz),
             inscribed_radius: inscribed_radius(footprint),
             bumper: bumper::ahead_of(footprint),
+            earlier_revisions: 0,
+            voids_search: false,
         })
     }
 
     /// The grid.
     pub(super) fn grid(&self) -> &OccupancyGrid {
         self.mapper.grid()
+    }
+
+    /// Number of the grid's present revision; it only grows.
+    pub(super) fn revision(&self) -> u64 {
+        self.earlier_revisions + self.mapper.revision()
+    }
+
+    /// Another grid in place of the present one.
+    ///
+    /// # Errors
+    /// When its cells are not those of the mapper; then nothing changes.
+    pub(super) fn replace(&mut self, grid: &OccupancyGrid) -> Result<(), Invalid> {
+        let mapper = LiveMapper::from_grid(self.mapper.mapper().config().clone(), grid)?;
+        self.earlier_revisions = self.revision() + 1;
+        self.mapper = mapper;
+        self.scan_poses = ScanPoseLog::default();
+        Ok(())
     }
 
     /// Whether a scan of `now` is to be drawn, by the rate of the map.

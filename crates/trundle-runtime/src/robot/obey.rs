@@ -6,8 +6,9 @@ use crate::{
     mission::MissionState,
     operator::{OperatorCommand, PoseGuess, RunSetting},
     report::StepReport,
+    stage::Stage,
 };
-use trundle_core::{Invalid, MapAnnotations, Stamp, Vector3};
+use trundle_core::{Invalid, MapAnnotations, OccupancyGrid, Stamp, Vector3};
 
 impl Robot {
     /// Obeys an operator, between two events.
@@ -29,6 +30,7 @@ impl Robot {
                 event_log::annotated(now, &annotations);
                 self.annotate(annotations);
             }
+            OperatorCommand::LoadMap(grid) => report.map_replaced = self.replace_map(&grid, now),
             OperatorCommand::Drive(twist) => {
                 self.pause(true, now, &mut report);
                 self.steering.teleop.drive(twist, now);
@@ -41,6 +43,25 @@ impl Robot {
     /// Gives the robot the zones and named places of its map, in place of the present ones.
     pub fn annotate(&mut self, annotations: MapAnnotations) {
         self.zones.set(annotations);
+    }
+
+    /// Another map in place of the present one: whether it is. A map that the robot cannot use is refused, and the robot keeps its own.
+    fn replace_map(&mut self, grid: &OccupancyGrid, now: Stamp) -> bool {
+        self.steering.begin_for_operator(MissionState::default());
+        let replaced = self.times.measure(Stage::Mapping, || self.mapping.replace(grid));
+        event_log::map_given(now, grid.geometry(), replaced.as_ref().err());
+        if replaced.is_err() {
+            return false;
+        }
+        self.localizer.forget_visual_maps();
+        self.station.forget();
+        self.annotate(MapAnnotations::default());
+        self.lose_pose();
+        match &mut self.perception {
+            Some(perception) => perception.global_localization.end(),
+            None => self.mapping.voids_search = true,
+        }
+        true
     }
 
     fn change(&mut self, setting: RunSetting, now: Stamp) {

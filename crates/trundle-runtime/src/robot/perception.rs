@@ -71,7 +71,11 @@ impl Robot {
         if let Some(trajectory) = corrected_trajectory {
             self.redraw_from_visual_map(&trajectory);
         }
-        self.apply_global_localization(place);
+        let is_void = std::mem::take(&mut self.mapping.voids_search);
+        if is_void {
+            self.perception.iter_mut().for_each(|perception| perception.global_localization.end());
+        }
+        self.apply_global_localization(place.filter(|_| !is_void));
         let jump = before.inverse() * self.localizer.estimate().pose;
         if jump.position().norm() > JUMP_M || jump.theta.abs() > JUMP_RAD {
             self.obstacles.clear();

@@ -9,7 +9,6 @@ use crate::{
 use std::sync::Arc;
 use trundle_core::{Invalid, OccupancyGrid};
 use trundle_estimation::Localizer;
-use trundle_mapping::{LiveMapper, MapperConfig};
 use trundle_vision::Vocabulary;
 
 impl Robot {
@@ -23,7 +22,7 @@ impl Robot {
         if let Some(perception) = &mut robot.perception {
             perception.load_maps(&config, &checkpoint.visual)?;
         }
-        robot.set_map(&config, &checkpoint.grid)?;
+        robot.mapping.replace(&checkpoint.grid)?;
         robot.localizer = Localizer::new(config.localization, robot.base_from_camera)?
             .resumed(checkpoint.visual_maps.clone());
         checkpoint.station.iter().for_each(|station| robot.station.restore(station));
@@ -38,7 +37,7 @@ impl Robot {
     /// When a number of the configuration is outside its range, or the map has other cells.
     pub fn on_map(config: RobotConfig, grid: &OccupancyGrid) -> Result<Self, Invalid> {
         let mut robot = Self::new(config.clone())?;
-        robot.set_map(&config, grid)?;
+        robot.mapping.replace(grid)?;
         Ok(robot)
     }
 
@@ -49,14 +48,6 @@ impl Robot {
             perception.set_vocabulary(vocabulary);
         }
         self
-    }
-
-    /// Replaces the empty grid by a given one.
-    fn set_map(&mut self, config: &RobotConfig, grid: &OccupancyGrid) -> Result<(), Invalid> {
-        let blind_range = self.perception.as_ref().map_or(0.0, |perception| perception.blind_range());
-        let mapping = MapperConfig { blind_range, ..config.mapping.clone() };
-        self.mapping.mapper = LiveMapper::from_grid(mapping, grid)?;
-        Ok(())
     }
 
     /// The robot with a checkpoint in its report every 3 to 10 s, seldom where the map is large:

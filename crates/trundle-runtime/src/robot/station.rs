@@ -41,6 +41,11 @@ impl ChargingStation {
         self.estimator.estimate()
     }
 
+    /// The map of its pose is replaced: the pose is unknown.
+    pub(super) fn forget(&mut self) {
+        self.estimator.forget();
+    }
+
     /// Begins with the pose of a checkpoint.
     pub(super) fn restore(&mut self, estimate: &StationEstimate) {
         self.estimator.restore(estimate);

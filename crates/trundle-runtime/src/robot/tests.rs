@@ -94,6 +94,6 @@ proptest! {
         let nearest = front.min(back).min(left).min(right);
         prop_assert!((mapping::inscribed_radius(&outline) - nearest).abs() < 1e-9);
         prop_assert_eq!(mapping::inscribed_radius(&Footprint::disc(front).unwrap()), front);
-        prop_assert!(bumper::ahead_of(&outline).iter().all(|point| point.norm() > nearest));
+        prop_assert!(crate::bumper::ahead_of(&outline).iter().all(|point| point.norm() > nearest));
     }
 }

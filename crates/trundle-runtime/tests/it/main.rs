@@ -6,6 +6,7 @@ mod body_events;
 mod checkpoint;
 mod config;
 mod laws;
+mod load_map;
 mod logs;
 mod robot;
 mod states;

@@ -48,6 +48,11 @@ impl Base {
         self.command = twist.unwrap_or(self.command);
     }
 
+    /// Pose since the start.
+    pub fn pose(&self) -> Pose2 {
+        self.pose
+    }
+
     /// How far a wall is that was 3 m ahead, m.
     pub fn to_wall(&self) -> f64 {
         3.0 - self.pose.x
