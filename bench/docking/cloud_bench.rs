@@ -25,7 +25,7 @@ fn main() {
         let plan = || planner.plan(&problem.footprint, &scene, problem.start, problem.goal);
         let runs: Vec<_> = (0..TIMES).map(|_| timed(plan)).collect();
         let least = runs.iter().map(|(_, ms)| *ms).fold(f64::INFINITY, f64::min);
-        let told = match &runs[0].0 {
+        let outcome = match &runs[0].0 {
             Ok(DockingPlan::Found(found)) => format!(
                 "{} motions, {:.2} s, bound {:.2} s, margin {:.1} mm",
                 found.manoeuvre.steps().len(),
@@ -39,7 +39,7 @@ fn main() {
             ),
             Err(refusal) => refusal.to_string(),
         };
-        println!("{least:7.1} ms, scene {preparing:5.1} ms: {}: {told}", problem.name);
+        println!("{least:7.1} ms, scene {preparing:5.1} ms: {}: {outcome}", problem.name);
         if least > worst.0 {
             worst = (least, problem.name);
         }

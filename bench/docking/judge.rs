@@ -78,7 +78,7 @@ pub fn judge(problems: &[Problem], answers: &[ProblemAnswer]) -> Result<Judged, 
 
 impl Judged {
     /// A line for each wrong answer, and one for all.
-    pub fn told(&self) -> String {
+    pub fn summary(&self) -> String {
         let Self { times, impossible, wrong, missing } = self;
         let count = times.len() + impossible + wrong.len() + missing;
         let mean = times.iter().sum::<f64>() / times.len().max(1) as f64;
@@ -119,7 +119,9 @@ mod tests {
         let turn = std::f64::consts::FRAC_PI_2 / 1.2 + 0.4;
         assert!((judged.times[0] - (2.0 * turn + 1.3 + 1.0)).abs() < 1e-9, "{:?}", judged.times);
         assert!(judged.wrong[0].starts_with("hong24-b: touches something in piece 1"), "{:?}", judged.wrong);
-        assert!(judged.told().contains("4 problems: 2 settled, 0 said to be impossible, 1 wrong, 1 without"));
+        assert!(
+            judged.summary().contains("4 problems: 2 settled, 0 said to be impossible, 1 wrong, 1 without")
+        );
         let twice = judge(&problems, &read("trundle-answers 1\nproblem hong24-a\nproblem hong24-a\n"));
         assert!(twice.unwrap_err().contains("two answers to problem `hong24-a`"));
         let unknown = judge(&problems, &read("trundle-answers 1\nproblem x\nturn 3\n"));

@@ -4,7 +4,7 @@
 //!
 //! `--seed N`, `--file PATH` instead of a seed, `--write PATH` writes the problems and ends, `--answers PATH` judges the answers of
 //! another program and ends, `--write-answers PATH` keeps the default method's, `--boxes N` of the bound that judges,
-//! `--baselines N` problems for the slow ones, `--loops N` problems in closed loop with noise, `--nodes N` of the search, `--margin M` asked for (0 unless told), `--list PATH` keeps what
+//! `--baselines N` problems for the slow ones, `--loops N` problems in closed loop with noise, `--nodes N` of the search, `--margin M` asked for (default 0), `--list PATH` keeps what
 //! became of each problem as CSV.
 
 #![expect(clippy::print_stdout, reason = "an example prints its result")]
@@ -46,7 +46,7 @@ fn run() -> Result<(), String> {
     }
     if let Some(path) = argument("--answers") {
         let answers = read(&path, parse_answers)?;
-        println!("{}", judge::judge(&problems, &answers).map_err(|e| format!("{path}: {e}"))?.told());
+        println!("{}", judge::judge(&problems, &answers).map_err(|e| format!("{path}: {e}"))?.summary());
         return Ok(());
     }
     let mut rows = vec![optimal(&problems, number("--boxes", 50_000))];

@@ -9,7 +9,7 @@ use trundle_docking::{MotionLimits, ObstacleScene};
 
 /// The dynamic window gives up after this, s, ...
 const PATIENCE: f64 = 60.0;
-/// ... or when it has come no nearer for so long, s.
+/// ... or when it has come no nearer for this time, s.
 const STUCK: f64 = 10.0;
 /// The path planner plans again so often, when the end is beside the goal.
 const PLANS: usize = 6;

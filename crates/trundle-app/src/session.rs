@@ -11,9 +11,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_core::{Stamp, Twist2};
 use trundle_io::EncodedEvent;
-use trundle_runtime::{
-    Answer, DriveState, LazyImage, Reason, Robot, Stage, StepReport, TaskRecord, Worker,
-};
+use trundle_runtime::{Answer, DriveState, LazyImage, Reason, Robot, Stage, StepReport, TaskRecord, Worker};
 
 /// A run in progress: feeds the robot and records each input and output.
 pub struct RunSession<'s> {

@@ -43,7 +43,7 @@ impl Roster {
         self.release(id)
     }
 
-    /// Gives the wheel to a viewer, whoever held it.
+    /// Gives control to a viewer, and takes it from the one that had it.
     pub fn take(&mut self, id: ViewerId) {
         self.wheel = Some(id);
     }

@@ -1,6 +1,6 @@
 //! Times a local bundle adjustment of the size that papers quote: 20 keyframes, 2000 points, 17,000 observations, 4 steps.
 //!
-//! `cargo run --release -p trundle-optim --example local_bundle [runs]` prints median and best of so many runs (default 50) on
+//! `cargo run --release -p trundle-optim --example local_bundle [runs]` prints median and best of the runs (default 50) on
 //! one thread. The problem is made once; the solver keeps its buffers.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a bench program")]
 

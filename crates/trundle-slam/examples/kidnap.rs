@@ -113,7 +113,7 @@ fn kidnap(slam: &mut RgbdSlam, mapped: &Drive, other: &Drive, views: usize) {
         let is_wrong = off.translation.norm() > WRONG.0 || off.angle() > WRONG.1;
         if is_wrong {
             println!(
-                "view {first}: WRONG by {:.3} m, {:.3} rad (told {:.3} m, squared error {:.0}), {} of {}",
+                "view {first}: WRONG by {:.3} m, {:.3} rad (standard deviation {:.3} m, squared error {:.0}), {} of {}",
                 off.translation.norm(),
                 off.angle(),
                 report.covariance.fixed_view::<3, 3>(0, 0).trace().sqrt(),
@@ -130,7 +130,7 @@ fn kidnap(slam: &mut RgbdSlam, mapped: &Drive, other: &Drive, views: usize) {
     errors.sort_by(f64::total_cmp);
     println!(
         "{recognized} of {views} views recognized, {at_once} of them at the first frame, {wrong} wrongly; a frame {:.1} ms \
-         (median, features included), {:.1} ms at most; squared errors by what was told {:.1} (median), {:.0} at most",
+         (median, features included), {:.1} ms at most; normalised squared errors {:.1} (median), {:.0} at most",
         costs[costs.len() / 2],
         costs[costs.len() - 1],
         errors.get(errors.len() / 2).unwrap_or(&f64::NAN),
@@ -138,9 +138,9 @@ fn kidnap(slam: &mut RgbdSlam, mapped: &Drive, other: &Drive, views: usize) {
     );
 }
 
-/// Of a pose that is off by `off`, normalised by its covariance: 6 on average where that is true.
+/// Of a pose that is off by `off`, normalised by its covariance: 6 expected.
 fn squared_error(off: Pose3, covariance: &Matrix6<f64>) -> f64 {
-    covariance.cholesky().map_or(f64::NAN, |told| off.log().dot(&told.solve(&off.log())))
+    covariance.cholesky().map_or(f64::NAN, |factor| off.log().dot(&factor.solve(&off.log())))
 }
 
 fn has_been_at(drive: &Drive, pose: Pose3) -> bool {

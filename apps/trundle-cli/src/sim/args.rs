@@ -59,7 +59,7 @@ pub struct DriverArgs {
     /// Drive by hand: arrows or WASD, space to stop, q to quit; shows a page with what the robot sees.
     #[arg(long, group = "driver")]
     pub keys: bool,
-    /// Stop after so many seconds of the robot's time, or when the drive is over [default: 5 where there is no drive]
+    /// Stop after this time of the robot, s, or when the drive is over [default: 5 where there is no drive]
     #[arg(long, value_name = "S", value_parser = NumberArg::up_to(1e6, "s"), allow_negative_numbers = true)]
     pub duration: Option<f64>,
 }

@@ -14,7 +14,7 @@ use trundle_runtime::{OperatorCommand, Robot, StepReport};
 
 /// Largest number of requests that wait for the run. A run takes one at each step. Source: ours.
 const MAX_WAITING_REQUESTS: usize = 64;
-/// Steps without a question for a view after which nobody watches the run: more than a second of events. Source: ours.
+/// Steps without a request for a view after which the run counts as unwatched: more than a second of events. Source: ours.
 const UNWATCHED_STEPS: u32 = 200;
 
 /// A front end's end of the link. Clones share it.

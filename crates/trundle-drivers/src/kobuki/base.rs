@@ -113,7 +113,7 @@ impl KobukiBase {
         self.send(KobukiCommand::GetGains);
     }
 
-    /// Gains as the base last told them.
+    /// Gains as the base reported them last.
     pub fn gains(&self) -> Option<Gains> {
         locked(&self.status).gains
     }

@@ -61,7 +61,7 @@ mod tests {
     use super::*;
     use std::time::Duration;
 
-    /// A link that takes so many bytes at a time.
+    /// A link that takes a fixed number of bytes at a time.
     struct Narrow(usize, Vec<u8>);
 
     impl ByteLink for Narrow {

@@ -8,7 +8,7 @@ use trundle_runtime::real_time::ThreadPlacement;
 /// Niceness of the threads of this crate above that of the robot's threads. Source: ours.
 pub(crate) const LINK_NICENESS: i32 = 10;
 
-/// Carries a session until its first error, or until nobody waits for its events. A full queue holds the broker back.
+/// Carries a session until its first error, or until its events have no reader. A full queue holds the broker back.
 pub fn read(mut connection: Connection, events: &SyncSender<BrokerEvent>) {
     // Where the system refuses the niceness, the session goes on all the same.
     _ = ThreadPlacement { nice: LINK_NICENESS, ..ThreadPlacement::default() }.take();

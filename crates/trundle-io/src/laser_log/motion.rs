@@ -10,7 +10,7 @@ pub(crate) struct Motion {
 
 /// Between two poses that are farther apart in time nothing is known, s.
 const LONGEST_GAP: f64 = 1.0;
-/// A pose holds for so long before and after it, s.
+/// Time before and after a pose for which it holds, s.
 const POSE_HOLD_S: f64 = 0.1;
 
 impl Motion {

@@ -7,7 +7,7 @@ use axum::response::{IntoResponse, Response};
 use std::sync::Arc;
 use trundle_app::operator::map_file;
 
-/// A file of the newest map; for whoever may look.
+/// A file of the newest map; for every valid token.
 pub async fn file(
     State(state): State<Arc<PageState>>,
     Path(name): Path<String>,

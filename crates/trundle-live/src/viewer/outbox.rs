@@ -6,7 +6,7 @@ use futures_util::stream::SplitSink;
 use serde::Serialize;
 use std::time::Duration;
 
-/// Longest time of one message: a viewer that takes none for so long is gone. Source: ours.
+/// Longest time of one message: a viewer that takes none within it is gone. Source: ours.
 const SEND_TIMEOUT: Duration = Duration::from_secs(20);
 /// Close code of a viewer that broke a rule. Source: RFC 6455, 7.4.1.
 const POLICY_CLOSE_CODE: u16 = 1008;

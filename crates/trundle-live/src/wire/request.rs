@@ -123,7 +123,7 @@ pub enum Request {
         /// Its value, in the unit of the key.
         value: f64,
     },
-    /// Hold the wheel, whoever holds it.
+    /// Take control, from the viewer that has it.
     TakeWheel {
         /// Of the request.
         id: u64,

@@ -32,7 +32,7 @@ pub struct StateMessage {
     pub stages: Vec<(&'static str, f64)>,
     /// Loops that were closed: time \[s\], and where the robot stood \[m\].
     pub loops: Vec<[f64; 3]>,
-    /// Who holds the wheel; `None`: nobody.
+    /// The viewer in control; `None` where there is none.
     pub wheel: Option<WheelText>,
     /// Number of viewers.
     pub viewers: usize,

@@ -43,17 +43,17 @@ impl OdometryBias {
         let keep = 1.0 - 1.0 / MEMORY_STEPS;
         self.turn.iter_mut().chain(&mut self.way).for_each(|sum| *sum *= keep);
         // An error beyond three sigmas is an outlier.
-        let told = |k: usize| {
+        let known = |k: usize| {
             let variance = noise[k] + innovation.open[k];
             let most = 3.0 * variance.sqrt();
             (innovation.off[k].clamp(-most, most), 1.0 / variance)
         };
-        let (off, weight) = told(2);
+        let (off, weight) = known(2);
         let error = off + applied.z;
         let parts =
             [way * way, way * motion.theta, motion.theta * motion.theta, way * error, motion.theta * error];
         self.turn.iter_mut().zip(parts).for_each(|(sum, part)| *sum += weight * part);
-        let (off, weight) = told(0);
+        let (off, weight) = known(0);
         let (error, weight) = (off * unit + applied.x, weight / (unit * unit));
         let parts = [forward * forward, forward * error];
         self.way.iter_mut().zip(parts).for_each(|(sum, part)| *sum += weight * part);

@@ -33,7 +33,7 @@ fn replaced(i: usize, _: usize, k: usize, was: Cell) -> Cell {
     if was == Cell::Occupied || is_far && was == Cell::Unknown { Cell::Free } else { Cell::Occupied }
 }
 
-/// Cleared: distances grow as far as they are told apart.
+/// Cleared: distances grow up to the largest one that is kept.
 fn cleared(_: usize, _: usize, _: usize, _: Cell) -> Cell {
     Cell::Free
 }

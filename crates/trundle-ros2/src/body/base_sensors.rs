@@ -88,7 +88,7 @@ impl Shared {
     }
 }
 
-/// The value of a mutex, whoever panicked with it.
+/// The value of a mutex, also after a panic of a thread that held it.
 pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

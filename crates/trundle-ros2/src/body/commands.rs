@@ -95,7 +95,7 @@ impl CommandThread {
 
 impl Drop for CommandThread {
     fn drop(&mut self) {
-        // Clones of the sender may live on: the last word is standstill, whoever holds them.
+        // Clones of the sender may live on: the last command is standstill all the same.
         if let Some(commands) = self.commands.take() {
             let _ = commands.send(Twist2::new(f64::NAN, f64::NAN));
         }

@@ -148,7 +148,7 @@ impl OutputLoop {
         }
     }
 
-    /// Stops the robot where the node has died: nobody can give it a goal, or take one away.
+    /// Stops the robot where the node has died: no goal can be given or cancelled.
     fn stop_robot_without_node(&mut self) {
         if self.is_dead {
             return;

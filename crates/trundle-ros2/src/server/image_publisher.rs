@@ -71,7 +71,7 @@ impl ImagePublisher {
         Ok(Self { images: Some(images), thread: Some(thread), readers, dropped: 0 })
     }
 
-    /// Publishes an image, stamped `at` on the ROS clock. An image that nobody reads is not encoded.
+    /// Publishes an image, stamped `at` on the ROS clock. An image without a subscriber is not encoded.
     pub fn publish(&mut self, image: &RgbdImage, at: Stamp) {
         if !self.readers.iter().any(Readers::are_there) {
             return;

@@ -61,7 +61,7 @@ impl RelativeMotionDrive {
         }
     }
 
-    /// Whether safety has stopped the motion for so long that it is given up.
+    /// Whether safety has stopped the motion until its patience ended.
     pub(crate) fn is_blocked(&mut self, is_stopped: bool, now: Stamp) -> bool {
         if !is_stopped {
             self.stopped_since = None;

@@ -18,7 +18,7 @@ pub(crate) enum Fit {
     Fits,
     /// It is not, or much has changed: it does not belong on the map.
     Contradicts,
-    /// All scans have contradicted the map for so long that the robot is elsewhere.
+    /// All scans contradicted the map until the limit of time: the robot is elsewhere.
     Elsewhere,
 }
 

@@ -7,7 +7,7 @@
 use super::layout::{COLUMNS, ROWS};
 use super::phasors::{PLANE_COUNT, PhasorImage};
 
-/// Pixels computed at once: the compiler turns loops over so many numbers into vector instructions.
+/// Pixels computed at once: the compiler turns loops over this number into vector instructions.
 const LANES: usize = 8;
 /// Smallest power of a phasor that is divided by \[1\]. It keeps pixels without measurement finite.
 const MIN_POWER: f32 = 1e-6;

@@ -17,7 +17,7 @@ pub(super) struct Source {
     pub is_file: bool,
 }
 
-/// Opens a file or FIFO; `-` is standard input. A FIFO is opened at once, also while nobody writes into it.
+/// Opens a file or FIFO; `-` is standard input. A FIFO is opened at once, also without a writer.
 ///
 /// # Errors
 /// When the path does not exist or may not be read.
@@ -36,7 +36,7 @@ pub(super) fn open(path: &Path, is_stopped: Arc<AtomicBool>) -> io::Result<Sourc
     Ok(Source { reader: Box::new(FifoReader { file, has_begun: false, is_stopped }), is_file: false })
 }
 
-/// A FIFO read without blocking, so that its thread ends when it is told to.
+/// A FIFO read without blocking, so that its thread ends on request.
 struct FifoReader {
     file: File,
     has_begun: bool,

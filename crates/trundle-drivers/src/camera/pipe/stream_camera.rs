@@ -155,7 +155,7 @@ impl Worker {
             }
             Err(problem) => problem,
         };
-        // The caller may be gone; then nobody needs the message.
+        // The caller may be gone; then the message has no reader.
         let _ = self.sender.send(last);
     }
 

@@ -6,7 +6,7 @@ use crate::kobuki::link::ConnectError;
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::mpsc::{Sender, channel, sync_channel};
 
-/// A link that brings what it is given, takes so many bytes a write, and then breaks.
+/// A link that brings what it is given, takes a fixed number of bytes a write, and then breaks.
 struct Scripted {
     reads: Vec<Vec<u8>>,
     taken_per_write: usize,

@@ -260,7 +260,7 @@ mod tests {
     use trundle_control::StopReason;
     use trundle_core::{OccupancyGrid, Pose2, Stamp};
 
-    /// Blind for so long, s; a control step, s.
+    /// Time without sight, s; a control step, s.
     const BLIND: f64 = 5.0;
     const STEP: f64 = 0.02;
 

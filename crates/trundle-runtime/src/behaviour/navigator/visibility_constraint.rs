@@ -89,7 +89,7 @@ impl VisibilityConstraint {
         self.observations_of(at).count() < MAX_VIEWS_PER_PLACE && !self.is_exhausted()
     }
 
-    /// Whether so many observations were without result that no more are made for this goal.
+    /// Whether the observations without result have reached their limit for this goal.
     pub(super) fn is_exhausted(&self) -> bool {
         self.in_vain >= MAX_VAIN_VIEWS
     }
