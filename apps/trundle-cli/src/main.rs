@@ -38,7 +38,7 @@ use common_args::Common;
 use outcome::Outcome;
 use std::process::ExitCode;
 use trundle::app::{AppError, stop};
-use trundle::io::abandon_outputs;
+use trundle::io::{abandon_outputs, wait_for_abandonment};
 
 fn main() -> ExitCode {
     let matches = with_negative_numbers(Cli::command()).get_matches();
@@ -46,7 +46,9 @@ fn main() -> ExitCode {
     let folders = logging::start(arguments.verbose).and_then(|()| output_args::check(&matches));
     ExitCode::from(match folders {
         Ok(folders) => {
-            outcome::end(listen(&arguments.command).and_then(|()| run_command(arguments)), &folders)
+            let result = listen(&arguments.command).and_then(|()| run_command(arguments));
+            wait_for_abandonment();
+            outcome::end(result, &folders)
         }
         Err(error) => outcome::end(Err(error), &[]),
     })

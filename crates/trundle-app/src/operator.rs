@@ -19,8 +19,8 @@ pub use link::{Operator, OperatorError, OperatorLink, operator_link};
 pub use map_file::{ZONES_FILE, map_file};
 pub use request::OperatorRequest;
 pub use run_view::{
-    ClosedLoop, FeatureSpot, FeatureView, ImageView, MapView, MissionView, RunCounts, RunView,
-    SurroundingsView, VisualMapView,
+    ClosedLoop, FeatureSpot, FeatureView, ImageView, MapView, MissionView, PerceptionView, RunCounts,
+    RunView, VisualMapView,
 };
 pub use visual_map_feed::VISUAL_MAP_PERIOD_S;
 

@@ -1,6 +1,5 @@
 //! The occupancy grid: its cells, its geometry, and conversion between cells and points of the map frame.
 
-use crate::grid_text::GridText;
 use crate::{Invalid, Vector2, require_finite, require_positive};
 use serde::{Deserialize, Serialize};
 
@@ -120,8 +119,7 @@ impl GridGeometry {
 }
 
 /// A 2-D occupancy grid in the map frame, row-major from the lowest y.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "GridText", into = "GridText")]
+#[derive(Debug, Clone, PartialEq)]
 pub struct OccupancyGrid {
     geometry: GridGeometry,
     cells: Vec<Cell>,

@@ -1,7 +1,7 @@
 //! An occupancy grid as text of runs, as recordings and messages hold it: `12u3f1o` is 12 unknown, 3 free and 1 occupied cell.
 
 use crate::{Cell, GridGeometry, Invalid, OccupancyGrid, Vector2};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 use std::fmt::Write;
 
 /// Largest number of cells that a text may hold: 350 x 350 m in cells of 5 cm. A short text of long runs fills no memory. Source: ours.
@@ -10,7 +10,7 @@ pub const MAX_TEXT_CELLS: usize = 50_000_000;
 /// An occupancy grid as text.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct GridText {
+struct GridText {
     /// Side of a cell \[m\].
     resolution_m: f64,
     /// Lower-left corner of cell (0, 0), map frame \[m\].
@@ -23,8 +23,8 @@ pub(crate) struct GridText {
     cells: String,
 }
 
-impl From<OccupancyGrid> for GridText {
-    fn from(grid: OccupancyGrid) -> Self {
+impl From<&OccupancyGrid> for GridText {
+    fn from(grid: &OccupancyGrid) -> Self {
         let GridGeometry { resolution, origin, width, height } = *grid.geometry();
         let mut cells = String::new();
         for run in grid.cells().chunk_by(|a, b| a == b) {
@@ -46,6 +46,18 @@ impl TryFrom<GridText> for OccupancyGrid {
             return Err(Invalid::new("number of cells", geometry.len(), "", expected));
         }
         Self::new(geometry, cells(&text.cells, geometry.len())?)
+    }
+}
+
+impl Serialize for OccupancyGrid {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        GridText::from(self).serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for OccupancyGrid {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        Self::try_from(GridText::deserialize(deserializer)?).map_err(D::Error::custom)
     }
 }
 

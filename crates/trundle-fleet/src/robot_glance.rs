@@ -45,7 +45,7 @@ impl From<&RunView> for RobotGlance {
             mission: view.mission.clone(),
             battery: view.battery,
             hold: view.hold,
-            station: view.surroundings.station,
+            station: view.perception.station,
         }
     }
 }

@@ -14,7 +14,7 @@ mod unfinished;
 
 pub use inputs::InputFiles;
 pub use single_file::{OutputFile, keep_aside};
-pub use unfinished::abandon_outputs;
+pub use unfinished::{abandon_outputs, wait_for_abandonment};
 
 use crate::{IoError, Recorder};
 use file_identity::is_on_other_disk;
@@ -109,8 +109,7 @@ impl OutputFolder {
     /// When it cannot be written for another reason, by the name it would have had.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), IoError> {
         let path = self.staged(name);
-        let made = path.parent().map_or(Ok(()), fs::create_dir_all);
-        match made.and_then(|()| fs::write(&path, bytes)) {
+        match self.make_subfolders(name).and_then(|()| fs::write(&path, bytes)) {
             Err(error) if is_refusal_of_disk(&error) => {
                 let _ = fs::remove_file(&path);
                 self.leave_out(IoError::system(&self.target().join(name), "write")(error));
@@ -118,6 +117,18 @@ impl OutputFolder {
             }
             other => other.map_err(IoError::system(&self.target().join(name), "write")),
         }
+    }
+
+    /// Makes the subfolders of the file `name`; never the staged folder itself, which is gone once the process ends by a signal.
+    fn make_subfolders(&self, name: &str) -> std::io::Result<()> {
+        let folders: Vec<&Path> = Path::new(name).ancestors().skip(1).collect();
+        let below = folders.into_iter().rev().filter(|folder| !folder.as_os_str().is_empty());
+        below.map(|folder| self.scratch.stage().join(folder)).try_for_each(|folder| {
+            match fs::create_dir(folder) {
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => Ok(()),
+                made => made,
+            }
+        })
     }
 
     /// Notes a file that could not be written, or not to its end: [`OutputFolder::commit`] names it.

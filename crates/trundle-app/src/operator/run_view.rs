@@ -36,7 +36,7 @@ pub struct RunView {
     /// The map, at most one second old.
     pub map: Option<Arc<MapView>>,
     /// What is around the robot besides the map.
-    pub surroundings: SurroundingsView,
+    pub perception: PerceptionView,
     /// How often stages ran so far.
     pub counts: RunCounts,
     /// Present values of the settings that may change while the robot runs.
@@ -45,7 +45,7 @@ pub struct RunView {
 
 /// What is around a robot besides the map.
 #[derive(Debug, Clone, Default)]
-pub struct SurroundingsView {
+pub struct PerceptionView {
     /// The newest colour image.
     pub image: Option<Arc<ImageView>>,
     /// The visual map, at most [`super::VISUAL_MAP_PERIOD_S`] old.

@@ -2,7 +2,7 @@
 
 use super::perception_feed::PerceptionFeed;
 use super::request::OperatorRequest;
-use super::run_view::{ImageView, MapView, MissionView, RunCounts, RunView, SurroundingsView};
+use super::run_view::{ImageView, MapView, MissionView, PerceptionView, RunCounts, RunView};
 use super::visual_map_feed::VisualMapFeed;
 use std::sync::Arc;
 use trundle_core::{Scan, Stamp, Trajectory, Twist2};
@@ -82,7 +82,7 @@ impl ViewFeed {
             scan_pose: robot.scan_pose(),
             plan: self.plan.clone(),
             map: self.map.clone(),
-            surroundings: SurroundingsView {
+            perception: PerceptionView {
                 image: self.image.clone(),
                 visual_map: self.visual_map.newest(),
                 features: self.perception.features(),

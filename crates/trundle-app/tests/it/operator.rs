@@ -5,7 +5,7 @@ use std::path::Path;
 use trundle_app::operator::{FrontEnd, MissionView, Operator, ZONES_FILE, operator_link};
 use trundle_app::report::write_run;
 use trundle_app::{FinishedRun, Progress, RunLog, RunRecorder, RunReplayer, RunSetup, run_on_body};
-use trundle_core::{MapAnnotations, NamedPlace, Pose2, Twist2, Zone, ZoneKind};
+use trundle_core::{Cell, MapAnnotations, NamedPlace, OccupancyGrid, Pose2, Twist2, Vector2, Zone, ZoneKind};
 use trundle_io::{OutputFolder, annotations_text, read_annotations};
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, PoseGuess, Task};
 
@@ -126,6 +126,29 @@ fn zones_reach_the_robot_its_folder_and_a_replay() {
     let written = write_run(&setup, &mut replay, None, other).unwrap().folder;
     assert_eq!(read_annotations(&written.join(ZONES_FILE)).unwrap(), annotations);
     assert!(written.join("keepout_mask.yaml").exists() && !written.join("speed_mask.yaml").exists());
+}
+
+#[test]
+fn a_loaded_map_reaches_the_robot_and_a_replay_and_drops_the_places_of_the_old_one() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = place.path().join("run");
+    let desk = NamedPlace { id: 2, name: "desk".to_owned(), pose: Pose2::new(-0.5, 0.0, 0.5) };
+    let annotations = MapAnnotations { zones: vec![], places: vec![desk] };
+    let wall = OccupancyGrid::from_ascii(0.05, &"#########\n#.......#\n".repeat(40)).unwrap();
+    let commands =
+        [OperatorCommand::Annotate(annotations), go(1.0), OperatorCommand::LoadMap(Box::new(wall))];
+    let (run, operator) = run_with(&commands, &folder);
+    assert!(operator.annotations().is_empty() && operator.goal_of_place("desk").is_err());
+    let mission = &operator.view().unwrap().mission;
+    assert_eq!((mission.id, mission.task), (3, None));
+    assert_eq!(run.robot.grid().at(Vector2::new(0.02, 0.07)), Cell::Occupied);
+    assert_eq!(run.robot.grid().at(Vector2::new(0.07, 0.02)), Cell::Free);
+    let (mut replayer, setup) = RunReplayer::open(&folder.join("recording.mcap")).unwrap();
+    let other = OutputFolder::create(&place.path().join("replay")).unwrap();
+    let recorder = RunRecorder::to_folder(&other).unwrap();
+    let replay = run_on_body(&setup, &mut replayer, recorder, RunLog::default(), Progress::hidden()).unwrap();
+    assert_eq!(replay.robot.grid(), run.robot.grid());
+    assert_eq!(replay.robot.estimate(), run.robot.estimate());
 }
 
 #[test]

@@ -28,8 +28,7 @@ impl Scratch {
     /// # Errors
     /// When it cannot be made.
     pub(super) fn create(beside: &Path, target: &Path) -> io::Result<Self> {
-        let dir = tempfile::Builder::new().prefix(PREFIX).tempdir_in(beside)?;
-        unfinished::add(dir.path());
+        let dir = unfinished::begin(|| tempfile::Builder::new().prefix(PREFIX).tempdir_in(beside))?;
         let mut owner = File::create(dir.path().join(OWNER_FILE))?;
         // On a file system without locks nothing is swept either.
         let _ = owner.try_lock();

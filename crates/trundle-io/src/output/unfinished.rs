@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use tempfile::TempDir;
 
 /// The unfinished results.
 #[derive(Debug, Default)]
@@ -12,15 +13,21 @@ struct Unfinished {
     is_any_complete: bool,
 }
 
+/// End of the name of a hidden folder that is being removed.
+const ABANDONED: &str = ".abandoned";
+
 static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished { folders: Vec::new(), is_any_complete: false });
 
 fn unfinished() -> MutexGuard<'static, Unfinished> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Notes a hidden folder.
-pub(super) fn add(folder: &Path) {
-    unfinished().folders.push(folder.to_owned());
+/// Makes a hidden folder by `create` and notes it; no ending of the process falls between.
+pub(super) fn begin<E>(create: impl FnOnce() -> Result<TempDir, E>) -> Result<TempDir, E> {
+    let mut unfinished = unfinished();
+    let folder = create()?;
+    unfinished.folders.push(folder.path().to_owned());
+    Ok(folder)
 }
 
 /// Removes a hidden folder from the list.
@@ -43,9 +50,22 @@ pub fn abandon_outputs() -> bool {
     if unfinished.is_any_complete {
         return false;
     }
-    for folder in &unfinished.folders {
-        let _ = fs::remove_dir_all(folder);
-    }
-    std::mem::forget(unfinished); // the lock is held until the process ends, so that no result is completed
+    unfinished.folders.iter().for_each(|folder| abandon(folder));
+    std::mem::forget(unfinished); // the lock is held until the process ends, so that no result is begun or completed
     true
+}
+
+/// Removes a hidden folder. A thread that still writes files finds no folder at the old name, so that none appears during the removal.
+fn abandon(folder: &Path) {
+    let mut name = folder.as_os_str().to_owned();
+    name.push(ABANDONED);
+    let abandoned = PathBuf::from(name);
+    let is_renamed = fs::rename(folder, &abandoned).is_ok();
+    let _ = fs::remove_dir_all(if is_renamed { &abandoned } else { folder });
+}
+
+/// Waits for the end of a process whose results are abandoned; else returns at once. An error of a writer that lost its folder by that is
+/// no result of the command.
+pub fn wait_for_abandonment() {
+    drop(unfinished());
 }

@@ -196,7 +196,7 @@ impl Updates {
 
     /// The next image waits until the page has drawn a view that came after the last one: then it has that image too.
     fn image_part(&mut self, view: &RunView, progress: &ViewProgress) -> Option<Vec<u8>> {
-        let image = view.surroundings.image.as_ref()?;
+        let image = view.perception.image.as_ref()?;
         let is_taken = self.image_batch == 0 || progress.seen.load(Ordering::Relaxed) > self.image_batch;
         if self.image == Some(image.stamp) || self.image_sent.elapsed() < IMAGE_PERIOD || !is_taken {
             return None;
@@ -208,14 +208,14 @@ impl Updates {
     }
 
     fn features_part(&mut self, view: &RunView) -> Option<Vec<u8>> {
-        let features = view.surroundings.features.as_ref()?;
+        let features = view.perception.features.as_ref()?;
         let is_new = self.features.as_ref().is_none_or(|known| !Arc::ptr_eq(known, features));
         self.features = Some(Arc::clone(features));
         is_new.then(|| features_message(features))
     }
 
     fn visual_map_part(&mut self, view: &RunView) -> Option<Vec<u8>> {
-        let map = view.surroundings.visual_map.as_ref()?;
+        let map = view.perception.visual_map.as_ref()?;
         let is_new = self.visual_map.as_ref().is_none_or(|known| !Arc::ptr_eq(known, map));
         self.visual_map = Some(Arc::clone(map));
         is_new.then(|| visual_map_message(map))

@@ -108,7 +108,7 @@ const SHOWN_ENDED_TASKS: usize = 5;
 impl StateMessage {
     /// The state of a view.
     pub fn of(view: &RunView, batch: u64, wheel: Option<WheelText>, viewers: usize) -> Self {
-        let (around, counts) = (&view.surroundings, &view.counts);
+        let (around, counts) = (&view.perception, &view.counts);
         Self {
             batch,
             time: view.stamp.as_secs(),
