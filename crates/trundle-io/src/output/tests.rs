@@ -197,3 +197,17 @@ fn results_have_the_usual_permissions_and_links_to_folders_stay() {
     assert_eq!(fs::read(plain.join("map")).unwrap(), b"2");
     assert_eq!(fs::read(dir.path().join("plain.1/map")).unwrap(), b"1");
 }
+
+#[test]
+fn a_removed_hidden_folder_is_not_made_again_by_a_late_writer() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = OutputFolder::create(&scratch.path().join("run")).unwrap();
+    folder.write("deep/in/it.txt", b"1").unwrap();
+    assert_eq!(std::fs::read(folder.staged("deep/in/it.txt")).unwrap(), b"1");
+    let hidden = folder.staged("").parent().unwrap().to_owned();
+    std::fs::remove_dir_all(&hidden).unwrap();
+    for name in ["late.txt", "deep/in/late.txt"] {
+        assert!(folder.write(name, b"2").is_err());
+        assert!(!hidden.exists(), "{name}");
+    }
+}
