@@ -1,6 +1,4 @@
 //! Output on the terminal: results, tables, errors, progress. The only module of the program that prints.
-#![expect(clippy::print_stderr, reason = "errors go to standard error")]
-
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::OnceLock;
@@ -11,12 +9,17 @@ static PRINT_FAILURE: OnceLock<std::io::Error> = OnceLock::new();
 
 /// Prints the reason of a failure on standard error.
 pub fn print_error(error: &AppError) {
-    eprintln!("trundle: {error}");
+    print_on_stderr(format_args!("trundle: {error}"));
 }
 
 /// Prints on standard error that a signal has ended the command, and what is written.
 pub fn print_stopped(signal: &str, what: &str) {
-    eprintln!("trundle: stopped by {signal}{what}");
+    print_on_stderr(format_args!("trundle: stopped by {signal}{what}"));
+}
+
+/// Prints a line on standard error. A standard error without a reader changes nothing of the run, where `eprintln!` would panic.
+fn print_on_stderr(line: std::fmt::Arguments) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// Logs a warning, which the terminal shows; the run goes on.

@@ -39,8 +39,11 @@ pub fn start(verbosity: u8) -> Result<(), AppError> {
         )),
     };
     let lines = Arc::clone(LINES.get_or_init(Arc::default));
-    let terminal =
-        tracing_subscriber::fmt::layer().event_format(PlainLine("trundle: ")).with_writer(io::stderr);
+    // A standard error without a reader is no error of the run. The default prints it there, and panics.
+    let terminal = tracing_subscriber::fmt::layer()
+        .event_format(PlainLine("trundle: "))
+        .with_writer(io::stderr)
+        .log_internal_errors(false);
     let file = tracing_subscriber::fmt::layer()
         .event_format(PlainLine(""))
         .with_writer(move || LogBuffer(Arc::clone(&lines)));

@@ -133,10 +133,22 @@ fn ignores_closed_terminal(status: &str) -> bool {
 #[cfg(unix)]
 pub fn end_at_once(prepare: impl Fn(StopSignal) -> bool + Send + 'static) -> Result<(), AppError> {
     on_signal(move |signal| {
-        if prepare(signal) {
-            std::process::exit(i32::from(signal.exit_code()));
+        let exit = ExitOnDrop(signal);
+        if !prepare(signal) {
+            std::mem::forget(exit);
         }
     })
+}
+
+/// Ends the process when it is dropped, by a panic too: the lock of abandoned results is never released.
+#[cfg(unix)]
+struct ExitOnDrop(StopSignal);
+
+#[cfg(unix)]
+impl Drop for ExitOnDrop {
+    fn drop(&mut self) {
+        signal_hook::low_level::exit(i32::from(self.0.exit_code()));
+    }
 }
 
 #[cfg(unix)]

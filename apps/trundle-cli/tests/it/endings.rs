@@ -137,6 +137,36 @@ fn a_command_that_has_nothing_yet_ends_at_once() {
     assert_eq!(fs::read_dir(scratch.path()).unwrap().count(), 0);
 }
 
+/// A terminal that is closed, or a pipe whose reader has ended, takes no message of a program that a signal ends.
+#[test]
+fn a_signal_ends_a_command_whose_standard_error_has_no_reader() {
+    let scratch = tempfile::tempdir().unwrap();
+    let voc = scratch.path().join("own.voc");
+    let (reader, writer) = std::io::pipe().unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_trundle"))
+        .args(["vocabulary", "train", "--scene", "house", "--views", "5000", "--out", text(&voc)])
+        .stdin(Stdio::null())
+        .stdout(writer.try_clone().unwrap())
+        .stderr(writer)
+        .spawn()
+        .unwrap();
+    drop(reader);
+    std::thread::sleep(Duration::from_secs(2));
+    assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
+    let asked = Instant::now();
+    let status = loop {
+        match child.try_wait().unwrap() {
+            Some(status) => break Some(status),
+            None if asked.elapsed() > Duration::from_secs(5) => break None,
+            None => std::thread::sleep(Duration::from_millis(10)),
+        }
+    };
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert_eq!(status.and_then(|status| status.code()), Some(143));
+    assert_eq!(fs::read_dir(scratch.path()).unwrap().count(), 0);
+}
+
 #[test]
 fn what_a_killed_run_left_is_named_and_swept() {
     let scratch = tempfile::tempdir().unwrap();
