@@ -38,7 +38,7 @@ use common_args::Common;
 use outcome::Outcome;
 use std::process::ExitCode;
 use trundle::app::{AppError, stop};
-use trundle::io::{abandon_outputs, wait_for_abandonment};
+use trundle::io::{abandon_outputs, abandon_unfinished, wait_for_abandonment};
 
 fn main() -> ExitCode {
     let matches = with_negative_numbers(Cli::command()).get_matches();
@@ -59,11 +59,11 @@ fn listen(command: &Command) -> Result<(), AppError> {
     use Command::{Calibrate, Convert, Demo, Experiment, GuardBase, Map, Replay, Run, Sim, Slam};
     match command {
         Calibrate(_) | Convert(_) | Demo(_) | Run(_) | Replay(_) | Slam(_) | Map(_) | Sim(_)
-        | Experiment(_) => stop::listen(),
+        | Experiment(_) => stop::listen(end_unfinished),
         // A guard outlives the program that it guards.
         GuardBase => stop::ignore(),
         #[cfg(feature = "ros2")]
-        Command::Ros2(_) => stop::listen(),
+        Command::Ros2(_) => stop::listen(end_unfinished),
         _ => stop::end_at_once(|signal| {
             let is_ending = abandon_outputs();
             if is_ending {
@@ -72,6 +72,12 @@ fn listen(command: &Command) -> Result<(), AppError> {
             is_ending
         }),
     }
+}
+
+/// At a second signal: results that are being moved to their place are complete after this, others are removed.
+fn end_unfinished(signal: stop::StopSignal) {
+    abandon_unfinished();
+    console::print_stopped(signal.name(), ", the second signal; unfinished results are removed");
 }
 
 /// A negative number is the value of the option before it, not an option.

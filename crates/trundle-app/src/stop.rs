@@ -26,6 +26,11 @@ const SIGINT_NUMBER: usize = 2;
 const SIGNAL_EXIT_CODE: u8 = 128;
 
 impl StopSignal {
+    #[cfg(unix)]
+    fn of(number: i32) -> Self {
+        Self(usize::try_from(number).unwrap_or_default())
+    }
+
     /// The exit code: 130 for Ctrl-C, 143 for SIGTERM, 129 for a closed terminal.
     #[must_use]
     pub fn exit_code(self) -> u8 {
@@ -80,24 +85,28 @@ fn read_json(file: &Path) -> Result<serde_json::Value, AppError> {
 }
 
 /// Takes Ctrl-C, SIGTERM and a closed terminal as requests, which the loops of the running command read. The second signal ends the
-/// program at once.
+/// program after `abandon`, which removes its unfinished results. The third ends it in the signal's handler, where `abandon` hangs.
 ///
 /// # Errors
 /// When the system refuses.
 #[cfg(unix)]
-pub fn listen() -> Result<(), AppError> {
-    use signal_hook::flag;
+pub fn listen(abandon: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppError> {
+    use signal_hook::flag::register_conditional_shutdown;
     use std::sync::Arc;
     use std::sync::atomic::AtomicBool;
-    let is_second = Arc::<AtomicBool>::default();
+    let is_ending = Arc::<AtomicBool>::default();
     for signal in ending_signals() {
-        let number = usize::try_from(signal).unwrap_or_default();
-        let code = i32::from(StopSignal(number).exit_code());
-        // In this order: the second signal finds the flag set.
-        flag::register_conditional_shutdown(signal, code, Arc::clone(&is_second)).map_err(refused)?;
-        flag::register(signal, Arc::clone(&is_second)).map_err(refused)?;
+        let code = i32::from(StopSignal::of(signal).exit_code());
+        register_conditional_shutdown(signal, code, Arc::clone(&is_ending)).map_err(refused)?;
     }
-    on_signal(|signal| _ = SIGNAL.compare_exchange(0, signal.0, Ordering::Relaxed, Ordering::Relaxed))
+    on_signal(move |signal| {
+        let first = SIGNAL.compare_exchange(0, signal.0, Ordering::Relaxed, Ordering::Relaxed);
+        if first.is_err() {
+            is_ending.store(true, Ordering::Relaxed);
+            let _exit = ExitOnDrop(signal);
+            abandon(signal);
+        }
+    })
 }
 
 /// Ignores the signals that ask a program to end.
@@ -154,9 +163,7 @@ impl Drop for ExitOnDrop {
 #[cfg(unix)]
 fn on_signal(act: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppError> {
     let mut signals = signal_hook::iterator::Signals::new(ending_signals()).map_err(refused)?;
-    let wait = move || {
-        signals.forever().for_each(|signal| act(StopSignal(usize::try_from(signal).unwrap_or_default())));
-    };
+    let wait = move || signals.forever().for_each(|signal| act(StopSignal::of(signal)));
     std::thread::Builder::new().name("signals".to_owned()).spawn(wait).map_err(refused)?;
     Ok(())
 }
@@ -168,7 +175,7 @@ fn refused(error: std::io::Error) -> AppError {
 
 /// Elsewhere Ctrl-C ends the program at once.
 #[cfg(not(unix))]
-pub fn listen() -> Result<(), AppError> {
+pub fn listen(_abandon: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppError> {
     Ok(())
 }
 

@@ -68,7 +68,10 @@ pub use map::{
     map_yaml, read_annotations, read_graph, read_keep_out_mask, read_map, read_map_file, read_places,
     read_speed_mask, write_map, write_map_as, write_speed_mask,
 };
-pub use output::{InputFiles, OutputFile, OutputFolder, abandon_outputs, keep_aside, wait_for_abandonment};
+pub use output::{
+    InputFiles, OutputFile, OutputFolder, abandon_outputs, abandon_unfinished, keep_aside,
+    wait_for_abandonment,
+};
 pub use recording::{PoseInFrame, PosesInFrame, RecordedMessage, Recorder, RecordingCut, RecordingReader};
 pub use replace::{replace_file, require_replaceable};
 pub use ros::message as ros_message;

@@ -14,7 +14,7 @@ mod unfinished;
 
 pub use inputs::InputFiles;
 pub use single_file::{OutputFile, keep_aside};
-pub use unfinished::{abandon_outputs, wait_for_abandonment};
+pub use unfinished::{abandon_outputs, abandon_unfinished, wait_for_abandonment};
 
 use crate::{IoError, Recorder};
 use file_identity::is_on_other_disk;
@@ -172,7 +172,7 @@ impl OutputFolder {
         }
         self.made.clear();
         self.write_marker();
-        let filled = unfinished::complete(|| self.place.fill(&self.scratch.stage()));
+        let filled = unfinished::complete(|| self.place.fill(&self.scratch));
         filled.map_err(|problem| self.rescued(problem))?;
         let unwritten = std::mem::take(&mut self.unwritten).into_inner();
         IoError::incomplete(self.target(), unwritten.unwrap_or_else(PoisonError::into_inner))?;

@@ -264,3 +264,53 @@ fn a_disk_that_takes_no_image_is_named() {
     assert_eq!(output.status.code(), Some(3), "{said}");
     assert!(said.contains("cannot write") && !said.contains("no image to write"), "{said}");
 }
+
+/// Ends a drive that is recorded into `out` in the moment after `delay_ms` of its commit, as seen from the outside: by a second signal
+/// or by `kill -9`. Returns the exit code.
+fn end_in_commit(out: &Path, signal: &str, delay_ms: u64) -> Option<i32> {
+    let child =
+        start(&["sim", "room", "--duration", "1000", "--rate", "5", "--quiet", "--record", text(out)]);
+    let beside = out.parent().unwrap();
+    wait_until("nothing is recorded", || writes_in(beside));
+    std::thread::sleep(Duration::from_millis(200));
+    for (signal, delay_ms) in [("-INT", delay_ms), (signal, 0)] {
+        let _ = Command::new("kill").args([signal, &child.id().to_string()]).stderr(Stdio::null()).status();
+        std::thread::sleep(Duration::from_millis(delay_ms));
+    }
+    child.wait_with_output().unwrap().status.code()
+}
+
+/// All files below `folder`, with their content.
+fn content(folder: &Path) -> std::collections::BTreeMap<std::path::PathBuf, Vec<u8>> {
+    let (mut files, mut open) = (std::collections::BTreeMap::new(), vec![folder.to_owned()]);
+    while let Some(dir) = open.pop() {
+        for path in fs::read_dir(dir).into_iter().flatten().flatten().map(|entry| entry.path()) {
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                files.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    files
+}
+
+/// At whatever moment a second signal or `kill -9` comes: the run before is whole in one folder.
+#[test]
+fn a_run_that_is_ended_twice_leaves_the_run_before_whole() {
+    let scratch = tempfile::tempdir().unwrap();
+    let [out, last] = ["out", "out.1"].map(|name| scratch.path().join(name));
+    assert!(trundle(&["sim", "room", "--duration", "2", "--quiet", "--record", text(&out)]).status.success());
+    for delay_ms in (0..60).step_by(4) {
+        let before = content(&out);
+        let signal = if delay_ms % 8 == 0 { "-TERM" } else { "-KILL" };
+        let code = end_in_commit(&out, signal, delay_ms);
+        let is_kept = [&out, &last].iter().any(|folder| content(folder) == before);
+        assert!(is_kept, "{delay_ms} ms {signal}: {code:?}");
+        assert!(matches!((signal, code), (_, Some(130 | 143)) | ("-KILL", None)), "{delay_ms} ms: {code:?}");
+        assert!(signal == "-KILL" || !writes_in(scratch.path()), "{delay_ms} ms: a hidden folder is left");
+        // The next run, which the test of the next moment begins with.
+        let next = trundle(&["sim", "room", "--duration", "1", "--quiet", "--record", text(&out)]);
+        assert!(next.status.success(), "{delay_ms} ms: {}", String::from_utf8_lossy(&next.stderr));
+    }
+}

@@ -11,6 +11,8 @@ pub(super) const MARKER_FILE: &str = ".trundle-run";
 
 /// The first line of the marker file.
 const TITLE: &str = "# A folder of results of trundle.";
+/// The line of a marker of results of which only a part may be there: a commit that was interrupted leaves it.
+const UNFINISHED: &str = "# Unfinished.";
 /// Between the path of a file and its content in the marker.
 const SEPARATOR: char = '\t';
 /// The rest of its head.
@@ -22,6 +24,8 @@ const HEAD: &str =
 pub(super) struct RunMarker {
     /// `None` where the content is not known.
     files: BTreeMap<PathBuf, Option<Fingerprint>>,
+    /// Whether only a part of the files may be there.
+    pub(super) is_unfinished: bool,
 }
 
 impl RunMarker {
@@ -32,7 +36,13 @@ impl RunMarker {
     pub(super) fn of(folder: &Path) -> io::Result<Self> {
         let entry =
             |path: PathBuf| Some((path.strip_prefix(folder).ok()?.to_owned(), Fingerprint::of(&path).ok()));
-        Ok(Self { files: files_below(folder)?.into_iter().filter_map(entry).collect() })
+        let files = files_below(folder)?.into_iter().filter_map(entry).collect();
+        Ok(Self { files, is_unfinished: false })
+    }
+
+    /// The marker of a folder in which the files of `self` give place to those of `next`, at any moment of that.
+    pub(super) fn giving_place_to(self, next: Self) -> Self {
+        Self { files: self.files.into_iter().chain(next.files).collect(), is_unfinished: true }
     }
 
     /// The marker in `folder`; `None` where there is none of trundle's.
@@ -40,7 +50,8 @@ impl RunMarker {
         let text = std::fs::read_to_string(folder.join(MARKER_FILE)).ok()?;
         let mut lines = text.lines();
         (lines.next() == Some(TITLE)).then_some(())?;
-        Some(Self { files: lines.filter(|line| !line.starts_with('#')).map(entry).collect() })
+        let is_unfinished = text.lines().any(|line| line == UNFINISHED);
+        Some(Self { files: lines.filter(|line| !line.starts_with('#')).map(entry).collect(), is_unfinished })
     }
 
     /// Writes the marker into `folder`.
@@ -53,7 +64,9 @@ impl RunMarker {
             let content = content.map_or_else(String::new, |content| format!("{SEPARATOR}{content}"));
             parts.join("/") + &content + "\n"
         });
-        std::fs::write(folder.join(MARKER_FILE), format!("{TITLE}\n{HEAD}{}", lines.collect::<String>()))
+        let state = if self.is_unfinished { format!("{UNFINISHED}\n") } else { String::new() };
+        let text = format!("{TITLE}\n{HEAD}{state}{}", lines.collect::<String>());
+        std::fs::write(folder.join(MARKER_FILE), text)
     }
 
     /// The files of `folder` that are other than the run wrote them. Files of unknown content are taken as unchanged.
@@ -112,6 +125,9 @@ mod tests {
         let former = RunMarker::read(folder).unwrap();
         assert!(former.changed_files(folder).is_empty(), "of an unknown content");
         assert_eq!(former.foreign_files(folder).unwrap(), [Path::new("rgb/notes")]);
+        let changing = marker.giving_place_to(former);
+        changing.write(folder).unwrap();
+        assert!(changing.is_unfinished && RunMarker::read(folder) == Some(changing));
         fs::write(folder.join(MARKER_FILE), "something else").unwrap();
         assert_eq!(RunMarker::read(folder), None);
     }

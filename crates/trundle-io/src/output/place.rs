@@ -2,7 +2,7 @@
 
 use super::inputs::InputFiles;
 use super::marker::{MARKER_FILE, RunMarker};
-use super::scratch::is_scratch;
+use super::scratch::{Scratch, is_scratch};
 use super::tree::files_below;
 use crate::IoError;
 use std::ffi::OsString;
@@ -17,7 +17,7 @@ pub(super) struct OutputPlace {
     pub target: PathBuf,
     /// The same folder, where it is a link what it leads to.
     pub real: PathBuf,
-    /// Whether an earlier run is there.
+    /// Whether an earlier run is there that has to be kept.
     pub holds_run: bool,
 }
 
@@ -32,7 +32,7 @@ impl OutputPlace {
         }
         let mut place = Self { target: target.to_owned(), real: real_folder(target)?, holds_run: false };
         inputs.require_apart(&place.real)?;
-        place.holds_run = place.require_own(&place.real)?;
+        place.holds_run = place.holds_whole_run()?;
         if place.holds_run {
             let last = place.last_run();
             inputs.require_apart(&last)?;
@@ -89,31 +89,56 @@ impl OutputPlace {
         IoError::malformed(if folder == self.real { &self.target } else { folder }, problem)
     }
 
-    /// Moves everything in `stage`, which has its marker, to the place; what a run left there goes to [`OutputPlace::last_run`].
+    /// Moves everything in the stage of `scratch`, which has its marker, to the place; what a run left there goes to
+    /// [`OutputPlace::last_run`]. At whatever moment the process is killed, the last run is whole in one of the two folders.
     ///
     /// # Errors
     /// When the folder has got foreign files meanwhile, or something cannot be moved.
-    pub fn fill(&self, stage: &Path) -> Result<(), IoError> {
+    pub fn fill(&self, scratch: &Scratch) -> Result<(), IoError> {
         if !self.real.exists() {
-            return fs::rename(stage, &self.real).map_err(IoError::system(&self.target, "write"));
+            return fs::rename(scratch.stage(), &self.real).map_err(IoError::system(&self.target, "write"));
         }
-        if self.require_own(&self.real)? {
+        if self.holds_whole_run()? {
             self.require_unchanged(&self.last_run())?;
-            self.keep_last_run().map_err(IoError::system(&self.last_run(), "write"))?;
+            self.keep_last_run(scratch).map_err(IoError::system(&self.last_run(), "write"))?;
         }
-        move_entries(stage, &self.real, |_| true).map_err(IoError::system(&self.target, "write"))
+        self.replace_content(scratch).map_err(IoError::system(&self.target, "write"))
     }
 
-    /// The folder itself stays, so that a shell in it stays in it.
-    fn keep_last_run(&self) -> io::Result<()> {
+    /// Whether a run is at the place that has to be kept. One whose commit was interrupted is none: the run before it is kept.
+    fn holds_whole_run(&self) -> Result<bool, IoError> {
+        let is_unfinished = || RunMarker::read(&self.real).is_some_and(|marker| marker.is_unfinished);
+        Ok(self.require_own(&self.real)? && !is_unfinished())
+    }
+
+    /// The last run in the folder that keeps it, and still at its place too.
+    pub fn keep_last_run(&self, scratch: &Scratch) -> io::Result<()> {
         let last = self.last_run();
+        link_tree(&self.real, &scratch.kept())?;
         if last.exists() {
-            fs::remove_dir_all(&last)?;
+            fs::rename(&last, scratch.replaced())?;
         }
-        fs::create_dir(&last)?;
-        // A copy, so that at no time a folder is without its marker.
-        fs::copy(self.real.join(MARKER_FILE), last.join(MARKER_FILE))?;
-        move_entries(&self.real, &last, |name| name != MARKER_FILE)
+        fs::rename(scratch.kept(), &last)
+    }
+
+    /// The results in the place of what is there. The folder itself stays, so that a shell in it stays in it. Until all is there its
+    /// marker lists the old files and the new ones.
+    pub fn replace_content(&self, scratch: &Scratch) -> io::Result<()> {
+        let (stage, marker) = (scratch.stage(), self.real.join(MARKER_FILE));
+        let [old, new] = [&self.real, &stage].map(|folder| RunMarker::read(folder));
+        let is_run_replaced = old.is_some();
+        fs::create_dir(scratch.unfinished())?;
+        old.unwrap_or_default().giving_place_to(new.unwrap_or_default()).write(&scratch.unfinished())?;
+        fs::rename(scratch.unfinished().join(MARKER_FILE), &marker)?;
+        if is_run_replaced {
+            remove_entries(&self.real)?;
+        }
+        move_entries(&stage, &self.real)?;
+        match fs::rename(stage.join(MARKER_FILE), &marker) {
+            // The disk did not take the list of the results, and the next run treats the folder as foreign.
+            Err(error) if error.kind() == ErrorKind::NotFound => fs::remove_file(&marker),
+            moved => moved,
+        }
     }
 }
 
@@ -145,11 +170,31 @@ fn real_folder(target: &Path) -> Result<PathBuf, IoError> {
     }
 }
 
-/// Moves the entries of a folder whose names are `wanted`, the marker first.
-fn move_entries(from: &Path, to: &Path, wanted: impl Fn(&std::ffi::OsStr) -> bool) -> io::Result<()> {
-    let entries = fs::read_dir(from)?.collect::<io::Result<Vec<_>>>()?;
-    let mut names: Vec<_> = entries.into_iter().map(|entry| entry.file_name()).collect();
-    names.retain(|name| wanted(name) && !is_scratch(&from.join(name)));
-    names.sort_by_key(|name| (name != MARKER_FILE, name.clone()));
-    names.iter().try_for_each(|name| fs::rename(from.join(name), to.join(name)))
+/// The entries of a folder, but its marker and the hidden folders of runs.
+fn entries(folder: &Path) -> io::Result<Vec<OsString>> {
+    let entries = fs::read_dir(folder)?.collect::<io::Result<Vec<_>>>()?;
+    let names = entries.into_iter().map(|entry| entry.file_name());
+    Ok(names.filter(|name| name != MARKER_FILE && !is_scratch(&folder.join(name))).collect())
+}
+
+fn move_entries(from: &Path, to: &Path) -> io::Result<()> {
+    entries(from)?.iter().try_for_each(|name| fs::rename(from.join(name), to.join(name)))
+}
+
+fn remove_entries(folder: &Path) -> io::Result<()> {
+    entries(folder)?.iter().map(|name| folder.join(name)).try_for_each(|path| {
+        if path.is_dir() && !path.is_symlink() { fs::remove_dir_all(path) } else { fs::remove_file(path) }
+    })
+}
+
+/// A folder `to` with the files of `from` under a second name, or copied where the disk has no second names.
+fn link_tree(from: &Path, to: &Path) -> io::Result<()> {
+    fs::create_dir(to)?;
+    for file in files_below(from)? {
+        let Ok(name) = file.strip_prefix(from) else { continue };
+        let link = to.join(name);
+        fs::create_dir_all(link.parent().unwrap_or(to))?;
+        fs::hard_link(&file, &link).or_else(|_| fs::copy(&file, &link).map(drop))?;
+    }
+    fs::set_permissions(to, fs::metadata(from)?.permissions())
 }

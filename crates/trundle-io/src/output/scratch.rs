@@ -13,6 +13,12 @@ const PREFIX: &str = ".trundle-";
 const OWNER_FILE: &str = "owner";
 /// The folder in the hidden one that holds the results, so that they get the user's usual permissions.
 const STAGE: &str = "out";
+/// The folder in the hidden one that is made to keep the last run.
+const KEPT: &str = "kept";
+/// The folder in the hidden one that takes the run which was kept until then, until it is removed.
+const REPLACED: &str = "replaced";
+/// The folder in the hidden one that holds the marker of an unfinished commit until it is complete.
+const UNFINISHED: &str = "unfinished";
 
 /// A hidden folder for results; it goes with its value.
 #[derive(Debug)]
@@ -40,6 +46,21 @@ impl Scratch {
     /// The folder that holds the results.
     pub(super) fn stage(&self) -> PathBuf {
         self.dir.path().join(STAGE)
+    }
+
+    /// Where the folder that keeps the last run is made.
+    pub(super) fn kept(&self) -> PathBuf {
+        self.dir.path().join(KEPT)
+    }
+
+    /// Where the run that was kept until then goes.
+    pub(super) fn replaced(&self) -> PathBuf {
+        self.dir.path().join(REPLACED)
+    }
+
+    /// Where the marker of an unfinished commit is made.
+    pub(super) fn unfinished(&self) -> PathBuf {
+        self.dir.path().join(UNFINISHED)
     }
 
     /// Removes it with all that is in it.

@@ -211,3 +211,54 @@ fn a_removed_hidden_folder_is_not_made_again_by_a_late_writer() {
         assert!(!hidden.exists(), "{name}");
     }
 }
+
+/// The folders `run` and `run.1`, whose runs hold 3 files each, and a run into `run` that waits for its commit.
+fn three_runs(target: &Path) -> OutputFolder {
+    let write = |content: &str| {
+        let out = OutputFolder::create(target).unwrap();
+        ["a", "b", "sub/c"].iter().for_each(|name| out.write(name, content.as_bytes()).unwrap());
+        out
+    };
+    write("first").commit().unwrap();
+    write("second").commit().unwrap();
+    let third = write("third");
+    third.write("new", b"third").unwrap();
+    third.write_marker();
+    third
+}
+
+/// Whether `folder` holds the run of that content whole.
+fn holds(folder: &Path, content: &str) -> bool {
+    ["a", "b", "sub/c"].iter().all(|name| fs::read(folder.join(name)).is_ok_and(|b| b == content.as_bytes()))
+}
+
+#[test]
+fn a_commit_that_ends_early_leaves_the_last_run_whole_and_the_next_run_keeps_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("run");
+    let last = dir.path().join("run.1");
+    let out = three_runs(&target);
+    out.place.keep_last_run(&out.scratch).unwrap();
+    assert!(holds(&target, "second") && holds(&last, "second"), "both, until the results are moved");
+    out.place.replace_content(&out.scratch).unwrap();
+    assert!(holds(&target, "third") && holds(&last, "second"));
+    // The marker and the files of a process that was killed between two files.
+    let marker = RunMarker::read(&target).unwrap();
+    marker.clone().giving_place_to(marker).write(&target).unwrap();
+    fs::remove_file(target.join("b")).unwrap();
+    drop(out);
+    run(&target, "map", "4");
+    assert_eq!(names(&target), [".trundle-run", "map"]);
+    assert!(holds(&last, "second"), "the last run that is whole");
+    assert_eq!(names(dir.path()), ["run", "run.1"]);
+    run(&target, "map", "5");
+    assert_eq!(fs::read(last.join("map")).unwrap(), b"4");
+}
+
+#[test]
+fn folders_of_the_user_without_files_stay() {
+    let dir = tempfile::tempdir().unwrap();
+    fs::create_dir_all(dir.path().join("run/mine/deeper")).unwrap();
+    run(&dir.path().join("run"), "map", "1");
+    assert!(dir.path().join("run/mine/deeper").exists());
+}

@@ -50,9 +50,18 @@ pub fn abandon_outputs() -> bool {
     if unfinished.is_any_complete {
         return false;
     }
+    abandon_all(unfinished);
+    true
+}
+
+/// Removes all unfinished results, for a process that ends: nothing is moved to its place after this. Complete results stay.
+pub fn abandon_unfinished() {
+    abandon_all(unfinished());
+}
+
+fn abandon_all(unfinished: MutexGuard<'static, Unfinished>) {
     unfinished.folders.iter().for_each(|folder| abandon(folder));
     std::mem::forget(unfinished); // the lock is held until the process ends, so that no result is begun or completed
-    true
 }
 
 /// Removes a hidden folder. A thread that still writes files finds no folder at the old name, so that none appears during the removal.
