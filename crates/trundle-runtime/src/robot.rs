@@ -217,7 +217,8 @@ impl Robot {
     fn on_body(&mut self, event: &BodyEvent, report: &mut StepReport) {
         let before = self.latest.body.hold(self.range_source);
         self.latest.body.update(event.kind);
-        if matches!(event.kind, BodyEventKind::Battery(_)) && self.latest.body.is_docked() {
+        let is_contact = matches!(event.kind, BodyEventKind::Battery(_)) && self.latest.body.is_docked();
+        if is_contact && self.is_pose_known(event.stamp) {
             self.station.add_contact(self.localizer.estimate().pose);
         }
         self.on_hold(before, event.stamp, report);

@@ -2,8 +2,8 @@
 
 use crate::robot::Base;
 use trundle_core::{
-    Beam, Cell, GridGeometry, MapAnnotations, NamedPlace, OccupancyGrid, Pose2, Scan, SensorEvent, Stamp,
-    Vector2,
+    Battery, Beam, BodyEvent, BodyEventKind, Cell, GridGeometry, MapAnnotations, NamedPlace, OccupancyGrid,
+    Pose2, PowerSource, Scan, SensorEvent, Stamp, Vector2,
 };
 use trundle_runtime::{Mission, OperatorCommand, RangeSource, Robot, RobotConfig, Task};
 
@@ -117,6 +117,37 @@ fn a_map_of_other_cells_is_refused_and_the_robot_keeps_its_own_and_stands() {
     run(&mut robot, &mut base, 4.0, 2.0);
     assert_eq!(base.pose(), rest);
     assert!(robot.estimate().covariance[(0, 0)] < 0.01, "the pose is as well known as before");
+}
+
+#[test]
+fn a_docked_robot_knows_its_station_in_the_new_map_only_once_it_knows_its_pose() {
+    let (mut robot, mut base) = driven();
+    let charging = |seconds: i64| {
+        let source = PowerSource::ChargingStation;
+        let battery = Battery { voltage_v: 16.0, charge: Some(0.9), source, is_charging: true };
+        SensorEvent::Body(BodyEvent {
+            stamp: Stamp::from_nanos(seconds * 1_000_000_000),
+            kind: BodyEventKind::Battery(battery),
+        })
+    };
+    robot.step(&charging(2));
+    assert!(robot.station().is_some());
+    robot.obey(OperatorCommand::LoadMap(Box::new(room(0.05)))).unwrap();
+    robot.step(&charging(2));
+    assert!(robot.station().is_none(), "at an unknown pose");
+    let charging_ends =
+        Battery { voltage_v: 16.0, charge: None, source: PowerSource::Battery, is_charging: false };
+    robot.step(&SensorEvent::Body(BodyEvent {
+        stamp: Stamp::from_nanos(2_000_000_000),
+        kind: BodyEventKind::Battery(charging_ends),
+    }));
+    robot
+        .obey(OperatorCommand::Begin(Mission::new(vec![Task::Go(Pose2::new(0.4, 1.0, 1.0))]).unwrap()))
+        .unwrap();
+    run(&mut robot, &mut base, 2.0, 60.0);
+    robot.step(&charging(62));
+    let off = robot.station().unwrap().pose.position() - robot.estimate().pose.position();
+    assert!(off.norm() < 0.5, "{off:?}");
 }
 
 #[test]
