@@ -165,6 +165,7 @@ impl<'s> RunSession<'s> {
                     let stamp = self.log.now;
                     self.record(stamp, &report);
                     self.log.on_report(stamp, &report);
+                    report.checkpoint.into_iter().for_each(|last| self.recorder.write_checkpoint(last));
                 }
             }
         }
@@ -221,12 +222,13 @@ impl<'s> RunSession<'s> {
         if let Some(link) = &mut self.operator {
             link.note_request(&request);
         }
-        if request.command.replaces_mission() {
-            self.earlier_tasks.extend_from_slice(self.robot.tasks_ended());
-        }
+        let ended = self.robot.tasks_ended().to_vec();
         let report = self.robot.obey(request.command)?;
-        if let (true, Some(link)) = (report.map_replaced, &mut self.operator) {
-            link.note_map_replaced();
+        if report.mission_replaced {
+            self.earlier_tasks.extend(ended);
+        }
+        if let Some(link) = &mut self.operator {
+            link.note_obeyed(request.id, &report);
         }
         Ok(report)
     }

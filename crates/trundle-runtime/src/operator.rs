@@ -1,12 +1,13 @@
 //! Commands of an operator to a robot that runs: a person at a page, or a program.
 
-use crate::Mission;
 use crate::mission::executor_config::PATIENCE_RANGE_S;
+use crate::{Mission, RobotConfig};
 use serde::{Deserialize, Serialize};
 use trundle_core::{
-    Invalid, MAX_TEXT_CELLS, MapAnnotations, OccupancyGrid, Pose2, SPEED_LIMIT_RANGE_M_S, Twist2,
-    require_finite, require_in,
+    GridGeometry, Invalid, MAX_TEXT_CELLS, MapAnnotations, OccupancyGrid, Pose2, SPEED_LIMIT_RANGE_M_S,
+    Twist2, require_finite, require_in,
 };
+use trundle_mapping::GridMapper;
 
 /// A command of an operator to a robot that runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -27,7 +28,7 @@ pub enum OperatorCommand {
     Annotate(MapAnnotations),
     /// Another map in place of the present one, with the robot file's resolution. Its frame is the map frame from now on, and the pose is
     /// unknown. The mission is cancelled; zones, places and charging station of the old map are dropped. The robot keeps its own map
-    /// where the cells do not fit ([`crate::StepReport::map_replaced`]).
+    /// and its mission where the cells do not fit ([`crate::StepReport::map_replaced`]).
     LoadMap(Box<OccupancyGrid>),
     /// Drive with this twist, below the safety monitor: the mission is paused. Without another one within
     /// [`TELEOP_SILENCE_S`] the robot stops.
@@ -45,12 +46,6 @@ impl OperatorCommand {
         Self::Begin(Mission::default())
     }
 
-    /// Whether what is left of the present mission is dropped.
-    #[must_use]
-    pub fn replaces_mission(&self) -> bool {
-        matches!(self, Self::Begin(_) | Self::LoadMap(_))
-    }
-
     /// The command, its numbers checked.
     ///
     /// # Errors
@@ -66,20 +61,31 @@ impl OperatorCommand {
                 require_finite("turn rate of the operator's twist", twist.omega, "rad/s")?;
                 Ok(self)
             }
-            Self::LoadMap(grid) => Ok(Self::LoadMap(require_sendable(grid)?)),
+            Self::LoadMap(grid) => require_recordable(grid.geometry()).map(|()| Self::LoadMap(grid)),
             Self::Pause | Self::Continue => Ok(self),
         }
     }
 }
 
-/// A map that a recording can hold.
-fn require_sendable(grid: Box<OccupancyGrid>) -> Result<Box<OccupancyGrid>, Invalid> {
-    let cells = grid.geometry().len();
+/// Refuses a map that a recording cannot hold.
+fn require_recordable(map: &GridGeometry) -> Result<(), Invalid> {
+    let cells = map.len();
     if cells > MAX_TEXT_CELLS {
         let expected = format!("at most {MAX_TEXT_CELLS}");
         return Err(Invalid::new("number of cells of the map", cells, "", expected));
     }
-    Ok(grid)
+    Ok(())
+}
+
+impl RobotConfig {
+    /// Refuses a map that a robot of this configuration does not take by [`OperatorCommand::LoadMap`].
+    ///
+    /// # Errors
+    /// When it has too many cells, cells of another size, an origin off their multiples, or reaches too far.
+    pub fn require_loadable(&self, map: &GridGeometry) -> Result<(), Invalid> {
+        require_recordable(map)?;
+        GridMapper::require_fits(&self.mapping, map)
+    }
 }
 
 /// A pose of the robot with its uncertainty, as an operator knows it.

@@ -30,6 +30,8 @@ pub struct StepReport {
     pub replanned: bool,
     /// Whether another map stands in place of the one before, by an operator's command.
     pub map_replaced: bool,
+    /// Whether what was left of the mission is dropped, by an operator's command.
+    pub mission_replaced: bool,
     /// Whether the mission is over; `state` then holds its outcome.
     pub finished: bool,
 }

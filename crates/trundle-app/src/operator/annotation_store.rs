@@ -1,8 +1,10 @@
 //! Zones and named places of a run: the newest, and the file that keeps them.
 
+use super::request::OperatorRequest;
 use std::path::PathBuf;
 use std::sync::Arc;
 use trundle_core::MapAnnotations;
+use trundle_runtime::OperatorCommand;
 
 /// The newest annotations of a run, and the file that keeps them.
 #[derive(Debug, Default)]
@@ -11,12 +13,14 @@ pub(super) struct AnnotationStore {
     pub(super) file: Option<PathBuf>,
     /// Changes that were sent and that the robot has not obeyed yet.
     pub(super) waiting: u32,
+    /// Number of the last request that was sent before the map was replaced; 0 before that. Changes up to it are of an earlier map.
+    pub(super) last_of_earlier_map: u64,
 }
 
 impl AnnotationStore {
     /// The annotations of a run that begins.
     pub(super) fn new(newest: Arc<MapAnnotations>, file: Option<PathBuf>) -> Self {
-        Self { newest, file, waiting: 0 }
+        Self { newest, file, ..Self::default() }
     }
 
     /// Takes over what the robot obeys, where it is no change that was sent here: a replay, or another way to the robot.
@@ -28,8 +32,14 @@ impl AnnotationStore {
         }
     }
 
-    /// Begins without annotations and without a file: those of the old map do not belong to the new one.
-    pub(super) fn note_map_replaced(&mut self) {
-        *self = Self { waiting: self.waiting, ..Self::default() };
+    /// Begins without annotations and without a file: those of the old map do not belong to the new one. `last`: number of the last
+    /// request that was sent.
+    pub(super) fn note_map_replaced(&mut self, last: u64) {
+        *self = Self { waiting: self.waiting, last_of_earlier_map: last, ..Self::default() };
+    }
+
+    /// Whether a request changes the zones or places of an earlier map: the robot must not obey it on the present one.
+    pub(super) fn is_of_earlier_map(&self, request: &OperatorRequest) -> bool {
+        matches!(request.command, OperatorCommand::Annotate(_)) && request.id <= self.last_of_earlier_map
     }
 }

@@ -53,6 +53,7 @@ mod tests {
     use super::*;
     use trundle_core::NamedPlace;
     use trundle_io::read_annotations;
+    use trundle_runtime::StepReport;
 
     fn desk() -> NamedPlace {
         NamedPlace { id: 0, name: "desk".to_owned(), pose: Pose2::new(1.0, 2.0, 0.5) }
@@ -74,6 +75,24 @@ mod tests {
             panic!("a command")
         };
         assert_eq!(sent, *operator.annotations());
+    }
+
+    #[test]
+    fn a_change_that_waits_while_the_map_is_replaced_does_not_reach_the_new_map() {
+        let (operator, mut link) = operator_link();
+        operator.edit_annotations(&AnnotationEdit::SetPlace(desk())).unwrap();
+        let mut report = StepReport::default();
+        report.map_replaced = true;
+        link.note_obeyed(0, &report);
+        assert!(operator.annotations().places.is_empty());
+        let door = NamedPlace { name: "door".to_owned(), ..desk() };
+        operator.edit_annotations(&AnnotationEdit::SetPlace(door)).unwrap();
+        let request = link.next_request().unwrap();
+        link.note_request(&request);
+        let OperatorCommand::Annotate(obeyed) = request.command else { panic!("a change") };
+        assert_eq!((obeyed.places.len(), obeyed.places[0].name.as_str()), (1, "door"));
+        assert_eq!((obeyed, link.next_request()), ((*operator.annotations()).clone(), None));
+        assert_eq!(operator.annotation_store().waiting, 0);
     }
 
     #[test]

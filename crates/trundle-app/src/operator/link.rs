@@ -102,6 +102,11 @@ impl Operator {
         }
     }
 
+    /// Number of the last request that was sent.
+    fn last_request(&self) -> u64 {
+        self.shared.requests.lock().unwrap_or_else(PoisonError::into_inner).1
+    }
+
     pub(super) fn editing(&self) -> MutexGuard<'_, ()> {
         self.shared.editing.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -142,9 +147,21 @@ impl OperatorLink {
         self.unwatched_steps < UNWATCHED_STEPS
     }
 
-    /// The next request, where one waits.
+    /// The next request, where one waits. Changes of the zones and places of a map that was replaced meanwhile are dropped: the file
+    /// of that map has them.
     pub(crate) fn next_request(&self) -> Option<OperatorRequest> {
-        self.requests.try_recv().ok()
+        loop {
+            let request = self.requests.try_recv().ok()?;
+            let operator = self.operator();
+            let mut store = operator.annotation_store();
+            if !store.is_of_earlier_map(&request) {
+                return Some(request);
+            }
+            store.waiting = store.waiting.saturating_sub(1);
+            tracing::warn!(
+                "a change of zones or places is dropped: it is for the map before the present one"
+            );
+        }
     }
 
     /// Width and height of the camera's images \[px\].
@@ -158,17 +175,26 @@ impl OperatorLink {
             AnnotationStore::new(Arc::clone(annotations), file.map(Path::to_owned));
     }
 
-    /// Notes which request began the present mission, and the zones and places of a replay.
+    /// Notes the zones and places of a replay.
     pub(crate) fn note_request(&mut self, request: &OperatorRequest) {
-        self.feed.note_request(request);
         if let OperatorCommand::Annotate(annotations) = &request.command {
             self.operator().annotation_store().note_obeyed(annotations);
         }
     }
 
-    /// Zones and places belong to the map: a robot on another map has none, and the file of the old ones stays as it is.
-    pub(crate) fn note_map_replaced(&mut self) {
-        self.operator().annotation_store().note_map_replaced();
+    /// Notes what the request `id` replaced. Zones and places belong to the map: a robot on another map has none, and the file of the
+    /// old ones stays as it is.
+    pub(crate) fn note_obeyed(&mut self, id: u64, report: &StepReport) {
+        if report.mission_replaced {
+            self.feed.note_mission(id);
+        }
+        if report.map_replaced {
+            self.feed.note_map_replaced();
+            let operator = self.operator();
+            // The lock of the store is held while a change is sent: each one is before the number or is made without the old map.
+            let mut store = operator.annotation_store();
+            store.note_map_replaced(operator.last_request());
+        }
     }
 
     /// Publishes the state of the robot after a step.

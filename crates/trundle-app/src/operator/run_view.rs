@@ -138,6 +138,8 @@ pub struct MissionView {
 /// The map of a run.
 #[derive(Debug, Clone)]
 pub struct MapView {
+    /// Number of maps that an operator has replaced until then.
+    pub number: u64,
     /// Number of scans that were drawn into it so far: maps of equal numbers are equal, where no loop was closed.
     pub revision: u64,
     /// The map.

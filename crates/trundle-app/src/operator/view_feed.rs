@@ -1,7 +1,6 @@
 //! Makes the views of a run.
 
 use super::perception_feed::PerceptionFeed;
-use super::request::OperatorRequest;
 use super::run_view::{ImageView, MapView, MissionView, PerceptionView, RunCounts, RunView};
 use super::visual_map_feed::VisualMapFeed;
 use std::sync::Arc;
@@ -23,6 +22,8 @@ pub(super) struct ViewFeed {
     plan: Option<Arc<Trajectory>>,
     map: Option<Arc<MapView>>,
     map_copied: Option<Stamp>,
+    /// Number of maps that stood before the present one.
+    map_number: u64,
     image: Option<Arc<ImageView>>,
     visual_map: VisualMapFeed,
     perception: PerceptionFeed,
@@ -31,12 +32,17 @@ pub(super) struct ViewFeed {
 }
 
 impl ViewFeed {
-    /// Notes which request began the present mission.
-    pub(super) fn note_request(&mut self, request: &OperatorRequest) {
-        if request.command.replaces_mission() {
-            self.mission = MissionView { id: request.id, ..MissionView::default() };
-            self.plan = None;
-        }
+    /// Notes the number of the request that began the present mission.
+    pub(super) fn note_mission(&mut self, id: u64) {
+        self.mission = MissionView { id, ..MissionView::default() };
+        self.plan = None;
+    }
+
+    /// Another map stands in place of the one before: the next view has it.
+    pub(super) fn note_map_replaced(&mut self) {
+        self.map_number += 1;
+        self.map = None;
+        self.map_copied = None;
     }
 
     /// Keeps a copy of an image where the last one is old.
@@ -54,7 +60,7 @@ impl ViewFeed {
         report: &StepReport,
         is_watched: bool,
     ) -> Option<RunView> {
-        let is_result = report.track.is_some() || report.replanned || report.finished;
+        let is_result = report.track.is_some() || report.replanned || report.finished || report.map_replaced;
         let is_shown = report.twist.is_some() || is_result;
         if !is_shown {
             return None;
@@ -63,10 +69,12 @@ impl ViewFeed {
         self.update_mission(robot, report);
         self.update_plan(robot, report);
         self.perception.note_loop(robot, report);
+        if is_watched || report.map_replaced {
+            self.update_map(stamp, robot);
+        }
         if is_watched {
             self.perception.update(self.image_size_px, robot, report);
             self.update_scan(robot);
-            self.update_map(stamp, robot);
             self.visual_map.update(stamp, robot);
         }
         Some(RunView {
@@ -126,7 +134,8 @@ impl ViewFeed {
         let is_due = self.map_copied.is_none_or(|copied| now - copied >= MAP_PERIOD_S);
         let revision = robot.times().runs(Stage::Mapping);
         if is_due && self.map.as_ref().is_none_or(|map| map.revision != revision) {
-            self.map = Some(Arc::new(MapView { revision, grid: robot.grid().clone() }));
+            self.map =
+                Some(Arc::new(MapView { number: self.map_number, revision, grid: robot.grid().clone() }));
             self.map_copied = Some(now);
         }
     }

@@ -166,7 +166,7 @@ mod tests {
         for (x, y) in occupied {
             grid.set(geometry.cell_at(Vector2::new(*x, *y)).unwrap(), Cell::Occupied);
         }
-        Arc::new(MapView { revision: 1, grid })
+        Arc::new(MapView { number: 0, revision: 1, grid })
     }
 
     /// The tiles of a message as column, row and value of the cell at (x, y) of the map frame.
@@ -216,7 +216,7 @@ mod tests {
         assert_eq!(counts, [24, 24, 24, 24, 4]);
         let geometry = GridGeometry::new(0.1, Vector2::zeros(), 64, 64).unwrap();
         let grid = OccupancyGrid::filled(geometry, Cell::Free);
-        all.update(&Arc::new(MapView { revision: 2, grid }));
+        all.update(&Arc::new(MapView { number: 0, revision: 2, grid }));
         let message = all.message(&mut cursor).unwrap();
         assert_eq!((tiles(&message).len(), message[4]), (1, 2));
     }

@@ -24,6 +24,14 @@ impl GridMapper {
         }
         Ok(mapper)
     }
+
+    /// Refuses a grid that [`GridMapper::from_grid`] cannot continue from.
+    ///
+    /// # Errors
+    /// When the grid has another resolution, an origin off the multiples of the resolution, or an extent beyond `half_extent`.
+    pub fn require_fits(config: &MapperConfig, grid: &GridGeometry) -> Result<(), Invalid> {
+        cells_of(config, grid).map(drop)
+    }
 }
 
 /// Lowest and highest cell that a grid of this geometry covers.

@@ -62,8 +62,12 @@ impl Robot {
             Outcome::Perceived { perception, stamp, perceived } => {
                 self.perception = Some(perception);
                 report.image = Some(stamp);
+                let is_of_replaced_map = self.end_void_search(&mut report);
                 match perceived {
-                    Ok(Some(result)) => self.apply_perception(*result, &mut report),
+                    Ok(Some(mut result)) => {
+                        result.place = result.place.filter(|_| !is_of_replaced_map);
+                        self.apply_perception(*result, &mut report);
+                    }
                     Ok(None) => self.drop_frozen(stamp),
                     Err(problem) => report.broken_image = Some(problem),
                 }
@@ -78,6 +82,15 @@ impl Robot {
         }
         self.complete(&mut report);
         report
+    }
+
+    /// Ends the search of a perception job that began before the map was replaced, whatever became of its image. Whether it did.
+    fn end_void_search(&mut self, report: &mut StepReport) -> bool {
+        let is_void = std::mem::take(&mut self.mapping.voids_search);
+        if is_void {
+            self.on_map_replaced(report);
+        }
+        is_void
     }
 
     /// Stamps of the images that a newer one replaced before they were processed.

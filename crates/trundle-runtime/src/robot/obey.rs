@@ -8,6 +8,7 @@ use crate::{
     report::StepReport,
     stage::Stage,
 };
+use std::sync::Arc;
 use trundle_core::{Invalid, MapAnnotations, OccupancyGrid, Stamp, Vector3};
 
 impl Robot {
@@ -21,6 +22,7 @@ impl Robot {
         match command.validated()? {
             OperatorCommand::Begin(mission) => {
                 self.steering.begin_for_operator(MissionState::new(mission));
+                report.mission_replaced = true;
             }
             OperatorCommand::Pause => self.pause(true, now, &mut report),
             OperatorCommand::Continue => self.pause(false, now, &mut report),
@@ -30,7 +32,7 @@ impl Robot {
                 event_log::annotated(now, &annotations);
                 self.annotate(annotations);
             }
-            OperatorCommand::LoadMap(grid) => report.map_replaced = self.replace_map(&grid, now),
+            OperatorCommand::LoadMap(grid) => self.replace_map(&grid, now, &mut report),
             OperatorCommand::Drive(twist) => {
                 self.pause(true, now, &mut report);
                 self.steering.teleop.drive(twist, now);
@@ -45,23 +47,37 @@ impl Robot {
         self.zones.set(annotations);
     }
 
-    /// Another map in place of the present one: whether it is. A map that the robot cannot use is refused, and the robot keeps its own.
-    fn replace_map(&mut self, grid: &OccupancyGrid, now: Stamp) -> bool {
-        self.steering.begin_for_operator(MissionState::default());
+    /// Another map in place of the present one: the mission ends and the robot brakes to rest. A map that the robot cannot use is refused,
+    /// and the robot goes on with its own.
+    fn replace_map(&mut self, grid: &OccupancyGrid, now: Stamp, report: &mut StepReport) {
         let replaced = self.times.measure(Stage::Mapping, || self.mapping.replace(grid));
         event_log::map_given(now, grid.geometry(), replaced.as_ref().err());
         if replaced.is_err() {
-            return false;
+            return;
         }
+        (report.map_replaced, report.mission_replaced) = (true, true);
+        self.steering.begin_for_operator(MissionState::default());
         self.localizer.forget_visual_maps();
         self.station.forget();
         self.annotate(MapAnnotations::default());
         self.lose_pose();
-        match &mut self.perception {
-            Some(perception) => perception.global_localization.end(),
-            None => self.mapping.voids_search = true,
+        if self.perception.is_some() {
+            self.on_map_replaced(report);
+        } else {
+            self.mapping.voids_search = true;
         }
-        true
+        self.decide(now, report);
+    }
+
+    /// Once no perception job of the replaced map runs: ends its search, and reports a checkpoint in place of the last one, which holds
+    /// the replaced map. The pose is unknown, as that of every robot that resumes.
+    pub(super) fn on_map_replaced(&mut self, report: &mut StepReport) {
+        let Some(perception) = &mut self.perception else { return };
+        perception.global_localization.end();
+        if perception.saving.is_some() {
+            let visual = perception.slam().save();
+            report.checkpoint = Some(Arc::new(self.checkpoint_with(visual)));
+        }
     }
 
     fn change(&mut self, setting: RunSetting, now: Stamp) {

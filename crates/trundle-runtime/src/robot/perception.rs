@@ -71,11 +71,7 @@ impl Robot {
         if let Some(trajectory) = corrected_trajectory {
             self.redraw_from_visual_map(&trajectory);
         }
-        let is_void = std::mem::take(&mut self.mapping.voids_search);
-        if is_void {
-            self.perception.iter_mut().for_each(|perception| perception.global_localization.end());
-        }
-        self.apply_global_localization(place.filter(|_| !is_void));
+        self.apply_global_localization(place);
         let jump = before.inverse() * self.localizer.estimate().pose;
         if jump.position().norm() > JUMP_M || jump.theta.abs() > JUMP_RAD {
             self.obstacles.clear();
@@ -95,7 +91,8 @@ impl Robot {
         // A grid that has not yet followed the visual map does not fit it.
         let fits = self.is_pose_known(track.stamp) && !self.mapping.mapper.is_redrawing();
         let visual_snapshot = visual_snapshot.filter(|_| fits);
-        report.checkpoint = visual_snapshot.map(|visual| Arc::new(self.checkpoint_with(visual)));
+        let checkpoint = visual_snapshot.map(|visual| Arc::new(self.checkpoint_with(visual)));
+        report.checkpoint = checkpoint.or(report.checkpoint.take());
         report.track = Some(track);
     }
 

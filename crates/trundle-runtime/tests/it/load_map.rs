@@ -3,9 +3,9 @@
 use crate::robot::Base;
 use trundle_core::{
     Battery, Beam, BodyEvent, BodyEventKind, Cell, GridGeometry, MapAnnotations, NamedPlace, OccupancyGrid,
-    Pose2, PowerSource, Scan, SensorEvent, Stamp, Vector2,
+    Pose2, PowerSource, Scan, SensorEvent, Stamp, Twist2, Vector2,
 };
-use trundle_runtime::{Mission, OperatorCommand, RangeSource, Robot, RobotConfig, Task};
+use trundle_runtime::{LazyImage, Mission, OperatorCommand, RangeSource, Robot, RobotConfig, Task};
 
 /// A room whose outline fits itself nowhere else, map frame \[m\].
 const CORNERS: [[f64; 2]; 8] =
@@ -63,6 +63,34 @@ fn room(resolution: f64) -> OccupancyGrid {
     OccupancyGrid::new(geometry, (0..geometry.len()).map(cell).collect()).unwrap()
 }
 
+/// The room of cells of 5 cm in a map frame that begins `x` m to the left.
+fn shifted_room(x: f64) -> OccupancyGrid {
+    let grid = room(0.05);
+    let GridGeometry { resolution, origin, width, height, .. } = *grid.geometry();
+    let geometry = GridGeometry::new(resolution, origin + Vector2::new(x, 0.0), width, height).unwrap();
+    OccupancyGrid::new(geometry, grid.cells().to_vec()).unwrap()
+}
+
+/// The same as [`run`] for a robot with background jobs, each of which ends before the next event.
+fn run_with_jobs(robot: &mut Robot, base: &mut Base, from: f64, seconds: f64) {
+    let work = |robot: &mut Robot, base: &mut Base| {
+        while let Some(job) = robot.next_job() {
+            base.command(robot.apply_answer(job.run()).twist);
+        }
+    };
+    for i in (from * 50.0) as i64..((from + seconds) * 50.0) as i64 {
+        let stamp = Stamp::from_nanos(i * 20_000_000);
+        for event in base.on_wheels(stamp) {
+            base.command(robot.step(&event).twist);
+            work(robot, base);
+        }
+        if i % 5 == 0 {
+            robot.step(&sweep(stamp, START * base.pose()));
+            work(robot, base);
+        }
+    }
+}
+
 /// Runs for `seconds` from `from`; the base begins at [`START`] in truth.
 fn run(robot: &mut Robot, base: &mut Base, from: f64, seconds: f64) {
     for i in (from * 50.0) as i64..((from + seconds) * 50.0) as i64 {
@@ -106,17 +134,44 @@ fn a_robot_drops_what_belongs_to_its_old_map_and_finds_itself_in_the_new_one() {
 }
 
 #[test]
-fn a_map_of_other_cells_is_refused_and_the_robot_keeps_its_own_and_stands() {
+fn a_map_of_other_cells_is_refused_and_the_robot_goes_on_with_its_own() {
     let (mut robot, mut base) = driven();
+    let goal = Pose2::new(0.6, 0.0, 0.0);
+    robot.drive_to(goal).unwrap();
+    run(&mut robot, &mut base, 2.0, 0.2);
     let before = robot.grid().clone();
     let report = robot.obey(OperatorCommand::LoadMap(Box::new(room(0.1)))).unwrap();
     assert!(!report.map_replaced && *robot.grid() == before);
-    assert_eq!((robot.tasks_left().unwrap().len(), robot.annotations().places.len()), (0, 1));
-    run(&mut robot, &mut base, 2.0, 2.0);
-    let rest = base.pose();
-    run(&mut robot, &mut base, 4.0, 2.0);
-    assert_eq!(base.pose(), rest);
+    assert_eq!((robot.tasks_left().unwrap().len(), robot.annotations().places.len()), (1, 1));
+    run(&mut robot, &mut base, 2.2, 10.0);
+    assert!(base.pose().distance(&goal) < 0.05, "{:?}", base.pose());
     assert!(robot.estimate().covariance[(0, 0)] < 0.01, "the pose is as well known as before");
+}
+
+#[test]
+fn a_broken_image_of_the_old_map_gives_no_pose_in_the_new_one() {
+    const SHIFT_M: f64 = 10.0;
+    let mut config = RobotConfig::default();
+    config.sight = RangeSource::Laser;
+    let robot = Robot::new(config).unwrap();
+    let (mut robot, mut base) = (robot.with_background_jobs().with_checkpoints(), Base::default());
+    run_with_jobs(&mut robot, &mut base, 0.0, 1.0);
+    robot.obey(OperatorCommand::LoadMap(Box::new(room(0.05)))).unwrap();
+    run_with_jobs(&mut robot, &mut base, 1.0, 1.0);
+    robot.queue_image(LazyImage::new(Stamp::from_nanos(1_900_000_000), || Err("broken".to_owned())));
+    let job = robot.next_job().unwrap();
+    let report = robot.obey(OperatorCommand::LoadMap(Box::new(shifted_room(SHIFT_M)))).unwrap();
+    assert!(report.map_replaced && report.checkpoint.is_none(), "the visual map is with the job");
+    let report = robot.apply_answer(job.run());
+    assert_eq!(report.broken_image.as_deref(), Some("broken"));
+    assert_eq!(report.checkpoint.unwrap().grid, *robot.grid());
+    let mission = Mission::new(vec![Task::Go(Pose2::new(SHIFT_M + 0.4, 1.0, 1.0))]).unwrap();
+    robot.obey(OperatorCommand::Begin(mission)).unwrap();
+    run_with_jobs(&mut robot, &mut base, 2.0, 60.0);
+    let truth = Pose2::new(SHIFT_M, 0.0, 0.0) * START * base.pose();
+    let estimate = robot.estimate();
+    assert!(truth.distance(&estimate.pose) < 0.05, "truth {truth:?}, estimate {:?}", estimate.pose);
+    assert!(estimate.covariance[(0, 0)] < 0.01);
 }
 
 #[test]
@@ -148,6 +203,27 @@ fn a_docked_robot_knows_its_station_in_the_new_map_only_once_it_knows_its_pose()
     robot.step(&charging(62));
     let off = robot.station().unwrap().pose.position() - robot.estimate().pose.position();
     assert!(off.norm() < 0.5, "{off:?}");
+}
+
+#[test]
+fn a_robot_that_drives_brakes_as_it_obeys_and_its_checkpoint_has_the_new_map_and_no_mission() {
+    let mut config = RobotConfig::default();
+    config.sight = RangeSource::Laser;
+    let (mut robot, mut base) = (Robot::new(config.clone()).unwrap().with_checkpoints(), Base::default());
+    robot.drive_to(Pose2::new(1.0, 0.0, 0.0)).unwrap();
+    run(&mut robot, &mut base, 0.0, 2.0);
+    let speed = base.twist().v;
+    assert!(speed > 0.05, "{speed}");
+    let report = robot.obey(OperatorCommand::LoadMap(Box::new(room(0.05)))).unwrap();
+    let twist = report.twist.unwrap();
+    assert!(twist.v <= speed, "{twist:?} after {speed} m/s");
+    let checkpoint = report.checkpoint.unwrap();
+    assert_eq!(checkpoint.grid, *robot.grid());
+    let resumed = Robot::resume(config, &checkpoint).unwrap();
+    assert!(resumed.tasks_left().unwrap().is_empty());
+    base.command(Some(twist));
+    run(&mut robot, &mut base, 2.0, 1.5);
+    assert_eq!(base.twist(), Twist2::ZERO);
 }
 
 #[test]

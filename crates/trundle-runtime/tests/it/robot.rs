@@ -49,6 +49,11 @@ impl Base {
     }
 
     /// Pose since the start.
+    pub fn twist(&self) -> Twist2 {
+        self.command
+    }
+
+    /// Its pose in truth, from its start.
     pub fn pose(&self) -> Pose2 {
         self.pose
     }
