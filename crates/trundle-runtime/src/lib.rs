@@ -40,7 +40,7 @@ pub use lazy_image::LazyImage;
 pub use level_map::{LevelMap, level_from_first_camera};
 pub use mission::executor_config::MissionExecutorConfig;
 pub use mission::{DockFailure, Mission, MissionState, Task, TaskEnd, TaskRecord};
-pub use operator::{OperatorCommand, PoseGuess, RunSetting, TELEOP_SILENCE_S};
+pub use operator::{OperatorCommand, PoseGuess, RunSetting, TELEOP_SILENCE_S, require_loadable};
 pub use range_source::RangeSource;
 pub use reason::{NoPath, Reason, ReasonKind, TaskFailure};
 pub use report::{PoseMeasurements, StepReport};

@@ -77,15 +77,13 @@ fn require_recordable(map: &GridGeometry) -> Result<(), Invalid> {
     Ok(())
 }
 
-impl RobotConfig {
-    /// Refuses a map that a robot of this configuration does not take by [`OperatorCommand::LoadMap`].
-    ///
-    /// # Errors
-    /// When it has too many cells, cells of another size, an origin off their multiples, or reaches too far.
-    pub fn require_loadable(&self, map: &GridGeometry) -> Result<(), Invalid> {
-        require_recordable(map)?;
-        GridMapper::require_fits(&self.mapping, map)
-    }
+/// Refuses a map that a robot of this configuration does not take by [`OperatorCommand::LoadMap`].
+///
+/// # Errors
+/// When it has too many cells, cells of another size, an origin off their multiples, or reaches too far.
+pub fn require_loadable(map: &GridGeometry, robot: &RobotConfig) -> Result<(), Invalid> {
+    require_recordable(map)?;
+    GridMapper::require_fits(&robot.mapping, map)
 }
 
 /// A pose of the robot with its uncertainty, as an operator knows it.

@@ -12,9 +12,11 @@ use crate::generated::nav2_msgs::{
 use crate::node::{Diagnostics, RosNode, arrives};
 use crate::outputs::{FrameNames, PublishedMap};
 use std::path::Path;
+use std::sync::Arc;
+use trundle_app::operator::MapView;
 use trundle_core::{OccupancyGrid, Stamp};
 use trundle_io::{MapImage, map_picture, map_yaml, read_map, replace_file};
-use trundle_runtime::OperatorCommand;
+use trundle_runtime::{OperatorCommand, RobotConfig, require_loadable};
 
 /// Offers `map_server/map`, `map_saver/save_map`, `map_server/load_map` and the clearing of both costmaps.
 ///
@@ -25,6 +27,7 @@ pub fn offer(
     robot: &ActiveGoal,
     published: &PublishedMap,
     frames: &FrameNames,
+    config: &RobotConfig,
 ) -> Result<(), Ros2Error> {
     let (map, frame, diagnostics) = (published.clone(), frames.map.clone(), node.diagnostics());
     node.serve::<GetMap>("map_server/map", move |_| get(&map, &frame, &diagnostics))?;
@@ -36,8 +39,9 @@ pub fn offer(
     })?;
     let (robot, map, frame, diagnostics) =
         (robot.clone(), published.clone(), frames.map.clone(), node.diagnostics());
+    let config = config.clone();
     node.serve::<LoadMap>("map_server/load_map", move |request| {
-        load(&request, &robot, &map, &frame).unwrap_or_else(|(result, why)| {
+        load(&request, &robot, &config, &map, &frame).unwrap_or_else(|(result, why)| {
             diagnostics.warn("map_server/load_map", why);
             LoadMapResponse { result, ..LoadMapResponse::default() }
         })
@@ -94,24 +98,28 @@ fn save(request: &SaveMapRequest, published: &PublishedMap) -> Result<(), String
 /// Why a map is not loaded: the code of Nav2 and the sentence.
 type LoadRefusal = (u8, String);
 
-/// Gives the robot the map of a file in place of its own. The topic has it from then on; the reply has it where it has room for it.
+/// Gives the robot the map of a file in place of its own. The other services have it at once, the topic as soon as the robot has it; the
+/// reply has it where it has room for it.
 fn load(
     request: &LoadMapRequest,
     robot: &ActiveGoal,
+    config: &RobotConfig,
     published: &PublishedMap,
     frame: &str,
 ) -> Result<LoadMapResponse, LoadRefusal> {
-    let (newest, at) = published.newest().map_or((None, Stamp::default()), |(map, at)| (Some(map), at));
-    let grid = read_for(&request.map_url, newest.as_ref().map(|map| map.grid.geometry().resolution))?;
+    let at = published.newest().map_or_else(Stamp::default, |(_, at)| at);
+    let grid = read_for(&request.map_url, config)?;
+    let view = MapView { number: 0, revision: 0, grid: grid.clone() };
     let map = fitting(grid::to_ros(&grid, at, frame));
     robot
         .send(OperatorCommand::LoadMap(Box::new(grid)))
         .map_err(|error| (LoadMapResponse::RESULT_UNDEFINED_FAILURE, error.to_string()))?;
+    published.set(Arc::new(view), at);
     Ok(LoadMapResponse { result: LoadMapResponse::RESULT_SUCCESS, map })
 }
 
-/// The map of a file, with cells that fit those of a robot with this resolution \[m\].
-fn read_for(map_url: &str, resolution: Option<f64>) -> Result<OccupancyGrid, LoadRefusal> {
+/// The map of a file, which a robot of this configuration takes.
+fn read_for(map_url: &str, config: &RobotConfig) -> Result<OccupancyGrid, LoadRefusal> {
     let path = Path::new(map_url.trim_start_matches("file://"));
     if !path.exists() {
         return Err((
@@ -121,8 +129,7 @@ fn read_for(map_url: &str, resolution: Option<f64>) -> Result<OccupancyGrid, Loa
     }
     let grid =
         read_map(path).map_err(|error| (LoadMapResponse::RESULT_INVALID_MAP_DATA, error.to_string()))?;
-    resolution
-        .map_or(Ok(()), |resolution| grid.geometry().require_lattice(resolution))
+    require_loadable(grid.geometry(), config)
         .map_err(|problem| (LoadMapResponse::RESULT_INVALID_MAP_METADATA, problem.to_string()))?;
     Ok(grid)
 }
@@ -143,13 +150,11 @@ fn fitting(map: RosGrid) -> RosGrid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::sync::Arc;
-    use trundle_app::operator::MapView;
 
     fn published(text: &str) -> PublishedMap {
         let published = PublishedMap::default();
         let grid = OccupancyGrid::from_ascii(0.05, text).unwrap();
-        published.set(Arc::new(MapView { revision: 1, grid }), Stamp::default());
+        published.set(Arc::new(MapView { number: 0, revision: 1, grid }), Stamp::default());
         published
     }
 
@@ -185,17 +190,25 @@ mod tests {
         let request = |map_url| SaveMapRequest { map_url, ..SaveMapRequest::default() };
         save(&request(url("room")), &published("#..\n#??\n###")).unwrap();
         let yaml = url("room.yaml");
-        let grid = read_for(&format!("file://{yaml}"), Some(0.05)).unwrap();
+        let grid = read_for(&format!("file://{yaml}"), &RobotConfig::default()).unwrap();
         assert_eq!(grid.cells(), published("#..\n#??\n###").newest().unwrap().0.grid.cells());
-        let code = |url: &str, resolution| read_for(url, resolution).unwrap_err();
-        let (missing, why) = code("/nowhere/map.yaml", None);
+        let code = |url: &str, config: &RobotConfig| read_for(url, config).unwrap_err();
+        let with = |change: fn(&mut RobotConfig)| {
+            let mut config = RobotConfig::default();
+            change(&mut config);
+            config
+        };
+        let (missing, why) = code("/nowhere/map.yaml", &RobotConfig::default());
         assert_eq!(missing, LoadMapResponse::RESULT_MAP_DOES_NOT_EXIST);
         assert!(why.contains("/nowhere/map.yaml"));
-        let (other, why) = code(&yaml, Some(0.1));
+        let (other, why) = code(&yaml, &with(|config| config.mapping.resolution = 0.1));
         assert_eq!(other, LoadMapResponse::RESULT_INVALID_MAP_METADATA);
         assert!(why.contains("resolution of the map is 0.05 m, expected 0.1"), "{why}");
+        let (far, why) = code(&yaml, &with(|config| config.mapping.half_extent = 0.1));
+        assert_eq!(far, LoadMapResponse::RESULT_INVALID_MAP_METADATA);
+        assert!(why.contains("extent of the map"), "{why}");
         std::fs::write(&yaml, "image: [").unwrap();
-        assert_eq!(code(&yaml, None).0, LoadMapResponse::RESULT_INVALID_MAP_DATA);
+        assert_eq!(code(&yaml, &RobotConfig::default()).0, LoadMapResponse::RESULT_INVALID_MAP_DATA);
         std::fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -49,7 +49,7 @@ pub fn offer(
     navigation_action::offer::<UndockRobot>(node, "undock_robot", active, frames)?;
     path_planner::offer(node, active, frames, robot)?;
     pose_inputs::offer(node, active, frames)?;
-    map_services::offer(node, active, published_map, frames)?;
+    map_services::offer(node, active, published_map, frames, robot)?;
     lifecycle::offer(node, active)?;
     let followed = active.clone();
     node.every_tick(move |now| followed.tick(now));

@@ -98,6 +98,8 @@ struct OutputLoop {
     slowest_due: Instant,
     /// The newest map that updates refer to, and its revision.
     map: Option<(u64, OccupancyGrid)>,
+    /// Number of the map that was published, [`trundle_app::operator::MapView::number`].
+    map_number: Option<u64>,
     /// Revision of the map that was published as a whole.
     whole: Option<u64>,
     costs: Vec<i8>,
@@ -118,6 +120,7 @@ impl OutputLoop {
             slowest_due: now,
             map: None,
             whole: None,
+            map_number: None,
             costs: Vec::new(),
             plan: None,
             scan: None,
@@ -135,6 +138,9 @@ impl OutputLoop {
             self.publish_static(view);
             self.publish_scan(view);
             self.publish_plan(view);
+            if self.is_map_replaced(view) {
+                self.publish_map(view, true);
+            }
             if is_slow {
                 self.slow_due = now + SLOW_PERIOD;
                 self.publish_map(view, is_slowest);
@@ -236,6 +242,17 @@ impl OutputLoop {
         let poses: Vec<Pose2> = points.map(|point| point.pose).collect();
         let at = self.sources.clock.to_ros(view.stamp);
         self.topics.plan.publish(path::to_ros(&poses, at, &self.settings.frames.map));
+    }
+
+    /// Whether another map stands in place of the one that was published: the new one is published as a whole, without updates.
+    fn is_map_replaced(&mut self, view: &RunView) -> bool {
+        let Some(map) = &view.map else { return false };
+        let published = self.map_number.replace(map.number);
+        let is_replaced = published.is_some_and(|published| published != map.number);
+        if is_replaced {
+            self.map = None;
+        }
+        is_replaced
     }
 
     /// The whole map where it changed and a second has passed, else what changed.
