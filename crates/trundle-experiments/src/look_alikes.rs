@@ -17,7 +17,7 @@ const FALSE_ARRIVAL_DEG: f64 = 20.0;
 /// Change of the estimate's error between two images that counts as a jump away from the truth, m.
 const JUMP_M: f64 = 0.3;
 /// Time at which the robot is carried away, s.
-const CARRIED_AT_S: f64 = 40.0;
+const CARRIED_AT_S: f64 = 25.0;
 /// How long that takes, s.
 const CARRIED_FOR_S: f64 = 0.1;
 

@@ -182,6 +182,23 @@ impl Localizer {
         self.find(stamp).map(|moment| moment.odometry)
     }
 
+    /// The pose of the base by a visual pose; `None` before the frame of its visual map is anchored.
+    pub fn base_by_visual(&self, visual: &VisualPose) -> Option<Pose2> {
+        self.visual.base(visual)
+    }
+
+    /// Anchors the frame of a visual map anew, so that this pose of it agrees with the estimate.
+    pub fn anchor_again(&mut self, visual: &VisualPose) -> Correction {
+        match self.find(visual.stamp) {
+            Ok(moment) => {
+                self.visual.anchor(&moment.belief, visual);
+                self.divergence = DivergenceCheck::default();
+                Correction::Reanchored
+            }
+            Err(rejection) => rejection,
+        }
+    }
+
     /// The current visual map's frame in the map; `None` without a visual pose.
     pub fn map_from_visual(&self) -> Option<Pose3> {
         self.visual.map_from_visual()

@@ -84,6 +84,12 @@ impl VisualFrame {
         Some(self.anchors.get(&self.current)?.map_from_visual)
     }
 
+    /// The pose of the base by a visual pose; `None` before its frame is anchored.
+    pub(crate) fn base(&self, visual: &VisualPose) -> Option<Pose2> {
+        let map_from_visual = self.anchors.get(&visual.map)?.map_from_visual;
+        Some((map_from_visual * visual.visual_from_camera * self.base_from_camera.inverse()).to_pose2())
+    }
+
     /// Anchors the visual frame so that a visual pose agrees with the belief of the base's pose: gravity is along the base's z
     /// axis.
     pub(crate) fn anchor(&mut self, belief: &Belief, visual: &VisualPose) {
@@ -91,6 +97,7 @@ impl VisualFrame {
         let map_from_visual = (map_from_camera * visual.visual_from_camera.inverse()).renormalized();
         let to_map = adjoint(&belief.pose);
         let covariance = symmetric(to_map * belief.covariance * to_map.transpose());
+        self.current = visual.map;
         self.anchors.insert(visual.map, Anchor { map_from_visual, covariance });
     }
 

@@ -1,35 +1,68 @@
-//! A room and scans of it, for tests.
+//! Rooms and scans for tests.
 
-use trundle_core::{Beam, Cell, GridGeometry, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
+use trundle_core::{Beam, Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
 
-/// A room of 6 x 4 m with a box in it; its corner at the origin.
-pub(crate) fn room() -> OccupancyGrid {
-    let geometry = GridGeometry::new(0.05, Vector2::zeros(), 120, 80).unwrap();
-    let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
-    for k in 0..geometry.len() {
-        let cell = geometry.cell(k);
-        let is_wall = [0, 119].contains(&cell.col) || [0, 79].contains(&cell.row);
-        let is_box = (70..90).contains(&cell.col) && cell.row < 30;
-        if is_wall || is_box {
-            grid.set(cell, Cell::Occupied);
-        }
-    }
-    grid
+/// An axis-parallel box: its lower and its upper corner \[m\].
+pub(crate) type Block = [Vector2; 2];
+
+/// A room of 4 x 3 m about the origin, which looks alike half a turn on, with boxes in it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Room {
+    pub(crate) blocks: Vec<Block>,
 }
 
-/// A depth camera's scan of a map from a pose, at a time \[s\]. `hidden`: a person at this range \[m\] in a part of the view.
-pub(crate) fn scan_of(grid: &OccupancyGrid, at: Pose2, time: f64, hidden: Option<f64>) -> Scan {
-    let beam = |i: i32| {
-        let bearing = at.theta + f64::from(i).to_radians();
-        let along = |k: u32| f64::from(k) * 0.02;
-        let is_there = |range: f64| {
-            grid.at(at.position() + Vector2::new(bearing.cos(), bearing.sin()) * range) == Cell::Occupied
+const HALF: Vector2 = Vector2::new(2.0, 1.5);
+/// Half of the camera's view, deg.
+const HALF_VIEW_DEG: i32 = 35;
+
+impl Room {
+    /// The room with a box in one corner.
+    pub(crate) fn with_corner_box() -> Self {
+        Self { blocks: vec![[Vector2::new(1.2, 0.7), HALF]] }
+    }
+
+    /// The same with a person of 0.4 m at a point.
+    pub(crate) fn with_person(mut self, at: Vector2) -> Self {
+        let half = Vector2::new(0.2, 0.2);
+        self.blocks.push([at - half, at + half]);
+        self
+    }
+
+    /// Its map, in cells of 5 cm; unknown outside.
+    pub(crate) fn map(&self) -> OccupancyGrid {
+        let geometry = GridGeometry::new(0.05, Vector2::new(-2.5, -2.0), 100, 80).unwrap();
+        let mut grid = OccupancyGrid::filled(geometry, Cell::Unknown);
+        for k in 0..geometry.len() {
+            let cell: CellIndex = geometry.cell(k);
+            let at = geometry.center(cell);
+            let outside = (at.x.abs() - HALF.x).max(at.y.abs() - HALF.y);
+            if outside < 0.0 && !self.is_in_block(at) {
+                grid.set(cell, Cell::Free);
+            } else if outside < 0.1 {
+                grid.set(cell, Cell::Occupied);
+            }
+        }
+        grid
+    }
+
+    /// The camera's scan from a pose.
+    pub(crate) fn scan(&self, at: Pose2, time: f64) -> Scan {
+        let beam = |i: i32| Beam::Hit { range: self.range(at, f64::from(i).to_radians()) };
+        let beams = (-HALF_VIEW_DEG..=HALF_VIEW_DEG).map(beam).collect();
+        let first = f64::from(-HALF_VIEW_DEG).to_radians();
+        Scan::new(Stamp::default().after(time), Vector2::zeros(), first, 1_f64.to_radians(), beams).unwrap()
+    }
+
+    fn range(&self, at: Pose2, bearing: f64) -> f64 {
+        let direction = Vector2::new((at.theta + bearing).cos(), (at.theta + bearing).sin());
+        let is_hit = |range: &f64| {
+            let point = at.position() + direction * *range;
+            point.x.abs() > HALF.x || point.y.abs() > HALF.y || self.is_in_block(point)
         };
-        let range = (0..400).map(along).find(|range| is_there(*range)).unwrap_or(8.0);
-        let person = hidden.filter(|_| (-10..12).contains(&i));
-        Beam::Hit { range: person.map_or(range, |near| range.min(near)) }
-    };
-    let step = 1_f64.to_radians();
-    let beams = (-35..=35).map(beam).collect();
-    Scan::new(Stamp::default().after(time), Vector2::zeros(), -35.0 * step, step, beams).unwrap()
+        (0..1200).map(|i| 0.005 * f64::from(i)).find(is_hit).unwrap_or(6.0)
+    }
+
+    fn is_in_block(&self, at: Vector2) -> bool {
+        self.blocks.iter().any(|[low, high]| at >= *low && at <= *high)
+    }
 }

@@ -1,0 +1,127 @@
+//! Visual poses that lead away from the estimate: the scans decide.
+
+use crate::pose_monitor::recent_scans::RecentScans;
+use trundle_core::{OccupancyGrid, Pose2};
+
+/// The estimate, as far as a jump away from it is judged.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PoseBelief {
+    /// `map_from_base`.
+    pub pose: Pose2,
+    /// Standard deviation of the position, m.
+    pub position_sigma: f64,
+    /// The same of the heading, rad.
+    pub heading_sigma: f64,
+    /// Whether it is too uncertain for scans to be compared with the map there.
+    pub is_lost: bool,
+}
+
+/// What to do with a visual pose.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum VisualJump {
+    /// It is near the estimate, or the scans do not object: the localizer decides by its covariance.
+    Allowed,
+    /// The scans contradict it, or it is far away and they do not confirm it.
+    Refused,
+}
+
+/// Distance of a visual pose from the estimate within which the localizer alone decides \[m\]. Source: ours.
+const NEAR_M: f64 = 0.25;
+/// The same for the heading \[rad\]: 6 deg. Source: ours.
+const NEAR_RAD: f64 = 0.1;
+/// Distance that an estimate may have drifted without a sign of it \[m\]. Source: ours.
+const DRIFT_M: f64 = 1.0;
+/// The same for the heading \[rad\]: 20 deg. Source: ours.
+const DRIFT_RAD: f64 = 0.35;
+/// Standard deviations of an uncertain estimate that count as its drift \[1\]. Source: ours.
+const DRIFT_SIGMAS: f64 = 3.0;
+/// Log-likelihood ratio of the scans above which they decide between two poses \[nats\]. Source: ours, 400 to 1.
+const DECISIVE_NATS: f64 = 6.0;
+
+impl VisualJump {
+    /// The verdict on the visual pose `found`, at `odom_from_base`, of a robot that was not carried away.
+    pub(crate) fn judge(
+        belief: &PoseBelief,
+        found: Pose2,
+        odom_from_base: Pose2,
+        scans: (&RecentScans, &OccupancyGrid),
+    ) -> Self {
+        let off = belief.pose.inverse() * found;
+        let is_within =
+            |distance: f64, turn: f64| off.position().norm() <= distance && off.theta.abs() <= turn;
+        let is_near = is_within(NEAR_M, NEAR_RAD);
+        let drift_m = DRIFT_M.max(DRIFT_SIGMAS * belief.position_sigma);
+        let is_drift = is_within(drift_m, DRIFT_RAD.max(DRIFT_SIGMAS * belief.heading_sigma));
+        if is_near || is_drift && belief.is_lost {
+            return Self::Allowed;
+        }
+        let (recent, grid) = scans;
+        let nats_at = |pose: Pose2| recent.log_likelihood(grid, pose, odom_from_base);
+        let nats = nats_at(found) - nats_at(belief.pose);
+        let needed = if is_drift { -DECISIVE_NATS } else { DECISIVE_NATS };
+        if nats >= needed { Self::Allowed } else { Self::Refused }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pose_monitor::testing::Room;
+    use std::f64::consts::PI;
+    use trundle_core::Vector2;
+
+    const BELIEF: PoseBelief = PoseBelief {
+        pose: Pose2 { x: -0.6, y: 0.2, theta: 0.3 },
+        position_sigma: 0.02,
+        heading_sigma: 0.01,
+        is_lost: false,
+    };
+
+    /// The verdict after scans of a room by a robot that turned by 40 deg to where it stands.
+    fn verdict(belief: &PoseBelief, map: &Room, (room, truth): (&Room, Pose2), found: Pose2) -> VisualJump {
+        let mut recent = RecentScans::default();
+        for i in 0..5 {
+            let odom_from_base = Pose2::new(0.0, 0.0, 0.175 * (f64::from(i) - 4.0));
+            recent.add(odom_from_base, &room.scan(truth * odom_from_base, f64::from(i)));
+        }
+        VisualJump::judge(belief, found, Pose2::IDENTITY, (&recent, &map.map()))
+    }
+
+    #[test]
+    fn the_look_alike_pose_half_a_turn_on_is_refused() {
+        let room = Room::default();
+        let found = Pose2::new(0.0, 0.0, PI) * BELIEF.pose;
+        assert_eq!(verdict(&BELIEF, &room, (&room, BELIEF.pose), found), VisualJump::Refused);
+        let crowded = room.clone().with_person(Vector2::new(0.6, 0.3));
+        assert_eq!(verdict(&BELIEF, &room, (&crowded, BELIEF.pose), found), VisualJump::Refused);
+    }
+
+    #[test]
+    fn a_pose_that_the_scan_fits_far_better_is_allowed_at_any_distance() {
+        let room = Room::with_corner_box();
+        for off in [Pose2::new(0.6, 0.0, 0.2), Pose2::new(1.3, 0.3, 2.0)] {
+            let truth = BELIEF.pose * off;
+            assert_eq!(verdict(&BELIEF, &room, (&room, truth), truth), VisualJump::Allowed, "{off:?}");
+        }
+    }
+
+    #[test]
+    fn a_pose_by_images_of_a_person_is_refused_where_the_scan_fits_the_estimate() {
+        let room = Room::with_corner_box();
+        let found = BELIEF.pose * Pose2::new(0.4, 0.2, 0.0);
+        assert_eq!(verdict(&BELIEF, &room, (&room, BELIEF.pose), found), VisualJump::Refused);
+        let near = BELIEF.pose * Pose2::new(0.1, 0.0, 0.05);
+        assert_eq!(verdict(&BELIEF, &room, (&room, BELIEF.pose), near), VisualJump::Allowed);
+    }
+
+    #[test]
+    fn a_robot_that_knows_nothing_of_its_pose_is_located_anywhere_and_a_lost_one_nearby() {
+        let room = Room::default();
+        let far = BELIEF.pose * Pose2::new(1.5, 0.4, 0.5);
+        let lost =
+            |sigma| PoseBelief { position_sigma: sigma, heading_sigma: sigma, is_lost: true, ..BELIEF };
+        assert_eq!(verdict(&lost(100.0), &room, (&room, far), far), VisualJump::Allowed);
+        let look_alike = Pose2::new(0.0, 0.0, PI) * BELIEF.pose;
+        assert_eq!(verdict(&lost(0.4), &room, (&room, BELIEF.pose), look_alike), VisualJump::Refused);
+    }
+}

@@ -1,0 +1,167 @@
+//! Images that follow something that moves: a person who fills the view.
+
+use crate::pose_monitor::scan_continuity::mean_residual;
+use std::collections::VecDeque;
+use trundle_core::{Pose2, Pose3, Scan, Stamp};
+
+/// Compares the motion by images with that by wheels and gyro; where they contradict each other, two scans decide.
+///
+/// Both motions predict from a scan of a second ago what the present scan measures. Neither the map nor the estimate has a part in it, so
+/// that a wrong estimate cannot confirm itself.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct VisualMotionMonitor {
+    window: VecDeque<Moment>,
+    /// Number of the visual map of the window.
+    map: u32,
+    /// When images last followed something that moves, since the visual frame was last anchored.
+    conflict: Option<Stamp>,
+}
+
+/// An image with the scan of its depth.
+#[derive(Debug, Clone)]
+struct Moment {
+    stamp: Stamp,
+    visual_from_base: Pose3,
+    odom_from_base: Pose2,
+    scan: Scan,
+}
+
+/// What the motion by images is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum VisualMotion {
+    /// That of the robot, or nothing says otherwise.
+    Own,
+    /// That of something else in view.
+    Other,
+    /// That of the robot again, after that of something else: the frame of the visual map has moved.
+    FrameMoved,
+}
+
+/// Length of a motion \[s\]. Source: ours, a slow walker makes 0.3 m in it.
+const WINDOW_S: f64 = 1.0;
+/// Difference of the two motions up to which they agree \[m\]. Source: ours, the noise of a visual position.
+const AGREEMENT_M: f64 = 0.025;
+/// The same for the turn \[rad\]: 1 deg. Source: ours.
+const AGREEMENT_RAD: f64 = 0.0175;
+/// Part of a motion that its own error may have \[1\]: the scale of depth and wheel radii. Source: ours.
+const SCALE_ERROR: f64 = 0.05;
+/// Difference of the mean range residuals above which scans decide \[m\]. Source: ours, the noise of a mean.
+const DECISIVE_RESIDUAL_M: f64 = 0.004;
+/// Time without a contradiction after which the visual map stands still again \[s\]. Source: ours.
+const CALM_S: f64 = 1.5;
+
+impl VisualMotionMonitor {
+    /// Takes in a located image of a visual map, with the scan of its depth.
+    pub(crate) fn add(
+        &mut self,
+        (map, visual_from_base): (u32, Pose3),
+        odom_from_base: Pose2,
+        scan: &Scan,
+    ) -> VisualMotion {
+        let stamp = scan.stamp();
+        if map != self.map {
+            self.map = map;
+            self.restart();
+        }
+        self.window.retain(|moment| stamp - moment.stamp <= WINDOW_S);
+        let newest = Moment { stamp, visual_from_base, odom_from_base, scan: scan.clone() };
+        let is_other = self.window.front().and_then(|earlier| newest.follows_another(earlier));
+        self.window.push_back(newest);
+        match is_other {
+            Some(true) => self.conflict = Some(stamp),
+            Some(false) => self.conflict = None,
+            None => {}
+        }
+        match self.conflict {
+            None => VisualMotion::Own,
+            Some(at) if stamp - at <= CALM_S => VisualMotion::Other,
+            Some(_) => VisualMotion::FrameMoved,
+        }
+    }
+
+    /// The visual frame was anchored anew, or has moved: motions across it say nothing.
+    pub(crate) fn restart(&mut self) {
+        self.window.clear();
+        self.conflict = None;
+    }
+}
+
+impl Moment {
+    /// Whether the motion by images since `earlier` is that of something else; `Some(false)` where it is the robot's against the wheels,
+    /// `None` where images and wheels agree, or scans do not decide.
+    fn follows_another(&self, earlier: &Self) -> Option<bool> {
+        let by_wheels = earlier.odom_from_base.inverse() * self.odom_from_base;
+        let by_images = (earlier.visual_from_base.inverse() * self.visual_from_base).to_pose2();
+        let off = by_wheels.inverse() * by_images;
+        let agreement = |size: f64, motion: f64| size + SCALE_ERROR * motion.abs();
+        let is_same = off.position().norm() <= agreement(AGREEMENT_M, by_wheels.position().norm())
+            && off.theta.abs() <= agreement(AGREEMENT_RAD, by_wheels.theta);
+        if is_same {
+            return None;
+        }
+        let residual = |motion: Pose2| mean_residual(&earlier.scan, motion.inverse(), &self.scan);
+        let excess = residual(by_images)? - residual(by_wheels)?;
+        (excess.abs() > DECISIVE_RESIDUAL_M).then_some(excess > 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pose_monitor::testing::Room;
+
+    /// What images every 0.1 s show of a robot whose wheels, images and body move as given, in m/s along x.
+    fn motions(
+        by_wheels: impl Fn(f64) -> f64,
+        by_images: impl Fn(f64) -> f64,
+        truth: impl Fn(f64) -> f64,
+    ) -> Vec<VisualMotion> {
+        let mut monitor = VisualMotionMonitor::default();
+        let at = |i: u32| {
+            let time = 0.1 * f64::from(i);
+            let pose = |x: f64| Pose2::new(x, 0.0, 0.0);
+            let scan = Room::with_corner_box().scan(pose(truth(time)), time);
+            let motion =
+                monitor.add((0, Pose3::from_pose2(pose(by_images(time)))), pose(by_wheels(time)), &scan);
+            if motion == VisualMotion::FrameMoved {
+                monitor.restart();
+            }
+            motion
+        };
+        (0..60).map(at).collect()
+    }
+
+    /// Walks 0.3 m in the second second.
+    fn walker(time: f64) -> f64 {
+        0.3 * (time - 1.0).clamp(0.0, 1.0)
+    }
+
+    #[test]
+    fn images_of_a_walker_are_left_out_and_their_frame_is_anchored_anew_once_he_stands() {
+        let all = motions(|_| 0.0, walker, |_| 0.0);
+        let own = all.iter().take_while(|motion| **motion == VisualMotion::Own).count();
+        assert!((11..=13).contains(&own), "{own}");
+        let moved: Vec<usize> = (0..60).filter(|i| all[*i] == VisualMotion::FrameMoved).collect();
+        assert!(moved.len() == 1 && (35..=50).contains(&moved[0]), "{moved:?}");
+        assert!(all[moved[0] + 1..].iter().all(|motion| *motion == VisualMotion::Own));
+    }
+
+    #[test]
+    fn images_are_believed_against_wheels_that_slip() {
+        let all = motions(walker, |_| 0.0, |_| 0.0);
+        assert!(all.iter().all(|motion| *motion == VisualMotion::Own), "the wheels spin");
+        let all = motions(|_| 0.0, walker, walker);
+        assert!(all.iter().all(|motion| *motion == VisualMotion::Own), "the robot is pushed");
+    }
+
+    #[test]
+    fn another_visual_map_is_no_motion() {
+        let mut monitor = VisualMotionMonitor::default();
+        let scan = |time| Room::with_corner_box().scan(Pose2::IDENTITY, time);
+        let at = |x: f64| Pose3::from_pose2(Pose2::new(x, 0.0, 0.0));
+        for (i, (map, x)) in [(0, 0.0), (0, 0.0), (1, 5.0), (1, 5.0), (0, 0.0)].into_iter().enumerate() {
+            let motion = monitor.add((map, at(x)), Pose2::IDENTITY, &scan(0.1 * i as f64));
+            assert_eq!(motion, VisualMotion::Own);
+        }
+    }
+}
