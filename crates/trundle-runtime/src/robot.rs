@@ -19,6 +19,7 @@ mod steering;
 mod tests;
 mod validation;
 mod views;
+mod visual_check;
 
 pub use views::MissionProgress;
 
@@ -47,7 +48,7 @@ use trundle_control::{MotionHold, MotionSense, SafetyScan};
 use trundle_core::{
     BodyEvent, BodyEventKind, GyroRate, Invalid, Odometry, Pose2, Pose3, Scan, SensorEvent, Stamp, WheelTicks,
 };
-use trundle_estimation::{Localizer, OdometryState, WheelOdometry};
+use trundle_estimation::{Localizer, OdometryState, PoseMonitor, WheelOdometry};
 use trundle_mapping::MapperConfig;
 
 /// The whole robot: sensor events in; pose, map, plan and twist out.
@@ -93,11 +94,11 @@ struct Latest {
     /// `odom_from_base` when it was taken.
     scan_odometry: Option<Pose2>,
     camera_health: CameraHealth,
-    /// Start of the time in which images show enough and are not located.
-    unlocated: Option<Stamp>,
     /// Stamp of the newest image that was located.
     located: Option<Stamp>,
     scan_map_consistency: ScanMapConsistency,
+    /// Which visual poses count, and whether the robot was carried away.
+    pose_monitor: PoseMonitor,
     /// Images that were left out because the camera was frozen.
     frozen: usize,
 }
@@ -217,6 +218,9 @@ impl Robot {
     fn on_body(&mut self, event: &BodyEvent, report: &mut StepReport) {
         let before = self.latest.body.hold(self.range_source);
         self.latest.body.update(event.kind);
+        if self.latest.body.is_lifted() {
+            self.latest.pose_monitor.add_lift();
+        }
         let is_contact = matches!(event.kind, BodyEventKind::Battery(_)) && self.latest.body.is_docked();
         if is_contact && self.is_pose_known(event.stamp) {
             self.station.add_contact(self.localizer.estimate().pose);
@@ -262,7 +266,7 @@ impl Robot {
             grid: self.mapping.grid(),
             scan: self.latest.scan_with_odometry(),
             seen: self.latest.camera_health.seen(),
-            unlocated: self.latest.unlocated.map_or(0.0, |since| now - since),
+            unlocated: self.latest.pose_monitor.unlocated_since().map_or(0.0, |since| now - since),
             wheels: self.latest.odometry.as_ref().map(|odometry| odometry.stamp),
             hold: self.latest.body.hold(self.range_source),
             motion: self.motion_sense(now),
@@ -321,7 +325,8 @@ impl Robot {
 
     /// Whether the pose is known well enough for scans to enter the grid.
     fn is_pose_known(&self, now: Stamp) -> bool {
-        let is_unlocated = self.latest.unlocated.is_some_and(|since| now - since > UNLOCATED_WITH_FEATURES_S);
+        let unlocated = self.latest.pose_monitor.unlocated_since();
+        let is_unlocated = unlocated.is_some_and(|since| now - since > UNLOCATED_WITH_FEATURES_S);
         !is_unlocated
             && !self.latest.body.is_lifted()
             && position_sigma(&self.localizer.estimate()) < self.lost_sigma

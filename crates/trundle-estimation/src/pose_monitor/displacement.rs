@@ -7,18 +7,27 @@ use trundle_core::{Pose2, Scan, Stamp};
 ///
 /// Images that are not located, and scans that contradict the map, are no such evidence: people and moved furniture cause both.
 /// Evidence is a break in the sequence of scans, a time without scans, or wheels that hung. It counts until an image is located, or a
-/// scan shows again what stood before the break.
+/// scan shows again what stood before the break. A break is proof by itself. The other two are proof only with images that show enough
+/// and are not located.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct DisplacementMonitor {
     continuity: ScanContinuity,
-    /// Stamp of the newest evidence.
-    displaced: Option<Stamp>,
-    /// Since when images that show enough have not been located.
+    displaced: Option<Displacement>,
+    /// Since when images that count have not been located.
     unlocated: Option<Stamp>,
     /// Stamp at which global localization last began in that time.
     searched: Option<Stamp>,
     /// Whether scans gave the last pose.
     is_placed_by_scans: bool,
+}
+
+/// Evidence of displacement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Displacement {
+    /// The motion was not measured for a while.
+    Possible,
+    /// Two successive scans contradict the odometry.
+    Certain,
 }
 
 /// What an image shows of the robot's place.
@@ -43,15 +52,20 @@ impl DisplacementMonitor {
         let continuity = self.continuity.add(odom_from_base, scan);
         match continuity {
             Continuity::Continuous => {}
-            Continuity::Broken | Continuity::Unknown => self.displaced = Some(scan.stamp()),
+            Continuity::Broken => self.displaced = Some(Displacement::Certain),
+            Continuity::Unknown => self.may_be_displaced(),
             Continuity::Restored => self.displaced = None,
         }
         matches!(continuity, Continuity::Broken | Continuity::Unknown)
     }
 
     /// A wheel hangs.
-    pub(crate) fn add_lift(&mut self, now: Stamp) {
-        self.displaced = Some(now);
+    pub(crate) fn add_lift(&mut self) {
+        self.may_be_displaced();
+    }
+
+    fn may_be_displaced(&mut self) {
+        self.displaced.get_or_insert(Displacement::Possible);
     }
 
     /// Takes in an image. Whether the robot is elsewhere: global localization begins.
@@ -64,7 +78,8 @@ impl DisplacementMonitor {
         if self.is_placed_by_scans {
             return false;
         }
-        if evidence == ImageEvidence::Blind {
+        let is_certain = self.displaced == Some(Displacement::Certain);
+        if evidence == ImageEvidence::Blind && !is_certain {
             if !self.unlocated.is_some_and(|since| now - since > UNLOCATED_FOR_LONG_S) {
                 (self.unlocated, self.searched) = (None, None);
             }
@@ -142,16 +157,23 @@ mod tests {
     }
 
     #[test]
-    fn a_located_image_ends_it_and_a_bare_wall_proves_nothing() {
+    fn a_located_image_ends_it() {
         let once = |i: u32| if i == 5 { ImageEvidence::Located } else { ImageEvidence::Unlocated };
         assert!(elsewhere(&mut displaced(), once).is_empty());
-        assert!(elsewhere(&mut displaced(), |_| ImageEvidence::Blind).is_empty());
+    }
+
+    #[test]
+    fn before_a_bare_wall_a_break_of_the_scans_is_proof_and_a_lift_is_not() {
+        assert!(!elsewhere(&mut displaced(), |_| ImageEvidence::Blind).is_empty());
+        let mut lifted = DisplacementMonitor::default();
+        lifted.add_lift();
+        assert!(elsewhere(&mut lifted, |_| ImageEvidence::Blind).is_empty());
     }
 
     #[test]
     fn wheels_that_hang_are_evidence() {
         let mut monitor = DisplacementMonitor::default();
-        monitor.add_lift(Stamp::default());
+        monitor.add_lift();
         assert!(!elsewhere(&mut monitor, |_| ImageEvidence::Unlocated).is_empty());
     }
 
@@ -159,17 +181,18 @@ mod tests {
     fn a_pose_found_by_scans_holds_until_an_image_is_located_again() {
         let mut monitor = displaced();
         monitor.localized_by_scans();
-        monitor.add_lift(Stamp::default());
+        monitor.add_lift();
         assert!(elsewhere(&mut monitor, |_| ImageEvidence::Unlocated).is_empty());
         assert!(!monitor.add_image(Stamp::default(), ImageEvidence::Located));
-        monitor.add_lift(Stamp::default());
+        monitor.add_lift();
         assert!(!elsewhere(&mut monitor, |_| ImageEvidence::Unlocated).is_empty(), "images count again");
     }
 
     #[test]
     fn before_a_bare_wall_a_long_time_without_a_located_image_goes_on_and_a_short_one_ends() {
         let since = |unlocated: u32| {
-            let mut monitor = displaced();
+            let mut monitor = DisplacementMonitor::default();
+            monitor.add_lift();
             elsewhere(&mut monitor, |i| {
                 if i < unlocated { ImageEvidence::Unlocated } else { ImageEvidence::Blind }
             });

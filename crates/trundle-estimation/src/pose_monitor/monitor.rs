@@ -64,14 +64,15 @@ impl PoseMonitor {
     /// Takes in a scan, taken at `odom_from_base`.
     pub fn add_scan(&mut self, odom_from_base: Pose2, scan: &Scan) {
         if self.displacement.add_scan(odom_from_base, scan) {
-            self.recent.clear();
+            self.recent.restart(odom_from_base, Some(scan));
+        } else {
+            self.recent.add(odom_from_base, scan);
         }
-        self.recent.add(odom_from_base, scan);
     }
 
     /// A wheel hangs.
-    pub fn add_lift(&mut self, now: Stamp) {
-        self.displacement.add_lift(now);
+    pub fn add_lift(&mut self) {
+        self.displacement.add_lift();
     }
 
     /// The use of a visual pose.
@@ -82,6 +83,7 @@ impl PoseMonitor {
         }
         match self.motion_of(evidence) {
             VisualMotion::Own => {}
+            VisualMotion::OwnAgainstWheels => self.recent.restart(evidence.odom_from_base, evidence.scan),
             VisualMotion::Other => return VisualVerdict::Ignored,
             VisualMotion::FrameMoved => return VisualVerdict::FrameMoved,
         }

@@ -36,9 +36,10 @@ impl RecentScans {
         }
     }
 
-    /// The scans so far were taken at other poses than odometry says.
-    pub(crate) fn clear(&mut self) {
+    /// The scans so far were taken at other poses than odometry says: only `scan` counts, taken at `odom_from_base`.
+    pub(crate) fn restart(&mut self, odom_from_base: Pose2, scan: Option<&Scan>) {
         self.0.clear();
+        self.0.extend(scan.map(|scan| (odom_from_base, scan.clone())));
     }
 
     /// Log-likelihood of the scans for a robot that stands at `map_from_base` now, at `odom_from_base` \[nats\].

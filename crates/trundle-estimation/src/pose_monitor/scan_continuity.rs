@@ -17,7 +17,8 @@ pub(crate) enum Continuity {
     Continuous,
     /// The scan shows other surfaces: the sensor was moved otherwise, or covered.
     Broken,
-    /// The scan shows again what stood before the break: the sensor was covered for a while.
+    /// The scans break again, and show what stood before the first break: the sensor was covered for a while. A look-alike place comes
+    /// into view without a second break.
     Restored,
     /// The scans before are too long ago, and have too little in common with this one.
     Unknown,
@@ -52,14 +53,15 @@ impl ScanContinuity {
         }
         let newest = KeptScan { scan: scan.clone(), odom_from_base };
         let share = self.last.as_ref().and_then(|last| newest.share_of(last));
-        let is_restored = self.before_break.as_ref().and_then(|kept| newest.share_of(kept));
-        if is_restored.is_some_and(|share| share >= RESTORED_SHARE) {
+        let is_broken = share.is_some_and(|share| share < BROKEN_SHARE);
+        let as_before = self.before_break.as_ref().and_then(|kept| newest.share_of(kept));
+        if is_broken && as_before.is_some_and(|share| share >= RESTORED_SHARE) {
             self.before_break = None;
             self.last = Some(newest);
             return Continuity::Restored;
         }
         let continuity = match share {
-            Some(share) if share < BROKEN_SHARE => Continuity::Broken,
+            Some(_) if is_broken => Continuity::Broken,
             Some(_) => Continuity::Continuous,
             None => self.without_comparison(scan),
         };
@@ -204,6 +206,17 @@ mod tests {
         };
         let all = continuities(covered, |i| (driving(0), Pose2::new(0.0, 0.0, 1e-3 * f64::from(i))), 14);
         assert_eq!((all[5], all[10]), (Continuity::Broken, Continuity::Restored), "{all:?}");
+    }
+
+    #[test]
+    fn a_place_that_comes_into_view_and_looks_as_before_does_not_restore_the_sequence() {
+        let turns = (0..12).map(|k| -3.0 + 0.5 * f64::from(k));
+        for (turn, x) in turns.flat_map(|turn| [-1.0, -0.3, 0.4, 1.1].map(|x| (turn, x))) {
+            let odom = |i: u32| Pose2::new(x, 0.4, 0.15 * f64::from(i));
+            let truth = |i: u32| if i < 8 { odom(i) } else { odom(i) * Pose2::new(0.0, 0.0, turn) };
+            let all = continuities(|_| Room::default(), |i| (truth(i), odom(i)), 90);
+            assert!(!all.contains(&Continuity::Restored), "{turn} rad at {x} m: {all:?}");
+        }
     }
 
     #[test]

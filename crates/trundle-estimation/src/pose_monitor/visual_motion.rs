@@ -31,6 +31,8 @@ struct Moment {
 pub(crate) enum VisualMotion {
     /// That of the robot, or nothing says otherwise.
     Own,
+    /// That of the robot: wheels or gyro measured another one, and two scans fit the images.
+    OwnAgainstWheels,
     /// That of something else in view.
     Other,
     /// That of the robot again, after that of something else: the frame of the visual map has moved.
@@ -73,6 +75,7 @@ impl VisualMotionMonitor {
             None => {}
         }
         match self.conflict {
+            None if is_other == Some(false) => VisualMotion::OwnAgainstWheels,
             None => VisualMotion::Own,
             Some(at) if stamp - at <= CALM_S => VisualMotion::Other,
             Some(_) => VisualMotion::FrameMoved,
@@ -148,10 +151,15 @@ mod tests {
 
     #[test]
     fn images_are_believed_against_wheels_that_slip() {
-        let all = motions(walker, |_| 0.0, |_| 0.0);
-        assert!(all.iter().all(|motion| *motion == VisualMotion::Own), "the wheels spin");
-        let all = motions(|_| 0.0, walker, walker);
-        assert!(all.iter().all(|motion| *motion == VisualMotion::Own), "the robot is pushed");
+        let is_own =
+            |motion: &VisualMotion| matches!(motion, VisualMotion::Own | VisualMotion::OwnAgainstWheels);
+        for (all, why) in [
+            (motions(walker, |_| 0.0, |_| 0.0), "the wheels spin"),
+            (motions(|_| 0.0, walker, walker), "the robot is pushed"),
+        ] {
+            assert!(all.iter().all(is_own), "{why}");
+            assert!(all.contains(&VisualMotion::OwnAgainstWheels), "{why}");
+        }
     }
 
     #[test]

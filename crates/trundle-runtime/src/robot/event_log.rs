@@ -6,7 +6,7 @@ use crate::operator::{PoseGuess, RunSetting};
 use crate::reason::Reason;
 use trundle_control::MotionHold;
 use trundle_core::{GridGeometry, Invalid, MapAnnotations, Pose2, Stamp, difference_of_angles};
-use trundle_estimation::{WheelCounts, WheelReport};
+use trundle_estimation::{VisualVerdict, WheelCounts, WheelReport};
 
 /// Correction of the pose estimate \[m\] above which the correction is logged. Source: ours, the size of a grid cell.
 const LOGGED_CORRECTION_M: f64 = 0.05;
@@ -111,6 +111,25 @@ pub(super) fn correction(at: Stamp, source: &str, old: Pose2, new: Pose2) {
     if distance > LOGGED_CORRECTION_M {
         let turn = difference_of_angles(new.theta, old.theta).to_degrees();
         tracing::info!("{:.3} s: {source} corrects the pose by {distance:.3} m, {turn:.2} deg", at.as_secs());
+    }
+}
+
+/// Logs a visual pose that does not correct the estimate.
+pub(super) fn visual_verdict(at: Stamp, verdict: VisualVerdict) {
+    let at = at.as_secs();
+    match verdict {
+        VisualVerdict::Accepted => {}
+        VisualVerdict::Ignored => {
+            tracing::debug!("{at:.3} s: the images follow something that moves; scans agree with the wheels")
+        }
+        VisualVerdict::FrameMoved => {
+            tracing::info!("{at:.3} s: the visual map does not fit the scans; it is anchored anew")
+        }
+        VisualVerdict::FalseRecognition => {
+            tracing::info!(
+                "{at:.3} s: an image recognises a place that the scans and the wheels contradict; it is refused"
+            );
+        }
     }
 }
 

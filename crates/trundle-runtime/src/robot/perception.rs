@@ -32,28 +32,19 @@ impl Robot {
 
     /// Applies the result of an image: the visual pose corrects the estimate; at the grid's rate the scan does too, and enters the grid.
     pub(super) fn apply_perception(&mut self, result: PerceptionResult, report: &mut StepReport) {
-        let PerceptionResult {
-            odom_from_base,
-            track,
-            scan,
-            place,
-            unlocated,
-            is_carried_away,
-            corrected_trajectory,
-            visual_snapshot,
-        } = result;
-        self.latest.unlocated = unlocated;
-        if track.tracking.is_located() {
-            self.latest.located = self.latest.located.max(Some(track.stamp));
+        let PerceptionResult { odom_from_base, track, scan, place, corrected_trajectory, visual_snapshot } =
+            result;
+        if let Some(scan) = &scan {
+            self.latest.pose_monitor.add_scan(odom_from_base, scan);
         }
-        if is_carried_away {
-            self.lose_pose();
-        }
-        let (times, localizer) = (&mut self.times, &mut self.localizer);
-        let before = localizer.estimate().pose;
         let visual = visual_pose(&track, corrected_trajectory.is_some());
-        let correct = |visual| times.measure(Stage::Localization, || localizer.correct_visual(visual));
-        let correction = visual.as_ref().map(correct);
+        let is_corrected = corrected_trajectory.is_some();
+        let judge = |visual| self.judge_visual_pose(visual, is_corrected, odom_from_base, scan.as_ref());
+        let verdict = visual.as_ref().map(judge);
+        self.add_image_evidence(&track, verdict);
+        let before = self.localizer.estimate().pose;
+        let correction =
+            visual.as_ref().zip(verdict).map(|(visual, verdict)| self.correct_by_image(visual, verdict));
         report.measurements.visual = visual;
         event_log::correction(track.stamp, "the visual pose", before, self.localizer.estimate().pose);
         if correction == Some(Correction::Reanchored) {
@@ -68,7 +59,8 @@ impl Robot {
         } else {
             self.odometry.break_visual_track(track.stamp);
         }
-        if let Some(trajectory) = corrected_trajectory {
+        let is_followed = correction != Some(Correction::Reanchored);
+        if let Some(trajectory) = corrected_trajectory.filter(|_| is_followed) {
             self.redraw_from_visual_map(&trajectory);
         }
         self.apply_global_localization(place);

@@ -13,6 +13,7 @@ impl Robot {
     pub(super) fn on_laser(&mut self, scan: &Scan, report: &mut StepReport) {
         let odometer = self.odometry_at(scan.stamp());
         if let (Some(perception), Some(odometer)) = (&mut self.perception, odometer) {
+            self.latest.pose_monitor.add_scan(odometer.pose, scan);
             let place = perception.search_pose(odometer.pose, scan, true, &mut self.times);
             self.apply_global_localization(place);
         }
@@ -30,11 +31,12 @@ impl Robot {
             event_log::correction(stamp, "global localization", before, self.localizer.estimate().pose);
             match correction {
                 Correction::Applied { .. } => {
-                    self.latest.unlocated = None;
-                    self.perception.iter_mut().for_each(|perception| perception.localized_by_scans());
+                    self.latest.pose_monitor.localized_by_scans();
                 }
-                // The found pose contradicts the estimate, whatever its uncertainty: the next scan gives the pose.
-                _ => self.localizer.set_pose_unknown(),
+                // The found pose contradicts the estimate, whatever its uncertainty.
+                _ if self.latest.pose_monitor.is_displaced() => self.localizer.set_pose_unknown(),
+                // It is the look-alike of the place where the robot is: the search begins again.
+                _ => self.perception.iter_mut().for_each(|perception| perception.global_localization.end()),
             }
         }
         let is_lost = is_lost(&self.localizer);
@@ -60,7 +62,7 @@ impl Robot {
         }
         let Ok(pose) = self.localizer.pose_at(now) else { return true };
         let fit = watch.judge(self.mapping.grid(), pose, scan);
-        if fit == Fit::Elsewhere {
+        if fit == Fit::Elsewhere && self.latest.pose_monitor.is_displaced() {
             self.lose_pose();
             self.perception.iter_mut().for_each(|perception| perception.kidnapped());
         }

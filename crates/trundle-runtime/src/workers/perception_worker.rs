@@ -28,14 +28,8 @@ pub(crate) struct PerceptionWorker {
     camera_health: CameraHealth,
     /// The place by scans, while it is not known.
     pub(crate) global_localization: GlobalLocalization,
-    /// Whether scans gave the last pose.
-    is_placed_by_scans: bool,
     /// Odometry at the last image.
     last: Option<OdometryState>,
-    /// Since when images that show enough have not been located.
-    unlocated: Option<Stamp>,
-    /// Stamp at which global localization last began in that time.
-    searched: Option<Stamp>,
     /// Schedule of the checkpoints; none: never.
     pub(crate) saving: Option<CheckpointSchedule>,
 }
@@ -50,12 +44,8 @@ pub(crate) struct PerceptionResult {
     pub(crate) scan: Option<Scan>,
     /// Pose that global localization found, while the pose is unknown.
     pub(crate) place: Option<LocalizedPose>,
-    /// Since when images that show enough have not been located.
-    pub(crate) unlocated: Option<Stamp>,
     /// All poses of the visual map, after a correction that tracking does not follow.
     pub(crate) corrected_trajectory: Option<Vec<(Stamp, Pose3)>>,
-    /// Whether the robot was carried away: global localization begins.
-    pub(crate) is_carried_away: bool,
     /// The visual maps, when it was time to save them.
     pub(crate) visual_snapshot: Option<Vec<u8>>,
 }
@@ -63,9 +53,7 @@ pub(crate) struct PerceptionResult {
 /// Correction of the visual map \[m, rad\] above which the grid is corrected. Source: ours.
 const GRID_CORRECTION_THRESHOLD: f64 = 0.02;
 /// Number of features of an image that suffices to locate it. Source: ours.
-const MIN_FEATURES_TO_LOCATE: usize = 200;
-/// Time without a located image \[s\] after which images with enough features show another place than the estimate. Source: ours.
-const KIDNAPPED_AFTER_S: f64 = 1.5;
+pub(crate) const MIN_FEATURES_TO_LOCATE: usize = 200;
 /// Time without a located image \[s\] after which the pose is unknown; images with few features do not change that. Source: ours.
 pub(crate) const POSE_UNKNOWN_AFTER_S: f64 = 0.7;
 
@@ -80,10 +68,7 @@ impl PerceptionWorker {
             scanner,
             global_localization: GlobalLocalization::new(config, blind_range)?,
             camera_health: CameraHealth::default(),
-            is_placed_by_scans: false,
             last: None,
-            unlocated: None,
-            searched: None,
             saving: None,
         })
     }
@@ -121,10 +106,6 @@ impl PerceptionWorker {
         }
         let prior = self.camera_motion_since_last_image(odometer);
         let track = times.measure(Stage::Slam, || self.slam.step(image, prior));
-        let is_carried_away = self.is_carried_away(&track);
-        if is_carried_away {
-            self.slam.kidnapped();
-        }
         let corrected_trajectory = is_corrected(&track).then(|| self.slam.trajectory());
         let scan = match self.range_source {
             RangeSource::DepthCamera => Some(times.measure(Stage::Scan, || self.scanner.scan(image))),
@@ -133,17 +114,7 @@ impl PerceptionWorker {
         let in_the_dark = track.features < MIN_FEATURES_TO_LOCATE;
         let place = scan.as_ref().and_then(|scan| self.search_pose(odom_from_base, scan, in_the_dark, times));
         let visual_snapshot = self.save(image.stamp(), times);
-        let unlocated = self.unlocated;
-        Some(PerceptionResult {
-            odom_from_base,
-            track,
-            scan,
-            place,
-            unlocated,
-            is_carried_away,
-            corrected_trajectory,
-            visual_snapshot,
-        })
+        Some(PerceptionResult { odom_from_base, track, scan, place, corrected_trajectory, visual_snapshot })
     }
 
     /// Poses are wanted from now on of frames whose scans may still move.
@@ -178,42 +149,10 @@ impl PerceptionWorker {
         self.slam.kidnapped();
     }
 
-    /// Scans gave the pose. Images that are not recognised do not make it unknown again until one is located.
-    pub(crate) fn localized_by_scans(&mut self) {
-        self.is_placed_by_scans = true;
-        (self.unlocated, self.searched) = (None, None);
-    }
-
     /// `previous_camera_from_camera` by wheels and gyro.
     fn camera_motion_since_last_image(&mut self, odometer: OdometryState) -> Option<CameraMotion> {
         let previous = self.last.replace(odometer)?;
         Some(CameraMotion::of_base(odometer.since(&previous), self.base_from_camera))
-    }
-
-    /// Whether global localization is due: no image was located for a while.
-    fn is_carried_away(&mut self, track: &TrackReport) -> bool {
-        let shows_enough = track.features >= MIN_FEATURES_TO_LOCATE;
-        self.is_placed_by_scans &= !track.tracking.is_located();
-        if self.is_placed_by_scans {
-            return false;
-        }
-        if track.tracking.is_located() || !shows_enough && !self.is_unplaced_for_long(track.stamp) {
-            (self.unlocated, self.searched) = (None, None);
-        }
-        if track.tracking.is_located() || !shows_enough {
-            return false;
-        }
-        let since = *self.unlocated.get_or_insert(track.stamp);
-        let is_time = track.stamp - self.searched.unwrap_or(since) > KIDNAPPED_AFTER_S;
-        if is_time {
-            self.searched = Some(track.stamp);
-        }
-        is_time
-    }
-
-    /// With an unknown pose, a view without features does not restart the time.
-    fn is_unplaced_for_long(&self, now: Stamp) -> bool {
-        self.unlocated.is_some_and(|since| now - since > POSE_UNKNOWN_AFTER_S)
     }
 }
 
@@ -238,12 +177,6 @@ fn is_corrected(track: &TrackReport) -> bool {
 mod tests {
     use super::*;
     use trundle_core::{DepthImage, Image};
-    use trundle_slam::Tracking;
-
-    fn worker() -> PerceptionWorker {
-        let config = RobotConfig::default();
-        PerceptionWorker::new(&config, config.mount.base_from_camera()).unwrap()
-    }
 
     /// The report on a grey image, which shows nothing to locate it by.
     fn blank() -> TrackReport {
@@ -253,58 +186,6 @@ mod tests {
         let image = RgbdImage::new(Stamp::default(), grey, DepthImage::filled(width, height, 2.0)).unwrap();
         let slam = RgbdSlam::new(config.camera, config.slam);
         slam.unwrap().step(&image, None)
-    }
-
-    /// The seconds at which the robot counts as carried away. Images come every 0.1 s, show `features`, and are located where
-    /// `is_located` is true.
-    fn carried_away(
-        worker: &mut PerceptionWorker,
-        features: impl Fn(u32) -> usize,
-        is_located: impl Fn(u32) -> bool,
-    ) -> Vec<f64> {
-        let blank = blank();
-        let is_carried_away = |i: &u32| {
-            let tracking = if is_located(*i) { Tracking::Ok } else { Tracking::Lost };
-            let stamp = Stamp::default().after(0.1 * f64::from(*i));
-            worker.is_carried_away(&TrackReport { stamp, tracking, features: features(*i), ..blank.clone() })
-        };
-        (0..60).filter(is_carried_away).map(|i| 0.1 * f64::from(i)).collect()
-    }
-
-    #[test]
-    fn images_that_show_enough_and_are_not_located_show_another_place_after_a_while_and_again() {
-        let seconds = carried_away(&mut worker(), |_| MIN_FEATURES_TO_LOCATE, |_| false);
-        assert_eq!(seconds.len(), 3, "{seconds:?}");
-        assert!((seconds[0] - KIDNAPPED_AFTER_S).abs() < 0.11, "{seconds:?}");
-        let pauses = seconds.windows(2).map(|pair| pair[1] - pair[0]);
-        assert!(pauses.into_iter().all(|pause| (pause - KIDNAPPED_AFTER_S).abs() < 0.11), "{seconds:?}");
-    }
-
-    #[test]
-    fn a_located_image_now_and_then_is_enough_and_a_bare_wall_proves_nothing() {
-        assert!(carried_away(&mut worker(), |_| 1000, |i| i % 14 == 0).is_empty());
-        assert!(carried_away(&mut worker(), |_| MIN_FEATURES_TO_LOCATE - 1, |_| false).is_empty());
-    }
-
-    #[test]
-    fn before_a_bare_wall_an_unknown_place_stays_unknown_and_a_short_mismatch_ends() {
-        let unplaced_after = |doubt: u32| {
-            let mut worker = worker();
-            carried_away(&mut worker, |i| if i < doubt { 1000 } else { 0 }, |_| false);
-            worker.unlocated
-        };
-        assert_eq!(unplaced_after(5), None);
-        assert_eq!(unplaced_after(12), Some(Stamp::default()));
-    }
-
-    #[test]
-    fn a_place_found_by_scans_holds_until_an_image_is_located_again() {
-        let mut worker = worker();
-        worker.localized_by_scans();
-        assert!(carried_away(&mut worker, |_| 1000, |_| false).is_empty());
-        assert_eq!(worker.unlocated, None);
-        let seconds = carried_away(&mut worker, |_| 1000, |i| i == 0);
-        assert!(!seconds.is_empty(), "images count again");
     }
 
     #[test]

@@ -1,0 +1,77 @@
+//! Visual poses that the scans refuse: of a look-alike place, or of something that moves.
+
+use super::{Robot, event_log};
+use crate::{
+    behaviour::navigator::position_sigma, stage::Stage, workers::perception_worker::MIN_FEATURES_TO_LOCATE,
+};
+use trundle_core::{Pose2, Scan, Stamp};
+use trundle_estimation::{Correction, ImageEvidence, PoseBelief, VisualEvidence, VisualPose, VisualVerdict};
+use trundle_slam::TrackReport;
+
+impl Robot {
+    /// The use of a visual pose, taken at `odom_from_base` with `scan`.
+    pub(super) fn judge_visual_pose(
+        &mut self,
+        visual: &VisualPose,
+        is_corrected: bool,
+        odom_from_base: Pose2,
+        scan: Option<&Scan>,
+    ) -> VisualVerdict {
+        let belief = self.belief_at(visual.stamp);
+        self.latest.pose_monitor.judge(&VisualEvidence {
+            visual,
+            is_corrected,
+            visual_from_base: visual.visual_from_camera * self.base_from_camera.inverse(),
+            found: self.localizer.base_by_visual(visual),
+            odom_from_base,
+            scan,
+            belief,
+            grid: self.mapping.grid(),
+        })
+    }
+
+    fn belief_at(&self, stamp: Stamp) -> Option<PoseBelief> {
+        let estimate = self.localizer.estimate();
+        let position_sigma = position_sigma(&estimate);
+        Some(PoseBelief {
+            pose: self.localizer.pose_at(stamp).ok()?,
+            position_sigma,
+            heading_sigma: estimate.covariance[(2, 2)].sqrt(),
+            is_lost: position_sigma >= self.lost_sigma,
+        })
+    }
+
+    /// Corrects the estimate by a visual pose.
+    pub(super) fn correct_by_image(&mut self, visual: &VisualPose, verdict: VisualVerdict) -> Correction {
+        event_log::visual_verdict(visual.stamp, verdict);
+        let (times, localizer) = (&mut self.times, &mut self.localizer);
+        let refused = Correction::Gated { distance: f64::INFINITY };
+        match verdict {
+            VisualVerdict::Accepted => {
+                times.measure(Stage::Localization, || localizer.correct_visual(visual))
+            }
+            VisualVerdict::Ignored => refused,
+            VisualVerdict::FrameMoved => localizer.anchor_again(visual),
+            VisualVerdict::FalseRecognition => {
+                self.perception.iter_mut().for_each(|perception| perception.kidnapped());
+                refused
+            }
+        }
+    }
+
+    /// What an image shows of the place. Without evidence that the robot was carried away the pose goes on by odometry and scans.
+    pub(super) fn add_image_evidence(&mut self, track: &TrackReport, verdict: Option<VisualVerdict>) {
+        let evidence = match verdict {
+            Some(VisualVerdict::Accepted) => ImageEvidence::Located,
+            None if track.features < MIN_FEATURES_TO_LOCATE => ImageEvidence::Blind,
+            _ => ImageEvidence::Unlocated,
+        };
+        if evidence == ImageEvidence::Located {
+            self.latest.located = self.latest.located.max(Some(track.stamp));
+        }
+        if self.latest.pose_monitor.add_image(track.stamp, evidence) {
+            self.lose_pose();
+            self.perception.iter_mut().for_each(|perception| perception.kidnapped());
+        }
+    }
+}
