@@ -9,7 +9,7 @@ use trundle_docking::corridor::{PathPiece, Problem, ProblemAnswer};
 pub struct Row {
     /// Its name.
     pub name: &'static str,
-    /// Time of the manoeuvre on each problem, s; `None` where it was not settled.
+    /// Time of the manoeuvre on each problem, s; `None` if it was not settled.
     pub times: Vec<Option<f64>>,
     /// Proven impossible by any motion.
     pub never: usize,
@@ -46,7 +46,7 @@ impl Row {
         }
     }
 
-    /// Has a path judged; none is no answer.
+    /// Has a path judged; none is not an answer.
     pub fn note(&mut self, problem: &Problem, path: Option<Vec<PathPiece>>) {
         let judged = path.as_ref().map(|path| judge::time(problem, path));
         match &judged {

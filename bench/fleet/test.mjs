@@ -260,7 +260,7 @@ await check("commands of the home are obeyed or refused with the reason", async 
   await until("motion", () => word() === "cleaning");
   await command("stop");
   await until("rest", () => word() === "idle");
-  assert.match((await command("fly")).text, /'fly' is no command; expected start/);
+  assert.match((await command("fly")).text, /'fly' is not a command; expected start/);
   assert.match((await command({ command: "go", place: "moon" })).text, /no place 'moon'/);
 });
 

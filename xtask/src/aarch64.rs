@@ -110,7 +110,7 @@ pub fn run(root: &Path) -> Verdict {
     compare(root, &tools)
 }
 
-/// Runs the program on this computer and under qemu; whether the folders hold the same bytes.
+/// Runs the program on this computer and under qemu. Returns whether the folders hold the same bytes.
 fn compare(root: &Path, tools: &Tools) -> Verdict {
     let scratch = program::scratch(root, "aarch64-runs")?;
     let own = program::release_trundle(root)?;
@@ -160,7 +160,7 @@ fn compare_poses(here: &Path, there: &Path) -> Result<Vec<String>, String> {
     Ok(differences)
 }
 
-/// The largest difference of two texts' numbers; `None` where they have no numbers, not as many, or words that differ.
+/// The largest difference of two texts' numbers; `None` if they have no numbers, not as many, or words that differ.
 fn largest_difference(a: &str, b: &str) -> Option<f64> {
     let (a, b): (Vec<&str>, Vec<&str>) = (a.split_whitespace().collect(), b.split_whitespace().collect());
     let mut largest = None;
@@ -174,7 +174,7 @@ fn largest_difference(a: &str, b: &str) -> Option<f64> {
     largest.filter(|_| a.len() == b.len())
 }
 
-/// Runs a command of `trundle` in a folder; whether it ended as a run does: with 0, or 1 where its aim was missed. The paths of its results
+/// Runs a command of `trundle` in a folder. Returns whether it ended as a run does: with 0, or 1 where its aim was missed. The paths of its results
 /// are relative, so that both computers' are the same.
 fn ends(root: &Path, program: &[PathBuf], command: &str, folder: &Path) -> Verdict {
     std::fs::create_dir_all(folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
@@ -214,7 +214,7 @@ mod tests {
         assert_eq!(largest_difference("# t x\n0.1 2.5\n", "# t x\n0.1 2.0\n"), Some(0.5));
         assert_eq!(largest_difference("0.1 2.5", "0.1 2.5 3"), None, "a line more");
         assert_eq!(largest_difference("0.1 2.5", "0.1 Lost"), None);
-        assert_eq!(largest_difference("", ""), None, "an empty trajectory is no proof");
+        assert_eq!(largest_difference("", ""), None, "an empty trajectory is not a proof");
     }
 
     /// A filter that matches no test would pass.

@@ -22,7 +22,7 @@ struct Memory {
     peak: f64,
 }
 
-/// Lets the robot explore for some minutes; whether its memory stays below the limit.
+/// Lets the robot explore for some minutes. Returns whether its memory stays below the limit.
 pub fn run(root: &Path, minutes: f64) -> Verdict {
     let trundle = program::release_trundle(root)?;
     let scratch = program::scratch(root, "robot-memory")?;

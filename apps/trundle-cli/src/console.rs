@@ -31,7 +31,7 @@ pub fn warn(message: &str) {
 pub fn print(text: &str) {
     let mut out = std::io::stdout();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
-        // A reader that has gone away is no failure of the run.
+        // A reader that has gone away is not a failure of the run.
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             PRINT_FAILURE.get_or_init(|| error);
         }
@@ -39,7 +39,7 @@ pub fn print(text: &str) {
     }
 }
 
-/// Why standard output did not take a result; `None` where it took all.
+/// Why standard output did not take a result; `None` if it took all.
 pub fn print_failure() -> Option<&'static std::io::Error> {
     PRINT_FAILURE.get()
 }
@@ -69,7 +69,7 @@ pub struct StepDisplay {
 }
 
 impl StepDisplay {
-    /// A display that appears when the work begins; none where `quiet`.
+    /// A display that appears when the work begins. Nothing appears if `quiet`.
     pub fn new(quiet: bool) -> Self {
         Self { bar: hidden_if(quiet, ProgressBar::new_spinner()) }
     }

@@ -25,7 +25,7 @@ static LINES: OnceLock<Arc<Mutex<Vec<u8>>>> = OnceLock::new();
 /// Starts the log. `verbosity`: 0 warnings, 1 state changes and corrections, 2 everything.
 ///
 /// # Errors
-/// When `TRUNDLE_LOG` is no filter.
+/// When `TRUNDLE_LOG` is not a filter.
 pub fn start(verbosity: u8) -> Result<(), AppError> {
     let level = ["warn", "info", "debug"][usize::from(verbosity.min(2))];
     let filter = match std::env::var(FILTER_VARIABLE) {
@@ -39,7 +39,7 @@ pub fn start(verbosity: u8) -> Result<(), AppError> {
         )),
     };
     let lines = Arc::clone(LINES.get_or_init(Arc::default));
-    // A standard error without a reader is no error of the run. The default prints it there, and panics.
+    // A standard error without a reader is not an error of the run. The default prints it there, and panics.
     let terminal = tracing_subscriber::fmt::layer()
         .event_format(PlainLine("trundle: "))
         .with_writer(io::stderr)

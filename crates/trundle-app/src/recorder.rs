@@ -82,7 +82,7 @@ impl RunRecorder {
         Ok(Self::of(Sink::Inline(Box::new(file))))
     }
 
-    /// A recording into `folder`, written by a thread of its own at `place`; none where `content` is none.
+    /// A recording into `folder`, written by a thread of its own at `place`. With `content` [`RecordingContent::None`] nothing is recorded.
     ///
     /// # Errors
     /// When the file cannot be created or the thread cannot be started.

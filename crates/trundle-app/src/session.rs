@@ -96,7 +96,7 @@ impl<'s> RunSession<'s> {
         self.operator.as_ref()?.next_request()
     }
 
-    /// Feeds the robot one input; whether its mission is over.
+    /// Feeds the robot one input. Returns whether its mission is over.
     ///
     /// # Errors
     /// When an event cannot be decoded or the body refuses the command.

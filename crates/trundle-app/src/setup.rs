@@ -101,7 +101,7 @@ impl RunSetup {
     /// The setup that a recording begins with, its robot checked.
     ///
     /// # Errors
-    /// When it is no setup, or its robot cannot be accepted. Names the file.
+    /// When it is not a setup, or its robot cannot be accepted. Names the file.
     pub(crate) fn of_recording(file: &Path, config: serde_json::Value) -> Result<Self, AppError> {
         let name = file.display();
         let setup: Self = serde_json::from_value(with_present_names(config))

@@ -15,7 +15,7 @@ const CONTACT_TOLERANCE_M: f64 = 1e-9;
 const MAX_STRAIGHT_CURVATURE_PER_M: f64 = 1e-4;
 
 /// The distance along the arc of `twist` until the hull grown by `margin` m touches the point `p` (base frame, m): of the
-/// base's origin, m, or for a turn in place the angle, rad. `None` when it never does, 0 when it touches already and the motion
+/// base's origin, m, or for a turn in place the angle, rad. `None` if it never does, 0 when it touches already and the motion
 /// presses on.
 ///
 /// A hull that touches already may move away from the point, or along it.

@@ -100,7 +100,7 @@ impl HullProfile {
     }
 
     /// Lower bounds of the free turn, counter-clockwise and clockwise, before the hull meets a point of a box (relative to the axle,
-    /// in the hull's axes), rad; `None` when it never does.
+    /// in the hull's axes), rad; `None` if it never does.
     pub fn free_turns(&self, bounds: &OrientedBox) -> Option<(f64, f64)> {
         let nearest = bounds.distance_from_origin() - ROUNDING_SLACK;
         if nearest >= self.outer {

@@ -17,7 +17,7 @@ const IN_PLANE: [usize; 3] = [0, 1, 5];
 pub struct CameraMotion {
     /// `previous_camera_from_camera`.
     pub motion: Pose3,
-    /// Of `motion` as a right perturbation (m, m, m, rad, rad, rad); none where it is unknown.
+    /// Of `motion` as a right perturbation (m, m, m, rad, rad, rad). `None` if it is unknown.
     pub covariance: Option<Matrix6<f64>>,
 }
 

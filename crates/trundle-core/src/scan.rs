@@ -174,7 +174,7 @@ impl Scan {
         self.parts.sigmas.get(i).map(|sigma| f64::from(*sigma))
     }
 
-    /// The kind of obstacle that beam `i` met; `None` where it met none.
+    /// The kind of obstacle that beam `i` met; `None` if it met none.
     pub fn obstacle(&self, i: usize) -> Option<ObstacleKind> {
         let hit = matches!(self.parts.beams.get(i), Some(Beam::Hit { .. }));
         hit.then(|| self.parts.obstacles.get(i).copied().unwrap_or_default())

@@ -49,7 +49,7 @@ const FORM_FAULTS: [(&str, &str); 13] = [
 
 /// What a value may be.
 const VALUE_WANTED: &str =
-    "this is no value, expected a number, true or false, a text in quotes, or a list in brackets";
+    "this is not a value, expected a number, true or false, a text in quotes, or a list in brackets";
 
 /// Names of kinds by serde, and in plain words.
 const KINDS: [(&str, &str); 15] = [

@@ -29,7 +29,7 @@ pub struct DepthStatistics {
     log_sum: f64,
     /// Largest depth, m; 0 without one.
     largest: f64,
-    /// Depths that are no whole number of metres.
+    /// Depths that are not a whole number of metres.
     fractional: usize,
     /// Depths that differ from the largest.
     below_largest: usize,
@@ -73,7 +73,7 @@ impl DepthStatistics {
         self.largest * scale > MAX_UNITS + 0.5 || (scale == 1.0 && self.fractional > 0)
     }
 
-    /// Why no depth can be used, and the likely cause; `None` where some can, or no image was counted. `scale`: depth units a metre.
+    /// Why no depth can be used, and the likely cause; `None` if some can, or no image was counted. `scale`: depth units a metre.
     #[must_use]
     pub fn problem(&self, scale: f64) -> Option<String> {
         let with_depth = self.pixels - self.without_depth;

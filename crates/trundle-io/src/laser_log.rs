@@ -58,7 +58,7 @@ pub struct LaserLog {
     pub first_bad_range: Option<usize>,
     /// Range from which on readings counted as no returns, m.
     pub max_range: Option<f64>,
-    /// Why the depth images that the scans were made of have no usable depth; `None` where they have, or the log is a laser's.
+    /// Why the depth images that the scans were made of have no usable depth; `None` if they have, or the log is a laser's.
     pub depth_problem: Option<String>,
     /// The topics of a bag, or the lines of a CARMEN log, that made the log, and the unused ones.
     pub sources: LaserLogSources,

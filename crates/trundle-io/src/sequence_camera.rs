@@ -45,7 +45,7 @@ impl SequenceCamera {
         let path = Path::new(name);
         if CameraModel::preset(name).is_none() && !CameraModel::holds_depth_scale(path)? {
             let problem = format!(
-                "no depth scale in the camera file, {KINECT_V2_DEPTH_SCALE} units a metre are taken (--depth-scale sets another)"
+                "no depth scale in the camera file: {KINECT_V2_DEPTH_SCALE} units per metre are assumed; --depth-scale N sets another"
             );
             warnings.add(&problem, name);
         }
@@ -58,7 +58,9 @@ impl SequenceCamera {
         let mut warnings = Warnings::default();
         let (width, height) = (model.camera.width(), model.camera.height());
         let problem = format!(
-            "no camera file and no --camera: {ASSUMED_PRESET} is assumed ({width} x {height} px, {} units a metre)",
+            "no camera file in the folder, expected camera.toml: the camera {ASSUMED_PRESET} is assumed ({width} x {height} px, fx {:.1} px, \
+             depth_scale {} units per metre); write camera.toml or give --camera PRESET|FILE",
+            model.camera.fx(),
             model.depth_scale
         );
         warnings.add(&problem, &dir.display().to_string());

@@ -19,7 +19,7 @@ pub struct Roster {
 }
 
 impl Roster {
-    /// A viewer comes; its number. `None` where there are too many.
+    /// A viewer comes; its number. `None` if there are too many.
     pub fn enter(&mut self) -> Option<ViewerId> {
         if self.names.len() >= MAX_VIEWERS {
             return None;
@@ -37,7 +37,7 @@ impl Roster {
         }
     }
 
-    /// A viewer goes; whether it held the wheel.
+    /// A viewer goes. Returns whether it held the wheel.
     pub fn leave(&mut self, id: ViewerId) -> bool {
         self.names.remove(&id);
         self.release(id)
@@ -48,7 +48,7 @@ impl Roster {
         self.wheel = Some(id);
     }
 
-    /// Leaves the wheel; whether this viewer held it.
+    /// Leaves the wheel. Returns whether this viewer held it.
     pub fn release(&mut self, id: ViewerId) -> bool {
         let held = self.wheel == Some(id);
         if held {

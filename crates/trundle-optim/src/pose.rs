@@ -156,7 +156,7 @@ impl PoseProblem<'_> {
         pose
     }
 
-    /// Classifies every observation; whether any class changed.
+    /// Classifies every observation. Returns whether any class changed.
     fn classify(&self, pose: Pose3, inliers: &mut [bool]) -> bool {
         let camera_from_world = pose.inverse();
         let mut changed = false;

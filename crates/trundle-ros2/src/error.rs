@@ -7,7 +7,7 @@ use trundle_app::AppError;
 #[non_exhaustive]
 pub enum Ros2Error {
     /// A name with characters that ROS 2 does not allow.
-    #[error("'{name}' is no ROS 2 name: {problem}; expected letters, digits and _ parted by /")]
+    #[error("'{name}' is not a ROS 2 name: {problem}; expected letters, digits and _ parted by /")]
     Name {
         /// The name.
         name: String,

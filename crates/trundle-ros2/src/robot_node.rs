@@ -21,7 +21,7 @@ pub struct RobotNode {
     // Declared first: the outputs end before the node.
     _outputs: RobotOutputs,
     thread: Arc<NodeThread>,
-    /// Publishes the sensors of trundle's own body; none where the body comes by topics.
+    /// Publishes the sensors of trundle's own body. `None` if the body comes by topics.
     observer: Option<EventObserver>,
 }
 
@@ -120,7 +120,7 @@ impl RobotNode {
         Ok((Self { observer: Some(sensors), ..offered }, link))
     }
 
-    /// Publishes the sensors of trundle's own body, from any thread; none where the body comes by topics.
+    /// Publishes the sensors of trundle's own body, from any thread. `None` if the body comes by topics.
     #[must_use]
     pub fn observer(&self) -> Option<EventObserver> {
         self.observer.clone()

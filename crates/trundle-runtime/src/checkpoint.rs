@@ -33,7 +33,7 @@ pub struct Checkpoint {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
-    /// The file is no checkpoint.
+    /// The file is not a checkpoint.
     #[error("no memory of trundle")]
     Foreign,
     /// Made by a version that this one does not read.
@@ -105,7 +105,7 @@ impl Checkpoint {
     /// Reads a checkpoint. The visual maps are decoded when the robot resumes.
     ///
     /// # Errors
-    /// When the bytes are no checkpoint, of another version, damaged or cut off, or contradict themselves. No bytes make it panic.
+    /// When the bytes are not a checkpoint, of another version, damaged or cut off, or contradict themselves. No bytes make it panic.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
         let rest = bytes.strip_prefix(MAGIC).ok_or(CheckpointError::Foreign)?;
         let (version, rest) = number(rest)?;

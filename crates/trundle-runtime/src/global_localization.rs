@@ -99,7 +99,7 @@ impl GlobalLocalization {
         match localizer.update(odom_from_base, scan) {
             Localized::Known { map_from_base, covariance, explained, degenerate } => {
                 let fits = explained >= MIN_EXPLAINED_SHARE;
-                // A scan of a single wall is no evidence for or against the pose.
+                // A scan of a single wall is not evidence for or against the pose.
                 *times = if fits { *times + usize::from(degenerate == 0) } else { 0 };
                 let place = || LocalizedPose {
                     stamp: scan.stamp(),

@@ -171,7 +171,7 @@ impl GoalApproach {
         self.takes_over(s)
     }
 
-    /// Begins turns and straight moves onto a goal without a comparison with an arc; whether it could.
+    /// Begins turns and straight moves onto a goal without a comparison with an arc. Returns whether it could.
     pub(crate) fn begin_at(&mut self, goal: Pose2) -> bool {
         if self.goal != Some(goal) {
             (self.goal, self.notes) = (Some(goal), Notes::default());

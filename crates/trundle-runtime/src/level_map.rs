@@ -105,7 +105,7 @@ mod tests {
     #[test]
     fn a_scan_is_drawn_where_the_final_trajectory_has_its_image() {
         let (mut map, at_first) = (level_map(), level_from_first_camera(0.4, 0.0, 0.0).unwrap());
-        // One hit is no obstacle yet.
+        // One hit is not an obstacle yet.
         let times = [0.0, 0.25, 0.5, 0.75];
         times.iter().for_each(|time| map.note(&wall(*time), at_first));
         for pose in [Pose2::IDENTITY, Pose2::new(1.0, -0.5, 0.0), Pose2::new(0.5, 1.0, 2.0)] {

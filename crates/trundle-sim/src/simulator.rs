@@ -43,7 +43,7 @@ pub struct Simulator {
     obstacles: Obstacles,
     crowd: Crowd,
     body: Kobuki,
-    /// None when the camera is aside.
+    /// `None` if the camera is aside.
     rig: Option<CameraRig>,
     /// What the camera aside has not taken yet.
     shots: Vec<Shot>,

@@ -192,7 +192,7 @@ impl RgbdSlam {
         }
     }
 
-    /// Continues the search for loops; whether there was work. A closed loop moves the camera along with the map.
+    /// Continues the search for loops. Returns whether there was work. A closed loop moves the camera along with the map.
     fn detect_loops(&mut self) -> bool {
         let seed = self.trajectory.seed(self.config.seed);
         let active = &mut self.atlas.active;
@@ -278,7 +278,7 @@ impl RgbdSlam {
         self.calibration.issues()
     }
 
-    /// All maps as bytes: versioned, with a checksum, and with the settings they were made with. The trajectory is no part of them.
+    /// All maps as bytes: versioned, with a checksum, and with the settings they were made with. The trajectory is not part of them.
     ///
     /// The same maps give the same bytes, before and after [`RgbdSlam::load`].
     pub fn save(&self) -> Vec<u8> {
@@ -292,7 +292,7 @@ impl RgbdSlam {
     /// it; until then the camera counts as lost, whatever the odometry.
     ///
     /// # Errors
-    /// When the configuration is invalid, or the bytes are no map, of another version, damaged, cut off, made with another
+    /// When the configuration is invalid, or the bytes are not a map, of another version, damaged, cut off, made with another
     /// camera or other features, or contradict themselves. No bytes make it panic.
     pub fn load(bytes: &[u8], camera: PinholeCamera, config: SlamConfig) -> Result<Self, MapFileError> {
         let mut slam = Self::new(camera, config)?;

@@ -38,7 +38,7 @@ impl Digest {
     /// Digest of `quantity` at `path`.
     ///
     /// # Errors
-    /// When the path cannot be read, or is no MCAP recording where a topic is asked for.
+    /// When the path cannot be read, or is not an MCAP recording where a topic is asked for.
     pub fn of(quantity: Quantity, path: &Path) -> Result<Self, String> {
         let mut digest = Self::empty();
         match quantity {

@@ -143,7 +143,7 @@ fn string_end(chars: &[char], from: usize) -> usize {
     chars.len()
 }
 
-/// The end of a raw string whose `r` ends before `from`; `None` when it is none.
+/// The end of a raw string whose `r` ends before `from`; `None` if it is none.
 fn raw_string_end(chars: &[char], from: usize) -> Option<usize> {
     let hashes = chars[from..].iter().take_while(|&&c| c == '#').count();
     if chars.get(from + hashes) != Some(&'"') {

@@ -24,7 +24,7 @@ pub struct TeleopDriver {
 /// Refuses to drive by hand where there is no terminal to read keys from.
 ///
 /// # Errors
-/// When standard input is no terminal.
+/// When standard input is not a terminal.
 pub fn require_terminal() -> Result<(), AppError> {
     terminal::require()
 }

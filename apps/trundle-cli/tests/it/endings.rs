@@ -247,7 +247,7 @@ fn man_pages_take_the_place_of_no_other_file() {
     let count = || fs::read_dir(&pages).unwrap().count();
     let before = count();
     assert!(trundle(&["man", text(&pages)]).status.success());
-    assert_eq!(count(), before, "the same pages again are no new files");
+    assert_eq!(count(), before, "the same pages again are not new files");
 }
 
 #[test]

@@ -271,7 +271,7 @@ fn coefficients_are_the_curve_and_active_constraints_are_active() {
     }
 }
 
-/// Grey is dear: the way leads around it where that is no great detour.
+/// Grey is dear: the way leads around it where that is not a great detour.
 #[test]
 fn grey_of_a_keep_out_mask_is_dear() {
     let room = Room::new();
@@ -359,6 +359,6 @@ fn what_is_wrong_is_said_clearly() {
     let bare = trundle(&["plan", text(&room.map), "--from=desk", "--goal=1,1,0", "--out", text(&room.out())]);
     assert!(
         String::from_utf8_lossy(&bare.stderr)
-            .contains("'desk' is no pose X,Y,DEG; to name a place, give its file with --places")
+            .contains("'desk' is not a pose X,Y,DEG; to name a place, give its file with --places")
     );
 }

@@ -48,7 +48,7 @@ impl CalibratedValue {
         }
     }
 
-    /// A number that is no key of the robot file.
+    /// A number that is not a key of the robot file.
     pub(super) fn info(name: &str, (value, sigma): (f64, f64), unit: &'static str, decimals: usize) -> Self {
         let name = name.to_owned();
         Self { name, is_key: false, value, sigma: Some(sigma), unit, before: None, decimals }

@@ -21,7 +21,7 @@ pub struct LaserMapRun {
     pub is_interrupted: bool,
     /// Probable error of the laser's mount, where the scans contradict the odometry at many steps.
     pub mount_hint: Option<String>,
-    /// Why the run missed its aim; `None` where it did not.
+    /// Why the run missed its aim; `None` if it did not.
     pub failure: Option<String>,
 }
 

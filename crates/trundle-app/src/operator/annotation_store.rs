@@ -23,7 +23,7 @@ impl AnnotationStore {
         Self { newest, file, ..Self::default() }
     }
 
-    /// Takes over what the robot obeys, where it is no change that was sent here: a replay, or another way to the robot.
+    /// Takes over what the robot obeys, where it is not a change that was sent here: a replay, or another way to the robot.
     pub(super) fn note_obeyed(&mut self, annotations: &MapAnnotations) {
         if self.waiting > 0 {
             self.waiting -= 1;

@@ -23,7 +23,7 @@ pub struct RunView {
     pub state: DriveState,
     /// The mission.
     pub mission: MissionView,
-    /// The battery; `None` where the body has not reported it.
+    /// The battery; `None` if the body has not reported it.
     pub battery: Option<Battery>,
     /// The condition under which no wheel may turn.
     pub hold: Option<MotionHold>,

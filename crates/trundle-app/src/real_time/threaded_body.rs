@@ -27,7 +27,7 @@ pub struct ThreadedBody {
     /// Time from the start of a job to the use of its result \[ms\].
     waits: BTreeMap<Worker, Histogram>,
     costs: Vec<ThreadLoad>,
-    /// Separate contacts, in truth; `None` where they are not known.
+    /// Separate contacts, in truth; `None` if they are not known.
     contacts: Option<Arc<AtomicU32>>,
 }
 

@@ -12,7 +12,7 @@ use trundle_runtime::{DriveState, GoalApproachReport, Reason, Stage, StageTimes,
 pub struct RunNumbers {
     /// The goals of the mission, as they came.
     pub goals: Vec<GoalOutcome>,
-    /// How many goals the mission has; `None` where it asks for nothing but to stand at the start.
+    /// How many goals the mission has; `None` if it asks for nothing but to stand at the start.
     pub goals_asked: Option<usize>,
     /// Where the robot stands in truth at the end, against the last goal; `None` without truth.
     pub goal_error: Option<GoalError>,

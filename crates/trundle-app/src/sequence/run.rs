@@ -147,7 +147,7 @@ impl SequenceRun {
         })
     }
 
-    /// Why the run missed its aim, with the likely cause; `None` where it did not.
+    /// Why the run missed its aim, with the likely cause; `None` if it did not.
     #[must_use]
     pub fn failure(&self) -> Option<String> {
         let depth = self.depth.problem(self.depth_scale);

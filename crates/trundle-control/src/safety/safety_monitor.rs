@@ -42,7 +42,7 @@ pub struct SafetyInput<'a> {
     pub wheels: Option<Stamp>,
     /// The source that measures the robot's motion.
     pub motion: MotionSense,
-    /// The intended motion at a charging station; none anywhere else.
+    /// The intended motion at a charging station. `None` elsewhere.
     pub station: Option<StationMotion>,
 }
 
@@ -340,7 +340,7 @@ mod tests {
         let old = Some(now.after(-1.0));
         assert_eq!(reason(SafetyInput { image: old, ..input }), StopReason::StaleImage { age: 1.0 });
         let turn = SafetyInput { image: old, twist: Twist2::new(0.0, 0.1), ..input };
-        assert_eq!(monitor().check(&turn).twist, turn.twist, "a turn on the spot is no risk");
+        assert_eq!(monitor().check(&turn).twist, turn.twist, "a turn on the spot is not a risk");
         assert_eq!(reason(SafetyInput { wheels: old, ..input }), StopReason::StaleWheels { age: 1.0 });
         assert_eq!(reason(SafetyInput { twist: Twist2::new(f64::NAN, 0.0), ..input }), StopReason::NotFinite);
         assert_eq!(reason(SafetyInput { touched: true, ..input }), StopReason::Touched);

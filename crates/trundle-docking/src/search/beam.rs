@@ -120,7 +120,7 @@ fn spread(
     let query = search.query;
     search.space.spend(fan.len() as u64 * LEG_PARTS.len() as u64 * ESTIMATE_COST);
     for ray in fan {
-        // The first ray is the heading of the last leg: continuing along it is no new leg.
+        // The first ray is the heading of the last leg: continuing along it is not a new leg.
         if index > 0 && ray.cost == 0.0 {
             continue;
         }

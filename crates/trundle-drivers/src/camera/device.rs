@@ -8,7 +8,7 @@ pub trait DepthCamera: Send {
     /// What the camera is and what its streams look like. It does not change while the camera is open.
     fn info(&self) -> &CameraInfo;
 
-    /// The next frame; `None` when none came within `timeout`.
+    /// The next frame; `None` if none came within `timeout`.
     ///
     /// # Errors
     /// [`CameraError::BrokenFrame`] when one frame is damaged: the next call may succeed. Every other error means that the camera must be

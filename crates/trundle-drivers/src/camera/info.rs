@@ -14,7 +14,7 @@ pub struct CameraInfo {
     pub serial: String,
     /// Version of the firmware; empty where unknown.
     pub firmware: String,
-    /// Speed of the USB connection; `None` where unknown or not USB.
+    /// Speed of the USB connection; `None` if unknown or not USB.
     pub usb: Option<UsbSpeed>,
     /// The colour stream. Its camera has the readout time of the rolling shutter.
     pub color: StreamInfo,
@@ -22,7 +22,7 @@ pub struct CameraInfo {
     pub depth: StreamInfo,
     /// Length of one unit of whole-numbered depth \[m\]. 0.001 for millimetres.
     pub depth_unit_m: f64,
-    /// Pose of the depth camera in the colour camera's frame; `None` when the camera delivers depth registered to colour.
+    /// Pose of the depth camera in the colour camera's frame; `None` if the camera delivers depth registered to colour.
     pub color_from_depth: Option<Pose3>,
     /// Time from the middle of the exposure to the arrival of the frame at the host \[s\].
     pub delay_s: f64,

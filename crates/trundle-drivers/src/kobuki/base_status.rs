@@ -19,7 +19,7 @@ pub struct Versions {
 const MIN_FIRMWARE: Version = Version::new(1, 1, 4);
 
 impl Versions {
-    /// Why the firmware is not one that the vendor recommends, with the remedy; `None` where it is.
+    /// Why the firmware is not one that the vendor recommends, with the remedy; `None` if it is.
     pub fn firmware_fault(&self) -> Option<String> {
         match self.firmware {
             Some(firmware) if firmware >= MIN_FIRMWARE => None,
@@ -76,7 +76,7 @@ pub(super) struct Status {
     pub(super) is_stopping: bool,
 }
 
-/// The lock of `mutex`; a panic of another thread while it held the lock is no reason for a second one.
+/// The lock of `mutex`; a panic of another thread while it held the lock is not a reason for a second one.
 pub(super) fn locked(mutex: &Mutex<Status>) -> MutexGuard<'_, Status> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -15,7 +15,7 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The trajectory file, from the project's own data or, for the big ones, from beside it; `None` where absent.
+/// The trajectory file, from the project's own data or, for the big ones, from beside it; `None` if absent.
 fn trajectory(name: &str) -> Option<Vec<(Stamp, Pose3)>> {
     let folders = ["data/trajectories", "../shared/data/trajectories"];
     let path = folders.iter().map(|folder| root().join(folder).join(name)).find(|path| path.exists())?;

@@ -106,7 +106,7 @@ fn make_fifo(path: &Path) -> Result<(), AppError> {
     let problem = |what: String| AppError::Input(format!("{}: {what}", path.display()));
     match std::fs::metadata(path) {
         Ok(there) if there.file_type().is_fifo() => Ok(()),
-        Ok(_) => Err(problem("there is a file that is no FIFO: name another path".to_owned())),
+        Ok(_) => Err(problem("there is a file that is not a FIFO: name another path".to_owned())),
         Err(_) => mknodat(CWD, path, FileType::Fifo, Mode::RUSR | Mode::WUSR, 0)
             .map_err(|error| problem(format!("cannot make a FIFO: {error}"))),
     }

@@ -33,7 +33,7 @@ pub struct MeshOptions {
     pub up: UpAxis,
     /// Metres a unit of the file; `None` is 1.
     pub scale: Option<f64>,
-    /// Height of the floor, m; `None` where it is found.
+    /// Height of the floor, m; `None` if it is found.
     pub floor: Option<f64>,
 }
 
@@ -84,7 +84,7 @@ pub fn load_simulator(name: &str, options: SceneOptions, robot: SimConfig) -> Re
     Simulator::new(scene, robot, options.seed).map_err(|error| AppError::Input(format!("{name}: {error}")))
 }
 
-/// The kind of the file that a scene's name stands for; `None` for a name that is no file.
+/// The kind of the file that a scene's name stands for; `None` for a name that is not a file.
 fn file_kind(name: &str) -> Result<Option<FileKind>, AppError> {
     let is_file = !Scene::NAMES.contains(&name) && (name.contains(['.', '/']) || Path::new(name).exists());
     Ok(if is_file { Some(Expected::Scene.check(Path::new(name))?) } else { None })

@@ -79,7 +79,7 @@ impl Session {
         self.client.try_subscribe_many(self.topics.iter().map(filter)).is_ok()
     }
 
-    /// Sends a message; whether there was room for it. What is retained arrives at least once.
+    /// Sends a message. Returns whether there was room for it. What is retained arrives at least once.
     pub fn publish(&self, publication: Publication) -> bool {
         let Publication { topic, payload, is_retained } = publication;
         let quality = if is_retained { QoS::AtLeastOnce } else { QoS::AtMostOnce };

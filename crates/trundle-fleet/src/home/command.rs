@@ -73,7 +73,7 @@ fn of_word(word: &str) -> Result<HomeCommand, String> {
         "return_to_base" => HomeCommand::GoHome,
         other => {
             let other: String = other.chars().take(40).collect();
-            return Err(format!("'{other}' is no command; expected {WORDS}"));
+            return Err(format!("'{other}' is not a command; expected {WORDS}"));
         }
     })
 }

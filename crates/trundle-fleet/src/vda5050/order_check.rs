@@ -128,7 +128,7 @@ fn check_edges(order: &Order) -> Result<(), String> {
             return Err(format!("edge {} does not lead from node {start} to node {end}", edge.edge_id));
         }
         if edge.max_speed.is_some_and(|speed| !speed.is_finite() || speed < 0.0) {
-            return Err(format!("edge {}: maxSpeed is no speed", edge.edge_id));
+            return Err(format!("edge {}: maxSpeed is not a speed", edge.edge_id));
         }
     }
     Ok(())

@@ -203,7 +203,7 @@ impl DistanceField {
         self.among_centres(point).unwrap_or_else(|| self.distance_anywhere(point))
     }
 
-    /// [`DistanceField::distance`] between four centres; `None` where there are none around the point.
+    /// [`DistanceField::distance`] between four centres; `None` if there are none around the point.
     #[inline]
     fn among_centres(&self, point: Vector2) -> Option<f64> {
         let GridGeometry { origin, width, .. } = self.geometry;

@@ -2,7 +2,7 @@
 
 use trundle_core::Distortion;
 
-/// Parts of the names of models whose image is no pinhole camera's, also with all numbers 0: there the angle from the optical
+/// Parts of the names of models whose image is not a pinhole camera's, also with all numbers 0: there the angle from the optical
 /// axis, not its tangent, is the distance in the image. Source: ROS REP 118's image_geometry, Kalibr.
 const FISHEYE_MODELS: [&str; 5] = ["equidist", "fisheye", "kannala", "omni", "spherical"];
 

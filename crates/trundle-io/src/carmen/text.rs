@@ -48,7 +48,7 @@ impl TextLines {
         Ok(None)
     }
 
-    /// Reads the next line into the buffer; whether there was one.
+    /// Reads the next line into the buffer. Returns whether there was one.
     fn read_line(&mut self) -> Result<bool, IoError> {
         self.buffer.clear();
         let mut limited = self.reader.by_ref().take(MAX_LINE_BYTES);

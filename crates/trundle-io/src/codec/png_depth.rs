@@ -64,7 +64,7 @@ pub fn decode_depth(bytes: &[u8]) -> Result<DepthImage, CodecError> {
 /// The 16-bit numbers of a grey PNG, in whatever unit the camera had.
 ///
 /// # Errors
-/// When the bytes are no PNG, end too early, have another pixel format, or hold more than 67 Mpx.
+/// When the bytes are not a PNG, end too early, have another pixel format, or hold more than 67 Mpx.
 pub fn decode_raw_depth(bytes: &[u8]) -> Result<Image<u16>, CodecError> {
     let failed = |error: png::DecodingError| CodecError::decode("depth", error);
     let limits = Limits { bytes: 4 * MAX_PIXELS };

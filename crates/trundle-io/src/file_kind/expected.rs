@@ -69,6 +69,9 @@ impl Expected {
             (Self::Vocabulary, K::Dbow2Vocabulary) => {
                 "`trundle vocabulary import FILE --out OWN.voc` makes one of it"
             }
+            (Self::Sequence, K::Folder) => {
+                "name its lists of colour and depth images rgb.txt and depth.txt; each line is: timestamp filename"
+            }
             (Self::Dbow2Vocabulary, K::Vocabulary) => "it needs no import: it goes with --vocabulary",
             _ => words::remedy(found, wants_map),
         }

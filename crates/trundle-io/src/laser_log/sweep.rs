@@ -11,7 +11,7 @@ const MAX_SWEEP_RAD: f64 = 7.0;
 /// Largest number of beams of a scan. Beyond it the scan is refused. Source: ours.
 pub(crate) const MAX_BEAMS: usize = 100_000;
 
-/// Refuses the angles of a sweep that are no radians within one turn; `names` are those of first angle and step in the file.
+/// Refuses the angles of a sweep that are not radians within one turn; `names` are those of first angle and step in the file.
 pub(crate) fn check_sweep(
     names: [&str; 2],
     first_rad: f64,

@@ -213,7 +213,7 @@ mod tests {
             let off = asked - f64::from(*found);
             assert!((-1e-6..0.0051).contains(&off), "{asked} m/s is {found} m/s");
         }
-        assert!(mask.limits[199].is_infinite(), "the full speed is no limit");
+        assert!(mask.limits[199].is_infinite(), "the full speed is not a limit");
     }
 
     #[test]

@@ -12,14 +12,14 @@ type Inner = (u64, u64);
 type Inner = PathBuf;
 
 impl FileIdentity {
-    /// `None` where nothing is.
+    /// `None` if nothing is.
     #[cfg(unix)]
     pub(super) fn of(path: &Path) -> Option<Self> {
         use std::os::unix::fs::MetadataExt;
         std::fs::metadata(path).ok().map(|meta| Self((meta.dev(), meta.ino())))
     }
 
-    /// `None` where nothing is.
+    /// `None` if nothing is.
     #[cfg(not(unix))]
     pub(super) fn of(path: &Path) -> Option<Self> {
         std::fs::canonicalize(path).ok().map(Self)

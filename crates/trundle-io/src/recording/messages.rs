@@ -171,7 +171,7 @@ impl ScanMessage {
 
 impl JsonImage {
     pub fn image(&self) -> Result<ImageBytes, String> {
-        let bytes = STANDARD.decode(&self.data).map_err(|error| format!("data is no base64: {error}"))?;
+        let bytes = STANDARD.decode(&self.data).map_err(|error| format!("data is not base64: {error}"))?;
         let stamp = self.timestamp.try_into().map_err(|invalid: Invalid| invalid.to_string())?;
         Ok(ImageBytes { stamp, bytes })
     }

@@ -27,7 +27,7 @@ pub struct Recorder<W: Write> {
     camera: Option<PinholeCamera>,
 }
 
-/// The name of the writer in the header of a bag that is no recording.
+/// The name of the writer in the header of a bag that is not a recording.
 const BAG_LIBRARY: &str = "trundle convert";
 
 struct Channel {
@@ -55,7 +55,7 @@ impl<W: Write> Recorder<W> {
         Self::named(writer, path, super::LIBRARY)
     }
 
-    /// A ROS 2 bag that is no recording of a run, into `writer`, called `path` in errors.
+    /// A ROS 2 bag that is not a recording of a run, into `writer`, called `path` in errors.
     ///
     /// # Errors
     /// When nothing can be written.
@@ -133,7 +133,7 @@ impl<W: Write> Recorder<W> {
     /// The run's configuration is a `trundle.Config`, recorded first (see [`crate::RecordingReader::config`]).
     ///
     /// # Errors
-    /// When the stamp is before the epoch, the topic had another schema before, the message is no JSON, or it cannot
+    /// When the stamp is before the epoch, the topic had another schema before, the message is not JSON, or it cannot
     /// be written.
     pub fn record_json(
         &mut self,

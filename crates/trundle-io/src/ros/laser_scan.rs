@@ -21,7 +21,7 @@ const MOST_TILTED_DEG: f64 = 15.0;
 /// range are bad. Both are unseen: that nothing came back does not prove that nothing is there.
 ///
 /// # Errors
-/// With a sentence: no or too many beams, angles that are no angles, or a laser that is tilted.
+/// With a sentence: no or too many beams, angles that are not angles, or a laser that is tilted.
 pub(super) fn convert(
     message: &LaserScan,
     base_from_laser: &Pose3,

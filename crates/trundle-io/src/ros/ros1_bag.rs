@@ -77,7 +77,7 @@ impl Ros1Bag {
         }
     }
 
-    /// Reads records of the file up to the next chunk; whether there is one.
+    /// Reads records of the file up to the next chunk. Returns whether there is one.
     fn next_chunk(&mut self) -> Result<bool, IoError> {
         if let Some(cut) = self.cut.take() {
             return Err(cut);

@@ -131,14 +131,14 @@ fn a_quaternion_that_is_none_is_named() {
     let good = [0.0, 0.0, 0.0, 1.0];
     assert_eq!(
         log_of(&[odometry("laser", [0.0; 4]), scan(1.0, &[1.0])], "cdr").unwrap_err(),
-        "BAG: none of the 1 poses on /odom can be used: the quaternion is 0 0 0 0 (x y z w), which is no rotation, \
+        "BAG: none of the 1 poses on /odom can be used: the quaternion is 0 0 0 0 (x y z w), which is not a rotation, \
          expected length 1"
     );
     let problem =
         log_of(&[odometry("base", good), scan(1.0, &[1.0]), transform([0.0; 4])], "cdr").unwrap_err();
     assert!(
         problem.contains(
-            "the transform base > laser: the quaternion is 0 0 0 0 (x y z w), which is no rotation"
+            "the transform base > laser: the quaternion is 0 0 0 0 (x y z w), which is not a rotation"
         ),
         "{problem}"
     );

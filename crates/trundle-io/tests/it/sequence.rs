@@ -65,7 +65,19 @@ fn wrong_folders_are_one_clear_sentence() {
         "DIR: this is an empty folder, expected a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt), \
          a ROS bag or a trundle recording"
     );
+    fs::write(dir.path().join("depths.txt"), "7.5 a.png").unwrap();
+    assert_eq!(
+        problem(&dir),
+        "DIR: this is a folder, expected a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt), a ROS bag or a trundle recording: \
+         name its lists of colour and depth images rgb.txt and depth.txt; each line is: timestamp filename"
+    );
     fs::write(dir.path().join("rgb.txt"), "1.0 a.png").unwrap();
+    assert_eq!(
+        problem(&dir),
+        "DIR: depth.txt is missing, expected rgb.txt and depth.txt, or associations.txt; rename depths.txt if its lines are: \
+         timestamp filename"
+    );
+    fs::remove_file(dir.path().join("depths.txt")).unwrap();
     assert_eq!(
         problem(&dir),
         "DIR: depth.txt is missing, expected rgb.txt and depth.txt, or associations.txt"

@@ -20,7 +20,7 @@ impl RateLimit {
         Self { left: BURST_REQUESTS, filled: now }
     }
 
-    /// Takes one permission; whether there was one.
+    /// Takes one permission. Returns whether there was one.
     pub fn take(&mut self, now: Instant) -> bool {
         let seconds = now.saturating_duration_since(self.filled).as_secs_f64();
         self.left = (self.left + seconds * RATE_HZ).min(BURST_REQUESTS);

@@ -49,7 +49,7 @@ pub async fn receive(mut stream: SplitStream<WebSocket>, viewer: Viewer<'_>) -> 
             continue;
         }
         let Ok(request) = serde_json::from_str::<Request>(&text) else {
-            return "a message is no request of this version";
+            return "a message is not a request of this version";
         };
         if let Some(reply) = viewer.reply(&request)
             && viewer.answers.try_send(reply).is_err()

@@ -102,7 +102,7 @@ impl Updates {
         outbox.send_bytes(trail).await
     }
 
-    /// Sends what is new, where the viewer has drawn what came before; whether it took it.
+    /// Sends what is new, where the viewer has drawn what came before. Returns whether it took it.
     async fn send(&mut self, outbox: &mut Outbox, state: &PageState, progress: &ViewProgress) -> bool {
         if self.batch.saturating_sub(progress.seen.load(Ordering::Relaxed)) >= MAX_UNSEEN {
             return true;

@@ -32,7 +32,7 @@ pub struct StateMessage {
     pub stages: Vec<(&'static str, f64)>,
     /// Loops that were closed: time \[s\], and where the robot stood \[m\].
     pub loops: Vec<[f64; 3]>,
-    /// The viewer in control; `None` where there is none.
+    /// The viewer in control; `None` if there is none.
     pub wheel: Option<WheelText>,
     /// Number of viewers.
     pub viewers: usize,

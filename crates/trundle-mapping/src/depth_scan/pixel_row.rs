@@ -148,7 +148,7 @@ fn bin(range: f32, m: &PixelModel) -> u32 {
     (within + MAGIC).to_bits() & 255
 }
 
-/// The greater of two, the second where the first is no number.
+/// The greater of two, the second where the first is not a number.
 #[inline(always)]
 fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }

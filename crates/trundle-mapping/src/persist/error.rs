@@ -5,7 +5,7 @@ use trundle_core::Invalid;
 /// Why a saved filter was not loaded.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FilterFileError {
-    /// The file is no filter of this program.
+    /// The file is not a filter of this program.
     #[error("no map of trundle-mapping")]
     Foreign,
     /// Made by a version that this one does not read.

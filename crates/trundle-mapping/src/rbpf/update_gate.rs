@@ -49,7 +49,7 @@ pub(crate) struct OdometryStep {
 }
 
 impl UpdateGate {
-    /// The step to a scan that is to be processed; `None` when the robot has hardly moved. Where each pose counts, not the steps
+    /// The step to a scan that is to be processed; `None` if the robot has hardly moved. Where each pose counts, not the steps
     /// alone, poses that are too far off are refused.
     pub(crate) fn pass(
         &mut self,

@@ -135,7 +135,7 @@ impl ScanPoints {
         self.find_points(config, origin);
     }
 
-    /// Notes what was seen to be free of beam `i`, the next ray, up to `range`; whether that is all of it.
+    /// Notes what was seen to be free of beam `i`, the next ray, up to `range`. Returns whether that is all of it.
     fn take_spans(&mut self, scan: &Scan, i: usize, range: f64) -> bool {
         let (ray, first) = (self.rays.rays.len() as u32, self.rays.spans.len());
         for (from, to) in scan.free_spans(i).filter(|(from, _)| *from < range) {

@@ -289,7 +289,7 @@ impl Planner {
         ShapeEscape::new(&around, self.core.config.unknown, pose, shape)
     }
 
-    /// Time until the robot, `from` seconds into `trajectory` now, first meets a moving obstacle, s; `None` where it meets none
+    /// Time until the robot, `from` seconds into `trajectory` now, first meets a moving obstacle, s; `None` if it meets none
     /// within 2 s. Costs microseconds.
     pub fn first_encounter(
         &self,

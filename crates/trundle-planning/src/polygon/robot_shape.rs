@@ -39,7 +39,7 @@ struct Leaving {
     slim: RobotShape,
 }
 
-/// By how much a disc overlaps obstacles, m; `None` where it touches none.
+/// By how much a disc overlaps obstacles, m; `None` if it touches none.
 pub(crate) fn missing_about_disc(field: &DistanceField, at: Vector2, radius: f64) -> Option<f64> {
     (!field.keeps(at, radius)).then(|| radius - field.clearance(at, radius))
 }
@@ -70,7 +70,7 @@ impl RobotShape {
         }
     }
 
-    /// The shape with its boundary `by` m further in; `None` where nothing remains, or a side vanishes.
+    /// The shape with its boundary `by` m further in; `None` if nothing remains, or a side vanishes.
     pub(crate) fn shrunk(&self, by: f64) -> Option<Self> {
         if self.is_disc() {
             let radius = self.radius - by;
@@ -101,7 +101,7 @@ impl RobotShape {
         (0..ROUNDS).fold((0.0, cap), halve).1
     }
 
-    /// By how much the shape overlaps obstacles at a goal, m; `None` where it stands free there. The one decision behind
+    /// By how much the shape overlaps obstacles at a goal, m; `None` if it stands free there. The one decision behind
     /// [`Plan::GoalInObstacle`](crate::Plan::GoalInObstacle).
     pub(crate) fn missing_at_goal(&self, field: &DistanceField, goal: Pose2) -> Option<f64> {
         if self.is_disc() {

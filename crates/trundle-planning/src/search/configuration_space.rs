@@ -37,7 +37,7 @@ pub(crate) struct ConfigurationSpace<'a> {
     cost_mask: Option<&'a CostMask>,
     /// Step between two checks along a straight line, m.
     check_step: f64,
-    /// Whole cells from the grid's origin to the field's; `None` where the two are equal.
+    /// Whole cells from the grid's origin to the field's; `None` if the two are equal.
     shift: Option<(i64, i64)>,
     /// The point that stands for each cell.
     points: CellPoints,

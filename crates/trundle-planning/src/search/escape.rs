@@ -23,7 +23,7 @@ pub(crate) struct Escape {
     zone: f64,
     /// Depth of the overlap, m: against what it overlaps the robot counts as that much smaller.
     pub(crate) depth: f64,
-    /// All obstacles around except the overlapped one; `None` where any obstacle may be overlapped by `depth`.
+    /// All obstacles around except the overlapped one; `None` if any obstacle may be overlapped by `depth`.
     others: Option<DistanceField>,
 }
 
@@ -52,7 +52,7 @@ impl Escape {
         (at - self.start).norm() <= self.zone
     }
 
-    /// Obstacles that must keep their full clearance; `None` where all may be overlapped.
+    /// Obstacles that must keep their full clearance; `None` if all may be overlapped.
     pub(crate) fn others(&self) -> Option<&DistanceField> {
         self.others.as_ref()
     }

@@ -199,7 +199,7 @@ fn numbers_that_are_not_finite_are_refused_at_every_entry_point() {
     assert!(refused(&planner.plan_on_graph(&grid, &graph, here, Twist2::ZERO, nowhere)));
     let replan = planner.replan(&grid, &[], &first, 1.0, nowhere);
     assert!(matches!(replan, Replan::New(plan) if refused(&plan)));
-    // A time that is none, or after the end, is no panic.
+    // A time that is none, or after the end, is not a panic.
     for time in [f64::NAN, -5.0, 1e9] {
         let _ = planner.validate_trajectory(&grid, &first.trajectory, time);
         let _ = planner.replan(&grid, &[], &first, time, there);

@@ -213,7 +213,7 @@ fn what_is_dear_is_avoided_where_that_is_no_great_detour() {
     let (around, longer) = within(90);
     assert!(through > 0 && (straight - 8.0).abs() < 0.01, "{through} {straight}");
     assert!(around == 0 && longer > 8.03 && longer < 9.5, "{around} {longer}");
-    // Where there is no way around, it is no wall.
+    // Where there is no way around, it is not a wall.
     let everywhere = GridGeometry::new(1.0, Vector2::zeros(), 10, 6).unwrap();
     let mut planner = planner(at_home(), RADIUS);
     planner.set_cost_mask(Some(CostMask::new(everywhere, vec![99; 60]).unwrap()));

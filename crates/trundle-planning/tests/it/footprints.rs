@@ -1,4 +1,4 @@
-//! Robots that are no discs: long ones, whose axle is not in the middle.
+//! Robots that are not discs: long ones, whose axle is not in the middle.
 
 use crate::support::{HALF_BASE, LIMITS, at_home, found};
 use trundle_core::{

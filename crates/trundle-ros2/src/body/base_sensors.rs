@@ -33,7 +33,7 @@ pub type Sink = Box<dyn Fn(SensorEvent) + Send>;
 
 /// What the handlers of a robot's topics share.
 pub struct Shared {
-    /// Receives events; none before the run.
+    /// Receives events. `None` before the run.
     pub sink: Mutex<Option<Sink>>,
     /// Frames.
     pub frames: Mutex<FrameTree>,

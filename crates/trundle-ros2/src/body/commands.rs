@@ -105,7 +105,7 @@ impl Drop for CommandThread {
     }
 }
 
-/// Publishes each command until the end, which is a command that is no number.
+/// Publishes each command until the end, which is a command that is not a number.
 fn publish_all(publisher: &CommandPublisher, commands: &Receiver<Twist2>) {
     // The time of the newest command, where it moves the robot.
     let mut moving_since = None;

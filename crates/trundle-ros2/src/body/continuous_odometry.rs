@@ -5,7 +5,7 @@ use trundle_core::{Odometry, Pose2};
 /// Motion between two messages that is a restart of the odometry \[m\]. Source: ours; 10 m/s at 20 Hz.
 pub const MAX_STEP_M: f64 = 0.5;
 
-/// Takes jumps out of odometry: a jump is no motion.
+/// Takes jumps out of odometry: a jump is not motion.
 #[derive(Debug, Default)]
 pub struct ContinuousOdometry {
     /// The newest pose as it came, and without jumps.

@@ -44,9 +44,9 @@ pub struct Ros2Body {
 pub struct BodyDescription {
     /// The colour camera.
     pub camera: PinholeCamera,
-    /// `base_from_camera`, of the colour camera's optical frame; `None` where no transform says.
+    /// `base_from_camera`, of the colour camera's optical frame; `None` if no transform says.
     pub base_from_camera: Option<Pose3>,
-    /// The depth camera's pose in the colour camera's frame; `None` where depth is registered to colour.
+    /// The depth camera's pose in the colour camera's frame; `None` if depth is registered to colour.
     pub color_from_depth: Option<Pose3>,
 }
 

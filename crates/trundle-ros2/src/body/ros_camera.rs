@@ -26,7 +26,7 @@ pub struct RosCameraSource {
     pub inbox: Arc<ImageInbox>,
     /// Topics.
     pub settings: BodySettings,
-    /// The depth camera's pose in the colour camera's frame; `None` where depth is registered to colour.
+    /// The depth camera's pose in the colour camera's frame; `None` if depth is registered to colour.
     pub color_from_depth: Option<Pose3>,
     /// Where broken images are reported.
     pub diagnostics: Diagnostics,

@@ -142,7 +142,7 @@ impl<R: Clone + Default> Goals<R> {
         (response, asked)
     }
 
-    /// Ends a goal; those who wait for its result, and its status. `None` where it is unknown or has ended.
+    /// Ends a goal; those who wait for its result, and its status. `None` if it is unknown or has ended.
     pub fn end(
         &mut self,
         id: &GoalId,
@@ -189,7 +189,7 @@ impl<R: Clone + Default> Goals<R> {
         self.goals.retain(|_, goal| goal.ended.is_none_or(|ended| now - ended < RESULT_LIFETIME));
     }
 
-    /// Forgets the goal that ended first; whether there was one.
+    /// Forgets the goal that ended first. Returns whether there was one.
     fn forget_oldest_ended(&mut self) -> bool {
         let ended = self.goals.iter().filter_map(|(id, goal)| Some((goal.ended?, *id)));
         let Some((_, id)) = ended.min() else { return false };

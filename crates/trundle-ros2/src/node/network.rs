@@ -51,7 +51,7 @@ impl FromStr for Networks {
             addresses => {
                 let address = |part: &str| {
                     part.trim().parse().map_err(|_| {
-                        format!("'{part}' is no network; expected loopback, all, or the IP address of an interface")
+                        format!("'{part}' is not a network; expected loopback, all, or the IP address of an interface")
                     })
                 };
                 Ok(Self::Only(addresses.split(',').map(address).collect::<Result<_, _>>()?))

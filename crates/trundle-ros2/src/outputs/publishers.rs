@@ -52,13 +52,13 @@ pub struct RobotTopics {
     pub tf: OutputTopic<TFMessage>,
     /// Base to camera and scan.
     pub tf_static: OutputTopic<TFMessage>,
-    /// Odometry; none where the body publishes it itself.
+    /// Odometry. `None` if the body publishes it itself.
     pub odom: Option<OutputTopic<Odometry>>,
     /// The map.
     pub map: OutputTopic<OccupancyGrid>,
     /// What changed of the map since the newest update.
     pub map_updates: OutputTopic<OccupancyGridUpdate>,
-    /// The scan made of depth images; none where a laser's scan has this name.
+    /// The scan made of depth images. `None` if a laser's scan has this name.
     pub scan: Option<OutputTopic<LaserScan>>,
     /// The plan.
     pub plan: OutputTopic<Path>,
@@ -70,7 +70,7 @@ pub struct RobotTopics {
     pub local_costmap: OutputTopic<OccupancyGrid>,
     /// State of the robot and of its topics.
     pub diagnostics: OutputTopic<DiagnosticArray>,
-    /// The battery; none where the body publishes it itself.
+    /// The battery. `None` if the body publishes it itself.
     pub battery: Option<OutputTopic<BatteryState>>,
 }
 

@@ -311,7 +311,7 @@ impl Navigator {
             || self.state == DriveState::Driving
             || self.goal == Goal::Spin && self.state == DriveState::Initializing;
         if s.hold.is_some() {
-            // What holds the robot is no fault of its goal.
+            // What holds the robot is not a fault of its goal.
             return self.progress.restart();
         }
         let stood = self.progress.standing_for(s.now, s.estimate.pose, turns_count);

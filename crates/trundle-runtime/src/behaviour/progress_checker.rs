@@ -14,7 +14,7 @@ pub(crate) struct ProgressChecker {
 const PROGRESS_DISTANCE_M: f64 = 0.15;
 /// Turn towards the goal's heading that counts as progress \[rad\]. A turn in search of a path does not count. Source: ours.
 const PROGRESS_TURN_RAD: f64 = 0.2;
-/// Number of turns that count as progress at one place: one whole turn. More of them are no progress. Source: ours.
+/// Number of turns that count as progress at one place: one whole turn. More of them are not progress. Source: ours.
 const MAX_TURNS_AT_ONE_PLACE: u32 = 32;
 
 impl ProgressChecker {

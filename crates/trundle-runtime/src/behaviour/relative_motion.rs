@@ -49,7 +49,7 @@ pub(crate) struct RelativeMotionDrive {
 }
 
 impl RelativeMotionDrive {
-    /// The command; `None` where the motion is done.
+    /// The command; `None` if the motion is done.
     pub(crate) fn step(&mut self, motion: RelativeMotion, pose: Pose2) -> Option<Twist2> {
         if self.start.is_none() {
             self.heading = pose.theta;

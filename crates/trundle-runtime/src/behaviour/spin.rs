@@ -51,7 +51,7 @@ pub(crate) fn face(pose: Pose2, at: Vector2) -> Twist2 {
     if ahead.norm() < 1e-3 { Twist2::ZERO } else { turn_to(pose, ahead.y.atan2(ahead.x)) }
 }
 
-/// The turn on the spot towards a heading; none where it is near enough.
+/// The turn on the spot towards a heading. Zero if the heading is near enough.
 pub(crate) fn turn_to(pose: Pose2, heading: f64) -> Twist2 {
     let off = wrap_angle(heading - pose.theta);
     Twist2::new(

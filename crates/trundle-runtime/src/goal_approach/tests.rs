@@ -109,7 +109,7 @@ fn what_never_moves_ends_with_a_reason() {
     let (time, reason) = until_given_up(&mut walled, &grid, start, false);
     assert!(time < 30.0 && reason.contains("goal"), "{time} {reason}");
     assert!(walled.report().waits > 5 && walled.report().ended.is_some());
-    // The pose is no number: nothing else ends it but the time.
+    // The pose is not a number: nothing else ends it but the time.
     let mut lost = stage();
     begin(&mut lost, goal);
     let (time, reason) = until_given_up(&mut lost, &grid, Pose2 { x: f64::NAN, ..start }, false);

@@ -31,7 +31,7 @@ impl LightSearch {
         self.searched.extend(place.filter(|_| has_failed));
     }
 
-    /// The nearest free place that is not searched, with the heading of the way there; none where all is searched.
+    /// The nearest free place that is not searched, with the heading of the way there. `None` if all is searched.
     pub(crate) fn next_place(&mut self, grid: &OccupancyGrid, from: Pose2) -> Option<Pose2> {
         let here = from.position();
         let distance = |at: &Vector2| (at - here).norm();

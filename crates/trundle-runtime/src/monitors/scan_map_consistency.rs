@@ -88,7 +88,7 @@ fn contradicted(grid: &OccupancyGrid, map_from_base: Pose2, scan: &Scan) -> f64 
     if is_enough { contradict as f64 / known as f64 } else { 0.0 }
 }
 
-/// Whether the map has an occupied cell where a beam ends; `None` where the cell is unknown.
+/// Whether the map has an occupied cell where a beam ends; `None` if the cell is unknown.
 fn judged(grid: &OccupancyGrid, origin: Vector2, end: Vector2) -> Option<bool> {
     let about = |at| around(grid, at);
     if about(end).any(|cell| cell == Cell::Occupied) {

@@ -15,7 +15,7 @@ pub struct ThreadPlacement {
 }
 
 impl ThreadPlacement {
-    /// Puts the calling thread there; whether the system granted all of it. Elsewhere than on Linux nothing is granted.
+    /// Puts the calling thread there. Returns whether the system granted all of it. Elsewhere than on Linux nothing is granted.
     pub fn take(self) -> bool {
         let pinned = self.core.is_none_or(pin);
         let ranked = self.nice == 0 || rank(self.nice);
@@ -70,14 +70,14 @@ fn rank(_nice: i32) -> bool {
     false
 }
 
-/// Processor time of the calling thread; none where threads have no clock of their own.
+/// Processor time of the calling thread. `None` if threads have no clock of their own.
 #[cfg(unix)]
 pub fn thread_time() -> Option<Duration> {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     Some(Duration::new(time.tv_sec.unsigned_abs(), u32::try_from(time.tv_nsec).ok()?))
 }
 
-/// Processor time of the calling thread; none where threads have no clock of their own.
+/// Processor time of the calling thread. `None` if threads have no clock of their own.
 #[cfg(not(unix))]
 pub fn thread_time() -> Option<Duration> {
     None

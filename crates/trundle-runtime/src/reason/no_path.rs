@@ -37,7 +37,7 @@ pub enum NoPath {
 }
 
 impl NoPath {
-    /// Why a plan holds no path; none where the plan holds one.
+    /// Why a plan holds no path. `None` if the plan holds one.
     #[must_use]
     pub fn of(plan: &Plan) -> Option<Self> {
         match plan {

@@ -105,7 +105,7 @@ pub(super) fn unknown(full: &str, prefix: &str) -> String {
     format!("unknown key {full}; {place} has {}", names.join(", "))
 }
 
-/// What the name before the last point of an unknown key is, where it is no table.
+/// What the name before the last point of an unknown key is, where it is not a table.
 fn nearest(prefix: &str) -> String {
     match find(prefix) {
         Some(Found::Key(setting) | Found::OldKey(setting)) => {

@@ -3,7 +3,7 @@
 use super::reference::Setting;
 use toml::Value;
 
-/// What is wrong with a value that is not of the kind of its setting: key, value and what is expected; `None` where it fits.
+/// What is wrong with a value that is not of the kind of its setting: key, value and what is expected; `None` if it fits.
 pub(super) fn kind_problem(setting: &Setting, value: &Value) -> Option<String> {
     (!is_of_kind(setting.kind, value)).then(|| {
         let (key, wanted) = (setting.key, wanted(setting));

@@ -23,7 +23,7 @@ const MIN_CONTRAST_RATIO: f64 = 1.5;
 /// Largest difference between the shifts found in two halves of the images: 5 blocks. Near edges need another shift than far ones.
 /// Source: ours.
 const MAX_SHIFT_DIFFERENCE_BLOCKS: i64 = 5;
-/// Largest plausible shift along a row: 8 blocks. A larger one is no pair of cameras in one housing. Source: ours.
+/// Largest plausible shift along a row: 8 blocks. A larger one is not a pair of cameras in one housing. Source: ours.
 const MAX_SHIFT_X_BLOCKS: i64 = 8;
 /// Largest plausible shift along a column: 6 blocks. Source: ours.
 const MAX_SHIFT_Y_BLOCKS: i64 = 6;

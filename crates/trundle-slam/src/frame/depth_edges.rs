@@ -1,4 +1,4 @@
-//! Corners on the outline of an object, which are no fixed points of a surface.
+//! Corners on the outline of an object, which are not fixed points of a surface.
 
 use crate::frame::aligned_feature::raw;
 use crate::frame::depth::DepthConfig;

@@ -10,7 +10,7 @@ use trundle_optim::PoseGraphConfig;
 pub struct LoopConfig {
     /// Old keyframes that a new one is compared with, 0 (no loop is closed) or more. Default 3 \[MurArtal17\].
     pub candidates: usize,
-    /// Keyframes newer than this many before are no loop, 1 or more. Default 10: as many as a local bundle moves.
+    /// Keyframes newer than this many before are not a loop, 1 or more. Default 10: as many as a local bundle moves.
     pub min_age: usize,
     /// Largest distance between two keyframes that see the same, m, above 0. Default 1.5: half a room.
     pub reach: f64,

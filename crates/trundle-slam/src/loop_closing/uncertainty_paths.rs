@@ -62,7 +62,7 @@ impl UncertaintyPaths {
         Self { ids, paths }
     }
 
-    /// The path to a keyframe; `None` where no constraint leads.
+    /// The path to a keyframe; `None` if no constraint leads.
     pub fn to(&self, id: KeyframeId) -> Option<PathUncertainty> {
         self.paths[self.ids.binary_search(&id).ok()?]
     }

@@ -140,7 +140,7 @@ impl LandmarkMap {
     }
 
     /// Records that feature `feature` of `keyframe` is of `landmark`. A feature or a landmark that is already taken in
-    /// this keyframe stays as it is; whether the observation was recorded.
+    /// this keyframe stays as it is. Returns whether the observation was recorded.
     pub fn observe(&mut self, landmark: LandmarkId, keyframe: KeyframeId, feature: usize) -> bool {
         let Some(observer) = self.keyframes.get_mut(keyframe.index()) else { return false };
         let Some(seen) = self.landmarks.get_mut(landmark.index()) else { return false };

@@ -35,7 +35,7 @@ enum PatchComparison {
 }
 
 /// The matches with their features aligned, for a camera near `visual_from_camera`, without those whose patch differs from their
-/// landmark's. `None` where too few can be aligned.
+/// landmark's. `None` if too few can be aligned.
 pub(crate) fn aligned(
     matches: &[PointMatch],
     visual_from_camera: Pose3,

@@ -43,7 +43,7 @@ impl GlobalBundle {
         }
     }
 
-    /// Goes on for about `work` units; whether it is done. `solver` lends its buffers.
+    /// Goes on for about `work` units. Returns whether it is done. `solver` lends its buffers.
     pub fn advance(
         &mut self,
         map: &LandmarkMap,

@@ -5,7 +5,7 @@ use trundle_core::Invalid;
 /// Why a saved map was not loaded.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapFileError {
-    /// The file is no visual map of this program.
+    /// The file is not a visual map of this program.
     #[error("no map of trundle-slam")]
     Foreign,
     /// Made by a version that this one does not read.

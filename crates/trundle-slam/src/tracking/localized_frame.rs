@@ -126,7 +126,7 @@ impl LocalizedFrame {
         Self { seen: agreeing_matches(&self.pose, &pose, tracker.frame), pose, ..self }
     }
 
-    /// How many points contradict the odometry; `None` where the pose agrees with it.
+    /// How many points contradict the odometry; `None` if the pose agrees with it.
     pub fn points_against_odometry(&self) -> Option<usize> {
         let solution = &self.pose.solution;
         let points = if self.points_contradict { self.points } else { solution.inlier_count };

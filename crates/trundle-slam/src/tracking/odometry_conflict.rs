@@ -18,7 +18,7 @@ pub(crate) struct OdometryConflict {
 
 impl OdometryConflict {
     /// Whether to accept the tracked pose of a frame at `now`; `points_against_odometry` is the number of points that contradict the wheels,
-    /// `None` where they agree.
+    /// `None` if they agree.
     pub fn believes(&mut self, now: Stamp, points_against_odometry: Option<usize>) -> bool {
         let Some(points) = points_against_odometry else {
             self.since = None;

@@ -20,7 +20,7 @@ fn sequence() -> Option<Drive> {
     drive
 }
 
-/// The first frames; `None` where the sequence is not at hand.
+/// The first frames; `None` if the sequence is not at hand.
 pub fn frames(most: usize) -> Option<Vec<RgbdImage>> {
     let drive = sequence()?;
     Some((0..most.min(drive.frames.len())).map(|i| drive.image(i)).collect())

@@ -1,4 +1,4 @@
-//! Maps that last: what is saved comes back, and what is no map is refused.
+//! Maps that last: what is saved comes back, and what is not a map is refused.
 
 use crate::room::{camera, shoot};
 use crate::walks::{dark, turned};

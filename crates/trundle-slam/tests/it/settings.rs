@@ -7,7 +7,7 @@ use trundle_core::{ColorImage, DepthImage, Distortion, PinholeCamera, Pose3, Rgb
 use trundle_slam::{CalibrationIssue, RgbdSlam, SlamConfig};
 
 /// What is suspected after the first 100 frames of freiburg1_rpy, changed by `change`, as `camera` is said to see them;
-/// `None` where the sequence is not at hand.
+/// `None` if the sequence is not at hand.
 fn suspected(
     camera: PinholeCamera,
     change: impl Fn(RgbdImage) -> RgbdImage,

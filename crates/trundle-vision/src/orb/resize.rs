@@ -78,7 +78,7 @@ fn tap(i: usize, from: usize, to: usize) -> Tap {
     Tap { first: (in_256ths / 256) as u32, weight: (in_256ths % 256) as u16 }
 }
 
-/// `None` when the columns span too many samples.
+/// `None` if the columns span too many samples.
 fn quad(columns: &[Tap; 4]) -> Option<Quad> {
     let first = columns[0].first;
     (columns[3].first + 2 - first <= SAMPLES_PER_REGISTER as u32).then_some(())?;

@@ -74,7 +74,7 @@ impl RunReport {
     }
 }
 
-/// A section of figures; none when there is no figure.
+/// Adds a section of figures to a report. The report stays as it is if there are no figures.
 fn add_figures(report: Report, title: &str, figures: Vec<Figure>) -> Report {
     if figures.is_empty() {
         return report;

@@ -87,7 +87,7 @@ impl Layer {
         }
     }
 
-    /// Its line in the legend; none when there is nothing to see.
+    /// Its line in the legend. `None` if there is nothing to see.
     pub(crate) fn legend(&self) -> Option<LegendItem> {
         let finite = |points: &[Vector2]| points.iter().any(|p| p.x.is_finite() && p.y.is_finite());
         let (shown, color, mark) = match &self.shape {

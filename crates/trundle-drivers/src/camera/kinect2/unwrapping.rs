@@ -37,7 +37,7 @@ impl Unwrapper {
         Self { wrap_m, hypotheses, min_amplitude }
     }
 
-    /// Distance along the ray of a pixel \[m\], and its mean amplitude; `None` where the light is too weak or the phases do not agree.
+    /// Distance along the ray of a pixel \[m\], and its mean amplitude; `None` if the light is too weak or the phases do not agree.
     pub(super) fn distance(&self, phasors: &Phasors) -> Option<(f32, f32)> {
         let [a_re, a_im, b_re, b_im, c_re, c_im] = *phasors;
         let parts = [[a_re, a_im], [b_re, b_im], [c_re, c_im]];

@@ -90,6 +90,6 @@ pub struct DeviceEntry {
     pub serial: String,
     /// Version of the firmware; empty where unknown.
     pub firmware: String,
-    /// Speed of the USB connection; `None` where unknown or not USB.
+    /// Speed of the USB connection; `None` if unknown or not USB.
     pub usb: Option<UsbSpeed>,
 }

@@ -110,7 +110,7 @@ impl FrameParser {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// The next whole frame; `None` when more bytes are needed.
+    /// The next whole frame; `None` if more bytes are needed.
     pub fn next_frame(&mut self) -> Option<StreamFrame> {
         loop {
             match self.front() {

@@ -66,7 +66,7 @@ impl Registration {
 #[derive(Debug, Clone)]
 pub struct DepthRegistration {
     output: PinholeCamera,
-    /// `None` where both cameras are the same.
+    /// `None` if both cameras are the same.
     moved: Option<(Projection, Footprints)>,
 }
 

@@ -117,7 +117,7 @@ impl FloorSearch {
 }
 
 impl FloorView {
-    /// The plane with the most support that lies like a floor; `None` where no floor is seen.
+    /// The plane with the most support that lies like a floor; `None` if no floor is seen.
     fn propose(samples: &[Vector3], expected_up: Vector3) -> Option<Self> {
         if samples.len() < MIN_SAMPLES {
             return None;
@@ -150,7 +150,7 @@ impl FloorView {
         Self::of_inverse_depth(rows.try_inverse()? * Vector3::repeat(1.0))
     }
 
-    /// The plane `q * p = 1`; `None` where it is not below a camera on a robot.
+    /// The plane `q * p = 1`; `None` if it is not below a camera on a robot.
     fn of_inverse_depth(q: Vector3) -> Option<Self> {
         let height = 1.0 / q.norm();
         (MIN_HEIGHT_M..=MAX_HEIGHT_M).contains(&height).then(|| Self { up: -q * height, height })

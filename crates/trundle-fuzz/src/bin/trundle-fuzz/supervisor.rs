@@ -14,7 +14,7 @@ const MAX_DEATHS: u64 = 3;
 /// Memory disk, where there is one.
 const MEMORY_DISK: &str = "/dev/shm";
 
-/// Runs each target for some time, as many at once as there are cores; whether nothing was found.
+/// Runs each target for some time, as many at once as there are cores. Returns whether nothing was found.
 pub fn run(targets: &[FuzzTarget], time: Duration, seed: u64) -> Result<bool, String> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let (next, is_clean) = (AtomicUsize::new(0), AtomicBool::new(true));

@@ -48,7 +48,7 @@ pub fn decode_compressed_depth(
     metres(&raw, |value| a / (f64::from(value) - b))
 }
 
-/// The depths of the numbers that are none of 0; what is no depth becomes 0.
+/// The depths of the numbers that are none of 0; what is not depth becomes 0.
 fn metres(raw: &Image<u16>, depth: impl Fn(u16) -> f64) -> Result<DepthImage, CodecError> {
     let metres = |&value: &u16| {
         let depth = if value == 0 { 0.0 } else { depth(value) };

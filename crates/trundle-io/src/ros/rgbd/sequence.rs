@@ -106,13 +106,13 @@ impl RosSequence {
         &self.topics
     }
 
-    /// The camera of the bag; `None` where none was needed.
+    /// The camera of the bag; `None` if none was needed.
     #[must_use]
     pub fn camera(&self) -> Option<PinholeCamera> {
         self.camera
     }
 
-    /// Where the camera sits on the base by the bag's transforms, optical frame; `None` where none lead from the one to the other.
+    /// Where the camera sits on the base by the bag's transforms, optical frame; `None` if none lead from the one to the other.
     #[must_use]
     pub fn base_from_camera(&self) -> Option<Pose3> {
         self.base_from_camera
@@ -142,7 +142,7 @@ impl RosSequence {
         self.listed - self.pairs.len()
     }
 
-    /// `odom_from_base`; `None` where the bag holds none.
+    /// `odom_from_base`; `None` if the bag holds none.
     #[must_use]
     pub fn odometry(&self) -> Option<&[(Stamp, Pose2)]> {
         (!self.odometry.is_empty()).then_some(&self.odometry)

@@ -57,7 +57,7 @@ struct Turned {
 
 impl Pyramid {
     /// The best pose for a query that is apart (cells, rad) from all of `known`, by branch and bound: no pose of the lattice
-    /// is better. `None` where all score less than `least`.
+    /// is better. `None` if all score less than `least`.
     pub(crate) fn search(
         &self,
         query: &Query<'_>,

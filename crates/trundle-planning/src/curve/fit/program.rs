@@ -24,7 +24,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use trundle_core::Vector2;
 
-/// The curve along `segments` with these end tangents; `smoothing` is a length, m. `None` when there is none.
+/// The curve along `segments` with these end tangents; `smoothing` is a length, m. `None` if there is none.
 ///
 /// Few of the corridors' sides matter. The program is solved with the sides near the path first, then again with those near the
 /// last curve, until all are kept (cutting planes); the result is that of the whole program. Where the curvature exceeds

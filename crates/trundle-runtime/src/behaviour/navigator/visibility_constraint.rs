@@ -99,7 +99,7 @@ impl VisibilityConstraint {
         self.observations_of(at).all(|old| (old - from).norm() > MIN_VIEWPOINT_SPACING_M)
     }
 
-    /// Adds a keep-out zone; whether it is new.
+    /// Adds a keep-out zone. Returns whether it is new.
     pub(super) fn bar(&mut self, at: Vector2, now: Stamp) -> bool {
         let is_new = self.keep_out.iter().all(|(old, _)| (old - at).norm() > VIRTUAL_OBSTACLE_RADIUS_M / 2.0);
         if is_new {

@@ -95,7 +95,7 @@ fn errors_of_range_name_the_key_of_the_file() {
     assert!(error.contains("odometry.max_speed_m_s is 0.3 m/s"), "{error}");
 }
 
-/// The value of a setting in a configuration, as text for an override; none where it is not set.
+/// The value of a setting in a configuration, as text for an override. `None` if it is not set.
 fn value_of(config: &RobotConfig, setting: &Setting) -> Option<toml::Value> {
     let root = toml::Value::try_from(config).unwrap();
     setting.path.split('.').try_fold(root, |value, field| value.get(field).cloned())

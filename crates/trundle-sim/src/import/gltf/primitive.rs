@@ -83,7 +83,7 @@ fn read_uvs(
     Ok(uvs)
 }
 
-/// The colours of the corners, alpha left out; `None` where there are none, or all are white.
+/// The colours of the corners, alpha left out; `None` if there are none, or all are white.
 fn read_colors(
     buffers: &Buffers<'_>,
     primitive: &Primitive,

@@ -56,7 +56,7 @@ pub(super) fn parse(json: &[u8]) -> Result<Root, ImportFault> {
     first.map_or(Ok(root), |reason| Err(not_gltf(reason)))
 }
 
-/// Where and how a file is no JSON.
+/// Where and how a file is not JSON.
 fn broken_json(error: &gltf::json::Error) -> String {
     let (line, column) = (error.line(), error.column());
     if error.is_eof() {

@@ -48,7 +48,7 @@ const SELECTION_COUNT: usize = 3;
 const MAX_RESIDUAL_PX: f64 = 0.5;
 
 impl SideCurve {
-    /// The edge near the chord between two corners, dark on its right side seen from the start; `None` where there is none.
+    /// The edge near the chord between two corners, dark on its right side seen from the start; `None` if there is none.
     pub(super) fn fit(image: &SmoothImage, start: Vector2, end: Vector2) -> Option<Self> {
         let chord = end - start;
         let along = chord.normalize();
@@ -69,7 +69,7 @@ impl SideCurve {
         Some(curve)
     }
 
-    /// Where this curve's end meets the start of the next, by Newton's method; `None` where they are parallel.
+    /// Where this curve's end meets the start of the next, by Newton's method; `None` if they are parallel.
     pub(super) fn end_meets_start_of(&self, next: &Self) -> Option<Vector2> {
         let (mut u, mut v) = (1.0, -1.0);
         for _ in 0..5 {

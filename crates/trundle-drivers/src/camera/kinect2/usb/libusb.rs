@@ -98,7 +98,7 @@ unsafe impl Sync for UsbSession {}
 /// A Kinect V2 in the list of devices.
 #[derive(Debug)]
 pub(super) struct Found {
-    /// Speed of its connection; `None` where unknown.
+    /// Speed of its connection; `None` if unknown.
     pub(super) speed: Option<UsbSpeed>,
     /// The open device, or why it cannot be opened.
     pub(super) opened: Result<UsbConnection, CameraError>,
@@ -294,7 +294,7 @@ impl Drop for UsbConnection {
     }
 }
 
-/// What arrived at an endpoint: the bytes, or `None` where they were lost.
+/// What arrived at an endpoint: the bytes, or `None` if they were lost.
 pub(super) type Arrival<'a> = (u8, Option<&'a [u8]>);
 
 /// Sizes of the transfers of one endpoint.
@@ -401,7 +401,7 @@ impl<'a> Transfers<'a> {
         unsafe { (*self.shared.as_ptr()).waiting }
     }
 
-    /// Cancels all transfers and waits for their end; whether all ended.
+    /// Cancels all transfers and waits for their end. Returns whether all ended.
     fn cancel(&mut self) -> bool {
         // SAFETY: no callback runs outside of `run_events`.
         unsafe { (*self.shared.as_ptr()).is_stopping = true };

@@ -56,7 +56,7 @@ impl StreamThread {
         Ok((identity, Self { images, is_stopping, thread: Some(thread) }))
     }
 
-    /// The next image; `None` when none came within `timeout`.
+    /// The next image; `None` if none came within `timeout`.
     ///
     /// # Errors
     /// The error that ended the thread.

@@ -51,7 +51,7 @@ impl NativeLibrary {
         self.spec.check(found)
     }
 
-    /// The function `name`, `None` where the library lacks it.
+    /// The function `name`, `None` if the library lacks it.
     ///
     /// # Safety
     /// `T` is the type of a pointer to that function, as its documentation declares it.

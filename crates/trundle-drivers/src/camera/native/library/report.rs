@@ -21,7 +21,7 @@ pub enum LibraryState {
     Usable {
         /// Its file.
         file: PathBuf,
-        /// Its version; `None` where the library has no function that tells it.
+        /// Its version; `None` if the library has no function that tells it.
         version: Option<LibraryVersion>,
     },
     /// The library cannot be used.

@@ -162,7 +162,7 @@ impl OpenDevice {
         })
     }
 
-    /// The next image of either stream; `None` when none came within `timeout`.
+    /// The next image of either stream; `None` if none came within `timeout`.
     pub(super) fn next_image(&mut self, timeout: Duration) -> Result<Option<(Kind, RawImage)>, CameraError> {
         let ms = c_int::try_from(timeout.as_millis()).unwrap_or(c_int::MAX);
         let mut index = -1;

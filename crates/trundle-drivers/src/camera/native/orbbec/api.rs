@@ -122,7 +122,7 @@ impl OrbbecApi {
         })
     }
 
-    /// As [`OrbbecApi::owned`]; `None` where the function returned no object.
+    /// As [`OrbbecApi::owned`]; `None` if the function returned no object.
     pub(super) fn owned_or_none<T>(
         self: &Arc<Self>,
         delete: unsafe extern "C" fn(*mut T, ErrorOut),

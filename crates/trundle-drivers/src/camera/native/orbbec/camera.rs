@@ -31,7 +31,7 @@ pub struct OrbbecSettings {
     pub rate_hz: u32,
     /// Time from the middle of the exposure to the arrival of a frame \[s\]. Default 0.045, assumed.
     pub delay_s: f64,
-    /// File of the library; `None` where it is searched.
+    /// File of the library; `None` if it is searched.
     pub library: Option<PathBuf>,
 }
 
@@ -134,7 +134,7 @@ impl Running {
         Ok(Self { pipeline, _device: device, _context: context, api: Arc::clone(api), name })
     }
 
-    /// The next set with both images; `None` when none came within `timeout`.
+    /// The next set with both images; `None` if none came within `timeout`.
     fn wait(&self, timeout: Duration) -> Result<Option<FrameSet>, CameraError> {
         let start = Instant::now();
         loop {

@@ -71,7 +71,7 @@ impl Running {
         })
     }
 
-    /// The next set of frames; `None` when none came within `timeout`.
+    /// The next set of frames; `None` if none came within `timeout`.
     pub(super) fn wait(&self, timeout: Duration) -> Result<Option<Handle<Frame>>, RealSenseError> {
         let ms = c_uint::try_from(timeout.as_millis()).unwrap_or(c_uint::MAX);
         let mut set: *mut Frame = std::ptr::null_mut();

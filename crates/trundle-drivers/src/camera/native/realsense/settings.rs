@@ -27,7 +27,7 @@ pub struct RealSenseSettings {
     pub gyro: bool,
     /// Time from the middle of the exposure to the arrival of a frame \[s\], 0 to 1. Default 0.045, assumed.
     pub delay_s: f64,
-    /// File of the library; `None` where it is searched.
+    /// File of the library; `None` if it is searched.
     pub library: Option<PathBuf>,
 }
 
