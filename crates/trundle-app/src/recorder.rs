@@ -48,7 +48,7 @@ impl RunRecorder {
         Self::of_content(RecordingContent::All, folder)
     }
 
-    /// The same, or no recording where `content` is none.
+    /// A recording of `content` into `folder`; no recording if `content` is [`RecordingContent::None`].
     ///
     /// # Errors
     /// When the file cannot be created.
@@ -56,7 +56,7 @@ impl RunRecorder {
         Ok(Self::of(Sink::Inline(Box::new(RecordingFile::new(content, folder)?))))
     }
 
-    /// The same recorder, whose recording ends where `space` is short; not for one with a thread of its own.
+    /// This recorder, whose recording ends if `space` is short; not for one with a thread of its own.
     #[must_use]
     pub fn watching(mut self, space: FreeSpace) -> Self {
         if let Sink::Inline(file) = &mut self.sink {
@@ -82,7 +82,7 @@ impl RunRecorder {
         Ok(Self::of(Sink::Inline(Box::new(file))))
     }
 
-    /// A recording into `folder`, written by a thread of its own at `place`. With `content` [`RecordingContent::None`] nothing is recorded.
+    /// A recording into `folder`, written by a thread of its own at `place`. Nothing is recorded if `content` is [`RecordingContent::None`].
     ///
     /// # Errors
     /// When the file cannot be created or the thread cannot be started.
@@ -109,7 +109,7 @@ impl RunRecorder {
         Ok(Self::of(Sink::Threaded { lines, waiting, thread }))
     }
 
-    /// The same recorder, which also writes the robot's checkpoints into `file`, where a file is given.
+    /// This recorder, which also writes the robot's checkpoints into `file`, if a file is given.
     ///
     /// # Errors
     /// When the writer's thread cannot be started.

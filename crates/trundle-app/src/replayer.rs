@@ -27,7 +27,7 @@ impl RunReplayer {
         Self::of(file, RecordingReader::open(file)?)
     }
 
-    /// The same of a recording that may be cut at any byte: it is fed to there.
+    /// Opens a recording that may be cut at any byte: it is replayed up to the cut.
     ///
     /// # Errors
     /// As [`RunReplayer::open`], and when nothing can be read before the cut.

@@ -171,7 +171,7 @@ impl HullProfile {
         (ahead, behind)
     }
 
-    /// The same for a box that is thin enough to count as a segment.
+    /// Free distances ahead and behind of a box that is thin enough to count as a segment.
     fn free_distances_of_line(&self, bounds: &OrientedBox) -> Option<(f64, f64)> {
         let is_slender = |by: f64| bounds.half.y <= by && bounds.half.x > MIN_SLENDERNESS * by;
         let grown = &self.grown[THIN_HALF_THICKNESS_M.iter().position(|&by| is_slender(by))?];

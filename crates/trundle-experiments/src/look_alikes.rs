@@ -12,7 +12,7 @@ use trundle_viz::{Report, Table, Verdict};
 
 /// Distance from its goal beyond which a robot that reports its arrival is wrong, m.
 const FALSE_ARRIVAL_M: f64 = 0.3;
-/// The same for the heading, deg.
+/// Heading error beyond which a robot that reports its arrival is wrong, deg.
 const FALSE_ARRIVAL_DEG: f64 = 20.0;
 /// Change of the estimate's error between two images that counts as a jump away from the truth, m.
 const JUMP_M: f64 = 0.3;

@@ -64,7 +64,7 @@ pub fn run(request: &RunsRequest, progress: &Progress) -> Result<PosesOutcome, A
     Ok(PosesOutcome { trials: trial::run_all(plans(request)?, request, progress)? })
 }
 
-/// The same over a serial line and a stream of camera frames, one run after the other, by the wall clock.
+/// The runs over a serial line and a stream of camera frames, one run after the other, by the wall clock.
 ///
 /// # Errors
 /// As [`run`].

@@ -73,7 +73,7 @@ impl<const N: usize> BlockMatrix<N> {
         matrix
     }
 
-    /// The same in place.
+    /// Shapes this matrix in place for `count` nodes and the linked `pairs`.
     pub(crate) fn shape(&mut self, count: usize, pairs: &[(usize, usize)]) {
         self.row_of = narrow_order(count, pairs);
         self.first.clear();

@@ -110,7 +110,7 @@ impl BundleProblem {
         Ok(Self { camera, poses, points, observations, constraints: Vec::new(), parts: Vec::new() })
     }
 
-    /// The same with further measurements between poses, for example by wheels or of the floor. Each counts under the Huber loss as a
+    /// This problem with further measurements between poses, for example by wheels or of the floor. Each counts under the Huber loss as a
     /// whole, with the bound at 95 %: a wrong one, as by slip, pulls no harder than one at the bound.
     ///
     /// # Errors
@@ -122,7 +122,7 @@ impl BundleProblem {
         Ok(Self { constraints, ..self })
     }
 
-    /// The same for poses in several parts, numbered by `parts`, whose common points may be wrong matches. Links between two parts count in
+    /// This problem for poses in several parts, numbered by `parts`, whose common points may be wrong matches. Links between two parts count in
     /// the refinement, but reduce no covariance.
     ///
     /// # Errors

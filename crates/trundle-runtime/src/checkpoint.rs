@@ -235,7 +235,7 @@ mod tests {
         Checkpoint::from_bytes(&[MAGIC.as_slice(), &FORMAT_VERSION.to_le_bytes(), &checksum, &rest].concat())
     }
 
-    /// The same with `old` in the notes replaced by `new`.
+    /// The error of a checkpoint with `old` in the notes replaced by `new`.
     fn with_notes(old: &str, new: &str) -> CheckpointError {
         let change = |rest: &mut Vec<u8>| {
             let length = u32::from_le_bytes(*rest.first_chunk().unwrap()) as usize;

@@ -45,7 +45,7 @@ pub(crate) struct LocalizedPose {
 
 /// Number of scans after the first that must fit a candidate pose, each 10 deg or 0.3 m farther on, where no image can be recognised. Source: ours.
 const MIN_CONFIRMING_SCANS: usize = 6;
-/// The same number where images have enough features and are not recognised: that is evidence against every pose in the map. Source: ours.
+/// Number of scans if images have enough features and are not recognised: that is evidence against every pose in the map. Source: ours.
 const MIN_CONFIRMING_SCANS_SEEN: usize = 18;
 /// Longest time between two scans of a standing robot that still count as consecutive \[s\]. Source: ours.
 const MAX_STANDING_GAP_S: f64 = 3600.0;

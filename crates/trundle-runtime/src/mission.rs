@@ -80,7 +80,7 @@ impl MissionState {
         Ok(Self { left: Mission::new(self.left.tasks)?, ..self })
     }
 
-    /// The same after the robot was switched off and on again.
+    /// This mission after the robot was switched off and on again.
     #[must_use]
     pub(crate) fn after_restart(mut self) -> Self {
         self.ended.iter_mut().for_each(|record| record.before_restart = true);

@@ -48,7 +48,7 @@ pub(crate) struct ZoneView<'a> {
     pub(crate) masks: Option<&'a Arc<ZoneMasks>>,
     /// The map with the no-go zones occupied. `None` if they forbid nothing.
     pub(crate) grid: Option<&'a OccupancyGrid>,
-    /// The same of the map without what moves. `None` if nothing moves.
+    /// The map without moving obstacles, its no-go zones occupied. `None` if nothing moves.
     pub(crate) static_grid: Option<&'a OccupancyGrid>,
 }
 

@@ -85,7 +85,7 @@ impl RgbdSlam {
         })
     }
 
-    /// The same with another vocabulary than the built-in one; call it before the first image.
+    /// This tracker with another vocabulary than the built-in one; call it before the first image.
     #[must_use]
     pub fn with_vocabulary(mut self, vocabulary: &Arc<Vocabulary>) -> Self {
         self.set_vocabulary(vocabulary);
@@ -97,7 +97,7 @@ impl RgbdSlam {
         self.atlas.set_vocabulary(vocabulary);
     }
 
-    /// The same with the camera at `visual_from_camera` at the start; call it before the first image. In a loaded map, the camera is
+    /// This tracker with the camera at `visual_from_camera` at the start; call it before the first image. In a loaded map, the camera is
     /// searched there first.
     #[must_use]
     pub fn starting_at(mut self, visual_from_camera: Pose3) -> Self {
@@ -132,7 +132,7 @@ impl RgbdSlam {
         self.step_with_features(image.stamp(), features, image.depth(), prior)
     }
 
-    /// The same with features from elsewhere, by an extractor of the same configuration: in another thread, for example.
+    /// A step with features from elsewhere, by an extractor of the same configuration: in another thread, for example.
     pub fn step_with_features(
         &mut self,
         stamp: Stamp,

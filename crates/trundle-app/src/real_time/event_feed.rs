@@ -45,7 +45,7 @@ impl EventFeed {
         Self::with_clock(events, origin, clock)
     }
 
-    /// The same with another clock of the run, as that of a simulator, which may run slower or stand still.
+    /// A feed with another clock of the run, as that of a simulator, which may run slower or stand still.
     #[must_use]
     pub fn with_clock(events: InboxSender<TimedEvent>, origin: Instant, clock: HostClock) -> Self {
         Self { events, origin, clock, state: Arc::default() }

@@ -129,7 +129,7 @@ impl FrameMonitor {
         }
     }
 
-    /// The same, after another opening of the camera whose last frame had these stamps: it may begin with that frame again.
+    /// This monitor after another opening of the camera whose last frame had these stamps: it may begin with that frame again.
     #[must_use]
     pub fn following(self, last_stamps: Option<(Stamp, Stamp)>) -> Self {
         Self { last_stamps, ..self }

@@ -34,7 +34,7 @@ impl SerialConnector {
         Self { path: path.into(), guard_program: None }
     }
 
-    /// The same, with each open port guarded by a process of `program`, which has the command
+    /// This port, guarded while it is open by a process of `program`, which has the command
     /// [`GUARD_COMMAND`](super::base_guard::GUARD_COMMAND): it stops the base where this program dies.
     #[must_use]
     pub fn guarded_by(self, program: &Path) -> Self {

@@ -71,7 +71,7 @@ impl EmulatedRobot {
         })
     }
 
-    /// The same with its base at a new pseudo terminal, to which `port` becomes a symbolic link.
+    /// An emulated robot with its base at a new pseudo terminal, to which `port` becomes a symbolic link.
     ///
     /// # Errors
     /// When the pseudo terminal, the link or the FIFO cannot be made.

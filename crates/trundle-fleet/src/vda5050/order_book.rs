@@ -167,7 +167,7 @@ impl OrderBook {
         self.at_node.front()
     }
 
-    /// The same, taken out.
+    /// Takes the next action out.
     pub fn take_action(&mut self) -> Option<Action> {
         self.at_node.pop_front()
     }

@@ -29,7 +29,7 @@ impl EncodedRgbd {
         })
     }
 
-    /// The same with colour as the JPEG that it was decoded from.
+    /// Encodes an image, with colour as the JPEG that it was decoded from.
     ///
     /// # Errors
     /// When a side is 0 or above 65,535 px.

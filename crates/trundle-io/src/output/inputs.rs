@@ -28,7 +28,7 @@ impl InputFiles {
         files
     }
 
-    /// The same, and these files.
+    /// These inputs, and the files `files`.
     #[must_use]
     pub fn and(mut self, files: impl IntoIterator<Item = PathBuf>) -> Self {
         self.paths.extend(files);

@@ -52,7 +52,7 @@ impl RecordingReader {
         Self::of(MessageStream::open(path, Encoding::Own)?)
     }
 
-    /// The same of a recording that may be cut at any byte, as by a power failure: its messages up to there.
+    /// Opens a recording that may be cut at any byte, as by a power failure, and reads its messages up to the cut.
     ///
     /// # Errors
     /// When the file cannot be read, is not an MCAP recording, or is cut before its first message.

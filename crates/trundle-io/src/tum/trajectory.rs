@@ -46,7 +46,7 @@ pub fn read_trajectory_file(path: &Path) -> Result<TrajectoryFile, IoError> {
     parse_trajectory(path, &read_text(path)?, BrokenRows::Refused)
 }
 
-/// The same of a file that a run can do without: rows that cannot be read are left out with a warning.
+/// Reads a trajectory that a run can do without: rows that cannot be read are left out with a warning.
 pub(super) fn read_optional_trajectory(path: &Path) -> TrajectoryFile {
     let text = Expected::Trajectory.check(path).and_then(|_| read_text(path));
     let read = text.and_then(|text| parse_trajectory(path, &text, BrokenRows::LeftOut));

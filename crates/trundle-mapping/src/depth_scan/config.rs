@@ -36,7 +36,7 @@ pub struct DepthScanConfig {
     /// Of a pixel's 8 neighbours, how many must be about as deep for it to be an obstacle, 0 to 8. Default 3: a line of
     /// flying pixels along an edge, one pixel wide, has two.
     pub hit_support_px: u8,
-    /// The same for a pixel to prove free space, 0 to 8. Default 2: of a grazing floor only the pixels of one row agree.
+    /// Of a pixel's 8 neighbours, how many must be similarly deep for it to prove free space, 0 to 8. Default 2: of a grazing floor only the pixels of one row agree.
     pub free_support_px: u8,
 }
 

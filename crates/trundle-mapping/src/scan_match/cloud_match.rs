@@ -57,7 +57,7 @@ impl CloudMatcher<'_> {
         self.find_in(&pyramid, map, guess, covariance, (reach, turn_reach), most)
     }
 
-    /// The same with a pyramid that is there already.
+    /// Matches of the cloud in a pyramid that exists already.
     pub(crate) fn find_in(
         &self,
         pyramid: &Pyramid,

@@ -13,7 +13,7 @@ pub(crate) struct ScanPoints {
     pub(crate) rays: ScanRays,
     /// The hits, thinned, for matching.
     pub(crate) points: Vec<ScanPoint>,
-    /// The same, in groups for vector code; the last is filled up.
+    /// The thinned hits in groups for vector code; the last is filled up.
     pub(crate) groups: Vec<PointGroup>,
     /// Spread of the points, cells.
     pub(crate) spread: PointSpread,

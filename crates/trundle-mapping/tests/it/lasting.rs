@@ -19,7 +19,7 @@ fn hall() -> FlatRoom {
     ])
 }
 
-/// The same from two sides: turned by half a turn it looks as before.
+/// A room that looks alike from two sides: turned by half a turn it looks as before.
 fn twins() -> FlatRoom {
     FlatRoom::new(&[
         &[(-10.0, -10.0), (10.0, -10.0), (10.0, 10.0), (-10.0, 10.0)],

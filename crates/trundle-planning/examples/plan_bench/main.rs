@@ -44,7 +44,7 @@ struct Row {
     way: f64,
     /// The shortest any-angle length for the footprint.
     shortest: f64,
-    /// The same for the room that the plan keeps, up to the margin.
+    /// The shortest any-angle length with the clearance that the plan keeps, up to the margin.
     roomy: f64,
     curves: usize,
     stages: PlanningTimes,

@@ -14,7 +14,7 @@ use trundle_runtime::{OperatorCommand, PoseGuess, Task};
 
 /// Standard deviation of a pose whose covariance is zero: position \[m\]. Source: RViz sends 0.5.
 const DEFAULT_POSITION_SIGMA_M: f64 = 0.5;
-/// The same for the heading \[rad\]. Source: RViz sends 0.26.
+/// Standard deviation of a pose whose covariance is zero: heading \[rad\]. Source: RViz sends 0.26.
 const DEFAULT_HEADING_SIGMA_RAD: f64 = 0.26;
 
 /// Subscribes to both topics and offers the service.

@@ -29,7 +29,7 @@ impl Spin {
         self.twist_towards(SPIN_RATE_RAD_S, pose)
     }
 
-    /// The same to the side that this turn rate (rad/s) is of.
+    /// The command towards the side of this turn rate (rad/s), and a note of how far it has turned.
     pub(crate) fn twist_towards(&mut self, side: f64, pose: Pose2) -> Twist2 {
         let last = self.last.replace(pose.theta).unwrap_or(pose.theta);
         self.turned += wrap_angle(pose.theta - last).abs();

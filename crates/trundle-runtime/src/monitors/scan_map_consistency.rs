@@ -26,7 +26,7 @@ pub(crate) enum Fit {
 const HIT_TOLERANCE_M: f64 = 0.25;
 /// Share of a scan's known hits that contradict the map, above which the scan contradicts it. A person nearby hides less. Source: ours.
 const CONTRADICTING_SHARE: f64 = 0.45;
-/// The same share where the scan before agreed with the map: new things come into view gradually. Source: ours.
+/// The share that contradicts if the scan before agreed with the map: new things come into view gradually. Source: ours.
 const SUDDEN_CONTRADICTING_SHARE: f64 = 0.15;
 /// Share of contradicting hits up to which a scan agrees with the map. Source: ours.
 const AGREEING_SHARE: f64 = 0.03;

@@ -15,7 +15,7 @@ const DIRECTIONS: [(f64, f64); 4] =
 const MAX_OCTAVE_SCALE: f64 = 2.0;
 /// Second difference of the inverse depth that is a step, as a fraction of it: 0.1. Source: docs/experiments/slam-depth-edges.md.
 const MIN_STEP_RATIO: f64 = 0.1;
-/// The same besides, in standard deviations of its noise: 3. See [`MIN_STEP_RATIO`].
+/// Second difference of the inverse depth that is a step, in standard deviations of its noise, besides the ratio: 3. See [`MIN_STEP_RATIO`].
 const MIN_STEP_SIGMAS: f64 = 3.0;
 /// Fewest features that must be left: 100. Otherwise none is dropped, as on railings, leaves and noisy depths. Source: ours.
 const MIN_KEPT_FEATURES: usize = 100;

@@ -64,7 +64,7 @@ impl Frame {
         Self { stamp, features, pixels, depths, pixel_sigmas: vec![], slopes: vec![], grid }.unaligned(model)
     }
 
-    /// The same with features where they were aligned to.
+    /// This frame with features at the positions of their alignment.
     #[must_use]
     pub fn with_aligned(
         mut self,
@@ -81,7 +81,7 @@ impl Frame {
         self
     }
 
-    /// The same with all features as uncertain as plain ones.
+    /// This frame with all features as uncertain as plain ones.
     #[must_use]
     pub fn unaligned(mut self, model: &ObservationModel) -> Self {
         let sigmas = self.features.keypoints.iter().map(|k| model.sigma_of(k.octave) as f32);
@@ -116,7 +116,7 @@ impl Frame {
         }
     }
 
-    /// The same with the standard deviation of a feature that was not aligned: to judge whether the feature may be of another landmark
+    /// Observation of a feature with the standard deviation of one that was not aligned: to test whether the feature may be of another landmark
     /// than the one it was aligned to.
     pub fn unaligned_observation(&self, i: usize, model: &ObservationModel) -> PointObservation {
         PointObservation { pixel_sigma: model.sigma_of(self.octave(i)), ..self.observation(i) }

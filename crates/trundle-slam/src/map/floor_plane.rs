@@ -25,7 +25,7 @@ const MIN_ON_PLANE_RATIO: f64 = 0.8;
 pub(crate) struct FloorPlane {
     /// Across the plane, camera frame.
     axis: Vector3,
-    /// The same in the visual frame.
+    /// Across the plane, visual frame.
     normal: Vector3,
     /// Along it, m.
     height: f64,

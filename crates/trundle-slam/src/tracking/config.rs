@@ -14,7 +14,7 @@ pub struct TrackingConfig {
     /// Radius of the search for a point of the last frame around its prediction, px of its octave, above 0; twice as large at
     /// the second try. Default 15 \[MurArtal17\].
     pub motion_window_px: f64,
-    /// The same for a landmark of the map, once the pose is known from the last frame. Default 6: three standard
+    /// Radius of the search for a landmark of the map, px of its octave, once the pose is known from the last frame. Default 6: three standard
     /// deviations of a keypoint and as much for the map.
     pub map_window_px: f64,
     /// Highest distance of descriptors within a window, bits of 256. Default 80: unlike points differ by 128 on average.

@@ -116,7 +116,7 @@ impl LocalizedFrame {
         }
     }
 
-    /// The same with its features aligned, where enough of them can be and the pose stays at the same place.
+    /// This frame with its features aligned, if enough of them can be and the pose stays at its place.
     pub fn aligned(self, tracker: &Tracker, prior: PosePriorKind) -> Self {
         let Some(pose) = tracker.aligned(&self.pose, prior) else { return self };
         let pose = if self.recognized.is_some() { with_correlated_errors(pose) } else { pose };

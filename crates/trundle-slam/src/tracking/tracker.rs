@@ -173,7 +173,7 @@ impl Tracker<'_> {
         pose.is_sound(self.config.min_inliers).then_some(pose)
     }
 
-    /// The same for a camera whose pose is known roughly.
+    /// This tracker for a camera whose pose is known roughly.
     pub fn searching_wider(&self) -> Self {
         Self {
             local_map: LocalMapQuery { window_px: self.config.motion_window_px, ..self.local_map },

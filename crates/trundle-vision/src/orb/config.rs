@@ -15,7 +15,7 @@ pub struct OrbConfig {
     pub scale_factor: f64,
     /// A corner's nine neighbours differ from it by more than this, grey values, 1 to 254. Default 20 \[Rublee11\].
     pub fast_threshold: u8,
-    /// The same where a cell would stay empty, grey values, 1 to `fast_threshold`. Default 7 \[MurArtal17\].
+    /// Threshold for a corner if a cell would stay empty, grey values, 1 to `fast_threshold`. Default 7 \[MurArtal17\].
     pub fast_min_threshold: u8,
     /// Side of the cells in which the lower threshold is resorted to, px of the level, 8 to 65535. Default 32: about the size
     /// of a descriptor's patch.

@@ -49,7 +49,7 @@ impl ErrorReport {
         }
     }
 
-    /// The same with what it refers to.
+    /// This report with a reference: key and value.
     #[must_use]
     pub fn about(mut self, key: &str, value: impl ToString) -> Self {
         let (reference_key, reference_value) = (key.to_owned(), value.to_string());
@@ -57,7 +57,7 @@ impl ErrorReport {
         self
     }
 
-    /// The same with what to do.
+    /// This report with a hint: the remedy.
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.error_hint = Some(hint.into());

@@ -41,7 +41,7 @@ pub struct RosSequence {
 const BASE_FRAMES: [&str; 2] = ["base_footprint", "base_link"];
 /// Distance of the depth camera from the colour camera \[m\], from which depth is not registered to colour. Source: ours.
 const MAX_DEPTH_OFFSET_M: f64 = 1e-3;
-/// The same for the turn between both \[rad\]. Source: ours.
+/// Turn between both cameras \[rad\] from which depth is not registered to colour. Source: ours.
 const MAX_DEPTH_TURN_RAD: f64 = 1e-3;
 
 impl RosSequence {

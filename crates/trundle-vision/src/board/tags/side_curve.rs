@@ -34,7 +34,7 @@ const MIN_SEARCH_PX: f64 = 3.0;
 const STEP_PX: f64 = 0.5;
 /// Half width of the window in which the mean of the gradient is the edge, px. Source: ours.
 const WINDOW_PX: f64 = 2.0;
-/// The same over the length: the border is an eighth of the side, less where the marker is tilted. Source: ours.
+/// Half width of that window as a fraction of the side's length: the border is an eighth of the side, less where the marker is tilted. Source: ours.
 const WINDOW_RATIO: f64 = 0.05;
 /// Smallest gradient of an edge, grey values a px. Source: ours.
 const MIN_GRADIENT: f64 = 4.0;
