@@ -1,4 +1,4 @@
-//! The judge: drives a path in fine steps and looks for contact by sampling, on its own. One for all methods.
+//! The checker: drives a path in fine steps and looks for contact by sampling, on its own. One for all methods.
 
 use std::collections::BTreeMap;
 use trundle_core::{Pose2, wrap_angle};
@@ -51,7 +51,7 @@ pub struct Judged {
     pub missing: usize,
 }
 
-/// Judges answers to problems; refuses two answers to one problem, and one to a problem that there is not.
+/// Evaluates answers to problems; refuses two answers to one problem, and one to a problem that there is not.
 pub fn judge(problems: &[Problem], answers: &[ProblemAnswer]) -> Result<Judged, String> {
     let mut open: BTreeMap<&str, &ProblemAnswer> = BTreeMap::new();
     for answer in answers {

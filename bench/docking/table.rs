@@ -46,7 +46,7 @@ impl Row {
         }
     }
 
-    /// Has a path judged; none is not an answer.
+    /// Has a path evaluated; none is not an answer.
     pub fn note(&mut self, problem: &Problem, path: Option<Vec<PathPiece>>) {
         let judged = path.as_ref().map(|path| judge::time(problem, path));
         match &judged {

@@ -240,7 +240,7 @@ await check("Home Assistant finds the robot, its state and its map", async () =>
   return `${seen.pictures.length} pictures, ${seen.pictures.at(-1).length} bytes`;
 });
 
-await check("commands of the home are obeyed or refused with the reason", async () => {
+await check("commands of the home are carried out or refused with the reason", async () => {
   const command = async (payload) => {
     delete seen.home["acme/r1/reply"];
     home.publish("acme/r1/command", typeof payload === "string" ? payload : JSON.stringify(payload));

@@ -57,7 +57,7 @@ pub enum Command {
     Convert(ConvertArgs),
     /// Measure the robot's own numbers: camera, mount, wheels, image delay.
     Calibrate(CalibrateArgs),
-    /// Judge a trajectory or a map against the truth.
+    /// Evaluate a trajectory or a map against the truth.
     Eval(EvalArgs),
     /// Plan on a map: way-points, curve and trajectory.
     Plan(PlanArgs),

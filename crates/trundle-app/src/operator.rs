@@ -1,7 +1,7 @@
 //! The link between a run and its front ends: requests of an operator go in, views of the run come out.
 //!
 //! A front end (a page, ROS 2) keeps an [`Operator`], the run an [`OperatorLink`]. Requests are recorded at the place at which the robot
-//! obeys them, so a replay obeys them there too. Views cost the robot a few copies at each control step; a slow reader misses views.
+//! follows them, so a replay follows them there too. Views cost the robot a few copies at each control step; a slow reader misses views.
 
 mod annotation_edit;
 mod annotation_store;

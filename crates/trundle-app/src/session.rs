@@ -216,7 +216,7 @@ impl<'s> RunSession<'s> {
         self.robot.apply_answer(answer)
     }
 
-    /// The robot obeys an operator from here on.
+    /// The robot follows an operator from here on.
     fn obey(&mut self, request: OperatorRequest) -> Result<StepReport, AppError> {
         self.record_mark(RunMark::Operator(request.clone()));
         if let Some(link) = &mut self.operator {

@@ -52,7 +52,7 @@ pub struct RelationError {
 }
 
 /// The relations metric: for each true relation d* and its estimate d the error is d*^-1 d, whose translation and rotation
-/// are judged apart. Source: \[Kuemmerle09\], eq. 2 (the mean of squares there is `rmse` squared here). One wrong turn is
+/// are evaluated apart. Source: \[Kuemmerle09\], eq. 2 (the mean of squares there is `rmse` squared here). One wrong turn is
 /// one error, and does not spoil all that follows, as it does when trajectories are laid over each other.
 ///
 /// # Errors

@@ -8,7 +8,7 @@ const MIN_USABLE_M: f32 = 0.3;
 const MAX_USABLE_M: f32 = 8.0;
 /// Rows and columns from one pixel that counts to the next. Source: ours, 1,200 pixels of a 640 x 480 image.
 const PIXEL_STEP: usize = 16;
-/// Typical depth of a room's walls, m: a depth scale is judged by how near the mean depth comes to it. Source: ours.
+/// Typical depth of a room's walls, m: a depth scale is evaluated by how near the mean depth comes to it. Source: ours.
 const TYPICAL_DEPTH_M: f64 = 2.0;
 /// Depth scales in use, units a metre: metres, 0.1 mm, mm, and TUM's 0.2 mm. Source: docs/formats.md.
 const KNOWN_SCALES: [f64; 4] = [1.0, 1000.0, 5000.0, 10_000.0];

@@ -9,12 +9,12 @@ use trundle::eval::{Alignment, DeltaUnit};
 /// `trundle eval`
 #[derive(Debug, Args)]
 pub struct EvalArgs {
-    /// What is judged.
+    /// What is evaluated.
     #[command(subcommand)]
     pub which: Which,
 }
 
-/// What can be judged.
+/// What can be evaluated.
 #[derive(Debug, Subcommand)]
 pub enum Which {
     /// A trajectory, by its absolute and relative errors (ATE and RPE, as evo takes them).
@@ -34,7 +34,7 @@ pub enum Which {
 pub struct TrajectoryArgs {
     /// The true trajectory.
     pub reference: PathBuf,
-    /// The trajectory to judge.
+    /// The trajectory to evaluate.
     pub estimate: PathBuf,
     /// How the estimate is laid over the reference for the absolute error.
     #[arg(long, value_name = "HOW", default_value = "se3", value_parser = choice(&Alignment::CHOICES))]
@@ -69,7 +69,7 @@ pub struct TrajectoryArgs {
 pub struct RelationsArgs {
     /// A reference trajectory, or with --file a relation file: from_time to_time x y z roll pitch yaw.
     pub reference: PathBuf,
-    /// The trajectory to judge.
+    /// The trajectory to evaluate.
     pub estimate: PathBuf,
     /// REFERENCE is a relation file.
     #[arg(long)]
@@ -94,12 +94,12 @@ pub struct RelationsArgs {
 pub struct MapsArgs {
     /// The true map, in map_server's form.
     pub truth: PathBuf,
-    /// The map to judge.
+    /// The map to evaluate.
     pub map: PathBuf,
     /// Where the map's frame lies in the true one's: m, m, deg.
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true, default_value = "0,0,0")]
     pub at: PoseArg,
-    /// --at is exact: the map is judged where it lies.
+    /// --at is exact: the map is evaluated where it lies.
     #[arg(long)]
     pub exact: bool,
     /// Occupied cells agree when their centres are at most so far apart, m.

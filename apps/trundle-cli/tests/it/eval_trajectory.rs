@@ -1,4 +1,4 @@
-//! Trajectories judged: the numbers of the PyPI tool evo, and what the folder holds.
+//! Trajectories evaluated: the numbers of the PyPI tool evo, and what the folder holds.
 
 use crate::program::{refusal, summary, text, trundle};
 use serde_json::Value;

@@ -86,7 +86,7 @@ impl Operator {
     /// Sends a command; its number, by which [`RunView::mission`] names the mission that it begins.
     ///
     /// # Errors
-    /// When the command cannot be obeyed, too many wait, or the run is over.
+    /// When the command cannot be carried out, too many wait, or the run is over.
     pub fn send(&self, command: OperatorCommand) -> Result<u64, OperatorError> {
         let command = command.validated()?;
         let mut requests = self.shared.requests.lock().unwrap_or_else(PoisonError::into_inner);

@@ -66,7 +66,7 @@ impl GoalOutcome {
         vec![
             format!("goal {} at ({x:.2} m, {y:.2} m, {:.0} deg)", self.task + 1, theta.to_degrees()),
             if self.before_restart {
-                format!("{}, before it was switched off; believed {}", self.end, error(&self.believed))
+                format!("{}, before it was switched off; estimated error {}", self.end, error(&self.believed))
             } else {
                 let (by, found) = if self.error.is_some() {
                     ("", &self.error)

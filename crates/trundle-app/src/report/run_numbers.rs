@@ -111,7 +111,7 @@ impl RunNumbers {
         }
     }
 
-    /// The error against the last goal that judges the run: in truth where it is known, else of the estimate.
+    /// The error against the last goal, by which the run succeeds or fails: in truth where it is known, else of the estimate.
     fn judged_error(&self) -> Option<GoalError> {
         self.goal_error.or(self.believed_error)
     }
@@ -197,7 +197,7 @@ impl RunNumbers {
             rows.extend(self.goals.iter().map(GoalOutcome::row));
         }
         rows.extend(self.goal_error.as_ref().map(|e| row("goal error against truth", error(e))));
-        rows.extend(self.believed_error.as_ref().map(|e| row("goal error as believed", error(e))));
+        rows.extend(self.believed_error.as_ref().map(|e| row("goal error of the estimate", error(e))));
         rows.extend(
             self.estimate_rmse.map(|e| row("estimate against truth, rmse", format!("{:.1} cm", e * 100.0))),
         );

@@ -12,7 +12,7 @@ pub struct SafetyConfig {
     pub deceleration: f64,
     /// Angular deceleration to count on when a polygon turns on the spot, rad/s^2, 0.1 to 100. Default 3, as above.
     pub angular_deceleration: f64,
-    /// From an image to the wheels obeying, s, 0 to 2, at least. Default 0.2: an image period, processing, delay and lag.
+    /// From an image to the response of the wheels, s, 0 to 2, at least. Default 0.2: an image period, processing, delay and lag.
     pub latency: f64,
     /// Room left before an obstacle ahead, m, 0 to 1. Default 0.04 (ours).
     pub stop_margin: f64,

@@ -1,4 +1,4 @@
-//! The safety monitor: judges one command.
+//! The safety monitor: evaluates one command.
 
 use crate::safety::hold::MotionHold;
 use crate::safety::obstacles::{Obstacle, SafetyMemory, SafetyScan, collect_memory, collect_scan};

@@ -1,7 +1,7 @@
 //! Odometry that the body computes itself, as increments of our own.
 //!
 //! Problem: a body restarts its odometry at any pose, and its stamps may jump. Idea: only the motion between two readings counts. It is
-//! judged as a reading of wheels is: from the past, after a gap, or too fast, it does not move the pose. The covariance grows as the body
+//! evaluated as a reading of wheels is: from the past, after a gap, or too fast, it does not move the pose. The covariance grows as the body
 //! says; where its covariance does not grow, by the noise of wheels without a gyro. Cost: O(1).
 
 use super::wheel_odometry::WheelOdometry;

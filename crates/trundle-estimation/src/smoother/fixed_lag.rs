@@ -168,7 +168,7 @@ impl Smoother {
         self.failures
     }
 
-    /// Declares the pose unknown, as after a kidnapping. Calibration is kept, measurements are forgotten.
+    /// Declares the pose unknown, as after a kidnapping. Calibration is kept, measurements are discarded.
     pub fn set_pose_unknown(&mut self) {
         let (Some(window), Some(newest)) = (&self.window, &self.newest) else { return };
         let estimate = self.estimate();
@@ -288,7 +288,7 @@ impl Smoother {
         self.solve();
     }
 
-    /// Solves the window, judges its recognised places and removes what is too old.
+    /// Solves the window, evaluates its recognised places and removes what is too old.
     pub(super) fn solve(&mut self) {
         let Some(window) = &mut self.window else { return };
         let mut is_solved = window.optimise(&self.motions);

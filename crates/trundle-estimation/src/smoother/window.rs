@@ -234,7 +234,7 @@ impl Window {
         true
     }
 
-    /// Judges each recognised place by all other factors. Returns whether a switch has moved.
+    /// Evaluates each recognised place by all other factors. Returns whether a switch has moved.
     pub(crate) fn judge_places(&mut self) -> bool {
         let mut is_moved = false;
         for k in 1..self.keyframes.len() {

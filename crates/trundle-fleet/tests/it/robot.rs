@@ -1,4 +1,4 @@
-//! A robot that obeys at once, and messages to it.
+//! A robot that acts at once, and messages to it.
 
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task, TaskEnd, TaskR
 /// The map of the tests.
 pub const MAP: &str = "hall";
 
-/// A robot that obeys at once but drives only when a test says so.
+/// A robot that acts at once but drives only when a test says so.
 pub struct TestRobot {
     pub vehicle: Vehicle,
     pub view: RobotGlance,

@@ -23,7 +23,7 @@ pub fn range_unit_hint(log: &LaserLog) -> Option<String> {
     })
 }
 
-/// Why nothing is in a map of a log, judged by its ranges.
+/// Why nothing is in a map of a log, evaluated by its ranges.
 #[must_use]
 pub fn empty_map_cause(log: &LaserLog) -> String {
     if log.scans_without_return() == log.scans.len() {
@@ -33,7 +33,7 @@ pub fn empty_map_cause(log: &LaserLog) -> String {
         .unwrap_or_else(|| format!("{} of {} scans met nothing", log.scans_without_return(), log.scans.len()))
 }
 
-/// Why the scans of a log do not overlap with the map of it, judged by ranges and odometry.
+/// Why the scans of a log do not overlap with the map of it, evaluated by ranges and odometry.
 #[must_use]
 pub fn no_overlap_cause(log: &LaserLog) -> String {
     if log.scans_without_return() == log.scans.len() && !log.scans.is_empty() {

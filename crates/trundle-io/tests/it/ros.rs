@@ -296,7 +296,7 @@ fn bad_messages_are_named_and_left_out() {
             "message 10 on /scan: 0 ranges, expected 1 to 100000",
         ]
     );
-    // Beams may change in number, and odometry that jumps 5 m is for the mapper to judge.
+    // Beams may change in number, and odometry that jumps 5 m is for the mapper to evaluate.
     assert_eq!(log.scans.iter().map(|s| s.scan.beams().len()).collect::<Vec<_>>(), [4, 9, 4]);
     assert_eq!(log.scans[2].odom_from_base, Pose2::new(5.5, 0.0, 0.0));
     assert_eq!((log.bad_ranges, log.scans[2].scan.beams()[3]), (2, Beam::Hit { range: 3.0 }));

@@ -60,7 +60,7 @@ pub async fn receive(mut stream: SplitStream<WebSocket>, viewer: Viewer<'_>) -> 
 }
 
 impl Viewer<'_> {
-    /// Obeys a request; the answer, where there is one.
+    /// Carries out a request; the answer, where there is one.
     fn reply(&self, request: &Request) -> Option<Reply> {
         match request {
             Request::Seen { batch } => {

@@ -83,7 +83,7 @@ impl CloudMatcher<'_> {
         };
         let mut places: Vec<Place> = Vec::new();
         while places.len() < most {
-            // A place with half of the best one's score is not a rival.
+            // A place with half of the best one's score is not a competitor.
             let least = places.first().map_or(0.0, |best| 0.5 * best.score);
             let Some(place) =
                 pyramid.search(&query, &places, (MIN_PLACE_DISTANCE_CELLS, MIN_PLACE_TURN_RAD), least)

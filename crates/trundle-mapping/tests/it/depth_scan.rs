@@ -301,7 +301,7 @@ proptest! {
         let mut scanner = DepthScanner::new(camera, mount(0.45, 8.0), DepthScanConfig::default()).unwrap();
         let scan = scanner.scan(&rgbd(depth));
         let floor = scanner.floor().unwrap();
-        // Looking lower than believed, the floor seems nearer, so that it seems to rise.
+        // Looking lower than estimated, the floor seems nearer, so that it seems to rise.
         prop_assert!((floor.rise_ahead.atan().to_degrees() - tilt_error).abs() < 0.3, "{:?}", floor);
         prop_assert!((floor.height + height_error).abs() < 0.01, "{:?} {}", floor, height_error);
         for point in scan.hits() {

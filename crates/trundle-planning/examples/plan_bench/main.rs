@@ -3,7 +3,7 @@
 //!
 //! Each map has the questions that come with it and random ones between connected places. Each is asked 20 times
 //! with the distance field up to date, and the best CPU time of the thread counts: it says something on a busy machine too.
-//! `--only-plans`, `--only-updates`, `--only-large` and `--only-printed` leave out the rest. Every trajectory is judged by the tests' independent checker.
+//! `--only-plans`, `--only-updates`, `--only-large` and `--only-printed` leave out the rest. Every trajectory is evaluated by the tests' independent checker.
 
 #![expect(
     clippy::print_stdout,

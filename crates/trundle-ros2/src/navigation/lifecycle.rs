@@ -60,7 +60,7 @@ fn state(active: &ActiveGoal) -> State {
     State { id, label: label.to_owned() }
 }
 
-/// Obeys a command of the manager. Returns whether it could.
+/// Carries out a command of the manager. Returns whether it could.
 fn manage(active: &ActiveGoal, command: u8) -> bool {
     let command = match command {
         ManageLifecycleNodesRequest::STARTUP | ManageLifecycleNodesRequest::CONFIGURE => return true,

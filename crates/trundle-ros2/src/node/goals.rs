@@ -106,7 +106,7 @@ impl<R: Clone + Default> Goals<R> {
         Ok(())
     }
 
-    /// Forgets a goal that is refused after all.
+    /// Discards a goal that is refused after all.
     pub fn forget(&mut self, id: &GoalId) {
         self.goals.remove(id);
     }
@@ -189,7 +189,7 @@ impl<R: Clone + Default> Goals<R> {
         self.goals.retain(|_, goal| goal.ended.is_none_or(|ended| now - ended < RESULT_LIFETIME));
     }
 
-    /// Forgets the goal that ended first. Returns whether there was one.
+    /// Discards the goal that ended first. Returns whether there was one.
     fn forget_oldest_ended(&mut self) -> bool {
         let ended = self.goals.iter().filter_map(|(id, goal)| Some((goal.ended?, *id)));
         let Some((_, id)) = ended.min() else { return false };

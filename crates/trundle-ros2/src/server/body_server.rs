@@ -23,7 +23,7 @@ use trundle_core::{
 };
 use trundle_estimation::{OdometryConfig, WheelOdometry};
 
-/// Time after the newest command for which the base obeys it. Source: ours; Nav2 sends 20 a second.
+/// Time after the newest command for which the base follows it. Source: ours; Nav2 sends 20 a second.
 const COMMAND_LIFETIME: Duration = Duration::from_millis(500);
 /// Range of a laser's beams without echo \[m\]. Source: the simulated lasers reach 12 m.
 const LASER_RANGE_M: f64 = 12.0;

@@ -120,7 +120,7 @@ impl DockTask {
         DockStep::Goal(Goal::Spin)
     }
 
-    /// On the way: the light was seen, or the station is elsewhere than it was believed.
+    /// On the way: the light was seen, or the station is elsewhere than estimated.
     fn on_way(&mut self, s: &WorldState<'_>, state: &DriveState) -> DockStep {
         let drives = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
         if !drives || !self.check_due.due(s.now) {
@@ -255,7 +255,7 @@ impl DockTask {
         }
     }
 
-    /// The readings contradict what was believed of the station: it is searched anew.
+    /// The readings contradict the estimate of the station: it is searched anew.
     fn lost(&mut self) -> DockStep {
         self.losses += 1;
         if self.losses > MAX_LOSSES {

@@ -45,7 +45,7 @@ impl Registration {
         self.images < CHECKED_IMAGES
     }
 
-    /// Takes an image; judges after some.
+    /// Takes an image; evaluates after some.
     pub fn record(&mut self, gray: &GrayImage, depth: &DepthImage) -> Option<CalibrationIssue> {
         if !self.is_open() || !gray.same_size(depth) {
             return None;

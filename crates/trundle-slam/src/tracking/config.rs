@@ -35,7 +35,7 @@ pub struct TrackingConfig {
     /// Default 5: some 20 ms, 40 when another map is tried as well.
     pub relocalisation_keyframes: usize,
     /// Fraction of the view, of its cells with expected landmarks, in which a relocalisation must find some, 0 to 1. Default
-    /// 0.6: of 400 views of a simulated office with look-alike rooms, wrong ones without a rival reached 0.56; pictures that
+    /// 0.6: of 400 views of a simulated office with look-alike rooms, wrong ones without a competitor reached 0.56; pictures that
     /// hang in two rooms reach 0.45.
     pub recognised_part: f64,
     /// Largest standard deviation of a relocalisation's position, m, above 0, with the errors counted that points of one image

@@ -26,7 +26,7 @@ pub(crate) struct LocalizedFrame {
     pub pose: MatchedPose,
     /// The matches that agree with the pose, with aligned features where those fit.
     pub seen: Vec<PointMatch>,
-    /// Matches before features were aligned. Whether this is the place is judged by all of them, since fewer can be aligned.
+    /// Matches before features were aligned. Whether this is the place is evaluated by all of them, since fewer can be aligned.
     pub matches: usize,
     /// Matches that agreed before features were aligned.
     pub points: usize,

@@ -1,4 +1,4 @@
-//! Whether the covariances are honest: over many runs with the noise that the configuration promises, the error of the pose
+//! Whether the covariances are consistent: over many runs with the noise that the configuration promises, the error of the pose
 //! normalised by its covariance is that of a chi-square with six degrees of freedom [BarShalom01, sec. 5.4].
 
 use crate::points::{Dice, Room, camera, darkness, reported, stamp};

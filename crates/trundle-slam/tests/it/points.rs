@@ -1,5 +1,5 @@
 //! A room of points and a camera that sees them with exactly the noise that the configuration promises: no image is drawn
-//! and no feature extracted, so that many runs cost little and the estimator is all that is judged.
+//! and no feature extracted, so that many runs cost little and the estimator is all that is evaluated.
 
 use nalgebra::Vector6;
 use trundle_core::{DepthImage, PinholeCamera, Pose3, Stamp, Vector2, Vector3};

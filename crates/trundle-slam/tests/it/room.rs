@@ -1,4 +1,4 @@
-//! A box of textured walls, ray cast, with a little noise: shares only trundle-core with what it judges.
+//! A box of textured walls, ray cast, with a little noise: shares only trundle-core with what it evaluates.
 
 use trundle_core::{ColorImage, DepthImage, Image, PinholeCamera, Pose3, RgbdImage, Stamp, Vector2, Vector3};
 

@@ -1,6 +1,6 @@
 //! The perspective three-point problem: from where three known points are seen in three known directions.
 //!
-//! The distances l_i to the points obey three quadrics, l_i^2 + l_j^2 - 2 c_ij l_i l_j = a_ij (law of cosines). Two of their
+//! The distances l_i to the points satisfy three quadrics, l_i^2 + l_j^2 - 2 c_ij l_i l_j = a_ij (law of cosines). Two of their
 //! combinations have no constant: cones, that is conics in the ratios of the distances. Some member of the pencil of the two is
 //! a pair of lines, found by the one real root that a cubic always has; the lines meet the conics in at most four points
 //! \[Persson18, sec. 3\], \[Ding23\]. A few Newton steps on the three quadrics undo what rounding did on the way.

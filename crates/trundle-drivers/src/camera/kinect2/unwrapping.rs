@@ -10,7 +10,7 @@ use std::f32::consts::TAU;
 
 /// The highest frequency, which makes the hypotheses.
 const FINEST_INDEX: usize = 2;
-/// The frequencies that judge the hypotheses.
+/// The frequencies by which the hypotheses are scored.
 const JUDGE_INDICES: [usize; 2] = [0, 1];
 /// Largest difference of a predicted phase \[turn\]: 0.12. Beyond it no hypothesis is right. Source: ours; hypotheses differ by 0.33 turn at
 /// 80 MHz.
