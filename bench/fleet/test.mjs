@@ -250,7 +250,7 @@ await check("commands of the home are carried out or refused with the reason", a
   const word = () => seen.home["acme/r1/state"].state;
   assert.equal((await command({ command: "go", x: 0.5, y: 0, heading_deg: 180 })).accepted, true);
   await until("motion", () => word() === "cleaning");
-  // The vehicle's state comes by a topic of its own, at most so often a second.
+  // The vehicle's state comes by a topic of its own, at most so often per second.
   await until("manual operation in the vehicle's state", () => seen.state.operatingMode === "MANUAL");
   const { heard } = await give(order("busy", 0, 0, [here(), [1, 0]]));
   await until("the rejection", () => heard.end?.error);

@@ -177,7 +177,7 @@ fn largest_difference(a: &str, b: &str) -> Option<f64> {
 /// Runs a command of `trundle` in a folder. Returns whether it ended as a run does: with 0, or 1 where its aim was missed. The paths of its results
 /// are relative, so that both computers' are the same.
 fn ends(root: &Path, program: &[PathBuf], command: &str, folder: &Path) -> Verdict {
-    std::fs::create_dir_all(folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+    std::fs::create_dir_all(folder).map_err(|e| format!("cannot create {}: {e}", folder.display()))?;
     let data = root.join("data/golden").display().to_string();
     let words = command.split_whitespace().map(|word| word.replace("{data}", &data));
     let mut process = Command::new(&program[0]);

@@ -24,7 +24,7 @@ pub struct Common {
     /// Print nothing but warnings and errors: no progress, no table.
     #[arg(long, short)]
     pub quiet: bool,
-    /// Threads to use; the results are the same for any number [default: one a core]
+    /// Threads to use; the results are the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
 }

@@ -32,7 +32,7 @@ pub enum Which {
     House(HouseArgs),
     /// Sensors that break, wheels that slip, people in the way: nothing touched, and on when it can be.
     Faults(RunsArgs),
-    /// Somebody steps into the robot's way a metre before it, one a run.
+    /// Somebody steps into the robot's way a metre before it, one per run.
     People(RunsArgs),
     /// Plain rooms that look alike from several poses, alone, with people, and carried away.
     LookAlikes(RunsArgs),
@@ -146,7 +146,7 @@ pub struct MrpbArgs {
 /// `trundle experiment real-time`
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Writes a recording, some 450 MB a minute.\n\nExit code: 0 jitter at most 5 ms (p99.9), load at most 60 %, memory \
+    after_help = "Writes a recording, some 450 MB per minute.\n\nExit code: 0 jitter at most 5 ms (p99.9), load at most 60 %, memory \
                   growing by at most 10 MB/h, nothing touched; 1 otherwise, 2 bad input."
 )]
 pub struct RealTimeArgs {

@@ -154,7 +154,7 @@ impl SequenceInput {
         Ok(Self { path: options.path.to_owned(), camera, robot, source: Source::Recording(Box::new(run)) })
     }
 
-    /// Depth units a metre in the images.
+    /// Depth units per metre in the images.
     #[must_use]
     pub fn depth_scale(&self) -> f64 {
         self.camera.model.depth_scale

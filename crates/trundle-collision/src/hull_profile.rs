@@ -1,6 +1,6 @@
 //! A lookup table of a hull: fast lower bounds of the free motion for boxes of points.
 //!
-//! Problem: the closed forms cost half a microsecond per point. Idea: at rings about the axle the headings of contact are
+//! Problem: the closed forms cost half a microsecond per point. Idea: at rings around the axle the headings of contact are
 //! computed once, exactly. A point farther out than a ring is met at fewer headings, as the hull together with the axle is
 //! convex. In strips along x the table holds the hull's extent, rounded up. A box of points that is not met before a known
 //! contact can be skipped. Rounding is always outward, so that no contact is missed.

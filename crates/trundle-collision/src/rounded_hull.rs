@@ -76,7 +76,7 @@ impl RoundedHull {
         }
     }
 
-    /// Whether the hull is a disc about the base's origin: a disc turns in place without contact.
+    /// Whether the hull is a disc around the base's origin: a disc turns in place without contact.
     pub fn is_disc(&self) -> bool {
         self.edges.is_empty()
     }

@@ -38,7 +38,7 @@ pub struct BarnOutcome {
 /// Crosses the worlds asked for, with each seed.
 ///
 /// # Errors
-/// When the data cannot be read, or a run cannot be made.
+/// When the data cannot be read, or a run cannot be created.
 pub fn run(request: &BarnRequest, progress: &Progress) -> Result<BarnOutcome, AppError> {
     let worlds = worlds::read(&request.data)?;
     let max = (worlds.len() as u64).saturating_sub(1);

@@ -47,7 +47,7 @@ pub struct LookAlikesOutcome {
 /// Runs every variant in a room for each seed.
 ///
 /// # Errors
-/// When a run cannot be made, or no run has the name asked for.
+/// When a run cannot be created, or no run has the name asked for.
 pub fn run(request: &RunsRequest, progress: &Progress) -> Result<LookAlikesOutcome, AppError> {
     let mut plans = Vec::new();
     for seed in 1..=u64::from(request.seeds) {

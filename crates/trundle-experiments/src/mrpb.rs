@@ -56,7 +56,7 @@ pub struct MrpbOutcome {
 /// Drives every course asked for, with each seed.
 ///
 /// # Errors
-/// When the data cannot be read, no course has the name asked for, or a run cannot be made.
+/// When the data cannot be read, no course has the name asked for, or a run cannot be created.
 pub fn run(request: &MrpbRequest, progress: &Progress) -> Result<MrpbOutcome, AppError> {
     let robot = request.robot.clone().unwrap_or_else(robot);
     let chosen =

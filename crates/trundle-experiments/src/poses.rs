@@ -59,7 +59,7 @@ fn plans(request: &RunsRequest) -> Result<Vec<TrialPlan>, AppError> {
 /// Runs the eight start poses, with each seed.
 ///
 /// # Errors
-/// When a run cannot be made, or no run has the name asked for.
+/// When a run cannot be created, or no run has the name asked for.
 pub fn run(request: &RunsRequest, progress: &Progress) -> Result<PosesOutcome, AppError> {
     Ok(PosesOutcome { trials: trial::run_all(plans(request)?, request, progress)? })
 }

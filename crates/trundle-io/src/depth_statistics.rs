@@ -10,7 +10,7 @@ const MAX_USABLE_M: f32 = 8.0;
 const PIXEL_STEP: usize = 16;
 /// Typical depth of a room's walls, m: a depth scale is evaluated by how near the mean depth comes to it. Source: ours.
 const TYPICAL_DEPTH_M: f64 = 2.0;
-/// Depth scales in use, units a metre: metres, 0.1 mm, mm, and TUM's 0.2 mm. Source: docs/formats.md.
+/// Depth scales in use, units per metre: metres, 0.1 mm, mm, and TUM's 0.2 mm. Source: docs/formats.md.
 const KNOWN_SCALES: [f64; 4] = [1.0, 1000.0, 5000.0, 10_000.0];
 
 /// Largest number of a 16-bit depth image: what some cameras write for no reading, and more than which floats alone can hold.
@@ -73,7 +73,7 @@ impl DepthStatistics {
         self.largest * scale > MAX_UNITS + 0.5 || (scale == 1.0 && self.fractional > 0)
     }
 
-    /// Why no depth can be used, and the likely cause; `None` if some can, or no image was counted. `scale`: depth units a metre.
+    /// Why no depth can be used, and the likely cause; `None` if some can, or no image was counted. `scale`: depth units per metre.
     #[must_use]
     pub fn problem(&self, scale: f64) -> Option<String> {
         let with_depth = self.pixels - self.without_depth;

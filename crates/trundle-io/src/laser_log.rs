@@ -75,7 +75,7 @@ impl LaserLog {
         self.scans.iter().filter(is_blind).count()
     }
 
-    /// Warnings about skipped messages and bad ranges, one a kind.
+    /// Warnings about skipped messages and bad ranges, one per kind.
     #[must_use]
     pub fn warnings(&self) -> Warnings {
         let mut warnings = Warnings::default();

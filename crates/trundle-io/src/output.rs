@@ -1,4 +1,4 @@
-//! An output folder that appears complete or not at all, and takes the place of nothing but an earlier run.
+//! An output folder that appears complete or not at all, and replaces nothing but an earlier run.
 
 mod file_identity;
 mod fingerprint;

@@ -59,7 +59,7 @@ enum Rights {
 #[cfg(unix)]
 const NEW_FILE_MODE: u32 = 0o666;
 
-/// Rights for the file that takes the place of `path`.
+/// Rights for the file that replaces `path`.
 #[cfg(unix)]
 fn rights_of(path: &Path) -> io::Result<Rights> {
     use std::os::unix::fs::PermissionsExt;

@@ -145,7 +145,7 @@ mod tests {
         assert!(problem.starts_with("FILE, line 4: Camera.fx is -1 px"), "{problem}");
         let problem = camera(&ORB_SLAM.replace("5000.0", "0.001")).unwrap_err();
         assert!(
-            problem.starts_with("FILE, line 11: DepthMapFactor is 0.001, expected units a metre"),
+            problem.starts_with("FILE, line 11: DepthMapFactor is 0.001, expected units per metre"),
             "{problem}"
         );
         let problem = camera(&ORB_SLAM.replace("PinHole", "KannalaBrandt8")).unwrap_err();

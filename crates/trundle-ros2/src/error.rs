@@ -32,7 +32,7 @@ pub enum Ros2Error {
         /// Values that are accepted.
         expected: &'static str,
     },
-    /// The DDS participant, a topic or a service cannot be made.
+    /// The DDS participant, a topic or a service cannot be created.
     #[error("cannot create {what}: {problem}")]
     Create {
         /// What was to be made.

@@ -103,7 +103,7 @@ impl RobotNode {
     /// Offers a run on trundle's own body, whose stamps count from `origin`.
     ///
     /// # Errors
-    /// When the network cannot be joined, or a topic cannot be made.
+    /// When the network cannot be joined, or a topic cannot be created.
     pub fn offer(
         options: &Ros2Options,
         robot: &RobotConfig,

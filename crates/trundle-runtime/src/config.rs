@@ -20,7 +20,7 @@ use trundle_slam::SlamConfig;
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
 pub struct RobotConfig {
-    /// Radius of the disc about the base that the robot stays within, m, above 0. Default 0.1755: the Kobuki.
+    /// Radius of the disc around the base that the robot stays within, m, above 0. Default 0.1755: the Kobuki.
     pub footprint_radius: f64,
     /// Corners of a convex outline in place of the disc, base frame, m. Default none.
     #[serde(deserialize_with = "corners")]

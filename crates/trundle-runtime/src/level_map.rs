@@ -17,7 +17,7 @@ pub struct LevelMap {
 }
 
 impl LevelMap {
-    /// A map still empty, of at most `map_hz` scans a second.
+    /// A map still empty, of at most `map_hz` scans per second.
     ///
     /// # Errors
     /// When the scan's configuration is not valid.
@@ -57,7 +57,7 @@ impl LevelMap {
 }
 
 /// The level pose of a first camera at `height` m above the floor, tilted down by `tilt_deg` and rolled to its right
-/// about the optical axis by `roll_deg`.
+/// around the optical axis by `roll_deg`.
 ///
 /// # Errors
 /// When a number is outside the range of [`CameraMount`].

@@ -93,7 +93,7 @@ fn sorted_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(files)
 }
 
-/// The text's fields that are numbers, one a line: headers and names of columns may be reworded.
+/// The text's fields that are numbers, one per line: headers and names of columns may be reworded.
 fn without_words(text: &[u8]) -> Vec<u8> {
     let fields = text.split(|b| b" ,;\t\n\r".contains(b));
     let is_number = |field: &&[u8]| {

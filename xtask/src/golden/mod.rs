@@ -114,7 +114,7 @@ impl Net<'_> {
 
     fn run_case(&self, case: &Case) -> Result<Vec<(String, String)>, String> {
         let out = self.scratch.join(case.name);
-        std::fs::create_dir_all(&out).map_err(|e| format!("cannot make {}: {e}", out.display()))?;
+        std::fs::create_dir_all(&out).map_err(|e| format!("cannot create {}: {e}", out.display()))?;
         let mut digests = Vec::new();
         for (i, line) in case.commands.iter().enumerate() {
             let code = self.run_command(line, &out)?;

@@ -113,7 +113,7 @@ pub struct SensorArgs {
     /// The camera.
     #[arg(long, default_value = "kinect-v2", value_parser = choice(&SimConfig::CAMERAS))]
     pub camera: fn() -> SimConfig,
-    /// Images a second.
+    /// Images per second.
     #[arg(long, value_name = "HZ", value_parser = NumberArg::above_zero("Hz"), allow_negative_numbers = true)]
     pub rate: Option<f64>,
     /// A 2-D laser on the robot.

@@ -121,7 +121,7 @@ impl Operator {
         self.shared.view.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// The newest view; `None` before the first step. Scan, image and map are kept up to date while somebody asks at least once a second.
+    /// The newest view; `None` before the first step. Scan, image and map are kept up to date while somebody asks at least once per second.
     #[must_use]
     pub fn view(&self) -> Option<Arc<RunView>> {
         self.shared.is_asked.store(true, Ordering::Relaxed);

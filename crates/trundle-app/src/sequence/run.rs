@@ -35,7 +35,7 @@ pub struct SequenceRun {
     pub is_interrupted: bool,
     /// The depth of all images read.
     depth: DepthStatistics,
-    /// Depth units a metre.
+    /// Depth units per metre.
     depth_scale: f64,
     /// Calibration issues that were logged.
     logged_issues: usize,

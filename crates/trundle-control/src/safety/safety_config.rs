@@ -34,7 +34,7 @@ pub struct SafetyConfig {
     pub uncounted_speed: f64,
     /// Speed below which a command is replaced by a stop, m/s, 0.001 to 0.1. Default 0.01 (ours).
     pub min_speed: f64,
-    /// Range about the robot in which safety reads the map, m from the footprint, 0 to 5. Default 0.8: the camera's blind
+    /// Range around the robot in which safety reads the map, m from the footprint, 0 to 5. Default 0.8: the camera's blind
     /// zone, and what
     /// lies beside its view.
     pub memory_reach: f64,

@@ -59,7 +59,7 @@ impl fmt::Display for StreamFault {
             Self::SlowBase { long_steps, longest_ms } => write!(
                 f,
                 "{long_steps} of {WINDOW_PACKETS} packets came more than {MAX_STEP_MS} ms after the one before by the base's clock, up to \
-                 {longest_ms} ms, expected 20 ms (50 packets a second): the base sends too slowly, or the line loses packets; check the \
+                 {longest_ms} ms, expected 20 ms (50 packets per second): the base sends too slowly, or the line loses packets; check the \
                  cable, switch the base off and on"
             ),
             Self::DamagedStream { refused } => write!(

@@ -265,7 +265,7 @@ impl Smoother {
         Pose2::new(0.0, 0.0, turn).rotate(moved)
     }
 
-    /// Inserts a keyframe with an image after keyframe `k` and solves the window. It takes the place of the newest keyframe where that one is
+    /// Inserts a keyframe with an image after keyframe `k` and solves the window. It replaces the newest keyframe where that one is
     /// still near the one before: the newest image counts, and images with the same error count once.
     pub(super) fn insert_image(&mut self, k: usize, keyframe: Keyframe) {
         let Some(window) = &mut self.window else { return };

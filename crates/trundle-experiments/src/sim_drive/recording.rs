@@ -21,7 +21,7 @@ pub fn recording_announcement(robot: &Simulator, duration: Option<f64>) -> Strin
     let pixels = (camera.width() * camera.height()) as f64;
     let rate = BYTES_PER_PIXEL * pixels * config.camera_rate_hz / 1e6;
     let total = duration.map_or_else(String::new, |s| format!(", {:.0} MB in {s:.0} s", rate * s));
-    format!("Records about {rate:.1} MB a second of the robot's time{total}.")
+    format!("Records about {rate:.1} MB per second of the robot's time{total}.")
 }
 
 /// The TUM folder of a drive.

@@ -57,7 +57,7 @@ impl CameraServer {
     /// A server at the FIFO `path`, which is made where it is not there.
     ///
     /// # Errors
-    /// When the FIFO cannot be made, or something else is at `path`.
+    /// When the FIFO cannot be created, or something else is at `path`.
     pub fn start(path: &Path, info: CameraInfo) -> Result<Self, AppError> {
         make_fifo(path)?;
         Ok(Self { path: path.to_owned(), info, shared: Arc::default(), shots: None, thread: None })
@@ -108,7 +108,7 @@ fn make_fifo(path: &Path) -> Result<(), AppError> {
         Ok(there) if there.file_type().is_fifo() => Ok(()),
         Ok(_) => Err(problem("there is a file that is not a FIFO: name another path".to_owned())),
         Err(_) => mknodat(CWD, path, FileType::Fifo, Mode::RUSR | Mode::WUSR, 0)
-            .map_err(|error| problem(format!("cannot make a FIFO: {error}"))),
+            .map_err(|error| problem(format!("cannot create a FIFO: {error}"))),
     }
 }
 

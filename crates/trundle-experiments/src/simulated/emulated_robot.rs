@@ -48,7 +48,7 @@ impl EmulatedRobot {
     /// The base of `simulator` at `terminal`, its camera at `camera_stream`, a FIFO that is made where it is not there.
     ///
     /// # Errors
-    /// When the FIFO cannot be made.
+    /// When the FIFO cannot be created.
     pub fn new(
         mut simulator: Simulator,
         terminal: PseudoTerminal,
@@ -74,10 +74,10 @@ impl EmulatedRobot {
     /// An emulated robot with its base at a new pseudo terminal, to which `port` becomes a symbolic link.
     ///
     /// # Errors
-    /// When the pseudo terminal, the link or the FIFO cannot be made.
+    /// When the pseudo terminal, the link or the FIFO cannot be created.
     pub fn at(simulator: Simulator, port: &Path, camera_stream: Option<&Path>) -> Result<Self, AppError> {
         let terminal = PseudoTerminal::open_at(port).map_err(|error| {
-            AppError::Input(format!("{}: cannot make the pseudo terminal: {error}", port.display()))
+            AppError::Input(format!("{}: cannot create the pseudo terminal: {error}", port.display()))
         })?;
         Self::new(simulator, terminal, camera_stream)
     }

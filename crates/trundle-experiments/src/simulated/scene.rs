@@ -31,7 +31,7 @@ pub struct SceneOptions {
 pub struct MeshOptions {
     /// The axis of the file that points up.
     pub up: UpAxis,
-    /// Metres a unit of the file; `None` is 1.
+    /// Metres per unit of the file; `None` is 1.
     pub scale: Option<f64>,
     /// Height of the floor, m; `None` if it is found.
     pub floor: Option<f64>,
@@ -93,7 +93,7 @@ fn file_kind(name: &str) -> Result<Option<FileKind>, AppError> {
 /// The built-in scenes, a row each: name and size.
 ///
 /// # Errors
-/// When a built-in scene cannot be made.
+/// When a built-in scene cannot be created.
 pub fn list_scenes() -> Result<Vec<Vec<String>>, AppError> {
     let row = |name: &&str| {
         let (low, high) = Scene::by_name(name, 1)?.world.bounds();

@@ -69,7 +69,7 @@ fn differing(was: &[bool], cells: &[Cell], unknown: UnknownIs) -> Option<Range<u
 #[derive(Debug, Clone, PartialEq)]
 pub struct DistanceField {
     geometry: GridGeometry,
-    /// Cells a metre.
+    /// Cells per metre.
     per_metre: f64,
     unknown: UnknownIs,
     is_obstacle: Vec<bool>,

@@ -6,7 +6,7 @@ use trundle_core::Beam;
 /// Median of the ranges of a log \[m\]. Beyond it they are in another unit. Source: ours; the medians of the shared logs are below
 /// 10 m, and no indoor laser reaches far beyond 80 m (SICK LMS200).
 const MAX_MEDIAN_RANGE_M: f64 = 50.0;
-/// Median of the ranges \[m\] from which on centimetres are ruled out: a room would be 10 m and more about the robot. Source: ours.
+/// Median of the ranges \[m\] from which on centimetres are ruled out: a room would be 10 m and more around the robot. Source: ours.
 const MAX_CENTIMETRE_MEDIAN: f64 = 1000.0;
 /// Median way by odometry between two scans \[m\]. Beyond it the odometry is in another unit. Source: ours.
 const MAX_MEDIAN_STEP_M: f64 = 3.0;

@@ -1,4 +1,4 @@
-//! The files that a command reads: no output may take their place.
+//! The files that a command reads: no output may replace them.
 
 use super::file_identity::{FileIdentity, is_same, resolved};
 use super::tree::files_below;
@@ -6,7 +6,7 @@ use crate::IoError;
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
 
-/// The files and folders that a command reads, with the files that these name: no output may take their place.
+/// The files and folders that a command reads, with the files that these name: no output may replace them.
 #[derive(Debug, Clone, Default)]
 pub struct InputFiles {
     paths: Vec<PathBuf>,

@@ -196,7 +196,7 @@ fn local_bytes(length: usize, usable: usize) -> usize {
     if fitting <= most { fitting } else { least }
 }
 
-/// Seven bits a byte, the highest first; of a ninth byte all eight.
+/// Seven bits per byte, the highest first; of a ninth byte all eight.
 fn varint(bytes: &[u8], at: &mut usize) -> Option<i64> {
     let mut value = 0_u64;
     for i in 0..9 {

@@ -66,7 +66,7 @@ pub(super) fn times(path: &Path, rows: usize) -> Result<Times, IoError> {
     Ok(Times { stamps, is_indexed: true, warnings })
 }
 
-/// The stamps of a file of one a line.
+/// The stamps of a file of one per line.
 fn stamps(path: &Path) -> Result<Vec<Stamp>, IoError> {
     let text = read_text(path)?;
     let lines: Vec<(usize, &str)> =

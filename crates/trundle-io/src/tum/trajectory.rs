@@ -97,7 +97,7 @@ pub fn trajectory_text(poses: &[(Stamp, Pose3)]) -> String {
     text
 }
 
-/// [`trajectory_text`] of poses in the plane: z is 0, the rotation about z.
+/// [`trajectory_text`] of poses in the plane: z is 0, the rotation around z.
 pub fn trajectory_text_from_planar(poses: &[(Stamp, Pose2)]) -> String {
     let lifted: Vec<_> = poses.iter().map(|&(stamp, pose)| (stamp, Pose3::from_pose2(pose))).collect();
     trajectory_text(&lifted)

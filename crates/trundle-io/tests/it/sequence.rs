@@ -101,10 +101,10 @@ fn wrong_folders_are_one_clear_sentence() {
     let error = open(&dir.path().join("rgb.txt")).unwrap_err().to_string();
     assert!(error.contains("rgb.txt: this is a list of images, expected a TUM RGB-D folder"), "{error}");
     let scale = TumSequence::open(dir.path(), 0.0, 0.02).unwrap_err().to_string();
-    assert!(scale.contains("depth_scale is 0 units a metre"), "{scale}");
+    assert!(scale.contains("depth_scale is 0 units per metre"), "{scale}");
     let scale = TumSequence::open(dir.path(), 0.001, 0.02).unwrap_err().to_string();
     assert!(
-        scale.contains("depth_scale is 0.001, expected units a metre; 0.001 m a unit are 1000"),
+        scale.contains("depth_scale is 0.001, expected units per metre; 0.001 m per unit are 1000"),
         "{scale}"
     );
 }

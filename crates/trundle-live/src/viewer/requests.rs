@@ -14,7 +14,7 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use tokio::sync::mpsc::Sender;
 
-/// Longest silence of a viewer: it answers ten views a second. Source: ours; a tab in the background answers once a second at least.
+/// Longest silence of a viewer: it answers ten views per second. Source: ours; a tab in the background answers once per second at least.
 const SILENCE_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// A viewer that asks.
@@ -43,7 +43,7 @@ pub async fn receive(mut stream: SplitStream<WebSocket>, viewer: Viewer<'_>) -> 
             Ok(Some(Ok(Message::Ping(_) | Message::Pong(_)))) => String::new().into(),
         };
         if !rate.take(Instant::now()) {
-            return "too many requests a second";
+            return "too many requests per second";
         }
         if text.is_empty() {
             continue;

@@ -5,7 +5,7 @@ use trundle_app::operator::RunView;
 use trundle_planning::MovingObstacle;
 use trundle_runtime::Task;
 
-/// The state of the robot, sent up to ten times a second.
+/// The state of the robot, sent up to ten times per second.
 #[derive(Debug, Clone, Serialize)]
 #[serde(tag = "type", rename = "state")]
 pub struct StateMessage {

@@ -166,7 +166,7 @@ mod tests {
     use proptest::prelude::*;
     use trundle_core::{Pose3, Vector3};
 
-    /// A level camera at this height that points ahead; v is how far a ray falls a metre of depth.
+    /// A level camera at this height that points ahead; v is how far a ray falls per metre of depth.
     fn model(height: f64) -> PixelModel {
         let ahead = nalgebra::Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
         PixelModel::new(

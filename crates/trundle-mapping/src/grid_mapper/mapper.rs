@@ -40,7 +40,7 @@ pub struct Insertion {
 }
 
 impl GridMapper {
-    /// Empty map about the origin of the map frame.
+    /// Empty map around the origin of the map frame.
     ///
     /// # Errors
     /// When the configuration is out of range.

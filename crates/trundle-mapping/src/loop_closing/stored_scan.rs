@@ -4,7 +4,7 @@ use crate::particle_config::ParticleConfig;
 use crate::scan_match::scan_points::ScanPoints;
 use trundle_grid::tiles::{RaySpan, ScanRay};
 
-/// A processed scan, packed: 5 bytes a beam, 6 with the sigma of its range, and 8 for each free span of a beam that is not free
+/// A processed scan, packed: 5 bytes per beam, 6 with the sigma of its range, and 8 for each free span of a beam that is not free
 /// throughout.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct StoredScan {

@@ -30,7 +30,7 @@ pub(crate) struct LastScan {
 }
 
 impl LastScan {
-    /// Whether the robot cannot have got from here to there at `jump` m a second.
+    /// Whether the robot cannot have got from here to there at `jump` m per second.
     fn is_out_of_reach(&self, there: &Self, jump: f64) -> bool {
         let way = self.odom_from_base.distance(&there.odom_from_base);
         way > jump * (there.stamp - self.stamp).max(1.0)

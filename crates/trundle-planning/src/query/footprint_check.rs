@@ -8,7 +8,7 @@ use trundle_core::{Footprint, GridGeometry, OccupancyGrid, Pose2, Zone};
 use trundle_grid::{DistanceField, UnknownIs};
 
 /// Whether a robot could stand at a pose: the planner's own decision behind [`Plan::GoalInObstacle`](crate::Plan::GoalInObstacle),
-/// without a plan. Costs as much as the cells about the robot.
+/// without a plan. Costs as much as the cells around the robot.
 #[derive(Debug, Clone)]
 pub struct FootprintCheck {
     shape: RobotShape,

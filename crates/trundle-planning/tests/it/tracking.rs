@@ -71,7 +71,7 @@ fn tracker() -> MovingObstacleTracker {
     MovingObstacleTracker::new(ObstacleTrackerConfig::default()).unwrap()
 }
 
-/// So many seconds of scans, ten a second, from where the robot stands.
+/// So many seconds of scans, ten per second, from where the robot stands.
 fn watched(
     tracker: &mut MovingObstacleTracker,
     world: &mut World,
@@ -252,7 +252,7 @@ fn whoever_passes_one_who_stopped_goes_behind() {
     }
 }
 
-/// A camera that is blind nearer than `blind` (m) looks on, ten times a second, at those who walk until `stop` (s).
+/// A camera that is blind nearer than `blind` (m) looks on, ten times per second, at those who walk until `stop` (s).
 fn dim(
     tracker: &mut MovingObstacleTracker,
     world: &mut World,

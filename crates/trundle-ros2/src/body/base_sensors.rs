@@ -108,7 +108,7 @@ pub struct BaseMonitors {
 /// Subscribes to odometry, gyro, laser and battery.
 ///
 /// # Errors
-/// When a topic cannot be made.
+/// When a topic cannot be created.
 pub fn subscribe(
     node: &mut RosNode,
     settings: &BodySettings,

@@ -38,7 +38,7 @@ impl CommandPublisher {
     /// The publisher of the topic `settings.cmd_vel`.
     ///
     /// # Errors
-    /// When the topic cannot be made.
+    /// When the topic cannot be created.
     pub fn new(node: &mut RosNode, settings: &BodySettings, clock: RosClock) -> Result<Self, Ros2Error> {
         let qos = qos::reliable(1);
         let form = if settings.stamped_commands {

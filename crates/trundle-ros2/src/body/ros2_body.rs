@@ -54,7 +54,7 @@ impl Ros2Body {
     /// Adds the robot's topics to a node. `drive` is the geometry of the base.
     ///
     /// # Errors
-    /// When a topic cannot be made.
+    /// When a topic cannot be created.
     pub fn new(
         node: &mut RosNode,
         settings: BodySettings,

@@ -22,7 +22,7 @@ impl NavigationOutcome {
         Self { message: message.to_owned(), ..Self::default() }
     }
 
-    /// Another goal took its place.
+    /// Another goal replaced it.
     #[must_use]
     pub fn replaced() -> Self {
         Self::failed("a newer goal replaced it")

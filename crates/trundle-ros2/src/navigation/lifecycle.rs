@@ -29,7 +29,7 @@ const MANAGERS: [&str; 2] = ["lifecycle_manager_navigation", "lifecycle_manager_
 /// Offers `SERVER/get_state`, `MANAGER/manage_nodes` and `MANAGER/is_active`.
 ///
 /// # Errors
-/// When a service cannot be made.
+/// When a service cannot be created.
 pub fn offer(node: &mut RosNode, active: &ActiveGoal) -> Result<(), Ros2Error> {
     for server in SERVERS {
         let view = active.clone();

@@ -59,7 +59,7 @@ pub trait NavigationAction: ActionType<Result: Default> + 'static {
 /// Offers an action.
 ///
 /// # Errors
-/// When the action cannot be made.
+/// When the action cannot be created.
 pub fn offer<A: NavigationAction>(
     node: &mut RosNode,
     name: &str,

@@ -40,7 +40,7 @@ struct Wanted {
 /// Offers `compute_path_to_pose` for `robot`.
 ///
 /// # Errors
-/// When the robot's settings are not usable, the action cannot be made, or the system refuses a thread.
+/// When the robot's settings are not usable, the action cannot be created, or the system refuses a thread.
 pub fn offer(
     node: &mut RosNode,
     active: &ActiveGoal,

@@ -20,7 +20,7 @@ const DEFAULT_HEADING_SIGMA_RAD: f64 = 0.26;
 /// Subscribes to both topics and offers the service.
 ///
 /// # Errors
-/// When a topic or the service cannot be made.
+/// When a topic or the service cannot be created.
 pub fn offer(node: &mut RosNode, active: &ActiveGoal, frames: &FrameNames) -> Result<(), Ros2Error> {
     let (goals, own, diagnostics) = (active.clone(), frames.clone(), node.diagnostics());
     let mut limit = RateLimit::default();

@@ -63,7 +63,7 @@ where
     /// Offers the action `name`; `handler` decides about its goals.
     ///
     /// # Errors
-    /// When the action cannot be made.
+    /// When the action cannot be created.
     pub fn offer(
         node: &mut RosNode,
         name: &str,

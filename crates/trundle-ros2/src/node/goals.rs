@@ -15,7 +15,7 @@ pub type GoalId = [u8; 16];
 const RESULT_LIFETIME: Duration = Duration::from_secs(60);
 /// Largest number of goals accepted within a second. Source: ours; a person clicks less often, a program has no reason to.
 pub const MAX_GOALS_PER_SECOND: usize = 20;
-/// Largest number of goals that are kept. Source: ours; that of [`RESULT_LIFETIME`] at one goal a second, and some.
+/// Largest number of goals that are kept. Source: ours; that of [`RESULT_LIFETIME`] at one goal per second, and some.
 const MAX_GOALS: usize = 100;
 /// Largest number of requests that wait for one result. Source: ours.
 const MAX_WAITING: usize = 16;

@@ -24,7 +24,7 @@ impl<M: MessageType> OutputTopic<M> {
     /// The topic `name`.
     ///
     /// # Errors
-    /// When the topic cannot be made.
+    /// When the topic cannot be created.
     pub fn new(node: &mut RosNode, name: &str, qos: &QosProfile) -> Result<Self, Ros2Error> {
         let publisher = node.publisher(name, qos)?;
         Ok(Self { publisher, name: node.names().resolve(name), diagnostics: node.diagnostics() })
@@ -78,7 +78,7 @@ impl RobotTopics {
     /// The topics of a robot.
     ///
     /// # Errors
-    /// When a topic cannot be made.
+    /// When a topic cannot be created.
     pub fn new(node: &mut RosNode, settings: &OutputSettings) -> Result<Self, Ros2Error> {
         let own = settings.has_own_body;
         let battery = own.then(|| OutputTopic::new(node, "battery_state", &qos::reliable(1))).transpose()?;

@@ -118,7 +118,7 @@ pub(crate) struct Navigator {
     progress: ProgressChecker,
     /// Of the safety monitor, s.
     image_timeout: f64,
-    /// Of the disc about the robot, m.
+    /// Of the disc around the robot, m.
     radius: f64,
     /// Distance from the base's origin to its front, m.
     reach: f64,

@@ -224,7 +224,7 @@ fn no_step_takes_longer_than_two_milliseconds() {
     // Too narrow to turn in: all that may be searched is searched.
     let narrow = OccupancyGrid::from_ascii(0.05, &(wall.clone() + &free.repeat(9) + &wall)).unwrap();
     let turned = (Pose2::new(1.9, 0.27, 0.0), Pose2::new(2.0, 0.28, 3.1));
-    // Free floor about the robot, posts farther away: every turn and straight move of the paper's method is checked by samples.
+    // Free floor around the robot, posts farther away: every turn and straight move of the paper's method is checked by samples.
     let posts = "#.".repeat(40) + "\n";
     let open = [posts.repeat(20), free.repeat(40), posts.repeat(20)].concat();
     let open = OccupancyGrid::from_ascii(0.05, &open).unwrap();

@@ -66,7 +66,7 @@ fn is_in_sight(grid: &OccupancyGrid, from: Vector2, to: Vector2) -> bool {
     (0..=count as usize).all(|i| grid.at(from + way * (i as f64 / count)) != Cell::Occupied)
 }
 
-/// Whether all cells about a point are free.
+/// Whether all cells around a point are free.
 fn is_clear(grid: &OccupancyGrid, at: Vector2) -> bool {
     let step = grid.geometry().resolution;
     let reach = (CLEARANCE_M / step).ceil() as i32;

@@ -20,7 +20,7 @@ pub(crate) struct Texture {
     size: [f32; 2],
     /// Whether it repeats beyond its borders, rather than go on with the border's colour.
     repeats: bool,
-    /// Texels of level 0 a unit of (u, v).
+    /// Texels of level 0 per unit of (u, v).
     scale: [f32; 2],
 }
 
@@ -93,7 +93,7 @@ impl Texture {
         }
     }
 
-    /// Texels of level 0 a unit of (u, v).
+    /// Texels of level 0 per unit of (u, v).
     pub(crate) fn scale(&self) -> [f32; 2] {
         self.scale
     }

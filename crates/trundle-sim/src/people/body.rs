@@ -31,7 +31,7 @@ const CLOTHES: [([u8; 3], [u8; 3]); 4] = [
 
 const SKIN: [u8; 3] = [206, 164, 134];
 
-/// The parts of a person, upright cylinders about their own origin; the pieces of a leg are one part for both legs.
+/// The parts of a person, upright cylinders around their own origin; the pieces of a leg are one part for both legs.
 #[derive(Debug)]
 pub(super) struct Body {
     pub(super) shin: Part,

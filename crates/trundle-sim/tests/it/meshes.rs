@@ -51,7 +51,7 @@ fn sphere(x: f64, radius: f64, n: u32) -> World {
 
 #[test]
 fn slanted_triangles_are_planes_to_a_tenth_of_a_millimetre_without_a_gap() {
-    // x = 4 + 1.5 y + 0.5 z, a fan of 24 triangles about a point seen in the middle.
+    // x = 4 + 1.5 y + 0.5 z, a fan of 24 triangles around a point seen in the middle.
     let place = |y: f64, z: f64| [(4.0 + 1.5 * y + 0.5 * z) as f32, y as f32, z as f32];
     let corner = |i: u32| {
         let (s, c) = (f64::from(i) / 24.0 * std::f64::consts::TAU).sin_cos();

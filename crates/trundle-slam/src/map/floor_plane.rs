@@ -32,7 +32,7 @@ pub(crate) struct FloorPlane {
 }
 
 impl FloorPlane {
-    /// The plane of most keyframes of a map whose camera turns about `axis` (camera frame); `None` if there is none.
+    /// The plane of most keyframes of a map whose camera turns around `axis` (camera frame); `None` if there is none.
     pub fn of(map: &LandmarkMap, axis: Vector3) -> Option<Self> {
         let normals: Vec<Vector3> = map.keyframes().map(|(_, k)| k.visual_from_camera.rotate(axis)).collect();
         let middle = |i: usize| median(normals.iter().map(|n| n[i]));

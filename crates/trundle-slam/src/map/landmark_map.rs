@@ -20,7 +20,7 @@ pub(crate) struct LandmarkMap {
     landmarks: Arena<Landmark>,
     /// Where the keyframes are.
     pub(crate) grid: KeyframeGrid,
-    /// The axis about which a camera on a floor turns, camera frame.
+    /// The axis around which a camera on a floor turns, camera frame.
     pub(crate) floor: Option<Vector3>,
     /// Removed keyframes: the one that took each over, and the pose in it, by id.
     pub(crate) removed: std::collections::BTreeMap<KeyframeId, (KeyframeId, Pose3)>,

@@ -104,7 +104,7 @@ impl Template {
         self.find_plainly(patch, start)
     }
 
-    /// The same as [`Template::find_plainly`], more numbers an instruction.
+    /// The same as [`Template::find_plainly`], more numbers per instruction.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
     fn find_by_avx2(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<PatchAlignment> {

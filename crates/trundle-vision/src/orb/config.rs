@@ -21,7 +21,7 @@ pub struct OrbConfig {
     /// of a descriptor's patch.
     pub cell_px: usize,
     /// Smallest gradient in every direction of the smoothed image around a corner (15 x 15 px of its level), root mean square, in
-    /// standard deviations of the image's own noise a px, 0 to 100. 0 accepts corners of noise and steps along edges too.
+    /// standard deviations of the image's own noise per px, 0 to 100. 0 accepts corners of noise and steps along edges too.
     /// Default 0.5. Source: ours, swept on simulated drives.
     pub min_texture: f64,
 }

@@ -32,7 +32,7 @@ fn moments(patch: &Patch) -> (i32, i32) {
     moments_plainly(patch)
 }
 
-/// The same as [`moments_plainly`], more numbers an instruction.
+/// The same as [`moments_plainly`], more numbers per instruction.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn moments_by_avx2(patch: &Patch) -> (i32, i32) {

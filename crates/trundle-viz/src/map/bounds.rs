@@ -22,7 +22,7 @@ impl Bounds {
         })
     }
 
-    /// A square about a point. `None` if it is not finite or has no extent.
+    /// A square around a point. `None` if it is not finite or has no extent.
     pub(crate) fn square(center: Vector2, half_side: f64) -> Option<Self> {
         let half = Vector2::new(half_side, half_side);
         let bounds = Self::around([center - half, center + half])?;

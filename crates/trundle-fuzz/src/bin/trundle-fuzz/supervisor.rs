@@ -72,7 +72,7 @@ fn work(target: &FuzzTarget, seconds: u64, seed: u64, folder: &Path) -> Result<E
 fn scratch() -> Result<tempfile::TempDir, String> {
     let made =
         if Path::new(MEMORY_DISK).is_dir() { tempfile::tempdir_in(MEMORY_DISK) } else { tempfile::tempdir() };
-    made.map_err(|error| format!("a temporary folder cannot be made: {error}"))
+    made.map_err(|error| format!("a temporary folder cannot be created: {error}"))
 }
 
 fn death(status: ExitStatus) -> String {

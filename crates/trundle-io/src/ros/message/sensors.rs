@@ -45,7 +45,7 @@ pub fn camera_info(stamp: Stamp, frame: &str, camera: &PinholeCamera) -> RosMess
     RosMessage::new("sensor_msgs/msg/CameraInfo", writer)
 }
 
-/// `sensor_msgs/msg/Imu` of a gyro about the vertical axis; nothing else was measured.
+/// `sensor_msgs/msg/Imu` of a gyro around the vertical axis; nothing else was measured.
 #[must_use]
 pub fn gyro(frame: &str, rate: &GyroRate) -> RosMessage {
     let writer = CdrWriter::with_header(rate.stamp, frame).f64s([0.0, 0.0, 0.0, 1.0]);

@@ -110,7 +110,7 @@ impl BagImage {
         }
     }
 
-    /// Depth in metres, 0 where there is none. `depth_scale`: units a metre of whole-numbered images.
+    /// Depth in metres, 0 where there is none. `depth_scale`: units per metre of whole-numbered images.
     pub(super) fn depth(&self, depth_scale: f64) -> Result<DepthImage, CodecError> {
         match &self.content {
             Content::Raw(raw) => depth_of_raw(raw, depth_scale),

@@ -104,7 +104,7 @@ mod tests {
         assert!(problem.contains("its encoding is 'bayer_rggb8', expected rgb8"), "{problem}");
         let problem = color_of_raw(&raw("rgb8", 6, &[1; 5])).unwrap_err().to_string();
         assert!(
-            problem.contains("2 x 1 px of 'rgb8' with 6 bytes a row do not fit into 5 bytes"),
+            problem.contains("2 x 1 px of 'rgb8' with 6 bytes per row do not fit into 5 bytes"),
             "{problem}"
         );
         let huge = RawImage { width: usize::MAX, ..raw("rgb8", 6, &[1; 6]) };

@@ -160,7 +160,7 @@ impl RosSequence {
         &self.warnings
     }
 
-    /// The images in the order of their stamps, not decoded. `depth_scale`: units a metre of depth in whole numbers.
+    /// The images in the order of their stamps, not decoded. `depth_scale`: units per metre of depth in whole numbers.
     ///
     /// # Errors
     /// When the bag cannot be opened again.

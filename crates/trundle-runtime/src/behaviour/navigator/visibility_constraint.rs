@@ -26,7 +26,7 @@ struct Look {
     is_in_vain: bool,
 }
 
-/// Radius of a virtual obstacle about a point that the path must not reach unseen \[m\]. Source: ours.
+/// Radius of a virtual obstacle around a point that the path must not reach unseen \[m\]. Source: ours.
 pub(super) const VIRTUAL_OBSTACLE_RADIUS_M: f64 = 0.3;
 /// Number of virtual obstacles of one search. Source: ours.
 pub(super) const MAX_VIRTUAL_OBSTACLES: usize = 3;

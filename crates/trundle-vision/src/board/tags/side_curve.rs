@@ -36,7 +36,7 @@ const STEP_PX: f64 = 0.5;
 const WINDOW_PX: f64 = 2.0;
 /// Half width of that window as a fraction of the side's length: the border is an eighth of the side, less where the marker is tilted. Source: ours.
 const WINDOW_RATIO: f64 = 0.05;
-/// Smallest gradient of an edge, grey values a px. Source: ours.
+/// Smallest gradient of an edge, grey values per px. Source: ours.
 const MIN_GRADIENT: f64 = 4.0;
 /// Length from which the curve is a parabola; below, a line, px. Source: ours; the bend of shorter sides is below 0.1 px.
 const MIN_CURVED_PX: f64 = 24.0;
