@@ -205,7 +205,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_missing_is_not_found() {
+    fn missing_tools_are_not_found() {
         assert!(answers("cargo") && !answers("no-such-program-of-trundle"));
     }
 

@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_ends_early_is_no_measurement() {
+    fn a_robot_that_ends_early_is_not_measured() {
         let mut ended = Command::new("true").spawn().unwrap();
         ended.wait().unwrap();
         assert!(watch(&mut ended, Duration::ZERO).is_err());

@@ -182,7 +182,8 @@ mod tests {
         let target = ProgressDrawTarget::term_like(Box::new(screen.clone()));
         let bar = ProgressBar::with_draw_target(Some(400), target).with_style(style(template));
         bar.set_message(
-            "driving to (5.03 m, 2.24 m, 90 deg), 34.2 s of 120 s, 3 images per second, no contact, ".repeat(3),
+            "driving to (5.03 m, 2.24 m, 90 deg), 34.2 s of 120 s, 3 images per second, no contact, "
+                .repeat(3),
         );
         bar.set_position(100);
         bar.tick();

@@ -77,7 +77,9 @@ impl RecordingContent {
                 "Records events without images, about {rate:.2} MB per second of the robot's time{total}."
             ),
             Self::All => {
-                format!("Records events and images, about {rate:.1} MB per second of the robot's time{total}.")
+                format!(
+                    "Records events and images, about {rate:.1} MB per second of the robot's time{total}."
+                )
             }
         }
     }

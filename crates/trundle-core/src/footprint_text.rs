@@ -62,7 +62,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_footprint_is_named() {
+    fn text_that_is_not_a_footprint_is_named() {
         let refused = |text: &str| text.parse::<Footprint>().unwrap_err();
         assert_eq!(refused("wide"), "'wide' in the footprint is not a number, expected m");
         assert_eq!(refused("0.3,0.2 0.1"), "corner '0.1', expected X,Y");

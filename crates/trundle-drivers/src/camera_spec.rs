@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_process_that_is_no_camera_is_named() {
+    fn a_process_that_is_not_a_camera_is_named() {
         let mut command = Command::new("echo");
         command.arg("hello");
         let error = ProcessCamera::start(command, "openni2", Duration::from_secs(5)).unwrap_err().to_string();

@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_never_looked_at_is_not_missed() {
+    fn obstacles_never_observed_are_not_missed() {
         let half = grid(
             ".....?????
              .####?????

@@ -107,7 +107,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_text_is_no_panic(text in "[0-9 .e#a\n-]{0,80}") {
+        fn any_text_does_not_panic(text in "[0-9 .e#a\n-]{0,80}") {
             let _ = relations_from_text(&text);
         }
     }

@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn floats_have_no_scale_and_the_maximum_is_no_reading() {
+    fn floats_have_no_scale_and_the_maximum_is_not_a_reading() {
         for scale in [1.0, 1000.0, 5000.0] {
             let floats = of(1538.986).problem(scale).unwrap();
             assert!(floats.ends_with("are the floats in millimetres?"), "{floats}");

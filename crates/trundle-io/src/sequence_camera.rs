@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_file_lacks_or_has_wrong_is_named_with_its_line() {
+    fn missing_and_wrong_fields_of_a_file_are_named_with_their_line() {
         assert_eq!(
             camera(&ORB_SLAM.replace("Camera.fy: 526.0\n", "")).unwrap_err(),
             "FILE: Camera.fy is missing, expected px"

@@ -129,7 +129,12 @@ impl BundleProblem {
     /// When there are not as many numbers as poses.
     pub fn with_parts(self, parts: Vec<usize>) -> Result<Self, Invalid> {
         if parts.len() != self.poses.len() {
-            return Err(Invalid::new("parts", parts.len(), "", format!("{}, one per pose", self.poses.len())));
+            return Err(Invalid::new(
+                "parts",
+                parts.len(),
+                "",
+                format!("{}, one per pose", self.poses.len()),
+            ));
         }
         Ok(Self { parts, ..self })
     }

@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_none_is_refused_with_the_reason() {
+    fn bytes_that_are_not_a_checkpoint_are_refused_with_the_reason() {
         let error = |bytes: &[u8]| Checkpoint::from_bytes(bytes).unwrap_err().to_string();
         assert_eq!(error(b"P5 3 3 255"), "no memory of trundle");
         let mut bytes = memory().to_bytes();

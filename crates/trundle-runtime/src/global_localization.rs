@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_stands_is_no_surer_for_it() {
+    fn a_robot_that_stands_is_not_surer_for_it() {
         let map = room(90, 60, &[[60, 75, 1, 20], [1, 12, 40, 58]]);
         let at = Pose2::new(1.5, 1.0, 0.3);
         let mut global_localization = GlobalLocalization::new(&RobotConfig::default(), 0.5).unwrap();

@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn comments_strings_and_tests_are_no_code() {
+    fn comments_strings_and_tests_are_not_code() {
         let text = "// std::fs\nlet a = \"std::fs \\\" std::fs\"; /* std::fs /* x */ std::fs */\nlet b = r#\"std::fs\" \"#;\n\
             let c = ('\"', '\\'', 'x'); std::fs::read();\nfn f<'a>(x: &'a str) {}\n#[cfg(test)]\nmod tests { fn g() { std::fs::read(); } }\n\
             #[cfg(test)]\nmod more;\nuse std::fs;\n";

@@ -328,7 +328,7 @@ fn lanes_of_a_graph_file_are_kept_to() {
 }
 
 #[test]
-fn what_is_wrong_is_said_clearly() {
+fn errors_are_named_clearly() {
     let room = Room::new();
     let elsewhere = write_mask(room.scratch.path(), "beside", (254, 0), TRINARY);
     let yaml = fs::read_to_string(&elsewhere).unwrap().replace("[0.0, 0.0", "[50.0, 0.0");

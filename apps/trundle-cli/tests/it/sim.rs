@@ -204,5 +204,8 @@ fn the_documented_scene_file_runs_for_as_long_as_asked() {
 #[test]
 fn keys_need_a_keyboard() {
     let sentence = refusal(&["sim", "demo", "--keys"]);
-    assert!(sentence.contains("--keys reads the keyboard, but standard input is not a terminal"), "{sentence}");
+    assert!(
+        sentence.contains("--keys reads the keyboard, but standard input is not a terminal"),
+        "{sentence}"
+    );
 }

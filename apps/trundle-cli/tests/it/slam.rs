@@ -40,7 +40,7 @@ fn a_real_sequence_is_tracked_and_a_broken_frame_is_named_and_skipped() {
 }
 
 #[test]
-fn a_sequence_that_cannot_be_read_is_refused_and_a_black_one_is_no_success() {
+fn a_sequence_that_cannot_be_read_is_refused_and_a_black_one_fails() {
     let Some(data) = shared("tum_fr1_rpy_400") else { return };
     let scratch = tempfile::tempdir().unwrap();
     let (sequence, out) = (scratch.path().join("short"), scratch.path().join("out"));

@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_no_robot_file_stays_as_it_is() {
+    fn a_file_that_is_not_a_robot_file_stays_as_it_is() {
         let scratch = tempfile::tempdir().unwrap();
         for old in ["mount = 3\n", "[mount\n", "[mount]\nheight = 0.3\n"] {
             let file = scratch.path().join("robot.toml");

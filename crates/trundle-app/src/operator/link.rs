@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_that_is_no_number_does_not_reach_the_run() {
+    fn a_command_that_is_not_a_number_does_not_reach_the_run() {
         let (operator, link) = operator_link();
         let pose = Pose2::new(f64::NAN, 0.0, 0.0);
         let guess = PoseGuess { pose, position_sigma: 0.1, heading_sigma: 0.1 };

@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_stands_still_is_no_second_base() {
+    fn a_clock_that_stands_still_is_not_a_second_base() {
         let frozen = (0..40u16).map(|i| i.min(20) * 20);
         assert_eq!(fault_of(frozen), Some(StreamFault::FrozenClock { packets: 19 }));
     }

@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_from_the_past_or_after_a_gap_does_not_move_the_pose() {
+    fn odometry_from_the_past_or_after_a_gap_does_not_move_the_pose() {
         let mut own = own();
         own.step_odometry(&given(1.0, arc(0), 0.0));
         own.step_odometry(&given(0.9, arc(40), 0.0));

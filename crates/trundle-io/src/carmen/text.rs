@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_text_is_refused_by_line() {
+    fn bytes_that_are_not_text_are_refused_by_line() {
         assert_eq!(lines(b"a\n\xff".to_vec()).unwrap_err(), "a.log, line 2: is not UTF-8 text");
         let many: Vec<u8> =
             (0..9000_u32).flat_map(|i| format!("{}\n", i.wrapping_mul(2_654_435_761)).into_bytes()).collect();

@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn floats_that_are_no_depth_become_none() {
+    fn floats_that_are_not_depth_become_none() {
         let pixels =
             [f32::NAN, f32::INFINITY, -1.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         let read = decode_depth_file(&tiff::<colortype::Gray32Float>(&pixels), 1.0).unwrap();

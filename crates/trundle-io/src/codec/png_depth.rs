@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_depth_becomes_none() {
+    fn values_that_are_not_depth_become_none() {
         let depths = vec![f32::NAN, f32::INFINITY, -1.0, 65.536, 0.0004, 1.2344];
         let image = DepthImage::new(6, 1, depths).unwrap();
         let back = decode_depth(&encode_depth(&image).unwrap()).unwrap();

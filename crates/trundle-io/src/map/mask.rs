@@ -180,7 +180,7 @@ mod tests {
     const TRINARY: &str = "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
     #[test]
-    fn what_is_black_is_kept_out_and_what_is_grey_is_costly() {
+    fn black_is_kept_out_and_grey_is_costly() {
         let scratch = tempfile::tempdir().unwrap();
         let mask = read_keep_out_mask(&write(scratch.path(), &[0, 80, 128, 205, 254], TRINARY)).unwrap();
         use Cell::{Free, Occupied};

@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_such_picture_is_named() {
+    fn a_picture_of_another_kind_is_named() {
         let problem = |bytes: &[u8]| Picture::parse(Path::new("m.png"), bytes).unwrap_err().to_string();
         assert_eq!(problem(b"hello"), "m.png: no picture, expected a PGM, PNG or BMP");
         assert_eq!(

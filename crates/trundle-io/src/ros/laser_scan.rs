@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_a_scan_is_refused() {
+    fn impossible_scans_are_refused() {
         let refuse = |message: &LaserScan, mount: &Pose3| convert(message, mount, None).unwrap_err();
         let flat = Pose3::from_pose2(Pose2::IDENTITY);
         assert_eq!(refuse(&message(&[]), &flat), "0 ranges, expected 1 to 100000");

@@ -315,7 +315,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_bytes_are_no_panic(bytes in prop::collection::vec(any::<u8>(), 0..60), cell in 0..9_usize) {
+        fn any_bytes_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..60), cell in 0..9_usize) {
             let _ = values(&bytes);
             let _ = Node::of(&bytes, 2, cell);
         }

@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn headings_beyond_one_turn_and_a_robot_that_was_carried_are_no_other_unit() {
+    fn headings_beyond_one_turn_and_a_robot_that_was_carried_are_not_another_unit() {
         let mut rows: Vec<_> = (0..1000)
             .map(|i| {
                 let heading = 0.006 * i as f64;

@@ -238,7 +238,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read(tangents in prop::collection::vec(prop::array::uniform6(-3.0..3.0), 1..20)) {
+        fn a_written_text_is_read(tangents in prop::collection::vec(prop::array::uniform6(-3.0..3.0), 1..20)) {
             let poses: Vec<_> = tangents.into_iter().enumerate()
                 .map(|(i, t)| (Stamp::from_nanos(i as i64 * 33_333_333), Pose3::exp(Vector6::from(t)))).collect();
             let text = trajectory_text(&poses);
@@ -250,7 +250,7 @@ mod tests {
         }
 
         #[test]
-        fn any_text_is_no_panic(text in "[0-9 .eE#,\\-+naif\n]{0,200}") {
+        fn any_text_does_not_panic(text in "[0-9 .eE#,\\-+naif\n]{0,200}") {
             let _ = parse(&text);
             let _ = parse_trajectory(Path::new("a"), &text, BrokenRows::LeftOut);
         }

@@ -351,7 +351,7 @@ fn where_the_laser_sits_can_be_given() {
 }
 
 #[test]
-fn what_breaks_off_is_worth_what_it_holds() {
+fn a_bag_that_breaks_off_is_read_to_its_end() {
     let whole = fs::read(bag("zstd.mcap")).unwrap();
     let log = read_bytes(&whole[..whole.len() * 3 / 4]).unwrap();
     assert!((1..10).contains(&log.scans.len()));

@@ -11,7 +11,7 @@ fn hall() -> OccupancyGrid {
 }
 
 #[test]
-fn what_is_kept_out_is_kept_out() {
+fn keep_out_zones_are_kept() {
     let grid = hall();
     let (start, goal) = (Pose2::new(1.0, 3.0, 0.0), Pose2::new(9.0, 3.0, 0.0));
     // Another resolution, and only a part of the hall.
@@ -196,7 +196,7 @@ fn a_blocked_goal_is_approached_as_far_as_allowed() {
 }
 
 #[test]
-fn what_is_dear_is_avoided_where_that_is_no_great_detour() {
+fn expensive_cells_are_avoided_if_the_detour_is_small() {
     let grid = hall();
     let (start, goal) = (Pose2::new(1.0, 3.0, 0.0), Pose2::new(9.0, 3.0, 0.0));
     let geometry = GridGeometry::new(0.25, Vector2::new(4.0, 1.0), 8, 10).unwrap();

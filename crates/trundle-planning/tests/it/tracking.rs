@@ -125,7 +125,7 @@ fn someone_who_comes_straight_at_the_robot_is_seen_soon() {
 
 /// The robot drives and turns, its pose wrong by up to 2 cm and a degree, past walls, legs, and things that were put down.
 #[test]
-fn what_stands_appears_or_comes_into_view_is_no_mover() {
+fn objects_that_stand_appear_or_come_into_view_are_not_movers() {
     for sensor in [LASER, CAMERA] {
         let (mut world, mut tracker) = (World::new(&[]), tracker());
         for k in 0..600 {
@@ -353,7 +353,7 @@ fn who_stood_where_the_camera_is_blind_now_still_stands_there() {
 }
 
 #[test]
-fn what_came_is_not_kept_when_scans_end_or_the_clock_is_set_back() {
+fn new_obstacles_are_not_kept_when_scans_end_or_the_clock_is_set_back() {
     let (mut tracker, mut nobody) = (tracker(), World::new(&[]));
     let mut world = World::new(&[(at(1.8, 3.0), at(0.0, 0.0))]);
     dim(&mut tracker, &mut nobody, (100.0, 101.0, 0.0), 0.3);

@@ -35,7 +35,7 @@ mod tests {
     use trundle_core::{Stamp, Twist2};
 
     #[test]
-    fn a_jump_is_no_motion_and_the_next_step_counts() {
+    fn a_jump_is_not_motion_and_the_next_step_counts() {
         let mut continuous = ContinuousOdometry::default();
         let mut at = |x| {
             let (stamp, twist, covariance) = (Stamp::default(), Twist2::ZERO, Matrix3::zeros());

@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn to_turn_to_and_fro_on_the_spot_is_no_progress() {
+    fn to_turn_to_and_fro_on_the_spot_is_not_progress() {
         let mut watch = ProgressChecker::default();
         let turned = |i: i32| Pose2::new(1e-3 * f64::from(i), 0.0, f64::from(i % 2));
         let stood = |watch: &mut ProgressChecker, i: i32| {

@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_safety_stops_is_given_up_after_five_seconds_in_a_row() {
+    fn a_motion_that_safety_stops_is_given_up_after_five_seconds_in_a_row() {
         let mut drive = RelativeMotionDrive::default();
         let at = |s: f64| Stamp::default().after(s);
         assert!(!drive.is_blocked(true, at(0.0)) && !drive.is_blocked(true, at(4.9)));

@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_robot_stands_on_needs_no_turn() {
+    fn the_floor_under_the_robot_needs_no_turn() {
         assert_eq!(face(Pose2::new(1.0, 2.0, 0.5), Vector2::new(1.0, 2.0)), Twist2::ZERO);
     }
 

@@ -96,7 +96,7 @@ fn until_given_up(
 }
 
 #[test]
-fn what_never_moves_ends_with_a_reason() {
+fn an_approach_that_never_moves_ends_with_a_reason() {
     let (grid, start, goal) = (corridor(), Pose2::new(1.2, 0.32, 0.0), Pose2::new(1.5, 0.38, 0.0));
     // The safety monitor stops every command.
     let mut held = stage();

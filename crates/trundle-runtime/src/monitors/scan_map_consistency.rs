@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn what_changes_at_once_needs_less() {
+    fn a_sudden_change_needs_a_smaller_share() {
         let (grid, here) = (room(f64::INFINITY), Pose2::new(1.0, 2.0, 0.0));
         let fits = |before: &[Option<f64>]| {
             let mut watch = ScanMapConsistency::default();

@@ -43,7 +43,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_named() {
+    fn a_field_that_is_not_a_number_is_named() {
         let error = |text: &str| rows(text, ["t", "v"]).unwrap_err().to_string();
         assert_eq!(error("1 2\n3 fast"), "v in line 2 is fast, expected a finite number");
         assert_eq!(error("1 NaN"), "v in line 1 is NaN, expected a finite number");

@@ -284,7 +284,7 @@ fn in_a_house_of_triangles_no_way_of_driving_gets_into_anything() {
 }
 
 #[test]
-fn a_command_that_is_no_number_stops_the_robot_and_is_reported() {
+fn a_command_that_is_not_a_number_stops_the_robot_and_is_reported() {
     let mut robot = Simulator::new(hall(Pose2::IDENTITY), almost_blind(), 1).unwrap();
     Listener::default().drive(&mut robot, Twist2::new(0.4, 0.0), 1.0);
     let error = robot.command(Twist2::new(f64::NAN, 0.1)).unwrap_err();

@@ -126,7 +126,7 @@ fn rays_and_pixels_do_not_leak_between_triangles() {
 }
 
 #[test]
-fn what_moves_looks_like_what_stands() {
+fn a_moving_solid_looks_like_a_standing_one() {
     let scene = Scene::by_name("obstacles", 3).unwrap();
     let pose = Pose3::from_pose2(Pose2::new(1.0, 1.0, 0.6)) * camera_mount(0.0, 0.6, 0.1);
     let at = Pose2::new(2.2, 2.0, 0.7);

@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slanted_floor_is_no_depth_edge_and_a_chair_before_it_is() {
+    fn a_slanted_floor_is_not_a_depth_edge_and_a_chair_before_it_is() {
         // A floor 0.45 m below a level camera; a chair leg, 2 px wide, 1.5 m away.
         let image = DepthImage::from_fn(80, 80, |x, y| {
             let floor = 0.45 * 365.0 / (y as f32 + 25.0);
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn the_corner_of_floor_and_wall_is_no_depth_edge() {
+    fn the_corner_of_floor_and_wall_is_not_a_depth_edge() {
         for wall in [2.0_f32, 3.0, 4.0, 5.0] {
             let image = DepthImage::from_fn(80, 120, |_, y| (0.45 * 365.0 / (y as f32 + 1e-3)).min(wall));
             let seam = (0.45 * 365.0 / f64::from(wall)).round();

@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn a_parent_without_common_landmarks_is_no_constraint() {
+    fn a_parent_without_common_landmarks_is_not_a_constraint() {
         let (mut map, ids) = line(&[0.0, 1.0, 2.0]);
         map.keyframe_mut(ids[1]).tree.is_astray = true;
         let config = LoopConfig::default();

@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_that_are_no_tree_are_refused() {
+    fn counts_that_are_not_a_tree_are_refused() {
         let tree = |counts: &[u8]| Tree {
             descriptors: vec![Descriptor::default(); 4],
             weights: vec![0.0; 4],

@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_given_is_shown() {
+    fn given_parts_are_shown() {
         let pose = Pose2::new(0.2, 0.2, 0.0);
         let run = RunReport {
             map: RunMap {

@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_looked_at_in_vain_is_looked_at_again_after_a_while() {
+    fn floor_observed_in_vain_is_observed_again_after_a_while() {
         let (mut unseen, at) = (VisibilityConstraint::default(), Vector2::new(1.0, 2.0));
         let time = |s: f64| Stamp::default().after(s);
         unseen.record_observation(at, Vector2::zeros(), time(-15.0));

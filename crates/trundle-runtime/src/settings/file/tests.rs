@@ -161,7 +161,7 @@ fn of_two_overrides_of_one_key_the_later_one_holds() {
 }
 
 #[test]
-fn whole_numbers_are_numbers_and_points_are_no_counts() {
+fn whole_numbers_are_numbers_and_points_are_not_counts() {
     assert_eq!(parse("[schedule]\nmap_hz = 4\n").unwrap().config.schedule.map_hz, 4.0);
     let file = RobotFile::parse("", &["schedule.map_hz=4".to_owned()]).unwrap();
     assert_eq!(file.config.schedule.map_hz, 4.0);

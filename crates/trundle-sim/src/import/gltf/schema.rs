@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_index_of_a_map_that_is_not_drawn_is_no_fault() {
+    fn a_wrong_index_of_a_map_that_is_not_drawn_is_not_a_fault() {
         for map in [
             r#"{"normalTexture": {"index": 7}}"#,
             r#"{"occlusionTexture": {"index": 7}}"#,
