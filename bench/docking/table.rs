@@ -5,7 +5,7 @@ use crate::world::Run;
 use std::fmt::Write;
 use trundle_docking::corridor::{PathPiece, Problem, ProblemAnswer};
 
-/// What one method did with all problems.
+/// Results of one method on all problems.
 pub struct Row {
     /// Its name.
     pub name: &'static str,
@@ -25,7 +25,7 @@ pub struct Row {
     pub steps: Vec<usize>,
     /// A time that no manoeuvre beats, s, where one was settled.
     pub bounds: Vec<Option<f64>>,
-    /// What it says of each problem.
+    /// Result for each problem.
     pub answers: Vec<ProblemAnswer>,
 }
 
@@ -59,7 +59,7 @@ impl Row {
     }
 }
 
-/// What one method did in closed loop.
+/// Results of one method in closed loop.
 pub struct Track {
     name: &'static str,
     runs: Vec<(String, Run)>,
@@ -164,7 +164,7 @@ pub fn print(rows: &[Row]) {
     );
 }
 
-/// What became of each problem, as CSV.
+/// Result of each problem, as CSV.
 pub fn list(problems: &[Problem], row: &Row) -> String {
     let mut text = "problem,time_s,bound_s,motions,planning_ms\n".to_owned();
     let shown = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:.4}"));

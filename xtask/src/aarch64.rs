@@ -26,7 +26,7 @@ const KERNELS: [(&str, &[&str]); 5] = [
     ("trundle-sim", &["world", "camera::band"]),
 ];
 
-/// What must be equal in the folder of a run.
+/// Files that must be equal in the folder of a run.
 #[derive(Debug, Clone, Copy)]
 enum Equality {
     /// Every byte but times of the wall clock.
@@ -50,7 +50,7 @@ const RUNS: [(&str, Equality, &str); 3] = [
     ("slam", Equality::Poses, "slam recorded --height 0.45 --tilt 8 --out slam"),
 ];
 
-/// What the step needs of this computer.
+/// Requirements of the step on this computer.
 struct Tools {
     emulator: &'static str,
 }

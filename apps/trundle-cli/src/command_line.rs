@@ -32,7 +32,7 @@ pub struct Cli {
     /// Log state changes and pose corrections; twice (-vv): everything. TRUNDLE_LOG=trundle_runtime=debug filters by crate.
     #[arg(long, short, global = true, action = clap::ArgAction::Count)]
     pub verbose: u8,
-    /// What to do.
+    /// The action.
     #[command(subcommand)]
     pub command: Command,
 }

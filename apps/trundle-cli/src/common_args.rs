@@ -18,7 +18,7 @@ use trundle::experiments::simulated::MeshOptions;
 use trundle::runtime::RobotConfig;
 use trundle::sim::import::UpAxis;
 
-/// What every command takes.
+/// Options of every command.
 #[derive(Debug, Clone, Args)]
 pub struct Common {
     /// Print nothing but warnings and errors: no progress, no table.
@@ -29,7 +29,7 @@ pub struct Common {
     pub threads: Option<u16>,
 }
 
-/// What every command that has a robot takes.
+/// Options of every command that has a robot.
 #[derive(Debug, Clone, Args)]
 pub struct RobotArgs {
     /// Robot file (see `trundle config`).

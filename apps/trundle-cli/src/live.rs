@@ -1,4 +1,4 @@
-//! What stands beside a run: --live, a page that shows it and steers it, and --mqtt.
+//! Front ends beside a run: --live, a page that shows it and steers it, and --mqtt.
 
 use crate::console;
 use clap::Args;
@@ -27,7 +27,7 @@ pub struct LiveArgs {
     pub mqtt: crate::mqtt::MqttArgs,
 }
 
-/// What stands beside a run; dropping it ends it.
+/// Front ends beside a run; dropping them ends them.
 #[derive(Default)]
 pub struct Beside {
     _page: Option<LivePage>,

@@ -16,7 +16,7 @@ use trundle::io::OutputFolder;
 
 /// The environment variable that filters the log on standard error, as `trundle_runtime=debug`.
 const FILTER_VARIABLE: &str = "TRUNDLE_LOG";
-/// What `log.txt` holds.
+/// Content of `log.txt`.
 const FILE_FILTER: &str = "trundle=info,trundle_app=info,trundle_runtime=info,trundle_experiments=info";
 
 /// The lines of `log.txt` so far.

@@ -27,7 +27,7 @@ impl std::str::FromStr for SequenceForm {
     }
 }
 
-/// What a conversion wrote.
+/// Counts of a conversion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Converted {
     /// Number of images.

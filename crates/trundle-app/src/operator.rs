@@ -26,7 +26,7 @@ pub use visual_map_feed::VISUAL_MAP_PERIOD_S;
 
 use crate::Progress;
 
-/// What accompanies a run from outside: the progress line, and an operator where there is one.
+/// Companions of a run: the progress line, and an operator if there is one.
 pub struct FrontEnd {
     /// The progress line.
     pub progress: Progress,

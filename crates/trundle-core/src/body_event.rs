@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct BodyEvent {
     /// When it happened.
     pub stamp: Stamp,
-    /// What happened.
+    /// The event.
     pub kind: BodyEventKind,
 }
 

@@ -1,4 +1,4 @@
-//! What people write on a map: zones and named places.
+//! Annotations of a map: zones and named places.
 
 use crate::zone::require_name;
 use crate::{Invalid, MAX_COORDINATE_M, Pose2, Zone, require_in};

@@ -22,7 +22,7 @@ pub enum BaseSpec {
 }
 
 impl BaseSpec {
-    /// What opens the base's port. `program` has the command [`crate::kobuki::base_guard::GUARD_COMMAND`]: a process of it stops the base
+    /// Opener of the base's port. `program` has the command [`crate::kobuki::base_guard::GUARD_COMMAND`]: a process of it stops the base
     /// where this program dies.
     #[must_use]
     pub fn connector(&self, program: &Path) -> Box<dyn Connector> {

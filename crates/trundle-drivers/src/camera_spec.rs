@@ -30,7 +30,7 @@ pub enum CameraSpec {
     Kinect2Dump(PathBuf),
 }
 
-/// What the kinds of camera are called, for messages.
+/// Names of the kinds of camera, for messages.
 const KINDS: &str = "realsense, freenect (Kinect v1), orbbec, openni2, kinect2 (needs the feature kinect2-usb), stream:PATH, \
      folder:PATH, kinect2-dump:FILE; a serial number or \
      recording may follow, as realsense:FILE.db3";

@@ -11,7 +11,7 @@ use trundle_core::{Pose3, Stamp, Vector3};
 pub struct RelationTextError {
     /// The line, from 1.
     pub line: usize,
-    /// What is wrong with it.
+    /// The problem.
     pub problem: String,
 }
 

@@ -17,7 +17,7 @@ use trundle_io::{OutputFolder, write_map};
 use trundle_runtime::{Mission, RobotConfig, Task};
 use worlds::BarnWorld;
 
-/// What to run of the BARN worlds.
+/// The runs of the BARN worlds.
 pub struct BarnRequest {
     /// The folder with worlds.csv and obstacles.csv.
     pub data: PathBuf,

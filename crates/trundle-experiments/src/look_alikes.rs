@@ -21,7 +21,7 @@ const CARRIED_AT_S: f64 = 25.0;
 /// How long that takes, s.
 const CARRIED_FOR_S: f64 = 0.1;
 
-/// What happens in a room.
+/// Events in a room.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Variant {
     name: &'static str,
@@ -72,7 +72,7 @@ fn plan(seed: u64, variant: Variant, robot: &RobotConfig) -> Result<TrialPlan, A
     Ok(TrialPlan { name, seed, scene, mission, robot, faults, computer_fault: None })
 }
 
-/// What counts of a run.
+/// Counted quantities of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Score {
     arrivals: usize,

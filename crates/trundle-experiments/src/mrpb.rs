@@ -35,7 +35,7 @@ const MAX_SPEED_M_S: f64 = 0.55;
 /// Time limit of a run \[s\]; afterwards it is given up. Source: ours.
 const TIME_LIMIT_S: f64 = 600.0;
 
-/// What to run of the benchmark's courses.
+/// The runs of the benchmark's courses.
 pub struct MrpbRequest {
     /// The folder with start_goal.csv, actors.csv and maps.
     pub data: PathBuf,

@@ -13,7 +13,7 @@ pub enum FleetError {
     PasswordFile {
         /// The file.
         file: PathBuf,
-        /// What is wrong with it.
+        /// The problem.
         problem: String,
     },
     /// A password without a user.

@@ -1,10 +1,10 @@
-//! What home and master need of a view of the run.
+//! Part of a view of the run that home and master need.
 
 use trundle_app::operator::{MissionView, RunView};
 use trundle_core::{Battery, Pose2, PoseEstimate, Stamp, Twist2};
 use trundle_runtime::{DriveState, MotionHold};
 
-/// What home and master need of a view of the run.
+/// Part of a view of the run that home and master need.
 #[derive(Debug, Clone)]
 pub struct RobotGlance {
     /// `map_from_base` and twist.

@@ -1,4 +1,4 @@
-//! Who watches, and who holds the wheel.
+//! Viewers, and the one who holds the wheel.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ const MAX_NAME_CHARS: usize = 24;
 /// Number of a viewer.
 pub type ViewerId = u64;
 
-/// Who watches, and who holds the wheel: at most one.
+/// Viewers, and the one who holds the wheel: at most one.
 #[derive(Debug, Default)]
 pub struct Roster {
     names: BTreeMap<ViewerId, String>,

@@ -9,7 +9,7 @@ use crate::pose_graph::PoseConstraint;
 use nalgebra::{Matrix6, Vector6};
 use trundle_core::{Pose3, Vector3};
 
-/// What couples an observation's pose and point: with M = [-I | p^], the derivative of p by the pose, the block between
+/// Coupling of an observation's pose and point: with M = [-I | p^], the derivative of p by the pose, the block between
 /// them is M' `coupling`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coupling {

@@ -143,7 +143,7 @@ fn observer(
     }))
 }
 
-/// What a node publishes and offers, before it runs.
+/// Topics and services of a node, before it runs.
 struct Parts {
     topics: RobotTopics,
     settings: OutputSettings,

@@ -25,11 +25,11 @@ pub struct RobotConfig {
     /// Corners of a convex outline in place of the disc, base frame, m. Default none.
     #[serde(deserialize_with = "corners")]
     pub footprint: Option<Vec<[f64; 2]>>,
-    /// What the map is drawn from and what safety watches. Default the depth camera.
+    /// Sensor from which the map is drawn and by which safety stops. Default the depth camera.
     pub sight: RangeSource,
     /// Geometry of the base. Default: the Kobuki.
     pub drive: DifferentialDrive,
-    /// What the base may be asked for. Default: the Kobuki.
+    /// Limits of commands for the base. Default: the Kobuki.
     pub limits: DriveLimits,
     /// The camera's image. Default: Kinect V2.
     pub camera: PinholeCamera,
@@ -53,7 +53,7 @@ pub struct RobotConfig {
     pub localization: LocalizerConfig,
     /// Occupancy grid.
     pub mapping: MapperConfig,
-    /// Who moves near by, found in the scans.
+    /// Moving obstacles nearby, found in the scans.
     pub movers: ObstacleTrackerConfig,
     /// Planning.
     pub planning: PlannerConfig,

@@ -28,7 +28,7 @@ pub(crate) struct RobotZones {
     floor: Option<ZonedFloor>,
 }
 
-/// What the zones ask of the planner.
+/// Demands of the zones on the planner.
 #[derive(Debug, Default)]
 pub(crate) struct ZoneMasks {
     /// Larger after each change, from 1.

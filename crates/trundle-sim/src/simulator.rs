@@ -45,7 +45,7 @@ pub struct Simulator {
     body: Kobuki,
     /// `None` if the camera is aside.
     rig: Option<CameraRig>,
-    /// What the camera aside has not taken yet.
+    /// Shots that the camera aside has not taken yet.
     shots: Vec<Shot>,
     laser: Option<Laser>,
     /// None in a scene without a charging station.

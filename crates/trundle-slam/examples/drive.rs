@@ -101,7 +101,7 @@ fn way(drive: &Drive, last: usize) -> f64 {
     places.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
 }
 
-/// What `TRUNDLE_FRAMES` tells of a frame when it is there, `off` from the truth.
+/// Output of `TRUNDLE_FRAMES` for a frame when it is there, `off` from the truth.
 fn state(report: &TrackReport, off: Option<Pose3>) -> String {
     let off = off.map_or(Vector6::repeat(f64::NAN), |off| off.log());
     let sigma = |from: usize| report.covariance.fixed_view::<3, 3>(from, from).trace().sqrt();

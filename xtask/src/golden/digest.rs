@@ -3,7 +3,7 @@
 use super::recording::each_text;
 use std::path::{Path, PathBuf};
 
-/// What of a path is hashed.
+/// Part of a path that is hashed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Quantity {
     /// The numbers of a text file (its letters may change), or the bytes of any other file.

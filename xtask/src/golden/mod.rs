@@ -21,7 +21,7 @@ const GOLDEN_FILE: &str = "data/golden/expected.txt";
 /// Cases run side by side.
 const CASES_AT_ONCE: usize = 2;
 
-/// What the user asks of the golden net.
+/// Options of the golden net.
 pub struct Options {
     /// Write what was found into the golden file instead of comparing.
     pub update: bool,

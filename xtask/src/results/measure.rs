@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What a command gave.
+/// Result of a command.
 struct Output {
     summary: Value,
     printed: String,

@@ -26,7 +26,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     findings
 }
 
-/// What is wrong with the constant that a line declares.
+/// The problem of the constant that a line declares.
 fn fault(line: &str) -> Option<String> {
     let visible = ["pub(crate) ", "pub(super) ", "pub "].iter().find_map(|v| line.strip_prefix(v));
     let (name, rest) = visible.unwrap_or(line).strip_prefix("const ")?.split_once(": ")?;

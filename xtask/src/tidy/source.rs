@@ -68,7 +68,7 @@ pub fn identifiers(code: &str) -> impl Iterator<Item = &str> {
     code.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty())
 }
 
-/// What a line of code defines: the keyword and the name.
+/// Definition in a line of code: the keyword and the name.
 pub fn definitions(code: &str) -> Vec<(&str, &str)> {
     let words: Vec<&str> = identifiers(code).collect();
     words.windows(2).filter(|pair| KEYWORDS.contains(&pair[0])).map(|pair| (pair[0], pair[1])).collect()

@@ -9,12 +9,12 @@ use trundle::eval::{Alignment, DeltaUnit};
 /// `trundle eval`
 #[derive(Debug, Args)]
 pub struct EvalArgs {
-    /// What is evaluated.
+    /// The object of the evaluation.
     #[command(subcommand)]
     pub which: Which,
 }
 
-/// What can be evaluated.
+/// Objects of an evaluation.
 #[derive(Debug, Subcommand)]
 pub enum Which {
     /// A trajectory, by its absolute and relative errors (ATE and RPE, as evo takes them).
@@ -54,7 +54,7 @@ pub struct TrajectoryArgs {
     /// Write report.html, its pictures and summary.json into this folder; the last one is kept in DIR.1
     #[arg(long, value_name = "DIR")]
     pub out: Option<OutputDirArg>,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -80,7 +80,7 @@ pub struct RelationsArgs {
     /// Write summary.json into this folder; the last one is kept in DIR.1
     #[arg(long, value_name = "DIR")]
     pub out: Option<OutputDirArg>,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -108,13 +108,13 @@ pub struct MapsArgs {
     /// Write summary.json into this folder; the last one is kept in DIR.1
     #[arg(long, value_name = "DIR")]
     pub out: Option<OutputDirArg>,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
 
 impl EvalArgs {
-    /// What every command takes.
+    /// Options of every command.
     pub fn common(&self) -> &Common {
         match &self.which {
             Which::Trajectory(args) => &args.common,

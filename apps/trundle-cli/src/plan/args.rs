@@ -52,7 +52,7 @@ pub struct PlanArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/plan")]
     pub out: OutputDirArg,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -67,7 +67,7 @@ pub enum PlaceArg {
 impl FromStr for PlaceArg {
     type Err = String;
 
-    /// What has a comma is a pose.
+    /// Text with a comma is a pose.
     fn from_str(text: &str) -> Result<Self, String> {
         match text.trim() {
             "" => Err("expected a pose X,Y,DEG (m, m, deg) or the name of a place".to_owned()),

@@ -42,7 +42,7 @@ pub struct SimArgs {
     #[cfg(feature = "ros2")]
     #[command(flatten)]
     pub ros_robot: RosRobotArgs,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -119,7 +119,7 @@ pub struct SensorArgs {
     /// A 2-D laser on the robot.
     #[arg(long, value_name = "PRESET", value_parser = choice(&LaserConfig::PRESETS))]
     pub laser: Option<fn() -> LaserConfig>,
-    /// What breaks, and when: a TOML file of [[faults]].
+    /// Faults and their times: a TOML file of [[faults]].
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,
     /// No noise in the sensors, perfect wheels.

@@ -40,7 +40,7 @@ fn record(folder: &Path, name: &str, threads: &str, extra: &[&str]) -> PathBuf {
     out
 }
 
-/// What is recorded is tracked as it is: its own camera, odometry as prior, evaluated against its own ground truth.
+/// A recording is tracked as it is: its own camera, odometry as prior, evaluated against its own ground truth.
 #[test]
 fn a_recorded_drive_is_read_by_slam_as_it_is() {
     let scratch = tempfile::tempdir().unwrap();

@@ -62,7 +62,7 @@ fn a_sequence_that_cannot_be_read_is_refused_and_a_black_one_fails() {
     assert!(String::from_utf8(output.stderr).unwrap().contains("no frame can be read"));
 }
 
-/// What tracking a sequence says, with more arguments.
+/// Output of tracking a sequence, with more arguments.
 fn track(sequence: &Path, out: &Path, extra: &[&str]) -> serde_json::Value {
     let mut args = vec!["slam", text(sequence), "--quiet", "--out", text(out)];
     args.extend(extra);

@@ -1,4 +1,4 @@
-//! What a robot with wheels meets: it turns faster than the camera can follow, stands in the dark, looks at nothing. Its
+//! Difficult input of a robot with wheels: it turns faster than the camera can follow, stands in the dark, looks at nothing. Its
 //! SLAM is never lost, and a second after the view is back it is where it says.
 
 use crate::program::{summary, text, trundle};

@@ -24,7 +24,7 @@ pub struct CalibratedValue {
 pub struct Calibration {
     /// The values.
     pub values: Vec<CalibratedValue>,
-    /// What a person should know: quality of the fit, and values that the recording does not show.
+    /// Notes for a person: quality of the fit, and values that the recording does not show.
     pub notes: Vec<String>,
 }
 

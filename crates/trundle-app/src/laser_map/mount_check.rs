@@ -49,7 +49,7 @@ pub(super) fn mount_hint(log: &LaserLog, counts: &ScanCounts) -> Option<String> 
     }
 }
 
-/// What a mount is called, and the options that are not given for it; `None` if it is the mount taken.
+/// Name of a mount, and the options that are not given for it; `None` if it is the mount taken.
 fn described(mount: LaserMount, taken: LaserMount) -> Option<String> {
     // Without the sign of a negative zero.
     let degrees = mount.turn.to_degrees().round() + 0.0;

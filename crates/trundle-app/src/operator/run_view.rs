@@ -1,4 +1,4 @@
-//! What a run shows to its front ends.
+//! View of a run for its front ends.
 
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ pub struct RunView {
     pub plan: Option<Arc<Trajectory>>,
     /// The map, at most one second old.
     pub map: Option<Arc<MapView>>,
-    /// What is around the robot besides the map.
+    /// Surroundings of the robot besides the map.
     pub perception: PerceptionView,
     /// How often stages ran so far.
     pub counts: RunCounts,
@@ -43,7 +43,7 @@ pub struct RunView {
     pub settings: [RunSetting; 2],
 }
 
-/// What is around a robot besides the map.
+/// Surroundings of a robot besides the map.
 #[derive(Debug, Clone, Default)]
 pub struct PerceptionView {
     /// The newest colour image.

@@ -70,7 +70,7 @@ pub enum MotionSense {
 pub struct SafetyReport {
     /// The twist to send: always safe, always finite.
     pub twist: Twist2,
-    /// What was changed in the command, and the reason.
+    /// The change of the command, and its reason.
     pub action: SafetyAction,
 }
 

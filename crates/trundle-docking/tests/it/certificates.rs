@@ -69,7 +69,7 @@ impl Lattice<'_> {
     }
 }
 
-/// What is proven impossible for any motion is not reached by poses that hang together; where a way was found they often are.
+/// A goal proven impossible for any motion is not reached by poses that hang together; where a way was found they often are.
 #[test]
 fn a_goal_proven_impossible_is_not_reached_by_brute_force() {
     let mut rng = ChaCha8Rng::seed_from_u64(33);

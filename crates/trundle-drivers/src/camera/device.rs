@@ -5,7 +5,7 @@ use std::time::Duration;
 
 /// A camera that delivers pairs of a colour and a depth image.
 pub trait DepthCamera: Send {
-    /// What the camera is and what its streams look like. It does not change while the camera is open.
+    /// Facts of the camera and its streams. It does not change while the camera is open.
     fn info(&self) -> &CameraInfo;
 
     /// The next frame; `None` if none came within `timeout`.

@@ -1,11 +1,11 @@
-//! What a camera says of itself.
+//! Description of a camera by itself.
 
 use super::PixelFormat;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use trundle_core::{PinholeCamera, Pose3};
 
-/// What a camera says of itself.
+/// Description of a camera by itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraInfo {
     /// Name of the model.

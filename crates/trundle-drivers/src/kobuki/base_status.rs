@@ -1,10 +1,10 @@
-//! What is known of a running base: counters, versions, the last packet.
+//! Status of a running base: counters, versions, the last packet.
 
 use super::decoder::DecoderCounters;
 use super::protocol::{Feedback, Gains, UniqueId, Version};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What the base says about itself.
+/// Facts that the base reports about itself.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Versions {
     /// Version of the hardware.
@@ -44,10 +44,10 @@ impl Versions {
     }
 }
 
-/// What happened on the link to a base since the start.
+/// Events on the link to a base since the start.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct BaseCounters {
-    /// What was read and dropped.
+    /// Counts of bytes read and dropped.
     pub decoder: DecoderCounters,
     /// Speeds sent.
     pub speeds_sent: u64,
@@ -65,7 +65,7 @@ pub struct BaseCounters {
     pub stream_faults: u64,
 }
 
-/// What the threads of a base share.
+/// State that the threads of a base share.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Status {
     pub(super) counters: BaseCounters,

@@ -21,7 +21,7 @@ const READ_WAIT: Duration = Duration::from_millis(10);
 /// Major version of the firmware with this protocol: 1. Source: the vendor's driver, compatible major version.
 const FIRMWARE_MAJOR: u8 = 1;
 
-/// What the start has read so far.
+/// Bytes that the start has read so far.
 struct Probe<'a> {
     link: &'a mut dyn ByteLink,
     decoder: FeedbackDecoder,

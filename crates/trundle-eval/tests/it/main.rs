@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use trundle_core::{Pose3, Stamp};
 use trundle_eval::*;
 
-/// What two programs may differ by: rounding, nothing else.
+/// Largest difference of two programs: rounding, nothing else.
 const TOLERANCE: f64 = 1e-6;
 
 fn root() -> PathBuf {

@@ -31,7 +31,7 @@ pub struct EmulatedRobot {
     counts: EmulationCounts,
 }
 
-/// What went over the wires.
+/// Bytes over the wires.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EmulationCounts {
     /// Packets of the base.
@@ -82,7 +82,7 @@ impl EmulatedRobot {
         Self::new(simulator, terminal, camera_stream)
     }
 
-    /// What truly happened, and what went over the wires: a row each.
+    /// Truth, and bytes over the wires: one row each.
     #[must_use]
     pub fn rows(&self) -> Vec<Vec<String>> {
         let row = |name: &str, value: String| vec![name.to_owned(), value];
@@ -107,7 +107,7 @@ impl EmulatedRobot {
         &self.simulator
     }
 
-    /// What went over the wires so far.
+    /// Bytes over the wires so far.
     pub fn counts(&self) -> EmulationCounts {
         let (images, images_not_taken) = self.camera.as_ref().map_or((0, 0), CameraServer::counts);
         EmulationCounts { images, images_not_taken, ..self.counts }

@@ -20,7 +20,7 @@ const KEEP_ALIVE: Duration = Duration::from_secs(10);
 /// Time in which the last message leaves.
 const FAREWELL_TIME: Duration = Duration::from_secs(1);
 
-/// What a session needs.
+/// Parts of a session.
 #[derive(Debug, Clone)]
 pub struct SessionOptions {
     /// Name of this client, one at a time on a broker.
@@ -31,7 +31,7 @@ pub struct SessionOptions {
     pub password: Option<Password>,
     /// Topics that the robot listens to.
     pub topics: Vec<String>,
-    /// What the broker publishes when it loses the robot.
+    /// Message that the broker publishes when it loses the robot.
     pub last_will: Publication,
 }
 

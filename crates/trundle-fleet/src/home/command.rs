@@ -47,7 +47,7 @@ const WORDS: &str = "start, pause, continue, stop, explore, return, dock, return
 /// Reads a command: a word, or JSON with the fields `command`, `x`, `y` \[m\], `heading_deg` or `place`.
 ///
 /// # Errors
-/// What is expected.
+/// The accepted content.
 pub fn read_home_command(payload: &[u8]) -> Result<HomeCommand, String> {
     if payload.len() > MAX_COMMAND_BYTES {
         return Err(format!("command of {} bytes, expected at most {MAX_COMMAND_BYTES}", payload.len()));

@@ -9,7 +9,7 @@ use trundle_core::MAX_COORDINATE_M;
 /// Reads an order and checks its form: numbers, names, sequence of nodes and edges.
 ///
 /// # Errors
-/// What is not of the standard's form, as the error that is reported.
+/// Error of a message that is not of the standard's form.
 pub fn read_order(payload: &[u8]) -> Result<Order, ErrorReport> {
     require_size(payload, Topic::Order)?;
     let order: Order = serde_json::from_slice(payload).map_err(|error| invalid(error, Topic::Order))?;

@@ -173,7 +173,7 @@ pub fn errors(state: &Value) -> Vec<&str> {
     state["errors"].as_array().unwrap().iter().map(|error| error["errorType"].as_str().unwrap()).collect()
 }
 
-/// What an error of a state refers to under a key.
+/// Reference of an error of a state under a key.
 pub fn reference<'a>(error: &'a Value, key: &str) -> Option<&'a str> {
     let references = error["errorReferences"].as_array()?;
     references.iter().find(|reference| reference["referenceKey"] == key)?["referenceValue"].as_str()

@@ -23,7 +23,7 @@ use window::Window;
 /// The distance given where a map has no obstacle at all, m.
 pub const NO_OBSTACLE_DISTANCE_M: f64 = 1e6;
 
-/// What unknown cells, and everything outside the grid, count as.
+/// State that unknown cells, and everything outside the grid, count as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UnknownIs {

@@ -74,7 +74,7 @@ impl TextLines {
     }
 }
 
-/// What is wrong with compressed data that end, or cannot be unpacked, after a line.
+/// The problem of compressed data that end, or cannot be unpacked, after a line.
 fn broken_gzip(line: usize, error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::UnexpectedEof => format!("the gzip file is cut off after line {line}"),

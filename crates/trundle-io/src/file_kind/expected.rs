@@ -63,7 +63,7 @@ impl Expected {
         })
     }
 
-    /// What to do with a file of the kind `found`; a vocabulary of the other form is exchanged.
+    /// Remedy for a file of the kind `found`; a vocabulary of the other form is exchanged.
     fn remedy(self, found: FileKind, wants_map: bool) -> &'static str {
         match (self, found) {
             (Self::Vocabulary, K::Dbow2Vocabulary) => {

@@ -1,4 +1,4 @@
-//! What is inside a file that is packed with gzip or zstd.
+//! Content of a file that is packed with gzip or zstd.
 
 use super::head::HEAD_BYTES;
 use super::{FileKind, words};

@@ -11,7 +11,7 @@ const MAX_CENTIMETRE_MEDIAN: f64 = 1000.0;
 /// Median way by odometry between two scans \[m\]. Beyond it the odometry is in another unit. Source: ours.
 const MAX_MEDIAN_STEP_M: f64 = 3.0;
 
-/// What is wrong with the unit of a log's ranges, where they show it.
+/// Problem of the unit of a log's ranges, where they show it.
 #[must_use]
 pub fn range_unit_hint(log: &LaserLog) -> Option<String> {
     let median = median(hit_ranges(log))?;
@@ -45,7 +45,7 @@ pub fn no_overlap_cause(log: &LaserLog) -> String {
     })
 }
 
-/// What is wrong with the unit of a log's odometry, where its steps show it.
+/// Problem of the unit of a log's odometry, where its steps show it.
 fn odometry_unit_hint(log: &LaserLog) -> Option<String> {
     let steps = log.scans.windows(2).map(|pair| pair[0].odom_from_base.distance(&pair[1].odom_from_base));
     let median = median(steps.collect())?;

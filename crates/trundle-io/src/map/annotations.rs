@@ -85,7 +85,7 @@ fn kind_name(kind: ZoneKind) -> &'static str {
     }
 }
 
-/// What a feature is.
+/// Kind of a feature.
 enum Annotation {
     Zone(Zone),
     Place(NamedPlace),

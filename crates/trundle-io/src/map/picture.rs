@@ -46,7 +46,7 @@ impl Picture {
     }
 }
 
-/// What is wrong with a picture of another format.
+/// The problem of a picture of another format.
 fn other_picture(bytes: &[u8]) -> String {
     let found = FileKind::of_bytes(bytes, bytes.len() as u64);
     format!("this is {found}, expected a PGM, PNG or BMP; save it as PNG or PGM")

@@ -121,7 +121,7 @@ fn named_in_text(path: &Path) -> Vec<PathBuf> {
     files.filter(|file| file.is_file()).collect()
 }
 
-/// What may be the name of a file in a line: each word, and, since names may hold blanks, what is between quotes or marks, and the
+/// Possible names of a file in a line: each word, and, since names may hold blanks, what is between quotes or marks, and the
 /// rest of the line from a word on.
 fn names_in_line(line: &str) -> impl Iterator<Item = &str> {
     let words = line.split(|c: char| c.is_whitespace() || MARKS.contains(c));

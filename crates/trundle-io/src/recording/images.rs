@@ -23,7 +23,7 @@ pub(super) struct ImageBytes {
 /// The image of a `sensor_msgs/msg/CompressedImage`; of depth without the header of its transport.
 ///
 /// # Errors
-/// What is wrong, in words.
+/// The problem, in words.
 pub(super) fn decode(message: &[u8]) -> Result<ImageBytes, String> {
     let read = || {
         let mut reader = CdrReader::new(SCHEMA, message, Wire::Cdr)?;

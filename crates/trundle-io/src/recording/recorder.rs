@@ -15,7 +15,7 @@ use trundle_core::{FrameId, Invalid, PinholeCamera, Pose2, Pose3, Scan, Stamp};
 
 /// Writes a recording: MCAP with the profile `ros2`, every message in CDR.
 ///
-/// What a replay needs stands on topics below `/trundle` as JSON in `std_msgs/msg/String`, exact to the last bit. What other programs show
+/// The data of a replay are on topics below `/trundle` as JSON in `std_msgs/msg/String`, exact to the last bit. What other programs show
 /// stands beside it in messages of ROS 2. The bytes depend on nothing but what is recorded: no clock, no chance; log time and publish
 /// time are the stamp.
 pub struct Recorder<W: Write> {

@@ -88,7 +88,7 @@ const FIELDS: &[(&str, &str)] = &[
     ),
 ];
 
-/// What stands between the definition of a message and those of the messages in it.
+/// Separator between the definition of a message and those of the messages in it.
 const SEPARATOR: &str =
     "================================================================================\nMSG: ";
 

@@ -23,7 +23,7 @@ pub(super) struct OdometryRow {
     pub heading: f64,
 }
 
-/// What seems to be in another unit than metres and radians.
+/// Numbers that seem to be in another unit than metres and radians.
 pub(super) fn unit_problems(rows: &[(Stamp, OdometryRow)]) -> Vec<String> {
     let steps: Vec<Step> = rows.windows(2).filter_map(|pair| Step::between(&pair[0], &pair[1])).collect();
     [wrong_positions(&steps), wrong_headings(rows, &steps)].into_iter().flatten().collect()

@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::path::Path;
 use trundle_core::{Pose2, Pose3, Stamp};
 
-/// What is wrong with a file without poses.
+/// The problem of a file without poses.
 const NO_POSE: &str = "no pose in it, expected lines of: timestamp tx ty tz qx qy qz qw";
 
 /// A trajectory of a file, by rising stamps.

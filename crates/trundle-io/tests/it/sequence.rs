@@ -27,7 +27,7 @@ fn open(dir: &Path) -> Result<TumSequence, IoError> {
     TumSequence::open(dir, 1000.0, TumSequence::MAX_DIFFERENCE)
 }
 
-/// What opening says, without the path of the temporary folder.
+/// Error of opening, without the path of the temporary folder.
 fn problem(dir: &TempDir) -> String {
     open(dir.path()).unwrap_err().to_string().replace(&dir.path().display().to_string(), "DIR")
 }

@@ -1,4 +1,4 @@
-//! What a viewer asks: who may, at what rate, with which answer.
+//! Requests of a viewer: who may, at what rate, with which answer.
 
 use super::progress::ViewProgress;
 use super::rate_limit::RateLimit;
@@ -19,11 +19,11 @@ const SILENCE_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// A viewer that asks.
 pub struct Viewer<'a> {
-    /// What all share.
+    /// Shared state.
     pub state: &'a PageState,
     /// Its number.
     pub id: ViewerId,
-    /// What it may do.
+    /// Its permissions.
     pub access: Access,
     /// How far it has seen.
     pub progress: &'a ViewProgress,

@@ -47,7 +47,7 @@ struct Tile {
     cells: Box<[u8; TILE_BYTES]>,
 }
 
-/// What a viewer has of the map.
+/// Part of the map that a viewer has.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct TileCursor {
     generation: u32,

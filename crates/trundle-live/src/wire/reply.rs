@@ -1,4 +1,4 @@
-//! What the server tells a page as JSON, besides the state.
+//! Messages of the server to a page as JSON, besides the state.
 
 use super::SettingText;
 use serde::Serialize;

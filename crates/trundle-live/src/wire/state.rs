@@ -16,7 +16,7 @@ pub struct StateMessage {
     /// Pose and speed.
     #[serde(flatten)]
     pub motion: MotionText,
-    /// What the robot does.
+    /// Activity of the robot.
     #[serde(flatten)]
     pub activity: ActivityText,
     /// The battery.
@@ -51,7 +51,7 @@ pub struct MotionText {
     pub command: [f64; 2],
 }
 
-/// What the robot does.
+/// Activity of the robot.
 #[derive(Debug, Clone, Serialize)]
 pub struct ActivityText {
     /// The state in one or two words.
@@ -81,7 +81,7 @@ pub struct PowerText {
     pub charging: bool,
 }
 
-/// Who holds the wheel.
+/// The viewer who drives.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WheelText {
     /// How the viewer is called.

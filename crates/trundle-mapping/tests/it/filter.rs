@@ -64,7 +64,7 @@ pub fn lap() -> Vec<Pose2> {
     poses
 }
 
-/// What wheels make of the poses: 3 % too short, turning 0.6 deg/m, and noise.
+/// Odometry of the poses: 3 % too short, turning 0.6 deg/m, and noise.
 pub fn odometry(poses: &[Pose2]) -> Vec<Pose2> {
     let mut odom = vec![Pose2::IDENTITY];
     for (i, pair) in poses.windows(2).enumerate() {

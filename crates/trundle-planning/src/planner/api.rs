@@ -1,4 +1,4 @@
-//! What users of the planner call: plans from pose to pose, through zones and around moving obstacles.
+//! Interface of the planner: plans from pose to pose, through zones and around moving obstacles.
 
 use crate::config::PlannerConfig;
 use crate::curve::fit::config::CurveConfig;

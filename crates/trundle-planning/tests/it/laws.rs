@@ -1,4 +1,4 @@
-//! What holds on any map.
+//! Properties that hold on any map.
 
 use crate::support::{at_home, found, judge, planner, room};
 use proptest::prelude::*;

@@ -274,7 +274,7 @@ fn dim(
     tracker.moving_obstacles(stamp(to))
 }
 
-/// What came lately within 2 m.
+/// New obstacles within 2 m.
 fn lately(tracker: &MovingObstacleTracker, now: f64) -> Vec<Vector2> {
     tracker.unconfirmed_hits(stamp(now), at(1.0, 3.0), 2.0)
 }

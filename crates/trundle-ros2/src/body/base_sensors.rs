@@ -31,7 +31,7 @@ const ODOMETRY_HISTORY: usize = 100;
 /// Receives events; replaced when a run begins.
 pub type Sink = Box<dyn Fn(SensorEvent) + Send>;
 
-/// What the handlers of a robot's topics share.
+/// State that the handlers of a robot's topics share.
 pub struct Shared {
     /// Receives events. `None` before the run.
     pub sink: Mutex<Option<Sink>>,

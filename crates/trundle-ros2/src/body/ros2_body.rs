@@ -39,7 +39,7 @@ pub struct Ros2Body {
     commands: CommandPublisher,
 }
 
-/// What is known of the robot when all its topics have begun.
+/// Facts of the robot when all its topics have begun.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyDescription {
     /// The colour camera.

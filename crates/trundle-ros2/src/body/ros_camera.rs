@@ -19,7 +19,7 @@ const ASSUMED_RATE_HZ: f64 = 30.0;
 /// Length of a unit of whole-numbered depth \[m\] \[REP 118\].
 const DEPTH_UNIT_M: f64 = 0.001;
 
-/// What it takes to open the camera.
+/// Settings to open the camera.
 #[derive(Clone)]
 pub struct RosCameraSource {
     /// Where its messages come in.

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use trundle_app::operator::RunView;
 use trundle_runtime::Task;
 
-/// What an action knows of the run.
+/// Facts of the run for an action.
 pub struct GoalContext<'c> {
     /// Names of frames.
     pub frames: &'c FrameNames,

@@ -69,7 +69,7 @@ struct Handler {
 }
 
 impl Handler {
-    /// What is wanted, or the result of a goal that fails.
+    /// The request, or the result of a goal that fails.
     fn wanted(&self, id: GoalId, goal: &Goal) -> Result<Wanted, GoalFailure> {
         if !PLANNER_IDS.contains(&goal.planner_id.as_str()) {
             let message = format!("planner_id is '{}', expected none or GridBased", goal.planner_id);

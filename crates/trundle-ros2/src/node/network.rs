@@ -25,7 +25,7 @@ impl Networks {
         }
     }
 
-    /// What others on the network can do; `None` on this computer alone.
+    /// Abilities of others on the network; `None` on this computer alone.
     #[must_use]
     pub fn warning(&self) -> Option<String> {
         let danger = "everyone there can read the camera and drive the robot: DDS has no password (docs/how-to/ros2.md, Security)";

@@ -30,7 +30,7 @@ pub fn arrives(reply: &impl Serialize) -> bool {
     excess(reply).is_none()
 }
 
-/// What the diagnostics say of a reply of `bytes` bytes.
+/// Diagnostics of a reply of `bytes` bytes.
 pub(super) fn message(bytes: usize) -> String {
     format!(
         "a reply has {bytes} bytes, expected at most {MAX_REPLY_BYTES}: an empty reply was sent; ask for fewer values"

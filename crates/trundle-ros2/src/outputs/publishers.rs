@@ -56,7 +56,7 @@ pub struct RobotTopics {
     pub odom: Option<OutputTopic<Odometry>>,
     /// The map.
     pub map: OutputTopic<OccupancyGrid>,
-    /// What changed of the map since the newest update.
+    /// Changes of the map since the newest update.
     pub map_updates: OutputTopic<OccupancyGridUpdate>,
     /// The scan made of depth images. `None` if a laser's scan has this name.
     pub scan: Option<OutputTopic<LaserScan>>,

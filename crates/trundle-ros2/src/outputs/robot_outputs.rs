@@ -30,7 +30,7 @@ const SLOWEST_PERIOD: Duration = Duration::from_secs(1);
 /// `transform_tolerance` is 1 s.
 const TRANSFORM_TOLERANCE_S: f64 = 0.1;
 
-/// What the outputs read.
+/// Inputs of the outputs.
 pub struct OutputSources {
     /// The run.
     pub operator: Operator,

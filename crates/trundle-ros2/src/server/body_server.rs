@@ -28,7 +28,7 @@ const COMMAND_LIFETIME: Duration = Duration::from_millis(500);
 /// Range of a laser's beams without echo \[m\]. Source: the simulated lasers reach 12 m.
 const LASER_RANGE_M: f64 = 12.0;
 
-/// What a body that is offered looks like.
+/// Description of a body that is offered.
 #[derive(Debug, Clone, Copy)]
 pub struct OfferedBody {
     /// The camera.

@@ -155,7 +155,7 @@ fn settles_in(stage: &mut GoalApproach, grid: &OccupancyGrid, mut pose: Pose2, g
     f64::INFINITY
 }
 
-/// What is chosen is faster, driven to its end, than the other: arcs are kept where they are, and only there.
+/// The selected approach is faster, driven to its end, than the other: arcs are kept where they are, and only there.
 #[test]
 fn the_way_that_is_chosen_is_the_faster_one_when_both_are_driven() {
     let (robot, goal) = (crate::RobotConfig::default(), Pose2::new(1.5, 0.35, 0.0));

@@ -39,7 +39,7 @@ const MOVED_GOAL_M: f64 = 0.25;
 /// Rate at which that is checked \[1/s\]. Source: ours.
 const CHECK_RATE_HZ: f64 = 1.0;
 
-/// What a step of the task asks for.
+/// Result of a step of the task.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum DockStep {
     Keep,

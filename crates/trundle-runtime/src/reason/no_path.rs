@@ -25,7 +25,7 @@ pub enum NoPath {
     },
     /// The goal is in a no-go zone.
     GoalInZone {
-        /// What the zone is called: `zone 'stairs'`.
+        /// Name of the zone: `zone 'stairs'`.
         zone: String,
     },
     /// The start is off the map.

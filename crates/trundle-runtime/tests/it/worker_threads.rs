@@ -8,7 +8,7 @@ use trundle_runtime::real_time::{
 };
 use trundle_runtime::{Job, LazyImage, Robot, Worker};
 
-/// What the robot was fed, in order.
+/// Inputs of the robot, in order.
 #[derive(Debug, Clone)]
 enum Fed {
     Event(SensorEvent),

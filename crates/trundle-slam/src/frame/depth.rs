@@ -17,7 +17,7 @@ const MAX_SLOPE_DEPTH_RATIO: f64 = 0.1;
 /// A depth whose standard deviation is a larger part of it than this does not make a point.
 pub(crate) const MAX_RELATIVE_SIGMA: f64 = 0.1;
 
-/// What the depth camera can be trusted with.
+/// Range and noise of the depth camera.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DepthConfig {

@@ -69,7 +69,7 @@ impl Room {
         Self { points: (0..POINTS).map(point).collect() }
     }
 
-    /// What a camera sees of it: features and depth image, noise and all.
+    /// View of a camera: features and depth image, noise and all.
     pub fn seen_from(&self, room_from_camera: Pose3, dice: &mut Dice) -> (Features, DepthImage) {
         let (camera, config) = (camera(), SlamConfig::default());
         let camera_from_room = room_from_camera.inverse();

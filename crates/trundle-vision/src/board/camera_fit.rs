@@ -38,7 +38,7 @@ pub struct CameraFit {
 }
 
 impl CameraFit {
-    /// What to improve, one sentence each; empty where nothing is missing.
+    /// Advice, one sentence each; empty if nothing is missing.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.coverage.warnings();

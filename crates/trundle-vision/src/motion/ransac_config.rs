@@ -18,7 +18,7 @@ pub struct RansacConfig {
     pub pixel_sigma: f64,
     /// Standard deviation of a depth close by, m, positive. Default 0.004: an uneven surface under a corner.
     pub depth_sigma: f64,
-    /// What the standard deviation of a depth grows by with the square of the depth, 1/m, 0 or more. Default 0.002:
+    /// Growth of the standard deviation of a depth with the square of the depth, 1/m, 0 or more. Default 0.002:
     /// 1.4e-3 \[Khoshelham12\] for the Kinect, and some for what else is wrong.
     pub depth_sigma_per_m2: f64,
 }

@@ -8,18 +8,18 @@ use serde::Serialize;
 pub struct ErrorReport {
     /// One of the standard's words, or one of ours.
     pub error_type: String,
-    /// What it refers to.
+    /// The reference.
     pub error_references: Vec<ErrorReference>,
     /// In a sentence.
     pub error_description: String,
-    /// What to do.
+    /// The remedy.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error_hint: Option<String>,
     /// Whether the robot can go on.
     pub error_level: ErrorLevel,
 }
 
-/// What an error refers to: the name of a field and its value.
+/// Reference of an error: the name of a field and its value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ErrorReference {

@@ -60,7 +60,7 @@ struct Work<'a> {
     coverage: Coverage,
     current: CurrentInput,
     count: u64,
-    /// What was reported.
+    /// The reported text.
     found: BTreeSet<String>,
 }
 

@@ -22,7 +22,7 @@ enum Content {
     Compressed { format: String, bytes: Vec<u8> },
 }
 
-/// What an image shows.
+/// Content of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ImageKind {
     Color,
@@ -63,7 +63,7 @@ impl BagImage {
         Ok(Self { stamp, frame, content: Content::Compressed { format, bytes } })
     }
 
-    /// What the image shows, by its encoding and its first bytes.
+    /// Content of the image, by its encoding and its first bytes.
     pub(super) fn kind(&self) -> ImageKind {
         match &self.content {
             Content::Raw(raw) if is_raw_depth(&raw.encoding) => ImageKind::Depth,

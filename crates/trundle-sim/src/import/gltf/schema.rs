@@ -67,7 +67,7 @@ fn broken_json(error: &gltf::json::Error) -> String {
     format!("its JSON is broken at line {line}, column {column}")
 }
 
-/// What of the JSON is not as glTF has it.
+/// Part of the JSON that is not as glTF has it.
 fn wrong_value(error: &gltf::json::Error) -> String {
     let problem = error.to_string();
     match problem.split_once("missing field ") {

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use trundle_core::{Invalid, Pose2, require_in};
 
-/// What a scene is built on: exactly one of `scene`, `gltf` and `map`.
+/// The base of a scene: exactly one of `scene`, `gltf` and `map`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Base {

@@ -9,7 +9,7 @@ use crate::board::smooth_image::SmoothImage;
 use nalgebra::Matrix3;
 use trundle_core::Vector2;
 
-/// What a quad with a black border is.
+/// Kind of a quad with a black border.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Decoded {
     /// A marker of the family.

@@ -7,7 +7,7 @@ use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What is known of libusb. Versions before 1.0.20 limit isochronous packets to 192 bytes.
+/// Specification of libusb. Versions before 1.0.20 limit isochronous packets to 192 bytes.
 pub const LIBRARY: LibrarySpec = LibrarySpec {
     name: "libusb-1.0",
     variable: "TRUNDLE_LIBUSB_LIB",

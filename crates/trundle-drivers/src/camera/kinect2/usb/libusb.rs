@@ -294,7 +294,7 @@ impl Drop for UsbConnection {
     }
 }
 
-/// What arrived at an endpoint: the bytes, or `None` if they were lost.
+/// Arrival at an endpoint: the bytes, or `None` if they were lost.
 pub(super) type Arrival<'a> = (u8, Option<&'a [u8]>);
 
 /// Sizes of the transfers of one endpoint.
@@ -310,7 +310,7 @@ pub(super) struct TransferPlan {
     pub(super) bytes: usize,
 }
 
-/// What the callbacks share.
+/// State that the callbacks share.
 struct Shared<'a> {
     api: Arc<UsbApi>,
     on_arrival: Box<dyn FnMut(Arrival<'_>) + 'a>,

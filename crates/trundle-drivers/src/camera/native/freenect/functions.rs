@@ -7,7 +7,7 @@ use std::ffi::{c_char, c_int, c_void};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What is known of libfreenect. It has no function that tells its version: the soname stands for 0.5.
+/// Specification of libfreenect. It has no function that tells its version: the soname stands for 0.5.
 pub const LIBRARY: LibrarySpec = LibrarySpec {
     name: "libfreenect",
     variable: "TRUNDLE_FREENECT_LIB",

@@ -38,7 +38,7 @@ impl NativeLibrary {
         Err(failure(&spec, candidates.named_by, problems))
     }
 
-    /// What was known of the library.
+    /// Specification of the library.
     pub fn spec(&self) -> &LibrarySpec {
         &self.spec
     }
@@ -114,7 +114,7 @@ fn failure(spec: &LibrarySpec, named_by: Option<String>, problems: Vec<(PathBuf,
     }
 }
 
-/// What to do about a message of the loader. It begins with the missing file, where one is missing.
+/// Remedy for a message of the loader. It begins with the missing file, where one is missing.
 fn remedy_of(spec: &LibrarySpec, problem: &str) -> String {
     let missing = problem.split(": cannot open shared object file").next().filter(|name| *name != problem);
     match missing {

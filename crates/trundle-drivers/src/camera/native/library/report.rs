@@ -26,7 +26,7 @@ pub enum LibraryState {
     },
     /// The library cannot be used.
     Unusable {
-        /// What is missing, and how to get it.
+        /// The missing part, and how to get it.
         problem: String,
     },
 }

@@ -1,4 +1,4 @@
-//! What is known of a library before it is loaded.
+//! Specification of a library before it is loaded.
 
 use crate::camera::CameraError;
 use std::fmt;

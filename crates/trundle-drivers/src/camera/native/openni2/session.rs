@@ -117,7 +117,7 @@ impl OpenDevice {
         }
     }
 
-    /// What the device says of itself.
+    /// Description of the device by itself.
     pub(super) fn about(&self) -> Result<DeviceEntry, CameraError> {
         // SAFETY: all fields of the structure may be zero.
         let mut info: DeviceInfo = unsafe { std::mem::zeroed() };

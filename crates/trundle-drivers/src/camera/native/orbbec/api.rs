@@ -13,7 +13,7 @@ const EXCEPTION_CAMERA_DISCONNECTED: c_int = 2;
 /// How to get the permission to open an Orbbec camera.
 const PERMISSION_REMEDY: &str = "install the udev rules of OrbbecSDK: run 'sudo scripts/env_setup/install_udev_rules.sh' of \
     https://github.com/orbbec/OrbbecSDK_v2 and plug the camera in again";
-/// What to do about other errors.
+/// Remedy for other errors.
 const GENERAL_REMEDY: &str = "unplug the camera and plug it in again; if the error stays, search the message in the issues of OrbbecSDK_v2";
 
 /// An error of the library.

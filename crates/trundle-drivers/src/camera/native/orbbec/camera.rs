@@ -20,7 +20,7 @@ const FIRST_FRAME_TIMEOUT: Duration = Duration::from_secs(5);
 /// Time from the middle of the exposure to the arrival of a frame \[s\]. Source: ours, assumed as for a RealSense camera.
 const DEFAULT_DELAY_S: f64 = 0.045;
 
-/// What to ask of an Orbbec camera. A size or rate of 0 means any.
+/// Settings to request from an Orbbec camera. A size or rate of 0 means any.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OrbbecSettings {
     /// Columns and rows of the colour image \[px\]. Default any.

@@ -8,7 +8,7 @@ use std::ffi::{CStr, c_char, c_int};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What is known of librealsense2.
+/// Specification of librealsense2.
 pub const LIBRARY: LibrarySpec = LibrarySpec {
     name: "librealsense2",
     variable: "TRUNDLE_REALSENSE_LIB",

@@ -47,7 +47,7 @@ impl Running {
         Ok((Self { pipeline, device, hub, _config: config, _context: context, api }, started))
     }
 
-    /// What the camera says of itself.
+    /// Description of the camera by itself.
     pub(super) fn info(
         &self,
         about: DeviceEntry,

@@ -14,7 +14,7 @@ const DEFAULT_DELAY_S: f64 = 0.045;
 /// Longest delay: 1 s. A longer one is refused. Source: ours, the limit of a camera stream.
 const MAX_DELAY_S: f64 = 1.0;
 
-/// What to ask of a RealSense camera. A recording delivers its own sizes and rates.
+/// Settings to request from a RealSense camera. A recording delivers its own sizes and rates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RealSenseSettings {
     /// Columns and rows of the colour image \[px\]. Default 640 x 480.
