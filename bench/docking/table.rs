@@ -21,9 +21,9 @@ pub struct Row {
     pub bad: Vec<String>,
     /// Of planning, or of all control steps of a run, ms on one core.
     pub planning_ms: Vec<f64>,
-    /// Motions of each manoeuvre; 0 where there is none.
+    /// Motions of each manoeuvre; 0 if there is none.
     pub steps: Vec<usize>,
-    /// A time that no manoeuvre beats, s, where one was settled.
+    /// A time that no manoeuvre beats, s, if one was settled.
     pub bounds: Vec<Option<f64>>,
     /// Result for each problem.
     pub answers: Vec<ProblemAnswer>,

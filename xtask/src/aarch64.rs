@@ -86,7 +86,7 @@ impl Tools {
     }
 }
 
-/// Tests the kernels under qemu and compares the runs; skipped by name where tools are missing.
+/// Tests the kernels under qemu and compares the runs; skipped by name if tools are missing.
 pub fn run(root: &Path) -> Verdict {
     let tools = match Tools::find() {
         Ok(tools) => tools,

@@ -83,7 +83,7 @@ const UNITLESS: [&str; 30] = [
 struct Setting {
     /// Dotted path of field names.
     path: String,
-    /// Unit; empty where there is none.
+    /// Unit; empty if there is none.
     unit: String,
     /// `number`, `integer`, `flag`, `list`, or the words of an enum parted by `|`.
     kind: String,

@@ -1,4 +1,4 @@
-//! `trundle experiment`: the papers' experiments as commands; exit code 1 where a limit is missed.
+//! `trundle experiment`: the papers' experiments as commands; exit code 1 if a limit is missed.
 
 use crate::common_args::{Common, RobotArgs};
 use crate::outcome::Outcome;

@@ -50,7 +50,7 @@ impl LiveArgs {
         self.zones.as_deref().map_or(Ok(setup.clone()), |file| setup.with_annotations_of(file))
     }
 
-    /// The page and the link to a broker beside a run, where they are asked for, and what accompanies the run then. `link`: that of
+    /// The page and the link to a broker beside a run, if they are asked for, and what accompanies the run then. `link`: that of
     /// another front end. A run that is not steered takes no commands.
     pub fn beside(
         &self,

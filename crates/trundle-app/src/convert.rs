@@ -44,7 +44,7 @@ impl std::fmt::Display for Converted {
 
 /// Name of the file of a ROS 2 bag in its folder.
 const BAG_FILE: &str = "bag.mcap";
-/// Rate of the images where it is not known \[Hz\]: that of the simulated camera. Source: ours.
+/// Rate of the images if it is not known \[Hz\]: that of the simulated camera. Source: ours.
 const DEFAULT_RATE_HZ: f64 = 15.0;
 
 /// Writes the images of `input`, its odometry and its ground truth into `folder`. A damaged image is left out with a warning.

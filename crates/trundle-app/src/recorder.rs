@@ -147,7 +147,7 @@ impl RunRecorder {
         }
     }
 
-    /// Does `work` in the recorder's thread, so that it does not delay control; at once where there is no such thread, or where
+    /// Does `work` in the recorder's thread, so that it does not delay control; at once if there is no such thread, or if
     /// it has much to do not at all.
     pub fn beside(&self, work: impl FnOnce() + Send + 'static) {
         match &self.sink {
@@ -190,7 +190,7 @@ impl RunRecorder {
     }
 }
 
-/// The file of a recording, until it ends: with the run, or where the disk is full or short of space.
+/// The file of a recording, until it ends: with the run, or if the disk is full or short of space.
 struct RecordingFile {
     /// `None` without a recording, and after its end.
     recorder: Option<FileRecorder>,

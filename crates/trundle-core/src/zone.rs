@@ -72,7 +72,7 @@ impl Zone {
         Ok(self)
     }
 
-    /// Name in messages: `zone 'stairs'`, `zone 3`, or `the new zone` where it has no number yet.
+    /// Name in messages: `zone 'stairs'`, `zone 3`, or `the new zone` if it has no number yet.
     #[must_use]
     pub fn label(&self) -> String {
         match self.name.trim() {

@@ -17,7 +17,7 @@ pub const KOBUKI_UDEV_RULE: &str = "SUBSYSTEM==\"tty\", ATTRS{idVendor}==\"0403\
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BaseSpec {
-    /// A Kobuki at a serial port; `None`: the port where one is found.
+    /// A Kobuki at a serial port; `None`: the port if one is found.
     Kobuki(Option<PathBuf>),
 }
 

@@ -1,4 +1,4 @@
-//! Inputs beside the seeds: those of `fuzz/corpus`, and files of test data where there are some.
+//! Inputs beside the seeds: those of `fuzz/corpus`, and files of test data if there are some.
 
 use crate::FuzzTarget;
 use std::path::{Path, PathBuf};

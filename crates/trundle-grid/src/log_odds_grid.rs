@@ -59,7 +59,7 @@ impl LogOddsGrid {
         self.stored(tile_of(cell)).map(|tile| &tile.0[index_in_tile(cell)])
     }
 
-    /// Log-odds of a cell; 0 where no tile is stored.
+    /// Log-odds of a cell; 0 if no tile is stored.
     pub fn log_odds(&self, cell: GridCell) -> f32 {
         self.get(cell).map_or(0.0, |evidence| evidence.log_odds)
     }

@@ -85,7 +85,7 @@ impl CameraModel {
     /// The camera of a file: trundle's TOML, the YAML of ORB-SLAM2 and 3, of stella_vslam or of ROS's camera_info, or Open3D's
     /// JSON. The content decides which format it is.
     ///
-    /// The TOML has `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and `depth_scale` (units per metre), and, 0 where left out, the
+    /// The TOML has `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and `depth_scale` (units per metre), and, 0 if left out, the
     /// lens `k1`, `k2`, `p1`, `p2`, `k3` in the order of OpenCV, and `readout` (s). A file that holds no depth scale is taken to
     /// mean millimetres, as ROS does.
     ///

@@ -1,4 +1,4 @@
-//! How far the depth images of an input reach, and the likely cause where no depth can be used.
+//! How far the depth images of an input reach, and the likely cause if no depth can be used.
 
 use trundle_core::DepthImage;
 

@@ -23,7 +23,7 @@ pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
     written.map(drop).map_err(IoError::system(path, "write"))
 }
 
-/// Checks that [`replace_file`] can write a file at `path`; makes its folder where there is none.
+/// Checks that [`replace_file`] can write a file at `path`; makes its folder if there is none.
 ///
 /// # Errors
 /// When it cannot.

@@ -4,7 +4,7 @@ use crate::camera::{CameraModel, KINECT_V2_DEPTH_SCALE};
 use crate::{Expected, FileKind, IoError, Warnings};
 use std::path::{Path, PathBuf};
 
-/// The preset that is assumed where nothing is known of the camera.
+/// The preset that is assumed if nothing is known of the camera.
 const ASSUMED_PRESET: &str = "freiburg1";
 
 /// The camera of a sequence and where it comes from.
@@ -68,7 +68,7 @@ impl SequenceCamera {
     }
 }
 
-/// The camera files of a folder: `camera.toml` alone where it is there, else all by their content, sorted by name.
+/// The camera files of a folder: `camera.toml` alone if it is there, else all by their content, sorted by name.
 fn camera_files(dir: &Path) -> Vec<PathBuf> {
     let own = dir.join("camera.toml");
     if own.exists() {

@@ -76,7 +76,7 @@ impl<'a> YamlDocument<'a> {
         self.as_number(key, self.require(key, expected)?, expected)
     }
 
-    /// The number of a key, or a default where it is not there.
+    /// The number of a key, or a default if it is not there.
     pub(crate) fn number_or(&self, key: &str, default: f64, expected: &str) -> Result<f64, IoError> {
         self.get(key).map_or(Ok(default), |value| self.as_number(key, value, expected))
     }

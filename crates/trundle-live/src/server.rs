@@ -43,7 +43,7 @@ impl LivePage {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(system)?;
         let (end, ended) = oneshot::channel();
         let work = move || {
-            // Where the system refuses the niceness, the page is served all the same.
+            // If the system refuses the niceness, the page is served all the same.
             _ = ThreadPlacement { nice: PAGE_NICENESS, ..ThreadPlacement::default() }.take();
             runtime.block_on(serve(listener, state, ended));
         };

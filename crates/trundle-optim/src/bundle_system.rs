@@ -318,7 +318,7 @@ fn add_pose((block, gradient): &mut (Block, Column), info: &[[f64; 3]; 3], g: &[
     (0..3).for_each(|i| gradient[i + 3] += turned[i]);
 }
 
-/// The inverse of a symmetric block (upper halves by rows) whose diagonal grows by a part of itself; zero where it has none.
+/// The inverse of a symmetric block (upper halves by rows) whose diagonal grows by a part of itself; zero if it has none.
 #[inline(always)]
 fn inverse(hessian: &[f64; 6], damping: f64) -> [f64; 6] {
     let [a, b, c, d, e, f] = *hessian;

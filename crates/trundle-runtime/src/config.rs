@@ -142,7 +142,7 @@ impl RobotConfig {
         self
     }
 
-    /// The robot's outline: the polygon where there is one, else the disc.
+    /// The robot's outline: the polygon if there is one, else the disc.
     ///
     /// # Errors
     /// When the radius is not positive, or the polygon is none that is convex.

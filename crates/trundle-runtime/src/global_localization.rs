@@ -43,7 +43,7 @@ pub(crate) struct LocalizedPose {
     pub(crate) covariance: Matrix3<f64>,
 }
 
-/// Number of scans after the first that must fit a candidate pose, each 10 deg or 0.3 m farther on, where no image can be recognised. Source: ours.
+/// Number of scans after the first that must fit a candidate pose, each 10 deg or 0.3 m farther on, if no image can be recognised. Source: ours.
 const MIN_CONFIRMING_SCANS: usize = 6;
 /// Number of scans if images have enough features and are not recognised: that is evidence against every pose in the map. Source: ours.
 const MIN_CONFIRMING_SCANS_SEEN: usize = 18;

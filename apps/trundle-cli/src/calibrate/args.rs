@@ -37,7 +37,7 @@ pub struct DriveArgs {
     /// Read a recording that is cut, as by a power failure, up to the cut.
     #[arg(long)]
     pub recover: bool,
-    /// Set the found keys in this robot file, which is created where there is none.
+    /// Set the found keys in this robot file, which is created if there is none.
     #[arg(long, value_name = "FILE")]
     pub write: Option<PathBuf>,
     /// Options of every command.
@@ -60,7 +60,7 @@ pub struct BoardImageArgs {
     /// Write a camera file, for `trundle slam --camera`.
     #[arg(long, value_name = "FILE")]
     pub write_camera: Option<PathBuf>,
-    /// Set the camera in this robot file, which is created where there is none.
+    /// Set the camera in this robot file, which is created if there is none.
     #[arg(long, value_name = "FILE")]
     pub write: Option<PathBuf>,
     /// Options of every command.

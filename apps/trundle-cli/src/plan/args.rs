@@ -40,7 +40,7 @@ pub struct PlanArgs {
     /// Way-point graph, GeoJSON as Nav2's route server has it: drive along its lanes.
     #[arg(long, value_name = "FILE")]
     pub graph: Option<PathBuf>,
-    /// Where a goal is blocked, stop as near to it as can be reached, at most so far off, m [default when given: 1]
+    /// If a goal is blocked, stop as near to it as can be reached, at most so far off, m [default when given: 1]
     #[arg(long, value_name = "M", num_args = 0..=1, require_equals = true, default_missing_value = "1", value_parser = NumberArg::from_zero("m"), allow_negative_numbers = true)]
     pub near: Option<f64>,
     /// Print the curve's polynomials and the constraints that shape it.

@@ -59,7 +59,7 @@ pub struct DriverArgs {
     /// Drive by hand: arrows or WASD, space to stop, q to quit; shows a page with what the robot sees.
     #[arg(long, group = "driver")]
     pub keys: bool,
-    /// Stop after this time of the robot, s, or when the drive is over [default: 5 where there is no drive]
+    /// Stop after this time of the robot, s, or when the drive is over [default: 5 if there is no drive]
     #[arg(long, value_name = "S", value_parser = NumberArg::up_to(1e6, "s"), allow_negative_numbers = true)]
     pub duration: Option<f64>,
 }
@@ -102,7 +102,7 @@ pub struct WireArgs {
     /// Answer as a Kobuki at a pseudo terminal, in real time, until Ctrl-C or --duration; LINK becomes a symbolic link to it.
     #[arg(long, value_name = "LINK", conflicts_with_all = ["driver", "record", "map"])]
     pub kobuki: Option<PathBuf>,
-    /// Write the camera's frames into this FIFO (docs/camera-stream.md); it is made where it is not there.
+    /// Write the camera's frames into this FIFO (docs/camera-stream.md); it is made if it is not there.
     #[arg(long, value_name = "FIFO", requires = "kobuki")]
     pub camera_stream: Option<PathBuf>,
 }

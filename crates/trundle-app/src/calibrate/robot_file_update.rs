@@ -61,7 +61,7 @@ fn updated(text: &str, values: &[&CalibratedValue]) -> Result<String, String> {
     Ok(document.to_string())
 }
 
-/// Sets the key at a dotted path; tables on the way are made where there are none.
+/// Sets the key at a dotted path; tables on the way are made if there are none.
 fn set(table: &mut Table, path: &str, value: &CalibratedValue) -> Result<(), String> {
     let Some((head, rest)) = path.split_once('.') else {
         set_leaf(table.entry(path).or_insert(Item::None), value);

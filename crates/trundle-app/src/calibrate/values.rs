@@ -13,7 +13,7 @@ pub struct CalibratedValue {
     pub sigma: Option<f64>,
     /// Unit of both.
     pub unit: &'static str,
-    /// The value in use before, where there is one.
+    /// The value in use before, if there is one.
     pub before: Option<f64>,
     /// Decimals that are printed and written.
     pub decimals: usize,

@@ -30,7 +30,7 @@ pub struct DockingRequest {
     pub method: Option<Method>,
     /// Margin to every obstacle \[m\]; `None` for the robot's.
     pub margin: Option<f64>,
-    /// The robot, where one is given.
+    /// The robot, if one is given.
     pub robot: Option<RobotConfig>,
 }
 

@@ -28,7 +28,7 @@ pub struct DockingTask {
 }
 
 impl DockingTask {
-    /// A task on a map file, between two poses, refused where one is off the map. `unknown_is_free`: whether unknown cells are not obstacles.
+    /// A task on a map file, between two poses, refused if one is off the map. `unknown_is_free`: whether unknown cells are not obstacles.
     ///
     /// # Errors
     /// When the map cannot be read.

@@ -26,7 +26,7 @@ pub struct LaserMapRun {
 }
 
 impl LaserMapRun {
-    /// Why a log that gave these counts and this map, where one was made, missed the aim, with the likely cause. `is_stopped`: whether
+    /// Why a log that gave these counts and this map, if one was made, missed the aim, with the likely cause. `is_stopped`: whether
     /// the user ended the run.
     pub(super) fn failure_of(
         log: &LaserLog,

@@ -140,7 +140,7 @@ pub struct MissionView {
 pub struct MapView {
     /// Number of maps that an operator has replaced until then.
     pub number: u64,
-    /// Number of scans that were drawn into it so far: maps of equal numbers are equal, where no loop was closed.
+    /// Number of scans that were drawn into it so far: maps of equal numbers are equal, if no loop was closed.
     pub revision: u64,
     /// The map.
     pub grid: OccupancyGrid,

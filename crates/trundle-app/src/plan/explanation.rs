@@ -104,7 +104,7 @@ impl PlanRequest {
     }
 }
 
-/// The plan of one leg from rest, along the graph where there is one.
+/// The plan of one leg from rest, along the graph if there is one.
 fn plan_leg(
     planner: &mut Planner,
     (grid, graph): (&OccupancyGrid, Option<&WaypointGraph>),

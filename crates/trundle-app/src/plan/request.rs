@@ -23,7 +23,7 @@ pub struct PlanFiles {
     pub graph: Option<PathBuf>,
 }
 
-/// A pose in the map frame, with its name where it has one.
+/// A pose in the map frame, with its name if it has one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedPose {
     /// `map_from_base`.

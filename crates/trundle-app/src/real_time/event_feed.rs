@@ -65,7 +65,7 @@ impl EventFeed {
         }
     }
 
-    /// Reports silence where no event has come for long enough.
+    /// Reports silence if no event has come for long enough.
     pub(super) fn report_silence(&self) {
         let now = Instant::now();
         let mut state = self.state();

@@ -47,7 +47,7 @@ impl GoalOutcome {
         })
     }
 
-    /// Whether the robot came within these distances of the goal, m and rad: in truth where it is known, else by its own estimate.
+    /// Whether the robot came within these distances of the goal, m and rad: in truth if it is known, else by its own estimate.
     /// Before a restart only the estimate is recorded.
     pub fn is_reached(&self, distance: f64, turn: f64) -> bool {
         let near = |error: GoalError| error.distance < distance && error.dtheta.abs() < turn;

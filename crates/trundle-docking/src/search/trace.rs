@@ -1,7 +1,7 @@
 //! A manoeuvre along a motion of any kind.
 //!
 //! Idea \[Laumond94\]: a motion that may also go sideways leads along connected poses. Its poses are joined by one or two legs, far
-//! ones first; where these are not free, half of the motion is tried, and half of that. A base that can turn and drive a little can
+//! ones first; if these are not free, half of the motion is tried, and half of that. A base that can turn and drive a little can
 //! move sideways a little, so that short parts are free wherever there is any clearance.
 
 use crate::contact_space::ContactSpace;

@@ -115,7 +115,7 @@ pub struct FrameMonitor {
 }
 
 impl FrameMonitor {
-    /// For the frames of a camera. `expects_noise` is `false` for rendered images, which repeat byte for byte where nothing moves.
+    /// For the frames of a camera. `expects_noise` is `false` for rendered images, which repeat byte for byte if nothing moves.
     pub fn new(info: &CameraInfo, expects_noise: bool) -> Self {
         Self {
             color: info.color,

@@ -233,7 +233,7 @@ impl Smoother {
         ErrorStep { stationary: own + map_part, correlation, displacement, start }
     }
 
-    /// A keyframe without measurements, where none was made for long.
+    /// A keyframe without measurements, if none was made for long.
     fn add_timed_keyframe(&mut self, stamp: Stamp) {
         let Some(window) = &self.window else { return };
         if self.head.duration < longest_time(&self.config.window, &self.head) {

@@ -14,7 +14,7 @@ const ENCODED_BATCH: usize = 8;
 /// Size of a pixel of colour and depth as PNG \[bytes\]. Source: recordings of the built-in scenes.
 const BYTES_PER_PIXEL: f64 = 3.2;
 
-/// Size of the recording of a drive, in a sentence; `duration` in s, where it is known.
+/// Size of the recording of a drive, in a sentence; `duration` in s, if it is known.
 #[must_use]
 pub fn recording_announcement(robot: &Simulator, duration: Option<f64>) -> String {
     let (camera, config) = (robot.camera(), robot.config());

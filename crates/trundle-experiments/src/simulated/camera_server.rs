@@ -54,7 +54,7 @@ pub fn camera_info(config: &SimConfig) -> CameraInfo {
 }
 
 impl CameraServer {
-    /// A server at the FIFO `path`, which is made where it is not there.
+    /// A server at the FIFO `path`, which is made if it is not there.
     ///
     /// # Errors
     /// When the FIFO cannot be created, or something else is at `path`.

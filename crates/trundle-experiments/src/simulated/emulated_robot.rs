@@ -45,7 +45,7 @@ pub struct EmulationCounts {
 }
 
 impl EmulatedRobot {
-    /// The base of `simulator` at `terminal`, its camera at `camera_stream`, a FIFO that is made where it is not there.
+    /// The base of `simulator` at `terminal`, its camera at `camera_stream`, a FIFO that is made if it is not there.
     ///
     /// # Errors
     /// When the FIFO cannot be created.

@@ -20,7 +20,7 @@ use transform::Transform;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
 use window::Window;
 
-/// The distance given where a map has no obstacle at all, m.
+/// The distance given if a map has no obstacle at all, m.
 pub const NO_OBSTACLE_DISTANCE_M: f64 = 1e6;
 
 /// State that unknown cells, and everything outside the grid, count as.

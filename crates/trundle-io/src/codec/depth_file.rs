@@ -8,7 +8,7 @@ use crate::pgm::Pgm;
 use image::ImageFormat;
 use trundle_core::{DepthImage, Image};
 
-/// A depth image in metres, 0 where there is no depth. `depth_scale`: units per metre of whole-numbered pixels; floats are metres.
+/// A depth image in metres, 0 if there is no depth. `depth_scale`: units per metre of whole-numbered pixels; floats are metres.
 ///
 /// # Errors
 /// When the bytes are no such image, end too early, or hold more than 67 Mpx.

@@ -23,7 +23,7 @@ fn millimetres(metres: f32) -> u16 {
     if rounded > 0.0 && rounded <= f64::from(u16::MAX) { rounded as u16 } else { 0 }
 }
 
-/// A depth image (m, 0 where there is none) as 16-bit grey PNG in millimetres.
+/// A depth image (m, 0 if there is none) as 16-bit grey PNG in millimetres.
 ///
 /// # Errors
 /// When a side is 0 or above 2^31 px.
@@ -39,7 +39,7 @@ pub(crate) fn encode_grey16(image: &DepthImage, unit: impl Fn(f32) -> u16) -> Re
     encode_png("depth", (image.width(), image.height()), &format, &data)
 }
 
-/// A depth image (m, 0 where there is none) in millimetres as width, height and stream of RVL.
+/// A depth image (m, 0 if there is none) in millimetres as width, height and stream of RVL.
 ///
 /// # Errors
 /// When a side is 0.

@@ -42,7 +42,7 @@ impl FilterInfo {
         Ok(Self { kind: if kind == 1.0 { 1 } else { 2 }, base, multiplier })
     }
 
-    /// The limit of a value, m/s; infinite where there is none: value 0, unknown, and what Nav2 calls out of range.
+    /// The limit of a value, m/s; infinite if there is none: value 0, unknown, and what Nav2 calls out of range.
     fn limit(self, value: Option<u8>, full_speed: f64) -> f32 {
         let Some(value) = value.filter(|value| *value > 0) else { return f32::INFINITY };
         let limit = self.base + self.multiplier * f64::from(value);

@@ -16,7 +16,7 @@ pub(super) struct Picture {
     /// White, 1 to 65,535.
     pub maxval: u16,
     pub values: Vec<u16>,
-    /// Of each pixel, whether it lets through what is behind it; empty where none does.
+    /// Of each pixel, whether it lets through what is behind it; empty if none does.
     pub transparent: Vec<bool>,
 }
 

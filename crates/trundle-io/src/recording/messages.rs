@@ -65,7 +65,7 @@ pub(super) struct ScanMessage {
     origin_m: [f64; 2],
     angle_min_rad: f64,
     angle_increment_rad: f64,
-    /// `null` where nothing is known.
+    /// `null` if nothing is known.
     ranges_m: Vec<Option<f64>>,
     /// Whether an obstacle is at the range; else the beam is free up to it.
     hits: Vec<bool>,

@@ -85,7 +85,7 @@ fn follows_way_in_degrees(steps: &[Step]) -> bool {
     way > 0.0 && as_degrees > MIN_AGREEMENT * way && as_radians < MAX_CONTRADICTION * way
 }
 
-/// The median of the rates above `limit`, where they are too many for jumps.
+/// The median of the rates above `limit`, if they are too many for jumps.
 fn fast(rates: impl Iterator<Item = f64>, limit: f64) -> Option<f64> {
     let moving: Vec<f64> = rates.filter(|rate| *rate > 0.0).collect();
     let mut fast: Vec<f64> = moving.iter().copied().filter(|rate| *rate > limit).collect();

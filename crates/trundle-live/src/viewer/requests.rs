@@ -60,7 +60,7 @@ pub async fn receive(mut stream: SplitStream<WebSocket>, viewer: Viewer<'_>) -> 
 }
 
 impl Viewer<'_> {
-    /// Carries out a request; the answer, where there is one.
+    /// Carries out a request; the answer, if there is one.
     fn reply(&self, request: &Request) -> Option<Reply> {
         match request {
             Request::Seen { batch } => {

@@ -30,7 +30,7 @@ pub(crate) struct ScanPoints {
 pub(crate) struct ScanPoint {
     pub(crate) x: f32,
     pub(crate) y: f32,
-    /// The normal of its surface; zero where there is none.
+    /// The normal of its surface; zero if there is none.
     pub(crate) normal: (f32, f32),
     /// 1 / sigma^2, 1 / cells^2.
     pub(crate) information: f32,
@@ -46,7 +46,7 @@ pub(crate) struct PointGroup {
     pub(crate) y: [f32; LANES],
     pub(crate) normal_x: [f32; LANES],
     pub(crate) normal_y: [f32; LANES],
-    /// 1 where there is a normal, else 0.
+    /// 1 if there is a normal, else 0.
     pub(crate) wall: [f32; LANES],
     pub(crate) information: [f32; LANES],
     /// How many of them are points.

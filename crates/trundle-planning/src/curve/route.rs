@@ -81,7 +81,7 @@ pub(crate) fn route(
 }
 
 /// A curve no longer than `longest` m that was checked and found free: smoother where the first one exceeds the curvature, nearer to the
-/// path where it is too long.
+/// path if it is too long.
 fn verified_curve(
     context: &RouteContext<'_>,
     segments: &[PathSegment],

@@ -208,7 +208,7 @@ impl RobotShape {
         }
     }
 
-    /// A turn in place from one heading to another without contact, rad: the shorter turn where that is free.
+    /// A turn in place from one heading to another without contact, rad: the shorter turn if that is free.
     pub(crate) fn turn(&self, field: &DistanceField, from: Pose2, to: f64) -> Option<f64> {
         let short = trundle_core::difference_of_angles(to, from.theta);
         let long = short - std::f64::consts::TAU.copysign(short);

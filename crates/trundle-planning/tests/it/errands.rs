@@ -213,7 +213,7 @@ fn expensive_cells_are_avoided_if_the_detour_is_small() {
     let (around, longer) = within(90);
     assert!(through > 0 && (straight - 8.0).abs() < 0.01, "{through} {straight}");
     assert!(around == 0 && longer > 8.03 && longer < 9.5, "{around} {longer}");
-    // Where there is no way around, it is not a wall.
+    // If there is no way around, it is not a wall.
     let everywhere = GridGeometry::new(1.0, Vector2::zeros(), 10, 6).unwrap();
     let mut planner = planner(at_home(), RADIUS);
     planner.set_cost_mask(Some(CostMask::new(everywhere, vec![99; 60]).unwrap()));

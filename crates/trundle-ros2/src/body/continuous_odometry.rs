@@ -13,7 +13,7 @@ pub struct ContinuousOdometry {
 }
 
 impl ContinuousOdometry {
-    /// The odometry without jumps, and the length of this jump \[m\] where it is one.
+    /// The odometry without jumps, and the length of this jump \[m\] if it is one.
     pub fn add(&mut self, odometry: &Odometry) -> (Odometry, Option<f64>) {
         let Some((raw, smooth)) = self.newest else {
             self.newest = Some((odometry.pose, odometry.pose));

@@ -16,7 +16,7 @@ pub const MAX_REPLY_BYTES: usize = 1152;
 /// Bytes in front of a message that name its encoding \[DDSI-RTPS 10.2\].
 const ENCAPSULATION_BYTES: usize = 4;
 
-/// The size of a reply on the wire \[bytes\] where it is too large to arrive.
+/// The size of a reply on the wire \[bytes\] if it is too large to arrive.
 pub(super) fn excess(reply: &impl Serialize) -> Option<usize> {
     let mut counter = Counter(ENCAPSULATION_BYTES);
     // A reply that cannot be written is refused by the middleware.

@@ -48,7 +48,7 @@ fn cause<M>(error: &WriteError<M>) -> &'static str {
 
 /// The topics that a robot publishes.
 pub struct RobotTopics {
-    /// `map` to `odom`, and `odom` to the base where the body does not publish it itself.
+    /// `map` to `odom`, and `odom` to the base if the body does not publish it itself.
     pub tf: OutputTopic<TFMessage>,
     /// Base to camera and scan.
     pub tf_static: OutputTopic<TFMessage>,

@@ -167,7 +167,7 @@ impl OutputLoop {
         }
     }
 
-    /// Transforms, and odometry where the body does not publish its own.
+    /// Transforms, and odometry if the body does not publish its own.
     fn publish_poses(&self, view: &RunView) {
         let (clock, frames) = (&self.sources.clock, &self.settings.frames);
         let Some(odom_from_base) = self.odom_from_base(view) else { return };

@@ -105,7 +105,7 @@ pub(crate) struct Navigator {
     ends_without_path: bool,
     /// When the first of the plans since then found no path; none after a plan with a path.
     no_path_since: Option<Stamp>,
-    /// Place where the path to the goal is blocked, where there is no path.
+    /// Place where the path to the goal is blocked, if there is no path.
     blocked_at: Option<Vector2>,
     viewpoint: Viewpoint,
     visibility: VisibilityConstraint,

@@ -44,7 +44,7 @@ pub(super) struct ApproachContext<'a> {
 }
 
 impl ApproachSelection {
-    /// Between an arc, where there is one, and turns and straight moves from `from`.
+    /// Between an arc, if there is one, and turns and straight moves from `from`.
     pub(super) fn new(from: Pose2, goal: Pose2, arc: Option<StabilizerPreview>) -> Self {
         Self { goal, from, arc: arc.map(|arc| (arc, 0)), scene: None, planning: None }
     }

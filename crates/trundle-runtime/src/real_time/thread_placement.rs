@@ -9,7 +9,7 @@ pub struct ThreadPlacement {
     pub core: Option<usize>,
     /// Niceness above that of the starting thread, 0 to 39. Default 0.
     pub nice: i32,
-    /// Whether it runs before every thread that is not, whatever their niceness, where the system allows it (Linux: `SCHED_FIFO`).
+    /// Whether it runs before every thread that is not, whatever their niceness, if the system allows it (Linux: `SCHED_FIFO`).
     /// For threads that compute little. Default false.
     pub is_first: bool,
 }

@@ -140,7 +140,7 @@ impl KobukiConfig {
         Ok(self)
     }
 
-    /// The outline of the base: the polygon where there is one, else the disc.
+    /// The outline of the base: the polygon if there is one, else the disc.
     ///
     /// # Errors
     /// When the polygon is not one: fewer than three corners, not convex, not finite; or the radius is not positive.

@@ -43,7 +43,7 @@ impl Texture {
         Self::with_levels(texels, (width, height), scale, false)
     }
 
-    /// Texture of a material: a colour, times a picture where there is one. (u, v) are in widths and heights of the
+    /// Texture of a material: a colour, times a picture if there is one. (u, v) are in widths and heights of the
     /// picture, which repeats.
     pub(crate) fn of_picture(color: [u8; 3], picture: Option<&ColorImage>) -> Self {
         let tinted = |texel: [u8; 3]| {

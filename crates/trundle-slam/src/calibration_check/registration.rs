@@ -68,7 +68,7 @@ impl Registration {
         if self.is_open() { None } else { self.judge() }
     }
 
-    /// Both halves of the images must ask for about the same shift, and not for one out of all reason: where there is nothing
+    /// Both halves of the images must ask for about the same shift, and not for one out of all reason: if there is nothing
     /// to find, they do not.
     fn judge(&self) -> Option<CalibrationIssue> {
         let [a, b] = [shift_of(&self.scores[0])?, shift_of(&self.scores[1])?];

@@ -219,7 +219,7 @@ impl ResidualRows {
         if p.z <= 0.05 {
             return None;
         }
-        // Compared where it was measured, in the assumed coordinates: else a fit could shrink the picture to shrink the errors.
+        // Compared if it was measured, in the assumed coordinates: else a fit could shrink the picture to shrink the errors.
         let expected = uncorrected(Vector2::new(p.x, p.y) / p.z, offset);
         let unstretched = Matrix2::from_diagonal(&stretch(expected, offset).map(f64::recip));
         let projection =

@@ -89,7 +89,7 @@ impl Frame {
         self
     }
 
-    /// Median standard deviation of the aligned features, px of their octaves; that of a plain one where there are none.
+    /// Median standard deviation of the aligned features, px of their octaves; that of a plain one if there are none.
     pub fn median_aligned_sigma_px(&self, model: &ObservationModel) -> f64 {
         let in_octave = |(k, sigma): (&Keypoint, &f32)| f64::from(*sigma) / model.scale(k.octave);
         let sigmas = self.features.keypoints.iter().zip(&self.pixel_sigmas).map(in_octave);

@@ -181,7 +181,7 @@ impl LandmarkMap {
         }
     }
 
-    /// Makes one landmark of two: `kept` takes over the observations of `gone` in keyframes where it has none.
+    /// Makes one landmark of two: `kept` takes over the observations of `gone` in keyframes if it has none.
     pub fn merge(&mut self, kept: LandmarkId, gone: LandmarkId) {
         if kept == gone || self.landmark(kept).is_none() {
             return;

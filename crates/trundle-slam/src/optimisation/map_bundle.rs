@@ -21,7 +21,7 @@ pub(crate) struct MapBundle {
     observations: Vec<BundleObservation>,
     /// Landmark, keyframe and bound of each observation.
     sources: Vec<(LandmarkId, KeyframeId, f64)>,
-    /// Part of the map of each keyframe, by index; empty where there is only one.
+    /// Part of the map of each keyframe, by index; empty if there is only one.
     parts: Vec<usize>,
     solver: BundleSolver,
     is_done: bool,

@@ -45,7 +45,7 @@ pub(crate) struct LocalizedFrame {
 }
 
 impl LocalizedFrame {
-    /// Tracks from the last frame, whose reference keyframe is `reference`, to the map. Where the map has too few landmarks, in a
+    /// Tracks from the last frame, whose reference keyframe is `reference`, to the map. If the map has too few landmarks, in a
     /// blurred or quite new view, the points of a fixed map's keyframes help. Where these do not suffice, the last frame alone gives the
     /// pose: drift is better than a lost camera.
     pub fn from_last(

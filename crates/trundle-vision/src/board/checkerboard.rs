@@ -58,7 +58,7 @@ pub(super) fn find_checkerboard(
     }
 }
 
-/// The corners, refined where that is possible.
+/// The corners, refined if that is possible.
 fn view(
     image: &SmoothImage,
     corners: &[(usize, Vector2)],

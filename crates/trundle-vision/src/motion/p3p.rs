@@ -59,7 +59,7 @@ impl Triangle {
         cones.sort_by(|a, b| a.determinant().abs().total_cmp(&b.determinant().abs()));
         let [first, second] = cones;
         let Some((root, lines)) = line_pair(&first, &second) else { return [None; 4] };
-        // Where one is the other times -root, the larger decides.
+        // If one is the other times -root, the larger decides.
         let conic = if root.abs() > 1.0 { first } else { second };
         let [a, b] = lines.map(|line| meet(&line, &conic));
         [a[0], a[1], b[0], b[1]].map(|ratios| self.polished(self.sized(ratios?)?))

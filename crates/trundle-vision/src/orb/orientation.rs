@@ -12,7 +12,7 @@ pub(crate) struct Direction {
     pub sin: f32,
 }
 
-/// The direction of the intensity centroid within the disc; along x where there is none.
+/// The direction of the intensity centroid within the disc; along x if there is none.
 pub(crate) fn direction(patch: &Patch) -> Direction {
     let (m10, m01) = moments(patch);
     let (x, y) = (m10 as f32, m01 as f32);

@@ -114,7 +114,7 @@ impl Layer {
         (shown && !self.label.is_empty()).then(|| LegendItem::new(self.label.clone(), color, mark))
     }
 
-    /// Where its line runs in a picture; nothing where it is none.
+    /// Where its line runs in a picture; nothing if it is none.
     pub(crate) fn line(&self, view: &View) -> Vec<Px> {
         match &self.shape {
             Shape::Line { points, .. } => points.iter().map(|p| view.px(*p)).collect(),

@@ -28,7 +28,7 @@ pub(crate) struct View {
     /// Size of the plot, px.
     pub width: i64,
     pub height: i64,
-    /// The cells shown, where there is a grid.
+    /// The cells shown, if there is a grid.
     pub cells: Option<(CellBox, Zoom)>,
     /// The unit of all that does not scale with the map: text dots and line widths, px.
     pub unit: i64,

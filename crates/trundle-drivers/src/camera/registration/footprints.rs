@@ -17,11 +17,11 @@ pub(super) struct Footprint {
     pub x: f32,
     /// Row of its middle \[px\].
     pub y: f32,
-    /// Depth in the output camera \[m\]; 0 where there is none.
+    /// Depth in the output camera \[m\]; 0 if there is none.
     pub z: f32,
-    /// Half its width where it has no neighbour \[px\].
+    /// Half its width if it has no neighbour \[px\].
     pub half_x: f32,
-    /// Half its height where it has no neighbour \[px\].
+    /// Half its height if it has no neighbour \[px\].
     pub half_y: f32,
 }
 

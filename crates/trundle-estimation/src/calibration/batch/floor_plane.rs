@@ -179,7 +179,7 @@ impl FloorView {
 
 impl FloorMount {
     /// The mean over images; `None` without one. The standard deviations contain what the images share: the bias of the depth, and the
-    /// angle between the floor's normal and the `axis` around which the robot turns (camera frame), where that is known.
+    /// angle between the floor's normal and the `axis` around which the robot turns (camera frame), if that is known.
     #[must_use]
     pub fn of(views: &[FloorView], axis: Option<&Vector3>) -> Option<Self> {
         let mean = |value: &dyn Fn(&FloorView) -> f64, shared: &dyn Fn(f64) -> f64| {

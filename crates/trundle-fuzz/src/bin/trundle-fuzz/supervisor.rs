@@ -11,7 +11,7 @@ use trundle_fuzz::FuzzTarget;
 
 /// Deaths of one target after which it is left.
 const MAX_DEATHS: u64 = 3;
-/// Memory disk, where there is one.
+/// Memory disk, if there is one.
 const MEMORY_DISK: &str = "/dev/shm";
 
 /// Runs each target for some time, as many at once as there are cores. Returns whether nothing was found.
@@ -68,7 +68,7 @@ fn work(target: &FuzzTarget, seconds: u64, seed: u64, folder: &Path) -> Result<E
     command.stdin(Stdio::null()).status().map_err(|error| format!("{}: cannot start: {error}", target.name))
 }
 
-/// A folder for the inputs, in memory where there is a memory disk.
+/// A folder for the inputs, in memory if there is a memory disk.
 fn scratch() -> Result<tempfile::TempDir, String> {
     let made =
         if Path::new(MEMORY_DISK).is_dir() { tempfile::tempdir_in(MEMORY_DISK) } else { tempfile::tempdir() };

@@ -13,7 +13,7 @@ pub(super) fn is_compressed_depth(format: &str) -> bool {
     format.contains("compressedDepth")
 }
 
-/// Depth in metres, 0 where there is none. `format` is that of the message, as `16UC1; compressedDepth png`. Images of 32 bits hold
+/// Depth in metres, 0 if there is none. `format` is that of the message, as `16UC1; compressedDepth png`. Images of 32 bits hold
 /// quantised inverse depth d: metres = a / (d - b). Of all others `depth_scale` units are a metre.
 ///
 /// # Errors

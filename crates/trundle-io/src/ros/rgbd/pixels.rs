@@ -48,7 +48,7 @@ pub(super) fn color_of_raw(raw: &RawImage) -> Result<ColorImage, CodecError> {
     Ok(ColorImage::new(raw.width, raw.height, pixels)?)
 }
 
-/// Depth in metres of an image of 16 bits in units, or of 32-bit floats in metres; 0 where there is none.
+/// Depth in metres of an image of 16 bits in units, or of 32-bit floats in metres; 0 if there is none.
 ///
 /// # Errors
 /// When its encoding is another, or its bytes are too few for its size.

@@ -112,7 +112,7 @@ const MIN_MULTIPLIER_M2: f64 = 1e-7;
 /// Distance of a control point from a side above which the side is inactive, m. Source: ours.
 const ACTIVE_DISTANCE_M: f64 = 1e-4;
 
-/// The sides near control points that are not in `known`; empty where no side is violated. The two ends are inside.
+/// The sides near control points that are not in `known`; empty if no side is violated. The two ends are inside.
 fn violated(curve: &Curve, segments: &[PathSegment], known: &[Side]) -> Vec<Side> {
     let (mut near, mut is_violated) = (Vec::new(), false);
     let last = segments.len() - 1;

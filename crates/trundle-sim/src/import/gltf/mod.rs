@@ -36,7 +36,7 @@ pub struct ImportedScene {
 ///
 /// Supported content: the default scene with its nodes' transforms; triangle lists, strips and fans, indexed or not, sparse or
 /// quantised; of materials the base colour and its texture (PNG or JPEG; alpha is ignored, everything is opaque and seen
-/// from both sides); KHR_texture_transform; the colours of vertices where there is no texture. Textures repeat. A texture that
+/// from both sides); KHR_texture_transform; the colours of vertices if there is no texture. Textures repeat. A texture that
 /// is missing or in another form is grey, and noted. Triangles without area are left out. What it ignores: skins, morph targets,
 /// animations, other maps of the material, cameras and lights.
 ///

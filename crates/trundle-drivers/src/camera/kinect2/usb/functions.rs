@@ -132,7 +132,7 @@ functions! {
 }
 
 impl UsbApi {
-    /// Loads the library; `setting` is its file in the settings, where there is one.
+    /// Loads the library; `setting` is its file in the settings, if there is one.
     ///
     /// # Errors
     /// When the library is missing, broken, lacks functions, or has a version that does not suit.

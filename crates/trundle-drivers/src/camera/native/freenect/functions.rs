@@ -49,7 +49,7 @@ pub struct FrameMode {
     padding_bits: i8,
     /// Frames per second \[Hz\].
     pub framerate: i8,
-    /// 0 where there is no such mode.
+    /// 0 if there is no such mode.
     pub is_valid: i8,
 }
 
@@ -92,7 +92,7 @@ functions! {
 }
 
 impl FreenectApi {
-    /// Loads the library; `setting` is its file in the settings, where there is one.
+    /// Loads the library; `setting` is its file in the settings, if there is one.
     ///
     /// # Errors
     /// When the library is missing, broken, or lacks functions.

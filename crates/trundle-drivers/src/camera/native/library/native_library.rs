@@ -19,7 +19,7 @@ pub struct NativeLibrary {
 }
 
 impl NativeLibrary {
-    /// Loads the library `spec`; `setting` is its file in the settings, where there is one.
+    /// Loads the library `spec`; `setting` is its file in the settings, if there is one.
     ///
     /// # Errors
     /// [`CameraError::LibraryMissing`] when there is no such file; [`CameraError::LibraryBroken`] when it, or a library that it needs,
@@ -114,7 +114,7 @@ fn failure(spec: &LibrarySpec, named_by: Option<String>, problems: Vec<(PathBuf,
     }
 }
 
-/// Remedy for a message of the loader. It begins with the missing file, where one is missing.
+/// Remedy for a message of the loader. It begins with the missing file, if one is missing.
 fn remedy_of(spec: &LibrarySpec, problem: &str) -> String {
     let missing = problem.split(": cannot open shared object file").next().filter(|name| *name != problem);
     match missing {

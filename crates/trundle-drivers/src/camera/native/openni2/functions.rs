@@ -117,7 +117,7 @@ functions! {
 }
 
 impl OpenNiApi {
-    /// Loads the library and starts its drivers, which stay until the program ends; `setting` is its file in the settings, where there is
+    /// Loads the library and starts its drivers, which stay until the program ends; `setting` is its file in the settings, if there is
     /// one.
     ///
     /// # Errors

@@ -46,7 +46,7 @@ impl OrbbecError {
 }
 
 impl OrbbecApi {
-    /// Loads the library; `setting` is its file in the settings, where there is one. The library writes no log.
+    /// Loads the library; `setting` is its file in the settings, if there is one. The library writes no log.
     ///
     /// # Errors
     /// When the library is missing, broken, or of another version.
@@ -161,7 +161,7 @@ impl<T> Drop for Handle<T> {
     }
 }
 
-/// A copy of a text of the library; empty where there is none.
+/// A copy of a text of the library; empty if there is none.
 ///
 /// # Safety
 /// `text` is null or ends with a zero.

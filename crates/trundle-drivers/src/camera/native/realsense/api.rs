@@ -44,7 +44,7 @@ pub(super) struct RealSenseError {
 }
 
 impl RealSenseApi {
-    /// Loads the library; `setting` is its file in the settings, where there is one.
+    /// Loads the library; `setting` is its file in the settings, if there is one.
     ///
     /// # Errors
     /// When the library is missing, broken, or of another version.
@@ -111,7 +111,7 @@ impl RealSenseApi {
     }
 }
 
-/// A copy of a text of the library; empty where there is none.
+/// A copy of a text of the library; empty if there is none.
 ///
 /// # Safety
 /// `text` is null or ends with a zero.
