@@ -22,7 +22,7 @@ use crate::slam::SlamArgs;
 use crate::vocabulary::VocabularyArgs;
 use clap::{Parser, Subcommand};
 
-/// Version of the package, and the commit where it was built from a checkout.
+/// Version of the package, and the commit if it was built from a checkout.
 const LONG_VERSION: &str = env!("TRUNDLE_LONG_VERSION");
 
 /// Autonomy for a two-wheeled indoor robot with one RGB-D camera.

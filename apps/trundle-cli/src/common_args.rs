@@ -49,7 +49,7 @@ impl RobotArgs {
         load_robot(self.config.as_deref(), &self.set)
     }
 
-    /// The robot where a file or a key is given, else nothing.
+    /// The robot if a file or a key is given, else nothing.
     ///
     /// # Errors
     /// As [`RobotArgs::robot`].

@@ -63,7 +63,7 @@ pub fn progress(quiet: bool) -> (ProgressBar, Progress) {
     (line, Progress::new(show))
 }
 
-/// The progress of work in steps: a bar where their number is known, else a spinner.
+/// The progress of work in steps: a bar if their number is known, else a spinner.
 pub struct StepDisplay {
     bar: ProgressBar,
 }

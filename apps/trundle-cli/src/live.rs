@@ -11,7 +11,7 @@ use trundle::live::{LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
 #[derive(Debug, Args)]
 pub struct LiveArgs {
     /// Show the run in a browser and steer it there: prints the link; the run goes on after its mission until Ctrl-C. ADDR is IP:PORT
-    /// [default: 127.0.0.1:8642, or a free port where it is in use]
+    /// [default: 127.0.0.1:8642, or a free port if it is in use]
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = LiveAddress::DEFAULT)]
     pub live: Option<LiveAddress>,
     /// Zones and named places of the map: a GeoJSON file, which keeps the changes of the live page. Without the file the first change

@@ -88,7 +88,7 @@ fn to_bag(
     bag.set_camera(input.camera.model.camera);
     if input.camera.model.camera.readout() > 0.0 {
         tracing::warn!(
-            "camera_info holds no readout time: give the camera with --camera where the bag is read"
+            "camera_info holds no readout time: give the camera with --camera when the bag is read"
         );
     }
     let (base, camera) = (FrameId::Base.to_string(), FrameId::Camera.to_string());

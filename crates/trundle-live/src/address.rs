@@ -17,7 +17,7 @@ pub struct LiveAddress {
 }
 
 impl LiveAddress {
-    /// The text that stands for the default: loopback, port 8642, or a free port where it is in use.
+    /// The text that stands for the default: loopback, port 8642, or a free port if it is in use.
     pub const DEFAULT: &'static str = "loopback";
 
     /// Whether other machines can reach the page.

@@ -42,7 +42,7 @@ fn fault(line: &str) -> Option<String> {
         NUMBERS.contains(&kind) || NUMBERS[..2].iter().any(|f| kind.starts_with(&format!("[{f};")));
     let is_one_word = !name.contains('_') && !ONE_WORD_NAMES.contains(&name);
     (is_number && is_one_word)
-        .then(|| format!("constant {name} has one word: name its quantity, and its unit where it has one"))
+        .then(|| format!("constant {name} has one word: name its quantity, and its unit if it has one"))
 }
 
 #[cfg(test)]

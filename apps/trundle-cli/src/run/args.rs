@@ -96,7 +96,7 @@ impl RunOptions {
 }
 
 impl RunArgs {
-    /// The intrinsics of the robot file, where those are wished.
+    /// The intrinsics of the robot file, if those are wished.
     pub fn robot_camera(&self, robot: &RobotConfig) -> Option<PinholeCamera> {
         (self.intrinsics == IntrinsicsArg::Robot).then_some(robot.camera)
     }
