@@ -23,7 +23,7 @@ pub struct SequenceOptions<'a> {
     pub path: &'a Path,
     /// A camera preset or a file of one; `None` for the input's own.
     pub camera: Option<&'a str>,
-    /// Depth units a metre of a folder's images; `None` for the camera's own.
+    /// Depth units per metre of a folder's images; `None` for the camera's own.
     pub depth_scale: Option<f64>,
     /// Whether a recording may be cut: it is read up to the cut.
     pub recover: bool,
