@@ -1,4 +1,4 @@
-//! The long version of the program: the package's, and the commit where the sources are a git checkout.
+//! The long version of the program: the package's, and the commit if the sources are a git checkout.
 
 use std::path::Path;
 use std::process::Command;

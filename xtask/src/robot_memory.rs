@@ -46,7 +46,7 @@ pub fn run(root: &Path, minutes: f64) -> Verdict {
     Ok(last.peak <= MAX_RESIDENT_MB)
 }
 
-/// Prints samples for `duration`; the last one. An error where the process ends before.
+/// Prints samples for `duration`; the last one. An error if the process ends before.
 fn watch(robot: &mut Child, duration: Duration) -> Result<Memory, String> {
     let start = Instant::now();
     loop {

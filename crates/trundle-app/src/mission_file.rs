@@ -26,7 +26,7 @@ struct TaskEntry {
     go: Option<[f64; 3]>,
     /// Turn on the spot, positive to the left \[deg\].
     turn_deg: Option<f64>,
-    /// Straight drive, back where it is negative \[m\].
+    /// Straight drive, back if it is negative \[m\].
     straight_m: Option<f64>,
     /// Name of a place.
     place: Option<String>,

@@ -19,7 +19,7 @@ pub type FileRecorder = Recorder<BufWriter<File>>;
 type Line = Box<dyn FnOnce(&mut RecordingFile) + Send>;
 
 /// Records a run into `recording.mcap`: within the run's own loop, or by a thread of its own, so that a slow disk does not delay
-/// control. Writes checkpoints as well, where a file for them is given.
+/// control. Writes checkpoints as well, if a file for them is given.
 pub struct RunRecorder {
     sink: Sink,
     /// Lines that wait for the disk, counted each time a line is written.
@@ -122,7 +122,7 @@ impl RunRecorder {
         self.checkpoints.is_some()
     }
 
-    /// Writes a checkpoint, where a file for checkpoints is given.
+    /// Writes a checkpoint, if a file for checkpoints is given.
     pub fn write_checkpoint(&self, checkpoint: Arc<Checkpoint>) {
         if let Some(writer) = &self.checkpoints {
             writer.write(checkpoint);
@@ -161,7 +161,7 @@ impl RunRecorder {
         }
     }
 
-    /// Writes the last checkpoint, where a file for them is given.
+    /// Writes the last checkpoint, if a file for them is given.
     ///
     /// # Errors
     /// When it could not be written.

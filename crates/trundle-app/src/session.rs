@@ -91,7 +91,7 @@ impl<'s> RunSession<'s> {
         self.is_interrupted
     }
 
-    /// The operator's next request, where one waits.
+    /// The operator's next request, if one waits.
     pub(crate) fn next_request(&self) -> Option<OperatorRequest> {
         self.operator.as_ref()?.next_request()
     }
@@ -133,7 +133,7 @@ impl<'s> RunSession<'s> {
         Ok(report.finished)
     }
 
-    /// Records the body's contacts, where it counts them.
+    /// Records the body's contacts, if it counts them.
     fn record_contacts(&mut self, body: &dyn EncodedBody) {
         if let contacts @ Some(count) = body.true_contacts()
             && contacts != self.log.true_contacts

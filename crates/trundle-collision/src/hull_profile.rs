@@ -149,7 +149,7 @@ impl HullProfile {
     }
 
     /// Lower bounds of the free distance forward and backward before the hull meets a point of a box (in the hull's frame), m;
-    /// infinite where it never does.
+    /// infinite if it never does.
     pub fn free_distances(&self, bounds: &OrientedBox) -> (f64, f64) {
         let never = (f64::INFINITY, f64::INFINITY);
         let (p, extent) = (bounds.center, bounds.extent().add_scalar(ROUNDING_SLACK));

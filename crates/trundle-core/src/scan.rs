@@ -49,9 +49,9 @@ pub struct ScanParts {
     pub beams: Vec<Beam>,
     /// Free spans by rising beam and range; `None`: all beams up to their ranges.
     pub free: Option<Vec<FreeSpan>>,
-    /// One sigma of the range of each beam, m; empty where the sensor gives none.
+    /// One sigma of the range of each beam, m; empty if the sensor gives none.
     pub sigmas: Vec<f32>,
-    /// The kind of each beam's obstacle; empty where all stand.
+    /// The kind of each beam's obstacle; empty if all stand.
     pub obstacles: Vec<ObstacleKind>,
 }
 
@@ -169,7 +169,7 @@ impl Scan {
         whole.into_iter().chain(own.map(|span| (span.from, span.to)))
     }
 
-    /// One sigma of the range of beam `i`, m, where the sensor gives one.
+    /// One sigma of the range of beam `i`, m, if the sensor gives one.
     pub fn sigma(&self, i: usize) -> Option<f64> {
         self.parts.sigmas.get(i).map(|sigma| f64::from(*sigma))
     }

@@ -71,7 +71,7 @@ impl LivePage {
         Some(format!("http://{address}/#{token}"))
     }
 
-    /// Notice for a person: the links, and a warning where other machines can reach the page.
+    /// Notice for a person: the links, and a warning if other machines can reach the page.
     #[must_use]
     pub fn announcement(&self) -> String {
         let mut lines = Vec::new();

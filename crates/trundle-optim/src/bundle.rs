@@ -68,7 +68,7 @@ pub struct BundleProblem {
     pub(crate) points: Vec<Vector3>,
     pub(crate) observations: Vec<BundleObservation>,
     pub(crate) constraints: Vec<PoseConstraint>,
-    /// Empty where all poses are of one part.
+    /// Empty if all poses are of one part.
     pub(crate) parts: Vec<usize>,
 }
 

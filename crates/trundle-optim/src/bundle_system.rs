@@ -26,7 +26,7 @@ const UNCOUPLED: Coupling = Coupling { p: [0.0; 3], coupling: [[0.0; 3]; 3] };
 struct PointBlock {
     hessian: [f64; 6],
     gradient: [f64; 3],
-    /// Of the damped block, upper half by rows; zero where it cannot be inverted.
+    /// Of the damped block, upper half by rows; zero if it cannot be inverted.
     inverse: [f64; 6],
 }
 

@@ -119,7 +119,7 @@ impl PoseProblem<'_> {
         weights
     }
 
-    /// The Jacobian of each observation's residual by the pose, in standard deviations; zero where it does not count.
+    /// The Jacobian of each observation's residual by the pose, in standard deviations; zero if it does not count.
     fn rows(&self, pose: Pose3, weights: &[f64]) -> Vec<Matrix3x6<f64>> {
         let camera_from_world = pose.inverse();
         let row = |((point, seen), weight): (&(Vector3, PointObservation), &f64)| {

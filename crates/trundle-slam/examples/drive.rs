@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p trundle-slam --example drive -- FOLDER [FRAMES] [--motion_unknown] [--seed=N] [--least-texture=X]` prints the frames located, loops, keyframes,
 //! the ATE after a rigid alignment, how much of it is up and down, and median, 99th percentile and most of the processor
-//! time, in ms, of the features alone, of a whole step, and of those that made keyframes. Wheels are used where the folder
+//! time, in ms, of the features alone, of a whole step, and of those that made keyframes. Wheels are used if the folder
 //! has them, unless `--motion_unknown`; N is the seed of what is drawn at random, X `orb.min_texture`. Loading images is not timed. Without `camera.toml` the camera is that of freiburg1.
 //! `TRUNDLE_FRAMES=FILE` writes of each frame: time, state, whether it is a keyframe, inliers; the error of the pose at its
 //! time (m, rad, relative to the first one) with its standard deviation (m, rad) and normalised squared error (expected 6).

@@ -273,7 +273,7 @@ impl RgbdSlam {
         &self.features
     }
 
-    /// Settings that are probably wrong, by the first images; empty where nothing speaks against them.
+    /// Settings that are probably wrong, by the first images; empty if nothing speaks against them.
     pub fn calibration_issues(&self) -> &[CalibrationIssue] {
         self.calibration.issues()
     }

@@ -37,7 +37,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     findings
 }
 
-/// An error where the command line holds more than command line.
+/// An error if the command line holds more than command line.
 fn large_command_line(tree: &Tree, package: &Package) -> Option<Finding> {
     let lines: usize = tree.sources(package).map(|source| source.code.len()).sum();
     let message = format!(

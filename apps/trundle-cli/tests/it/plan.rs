@@ -271,7 +271,7 @@ fn coefficients_are_the_curve_and_active_constraints_are_active() {
     }
 }
 
-/// Grey is expensive: the way leads around it where that is not a great detour.
+/// Grey is expensive: the way leads around it if that is not a great detour.
 #[test]
 fn grey_of_a_keep_out_mask_is_dear() {
     let room = Room::new();

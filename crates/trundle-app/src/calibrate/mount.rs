@@ -154,7 +154,7 @@ fn not_shown(keys: &str, error: &CalibrationError) -> String {
     format!("not found: {keys}: {error}")
 }
 
-/// A warning where the robot turns around another axis than the floor's normal.
+/// A warning if the robot turns around another axis than the floor's normal.
 fn axis_warning(angle: f64) -> Option<String> {
     let degrees = angle.to_degrees();
     (degrees > MAX_AXIS_ANGLE_DEG).then(|| {

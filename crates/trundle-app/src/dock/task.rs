@@ -19,9 +19,9 @@ pub struct DockingTask {
     pub goal: Pose2,
     /// The obstacles, for the planner.
     pub scene: ObstacleScene,
-    /// The map, where the obstacles are a map's.
+    /// The map, if the obstacles are a map's.
     pub grid: Option<OccupancyGrid>,
-    /// The list, where the obstacles are a list's.
+    /// The list, if the obstacles are a list's.
     pub problem: Option<Problem>,
     /// Why no manoeuvre can be planned for the task; `None` if the planner decides.
     pub refusal: Option<String>,

@@ -164,7 +164,7 @@ impl HardwareReport {
         }
     }
 
-    /// The signs of encoders and gyro, where the robot was pushed.
+    /// The signs of encoders and gyro, if the robot was pushed.
     fn check_wheels(&mut self, log: &CheckLog) {
         let [left, right] = log.distances;
         let (turn, gyro) = ((right - left) / log.wheelbase(), log.gyro_turn);

@@ -147,7 +147,7 @@ impl OperatorLink {
         self.unwatched_steps < UNWATCHED_STEPS
     }
 
-    /// The next request, where one waits. Changes of the zones and places of a map that was replaced meanwhile are dropped: the file
+    /// The next request, if one waits. Changes of the zones and places of a map that was replaced meanwhile are dropped: the file
     /// of that map has them.
     pub(crate) fn next_request(&self) -> Option<OperatorRequest> {
         loop {

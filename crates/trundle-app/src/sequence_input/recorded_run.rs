@@ -96,7 +96,7 @@ impl RecordedRun {
         &self.scans
     }
 
-    /// Logs a warning where the recording was cut.
+    /// Logs a warning if the recording was cut.
     pub fn warn_of_cut(&self) {
         if let Some(report) = &self.cut_report {
             tracing::warn!("{}: {report}", self.file.display());

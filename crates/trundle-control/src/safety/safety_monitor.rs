@@ -47,7 +47,7 @@ pub struct SafetyInput<'a> {
 }
 
 impl SafetyInput<'_> {
-    /// The motion at a charging station, where the command is one.
+    /// The motion at a charging station, if the command is one.
     fn station_motion(&self) -> Option<StationMotion> {
         self.station.filter(|motion| motion.permits(self.twist))
     }

@@ -39,7 +39,7 @@ struct Sector {
 
 /// Largest number of sectors of a leg, forward and backward together. Source: ours.
 const MAX_SECTORS: usize = 16;
-/// Width of a sector, rad; wider where a leg has more headings than sectors. Source: ours.
+/// Width of a sector, rad; wider if a leg has more headings than sectors. Source: ours.
 const SECTOR_WIDTH_RAD: f64 = 0.06;
 
 impl Chain<'_> {

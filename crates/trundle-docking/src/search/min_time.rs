@@ -60,7 +60,7 @@ fn has_small_budget(space: &ContactSpace<'_>) -> bool {
     space.most() < 5 * SHORT_SEARCH_WORK
 }
 
-/// Cost limit of a short search; smaller where the limit of the whole plan is less than a few times that.
+/// Cost limit of a short search; smaller if the limit of the whole plan is less than a few times that.
 fn short_search_work(space: &ContactSpace<'_>) -> u64 {
     SHORT_SEARCH_WORK.min(space.most() / 8)
 }

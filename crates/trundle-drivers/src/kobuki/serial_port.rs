@@ -140,7 +140,7 @@ pub(super) fn wait_readable(fd: &OwnedFd, wait: Duration) -> io::Result<PollFlag
     }
 }
 
-/// Nothing, where the system says to come back later.
+/// Nothing, if the system says to come back later.
 pub(super) fn or_none(bytes: Result<usize, Errno>) -> io::Result<usize> {
     match bytes {
         Err(Errno::AGAIN | Errno::INTR) => Ok(0),

@@ -3,7 +3,7 @@
 use super::FileKind;
 use FileKind as K;
 
-/// Name of a kind and what to do with a file of it; empty where no general advice exists.
+/// Name of a kind and what to do with a file of it; empty if no general advice exists.
 const WORDS: &[(FileKind, &str, &str)] = &[
     (
         K::Ros1Bag,

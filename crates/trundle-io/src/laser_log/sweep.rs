@@ -34,7 +34,7 @@ pub(crate) fn check_sweep(
     Ok(())
 }
 
-/// The hint that an angle is one in degrees, where it can be.
+/// The hint that an angle is one in degrees, if it can be.
 fn degrees(angle: f64) -> &'static str {
     if (TAU..=361.0).contains(&angle.abs()) { "; it seems to be in degrees" } else { "" }
 }

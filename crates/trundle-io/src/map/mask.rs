@@ -60,7 +60,7 @@ impl FilterInfo {
 pub struct KeepOutFile {
     /// Occupied where the robot must not be, else free.
     pub forbidden: OccupancyGrid,
-    /// Cost of each of its cells, 0 to 100; 0 where it is forbidden or unknown.
+    /// Cost of each of its cells, 0 to 100; 0 if it is forbidden or unknown.
     pub costs: Vec<u8>,
 }
 
@@ -69,7 +69,7 @@ pub struct KeepOutFile {
 pub struct SpeedFile {
     /// Where its cells lie.
     pub geometry: GridGeometry,
-    /// Of each cell, row by row from the lowest y, the highest speed, m/s; infinite where it sets none.
+    /// Of each cell, row by row from the lowest y, the highest speed, m/s; infinite if it sets none.
     pub limits: Vec<f32>,
     /// How many cells have a value above 0 and set no limit all the same: what comes out is not above 0, or above 100 %.
     pub out_of_range: usize,

@@ -56,7 +56,7 @@ pub(super) fn is_on_other_disk(a: &Path, b: &Path) -> bool {
     matches!((disk(a), disk(b)), (Some(a), Some(b)) if a != b)
 }
 
-/// Whether the two folders lie on different disks, where the system reports it.
+/// Whether the two folders lie on different disks, if the system reports it.
 #[cfg(not(unix))]
 pub(super) fn is_on_other_disk(_a: &Path, _b: &Path) -> bool {
     false

@@ -11,7 +11,7 @@ pub(crate) struct StoredScan {
     /// Where the beams begin, base frame, cells.
     pub(crate) origin: (f32, f32),
     pub(crate) rays: Box<[PackedRay]>,
-    /// One sigma of each ray's range, mm; empty where the sensor gives none.
+    /// One sigma of each ray's range, mm; empty if the sensor gives none.
     pub(crate) sigmas: Box<[u8]>,
     pub(crate) spans: Box<[PackedSpan]>,
 }
@@ -38,7 +38,7 @@ pub(crate) struct PackedSpan {
 pub(crate) struct StoredRay {
     pub(crate) ray: ScanRay,
     pub(crate) beam: usize,
-    /// One sigma of its range, m; 0 where the sensor gives none.
+    /// One sigma of its range, m; 0 if the sensor gives none.
     pub(crate) sigma: f32,
 }
 

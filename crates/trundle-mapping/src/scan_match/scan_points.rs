@@ -17,11 +17,11 @@ pub(crate) struct ScanPoints {
     pub(crate) groups: Vec<PointGroup>,
     /// Spread of the points, cells.
     pub(crate) spread: PointSpread,
-    /// Number of the beam, end, and one sigma of the range, 0 where the sensor gives none.
+    /// Number of the beam, end, and one sigma of the range, 0 if the sensor gives none.
     hits: Vec<(usize, Vector2, f64)>,
     /// The numbers of the rays' beams.
     pub(crate) beams: Vec<usize>,
-    /// One sigma of each ray's range, m; empty where the sensor gives none.
+    /// One sigma of each ray's range, m; empty if the sensor gives none.
     pub(crate) sigmas: Vec<f32>,
 }
 

@@ -24,7 +24,7 @@ pub(crate) struct RobotShape {
     corners: Vec<Vector2>,
     /// Largest distance of a point of the footprint from the axle, m.
     pub(crate) radius: f64,
-    /// Smallest distance of the boundary from the axle, m; 0 where the axle is outside.
+    /// Smallest distance of the boundary from the axle, m; 0 if the axle is outside.
     pub(crate) inner: f64,
     /// Centre and radius of the largest disc inside the footprint, base frame, m.
     pub(crate) inscribed: (Vector2, f64),
@@ -123,7 +123,7 @@ impl RobotShape {
         Some(Self { leaving: Some(Box::new(Leaving { escape, slim })), ..self.clone() })
     }
 
-    /// Depth inside what it leaves, m; 0 where it leaves nothing.
+    /// Depth inside what it leaves, m; 0 if it leaves nothing.
     pub(crate) fn depth(&self) -> f64 {
         self.leaving.as_ref().map_or(0.0, |leaving| leaving.escape.depth)
     }
@@ -149,7 +149,7 @@ impl RobotShape {
         self.corners.iter().map(|c| pose.position() + along * c.x + across * c.y).collect()
     }
 
-    /// The exact distance between the footprint at a pose and the nearest obstacle, at most `cap` m; 0 where they meet. While it
+    /// The exact distance between the footprint at a pose and the nearest obstacle, at most `cap` m; 0 if they meet. While it
     /// leaves an overlap: the distance that it may still come nearer.
     pub(crate) fn gap(&self, field: &DistanceField, pose: Pose2, cap: f64) -> f64 {
         match &self.leaving {

@@ -187,7 +187,7 @@ impl<'a> ConfigurationSpace<'a> {
         price + (self.mask_density(self.point_of(linear)) * 256.0) as u16
     }
 
-    /// The cost in known space where no cell centre is farther than `distance` from obstacles; 0 where the robot does not fit.
+    /// The cost in known space where no cell centre is farther than `distance` from obstacles; 0 if the robot does not fit.
     pub(crate) fn price_of_room(&self, distance: f32) -> u16 {
         let more = if matches!(self.points, CellPoints::Centres) { 0.0 } else { self.half_diagonal() };
         if f64::from(distance) + more < self.radius - CLEARANCE_TOLERANCE_M {

@@ -35,7 +35,7 @@ impl Escape {
     }
 
     /// The same zone with full clearance from all that is not overlapped at the start. `gap` is the distance between the footprint
-    /// there and a cell with this centre, m, 0 where they overlap; no point is farther than `radius` m from the axle.
+    /// there and a cell with this centre, m, 0 if they overlap; no point is farther than `radius` m from the axle.
     pub(crate) fn with_clearance_from_others(
         self,
         field: &DistanceField,

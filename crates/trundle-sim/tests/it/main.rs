@@ -47,7 +47,7 @@ fn almost_blind() -> SimConfig {
     SimConfig { camera, camera_rate_hz: 1.0, ..SimConfig::default() }
 }
 
-/// A file of the shared data; `None`, and says so, where it is absent.
+/// A file of the shared data; `None`, and says so, if it is absent.
 fn shared_data(name: &str) -> Option<std::path::PathBuf> {
     let path = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).join(name);
     if path.exists() {

@@ -108,7 +108,7 @@ fn camera(text: &str) -> PinholeCamera {
     PinholeCamera::new(size, (setting("fx"), setting("fy")), (setting("cx"), setting("cy")), lens).unwrap()
 }
 
-/// A number of `camera.toml`, 0 where it is not named.
+/// A number of `camera.toml`, 0 if it is not named.
 fn setting(text: &str, name: &str) -> f64 {
     let line = text.lines().find_map(|line| line.split_once('=').filter(|(key, _)| key.trim() == name));
     line.map_or(0.0, |(_, value)| value.trim().parse().unwrap())

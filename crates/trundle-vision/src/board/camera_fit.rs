@@ -25,7 +25,7 @@ use trundle_core::{Pose3, Vector2, Vector3};
 pub struct CameraFit {
     /// The camera.
     pub parameters: CameraParameters,
-    /// Standard deviation of each parameter; 0 where it was not estimated.
+    /// Standard deviation of each parameter; 0 if it was not estimated.
     pub sigmas: [f64; PARAMETER_COUNT],
     /// Root mean square of the reprojection error over both axes, px.
     pub residual_px: f64,

@@ -11,7 +11,7 @@ use trundle_core::GrayImage;
 pub(crate) struct Resize {
     sizes: [usize; 4],
     columns: Vec<Tap>,
-    /// The same columns, four at a time; empty where four need more samples than a register has.
+    /// The same columns, four at a time; empty if four need more samples than a register has.
     quads: Vec<Quad>,
     /// A row of the larger image, interpolated downwards, in 1/128, with [`SAMPLES_PER_REGISTER`] more after its end.
     row: Vec<i16>,

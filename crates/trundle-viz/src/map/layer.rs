@@ -122,7 +122,7 @@ impl Layer {
         }
     }
 
-    /// Lays it over a picture; names keep off `lines` where they can.
+    /// Lays it over a picture; names keep off `lines` if they can.
     pub(crate) fn draw(&self, canvas: &mut Canvas, view: &View, lines: &[Vec<Px>]) {
         let unit = view.unit as f64;
         match &self.shape {

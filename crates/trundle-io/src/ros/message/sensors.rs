@@ -54,7 +54,7 @@ pub fn gyro(frame: &str, rate: &GyroRate) -> RosMessage {
     RosMessage::new("sensor_msgs/msg/Imu", writer.f64s([0.0; 3]).f64s(unmeasured))
 }
 
-/// `sensor_msgs/msg/LaserScan` in a frame at the sweep's origin: infinite where a beam met nothing, NaN if nothing is known.
+/// `sensor_msgs/msg/LaserScan` in a frame at the sweep's origin: infinite if a beam met nothing, NaN if nothing is known.
 #[must_use]
 pub fn scan(frame: &str, scan: &Scan) -> RosMessage {
     let (first, step, count) = (scan.angle_min(), scan.angle_increment(), scan.beams().len());

@@ -40,7 +40,7 @@ pub struct ImportedScene {
 /// is missing or in another form is grey, and noted. Triangles without area are left out. What it ignores: skins, morph targets,
 /// animations, other maps of the material, cameras and lights.
 ///
-/// The floor, the lowest large level, is moved to z = 0 where it is elsewhere.
+/// The floor, the lowest large level, is moved to z = 0 if it is elsewhere.
 ///
 /// The up axis is the standard's, +y, unless `options` sets another: a z-up file without a declaration lies on its side.
 ///

@@ -36,7 +36,7 @@ pub(super) fn outline_quad(component: &Component) -> Option<Quad> {
     (is_large && is_filled && area(&quad) >= MIN_AREA_RATIO * outline_area).then_some(quad)
 }
 
-/// Area of a polygon, positive where it runs clockwise in the image.
+/// Area of a polygon, positive if it runs clockwise in the image.
 fn area(corners: &[Vector2]) -> f64 {
     let n = corners.len();
     (0..n).map(|i| corners[i].perp(&corners[(i + 1) % n])).sum::<f64>() / 2.0

@@ -163,7 +163,7 @@ impl Drop for UsbSession {
 }
 
 impl Found {
-    /// The serial number; empty where it cannot be read.
+    /// The serial number; empty if it cannot be read.
     pub(super) fn serial(&self) -> String {
         self.opened.as_ref().map(|handle| handle.text(self.serial_text)).unwrap_or_default()
     }

@@ -59,7 +59,7 @@ pub struct ReplyReader {
 }
 
 impl ReplyReader {
-    /// The reply to the request `sequence`, with at most `limit` bytes of data; 0 where only the completion comes.
+    /// The reply to the request `sequence`, with at most `limit` bytes of data; 0 if only the completion comes.
     pub fn new(sequence: u32, limit: u32) -> Self {
         Self { sequence, limit: limit as usize, data: None }
     }
