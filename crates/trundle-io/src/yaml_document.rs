@@ -233,7 +233,7 @@ mod tests {
         );
         for text in ["{", "a: [1\n", "- a\n"] {
             let problem = size(text);
-            assert!(problem.contains("no valid YAML"), "{problem}");
+            assert!(problem.contains("not valid YAML"), "{problem}");
         }
     }
 }

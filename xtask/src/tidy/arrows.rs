@@ -188,6 +188,6 @@ mod tests {
 
     #[test]
     fn a_package_must_be_in_the_design() {
-        assert!(messages("trundle-unknown", "")[0].contains("no crate of the design"));
+        assert!(messages("trundle-unknown", "")[0].contains("not a crate of the design"));
     }
 }

@@ -233,7 +233,7 @@ mod tests {
         let read = read_trajectory_file(&path).unwrap();
         assert!(!read.is_indexed && read.warnings.is_empty());
         assert_eq!(read.poses[1].0.as_secs(), 0.25);
-        assert!(problem("2 0 0 5 0 1 0 0 0 0 1 0\n").contains("no rotation matrix"));
+        assert!(problem("2 0 0 5 0 1 0 0 0 0 1 0\n").contains("not a rotation matrix"));
     }
 
     proptest! {

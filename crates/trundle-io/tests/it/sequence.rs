@@ -68,7 +68,7 @@ fn wrong_folders_are_one_clear_sentence() {
     fs::write(dir.path().join("depths.txt"), "7.5 a.png").unwrap();
     assert_eq!(
         problem(&dir),
-        "DIR: this is a folder, expected a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt), a ROS bag or a trundle recording: \
+        "DIR: this is a folder, expected a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt), a ROS bag or a trundle recording; \
          name its lists of colour and depth images rgb.txt and depth.txt; each line is: timestamp filename"
     );
     fs::write(dir.path().join("rgb.txt"), "1.0 a.png").unwrap();

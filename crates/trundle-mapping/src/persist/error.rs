@@ -6,7 +6,7 @@ use trundle_core::Invalid;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FilterFileError {
     /// The file is not a filter of this program.
-    #[error("no map of trundle-mapping")]
+    #[error("this is not a filter map of trundle (filter.map)")]
     Foreign,
     /// Made by a version that this one does not read.
     #[error("map of version {found}, expected {expected}")]

@@ -6,7 +6,7 @@ use trundle_core::Invalid;
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapFileError {
     /// The file is not a visual map of this program.
-    #[error("no map of trundle-slam")]
+    #[error("this is not a visual map of trundle (visual.map)")]
     Foreign,
     /// Made by a version that this one does not read.
     #[error("map of version {found}, expected {expected}")]
