@@ -1,4 +1,4 @@
-//! The long version of the program: the package's, and the commit where the sources are a git checkout.
+//! The long version of the program: the package's, and the commit if the sources are a git checkout.
 
 use std::path::Path;
 use std::process::Command;
@@ -30,7 +30,7 @@ fn watch_head() {
     }
 }
 
-/// What git answers; nothing where there is no git or no repository.
+/// Answer of git; empty if there is no git or no repository.
 fn git(args: &[&str]) -> Option<String> {
     let output = Command::new("git").args(args).current_dir(env!("CARGO_MANIFEST_DIR")).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;

@@ -1,4 +1,4 @@
-//! The processor's time of this thread, where the system reports it: a busy machine does not count.
+//! The processor's time of this thread, if the system reports it: a busy machine does not count.
 #![allow(dead_code, reason = "benchmarks print times, tests have limits")]
 
 use std::time::Instant;

@@ -14,7 +14,7 @@ const HORIZON: f64 = 1.0;
 /// On the goal's place it turns; it drives again when it is off by twice as much, m.
 const PLACE: f64 = 0.008;
 
-/// What it decides in the next tenth of a second, and whether it is on the goal's place.
+/// Decision for the next tenth of a second, and whether the robot is at the goal's position.
 pub struct DynamicWindow<'a> {
     pub problem: &'a Problem,
     pub scene: &'a ObstacleScene,
@@ -92,7 +92,7 @@ impl DynamicWindow<'_> {
     }
 }
 
-/// What a baseline keeps from obstacles in closed loop, m: three standard deviations of the pose's noise, or half of what there
+/// Distance that a baseline keeps from obstacles in closed loop, m: three standard deviations of the pose's noise, or half of what there
 /// is where it stands.
 pub fn kept(footprint: &Footprint, scene: &ObstacleScene, pose: &Pose2) -> f64 {
     scene.clearance(footprint, pose, 0.012).map_or(0.006, |(distance, _)| distance / 2.0)

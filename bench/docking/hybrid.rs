@@ -23,7 +23,7 @@ const MOST_NODES: usize = 20_000;
 /// An arc: curvature (1/m) and signed way (m).
 pub type PathPiece = (f64, f64);
 
-/// A path to the goal that keeps `kept` (m) from everything; `None` when none was found.
+/// A path to the goal that keeps `kept` (m) from everything; `None` if none was found.
 pub fn plan(
     problem: &Problem,
     scene: &ObstacleScene,

@@ -1,4 +1,4 @@
-//! The judge: drives a path in fine steps and looks for contact by sampling, on its own. One for all methods.
+//! The checker: drives a path in fine steps and looks for contact by sampling, on its own. One for all methods.
 
 use std::collections::BTreeMap;
 use trundle_core::{Pose2, wrap_angle};
@@ -11,7 +11,7 @@ const STEP: f64 = 0.001;
 const PLACE: f64 = 0.01;
 /// ... and rad.
 const HEADING: f64 = std::f64::consts::PI / 180.0;
-/// What numbers written and read may be off by.
+/// Largest error of numbers written and read.
 const ROUNDING: f64 = 1e-9;
 
 /// The path's time (s) when it touches nothing and ends on the goal, within 1 cm of distance and 1 deg; else what is wrong.
@@ -38,7 +38,7 @@ pub fn time(problem: &Problem, path: &[PathPiece]) -> Result<f64, String> {
     Ok(time_of(path, &MotionLimits::default()))
 }
 
-/// What became of the answers to some problems.
+/// Results of the answers to some problems.
 #[derive(Debug, Default)]
 pub struct Judged {
     /// Time of each path that is good, s.
@@ -51,7 +51,7 @@ pub struct Judged {
     pub missing: usize,
 }
 
-/// Judges answers to problems; refuses two answers to one problem, and one to a problem that there is not.
+/// Evaluates answers to problems; refuses two answers to one problem, and one to a problem that there is not.
 pub fn judge(problems: &[Problem], answers: &[ProblemAnswer]) -> Result<Judged, String> {
     let mut open: BTreeMap<&str, &ProblemAnswer> = BTreeMap::new();
     for answer in answers {

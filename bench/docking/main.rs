@@ -1,9 +1,9 @@
-//! Corridor problems by seed, or from a file, solved and judged: prints a table.
+//! Corridor problems by seed, or from a file, solved and evaluated: prints a table.
 //!
 //! `cargo run --release -p trundle-docking --example corridor_bench -- --problems 5000`
 //!
-//! `--seed N`, `--file PATH` instead of a seed, `--write PATH` writes the problems and ends, `--answers PATH` judges the answers of
-//! another program and ends, `--write-answers PATH` keeps the default method's, `--boxes N` of the bound that judges,
+//! `--seed N`, `--file PATH` instead of a seed, `--write PATH` writes the problems and ends, `--answers PATH` evaluates the answers of
+//! another program and ends, `--write-answers PATH` keeps the default method's, `--boxes N` of the bound that evaluates,
 //! `--baselines N` problems for the slow ones, `--loops N` problems in closed loop with noise, `--nodes N` of the search, `--margin M` asked for (default 0), `--list PATH` keeps what
 //! became of each problem as CSV.
 
@@ -124,7 +124,7 @@ fn by_paper(problems: &[Problem]) -> Row {
     plan_all("[Hong24]", problems, &DockingPlanner::new(config).expect("valid"))
 }
 
-/// What the path planner keeps from obstacles, m: a millimetre for what lies between its samples.
+/// Distance that the path planner keeps from obstacles, m: a millimetre for what lies between its samples.
 const KEPT: f64 = 0.001;
 
 fn by_hybrid(problems: &[Problem]) -> Row {

@@ -60,7 +60,7 @@ impl<'a> Race<'a> {
     }
 }
 
-/// The dynamic window, ten times a second.
+/// The dynamic window, ten times per second.
 pub fn by_window(problem: &Problem, scene: &ObstacleScene, seed: u64) -> Run {
     let mut race = Race::new(problem, scene, seed);
     let limits = MotionLimits::default();

@@ -5,11 +5,11 @@ use crate::world::Run;
 use std::fmt::Write;
 use trundle_docking::corridor::{PathPiece, Problem, ProblemAnswer};
 
-/// What one method did with all problems.
+/// Results of one method on all problems.
 pub struct Row {
     /// Its name.
     pub name: &'static str,
-    /// Time of the manoeuvre on each problem, s; `None` where it was not settled.
+    /// Time of the manoeuvre on each problem, s; `None` if it was not settled.
     pub times: Vec<Option<f64>>,
     /// Proven impossible by any motion.
     pub never: usize,
@@ -21,11 +21,11 @@ pub struct Row {
     pub bad: Vec<String>,
     /// Of planning, or of all control steps of a run, ms on one core.
     pub planning_ms: Vec<f64>,
-    /// Motions of each manoeuvre; 0 where there is none.
+    /// Motions of each manoeuvre; 0 if there is none.
     pub steps: Vec<usize>,
-    /// A time that no manoeuvre beats, s, where one was settled.
+    /// A time that no manoeuvre beats, s, if one was settled.
     pub bounds: Vec<Option<f64>>,
-    /// What it says of each problem.
+    /// Result for each problem.
     pub answers: Vec<ProblemAnswer>,
 }
 
@@ -46,7 +46,7 @@ impl Row {
         }
     }
 
-    /// Has a path judged; none is no answer.
+    /// Has a path evaluated; none is not an answer.
     pub fn note(&mut self, problem: &Problem, path: Option<Vec<PathPiece>>) {
         let judged = path.as_ref().map(|path| judge::time(problem, path));
         match &judged {
@@ -59,7 +59,7 @@ impl Row {
     }
 }
 
-/// What one method did in closed loop.
+/// Results of one method in closed loop.
 pub struct Track {
     name: &'static str,
     runs: Vec<(String, Run)>,
@@ -164,7 +164,7 @@ pub fn print(rows: &[Row]) {
     );
 }
 
-/// What became of each problem, as CSV.
+/// Result of each problem, as CSV.
 pub fn list(problems: &[Problem], row: &Row) -> String {
     let mut text = "problem,time_s,bound_s,motions,planning_ms\n".to_owned();
     let shown = |x: Option<f64>| x.map_or(String::new(), |x| format!("{x:.4}"));

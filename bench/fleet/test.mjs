@@ -240,7 +240,7 @@ await check("Home Assistant finds the robot, its state and its map", async () =>
   return `${seen.pictures.length} pictures, ${seen.pictures.at(-1).length} bytes`;
 });
 
-await check("commands of the home are obeyed or refused with the reason", async () => {
+await check("commands of the home are carried out or refused with the reason", async () => {
   const command = async (payload) => {
     delete seen.home["acme/r1/reply"];
     home.publish("acme/r1/command", typeof payload === "string" ? payload : JSON.stringify(payload));
@@ -250,7 +250,7 @@ await check("commands of the home are obeyed or refused with the reason", async 
   const word = () => seen.home["acme/r1/state"].state;
   assert.equal((await command({ command: "go", x: 0.5, y: 0, heading_deg: 180 })).accepted, true);
   await until("motion", () => word() === "cleaning");
-  // The vehicle's state comes by a topic of its own, at most so often a second.
+  // The vehicle's state comes by a topic of its own, at most so often per second.
   await until("manual operation in the vehicle's state", () => seen.state.operatingMode === "MANUAL");
   const { heard } = await give(order("busy", 0, 0, [here(), [1, 0]]));
   await until("the rejection", () => heard.end?.error);
@@ -260,7 +260,7 @@ await check("commands of the home are obeyed or refused with the reason", async 
   await until("motion", () => word() === "cleaning");
   await command("stop");
   await until("rest", () => word() === "idle");
-  assert.match((await command("fly")).text, /'fly' is no command; expected start/);
+  assert.match((await command("fly")).text, /'fly' is not a command; expected start/);
   assert.match((await command({ command: "go", place: "moon" })).text, /no place 'moon'/);
 });
 

@@ -53,7 +53,7 @@ const text = (page, id) => page.locator(`#${id}`).innerText();
 const speed = (watch) => Math.hypot(...watch.state.command);
 let failures = 0;
 
-/** A way to the program that carries so many bytes a second. */
+/** A way to the program that carries so many bytes per second. */
 async function throttle(url, bytesPerSecond) {
   const TICK_MS = 50;
   const sockets = new Set();

@@ -47,7 +47,7 @@ END
 if [ ! -x "$dir/bin/python" ]; then
     python=$(find_python)
     [ -n "$python" ] || missing "no Python 3.12 found (the ROS 2 Kilted wheels are for 3.12); set PYTHON to one"
-    "$python" -m venv "$dir" || { echo "get-ros2: $python cannot make an environment in $dir" >&2; exit 1; }
+    "$python" -m venv "$dir" || { echo "get-ros2: $python cannot create an environment in $dir" >&2; exit 1; }
 fi
 
 # A wheel's start-up file sets the library path and starts Python again; the first run of pip must not meet a half-made one.

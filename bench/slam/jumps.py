@@ -1,4 +1,4 @@
-"""Whether the believed pose of house runs ever left the true one, image by image.
+"""Whether the estimated pose of house runs ever left the true one, image by image.
 
 usage: jumps.py DIR...
 

@@ -66,7 +66,7 @@ def main():
     parser.add_argument("--seeds", type=int, default=5, help="how many")
     parser.add_argument("--length", type=float, default=46.0, help="m, at least")
     parser.add_argument("--up", default="y", help="the axis that points up in a glTF scene")
-    parser.add_argument("--maps", action="store_true", help="judge maps, too")
+    parser.add_argument("--maps", action="store_true", help="evaluate maps, too")
     parser.add_argument("--out", type=pathlib.Path, help="all that is printed goes here as well")
     args = parser.parse_args()
     lines = []

@@ -1,4 +1,4 @@
-"""What wrong wheels do to the SLAM: one recorded drive, judged with its odometry and with spoilt ones.
+"""What wrong wheels do to the SLAM: one recorded drive, evaluated with its odometry and with spoilt ones.
 
 usage: wheels.py DIR --drive D
 

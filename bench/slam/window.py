@@ -1,4 +1,4 @@
-"""How much heading a drive past a window loses: seven drives of small_house with other noise, recorded once, judged by `drive`.
+"""How much heading a drive past a window loses: seven drives of small_house with other noise, recorded once, evaluated by `drive`.
 
 usage: window.py MESH --trundle T --drive D --records DIR [--seeds 7] [-- FLAGS OF drive]
 

@@ -23,7 +23,7 @@ SHARED = pathlib.Path(__file__).resolve().parents[3] / "shared/data/tum_fr1_rpy_
 
 
 def homography(size, degrees, scale, tilt):
-    """Turns and magnifies about the middle of an image, and tilts it."""
+    """Turns and magnifies around the middle of an image, and tilts it."""
     width, height = size
     middle = np.array([[1, 0, -(width - 1) / 2], [0, 1, -(height - 1) / 2], [0, 0, 1]])
     turn = np.eye(3)

@@ -2,7 +2,7 @@
 
 usage: tags.py --ours PROGRAM [--count 20] [--seed 1] [--keep FOLDER]
 
-Each image shows 6 x 5 tags of tag36h11 through a known homography, 4 x 4 samples a pixel, with blur of 0.8 px and noise of 3 grey
+Each image shows 6 x 5 tags of tag36h11 through a known homography, 4 x 4 samples per pixel, with blur of 0.8 px and noise of 3 grey
 values. Printed for each program: the fraction of the tags found, wrong ids, and the error of the corners. Prints `skipped` where the
 packages opencv-python-headless, pupil-apriltags and numpy (PyPI) are absent.
 """
@@ -26,7 +26,7 @@ DICTIONARY = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_APRILTAG_36h11)
 
 
 def sheet():
-    """The board, one pixel a unit, and the corners of each tag, units, pixel centres at whole numbers."""
+    """The board, one pixel per unit, and the corners of each tag, units, pixel centres at whole numbers."""
     pitch = SIDE + GAP
     image = np.full((ROWS * pitch + GAP, COLUMNS * pitch + GAP), 215, np.uint8)
     corners = {}

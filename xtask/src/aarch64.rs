@@ -26,7 +26,7 @@ const KERNELS: [(&str, &[&str]); 5] = [
     ("trundle-sim", &["world", "camera::band"]),
 ];
 
-/// What must be equal in the folder of a run.
+/// Files that must be equal in the folder of a run.
 #[derive(Debug, Clone, Copy)]
 enum Equality {
     /// Every byte but times of the wall clock.
@@ -50,7 +50,7 @@ const RUNS: [(&str, Equality, &str); 3] = [
     ("slam", Equality::Poses, "slam recorded --height 0.45 --tilt 8 --out slam"),
 ];
 
-/// What the step needs of this computer.
+/// Requirements of the step on this computer.
 struct Tools {
     emulator: &'static str,
 }
@@ -86,7 +86,7 @@ impl Tools {
     }
 }
 
-/// Tests the kernels under qemu and compares the runs; skipped by name where tools are missing.
+/// Tests the kernels under qemu and compares the runs; skipped by name if tools are missing.
 pub fn run(root: &Path) -> Verdict {
     let tools = match Tools::find() {
         Ok(tools) => tools,
@@ -110,7 +110,7 @@ pub fn run(root: &Path) -> Verdict {
     compare(root, &tools)
 }
 
-/// Runs the program on this computer and under qemu; whether the folders hold the same bytes.
+/// Runs the program on this computer and under qemu. Returns whether the folders hold the same bytes.
 fn compare(root: &Path, tools: &Tools) -> Verdict {
     let scratch = program::scratch(root, "aarch64-runs")?;
     let own = program::release_trundle(root)?;
@@ -160,7 +160,7 @@ fn compare_poses(here: &Path, there: &Path) -> Result<Vec<String>, String> {
     Ok(differences)
 }
 
-/// The largest difference of two texts' numbers; `None` where they have no numbers, not as many, or words that differ.
+/// The largest difference of two texts' numbers; `None` if they have no numbers, not as many, or words that differ.
 fn largest_difference(a: &str, b: &str) -> Option<f64> {
     let (a, b): (Vec<&str>, Vec<&str>) = (a.split_whitespace().collect(), b.split_whitespace().collect());
     let mut largest = None;
@@ -174,10 +174,10 @@ fn largest_difference(a: &str, b: &str) -> Option<f64> {
     largest.filter(|_| a.len() == b.len())
 }
 
-/// Runs a command of `trundle` in a folder; whether it ended as a run does: with 0, or 1 where its aim was missed. The paths of its results
+/// Runs a command of `trundle` in a folder. Returns whether it ended as a run does: with 0, or 1 where its aim was missed. The paths of its results
 /// are relative, so that both computers' are the same.
 fn ends(root: &Path, program: &[PathBuf], command: &str, folder: &Path) -> Verdict {
-    std::fs::create_dir_all(folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+    std::fs::create_dir_all(folder).map_err(|e| format!("cannot create {}: {e}", folder.display()))?;
     let data = root.join("data/golden").display().to_string();
     let words = command.split_whitespace().map(|word| word.replace("{data}", &data));
     let mut process = Command::new(&program[0]);
@@ -205,7 +205,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_missing_is_not_found() {
+    fn missing_tools_are_not_found() {
         assert!(answers("cargo") && !answers("no-such-program-of-trundle"));
     }
 
@@ -214,7 +214,7 @@ mod tests {
         assert_eq!(largest_difference("# t x\n0.1 2.5\n", "# t x\n0.1 2.0\n"), Some(0.5));
         assert_eq!(largest_difference("0.1 2.5", "0.1 2.5 3"), None, "a line more");
         assert_eq!(largest_difference("0.1 2.5", "0.1 Lost"), None);
-        assert_eq!(largest_difference("", ""), None, "an empty trajectory is no proof");
+        assert_eq!(largest_difference("", ""), None, "an empty trajectory is not a proof");
     }
 
     /// A filter that matches no test would pass.

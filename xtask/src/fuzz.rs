@@ -50,7 +50,7 @@ impl Options {
     }
 }
 
-/// Runs every target for some seconds, or one; whether nothing was found.
+/// Runs every target for some seconds, or one. Returns whether nothing was found.
 pub fn run(root: &Path, options: &Options) -> Verdict {
     let arguments = options.arguments();
     let mut cargo = vec!["run", "--quiet", "--package", "trundle-fuzz", "--"];

@@ -77,7 +77,7 @@ enum Chore {
     Fuzz(fuzz::Options),
     /// Failing sensors, slipping wheels, people in the way: each run must end as its scenario expects.
     FaultScenarios,
-    /// Kernels and short runs on aarch64, under qemu: the same bytes as here. Skipped where tools are missing.
+    /// Kernels and short runs on aarch64, under qemu: the same bytes as here. Skipped if tools are missing.
     Aarch64,
     /// Resident memory of `trundle run` while it explores a simulated office, the simulator in another process.
     RobotMemory {

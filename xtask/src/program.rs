@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Runs `cargo` with `args` (and `env`) in the workspace, without standard input; whether it succeeded.
+/// Runs `cargo` with `args` (and `env`) in the workspace, without standard input. Returns whether it succeeded.
 pub fn cargo(root: &Path, args: &[&str], env: &[(&str, &str)]) -> Result<bool, String> {
     let mut command = Command::new(cargo_path());
     command.args(args).envs(env.iter().copied()).current_dir(root).stdin(Stdio::null());
@@ -34,7 +34,7 @@ pub fn run(program: &Path, args: &[&str]) -> Result<Option<i32>, String> {
     Ok(status.map_err(|e| format!("cannot start {}: {e}", program.display()))?.code())
 }
 
-/// Runs the program, and prints an exit code other than 0; whether it is 0.
+/// Runs the program, and prints an exit code other than 0. Returns whether it is 0.
 pub fn ends_well(program: &Path, args: &[&str]) -> Result<bool, String> {
     let code = run(program, args)?;
     if code != Some(0) {
@@ -67,7 +67,7 @@ pub fn scratch(root: &Path, name: &str) -> Result<PathBuf, String> {
     if folder.exists() {
         std::fs::remove_dir_all(&folder).map_err(|e| format!("cannot clear {}: {e}", folder.display()))?;
     }
-    std::fs::create_dir_all(&folder).map_err(|e| format!("cannot make {}: {e}", folder.display()))?;
+    std::fs::create_dir_all(&folder).map_err(|e| format!("cannot create {}: {e}", folder.display()))?;
     Ok(folder)
 }
 

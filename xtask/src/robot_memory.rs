@@ -22,7 +22,7 @@ struct Memory {
     peak: f64,
 }
 
-/// Lets the robot explore for some minutes; whether its memory stays below the limit.
+/// Lets the robot explore for some minutes. Returns whether its memory stays below the limit.
 pub fn run(root: &Path, minutes: f64) -> Verdict {
     let trundle = program::release_trundle(root)?;
     let scratch = program::scratch(root, "robot-memory")?;
@@ -46,7 +46,7 @@ pub fn run(root: &Path, minutes: f64) -> Verdict {
     Ok(last.peak <= MAX_RESIDENT_MB)
 }
 
-/// Prints samples for `duration`; the last one. An error where the process ends before.
+/// Prints samples for `duration`; the last one. An error if the process ends before.
 fn watch(robot: &mut Child, duration: Duration) -> Result<Memory, String> {
     let start = Instant::now();
     loop {
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_ends_early_is_no_measurement() {
+    fn a_robot_that_ends_early_is_not_measured() {
         let mut ended = Command::new("true").spawn().unwrap();
         ended.wait().unwrap();
         assert!(watch(&mut ended, Duration::ZERO).is_err());

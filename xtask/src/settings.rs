@@ -83,7 +83,7 @@ const UNITLESS: [&str; 30] = [
 struct Setting {
     /// Dotted path of field names.
     path: String,
-    /// Unit; empty where there is none.
+    /// Unit; empty if there is none.
     unit: String,
     /// `number`, `integer`, `flag`, `list`, or the words of an enum parted by `|`.
     kind: String,
@@ -332,7 +332,7 @@ fn unit_or_none(doc: &str) -> String {
         .unwrap_or_default()
 }
 
-/// The suffix that a key gets for its unit; none where its name ends in a unit already.
+/// The suffix that a key gets for its unit. Empty if its name ends in a unit already.
 fn suffix_after(name: &str, unit: &str) -> &'static str {
     let has_one = UNITS.iter().any(|(_, suffix)| name.ends_with(suffix));
     let suffix = UNITS.iter().find(|(name, _)| *name == unit).map_or("", |(_, suffix)| suffix);

@@ -22,7 +22,7 @@ use crate::slam::SlamArgs;
 use crate::vocabulary::VocabularyArgs;
 use clap::{Parser, Subcommand};
 
-/// Version of the package, and the commit where it was built from a checkout.
+/// Version of the package, and the commit if it was built from a checkout.
 const LONG_VERSION: &str = env!("TRUNDLE_LONG_VERSION");
 
 /// Autonomy for a two-wheeled indoor robot with one RGB-D camera.
@@ -32,7 +32,7 @@ pub struct Cli {
     /// Log state changes and pose corrections; twice (-vv): everything. TRUNDLE_LOG=trundle_runtime=debug filters by crate.
     #[arg(long, short, global = true, action = clap::ArgAction::Count)]
     pub verbose: u8,
-    /// What to do.
+    /// The action.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -57,7 +57,7 @@ pub enum Command {
     Convert(ConvertArgs),
     /// Measure the robot's own numbers: camera, mount, wheels, image delay.
     Calibrate(CalibrateArgs),
-    /// Judge a trajectory or a map against the truth.
+    /// Evaluate a trajectory or a map against the truth.
     Eval(EvalArgs),
     /// Plan on a map: way-points, curve and trajectory.
     Plan(PlanArgs),

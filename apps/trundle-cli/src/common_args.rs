@@ -18,18 +18,18 @@ use trundle::experiments::simulated::MeshOptions;
 use trundle::runtime::RobotConfig;
 use trundle::sim::import::UpAxis;
 
-/// What every command takes.
+/// Options of every command.
 #[derive(Debug, Clone, Args)]
 pub struct Common {
     /// Print nothing but warnings and errors: no progress, no table.
     #[arg(long, short)]
     pub quiet: bool,
-    /// Threads to use; the results are the same for any number [default: one a core]
+    /// Threads to use; the results are the same for any number [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
     pub threads: Option<u16>,
 }
 
-/// What every command that has a robot takes.
+/// Options of every command that has a robot.
 #[derive(Debug, Clone, Args)]
 pub struct RobotArgs {
     /// Robot file (see `trundle config`).
@@ -49,7 +49,7 @@ impl RobotArgs {
         load_robot(self.config.as_deref(), &self.set)
     }
 
-    /// The robot where a file or a key is given, else nothing.
+    /// The robot if a file or a key is given, else nothing.
     ///
     /// # Errors
     /// As [`RobotArgs::robot`].

@@ -31,7 +31,7 @@ pub fn warn(message: &str) {
 pub fn print(text: &str) {
     let mut out = std::io::stdout();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
-        // A reader that has gone away is no failure of the run.
+        // A reader that has gone away is not a failure of the run.
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             PRINT_FAILURE.get_or_init(|| error);
         }
@@ -39,7 +39,7 @@ pub fn print(text: &str) {
     }
 }
 
-/// Why standard output did not take a result; `None` where it took all.
+/// Why standard output did not take a result; `None` if it took all.
 pub fn print_failure() -> Option<&'static std::io::Error> {
     PRINT_FAILURE.get()
 }
@@ -63,13 +63,13 @@ pub fn progress(quiet: bool) -> (ProgressBar, Progress) {
     (line, Progress::new(show))
 }
 
-/// The progress of work in steps: a bar where their number is known, else a spinner.
+/// The progress of work in steps: a bar if their number is known, else a spinner.
 pub struct StepDisplay {
     bar: ProgressBar,
 }
 
 impl StepDisplay {
-    /// A display that appears when the work begins; none where `quiet`.
+    /// A display that appears when the work begins. Nothing appears if `quiet`.
     pub fn new(quiet: bool) -> Self {
         Self { bar: hidden_if(quiet, ProgressBar::new_spinner()) }
     }
@@ -182,7 +182,8 @@ mod tests {
         let target = ProgressDrawTarget::term_like(Box::new(screen.clone()));
         let bar = ProgressBar::with_draw_target(Some(400), target).with_style(style(template));
         bar.set_message(
-            "driving to (5.03 m, 2.24 m, 90 deg), 34.2 s of 120 s, 3 images a second, no contact, ".repeat(3),
+            "driving to (5.03 m, 2.24 m, 90 deg), 34.2 s of 120 s, 3 images per second, no contact, "
+                .repeat(3),
         );
         bar.set_position(100);
         bar.tick();

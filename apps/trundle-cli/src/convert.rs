@@ -33,7 +33,7 @@ pub struct ConvertArgs {
     /// The topics of a bag.
     #[command(flatten)]
     pub topics: BagTopicsArgs,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }

@@ -9,12 +9,12 @@ use trundle::experiments::data_sets::DATA_SETS;
 /// `trundle data`
 #[derive(Debug, Args)]
 pub struct DataArgs {
-    /// What to do.
+    /// The action.
     #[command(subcommand)]
     pub command: DataCommand,
 }
 
-/// What can be done with data sets.
+/// Actions on data sets.
 #[derive(Debug, Subcommand)]
 pub enum DataCommand {
     /// List each data set: what it is, where it comes from, its licence, the command that fetches it.

@@ -1,4 +1,4 @@
-//! `trundle experiment`: the papers' experiments as commands; exit code 1 where a limit is missed.
+//! `trundle experiment`: the papers' experiments as commands; exit code 1 if a limit is missed.
 
 use crate::common_args::{Common, RobotArgs};
 use crate::outcome::Outcome;
@@ -32,7 +32,7 @@ pub enum Which {
     House(HouseArgs),
     /// Sensors that break, wheels that slip, people in the way: nothing touched, and on when it can be.
     Faults(RunsArgs),
-    /// Somebody steps into the robot's way a metre before it, one a run.
+    /// Somebody steps into the robot's way a metre before it, one per run.
     People(RunsArgs),
     /// Plain rooms that look alike from several poses, alone, with people, and carried away.
     LookAlikes(RunsArgs),
@@ -48,7 +48,7 @@ pub enum Which {
     Corridor(CorridorArgs),
 }
 
-/// What an experiment of closed-loop runs takes.
+/// Options of an experiment of closed-loop runs.
 #[derive(Debug, Args)]
 #[command(after_help = "Exit code: 0 every limit kept, 1 otherwise, 2 bad input.")]
 pub struct RunsArgs {
@@ -64,7 +64,7 @@ pub struct RunsArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/experiment")]
     pub out: OutputDirArg,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -75,7 +75,7 @@ pub struct PosesArgs {
     /// Drive over a serial line to an emulated Kobuki and a stream of camera frames, by the wall clock: about 15 s a run.
     #[arg(long)]
     pub wires: bool,
-    /// What every experiment of runs takes.
+    /// Options of every experiment of runs.
     #[command(flatten)]
     pub runs: RunsArgs,
 }
@@ -86,7 +86,7 @@ pub struct HouseArgs {
     /// The house: small_house.glb, z up.
     #[arg(long, value_name = "FILE", default_value = "../shared/data/scenes/small_house.glb")]
     pub mesh: PathBuf,
-    /// What every experiment of runs takes.
+    /// Options of every experiment of runs.
     #[command(flatten)]
     pub runs: RunsArgs,
 }
@@ -112,7 +112,7 @@ pub struct BarnArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/barn")]
     pub out: OutputDirArg,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -138,7 +138,7 @@ pub struct MrpbArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/mrpb")]
     pub out: OutputDirArg,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -146,7 +146,7 @@ pub struct MrpbArgs {
 /// `trundle experiment real-time`
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Writes a recording, some 450 MB a minute.\n\nExit code: 0 jitter at most 5 ms (p99.9), load at most 60 %, memory \
+    after_help = "Writes a recording, some 450 MB per minute.\n\nExit code: 0 jitter at most 5 ms (p99.9), load at most 60 %, memory \
                   growing by at most 10 MB/h, nothing touched; 1 otherwise, 2 bad input."
 )]
 pub struct RealTimeArgs {
@@ -162,7 +162,7 @@ pub struct RealTimeArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/real-time")]
     pub out: OutputDirArg,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -176,13 +176,13 @@ pub struct CorridorArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/corridor")]
     pub out: OutputDirArg,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
 
 impl ExperimentArgs {
-    /// What every command takes.
+    /// Options of every command.
     pub fn common(&self) -> &Common {
         match &self.which {
             Which::Poses(args) => &args.runs.common,

@@ -1,4 +1,4 @@
-//! What stands beside a run: --live, a page that shows it and steers it, and --mqtt.
+//! Front ends beside a run: --live, a page that shows it and steers it, and --mqtt.
 
 use crate::console;
 use clap::Args;
@@ -11,7 +11,7 @@ use trundle::live::{LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
 #[derive(Debug, Args)]
 pub struct LiveArgs {
     /// Show the run in a browser and steer it there: prints the link; the run goes on after its mission until Ctrl-C. ADDR is IP:PORT
-    /// [default: 127.0.0.1:8642, or a free port where it is in use]
+    /// [default: 127.0.0.1:8642, or a free port if it is in use]
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = LiveAddress::DEFAULT)]
     pub live: Option<LiveAddress>,
     /// Zones and named places of the map: a GeoJSON file, which keeps the changes of the live page. Without the file the first change
@@ -27,7 +27,7 @@ pub struct LiveArgs {
     pub mqtt: crate::mqtt::MqttArgs,
 }
 
-/// What stands beside a run; dropping it ends it.
+/// Front ends beside a run; dropping them ends them.
 #[derive(Default)]
 pub struct Beside {
     _page: Option<LivePage>,
@@ -50,7 +50,7 @@ impl LiveArgs {
         self.zones.as_deref().map_or(Ok(setup.clone()), |file| setup.with_annotations_of(file))
     }
 
-    /// The page and the link to a broker beside a run, where they are asked for, and what accompanies the run then. `link`: that of
+    /// The page and the link to a broker beside a run, if they are asked for, and what accompanies the run then. `link`: that of
     /// another front end. A run that is not steered takes no commands.
     pub fn beside(
         &self,

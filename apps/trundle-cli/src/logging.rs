@@ -16,7 +16,7 @@ use trundle::io::OutputFolder;
 
 /// The environment variable that filters the log on standard error, as `trundle_runtime=debug`.
 const FILTER_VARIABLE: &str = "TRUNDLE_LOG";
-/// What `log.txt` holds.
+/// Content of `log.txt`.
 const FILE_FILTER: &str = "trundle=info,trundle_app=info,trundle_runtime=info,trundle_experiments=info";
 
 /// The lines of `log.txt` so far.
@@ -25,7 +25,7 @@ static LINES: OnceLock<Arc<Mutex<Vec<u8>>>> = OnceLock::new();
 /// Starts the log. `verbosity`: 0 warnings, 1 state changes and corrections, 2 everything.
 ///
 /// # Errors
-/// When `TRUNDLE_LOG` is no filter.
+/// When `TRUNDLE_LOG` is not a filter.
 pub fn start(verbosity: u8) -> Result<(), AppError> {
     let level = ["warn", "info", "debug"][usize::from(verbosity.min(2))];
     let filter = match std::env::var(FILTER_VARIABLE) {
@@ -39,7 +39,7 @@ pub fn start(verbosity: u8) -> Result<(), AppError> {
         )),
     };
     let lines = Arc::clone(LINES.get_or_init(Arc::default));
-    // A standard error without a reader is no error of the run. The default prints it there, and panics.
+    // A standard error without a reader is not an error of the run. The default prints it there, and panics.
     let terminal = tracing_subscriber::fmt::layer()
         .event_format(PlainLine("trundle: "))
         .with_writer(io::stderr)

@@ -54,7 +54,7 @@ fn main() -> ExitCode {
     })
 }
 
-/// Takes Ctrl-C as a request where the command has long loops, which read it; else it ends the program.
+/// Takes Ctrl-C as a request if the command has long loops, which read it; else it ends the program.
 fn listen(command: &Command) -> Result<(), AppError> {
     use Command::{Calibrate, Convert, Demo, Experiment, GuardBase, Map, Replay, Run, Sim, Slam};
     match command {

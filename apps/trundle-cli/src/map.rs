@@ -29,10 +29,10 @@ pub struct MapArgs {
     #[arg(long)]
     pub recover: bool,
     /// The motion of RGB-D images: the camera's trajectory that `trundle slam` wrote, or another in TUM format. Each pose is
-    /// believed to 1 cm and 0.003 rad (in a new map), and no loops are looked for.
+    /// accepted as exact to 1 cm and 0.003 rad (in a new map), and no loops are looked for.
     #[arg(long, value_name = "FILE")]
     pub poses: Option<PathBuf>,
-    /// These poses drift, as of odometry by images that closes no loops: only their steps are believed, and loops are looked for.
+    /// These poses drift, as of odometry by images that closes no loops: only their steps are accepted, and loops are looked for.
     #[arg(long, requires = "poses")]
     pub poses_drift: bool,
     /// Particles of the filter.
@@ -62,7 +62,7 @@ pub struct MapArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/map")]
     pub out: OutputDirArg,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }

@@ -24,7 +24,7 @@ pub struct MqttArgs {
 }
 
 impl MqttArgs {
-    /// Joins the broker, where one is given.
+    /// Joins the broker, if one is given.
     pub fn join(
         &self,
         setup: &RunSetup,

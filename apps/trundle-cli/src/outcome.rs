@@ -1,4 +1,4 @@
-//! The ending of a command: its exit code, and a sentence where it is not as asked for.
+//! The ending of a command: its exit code, and a sentence if it is not as asked for.
 
 use crate::console;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! Arguments that name results, and all others that name files: no result takes the place of an input.
+//! Arguments that name results, and all others that name files: no result replaces an input.
 
 use clap::ArgMatches;
 use std::ffi::OsString;
@@ -65,7 +65,7 @@ impl Deref for OutputFileArg {
 /// The inputs of the command under way.
 static INPUTS: OnceLock<InputFiles> = OnceLock::new();
 
-/// Refuses results that would take the place of an input; the folders that the command writes.
+/// Refuses results that would replace an input; the folders that the command writes.
 ///
 /// Every argument that is a path is an input, and so is every text that names a file, but for those of the types above.
 ///

@@ -24,7 +24,7 @@ pub struct ReplayArgs {
     /// The live page: it shows, and takes no commands.
     #[command(flatten)]
     pub live: LiveArgs,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }

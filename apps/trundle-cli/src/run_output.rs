@@ -7,7 +7,7 @@ use trundle::app::report::write_run;
 use trundle::app::{AppError, FinishedRun, RunSetup};
 use trundle::io::OutputFolder;
 
-/// Writes the folder of a run and prints its table; whether the goal was reached. A file that could not be written is reported
+/// Writes the folder of a run and prints its table. Returns whether the goal was reached. A file that could not be written is reported
 /// when everything else is done.
 pub fn write(
     setup: &RunSetup,

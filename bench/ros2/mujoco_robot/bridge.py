@@ -14,7 +14,7 @@ from . import messages
 
 # Period of odometry, gyro, clock and truth, ms: the Kobuki's 50 Hz.
 BASE_PERIOD_MS = 20
-# Images a second of simulated time.
+# Images per second of simulated time.
 IMAGE_RATE_HZ = 15
 # Lag of the scan that trundle makes of an image behind the newest image, ms of simulated time: beyond the first the simulation slows
 # down, so that a loaded machine drops no images; beyond the second nobody makes scans, and it does not wait.

@@ -46,7 +46,7 @@ def odometry(wheels, now_ms):
 
 
 def imu(rate, now_ms):
-    """Turn rate about z; orientation and acceleration are marked as absent (REP 145: first covariance -1)."""
+    """Turn rate around z; orientation and acceleration are marked as absent (REP 145: first covariance -1)."""
     message = Imu()
     message.header.frame_id, message.header.stamp = GYRO_FRAME, stamp(now_ms)
     message.angular_velocity.z = rate
@@ -109,7 +109,7 @@ def camera_mount(now_ms):
     message.header.frame_id, message.header.stamp = "base_link", stamp(now_ms)
     move = message.transform.translation
     move.x, move.z = kobuki.CAMERA_X_M, kobuki.CAMERA_Z_M
-    # Rotation by -90 deg about z and -90 deg - tilt about x, in axes of the parent: columns are the optical axes.
+    # Rotation by -90 deg around z and -90 deg - tilt around x, in axes of the parent: columns are the optical axes.
     s, c = math.sin(kobuki.CAMERA_TILT_RAD), math.cos(kobuki.CAMERA_TILT_RAD)
     message.transform.rotation = from_matrix(np.array([[0.0, -s, c], [-1.0, 0.0, 0.0], [0.0, -c, -s]]))
     return message

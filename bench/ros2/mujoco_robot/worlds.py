@@ -19,7 +19,7 @@ NAMES = ["flat", "corridor-a", "corridor-b", "corridor-c", "corridor-d"]
 
 @dataclass
 class Box:
-    """A cuboid: centre, size and turn about z, m and rad, with the kind of its texture. Solid: touched by the robot."""
+    """A cuboid: centre, size and turn around z, m and rad, with the kind of its texture. Solid: touched by the robot."""
 
     centre: tuple
     size: tuple

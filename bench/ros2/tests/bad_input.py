@@ -23,7 +23,7 @@ from standing_robot import HEIGHT_PX, WIDTH_PX, StandingRobot
 from tf2_msgs.msg import TFMessage
 from unique_identifier_msgs.msg import UUID
 
-# Time for which a fault is played, s: diagnostics come once a second.
+# Time for which a fault is played, s: diagnostics come once per second.
 FAULT_S = 2.5
 # A year, s.
 YEAR_S = 31_536_000

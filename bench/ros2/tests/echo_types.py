@@ -42,7 +42,7 @@ def find_type(name):
 
 
 def type_hash(name):
-    """The type's hash as the generators wrote it, None where they did not."""
+    """The type's hash as the generators wrote it, `None` if they did not."""
     package, folder, rest = name.split("/")
     file = pathlib.Path(sys.prefix) / "share" / package / folder / f"{rest.split('_')[0]}.json"
     if not file.exists():

@@ -179,7 +179,7 @@ def networks(checks, options, folder):
     for name, second in (("trundle-lo", False), ("trundle-two", True)):
         made = subprocess.run(["ip", "netns", "add", name], capture_output=True, text=True)
         if made.returncode != 0:
-            print(f"skipped: networks: cannot make a network namespace: {made.stderr.strip()}")
+            print(f"skipped: networks: cannot create a network namespace: {made.stderr.strip()}")
             return
         try:
             inside = ["ip", "netns", "exec", name]

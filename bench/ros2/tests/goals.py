@@ -39,7 +39,7 @@ def start(options, folder, world, seed):
 
 
 def drive(user, goal):
-    """Send one goal; the result, or None when the simulated time is up."""
+    """Send one goal; the result, or `None` if the simulated time is up."""
     sent = user.go(goal)
     if not sent.accepted:
         return None

@@ -118,7 +118,7 @@ class Listener:
         self.until(lambda: False, seconds)
 
     def result(self, future, seconds):
-        """The result of a future, None when it does not come."""
+        """The result of a future, `None` if it does not come."""
         return future.result() if self.until(future.done, seconds) else None
 
 

@@ -25,7 +25,7 @@ def statements(text):
 
 
 def compare(file, share):
-    """None where equal, else the first difference as text."""
+    """`None` if equal, else the first difference as text."""
     other = share / file.relative_to(TABLE)
     if not other.exists():
         return f"{other}: no such file in the wheels"

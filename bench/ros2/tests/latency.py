@@ -1,4 +1,4 @@
-"""Latency, loss and CPU of trundle's ROS 2 side at 30 image pairs a second of 640 x 480, against rclpy to rclpy in the same run.
+"""Latency, loss and CPU of trundle's ROS 2 side at 30 image pairs per second of 640 x 480, against rclpy to rclpy in the same run.
 
 latency.py --trundle PATH [--seconds 20]. A standing robot is played from this process. Measured: odometry out to cmd_vel in; image pair
 out to its scan in (trundle) or to its echo in (rclpy); pairs that were not received, and pairs that a newer one replaced; CPU of the

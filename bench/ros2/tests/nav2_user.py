@@ -40,7 +40,7 @@ class Goal:
         return self.handle is not None and self.handle.accepted
 
     def wait(self, seconds_wall=300):
-        """The result with its status, None when it does not come."""
+        """The result with its status, `None` if it does not come."""
         return self.user.result(self.done, seconds_wall) if self.done else None
 
     def cancel(self):
@@ -81,7 +81,7 @@ class User(Listener):
         return self.until(active, limit) and self.until(lambda: self.clients["navigate_to_pose"].server_is_ready(), limit)
 
     def call(self, kind, name, request, limit=30):
-        """The answer of a service; None when it does not come."""
+        """The answer of a service; `None` if it does not come."""
         client = self.node.create_client(kind, name)
         try:
             if not self.until(client.service_is_ready, limit):

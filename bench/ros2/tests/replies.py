@@ -26,7 +26,7 @@ class Caller(Listener):
         self.target = node
 
     def call(self, kind, name, request):
-        """The answer; None when it does not come."""
+        """The answer; `None` if it does not come."""
         client = self.node.create_client(kind, name)
         if not self.until(client.service_is_ready, LIMIT_S):
             return None

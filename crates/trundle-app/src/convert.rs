@@ -27,7 +27,7 @@ impl std::str::FromStr for SequenceForm {
     }
 }
 
-/// What a conversion wrote.
+/// Counts of a conversion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Converted {
     /// Number of images.
@@ -44,7 +44,7 @@ impl std::fmt::Display for Converted {
 
 /// Name of the file of a ROS 2 bag in its folder.
 const BAG_FILE: &str = "bag.mcap";
-/// Rate of the images where it is not known \[Hz\]: that of the simulated camera. Source: ours.
+/// Rate of the images if it is not known \[Hz\]: that of the simulated camera. Source: ours.
 const DEFAULT_RATE_HZ: f64 = 15.0;
 
 /// Writes the images of `input`, its odometry and its ground truth into `folder`. A damaged image is left out with a warning.
@@ -88,7 +88,7 @@ fn to_bag(
     bag.set_camera(input.camera.model.camera);
     if input.camera.model.camera.readout() > 0.0 {
         tracing::warn!(
-            "camera_info holds no readout time: give the camera with --camera where the bag is read"
+            "camera_info holds no readout time: give the camera with --camera when the bag is read"
         );
     }
     let (base, camera) = (FrameId::Base.to_string(), FrameId::Camera.to_string());

@@ -38,10 +38,10 @@ pub trait EncodedBody {
     /// The result of a job that is running at the end of a run; `None` without one.
     fn finish_job(&mut self, worker: Worker) -> Option<Answer>;
 
-    /// Separate contacts so far, in truth; `None` where only the bumper reports contacts.
+    /// Separate contacts so far, in truth; `None` if only the bumper reports contacts.
     fn true_contacts(&self) -> Option<u32>;
 
-    /// How much of its events has been read, 0 to 1; `None` where their end is not known.
+    /// How much of its events has been read, 0 to 1; `None` if their end is not known.
     fn fraction_read(&self) -> Option<f64> {
         None
     }

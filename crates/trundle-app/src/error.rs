@@ -32,7 +32,7 @@ impl AppError {
         Self::Input(problem.to_string())
     }
 
-    /// The same error with the name of the file or part that it concerns in front, where it has none.
+    /// The same error with the name of the file or part that it concerns in front, if it has none.
     #[must_use]
     pub fn in_context(self, context: &dyn std::fmt::Display) -> Self {
         match self {

@@ -1,4 +1,4 @@
-//! Judging a trajectory or a map against the truth: numbers, pictures and page.
+//! Evaluating a trajectory or a map against the truth: numbers, pictures and page.
 
 mod map_evaluation;
 mod named_error;

@@ -35,7 +35,7 @@ pub struct RecordingCost {
     pub queue_lengths: Histogram,
     /// Lines left out because the disk could not follow.
     pub lines_lost: u64,
-    /// Processor time of the recorder's thread, where there is one.
+    /// Processor time of the recorder's thread, if there is one.
     pub cpu_time: Duration,
     /// Why the recording is not whole, if it is not.
     pub error: Option<IoError>,

@@ -9,7 +9,7 @@ const MESSAGES_BETWEEN_CHECKS: u32 = 500;
 
 /// Watches the free space of a disk.
 pub struct FreeSpace {
-    /// The free space \[bytes\]; `None` where the system does not report it.
+    /// The free space \[bytes\]; `None` if the system does not report it.
     read: Box<dyn Fn() -> Option<u64> + Send>,
     min_free_bytes: u64,
     messages: u32,

@@ -19,7 +19,7 @@ use trundle_runtime::real_time::InboxSender;
 /// Waits until standard input ends, then stops the base at the port that is standard output: the guard of a program that may die.
 ///
 /// # Errors
-/// When the port takes nothing, as where the base was unplugged.
+/// When the port takes nothing, as when the base was unplugged.
 #[cfg(unix)]
 pub fn guard_base() -> Result<(), AppError> {
     trundle_drivers::kobuki::base_guard::guard_base(std::io::stdin().lock(), std::io::stdout())

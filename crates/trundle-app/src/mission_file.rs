@@ -26,7 +26,7 @@ struct TaskEntry {
     go: Option<[f64; 3]>,
     /// Turn on the spot, positive to the left \[deg\].
     turn_deg: Option<f64>,
-    /// Straight drive, back where it is negative \[m\].
+    /// Straight drive, back if it is negative \[m\].
     straight_m: Option<f64>,
     /// Name of a place.
     place: Option<String>,
@@ -77,7 +77,7 @@ pub fn read_mission(file: &Path) -> Result<Mission, AppError> {
 
 /// Speed of a straight drive of a mission file \[m/s\]. Source: ours.
 const STRAIGHT_SPEED_M_S: f64 = 0.2;
-/// What a task may be.
+/// Kinds of a task.
 const TASK_FORMS: &str = "expected one of go = [X, Y, DEG], place = NAME, explore = true, turn_deg = DEG, straight_m = M, return = true, dock = true";
 
 fn task(entry: &TaskEntry, places: &BTreeMap<String, Pose2>) -> Result<Task, String> {

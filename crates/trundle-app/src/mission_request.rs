@@ -10,7 +10,7 @@ use trundle_runtime::{Mission, Task};
 pub struct MissionRequest {
     /// Goals, map frame, one after the other.
     pub goals: Vec<Pose2>,
-    /// Whether the robot explores first, and comes back to the start where it has no other end.
+    /// Whether the robot explores first, and comes back to the start if it has no other end.
     pub explore: bool,
     /// Whether the robot drives onto the charging station at the end.
     pub dock: bool,

@@ -1,7 +1,7 @@
 //! The link between a run and its front ends: requests of an operator go in, views of the run come out.
 //!
 //! A front end (a page, ROS 2) keeps an [`Operator`], the run an [`OperatorLink`]. Requests are recorded at the place at which the robot
-//! obeys them, so a replay obeys them there too. Views cost the robot a few copies at each control step; a slow reader misses views.
+//! follows them, so a replay follows them there too. Views cost the robot a few copies at each control step; a slow reader misses views.
 
 mod annotation_edit;
 mod annotation_store;
@@ -26,7 +26,7 @@ pub use visual_map_feed::VISUAL_MAP_PERIOD_S;
 
 use crate::Progress;
 
-/// What accompanies a run from outside: the progress line, and an operator where there is one.
+/// Companions of a run: the progress line, and an operator if there is one.
 pub struct FrontEnd {
     /// The progress line.
     pub progress: Progress,

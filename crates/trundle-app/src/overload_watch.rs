@@ -4,7 +4,7 @@ use trundle_core::Stamp;
 
 /// Time over which images are counted \[s\]. Source: ours.
 const WINDOW_S: f64 = 10.0;
-/// Part of the images from which the computer counts as too slow where they are dropped. At half of 30 Hz the robot still drives well.
+/// Part of the images from which the computer counts as too slow if they are dropped. At half of 30 Hz the robot still drives well.
 /// Source: ours.
 const MAX_DROPPED_PART: f64 = 0.6;
 

@@ -19,7 +19,7 @@ pub type FileRecorder = Recorder<BufWriter<File>>;
 type Line = Box<dyn FnOnce(&mut RecordingFile) + Send>;
 
 /// Records a run into `recording.mcap`: within the run's own loop, or by a thread of its own, so that a slow disk does not delay
-/// control. Writes checkpoints as well, where a file for them is given.
+/// control. Writes checkpoints as well, if a file for them is given.
 pub struct RunRecorder {
     sink: Sink,
     /// Lines that wait for the disk, counted each time a line is written.
@@ -48,7 +48,7 @@ impl RunRecorder {
         Self::of_content(RecordingContent::All, folder)
     }
 
-    /// The same, or no recording where `content` is none.
+    /// A recording of `content` into `folder`; no recording if `content` is [`RecordingContent::None`].
     ///
     /// # Errors
     /// When the file cannot be created.
@@ -56,7 +56,7 @@ impl RunRecorder {
         Ok(Self::of(Sink::Inline(Box::new(RecordingFile::new(content, folder)?))))
     }
 
-    /// The same recorder, whose recording ends where `space` is short; not for one with a thread of its own.
+    /// This recorder, whose recording ends if `space` is short; not for one with a thread of its own.
     #[must_use]
     pub fn watching(mut self, space: FreeSpace) -> Self {
         if let Sink::Inline(file) = &mut self.sink {
@@ -82,7 +82,7 @@ impl RunRecorder {
         Ok(Self::of(Sink::Inline(Box::new(file))))
     }
 
-    /// A recording into `folder`, written by a thread of its own at `place`; none where `content` is none.
+    /// A recording into `folder`, written by a thread of its own at `place`. Nothing is recorded if `content` is [`RecordingContent::None`].
     ///
     /// # Errors
     /// When the file cannot be created or the thread cannot be started.
@@ -109,7 +109,7 @@ impl RunRecorder {
         Ok(Self::of(Sink::Threaded { lines, waiting, thread }))
     }
 
-    /// The same recorder, which also writes the robot's checkpoints into `file`, where a file is given.
+    /// This recorder, which also writes the robot's checkpoints into `file`, if a file is given.
     ///
     /// # Errors
     /// When the writer's thread cannot be started.
@@ -122,7 +122,7 @@ impl RunRecorder {
         self.checkpoints.is_some()
     }
 
-    /// Writes a checkpoint, where a file for checkpoints is given.
+    /// Writes a checkpoint, if a file for checkpoints is given.
     pub fn write_checkpoint(&self, checkpoint: Arc<Checkpoint>) {
         if let Some(writer) = &self.checkpoints {
             writer.write(checkpoint);
@@ -147,7 +147,7 @@ impl RunRecorder {
         }
     }
 
-    /// Does `work` in the recorder's thread, so that it does not delay control; at once where there is no such thread, or where
+    /// Does `work` in the recorder's thread, so that it does not delay control; at once if there is no such thread, or if
     /// it has much to do not at all.
     pub fn beside(&self, work: impl FnOnce() + Send + 'static) {
         match &self.sink {
@@ -161,7 +161,7 @@ impl RunRecorder {
         }
     }
 
-    /// Writes the last checkpoint, where a file for them is given.
+    /// Writes the last checkpoint, if a file for them is given.
     ///
     /// # Errors
     /// When it could not be written.
@@ -190,7 +190,7 @@ impl RunRecorder {
     }
 }
 
-/// The file of a recording, until it ends: with the run, or where the disk is full or short of space.
+/// The file of a recording, until it ends: with the run, or if the disk is full or short of space.
 struct RecordingFile {
     /// `None` without a recording, and after its end.
     recorder: Option<FileRecorder>,

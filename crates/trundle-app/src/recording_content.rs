@@ -21,8 +21,8 @@ impl RecordingContent {
     /// The choices of a front end: name, help text, value.
     pub const CHOICES: [(&'static str, &'static str, Self); 3] = [
         ("none", "There is no recording", Self::None),
-        ("events", "Everything but images: about 0.1 MB a second", Self::Events),
-        ("all", "Everything, images too: about 3 MB a second", Self::All),
+        ("events", "Everything but images: about 0.1 MB per second", Self::Events),
+        ("all", "Everything, images too: about 3 MB per second", Self::All),
     ];
 }
 
@@ -74,10 +74,12 @@ impl RecordingContent {
         match self {
             Self::None => "Nothing is recorded.".to_owned(),
             Self::Events => format!(
-                "Records events without images, about {rate:.2} MB a second of the robot's time{total}."
+                "Records events without images, about {rate:.2} MB per second of the robot's time{total}."
             ),
             Self::All => {
-                format!("Records events and images, about {rate:.1} MB a second of the robot's time{total}.")
+                format!(
+                    "Records events and images, about {rate:.1} MB per second of the robot's time{total}."
+                )
             }
         }
     }
@@ -94,10 +96,10 @@ mod tests {
         let text = |content: RecordingContent| content.announcement(&camera, 15.0, 100.0);
         assert_eq!(text(RecordingContent::None), "Nothing is recorded.");
         assert!(text(RecordingContent::Events).contains("at most 4 MB in 100 s"));
-        assert!(text(RecordingContent::All).contains("MB a second"));
+        assert!(text(RecordingContent::All).contains("MB per second"));
         let short = RecordingContent::Events.announcement(&camera, 15.0, 6.0);
         assert!(short.contains("less than 1 MB in 6 s"), "{short}");
         let endless = RecordingContent::Events.announcement(&camera, 15.0, f64::MAX);
-        assert_eq!(endless, "Records events without images, about 0.04 MB a second of the robot's time.");
+        assert_eq!(endless, "Records events without images, about 0.04 MB per second of the robot's time.");
     }
 }

@@ -22,12 +22,12 @@ impl RunReplayer {
     /// Opens a recording of a run; the setup that it begins with.
     ///
     /// # Errors
-    /// When the file is no recording of a run, or its robot cannot be accepted. Names the file.
+    /// When the file is not a recording of a run, or its robot cannot be accepted. Names the file.
     pub fn open(file: &Path) -> Result<(Self, RunSetup), AppError> {
         Self::of(file, RecordingReader::open(file)?)
     }
 
-    /// The same of a recording that may be cut at any byte: it is fed to there.
+    /// Opens a recording that may be cut at any byte: it is replayed up to the cut.
     ///
     /// # Errors
     /// As [`RunReplayer::open`], and when nothing can be read before the cut.
@@ -39,7 +39,7 @@ impl RunReplayer {
         let name = file.display();
         let config = reader.config().ok_or_else(|| {
             AppError::Input(format!(
-                "{name}: no trundle.Config message comes first: this is no recording of a trundle run, or the disk was full when the run began"
+                "{name}: no trundle.Config message comes first: this is not a recording of a trundle run, or the disk was full when the run began"
             ))
         })?;
         let setup = RunSetup::of_recording(file, config.clone())?;

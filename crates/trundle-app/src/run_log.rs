@@ -20,7 +20,7 @@ pub struct RunLog {
     pub twists: Vec<(Stamp, Twist2)>,
     /// Number of bumper presses.
     pub presses: usize,
-    /// Number of true contacts, where that is known.
+    /// Number of true contacts, if that is known.
     pub true_contacts: Option<u32>,
     /// Plans made.
     pub plans: usize,
@@ -130,7 +130,7 @@ impl RunLog {
         stamps.iter().map(|stamp| self.start.map_or(0.0, |start| *stamp - start)).collect()
     }
 
-    /// Length of the true path, or of the estimated one where truth is not known \[m\].
+    /// Length of the true path, or of the estimated one if truth is not known \[m\].
     pub fn path_length(&self) -> f64 {
         let path = if self.truths.is_empty() { &self.estimates } else { &self.truths };
         path.windows(2).map(|pair| pair[1].1.distance(&pair[0].1)).sum()
@@ -157,7 +157,7 @@ impl RunLog {
         (!pairs.is_empty()).then(|| (sum / pairs.len() as f64).sqrt())
     }
 
-    /// Contacts: in truth where it is known, else the bumper's presses.
+    /// Contacts: in truth if it is known, else the bumper's presses.
     pub fn contacts(&self) -> usize {
         self.true_contacts.map_or(self.presses, |count| count as usize)
     }

@@ -14,7 +14,7 @@ pub enum RunMark {
     Applied(Worker),
     /// Separate contacts so far, in truth, before the event that follows.
     Contacts(u32),
-    /// The robot obeyed this request here.
+    /// The robot followed this request here.
     Operator(OperatorRequest),
     /// The user ended the run.
     Interrupted,

@@ -1,4 +1,4 @@
-//! What other programs show of a run: transforms, odometry, map, scan, plan, goal and state as messages of ROS 2.
+//! Messages of a run for other programs: transforms, odometry, map, scan, plan, goal and state as messages of ROS 2.
 
 use crate::{RunRecorder, RunSetup};
 use trundle_core::{FrameId, OccupancyGrid, Pose2, Pose3, Stamp};

@@ -23,7 +23,7 @@ pub struct SequenceOptions<'a> {
     pub path: &'a Path,
     /// A camera preset or a file of one; `None` for the input's own.
     pub camera: Option<&'a str>,
-    /// Depth units a metre of a folder's images; `None` for the camera's own.
+    /// Depth units per metre of a folder's images; `None` for the camera's own.
     pub depth_scale: Option<f64>,
     /// Whether a recording may be cut: it is read up to the cut.
     pub recover: bool,
@@ -45,7 +45,7 @@ pub struct SequenceInput {
     pub path: PathBuf,
     /// The camera.
     pub camera: SequenceCamera,
-    /// The robot that carries the camera: the recording's own; the default one where the input names none.
+    /// The robot that carries the camera: the recording's own; the default one if the input names none.
     pub robot: RobotConfig,
     source: Source,
 }
@@ -154,7 +154,7 @@ impl SequenceInput {
         Ok(Self { path: options.path.to_owned(), camera, robot, source: Source::Recording(Box::new(run)) })
     }
 
-    /// Depth units a metre in the images.
+    /// Depth units per metre in the images.
     #[must_use]
     pub fn depth_scale(&self) -> f64 {
         self.camera.model.depth_scale
@@ -196,7 +196,7 @@ impl SequenceInput {
         }
     }
 
-    /// `world_from_camera`, for evaluation, where it is known.
+    /// `world_from_camera`, for evaluation, if it is known.
     #[must_use]
     pub fn ground_truth(&self) -> Option<&[(Stamp, Pose3)]> {
         match &self.source {
@@ -206,7 +206,7 @@ impl SequenceInput {
         }
     }
 
-    /// `odom_from_base`, where it is known.
+    /// `odom_from_base`, if it is known.
     #[must_use]
     pub fn odometry(&self) -> Option<&[(Stamp, Pose2)]> {
         match &self.source {
@@ -235,7 +235,7 @@ impl SequenceInput {
         }
     }
 
-    /// Mount of the camera on the robot, where the input holds it: the pose of a level first camera.
+    /// Mount of the camera on the robot, if the input holds it: the pose of a level first camera.
     #[must_use]
     pub fn level_from_first_camera(&self) -> Option<Pose3> {
         match &self.source {

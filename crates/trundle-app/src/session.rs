@@ -91,12 +91,12 @@ impl<'s> RunSession<'s> {
         self.is_interrupted
     }
 
-    /// The operator's next request, where one waits.
+    /// The operator's next request, if one waits.
     pub(crate) fn next_request(&self) -> Option<OperatorRequest> {
         self.operator.as_ref()?.next_request()
     }
 
-    /// Feeds the robot one input; whether its mission is over.
+    /// Feeds the robot one input. Returns whether its mission is over.
     ///
     /// # Errors
     /// When an event cannot be decoded or the body refuses the command.
@@ -133,7 +133,7 @@ impl<'s> RunSession<'s> {
         Ok(report.finished)
     }
 
-    /// Records the body's contacts, where it counts them.
+    /// Records the body's contacts, if it counts them.
     fn record_contacts(&mut self, body: &dyn EncodedBody) {
         if let contacts @ Some(count) = body.true_contacts()
             && contacts != self.log.true_contacts
@@ -216,7 +216,7 @@ impl<'s> RunSession<'s> {
         self.robot.apply_answer(answer)
     }
 
-    /// The robot obeys an operator from here on.
+    /// The robot follows an operator from here on.
     fn obey(&mut self, request: OperatorRequest) -> Result<StepReport, AppError> {
         self.record_mark(RunMark::Operator(request.clone()));
         if let Some(link) = &mut self.operator {

@@ -13,7 +13,7 @@ use trundle_vision::Vocabulary;
 
 /// Distance of a goal from the start that still is the start \[m\]. Source: default of `docking.tolerance_m`.
 const SAME_PLACE_M: f64 = 0.01;
-/// The same for the heading \[rad\]: 1 deg. Source: ours.
+/// Difference of a heading from the start that still is the start \[rad\]: 1 deg. Source: ours.
 const SAME_HEADING_RAD: f64 = 0.0175;
 
 /// The command that drives hardware.
@@ -101,7 +101,7 @@ impl RunSetup {
     /// The setup that a recording begins with, its robot checked.
     ///
     /// # Errors
-    /// When it is no setup, or its robot cannot be accepted. Names the file.
+    /// When it is not a setup, or its robot cannot be accepted. Names the file.
     pub(crate) fn of_recording(file: &Path, config: serde_json::Value) -> Result<Self, AppError> {
         let name = file.display();
         let setup: Self = serde_json::from_value(with_present_names(config))

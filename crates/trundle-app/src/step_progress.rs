@@ -2,7 +2,7 @@
 
 /// Shows how many of a known number of steps are done. `()` shows nothing.
 pub trait StepProgress {
-    /// The work begins; `steps` of them, where the number is known.
+    /// The work begins; `steps` of them, if the number is known.
     fn begin(&self, steps: Option<usize>);
     /// One more step is done.
     fn advance(&self);

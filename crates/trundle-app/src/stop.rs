@@ -57,14 +57,14 @@ pub fn is_requested(done: impl FnOnce() -> String) -> bool {
     true
 }
 
-/// The signal and what was done until then, where it has ended a loop.
+/// The signal and what was done until then, if it has ended a loop.
 #[must_use]
 pub fn stopped() -> Option<(StopSignal, String)> {
     let done = STOPPED_AFTER.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
     Some((StopSignal(SIGNAL.load(Ordering::Relaxed)), done))
 }
 
-/// Notes in the summary of `folder` that the user ended the work, where a signal has.
+/// Notes in the summary of `folder` that the user ended the work, if a signal has.
 ///
 /// # Errors
 /// When the summary cannot be read or written.

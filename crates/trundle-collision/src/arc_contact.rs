@@ -1,7 +1,7 @@
 //! Contact of a footprint that moves along an arc with a point, in closed form.
 //!
 //! Problem: the distance that a moving footprint travels until it touches a point. Idea: in the base frame the point moves
-//! instead, on a line, or on a circle about the centre of rotation. The footprint grown by a margin is bounded by its sides moved
+//! instead, on a line, or on a circle around the centre of rotation. The footprint grown by a margin is bounded by its sides moved
 //! outward and by arcs about its corners. The first contact is the first crossing of the point's line or circle with one of
 //! those: closed forms, no sampling. Cost: O(corners).
 
@@ -15,7 +15,7 @@ const CONTACT_TOLERANCE_M: f64 = 1e-9;
 const MAX_STRAIGHT_CURVATURE_PER_M: f64 = 1e-4;
 
 /// The distance along the arc of `twist` until the hull grown by `margin` m touches the point `p` (base frame, m): of the
-/// base's origin, m, or for a turn in place the angle, rad. `None` when it never does, 0 when it touches already and the motion
+/// base's origin, m, or for a turn in place the angle, rad. `None` if it never does, 0 when it touches already and the motion
 /// presses on.
 ///
 /// A hull that touches already may move away from the point, or along it.
@@ -55,7 +55,7 @@ fn distance_along(hull: &RoundedHull, ahead: Vector2, p: Vector2, radius: f64) -
     hull.edges.iter().filter_map(of_side).chain(of_corners).min_by(f64::total_cmp)
 }
 
-/// Angle of the point's rotation about `pole` in the direction `sense`, rad.
+/// Angle of the point's rotation around `pole` in the direction `sense`, rad.
 fn angle_about(hull: &RoundedHull, pole: Vector2, sense: f64, p: Vector2, radius: f64) -> Option<f64> {
     let arm = p - pole;
     let turn = arm.norm();
@@ -72,7 +72,7 @@ fn angle_about(hull: &RoundedHull, pole: Vector2, sense: f64, p: Vector2, radius
     of_sides.chain(of_corners).map(angle).min_by(f64::total_cmp)
 }
 
-/// Crossings of the circle of radius `turn` about `pole` with a side moved outward by `radius`, relative to the pole.
+/// Crossings of the circle of radius `turn` around `pole` with a side moved outward by `radius`, relative to the pole.
 fn crossings_of_side(edge: &Edge, pole: Vector2, turn: f64, radius: f64) -> impl Iterator<Item = Vector2> {
     let to_side = edge.side.a + edge.normal * radius - pole;
     let height = to_side.dot(&edge.normal);
@@ -84,7 +84,7 @@ fn crossings_of_side(edge: &Edge, pole: Vector2, turn: f64, radius: f64) -> impl
     [-half, half].into_iter().filter(is_on).map(move |at| outward * height + along * at)
 }
 
-/// Crossings of the circle of radius `turn` about `pole` with that of `radius` about `corner`, relative to the pole.
+/// Crossings of the circle of radius `turn` around `pole` with that of `radius` about `corner`, relative to the pole.
 fn crossings(pole: Vector2, turn: f64, corner: Vector2, radius: f64) -> impl Iterator<Item = Vector2> {
     let to = corner - pole;
     let distance = to.norm();

@@ -1,6 +1,6 @@
 //! A lookup table of a hull: fast lower bounds of the free motion for boxes of points.
 //!
-//! Problem: the closed forms cost half a microsecond per point. Idea: at rings about the axle the headings of contact are
+//! Problem: the closed forms cost half a microsecond per point. Idea: at rings around the axle the headings of contact are
 //! computed once, exactly. A point farther out than a ring is met at fewer headings, as the hull together with the axle is
 //! convex. In strips along x the table holds the hull's extent, rounded up. A box of points that is not met before a known
 //! contact can be skipped. Rounding is always outward, so that no contact is missed.
@@ -100,7 +100,7 @@ impl HullProfile {
     }
 
     /// Lower bounds of the free turn, counter-clockwise and clockwise, before the hull meets a point of a box (relative to the axle,
-    /// in the hull's axes), rad; `None` when it never does.
+    /// in the hull's axes), rad; `None` if it never does.
     pub fn free_turns(&self, bounds: &OrientedBox) -> Option<(f64, f64)> {
         let nearest = bounds.distance_from_origin() - ROUNDING_SLACK;
         if nearest >= self.outer {
@@ -149,7 +149,7 @@ impl HullProfile {
     }
 
     /// Lower bounds of the free distance forward and backward before the hull meets a point of a box (in the hull's frame), m;
-    /// infinite where it never does.
+    /// infinite if it never does.
     pub fn free_distances(&self, bounds: &OrientedBox) -> (f64, f64) {
         let never = (f64::INFINITY, f64::INFINITY);
         let (p, extent) = (bounds.center, bounds.extent().add_scalar(ROUNDING_SLACK));
@@ -171,7 +171,7 @@ impl HullProfile {
         (ahead, behind)
     }
 
-    /// The same for a box that is thin enough to count as a segment.
+    /// Free distances ahead and behind of a box that is thin enough to count as a segment.
     fn free_distances_of_line(&self, bounds: &OrientedBox) -> Option<(f64, f64)> {
         let is_slender = |by: f64| bounds.half.y <= by && bounds.half.x > MIN_SLENDERNESS * by;
         let grown = &self.grown[THIN_HALF_THICKNESS_M.iter().position(|&by| is_slender(by))?];

@@ -76,7 +76,7 @@ impl RoundedHull {
         }
     }
 
-    /// Whether the hull is a disc about the base's origin: a disc turns in place without contact.
+    /// Whether the hull is a disc around the base's origin: a disc turns in place without contact.
     pub fn is_disc(&self) -> bool {
         self.edges.is_empty()
     }
@@ -106,7 +106,7 @@ impl RoundedHull {
         Self::from_core(&core, self.radius + by)
     }
 
-    /// The part of this hull with no point nearer than `depth` (m) to the outside; `None` when nothing is left.
+    /// The part of this hull with no point nearer than `depth` (m) to the outside; `None` if nothing is left.
     ///
     /// The part is exact along the sides and too small at the corners, by [`MIN_CORNER_RADIUS_M`]: it never contains a point too many.
     pub fn shrunk(&self, depth: f64) -> Option<Self> {

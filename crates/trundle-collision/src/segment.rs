@@ -37,7 +37,7 @@ impl Segment {
         (self.nearest(p) - p).norm()
     }
 
-    /// The distance to another segment, m; 0 where they cross.
+    /// The distance to another segment, m; 0 if they cross.
     pub fn distance_to(&self, other: &Self) -> f64 {
         if self.crosses(other) {
             return 0.0;

@@ -26,7 +26,7 @@ pub fn segment_to_square(a: Vector2, b: Vector2, centre: Vector2, half: f64) -> 
     best
 }
 
-/// The distance between a convex polygon and a square, or `cap` if that is less; 0 where they overlap or touch.
+/// The distance between a convex polygon and a square, or `cap` if that is less; 0 if they overlap or touch.
 pub fn polygon_to_square(polygon: &[Vector2], centre: Vector2, half: f64, cap: f64) -> f64 {
     // Separating axes: those of the square, then those of the polygon's sides.
     let low = polygon.iter().fold(polygon[0], |low, c| low.inf(c));

@@ -20,7 +20,7 @@ pub enum StraightContact {
     Behind(f64),
 }
 
-/// Where a segment, in the base frame and without overlap, stops a straight move; `None` when it does not.
+/// Where a segment, in the base frame and without overlap, stops a straight move; `None` if it does not.
 pub fn straight_contact(hull: &RoundedHull, segment: &Segment) -> Option<StraightContact> {
     let (bottom, top) = hull.core_extent(Vector2::y());
     let low = segment.a.y.min(segment.b.y).max(bottom - hull.radius + MIN_COMMON_RANGE_M);

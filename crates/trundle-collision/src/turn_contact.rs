@@ -1,7 +1,7 @@
 //! Turns in place: the headings at which the hull overlaps a segment, in closed form.
 //!
 //! A footprint that turns sweeps annulus sectors. Contact begins or ends in one of two events only. An end of the segment lies
-//! on the hull's boundary: a circle about the axle meets an offset side or a rounded corner. Or a corner of the core is a radius
+//! on the hull's boundary: a circle around the axle meets an offset side or a rounded corner. Or a corner of the core is a radius
 //! away from the segment: the corner's circle meets a line. Between neighbouring events nothing changes, so one overlap test in
 //! the middle of each interval decides it.
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct BodyEvent {
     /// When it happened.
     pub stamp: Stamp,
-    /// What happened.
+    /// The event.
     pub kind: BodyEventKind,
 }
 
@@ -70,7 +70,7 @@ impl PerWheel {
 pub struct Battery {
     /// Voltage \[V\].
     pub voltage_v: f64,
-    /// Charge, 0 (empty) to 1 (full); `None` where the body cannot tell it.
+    /// Charge, 0 (empty) to 1 (full); `None` if the body cannot tell it.
     pub charge: Option<f64>,
     /// Source of the power.
     pub source: PowerSource,

@@ -147,7 +147,7 @@ impl PinholeCamera {
             .expect("invariant: the preset is valid")
     }
 
-    /// Time from the first to the last row of an image, s: a rolling shutter; 0 where all rows are taken at once.
+    /// Time from the first to the last row of an image, s: a rolling shutter; 0 if all rows are taken at once.
     pub fn readout(&self) -> f64 {
         self.readout
     }

@@ -17,7 +17,7 @@ const IN_PLANE: [usize; 3] = [0, 1, 5];
 pub struct CameraMotion {
     /// `previous_camera_from_camera`.
     pub motion: Pose3,
-    /// Of `motion` as a right perturbation (m, m, m, rad, rad, rad); none where it is unknown.
+    /// Of `motion` as a right perturbation (m, m, m, rad, rad, rad). `None` if it is unknown.
     pub covariance: Option<Matrix6<f64>>,
 }
 
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_base_may_be_off_is_what_the_camera_may_be_off() {
+    fn the_uncertainty_of_the_base_is_that_of_the_camera() {
         let turn = nalgebra::UnitQuaternion::from_euler_angles(-1.9, 0.1, -1.5);
         let base_from_camera = Pose3::new(turn, Vector3::new(0.3, -0.2, 0.6));
         let planar = Matrix3::new(4.0, 0.5, 0.1, 0.5, 1.0, 0.2, 0.1, 0.2, 9.0) * 1e-6;

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 /// The robot's outline on the floor, base frame.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Footprint {
-    /// A disc about the base's origin.
+    /// A disc around the base's origin.
     Disc {
         /// Metres.
         radius: f64,
@@ -22,7 +22,7 @@ impl Footprint {
     /// The Kobuki: a disc of 0.351 m across (its data sheet).
     pub const KOBUKI: Self = Self::Disc { radius: 0.1755 };
 
-    /// A disc about the base's origin.
+    /// A disc around the base's origin.
     ///
     /// # Errors
     /// When the radius is not finite and positive.

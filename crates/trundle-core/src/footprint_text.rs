@@ -41,7 +41,7 @@ fn corner(pair: &str) -> Result<Vector2, String> {
 }
 
 fn number(word: &str) -> Result<f64, String> {
-    word.trim().parse::<f64>().map_err(|_| format!("'{word}' in the footprint is no number, expected m"))
+    word.trim().parse::<f64>().map_err(|_| format!("'{word}' in the footprint is not a number, expected m"))
 }
 
 #[cfg(test)]
@@ -62,13 +62,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_footprint_is_named() {
+    fn text_that_is_not_a_footprint_is_named() {
         let refused = |text: &str| text.parse::<Footprint>().unwrap_err();
-        assert_eq!(refused("wide"), "'wide' in the footprint is no number, expected m");
+        assert_eq!(refused("wide"), "'wide' in the footprint is not a number, expected m");
         assert_eq!(refused("0.3,0.2 0.1"), "corner '0.1', expected X,Y");
         assert_eq!(refused("0,0 1,0 0.2,0.2 0,1"), "footprint is turned inward at corner 1, expected convex");
         assert!(refused("0,0 1,0 2,0").contains("footprint area is 0 m^2"));
-        assert_eq!(refused("[[0.3,0.2],[a,1]]"), "'a' in the footprint is no number, expected m");
+        assert_eq!(refused("[[0.3,0.2],[a,1]]"), "'a' in the footprint is not a number, expected m");
         for broken in ["[[0.3,0.2],[0.1,0.2]", "[", "[]", "[[0.3,0.2],3]", "[[0.3,0.2] 3]", "[0.3,0.2]"] {
             assert!(refused(broken).contains("expected [[X, Y], [X, Y]"), "{broken}: {}", refused(broken));
         }

@@ -70,7 +70,7 @@ impl GridGeometry {
     /// Requires that the cells are those of the lattice of this resolution \[m\] with a corner at the origin, as a map that grows has them.
     ///
     /// # Errors
-    /// When the resolution is another one, or the origin is no multiple of it.
+    /// When the resolution is another one, or the origin is not a multiple of it.
     pub fn require_lattice(&self, resolution: f64) -> Result<(), Invalid> {
         if (self.resolution - resolution).abs() > MAX_RESOLUTION_ERROR_M {
             return Err(Invalid::new("resolution of the map", self.resolution, "m", format!("{resolution}")));

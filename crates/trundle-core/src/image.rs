@@ -14,7 +14,7 @@ pub struct Image<T> {
 pub type GrayImage = Image<u8>;
 /// Red, green, blue, 0 to 255 each (sRGB).
 pub type ColorImage = Image<[u8; 3]>;
-/// Depth along the optical axis, metres; 0 where there is none.
+/// Depth along the optical axis, metres; 0 if there is none.
 pub type DepthImage = Image<f32>;
 
 impl<T> Image<T> {

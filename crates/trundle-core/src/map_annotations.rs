@@ -1,4 +1,4 @@
-//! What people write on a map: zones and named places.
+//! Annotations of a map: zones and named places.
 
 use crate::zone::require_name;
 use crate::{Invalid, MAX_COORDINATE_M, Pose2, Zone, require_in};
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_twice_and_what_is_no_place_is_refused() {
+    fn repeated_names_and_invalid_places_are_refused() {
         let refusal = |zones, places| MapAnnotations { zones, places }.validated().unwrap_err().to_string();
         assert!(refusal(vec![zone(1)], vec![place(1, "a")]).contains("1 twice"));
         assert!(refusal(vec![], vec![place(1, "a"), place(2, "a")]).contains("'a' twice"));

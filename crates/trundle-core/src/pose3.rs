@@ -40,7 +40,7 @@ impl Pose3 {
         Self { rotation, translation }
     }
 
-    /// A planar pose lifted into space: z = 0, rotation about z.
+    /// A planar pose lifted into space: z = 0, rotation around z.
     pub fn from_pose2(pose: Pose2) -> Self {
         Self::new(
             UnitQuaternion::from_axis_angle(&Vector3::z_axis(), pose.theta),

@@ -34,7 +34,7 @@ impl RgbdImage {
         &self.color
     }
 
-    /// The depth image, metres along the optical axis, 0 where there is none.
+    /// The depth image, metres along the optical axis, 0 if there is none.
     pub fn depth(&self) -> &DepthImage {
         &self.depth
     }

@@ -49,9 +49,9 @@ pub struct ScanParts {
     pub beams: Vec<Beam>,
     /// Free spans by rising beam and range; `None`: all beams up to their ranges.
     pub free: Option<Vec<FreeSpan>>,
-    /// One sigma of the range of each beam, m; empty where the sensor gives none.
+    /// One sigma of the range of each beam, m; empty if the sensor gives none.
     pub sigmas: Vec<f32>,
-    /// The kind of each beam's obstacle; empty where all stand.
+    /// The kind of each beam's obstacle; empty if all stand.
     pub obstacles: Vec<ObstacleKind>,
 }
 
@@ -169,12 +169,12 @@ impl Scan {
         whole.into_iter().chain(own.map(|span| (span.from, span.to)))
     }
 
-    /// One sigma of the range of beam `i`, m, where the sensor gives one.
+    /// One sigma of the range of beam `i`, m, if the sensor gives one.
     pub fn sigma(&self, i: usize) -> Option<f64> {
         self.parts.sigmas.get(i).map(|sigma| f64::from(*sigma))
     }
 
-    /// The kind of obstacle that beam `i` met; `None` where it met none.
+    /// The kind of obstacle that beam `i` met; `None` if it met none.
     pub fn obstacle(&self, i: usize) -> Option<ObstacleKind> {
         let hit = matches!(self.parts.beams.get(i), Some(Beam::Hit { .. }));
         hit.then(|| self.parts.obstacles.get(i).copied().unwrap_or_default())

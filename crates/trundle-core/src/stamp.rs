@@ -19,7 +19,7 @@ impl Stamp {
         Self { nanos }
     }
 
-    /// From seconds since the epoch, rounded to the nanosecond; `None` when not finite or out of range (292 years).
+    /// From seconds since the epoch, rounded to the nanosecond; `None` if not finite or out of range (292 years).
     pub fn from_secs(secs: f64) -> Option<Self> {
         let nanos = (secs * 1e9).round();
         (nanos.is_finite() && nanos.abs() < i64::MAX as f64).then_some(Self { nanos: nanos as i64 })

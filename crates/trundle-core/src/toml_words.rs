@@ -18,12 +18,12 @@ pub fn number_list<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result
     exact.map(Some).ok_or_else(|| D::Error::invalid_length(length, &expected.as_str()))
 }
 
-/// What is wrong with a TOML file.
+/// The problem of a TOML file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TomlProblem {
     /// The line, from 1.
     pub line: usize,
-    /// What is wrong there, and what is expected.
+    /// The problem there, and the accepted content.
     pub message: String,
 }
 
@@ -47,9 +47,9 @@ const FORM_FAULTS: [(&str, &str); 13] = [
     ("duplicate key", "this key or table stands twice, expected it once"),
 ];
 
-/// What a value may be.
+/// Kinds of a value.
 const VALUE_WANTED: &str =
-    "this is no value, expected a number, true or false, a text in quotes, or a list in brackets";
+    "this is not a value, expected a number, true or false, a text in quotes, or a list in brackets";
 
 /// Names of kinds by serde, and in plain words.
 const KINDS: [(&str, &str); 15] = [

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Motion of a differential drive: speed along x and turn rate about z, in the base frame.
+/// Motion of a differential drive: speed along x and turn rate around z, in the base frame.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Twist2 {
     /// Forward speed, m/s.

@@ -72,7 +72,7 @@ impl Zone {
         Ok(self)
     }
 
-    /// What messages call it: `zone 'stairs'`, `zone 3`, or `the new zone` where it has no number yet.
+    /// Name in messages: `zone 'stairs'`, `zone 3`, or `the new zone` if it has no number yet.
     #[must_use]
     pub fn label(&self) -> String {
         match self.name.trim() {
@@ -112,7 +112,7 @@ pub(crate) fn require_name(label: &str, name: &str) -> Result<(), Invalid> {
     Ok(())
 }
 
-/// The first two sides of an outline that touch and are no neighbours, or that fold back onto each other.
+/// The first two sides of an outline that touch and are not neighbours, or that fold back onto each other.
 fn crossing_sides(corners: &[Vector2]) -> Option<(usize, usize)> {
     let count = corners.len();
     let side = |i: usize| (corners[i], corners[(i + 1) % count]);

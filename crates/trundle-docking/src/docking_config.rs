@@ -93,7 +93,7 @@ impl Default for DockingConfig {
     }
 }
 
-/// Factor on the reach of the second search, where none is found within reach. Source: ours.
+/// Factor on the reach of the second search, if none is found within reach. Source: ours.
 pub(crate) const WIDER_REACH_FACTOR: f64 = 2.0;
 
 /// Distance beyond the positions of the base, besides the robot's own radius, within which obstacles matter, m. Source: ours.

@@ -55,7 +55,7 @@ pub struct Impossible {
     pub by: Option<Blocker>,
     /// The proof; always [`Certificate::None`] by the method of \[Hong24\].
     pub certificate: Certificate,
-    /// The limit that ended a search without result; with a certificate, the limit of the search beyond `within`. `None` when the
+    /// The limit that ended a search without result; with a certificate, the limit of the search beyond `within`. `None` if the
     /// search was complete.
     pub limit: Option<SearchLimit>,
     /// Distance from the line between start and goal within which motions were searched, m.

@@ -59,7 +59,7 @@ impl FreeTurn {
         angle <= self.left + ROUNDING_SLACK && -angle <= self.right + ROUNDING_SLACK
     }
 
-    /// The turn that changes the heading by `angle` (in (-pi, pi], rad): the shorter turn where it is free, else the longer.
+    /// The turn that changes the heading by `angle` (in (-pi, pi], rad): the shorter turn if it is free, else the longer.
     pub fn way(&self, angle: f64) -> Option<f64> {
         let longer = -(TAU - angle.abs()).copysign(angle);
         [angle, longer].into_iter().find(|&turn| self.allows(turn))

@@ -17,12 +17,12 @@ pub const KOBUKI_UDEV_RULE: &str = "SUBSYSTEM==\"tty\", ATTRS{idVendor}==\"0403\
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BaseSpec {
-    /// A Kobuki at a serial port; `None`: the port where one is found.
+    /// A Kobuki at a serial port; `None`: the port if one is found.
     Kobuki(Option<PathBuf>),
 }
 
 impl BaseSpec {
-    /// What opens the base's port. `program` has the command [`crate::kobuki::base_guard::GUARD_COMMAND`]: a process of it stops the base
+    /// Opener of the base's port. `program` has the command [`crate::kobuki::base_guard::GUARD_COMMAND`]: a process of it stops the base
     /// where this program dies.
     #[must_use]
     pub fn connector(&self, program: &Path) -> Box<dyn Connector> {

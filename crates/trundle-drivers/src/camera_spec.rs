@@ -30,7 +30,7 @@ pub enum CameraSpec {
     Kinect2Dump(PathBuf),
 }
 
-/// What the kinds of camera are called, for messages.
+/// Names of the kinds of camera, for messages.
 const KINDS: &str = "realsense, freenect (Kinect v1), orbbec, openni2, kinect2 (needs the feature kinect2-usb), stream:PATH, \
      folder:PATH, kinect2-dump:FILE; a serial number or \
      recording may follow, as realsense:FILE.db3";
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_process_that_is_no_camera_is_named() {
+    fn a_process_that_is_not_a_camera_is_named() {
         let mut command = Command::new("echo");
         command.arg("hello");
         let error = ProcessCamera::start(command, "openni2", Duration::from_secs(5)).unwrap_err().to_string();

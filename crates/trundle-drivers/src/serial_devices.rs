@@ -17,7 +17,7 @@ const USB_SERIAL_NAMES: [&str; 2] = ["ttyUSB", "ttyACM"];
 pub struct SerialDevice {
     /// Where it is opened.
     pub path: PathBuf,
-    /// Maker, model and number; empty where the system does not list them.
+    /// Maker, model and number; empty if the system does not list them.
     pub id: String,
     /// Whether this user may open it.
     pub access: PortAccess,

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Matrix4, Quaternion, SymmetricEigen, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Pose3, Vector3};
 
-/// How an estimate is laid over the reference before it is judged.
+/// How an estimate is laid over the reference before it is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Alignment {

@@ -9,7 +9,7 @@ use trundle_core::{Invalid, Stamp};
 pub enum Side {
     /// The ground truth.
     Reference,
-    /// What is judged.
+    /// The object of the evaluation.
     Estimate,
 }
 

@@ -20,7 +20,7 @@
 //! let truth: Vec<_> = (0..5).map(|i| pose(i, i as f64)).collect();
 //! let moved: Vec<_> = (0..5).map(|i| pose(i, i as f64 + 7.0)).collect();
 //! let error = absolute_trajectory_error(&truth, &moved, &AbsoluteConfig::default())?;
-//! assert!(error.statistics.rmse < 1e-12); // an offset is no error: the trajectories are aligned first
+//! assert!(error.statistics.rmse < 1e-12); // an offset is not an error: the trajectories are aligned first
 //! # Ok::<(), trundle_eval::EvalError>(())
 //! ```
 

@@ -10,7 +10,7 @@ use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, Vector2, requ
 pub struct MapAgreementConfig {
     /// Largest distance between the centres of occupied cells that agree, m, 0.001 to 10. Default 0.05.
     pub within: f64,
-    /// A true obstacle is judged where the map has known cells within this distance, m, 0 to 10. Default 0.1.
+    /// A true obstacle is evaluated if the map has known cells within this distance, m, 0 to 10. Default 0.1.
     pub seen_within: f64,
     /// Distances are cut at this, m, 0.01 to 100. Default 2.
     pub reach: f64,
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_never_looked_at_is_not_missed() {
+    fn obstacles_never_observed_are_not_missed() {
         let half = grid(
             ".....?????
              .####?????

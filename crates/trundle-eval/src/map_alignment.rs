@@ -11,7 +11,7 @@ const PAIRING_RADII_M: (f64, f64) = (0.8, 0.15);
 /// Lays a map over the true one: `truth_from_estimate` near `guess` (to about 0.5 m and 5 degrees) that brings its occupied
 /// cells nearest to truly occupied ones. By iterated closest points \[Besl92\], the reach of the pairs shrinking.
 ///
-/// A map's frame is its own, so that where it begins is no error of the map; what this leaves is.
+/// A map's frame is its own, so that where it begins is not an error of the map; what this leaves is.
 ///
 /// # Errors
 /// When a map has no occupied cell, or none of them finds a partner, or the guess is not finite.

@@ -41,7 +41,7 @@ impl RelationSetsConfig {
 /// Relations by what they show.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RelationSets {
-    /// Local accuracy of the trajectory: poses a metre apart.
+    /// Local accuracy of the trajectory: poses one metre apart.
     pub near: Vec<Relation>,
     /// How straight corridors are: ten metres apart.
     pub far: Vec<Relation>,

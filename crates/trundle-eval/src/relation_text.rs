@@ -11,7 +11,7 @@ use trundle_core::{Pose3, Stamp, Vector3};
 pub struct RelationTextError {
     /// The line, from 1.
     pub line: usize,
-    /// What is wrong with it.
+    /// The problem.
     pub problem: String,
 }
 
@@ -107,7 +107,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_text_is_no_panic(text in "[0-9 .e#a\n-]{0,80}") {
+        fn any_text_does_not_panic(text in "[0-9 .e#a\n-]{0,80}") {
             let _ = relations_from_text(&text);
         }
     }

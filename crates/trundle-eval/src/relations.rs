@@ -52,7 +52,7 @@ pub struct RelationError {
 }
 
 /// The relations metric: for each true relation d* and its estimate d the error is d*^-1 d, whose translation and rotation
-/// are judged apart. Source: \[Kuemmerle09\], eq. 2 (the mean of squares there is `rmse` squared here). One wrong turn is
+/// are evaluated apart. Source: \[Kuemmerle09\], eq. 2 (the mean of squares there is `rmse` squared here). One wrong turn is
 /// one error, and does not spoil all that follows, as it does when trajectories are laid over each other.
 ///
 /// # Errors
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_estimate_does_not_hold_is_missed_and_said() {
+    fn relations_outside_the_estimate_are_missed_and_reported() {
         let estimate = [planar(0, 0.0, 0.0, 0.0), planar(1, 1.0, 0.0, 0.0)];
         let relations = [relation(0, 1, 1.0, 0.0, 0.0), relation(0, 7, 1.0, 0.0, 0.0)];
         let error = relation_error(&relations, &estimate, &RelationConfig::default()).unwrap();

@@ -84,7 +84,7 @@ mod tests {
     use super::*;
     use trundle_core::{Pose2, Vector3};
 
-    /// A straight drive at 1 m/s and 10 Hz, with the estimate 2 % long and turning 0.01 rad a second.
+    /// A straight drive at 1 m/s and 10 Hz, with the estimate 2 % long and turning 0.01 rad per second.
     fn drive(scale: f64, turn: f64) -> Vec<(Stamp, Pose3)> {
         let pose = |i: i64| {
             let t = i as f64 * 0.1;

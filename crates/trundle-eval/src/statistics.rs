@@ -22,7 +22,7 @@ pub struct ErrorStatistics {
 }
 
 impl ErrorStatistics {
-    /// The statistics of `errors`; `None` when there are none or one is not finite.
+    /// The statistics of `errors`; `None` if there are none or one is not finite.
     pub fn of(errors: &[f64]) -> Option<Self> {
         if errors.is_empty() || errors.iter().any(|e| !e.is_finite()) {
             return None;

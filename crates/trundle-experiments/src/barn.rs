@@ -17,7 +17,7 @@ use trundle_io::{OutputFolder, write_map};
 use trundle_runtime::{Mission, RobotConfig, Task};
 use worlds::BarnWorld;
 
-/// What to run of the BARN worlds.
+/// The runs of the BARN worlds.
 pub struct BarnRequest {
     /// The folder with worlds.csv and obstacles.csv.
     pub data: PathBuf,
@@ -38,7 +38,7 @@ pub struct BarnOutcome {
 /// Crosses the worlds asked for, with each seed.
 ///
 /// # Errors
-/// When the data cannot be read, or a run cannot be made.
+/// When the data cannot be read, or a run cannot be created.
 pub fn run(request: &BarnRequest, progress: &Progress) -> Result<BarnOutcome, AppError> {
     let worlds = worlds::read(&request.data)?;
     let max = (worlds.len() as u64).saturating_sub(1);

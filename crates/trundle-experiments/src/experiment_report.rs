@@ -20,7 +20,7 @@ pub trait ExperimentReport {
     /// Whether every limit is kept.
     fn is_success(&self) -> bool;
 
-    /// The table for the terminal, header first; empty where the verdict is enough.
+    /// The table for the terminal, header first; empty if the verdict is enough.
     fn table(&self) -> Vec<Vec<String>>;
 
     /// The outcome in a sentence or two.

@@ -143,7 +143,7 @@ pub struct FaultsOutcome {
 /// Runs every fault scenario, with each seed.
 ///
 /// # Errors
-/// When a run cannot be made, or no run has the name asked for.
+/// When a run cannot be created, or no run has the name asked for.
 pub fn run(request: &RunsRequest, progress: &Progress) -> Result<FaultsOutcome, AppError> {
     let mut plans = Vec::new();
     for scenario in scenarios() {

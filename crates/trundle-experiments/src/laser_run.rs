@@ -24,7 +24,7 @@ pub struct LaserPlan {
     pub time_limit: f64,
 }
 
-/// State for a judge, 50 times a second.
+/// State for a checker, 50 times per second.
 #[derive(Debug, Clone, Copy)]
 pub struct Moment {
     /// Since the start, s.

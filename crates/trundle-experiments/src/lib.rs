@@ -1,6 +1,6 @@
 //! The experiments of the papers and benchmarks, in the simulator: each takes a request and returns typed outcomes.
 //!
-//! An outcome holds a row for each run ([`Trial`] or the experiment's own type). [`ExperimentReport`] judges the outcome, makes its
+//! An outcome holds a row for each run ([`Trial`] or the experiment's own type). [`ExperimentReport`] evaluates the outcome, makes its
 //! table and writes its folder; a front end prints the table.
 //!
 //! ```

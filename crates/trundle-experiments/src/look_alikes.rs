@@ -12,7 +12,7 @@ use trundle_viz::{Report, Table, Verdict};
 
 /// Distance from its goal beyond which a robot that reports its arrival is wrong, m.
 const FALSE_ARRIVAL_M: f64 = 0.3;
-/// The same for the heading, deg.
+/// Heading error beyond which a robot that reports its arrival is wrong, deg.
 const FALSE_ARRIVAL_DEG: f64 = 20.0;
 /// Change of the estimate's error between two images that counts as a jump away from the truth, m.
 const JUMP_M: f64 = 0.3;
@@ -21,7 +21,7 @@ const CARRIED_AT_S: f64 = 25.0;
 /// How long that takes, s.
 const CARRIED_FOR_S: f64 = 0.1;
 
-/// What happens in a room.
+/// Events in a room.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Variant {
     name: &'static str,
@@ -47,7 +47,7 @@ pub struct LookAlikesOutcome {
 /// Runs every variant in a room for each seed.
 ///
 /// # Errors
-/// When a run cannot be made, or no run has the name asked for.
+/// When a run cannot be created, or no run has the name asked for.
 pub fn run(request: &RunsRequest, progress: &Progress) -> Result<LookAlikesOutcome, AppError> {
     let mut plans = Vec::new();
     for seed in 1..=u64::from(request.seeds) {
@@ -72,7 +72,7 @@ fn plan(seed: u64, variant: Variant, robot: &RobotConfig) -> Result<TrialPlan, A
     Ok(TrialPlan { name, seed, scene, mission, robot, faults, computer_fault: None })
 }
 
-/// What counts of a run.
+/// Counted quantities of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 struct Score {
     arrivals: usize,

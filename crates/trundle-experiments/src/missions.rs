@@ -48,7 +48,7 @@ pub struct MissionsOutcome {
 /// Crosses the room of obstacles, with each seed.
 ///
 /// # Errors
-/// When a run cannot be made, or no run has the name asked for.
+/// When a run cannot be created, or no run has the name asked for.
 pub fn run_obstacles(request: &RunsRequest, progress: &Progress) -> Result<MissionsOutcome, AppError> {
     run_story(&OBSTACLES, request, progress, |seed| {
         let scene = Scene::by_name("obstacles", seed)?;
@@ -76,7 +76,7 @@ const HOUSE_GOALS: [(f64, f64, f64); 10] = [
 /// Drives to the ten goals of the house, whose mesh is the file `mesh` (z up), with each seed.
 ///
 /// # Errors
-/// When the mesh is not there, a run cannot be made, or no run has the name asked for.
+/// When the mesh is not there, a run cannot be created, or no run has the name asked for.
 pub fn run_house(
     request: &RunsRequest,
     mesh: &Path,

@@ -35,7 +35,7 @@ const MAX_SPEED_M_S: f64 = 0.55;
 /// Time limit of a run \[s\]; afterwards it is given up. Source: ours.
 const TIME_LIMIT_S: f64 = 600.0;
 
-/// What to run of the benchmark's courses.
+/// The runs of the benchmark's courses.
 pub struct MrpbRequest {
     /// The folder with start_goal.csv, actors.csv and maps.
     pub data: PathBuf,
@@ -56,7 +56,7 @@ pub struct MrpbOutcome {
 /// Drives every course asked for, with each seed.
 ///
 /// # Errors
-/// When the data cannot be read, no course has the name asked for, or a run cannot be made.
+/// When the data cannot be read, no course has the name asked for, or a run cannot be created.
 pub fn run(request: &MrpbRequest, progress: &Progress) -> Result<MrpbOutcome, AppError> {
     let robot = request.robot.clone().unwrap_or_else(robot);
     let chosen =

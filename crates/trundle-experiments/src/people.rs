@@ -73,7 +73,7 @@ pub struct PeopleOutcome {
 /// Runs with one person who steps out, a person a seed.
 ///
 /// # Errors
-/// When a run cannot be made, or no run has the name asked for.
+/// When a run cannot be created, or no run has the name asked for.
 pub fn run(request: &RunsRequest, progress: &Progress) -> Result<PeopleOutcome, AppError> {
     let robot = &request.robot;
     let radius = robot.footprint()?.circumscribed_radius();

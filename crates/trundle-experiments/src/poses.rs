@@ -59,12 +59,12 @@ fn plans(request: &RunsRequest) -> Result<Vec<TrialPlan>, AppError> {
 /// Runs the eight start poses, with each seed.
 ///
 /// # Errors
-/// When a run cannot be made, or no run has the name asked for.
+/// When a run cannot be created, or no run has the name asked for.
 pub fn run(request: &RunsRequest, progress: &Progress) -> Result<PosesOutcome, AppError> {
     Ok(PosesOutcome { trials: trial::run_all(plans(request)?, request, progress)? })
 }
 
-/// The same over a serial line and a stream of camera frames, one run after the other, by the wall clock.
+/// The runs over a serial line and a stream of camera frames, one run after the other, by the wall clock.
 ///
 /// # Errors
 /// As [`run`].

@@ -17,7 +17,7 @@ const MAX_CPU_LOAD: f64 = 0.6;
 const MAX_MEMORY_GROWTH_MB_PER_H: f64 = 10.0;
 /// Time before which memory may grow, s: maps and buffers reach their size.
 const MEMORY_SETTLING_S: f64 = 600.0;
-/// Shortest run whose growth is judged, s.
+/// Shortest run whose growth is evaluated, s.
 const MIN_JUDGED_RUN_S: f64 = 2.0 * MEMORY_SETTLING_S;
 /// Shortest time of a goal and the return, s.
 const SHORTEST_TASK: f64 = 10.0;
@@ -61,7 +61,7 @@ pub struct RealTimeRequest {
 
 /// The outcome of a run in real time.
 pub struct RealTimeOutcome {
-    /// The figures judged against their limits.
+    /// The figures evaluated against their limits.
     pub limits: Vec<Limit>,
     /// How the run kept time.
     pub timing: RealTimeReport,
@@ -77,7 +77,7 @@ pub struct RealTimeOutcome {
     pub seconds: f64,
 }
 
-/// Drives to and fro in the demo's scene, and records into `folder`. A run that judges memory explores the scene first: two
+/// Drives to and fro in the demo's scene, and records into `folder`. A run that measures memory explores the scene first: two
 /// equally long paths lead past its obstacles, and the map would grow at the first drive along the second.
 ///
 /// # Errors
@@ -104,7 +104,7 @@ pub fn run(
     Ok(RealTimeOutcome::of(&run, timing))
 }
 
-/// Limits of the judgement; the growth of memory only in runs that go on long enough after the rooms are mapped.
+/// Limits of the evaluation; the growth of memory only in runs that go on long enough after the rooms are mapped.
 fn limits(timing: &RealTimeReport) -> Vec<Limit> {
     let end = timing.memory.samples.last().map_or(0.0, |(time, _)| *time);
     let growth = Limit {
@@ -187,7 +187,7 @@ impl ExperimentReport for RealTimeOutcome {
             timing.memory.samples.clone(),
         );
         let report = Report::new("Real time")
-            .subtitle("To and fro in the demo's room (explored first, where memory is judged): control at 50 Hz, camera at 30 Hz, the robot on a core of its own.")
+            .subtitle("To and fro in the demo's room (explored first, if memory is measured): control at 50 Hz, camera at 30 Hz, the robot on a core of its own.")
             .verdict(verdict)
             .table(self.limit_table())
             .figure(Figure::chart(&chart))

@@ -8,7 +8,7 @@ use trundle_app::{AppError, Progress, stop};
 /// stop, those of the runs that are done. `unit`: what a run is called, as "worlds".
 ///
 /// # Errors
-/// The first plan that cannot be carried out; [`AppError::Stopped`] where no run is done.
+/// The first plan that cannot be carried out; [`AppError::Stopped`] if no run is done.
 pub fn run_each<P: Send, T: Send>(
     plans: Vec<P>,
     unit: &str,

@@ -78,7 +78,7 @@ impl Trial {
             vec![format!("{:.1}", change.at), place, change.state.to_string()]
         };
         let title = format!("{}, seed {}", self.name, self.seed);
-        let table = Table::new(&title, ["time, s", "believed place", "what it began to do"]);
+        let table = Table::new(&title, ["time, s", "estimated place", "what it began to do"]);
         self.changes.iter().map(row).fold(table, Table::row).wide()
     }
 }

@@ -70,7 +70,7 @@ struct Emulation {
     thread: JoinHandle<Result<Truth, AppError>>,
 }
 
-/// What truly happened, world frame.
+/// Truth, world frame.
 struct Truth {
     /// Time, s, and pose.
     path: Vec<(f64, Pose2)>,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 use trundle_app::AppError;
 
-/// Why a robot cannot join a broker. A broker that does not answer is no error: the robot tries again.
+/// Why a robot cannot join a broker. A broker that does not answer is not an error: the robot tries again.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum FleetError {
@@ -13,7 +13,7 @@ pub enum FleetError {
     PasswordFile {
         /// The file.
         file: PathBuf,
-        /// What is wrong with it.
+        /// The problem.
         problem: String,
     },
     /// A password without a user.

@@ -56,7 +56,7 @@ impl FleetLink {
         Ok(Self::start(options, link.operator(), RobotFacts::of(setup)?)?)
     }
 
-    /// What a person must know: the broker, the name of the robot, and a warning where the network is open.
+    /// Notice for a person: the broker, the name of the robot, and a warning if the network is open.
     #[must_use]
     pub fn announcement(&self) -> String {
         let FleetOptions { broker, name, map_id, .. } = &self.options;

@@ -76,7 +76,7 @@ impl MasterLink {
         self.sent = None;
     }
 
-    /// Takes a message; whether the topic is one of the master's.
+    /// Takes a message. Returns whether the topic is one of the master's.
     pub fn on_message(
         &mut self,
         topic: &str,

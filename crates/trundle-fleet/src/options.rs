@@ -11,7 +11,7 @@ const PASSWORD_VARIABLE: &str = "TRUNDLE_MQTT_PASSWORD";
 const MAX_PASSWORD_BYTES: usize = 1024;
 /// Longest part of a name \[bytes\]. Source: ours.
 const MAX_NAME_BYTES: usize = 64;
-/// Manufacturer where none is given.
+/// Manufacturer if none is given.
 const MANUFACTURER: &str = "trundle";
 
 /// How a robot joins a broker.

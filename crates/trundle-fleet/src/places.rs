@@ -3,7 +3,7 @@
 use trundle_app::operator::Operator;
 use trundle_core::Pose2;
 
-/// Named places, where the program has them. They may change while a run goes.
+/// Named places, if the program has them. They may change while a run goes.
 pub trait Places: Send {
     /// The names, in the order in which they are shown.
     fn names(&self) -> Vec<String>;

@@ -1,4 +1,4 @@
-//! What the network learns about a robot once.
+//! Facts of a robot that the network gets once.
 
 use std::f64::consts::TAU;
 use trundle_app::RunSetup;
@@ -7,7 +7,7 @@ use trundle_core::{DriveLimits, Footprint, Invalid, Vector2};
 /// Corners of the polygon that stands for a disc.
 const DISC_CORNERS: u32 = 16;
 
-/// What the network learns about a robot once.
+/// Facts of a robot that the network gets once.
 #[derive(Debug, Clone)]
 pub struct RobotFacts {
     /// The run: `demo: house`.

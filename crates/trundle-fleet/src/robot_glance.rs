@@ -1,10 +1,10 @@
-//! What home and master need of a view of the run.
+//! Part of a view of the run that home and master need.
 
 use trundle_app::operator::{MissionView, RunView};
 use trundle_core::{Battery, Pose2, PoseEstimate, Stamp, Twist2};
 use trundle_runtime::{DriveState, MotionHold};
 
-/// What home and master need of a view of the run.
+/// Part of a view of the run that home and master need.
 #[derive(Debug, Clone)]
 pub struct RobotGlance {
     /// `map_from_base` and twist.
@@ -13,7 +13,7 @@ pub struct RobotGlance {
     pub state: DriveState,
     /// The mission.
     pub mission: MissionView,
-    /// The battery; `None` where the body has not reported it.
+    /// The battery; `None` if the body has not reported it.
     pub battery: Option<Battery>,
     /// The condition under which no wheel may turn.
     pub hold: Option<MotionHold>,

@@ -46,7 +46,7 @@ impl FleetWorker {
 
     /// Works until `is_over`; then says goodbye.
     pub fn run(mut self, is_over: impl Fn() -> bool) {
-        // Where the system refuses the niceness, the link works all the same.
+        // If the system refuses the niceness, the link works all the same.
         _ = ThreadPlacement { nice: crate::broker::LINK_NICENESS, ..ThreadPlacement::default() }.take();
         let mut last = Instant::now();
         while !is_over() {

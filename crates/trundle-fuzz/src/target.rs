@@ -24,7 +24,7 @@ const FREE_BYTES: usize = 64 << 20;
 /// Memory for each byte of an uncompressed input \[bytes\]. A value of three characters becomes a node of a document of some 100 bytes.
 /// Source: ours.
 const BYTES_PER_BYTE: usize = 256;
-/// Memory for each byte of a compressed input \[bytes\]. Deflate packs 1,032 bytes into one, an image of one bit a pixel eight pixels of three
+/// Memory for each byte of a compressed input \[bytes\]. Deflate packs 1,032 bytes into one, an image of one bit per pixel eight pixels of three
 /// bytes into each of them; a zstd block of four bytes holds 128 KB. Source: RFC 1951, RFC 8878.
 const BYTES_PER_COMPRESSED_BYTE: usize = 32_768;
 

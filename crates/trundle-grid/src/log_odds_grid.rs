@@ -54,12 +54,12 @@ impl LogOddsGrid {
     /// Side of a tile, cells.
     pub const TILE_SIDE: usize = 1 << TILE_BITS;
 
-    /// Evidence about a cell; `None` where no tile is stored.
+    /// Evidence about a cell; `None` if no tile is stored.
     pub fn get(&self, cell: GridCell) -> Option<&Evidence> {
         self.stored(tile_of(cell)).map(|tile| &tile.0[index_in_tile(cell)])
     }
 
-    /// Log-odds of a cell; 0 where no tile is stored.
+    /// Log-odds of a cell; 0 if no tile is stored.
     pub fn log_odds(&self, cell: GridCell) -> f32 {
         self.get(cell).map_or(0.0, |evidence| evidence.log_odds)
     }

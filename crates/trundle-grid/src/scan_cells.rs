@@ -83,7 +83,7 @@ impl ScanCells {
         }
     }
 
-    /// Lowest and highest cell of the scan's bounding box; `None` when every beam was ignored.
+    /// Lowest and highest cell of the scan's bounding box; `None` if every beam was ignored.
     pub fn reach(&self) -> Option<(GridCell, GridCell)> {
         let MarkWindow { corner, width, marks } = &self.marks;
         let height = marks.len().checked_div(*width)?;

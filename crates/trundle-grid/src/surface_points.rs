@@ -18,7 +18,7 @@ pub struct SurfacePoints {
 }
 
 impl SurfacePoints {
-    /// Surface points within `margin` m of the bounding box of `points` (map frame, m); `None` when there is no point. `resolution` is the
+    /// Surface points within `margin` m of the bounding box of `points` (map frame, m); `None` if there is no point. `resolution` is the
     /// side of a cell of the map, m.
     pub fn around(
         map: &LogOddsGrid,

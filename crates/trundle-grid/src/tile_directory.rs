@@ -27,7 +27,7 @@ impl<T> Clone for TileDirectory<T> {
 }
 
 impl<T> TileDirectory<T> {
-    /// Tile at a slot; `None` where no tile was stored.
+    /// Tile at a slot; `None` if no tile was stored.
     pub(crate) fn get(&self, at: (i32, i32)) -> Option<&Arc<T>> {
         self.index(at).and_then(|index| self.slots[index].as_ref())
     }

@@ -85,7 +85,7 @@ impl CameraModel {
     /// The camera of a file: trundle's TOML, the YAML of ORB-SLAM2 and 3, of stella_vslam or of ROS's camera_info, or Open3D's
     /// JSON. The content decides which format it is.
     ///
-    /// The TOML has `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and `depth_scale` (units a metre), and, 0 where left out, the
+    /// The TOML has `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and `depth_scale` (units per metre), and, 0 if left out, the
     /// lens `k1`, `k2`, `p1`, `p2`, `k3` in the order of OpenCV, and `readout` (s). A file that holds no depth scale is taken to
     /// mean millimetres, as ROS does.
     ///
@@ -168,7 +168,7 @@ mod tests {
         );
         assert_eq!(
             problem(&GOOD.replace("5000.0", "nan")),
-            "cam.toml, line 7: depth_scale is NaN units a metre, expected a finite number above 0"
+            "cam.toml, line 7: depth_scale is NaN units per metre, expected a finite number above 0"
         );
         assert!(problem(&GOOD.replace("0.026", "2.6")).starts_with("cam.toml, line 13: readout is 2.6 s"));
         let beside = problem(&GOOD.replace("318.6", "3186"));
@@ -183,7 +183,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_text_is_no_panic(cut in 0..GOOD.len(), text in "[a-z0-9 =.'\"\\[\\]\n]{0,30}") {
+        fn any_text_does_not_panic(cut in 0..GOOD.len(), text in "[a-z0-9 =.'\"\\[\\]\n]{0,30}") {
             let _ = toml_file::parse(Path::new("a"), &format!("{}{text}", &GOOD[..cut]));
         }
     }

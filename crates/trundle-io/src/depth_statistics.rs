@@ -1,4 +1,4 @@
-//! How far the depth images of an input reach, and the likely cause where no depth can be used.
+//! How far the depth images of an input reach, and the likely cause if no depth can be used.
 
 use trundle_core::DepthImage;
 
@@ -8,9 +8,9 @@ const MIN_USABLE_M: f32 = 0.3;
 const MAX_USABLE_M: f32 = 8.0;
 /// Rows and columns from one pixel that counts to the next. Source: ours, 1,200 pixels of a 640 x 480 image.
 const PIXEL_STEP: usize = 16;
-/// Typical depth of a room's walls, m: a depth scale is judged by how near the mean depth comes to it. Source: ours.
+/// Typical depth of a room's walls, m: a depth scale is evaluated by how near the mean depth comes to it. Source: ours.
 const TYPICAL_DEPTH_M: f64 = 2.0;
-/// Depth scales in use, units a metre: metres, 0.1 mm, mm, and TUM's 0.2 mm. Source: docs/formats.md.
+/// Depth scales in use, units per metre: metres, 0.1 mm, mm, and TUM's 0.2 mm. Source: docs/formats.md.
 const KNOWN_SCALES: [f64; 4] = [1.0, 1000.0, 5000.0, 10_000.0];
 
 /// Largest number of a 16-bit depth image: what some cameras write for no reading, and more than which floats alone can hold.
@@ -29,7 +29,7 @@ pub struct DepthStatistics {
     log_sum: f64,
     /// Largest depth, m; 0 without one.
     largest: f64,
-    /// Depths that are no whole number of metres.
+    /// Depths that are not a whole number of metres.
     fractional: usize,
     /// Depths that differ from the largest.
     below_largest: usize,
@@ -73,7 +73,7 @@ impl DepthStatistics {
         self.largest * scale > MAX_UNITS + 0.5 || (scale == 1.0 && self.fractional > 0)
     }
 
-    /// Why no depth can be used, and the likely cause; `None` where some can, or no image was counted. `scale`: depth units a metre.
+    /// Why no depth can be used, and the likely cause; `None` if some can, or no image was counted. `scale`: depth units per metre.
     #[must_use]
     pub fn problem(&self, scale: f64) -> Option<String> {
         let with_depth = self.pixels - self.without_depth;
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn floats_have_no_scale_and_the_maximum_is_no_reading() {
+    fn floats_have_no_scale_and_the_maximum_is_not_a_reading() {
         for scale in [1.0, 1000.0, 5000.0] {
             let floats = of(1538.986).problem(scale).unwrap();
             assert!(floats.ends_with("are the floats in millimetres?"), "{floats}");

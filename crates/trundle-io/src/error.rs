@@ -70,7 +70,7 @@ pub enum IoError {
         found: &'static str,
         /// The accepted content.
         expected: &'static str,
-        /// The remedy, where one is known.
+        /// The remedy, if one is known.
         remedy: &'static str,
     },
 }
@@ -101,7 +101,7 @@ impl IoError {
         }
     }
 
-    /// An error where there are `problems`; the results that could be written are in `folder`.
+    /// An error if there are `problems`; the results that could be written are in `folder`.
     pub(crate) fn incomplete(folder: &Path, problems: Vec<Self>) -> Result<(), Self> {
         if problems.is_empty() {
             return Ok(());
@@ -153,7 +153,7 @@ impl IoError {
     }
 }
 
-/// A further clause of a sentence, where there is one.
+/// A further clause of a sentence, if there is one.
 fn clause(text: &str) -> String {
     if text.is_empty() { String::new() } else { format!("; {text}") }
 }

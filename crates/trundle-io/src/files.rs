@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn names_of_columns_are_no_row() {
+    fn names_of_columns_are_not_a_row() {
         let rows = |text| table_rows(text).len();
         assert_eq!(rows("timestamp,tx [m],qw []\n1,2,3\n"), 1);
         assert_eq!(rows("timestamp filename\n1 a.png\n"), 1);
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn a_byte_order_mark_is_no_text() {
+    fn a_byte_order_mark_is_not_text() {
         let file = tempfile::NamedTempFile::new().unwrap();
         std::fs::write(file.path(), "\u{feff}1.5 a.png\n").unwrap();
         assert_eq!(read_text(file.path()).unwrap(), "1.5 a.png\n");

@@ -58,7 +58,7 @@ pub struct LaserLog {
     pub first_bad_range: Option<usize>,
     /// Range from which on readings counted as no returns, m.
     pub max_range: Option<f64>,
-    /// Why the depth images that the scans were made of have no usable depth; `None` where they have, or the log is a laser's.
+    /// Why the depth images that the scans were made of have no usable depth; `None` if they have, or the log is a laser's.
     pub depth_problem: Option<String>,
     /// The topics of a bag, or the lines of a CARMEN log, that made the log, and the unused ones.
     pub sources: LaserLogSources,
@@ -75,7 +75,7 @@ impl LaserLog {
         self.scans.iter().filter(is_blind).count()
     }
 
-    /// Warnings about skipped messages and bad ranges, one a kind.
+    /// Warnings about skipped messages and bad ranges, one per kind.
     #[must_use]
     pub fn warnings(&self) -> Warnings {
         let mut warnings = Warnings::default();
@@ -84,7 +84,7 @@ impl LaserLog {
         }
         if let Some(first) = self.first_bad_range {
             let problem = format!(
-                "{} ranges are negative, zero, infinite, no number or below the laser's least range and taken as unseen, the first in",
+                "{} ranges are negative, zero, infinite, not a number or below the laser's least range and taken as unseen, the first in",
                 self.bad_ranges
             );
             warnings.add(&problem, &format!("entry {first}"));

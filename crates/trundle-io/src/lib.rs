@@ -1,6 +1,6 @@
 //! Data sets, maps, trajectories and recordings on disk: one file a format, described in `docs/formats.md`.
 //!
-//! What comes in: TUM RGB-D folders ([`TumSequence`]), CARMEN logs ([`read_carmen`]), ROS 2 bags
+//! Inputs: TUM RGB-D folders ([`TumSequence`]), CARMEN logs ([`read_carmen`]), ROS 2 bags
 //! ([`read_ros_bag`]), TUM trajectories ([`read_trajectory`]), cameras
 //! ([`CameraModel`]), ROS maps ([`read_map`]) and recordings ([`RecordingReader`]). What goes out is collected in an
 //! [`OutputFolder`], which shows nothing half-written: maps, trajectories, tables, TUM folders ([`TumWriter`]), laser logs

@@ -116,7 +116,7 @@ pub fn write_map(folder: &OutputFolder, name: &str, grid: &OccupancyGrid) -> Res
     write_map_as(folder, name, grid, MapImage::Pgm)
 }
 
-/// The same with the picture in this format.
+/// Writes a map with its picture in the format `image`.
 ///
 /// # Errors
 /// When a file cannot be written.

@@ -1,4 +1,4 @@
-//! An output folder that appears complete or not at all, and takes the place of nothing but an earlier run.
+//! An output folder that appears complete or not at all, and replaces nothing but an earlier run.
 
 mod file_identity;
 mod fingerprint;
@@ -57,7 +57,7 @@ impl OutputFolder {
         Self::create_apart_from(&InputFiles::default(), target)
     }
 
-    /// The same, where `inputs` are files that the results must not replace.
+    /// A folder for results that must not replace the files `inputs`.
     ///
     /// # Errors
     /// Those of [`OutputFolder::check`], and when nothing can be written there.
@@ -81,7 +81,7 @@ impl OutputFolder {
         OutputPlace::check(target, inputs).map(drop)
     }
 
-    /// The same; the commit writes the file `name`, whose content is that of the moment of the commit.
+    /// This folder with a last file: the commit writes the file `name`, whose content is that of the moment of the commit.
     pub fn closing_with(mut self, name: &'static str, content: Content) -> Self {
         self.last = Some((name, content));
         self

@@ -178,7 +178,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_bytes_are_no_panic(head in "P[25][ \n#0-9]{0,20}", tail in prop::collection::vec(any::<u8>(), 0..40)) {
+        fn any_bytes_do_not_panic(head in "P[25][ \n#0-9]{0,20}", tail in prop::collection::vec(any::<u8>(), 0..40)) {
             let _ = parse(&[head.as_bytes(), &tail].concat());
         }
     }

@@ -23,7 +23,7 @@ pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
     written.map(drop).map_err(IoError::system(path, "write"))
 }
 
-/// Checks that [`replace_file`] can write a file at `path`; makes its folder where there is none.
+/// Checks that [`replace_file`] can write a file at `path`; makes its folder if there is none.
 ///
 /// # Errors
 /// When it cannot.
@@ -59,7 +59,7 @@ enum Rights {
 #[cfg(unix)]
 const NEW_FILE_MODE: u32 = 0o666;
 
-/// Rights for the file that takes the place of `path`.
+/// Rights for the file that replaces `path`.
 #[cfg(unix)]
 fn rights_of(path: &Path) -> io::Result<Rights> {
     use std::os::unix::fs::PermissionsExt;

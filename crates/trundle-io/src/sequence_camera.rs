@@ -4,7 +4,7 @@ use crate::camera::{CameraModel, KINECT_V2_DEPTH_SCALE};
 use crate::{Expected, FileKind, IoError, Warnings};
 use std::path::{Path, PathBuf};
 
-/// The preset that is assumed where nothing is known of the camera.
+/// The preset that is assumed if nothing is known of the camera.
 const ASSUMED_PRESET: &str = "freiburg1";
 
 /// The camera of a sequence and where it comes from.
@@ -45,7 +45,7 @@ impl SequenceCamera {
         let path = Path::new(name);
         if CameraModel::preset(name).is_none() && !CameraModel::holds_depth_scale(path)? {
             let problem = format!(
-                "no depth scale in the camera file, {KINECT_V2_DEPTH_SCALE} units a metre are taken (--depth-scale sets another)"
+                "no depth scale in the camera file: {KINECT_V2_DEPTH_SCALE} units per metre are assumed; --depth-scale N sets another"
             );
             warnings.add(&problem, name);
         }
@@ -58,7 +58,9 @@ impl SequenceCamera {
         let mut warnings = Warnings::default();
         let (width, height) = (model.camera.width(), model.camera.height());
         let problem = format!(
-            "no camera file and no --camera: {ASSUMED_PRESET} is assumed ({width} x {height} px, {} units a metre)",
+            "no camera file in the folder, expected camera.toml: the camera {ASSUMED_PRESET} is assumed ({width} x {height} px, fx {:.1} px, \
+             depth_scale {} units per metre); write camera.toml or give --camera PRESET|FILE",
+            model.camera.fx(),
             model.depth_scale
         );
         warnings.add(&problem, &dir.display().to_string());
@@ -66,7 +68,7 @@ impl SequenceCamera {
     }
 }
 
-/// The camera files of a folder: `camera.toml` alone where it is there, else all by their content, sorted by name.
+/// The camera files of a folder: `camera.toml` alone if it is there, else all by their content, sorted by name.
 fn camera_files(dir: &Path) -> Vec<PathBuf> {
     let own = dir.join("camera.toml");
     if own.exists() {
@@ -134,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_file_lacks_or_has_wrong_is_named_with_its_line() {
+    fn missing_and_wrong_fields_of_a_file_are_named_with_their_line() {
         assert_eq!(
             camera(&ORB_SLAM.replace("Camera.fy: 526.0\n", "")).unwrap_err(),
             "FILE: Camera.fy is missing, expected px"
@@ -143,7 +145,7 @@ mod tests {
         assert!(problem.starts_with("FILE, line 4: Camera.fx is -1 px"), "{problem}");
         let problem = camera(&ORB_SLAM.replace("5000.0", "0.001")).unwrap_err();
         assert!(
-            problem.starts_with("FILE, line 11: DepthMapFactor is 0.001, expected units a metre"),
+            problem.starts_with("FILE, line 11: DepthMapFactor is 0.001, expected units per metre"),
             "{problem}"
         );
         let problem = camera(&ORB_SLAM.replace("PinHole", "KannalaBrandt8")).unwrap_err();

@@ -11,12 +11,12 @@ const MIN_MILLISECONDS: f64 = 1e11;
 const MIN_MICROSECONDS: f64 = 1e14;
 /// Stamp from which on microseconds are none \[us\]: the year 5138. Larger numbers are read as nanoseconds. Source: ours.
 const MIN_NANOSECONDS: f64 = 1e17;
-/// Median step between whole-numbered stamps from which on they are no seconds \[s\]; milliseconds are read. Images and poses 5 s
-/// apart are no sequence. Source: ours.
+/// Median step between whole-numbered stamps from which on they are not seconds \[s\]; milliseconds are read. Images and poses 5 s
+/// apart are not a sequence. Source: ours.
 const MIN_STEP_MILLISECONDS: f64 = 5.0;
-/// Median step between whole-numbered stamps from which on they are no milliseconds \[ms\]; microseconds are read. Source: ours.
+/// Median step between whole-numbered stamps from which on they are not milliseconds \[ms\]; microseconds are read. Source: ours.
 const MIN_STEP_MICROSECONDS: f64 = 1e3;
-/// Median step between whole-numbered stamps from which on they are no microseconds \[us\]; nanoseconds are read. Source: ours.
+/// Median step between whole-numbered stamps from which on they are not microseconds \[us\]; nanoseconds are read. Source: ours.
 const MIN_STEP_NANOSECONDS: f64 = 1e6;
 
 /// The unit of a file's stamps.

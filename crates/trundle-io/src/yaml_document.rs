@@ -39,7 +39,7 @@ impl<'a> YamlDocument<'a> {
                 Some(line) if line > 0 => IoError::line(
                     path,
                     line,
-                    format!("'{}' is no valid YAML, expected `key: value`", content(line)),
+                    format!("'{}' is not valid YAML, expected `key: value`", content(line)),
                 ),
                 _ => IoError::malformed(path, "no valid YAML, expected lines of `key: value`"),
             }
@@ -76,7 +76,7 @@ impl<'a> YamlDocument<'a> {
         self.as_number(key, self.require(key, expected)?, expected)
     }
 
-    /// The number of a key, or a default where it is not there.
+    /// The number of a key, or a default if it is not there.
     pub(crate) fn number_or(&self, key: &str, default: f64, expected: &str) -> Result<f64, IoError> {
         self.get(key).map_or(Ok(default), |value| self.as_number(key, value, expected))
     }
@@ -190,7 +190,7 @@ fn first_document(text: &str) -> String {
     plain
 }
 
-/// The line with a value that is no finite number in quotes, so that it is refused under its key.
+/// The line with a value that is not a finite number in quotes, so that it is refused under its key.
 fn quoted(line: &str) -> String {
     let value = line.split_once(": ").map_or("", |(_, value)| value.trim());
     let is_infinite = [".nan", ".inf", "-.inf", "+.inf"].iter().any(|word| value.eq_ignore_ascii_case(word));
@@ -233,7 +233,7 @@ mod tests {
         );
         for text in ["{", "a: [1\n", "- a\n"] {
             let problem = size(text);
-            assert!(problem.contains("no valid YAML"), "{problem}");
+            assert!(problem.contains("not valid YAML"), "{problem}");
         }
     }
 }

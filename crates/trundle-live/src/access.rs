@@ -1,4 +1,4 @@
-//! Who may drive and who may look: two random tokens.
+//! Permissions to drive and to look: two random tokens.
 
 use crate::LiveError;
 use std::fmt::Write as _;
@@ -7,7 +7,7 @@ use std::io::{ErrorKind, Read, Write};
 use std::path::Path;
 use subtle::{Choice, ConstantTimeEq};
 
-/// What a viewer may do.
+/// Permissions of a viewer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Access {
     /// Look and drive.
@@ -87,7 +87,7 @@ impl Tokens {
         }
     }
 
-    /// What a token permits; `None` for a wrong one. The time does not depend on where it differs.
+    /// Permission of a token; `None` for a wrong one. The time does not depend on where it differs.
     #[must_use]
     pub fn access(&self, token: &str) -> Option<Access> {
         let is = |known: &str| -> Choice { known.as_bytes().ct_eq(token.as_bytes()) };

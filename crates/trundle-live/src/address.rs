@@ -4,7 +4,7 @@ use std::fmt;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::str::FromStr;
 
-/// Port of the live page where none is given. Source: ours; IANA has it unassigned.
+/// Port of the live page if none is given. Source: ours; IANA has it unassigned.
 const DEFAULT_PORT: u16 = 8642;
 
 /// Where the live page is served: an address of this machine and a port.
@@ -17,7 +17,7 @@ pub struct LiveAddress {
 }
 
 impl LiveAddress {
-    /// The text that stands for the default: loopback, port 8642, or a free port where it is in use.
+    /// The text that stands for the default: loopback, port 8642, or a free port if it is in use.
     pub const DEFAULT: &'static str = "loopback";
 
     /// Whether other machines can reach the page.

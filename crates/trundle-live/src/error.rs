@@ -16,7 +16,7 @@ pub enum LiveError {
     Address {
         /// The address.
         address: SocketAddr,
-        /// What the system says.
+        /// Message of the system.
         problem: std::io::Error,
     },
     /// The system refuses a thread or random bytes.
@@ -27,7 +27,7 @@ pub enum LiveError {
     TokenFile {
         /// The file.
         file: PathBuf,
-        /// What is wrong with it, and what is expected.
+        /// The problem, and the accepted value.
         problem: String,
     },
 }

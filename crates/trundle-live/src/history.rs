@@ -14,7 +14,7 @@ const MAX_POINTS: usize = 3000;
 const MAX_STATES: usize = 200;
 /// Distance from the last point from which on another is kept \[m\]. Source: ours; less than a pixel of a usual screen.
 const POINT_DISTANCE_M: f64 = 0.02;
-/// The same for the heading \[rad\]. Source: ours.
+/// Turn from the last point from which on another is kept \[rad\]. Source: ours.
 const POINT_TURN_RAD: f64 = 0.05;
 
 /// The last ten minutes of a run.

@@ -7,7 +7,7 @@ use crate::{LiveAddress, Tokens};
 pub struct LiveOptions {
     /// Where.
     pub address: LiveAddress,
-    /// Who may drive and who may look.
+    /// Permissions to drive and to look.
     pub tokens: Tokens,
     /// Whether the run takes commands; a replay takes none.
     pub is_steered: bool,

@@ -1,4 +1,4 @@
-//! What all viewers of a page share.
+//! State that all viewers of a page share.
 
 use crate::history::History;
 use crate::roster::Roster;
@@ -9,18 +9,18 @@ use crate::{LiveOptions, Tokens};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use trundle_app::operator::Operator;
 
-/// What all viewers of a page share. They are served by one thread; no lock is held while it waits.
+/// State that all viewers of a page share. They are served by one thread; no lock is held while it waits.
 #[derive(Debug)]
 pub struct PageState {
     /// The run.
     pub operator: Operator,
-    /// Who may drive and who may look.
+    /// Permissions to drive and to look.
     pub tokens: Tokens,
     /// Whether the run takes commands.
     pub is_steered: bool,
     /// Whether other machines can reach the page.
     pub is_shared: bool,
-    /// What the run tells once.
+    /// Facts of the run, told once.
     pub facts: RunFacts,
     /// Sends commands.
     pub steering: RunSteering,
@@ -45,7 +45,7 @@ impl PageState {
         }
     }
 
-    /// Who watches.
+    /// The viewers.
     pub fn roster(&self) -> MutexGuard<'_, Roster> {
         self.roster.lock().unwrap_or_else(PoisonError::into_inner)
     }

@@ -1,4 +1,4 @@
-//! Who watches, and who holds the wheel.
+//! Viewers, and the one who holds the wheel.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ const MAX_NAME_CHARS: usize = 24;
 /// Number of a viewer.
 pub type ViewerId = u64;
 
-/// Who watches, and who holds the wheel: at most one.
+/// Viewers, and the one who holds the wheel: at most one.
 #[derive(Debug, Default)]
 pub struct Roster {
     names: BTreeMap<ViewerId, String>,
@@ -19,7 +19,7 @@ pub struct Roster {
 }
 
 impl Roster {
-    /// A viewer comes; its number. `None` where there are too many.
+    /// A viewer comes; its number. `None` if there are too many.
     pub fn enter(&mut self) -> Option<ViewerId> {
         if self.names.len() >= MAX_VIEWERS {
             return None;
@@ -37,7 +37,7 @@ impl Roster {
         }
     }
 
-    /// A viewer goes; whether it held the wheel.
+    /// A viewer goes. Returns whether it held the wheel.
     pub fn leave(&mut self, id: ViewerId) -> bool {
         self.names.remove(&id);
         self.release(id)
@@ -48,7 +48,7 @@ impl Roster {
         self.wheel = Some(id);
     }
 
-    /// Leaves the wheel; whether this viewer held it.
+    /// Leaves the wheel. Returns whether this viewer held it.
     pub fn release(&mut self, id: ViewerId) -> bool {
         let held = self.wheel == Some(id);
         if held {

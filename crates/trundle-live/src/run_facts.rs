@@ -1,9 +1,9 @@
-//! What a run tells a viewer once.
+//! Facts of a run that a viewer gets once.
 
 use trundle_app::RunSetup;
 use trundle_core::{DriveLimits, Footprint, Invalid};
 
-/// What a run tells a viewer once.
+/// Facts of a run that a viewer gets once.
 #[derive(Debug, Clone)]
 pub struct RunFacts {
     /// The run, for the title of the page: `demo: house`.

@@ -43,7 +43,7 @@ impl LivePage {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(system)?;
         let (end, ended) = oneshot::channel();
         let work = move || {
-            // Where the system refuses the niceness, the page is served all the same.
+            // If the system refuses the niceness, the page is served all the same.
             _ = ThreadPlacement { nice: PAGE_NICENESS, ..ThreadPlacement::default() }.take();
             runtime.block_on(serve(listener, state, ended));
         };
@@ -71,7 +71,7 @@ impl LivePage {
         Some(format!("http://{address}/#{token}"))
     }
 
-    /// What a person must know: the links, and a warning where other machines can reach the page.
+    /// Notice for a person: the links, and a warning if other machines can reach the page.
     #[must_use]
     pub fn announcement(&self) -> String {
         let mut lines = Vec::new();

@@ -73,6 +73,6 @@ fn main() {
         "a loop moves {moved} of them in {correct:.1} ms; redrawn in {all:.0} ms of processor time, {} slices",
         slices.len()
     );
-    println!("at 50 slices a second that is {:.1} s", slices.len() as f64 / 50.0);
+    println!("at 50 slices per second that is {:.1} s", slices.len() as f64 / 50.0);
     report("a slice", slices);
 }

@@ -1,4 +1,4 @@
-//! What the steps of mapping cost: `cargo run --release -p trundle-mapping --example mapping_timing`
+//! Cost of the steps of mapping: `cargo run --release -p trundle-mapping --example mapping_timing`
 #![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a measurement for the terminal")]
 
 #[path = "../tests/it/boxes.rs"]

@@ -34,7 +34,7 @@ pub struct ParticleConfig {
     pub outliers: f64,
     /// How many beams err alike, 1 to 100: the log-likelihood of a scan is divided by it. Default 4.
     pub correlation: f64,
-    /// The same for the weights of the particles, on top, 1 to 100. Default 9.
+    /// Further divisor of the log-likelihood for the weights of the particles, 1 to 100. Default 9.
     pub weight_correlation: f64,
     /// Largest number of scans kept for redrawing after a loop, 100 to 1,000,000. Beyond it every second scan of the older half is
     /// dropped, with its pose. Default 20,000: 10 km of travel, 20 MB at 180 beams.

@@ -50,7 +50,7 @@ pub(crate) fn subtract_transposed_product<const N: usize>(
     }
 }
 
-/// Turns a symmetric block, of which the lower half counts, into its lower Cholesky factor; whether it is positive definite.
+/// Turns a symmetric block, of which the lower half counts, into its lower Cholesky factor. Returns whether it is positive definite.
 #[inline(always)]
 pub(crate) fn factorise<const N: usize>(block: &mut Block<N>) -> bool {
     for j in 0..N {

@@ -73,7 +73,7 @@ impl<const N: usize> BlockMatrix<N> {
         matrix
     }
 
-    /// The same in place.
+    /// Shapes this matrix in place for `count` nodes and the linked `pairs`.
     pub(crate) fn shape(&mut self, count: usize, pairs: &[(usize, usize)]) {
         self.row_of = narrow_order(count, pairs);
         self.first.clear();
@@ -206,7 +206,7 @@ impl<const N: usize> BlockMatrix<N> {
     }
 
     /// The next block of the inverse within the profile, column by column from the last (Takahashi et al. 1973): with
-    /// Z L = L'^-1, Z_ij = -sum Z_ik L_kj L_jj^-1. About how many products of blocks it took; `None` when all is done.
+    /// Z L = L'^-1, Z_ij = -sum Z_ik L_kj L_jj^-1. About how many products of blocks it took; `None` if all is done.
     pub(crate) fn invert_on(&mut self) -> Option<usize> {
         let j = self.column.left.checked_sub(1)?;
         if self.column.done < self.column.below.len() {
@@ -278,7 +278,7 @@ impl<const N: usize> BlockMatrix<N> {
         SMatrix::from_data(ArrayStorage(self.inverse[self.start[row] + row - self.first[row]]))
     }
 
-    /// Solves in place for a right-hand side of one block a node, once every row is factorised; whether the solution is
+    /// Solves in place for a right-hand side of one block a node, once every row is factorised. Returns whether the solution is
     /// finite.
     pub fn solve(&mut self, rhs: &mut [SVector<f64, N>]) -> bool {
         self.unknowns.clear();

@@ -68,7 +68,7 @@ pub struct BundleProblem {
     pub(crate) points: Vec<Vector3>,
     pub(crate) observations: Vec<BundleObservation>,
     pub(crate) constraints: Vec<PoseConstraint>,
-    /// Empty where all poses are of one part.
+    /// Empty if all poses are of one part.
     pub(crate) parts: Vec<usize>,
 }
 
@@ -110,7 +110,7 @@ impl BundleProblem {
         Ok(Self { camera, poses, points, observations, constraints: Vec::new(), parts: Vec::new() })
     }
 
-    /// The same with further measurements between poses, for example by wheels or of the floor. Each counts under the Huber loss as a
+    /// This problem with further measurements between poses, for example by wheels or of the floor. Each counts under the Huber loss as a
     /// whole, with the bound at 95 %: a wrong one, as by slip, pulls no harder than one at the bound.
     ///
     /// # Errors
@@ -122,14 +122,19 @@ impl BundleProblem {
         Ok(Self { constraints, ..self })
     }
 
-    /// The same for poses in several parts, numbered by `parts`, whose common points may be wrong matches. Links between two parts count in
+    /// This problem for poses in several parts, numbered by `parts`, whose common points may be wrong matches. Links between two parts count in
     /// the refinement, but reduce no covariance.
     ///
     /// # Errors
     /// When there are not as many numbers as poses.
     pub fn with_parts(self, parts: Vec<usize>) -> Result<Self, Invalid> {
         if parts.len() != self.poses.len() {
-            return Err(Invalid::new("parts", parts.len(), "", format!("{}, one a pose", self.poses.len())));
+            return Err(Invalid::new(
+                "parts",
+                parts.len(),
+                "",
+                format!("{}, one per pose", self.poses.len()),
+            ));
         }
         Ok(Self { parts, ..self })
     }

@@ -9,7 +9,7 @@ use crate::pose_graph::PoseConstraint;
 use nalgebra::{Matrix6, Vector6};
 use trundle_core::{Pose3, Vector3};
 
-/// What couples an observation's pose and point: with M = [-I | p^], the derivative of p by the pose, the block between
+/// Coupling of an observation's pose and point: with M = [-I | p^], the derivative of p by the pose, the block between
 /// them is M' `coupling`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coupling {
@@ -26,7 +26,7 @@ const UNCOUPLED: Coupling = Coupling { p: [0.0; 3], coupling: [[0.0; 3]; 3] };
 struct PointBlock {
     hessian: [f64; 6],
     gradient: [f64; 3],
-    /// Of the damped block, upper half by rows; zero where it cannot be inverted.
+    /// Of the damped block, upper half by rows; zero if it cannot be inverted.
     inverse: [f64; 6],
 }
 
@@ -318,7 +318,7 @@ fn add_pose((block, gradient): &mut (Block, Column), info: &[[f64; 3]; 3], g: &[
     (0..3).for_each(|i| gradient[i + 3] += turned[i]);
 }
 
-/// The inverse of a symmetric block (upper halves by rows) whose diagonal grows by a part of itself; zero where it has none.
+/// The inverse of a symmetric block (upper halves by rows) whose diagonal grows by a part of itself; zero if it has none.
 #[inline(always)]
 fn inverse(hessian: &[f64; 6], damping: f64) -> [f64; 6] {
     let [a, b, c, d, e, f] = *hessian;

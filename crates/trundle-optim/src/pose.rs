@@ -119,7 +119,7 @@ impl PoseProblem<'_> {
         weights
     }
 
-    /// The Jacobian of each observation's residual by the pose, in standard deviations; zero where it does not count.
+    /// The Jacobian of each observation's residual by the pose, in standard deviations; zero if it does not count.
     fn rows(&self, pose: Pose3, weights: &[f64]) -> Vec<Matrix3x6<f64>> {
         let camera_from_world = pose.inverse();
         let row = |((point, seen), weight): (&(Vector3, PointObservation), &f64)| {
@@ -156,7 +156,7 @@ impl PoseProblem<'_> {
         pose
     }
 
-    /// Classifies every observation; whether any class changed.
+    /// Classifies every observation. Returns whether any class changed.
     fn classify(&self, pose: Pose3, inliers: &mut [bool]) -> bool {
         let camera_from_world = pose.inverse();
         let mut changed = false;

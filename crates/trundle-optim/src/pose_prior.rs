@@ -16,7 +16,7 @@ pub struct PosePrior {
 impl PosePrior {
     /// The most probable pose between this prior and `pose`, which was found without it: a Kalman update. `covariance` (right perturbation;
     /// m, rad) is that of `pose`. The update multiplies it by `alike`, since it may be too small. With it the covariance of the result:
-    /// `covariance`, and the share of the prior. It is never below `covariance`, because the caller may use the prior too. `None` where the
+    /// `covariance`, and the share of the prior. It is never below `covariance`, because the caller may use the prior too. `None` if the
     /// two contradict each other at 99.9 %.
     pub fn fused_with(
         &self,

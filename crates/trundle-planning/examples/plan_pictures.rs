@@ -37,7 +37,7 @@ const ROOM: &str = "
     ############################################################";
 /// The robot's radius, m.
 const ROBOT: f64 = 0.13;
-/// Pixels a metre.
+/// Pixels per metre.
 const SCALE: f64 = 120.0;
 
 /// A picture in the map frame.

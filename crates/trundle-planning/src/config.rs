@@ -12,7 +12,7 @@ use trundle_grid::UnknownIs;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PlannerConfig {
-    /// What unknown space counts as. Default free: a robot that explores must enter it.
+    /// State that unknown space counts as. Default free: a robot that explores must enter it.
     pub unknown: UnknownIs,
     /// Distance beyond the grid, the start and the goal in which a path may run where unknown is free, m, 0 to 100. 0: never off
     /// the grid. Default 5 (ours). It is used only when there is no path on the grid.

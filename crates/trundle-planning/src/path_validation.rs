@@ -42,7 +42,7 @@ pub(crate) struct ShapeEscape {
 }
 
 impl ShapeEscape {
-    /// For a shape at a pose, in a grid of the cells around it; `None` where its centre is inside an obstacle.
+    /// For a shape at a pose, in a grid of the cells around it; `None` if its centre is inside an obstacle.
     pub(crate) fn new(
         around: &OccupancyGrid,
         unknown: UnknownIs,

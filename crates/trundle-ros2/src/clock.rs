@@ -132,7 +132,7 @@ impl RosClock {
         };
         let clock =
             if matches!(self.source, Source::System { .. }) { "this computer's clock" } else { "/clock" };
-        let remedy = "synchronise the clocks (chrony), or set use_sim_time where a simulator gives /clock";
+        let remedy = "synchronise the clocks (chrony), or set use_sim_time if a simulator gives /clock";
         Err(Invalid::new("stamp", format!("{value} {clock}"), "", format!("{expected} it: {remedy}")))
     }
 

@@ -7,11 +7,11 @@ use trundle_app::AppError;
 #[non_exhaustive]
 pub enum Ros2Error {
     /// A name with characters that ROS 2 does not allow.
-    #[error("'{name}' is no ROS 2 name: {problem}; expected letters, digits and _ parted by /")]
+    #[error("'{name}' is not a ROS 2 name: {problem}; expected letters, digits and _ parted by /")]
     Name {
         /// The name.
         name: String,
-        /// What is wrong.
+        /// The problem.
         problem: String,
     },
     /// An unknown ROS argument.
@@ -32,12 +32,12 @@ pub enum Ros2Error {
         /// Values that are accepted.
         expected: &'static str,
     },
-    /// The DDS participant, a topic or a service cannot be made.
+    /// The DDS participant, a topic or a service cannot be created.
     #[error("cannot create {what}: {problem}")]
     Create {
-        /// What was to be made.
+        /// The object to create.
         what: String,
-        /// What the library says.
+        /// Message of the library.
         problem: String,
     },
     /// The system refuses a thread.
@@ -52,7 +52,7 @@ pub enum Ros2Error {
         topics: String,
         /// Time of the wait \[s\].
         seconds: f64,
-        /// What was wrong with the messages that came; empty where none came.
+        /// Problems of the messages that came; empty if none came.
         reason: String,
     },
     /// The user stopped the program during the start.

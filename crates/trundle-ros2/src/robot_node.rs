@@ -21,7 +21,7 @@ pub struct RobotNode {
     // Declared first: the outputs end before the node.
     _outputs: RobotOutputs,
     thread: Arc<NodeThread>,
-    /// Publishes the sensors of trundle's own body; none where the body comes by topics.
+    /// Publishes the sensors of trundle's own body. `None` if the body comes by topics.
     observer: Option<EventObserver>,
 }
 
@@ -103,7 +103,7 @@ impl RobotNode {
     /// Offers a run on trundle's own body, whose stamps count from `origin`.
     ///
     /// # Errors
-    /// When the network cannot be joined, or a topic cannot be made.
+    /// When the network cannot be joined, or a topic cannot be created.
     pub fn offer(
         options: &Ros2Options,
         robot: &RobotConfig,
@@ -120,7 +120,7 @@ impl RobotNode {
         Ok((Self { observer: Some(sensors), ..offered }, link))
     }
 
-    /// Publishes the sensors of trundle's own body, from any thread; none where the body comes by topics.
+    /// Publishes the sensors of trundle's own body, from any thread. `None` if the body comes by topics.
     #[must_use]
     pub fn observer(&self) -> Option<EventObserver> {
         self.observer.clone()
@@ -143,7 +143,7 @@ fn observer(
     }))
 }
 
-/// What a node publishes and offers, before it runs.
+/// Topics and services of a node, before it runs.
 struct Parts {
     topics: RobotTopics,
     settings: OutputSettings,

@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_touched_stands_before_the_front() {
+    fn a_touched_obstacle_is_ahead_of_the_front() {
         let corners = [(0.4, 0.2), (-0.2, 0.2), (-0.2, -0.2), (0.4, -0.2)];
         let cart = Footprint::polygon(corners.map(|(x, y)| Vector2::new(x, y)).to_vec()).unwrap();
         let points = ahead_of(&cart);

@@ -18,7 +18,7 @@ pub struct CameraMount {
     pub yaw_deg: f64,
     /// Tilt downward, deg, -80 to 80. Default 8: the floor is seen from 0.6 m on.
     pub pitch_deg: f64,
-    /// Roll about the optical axis, deg, -180 to 180. Default 0.
+    /// Roll around the optical axis, deg, -180 to 180. Default 0.
     pub roll_deg: f64,
 }
 

@@ -33,26 +33,26 @@ pub struct Checkpoint {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
-    /// The file is no checkpoint.
-    #[error("no memory of trundle")]
+    /// The file is not a checkpoint.
+    #[error("this is not a checkpoint of trundle")]
     Foreign,
     /// Made by a version that this one does not read.
-    #[error("memory of version {found}, expected {FORMAT_VERSION}")]
+    #[error("checkpoint of version {found}, expected {FORMAT_VERSION}")]
     Version {
         /// Its version.
         found: u32,
     },
     /// Cut off, or changed since it was written.
-    #[error("memory is damaged: {what}")]
+    #[error("checkpoint is damaged: {what}")]
     Damaged {
         /// The part that does not match.
         what: &'static str,
     },
     /// The notes are none.
-    #[error("notes of the memory: {0}")]
+    #[error("notes of the checkpoint: {0}")]
     Notes(String),
     /// The visual maps are refused.
-    #[error("visual maps of the memory: {0}")]
+    #[error("visual maps of the checkpoint: {0}")]
     Visual(#[from] MapFileError),
     /// A number is out of range, in the memory or in the robot's configuration.
     #[error(transparent)]
@@ -105,7 +105,7 @@ impl Checkpoint {
     /// Reads a checkpoint. The visual maps are decoded when the robot resumes.
     ///
     /// # Errors
-    /// When the bytes are no checkpoint, of another version, damaged or cut off, or contradict themselves. No bytes make it panic.
+    /// When the bytes are not a checkpoint, of another version, damaged or cut off, or contradict themselves. No bytes make it panic.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
         let rest = bytes.strip_prefix(MAGIC).ok_or(CheckpointError::Foreign)?;
         let (version, rest) = number(rest)?;
@@ -208,12 +208,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_none_is_refused_with_the_reason() {
+    fn bytes_that_are_not_a_checkpoint_are_refused_with_the_reason() {
         let error = |bytes: &[u8]| Checkpoint::from_bytes(bytes).unwrap_err().to_string();
-        assert_eq!(error(b"P5 3 3 255"), "no memory of trundle");
+        assert_eq!(error(b"P5 3 3 255"), "this is not a checkpoint of trundle");
         let mut bytes = memory().to_bytes();
         bytes[8] = 9;
-        assert_eq!(error(&bytes), "memory of version 9, expected 2");
+        assert_eq!(error(&bytes), "checkpoint of version 9, expected 2");
     }
 
     proptest! {
@@ -235,7 +235,7 @@ mod tests {
         Checkpoint::from_bytes(&[MAGIC.as_slice(), &FORMAT_VERSION.to_le_bytes(), &checksum, &rest].concat())
     }
 
-    /// The same with `old` in the notes replaced by `new`.
+    /// The error of a checkpoint with `old` in the notes replaced by `new`.
     fn with_notes(old: &str, new: &str) -> CheckpointError {
         let change = |rest: &mut Vec<u8>| {
             let length = u32::from_le_bytes(*rest.first_chunk().unwrap()) as usize;
@@ -254,7 +254,7 @@ mod tests {
         assert!(text("\"mission\"", "\"mishap\"").contains("unknown field `mishap`"));
         assert!(text("\"resolution\":0.05", "\"resolution\":0.0").contains("resolution"));
         assert!(text("\"resolution\":0.05", "\"resolution\":-1.0").contains("resolution"));
-        assert_eq!(text("\"cells\":[3,2]", "\"cells\":[3,2000]"), "memory is damaged: it is cut off");
+        assert_eq!(text("\"cells\":[3,2]", "\"cells\":[3,2000]"), "checkpoint is damaged: it is cut off");
         assert_eq!(
             text("\"places\":[0,2,3]", "\"places\":[0,2]"),
             "places of tasks is 2, expected 3, one for each task"
@@ -262,14 +262,14 @@ mod tests {
         assert!(matches!(with_notes("\"cells\":[3,2]", "\"cells\":[0,2]"), CheckpointError::Invalid(_)));
         assert!(matches!(with_notes("{", "["), CheckpointError::Notes(_)));
         let negative = with_notes("\"covariance\":[[0.0001,", "\"covariance\":[[-0.5,");
-        assert_eq!(negative.to_string(), "memory is damaged: a visual map lies nowhere");
+        assert_eq!(negative.to_string(), "checkpoint is damaged: a visual map lies nowhere");
     }
 
     #[test]
     fn a_cell_that_is_none_of_the_three_is_refused() {
         let length = memory().to_bytes().len() - 16;
         let error = resigned(|rest| rest[length - 101] = 3).unwrap_err();
-        assert_eq!(error.to_string(), "memory is damaged: a cell is none");
+        assert_eq!(error.to_string(), "checkpoint is damaged: a cell is none");
     }
 
     #[test]

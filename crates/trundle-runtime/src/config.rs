@@ -20,16 +20,16 @@ use trundle_slam::SlamConfig;
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
 pub struct RobotConfig {
-    /// Radius of the disc about the base that the robot stays within, m, above 0. Default 0.1755: the Kobuki.
+    /// Radius of the disc around the base that the robot stays within, m, above 0. Default 0.1755: the Kobuki.
     pub footprint_radius: f64,
     /// Corners of a convex outline in place of the disc, base frame, m. Default none.
     #[serde(deserialize_with = "corners")]
     pub footprint: Option<Vec<[f64; 2]>>,
-    /// What the map is drawn from and what safety watches. Default the depth camera.
+    /// Sensor from which the map is drawn and by which safety stops. Default the depth camera.
     pub sight: RangeSource,
     /// Geometry of the base. Default: the Kobuki.
     pub drive: DifferentialDrive,
-    /// What the base may be asked for. Default: the Kobuki.
+    /// Limits of commands for the base. Default: the Kobuki.
     pub limits: DriveLimits,
     /// The camera's image. Default: Kinect V2.
     pub camera: PinholeCamera,
@@ -53,7 +53,7 @@ pub struct RobotConfig {
     pub localization: LocalizerConfig,
     /// Occupancy grid.
     pub mapping: MapperConfig,
-    /// Who moves near by, found in the scans.
+    /// Moving obstacles nearby, found in the scans.
     pub movers: ObstacleTrackerConfig,
     /// Planning.
     pub planning: PlannerConfig,
@@ -142,7 +142,7 @@ impl RobotConfig {
         self
     }
 
-    /// The robot's outline: the polygon where there is one, else the disc.
+    /// The robot's outline: the polygon if there is one, else the disc.
     ///
     /// # Errors
     /// When the radius is not positive, or the polygon is none that is convex.

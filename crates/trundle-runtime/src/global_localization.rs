@@ -43,9 +43,9 @@ pub(crate) struct LocalizedPose {
     pub(crate) covariance: Matrix3<f64>,
 }
 
-/// Number of scans after the first that must fit a candidate pose, each 10 deg or 0.3 m farther on, where no image can be recognised. Source: ours.
+/// Number of scans after the first that must fit a candidate pose, each 10 deg or 0.3 m farther on, if no image can be recognised. Source: ours.
 const MIN_CONFIRMING_SCANS: usize = 6;
-/// The same number where images have enough features and are not recognised: that is evidence against every pose in the map. Source: ours.
+/// Number of scans if images have enough features and are not recognised: that is evidence against every pose in the map. Source: ours.
 const MIN_CONFIRMING_SCANS_SEEN: usize = 18;
 /// Longest time between two scans of a standing robot that still count as consecutive \[s\]. Source: ours.
 const MAX_STANDING_GAP_S: f64 = 3600.0;
@@ -99,7 +99,7 @@ impl GlobalLocalization {
         match localizer.update(odom_from_base, scan) {
             Localized::Known { map_from_base, covariance, explained, degenerate } => {
                 let fits = explained >= MIN_EXPLAINED_SHARE;
-                // A scan of a single wall is no evidence for or against the pose.
+                // A scan of a single wall is not evidence for or against the pose.
                 *times = if fits { *times + usize::from(degenerate == 0) } else { 0 };
                 let place = || LocalizedPose {
                     stamp: scan.stamp(),
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn a_robot_that_stands_is_no_surer_for_it() {
+    fn a_robot_that_stands_is_not_surer_for_it() {
         let map = room(90, 60, &[[60, 75, 1, 20], [1, 12, 40, 58]]);
         let at = Pose2::new(1.5, 1.0, 0.3);
         let mut global_localization = GlobalLocalization::new(&RobotConfig::default(), 0.5).unwrap();

@@ -28,7 +28,7 @@ use trundle_docking::{
 pub struct GoalApproachConfig {
     /// Whether turns and straight moves may take over near the goal. Default true.
     pub enabled: bool,
-    /// Distance from the goal within which turns and straight moves may take over where no path is found or the safety monitor
+    /// Distance from the goal within which turns and straight moves may take over if no path is found or the safety monitor
     /// holds the robot, m, 0.05
     /// to 5. Default 0.6 (ours).
     pub near: f64,
@@ -159,7 +159,7 @@ impl GoalApproach {
         self.verdict(s) == Verdict::Manoeuvre && self.begin()
     }
 
-    /// Begins turns and straight moves where no path was found, if a manoeuvre exists. The search may take several calls.
+    /// Begins turns and straight moves if no path was found, if a manoeuvre exists. The search may take several calls.
     pub(crate) fn begin_if_possible(&mut self, s: &WorldState<'_>, goal: Pose2) -> bool {
         let pose = s.estimate.pose;
         if !self.is_near(&pose, &goal) {
@@ -171,7 +171,7 @@ impl GoalApproach {
         self.takes_over(s)
     }
 
-    /// Begins turns and straight moves onto a goal without a comparison with an arc; whether it could.
+    /// Begins turns and straight moves onto a goal without a comparison with an arc. Returns whether it could.
     pub(crate) fn begin_at(&mut self, goal: Pose2) -> bool {
         if self.goal != Some(goal) {
             (self.goal, self.notes) = (Some(goal), Notes::default());

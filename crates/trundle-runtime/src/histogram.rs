@@ -56,12 +56,12 @@ impl Histogram {
         self.sum
     }
 
-    /// The largest; `None` where nothing was counted.
+    /// The largest; `None` if nothing was counted.
     pub fn most(&self) -> Option<f64> {
         (self.count > 0).then_some(self.most)
     }
 
-    /// The number that the part `fraction` (0 to 1) of all do not exceed; `None` where nothing was counted.
+    /// The number that the part `fraction` (0 to 1) of all do not exceed; `None` if nothing was counted.
     pub fn quantile(&self, fraction: f64) -> Option<f64> {
         let rank = (self.count.checked_sub(1)? as f64 * fraction.clamp(0.0, 1.0)).round() as u64;
         let mut below = 0;

@@ -17,7 +17,7 @@ pub struct LevelMap {
 }
 
 impl LevelMap {
-    /// A map still empty, of at most `map_hz` scans a second.
+    /// A map still empty, of at most `map_hz` scans per second.
     ///
     /// # Errors
     /// When the scan's configuration is not valid.
@@ -57,7 +57,7 @@ impl LevelMap {
 }
 
 /// The level pose of a first camera at `height` m above the floor, tilted down by `tilt_deg` and rolled to its right
-/// about the optical axis by `roll_deg`.
+/// around the optical axis by `roll_deg`.
 ///
 /// # Errors
 /// When a number is outside the range of [`CameraMount`].
@@ -105,7 +105,7 @@ mod tests {
     #[test]
     fn a_scan_is_drawn_where_the_final_trajectory_has_its_image() {
         let (mut map, at_first) = (level_map(), level_from_first_camera(0.4, 0.0, 0.0).unwrap());
-        // One hit is no obstacle yet.
+        // One hit is not an obstacle yet.
         let times = [0.0, 0.25, 0.5, 0.75];
         times.iter().for_each(|time| map.note(&wall(*time), at_first));
         for pose in [Pose2::IDENTITY, Pose2::new(1.0, -0.5, 0.0), Pose2::new(0.5, 1.0, 2.0)] {

@@ -80,7 +80,7 @@ impl MissionState {
         Ok(Self { left: Mission::new(self.left.tasks)?, ..self })
     }
 
-    /// The same after the robot was switched off and on again.
+    /// This mission after the robot was switched off and on again.
     #[must_use]
     pub(crate) fn after_restart(mut self) -> Self {
         self.ended.iter_mut().for_each(|record| record.before_restart = true);
@@ -144,7 +144,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_goal_that_is_no_number_is_refused_by_its_place() {
+    fn a_goal_that_is_not_a_number_is_refused_by_its_place() {
         let error = Mission::new(vec![Task::Explore, Task::Go(Pose2::new(f64::NAN, 0.0, 0.0))]).unwrap_err();
         assert_eq!(error.field, "x of the goal of task 2");
     }

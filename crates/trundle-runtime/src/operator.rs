@@ -144,7 +144,7 @@ impl RunSetting {
         }
     }
 
-    /// The setting with a key of the robot file, in the unit of the key; `None` where it cannot change while the robot runs.
+    /// The setting with a key of the robot file, in the unit of the key; `None` if it cannot change while the robot runs.
     #[must_use]
     pub fn of_key(key: &str, value: f64) -> Option<Self> {
         match key {

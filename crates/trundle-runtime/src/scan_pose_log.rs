@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_not_kept_is_let_go() {
+    fn poses_that_are_not_kept_are_dropped() {
         let mut scan_poses = ScanPoseLog::default();
         let at = Stamp::from_nanos;
         let thinned = (0..20_000)

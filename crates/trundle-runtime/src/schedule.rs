@@ -44,7 +44,7 @@ pub(crate) struct Ticker {
 }
 
 impl Ticker {
-    /// Due `hz` times a second; never for 0.
+    /// Due `hz` times per second; never for 0.
     pub(crate) fn new(hz: f64) -> Self {
         Self { period: 1.0 / hz, last: None }
     }

@@ -132,7 +132,7 @@ impl StageTimes {
         self.spent[stage as usize].sum() * 1e-3
     }
 
-    /// The cost of a stage; `None` when it never ran.
+    /// The cost of a stage; `None` if it never ran.
     pub fn cost(&self, stage: Stage) -> Option<StageCost> {
         let spent = &self.spent[stage as usize];
         Some(StageCost {

@@ -19,7 +19,7 @@ pub(crate) struct WorldState<'a> {
     pub(crate) seen: Option<Stamp>,
     /// For how long images that show enough have not been located, s.
     pub(crate) unlocated: f64,
-    /// Stamp of the newest reading of the wheels; none before the first.
+    /// Stamp of the newest reading of the wheels. `None` before the first.
     pub(crate) wheels: Option<Stamp>,
     /// A condition of the body under which no wheel may turn.
     pub(crate) hold: Option<MotionHold>,
@@ -33,7 +33,7 @@ pub(crate) struct WorldState<'a> {
 /// The charging station, as far as the robot knows it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct StationState {
-    /// Its pose; none before its light was seen.
+    /// Its pose. `None` before its light was seen.
     pub(crate) estimate: Option<StationEstimate>,
     /// Whether the robot stands on its contacts.
     pub(crate) is_docked: bool,
@@ -45,7 +45,7 @@ pub(crate) struct DynamicObstacles<'a> {
     pub(crate) movers: &'a [MovingObstacle],
     /// Hits of new obstacles near by that no scan has shown gone, map frame, m.
     pub(crate) unconfirmed: &'a [Vector2],
-    /// The map without them; none where nothing moves.
+    /// The map without them. `None` if nothing moves.
     pub(crate) static_grid: Option<&'a OccupancyGrid>,
 }
 

@@ -28,7 +28,7 @@ pub(crate) struct RobotZones {
     floor: Option<ZonedFloor>,
 }
 
-/// What the zones ask of the planner.
+/// Demands of the zones on the planner.
 #[derive(Debug, Default)]
 pub(crate) struct ZoneMasks {
     /// Larger after each change, from 1.
@@ -44,11 +44,11 @@ pub(crate) struct ZoneMasks {
 /// The zones of the map, as they count for the robot at its present pose.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ZoneView<'a> {
-    /// Speed limits and costs, and the no-go zones; none before there was a zone.
+    /// Speed limits and costs, and the no-go zones. `None` before there was a zone.
     pub(crate) masks: Option<&'a Arc<ZoneMasks>>,
-    /// The map with the no-go zones occupied; none where they forbid nothing.
+    /// The map with the no-go zones occupied. `None` if they forbid nothing.
     pub(crate) grid: Option<&'a OccupancyGrid>,
-    /// The same of the map without what moves; none where nothing moves.
+    /// The map without moving obstacles, its no-go zones occupied. `None` if nothing moves.
     pub(crate) static_grid: Option<&'a OccupancyGrid>,
 }
 

@@ -82,7 +82,7 @@ fn best(runs: usize, mut run: impl FnMut()) -> (f64, f64) {
     best
 }
 
-/// Seconds that all threads of this program have worked, where the system says.
+/// Seconds that all threads of this program have worked, if the system says.
 fn cpu_seconds() -> Option<f64> {
     let mut nanoseconds = 0.0;
     for task in fs::read_dir("/proc/self/task").ok()? {

@@ -21,7 +21,7 @@ pub struct SimConfig {
     pub camera: PinholeCamera,
     /// Where the camera sits, in its optical frame (x right, y down, z forward). Default [`camera_mount`]`(0.05, 0.45, 8 deg)`.
     pub base_from_camera: Pose3,
-    /// Images a second, Hz, 0.1 to 120. Default 15: half the Kinect V2's 30.
+    /// Images per second, Hz, 0.1 to 120. Default 15: half the Kinect V2's 30.
     pub camera_rate_hz: f64,
     /// How long the colour camera's shutter is open, about an image's stamp, s, 0 to 0.1. Default 0: no motion blur.
     pub shutter_s: f64,

@@ -1,7 +1,7 @@
 //! Worlds, robot dynamics and sensors with noise and ground truth.
 //!
 //! [`Simulator`] is a Kobuki with a Kinect V2 in a [`Scene`], behind the trait that hardware is behind
-//! ([`trundle_core::RobotBody`]). It shares nothing but trundle-core with what it judges. Same scene, seed and commands,
+//! ([`trundle_core::RobotBody`]). It shares nothing but trundle-core with what it evaluates. Same scene, seed and commands,
 //! same bytes, on any number of threads. How each part works stands in `docs/algorithms/simulator.md`.
 //!
 //! ```

@@ -43,9 +43,9 @@ pub struct Simulator {
     obstacles: Obstacles,
     crowd: Crowd,
     body: Kobuki,
-    /// None when the camera is aside.
+    /// `None` if the camera is aside.
     rig: Option<CameraRig>,
-    /// What the camera aside has not taken yet.
+    /// Shots that the camera aside has not taken yet.
     shots: Vec<Shot>,
     laser: Option<Laser>,
     /// None in a scene without a charging station.

@@ -2,7 +2,7 @@
 //!
 //! `cargo run --release -p trundle-slam --example drive -- FOLDER [FRAMES] [--motion_unknown] [--seed=N] [--least-texture=X]` prints the frames located, loops, keyframes,
 //! the ATE after a rigid alignment, how much of it is up and down, and median, 99th percentile and most of the processor
-//! time, in ms, of the features alone, of a whole step, and of those that made keyframes. Wheels are used where the folder
+//! time, in ms, of the features alone, of a whole step, and of those that made keyframes. Wheels are used if the folder
 //! has them, unless `--motion_unknown`; N is the seed of what is drawn at random, X `orb.min_texture`. Loading images is not timed. Without `camera.toml` the camera is that of freiburg1.
 //! `TRUNDLE_FRAMES=FILE` writes of each frame: time, state, whether it is a keyframe, inliers; the error of the pose at its
 //! time (m, rad, relative to the first one) with its standard deviation (m, rad) and normalised squared error (expected 6).
@@ -101,7 +101,7 @@ fn way(drive: &Drive, last: usize) -> f64 {
     places.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum()
 }
 
-/// What `TRUNDLE_FRAMES` tells of a frame when it is there, `off` from the truth.
+/// Output of `TRUNDLE_FRAMES` for a frame when it is there, `off` from the truth.
 fn state(report: &TrackReport, off: Option<Pose3>) -> String {
     let off = off.map_or(Vector6::repeat(f64::NAN), |off| off.log());
     let sigma = |from: usize| report.covariance.fixed_view::<3, 3>(from, from).trace().sqrt();

@@ -85,7 +85,7 @@ impl RgbdSlam {
         })
     }
 
-    /// The same with another vocabulary than the built-in one; call it before the first image.
+    /// This tracker with another vocabulary than the built-in one; call it before the first image.
     #[must_use]
     pub fn with_vocabulary(mut self, vocabulary: &Arc<Vocabulary>) -> Self {
         self.set_vocabulary(vocabulary);
@@ -97,7 +97,7 @@ impl RgbdSlam {
         self.atlas.set_vocabulary(vocabulary);
     }
 
-    /// The same with the camera at `visual_from_camera` at the start; call it before the first image. In a loaded map, the camera is
+    /// This tracker with the camera at `visual_from_camera` at the start; call it before the first image. In a loaded map, the camera is
     /// searched there first.
     #[must_use]
     pub fn starting_at(mut self, visual_from_camera: Pose3) -> Self {
@@ -132,7 +132,7 @@ impl RgbdSlam {
         self.step_with_features(image.stamp(), features, image.depth(), prior)
     }
 
-    /// The same with features from elsewhere, by an extractor of the same configuration: in another thread, for example.
+    /// A step with features from elsewhere, by an extractor of the same configuration: in another thread, for example.
     pub fn step_with_features(
         &mut self,
         stamp: Stamp,
@@ -192,7 +192,7 @@ impl RgbdSlam {
         }
     }
 
-    /// Continues the search for loops; whether there was work. A closed loop moves the camera along with the map.
+    /// Continues the search for loops. Returns whether there was work. A closed loop moves the camera along with the map.
     fn detect_loops(&mut self) -> bool {
         let seed = self.trajectory.seed(self.config.seed);
         let active = &mut self.atlas.active;
@@ -273,12 +273,12 @@ impl RgbdSlam {
         &self.features
     }
 
-    /// Settings that are probably wrong, by the first images; empty where nothing speaks against them.
+    /// Settings that are probably wrong, by the first images; empty if nothing speaks against them.
     pub fn calibration_issues(&self) -> &[CalibrationIssue] {
         self.calibration.issues()
     }
 
-    /// All maps as bytes: versioned, with a checksum, and with the settings they were made with. The trajectory is no part of them.
+    /// All maps as bytes: versioned, with a checksum, and with the settings they were made with. The trajectory is not part of them.
     ///
     /// The same maps give the same bytes, before and after [`RgbdSlam::load`].
     pub fn save(&self) -> Vec<u8> {
@@ -292,7 +292,7 @@ impl RgbdSlam {
     /// it; until then the camera counts as lost, whatever the odometry.
     ///
     /// # Errors
-    /// When the configuration is invalid, or the bytes are no map, of another version, damaged, cut off, made with another
+    /// When the configuration is invalid, or the bytes are not a map, of another version, damaged, cut off, made with another
     /// camera or other features, or contradict themselves. No bytes make it panic.
     pub fn load(bytes: &[u8], camera: PinholeCamera, config: SlamConfig) -> Result<Self, MapFileError> {
         let mut slam = Self::new(camera, config)?;

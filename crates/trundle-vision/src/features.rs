@@ -36,7 +36,7 @@ pub struct Features {
     pub keypoints: Vec<Keypoint>,
     /// Their descriptors.
     pub descriptors: Vec<Descriptor>,
-    /// Image patches around them; empty where none were cut out.
+    /// Image patches around them; empty if none were cut out.
     pub patches: Vec<ImagePatch>,
 }
 

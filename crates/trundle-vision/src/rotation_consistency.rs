@@ -8,7 +8,7 @@ const ROTATION_BINS: usize = 30;
 
 /// The matches whose keypoints turn between the images as most others do: those in the three fullest bins of a
 /// histogram of the angle differences, 12 deg each, in their old order. Of equally full bins the lower counts. A camera
-/// turns all keypoints alike as long as it rolls about its own axis and moves little otherwise.
+/// turns all keypoints alike as long as it rolls around its own axis and moves little otherwise.
 ///
 /// `a` and `b` are the keypoints that the matches' indices refer to. Panics when an index is out of range.
 pub fn rotation_consistent(matches: &[Match], a: &[Keypoint], b: &[Keypoint]) -> Vec<Match> {

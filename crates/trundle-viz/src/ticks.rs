@@ -10,7 +10,7 @@ pub(crate) struct Ticks {
 
 impl Ticks {
     /// Multiples of 1, 2 or 5 times a power of ten within `low..=high`, near to `count` of them.
-    /// None when the range is empty or not finite.
+    /// No ticks if the range is empty or not finite.
     pub(crate) fn new(low: f64, high: f64, count: usize) -> Self {
         let span = high - low;
         if !(span.is_finite() && span > 0.0) {

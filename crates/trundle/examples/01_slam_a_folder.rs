@@ -52,7 +52,7 @@ fn track_simulated_images() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Tracks one image; whether the camera was located.
+/// Tracks one image. Returns whether the camera was located.
 fn print_pose(slam: &mut RgbdSlam, image: &RgbdImage) -> bool {
     let report = slam.step(image, None);
     let position = report.visual_from_camera.translation;

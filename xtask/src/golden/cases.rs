@@ -1,4 +1,4 @@
-//! What the golden net runs: a list of cases, each with its commands and the quantities that are hashed.
+//! Cases of the golden net: a list of cases, each with its commands and the quantities that are hashed.
 
 use super::digest::Quantity;
 

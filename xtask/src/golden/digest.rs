@@ -3,7 +3,7 @@
 use super::recording::each_text;
 use std::path::{Path, PathBuf};
 
-/// What of a path is hashed.
+/// Part of a path that is hashed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Quantity {
     /// The numbers of a text file (its letters may change), or the bytes of any other file.
@@ -38,7 +38,7 @@ impl Digest {
     /// Digest of `quantity` at `path`.
     ///
     /// # Errors
-    /// When the path cannot be read, or is no MCAP recording where a topic is asked for.
+    /// When the path cannot be read, or is not an MCAP recording where a topic is asked for.
     pub fn of(quantity: Quantity, path: &Path) -> Result<Self, String> {
         let mut digest = Self::empty();
         match quantity {
@@ -93,7 +93,7 @@ fn sorted_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(files)
 }
 
-/// The text's fields that are numbers, one a line: headers and names of columns may be reworded.
+/// The text's fields that are numbers, one per line: headers and names of columns may be reworded.
 fn without_words(text: &[u8]) -> Vec<u8> {
     let fields = text.split(|b| b" ,;\t\n\r".contains(b));
     let is_number = |field: &&[u8]| {

@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read() {
+    fn a_written_text_is_read() {
         let digests = digests(&[("a/grid", "12ab 5"), ("b/poses", "34cd 6")]);
         assert_eq!(parse(&write(&digests)).unwrap(), digests);
         assert!(parse("a/grid").unwrap_err().contains("line 1"));

@@ -21,7 +21,7 @@ const GOLDEN_FILE: &str = "data/golden/expected.txt";
 /// Cases run side by side.
 const CASES_AT_ONCE: usize = 2;
 
-/// What the user asks of the golden net.
+/// Options of the golden net.
 pub struct Options {
     /// Write what was found into the golden file instead of comparing.
     pub update: bool,
@@ -114,7 +114,7 @@ impl Net<'_> {
 
     fn run_case(&self, case: &Case) -> Result<Vec<(String, String)>, String> {
         let out = self.scratch.join(case.name);
-        std::fs::create_dir_all(&out).map_err(|e| format!("cannot make {}: {e}", out.display()))?;
+        std::fs::create_dir_all(&out).map_err(|e| format!("cannot create {}: {e}", out.display()))?;
         let mut digests = Vec::new();
         for (i, line) in case.commands.iter().enumerate() {
             let code = self.run_command(line, &out)?;

@@ -14,7 +14,7 @@ const OWN_TOPICS: &str = "/trundle";
 /// Hands on stamp (ns) and text of each message of `topic`, in the order of the file.
 ///
 /// # Errors
-/// When the file is no recording with an index, or is broken.
+/// When the file is not a recording with an index, or is broken.
 pub(super) fn each_text(
     bytes: &[u8],
     topic: &str,

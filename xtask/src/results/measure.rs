@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What a command gave.
+/// Result of a command.
 struct Output {
     summary: Value,
     printed: String,
@@ -85,7 +85,7 @@ fn said_by(root: &Path, command: &str, args: &[&str]) -> Result<String, String> 
     Ok(String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
-/// Cores and processor, where the system reports them.
+/// Cores and processor, if the system reports them.
 fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();

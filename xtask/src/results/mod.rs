@@ -38,7 +38,7 @@ pub fn run(root: &Path, measured: &[String]) -> Verdict {
 /// The page as the files give it.
 ///
 /// # Errors
-/// When a file cannot be read or is no measurement.
+/// When a file cannot be read or is not a measurement.
 pub fn render(root: &Path) -> Result<String, String> {
     let limits = root.join(FOLDER).join(LIMITS);
     let text =

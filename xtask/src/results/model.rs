@@ -2,13 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What one command measures.
+/// Measurements of one command.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Measurement {
     /// The heading of the results page under which it stands.
     pub subject: String,
-    /// What is measured, in words.
+    /// The quantity, in words.
     pub title: String,
     /// The command, from the workspace's folder; `trundle` is the release program.
     pub command: String,
@@ -26,13 +26,13 @@ pub struct Measurement {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Figure {
-    /// What it is.
+    /// The name.
     pub name: String,
     /// The value.
     pub value: f64,
     /// Its unit; empty for counts.
     pub unit: String,
-    /// What was aimed at.
+    /// The goal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub goal: Option<Goal>,
     /// Which way is better, where no goal says it.
@@ -46,7 +46,7 @@ pub struct Figure {
     pub from: Option<Source>,
 }
 
-/// What was aimed at.
+/// The goal.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Goal {

@@ -90,7 +90,7 @@ pub struct Constant {
 /// Reads the text of one file.
 ///
 /// # Errors
-/// Names the line that is no field and no constant, and a wrong number of parts.
+/// Names the line that is neither a field nor a constant, and a wrong number of parts.
 pub fn parse(package: &str, kind: Kind, name: &str, text: &str) -> Result<Interface, String> {
     let mut parts = vec![Part::default()];
     for (i, line) in text.lines().enumerate() {

@@ -71,7 +71,7 @@ fn names(folder: &Path) -> Result<Vec<String>, String> {
     Ok(names)
 }
 
-/// The files of the generated folder: one an interface, one a package, one of all.
+/// The files of the generated folder: one per interface, one per package, one of all.
 fn files(interfaces: &[Interface]) -> BTreeMap<String, String> {
     let mut files = BTreeMap::new();
     let mut packages = BTreeMap::<&str, Vec<String>>::new();

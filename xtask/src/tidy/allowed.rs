@@ -86,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_allowed_passes_and_what_is_more_does_not() {
+    fn allowed_findings_pass_and_further_ones_do_not() {
         let allowed = Allowed::parse("# list\nfile-doc a.rs 2\n").unwrap();
         assert!(allowed.apply(findings(2)).is_empty());
         assert_eq!(allowed.apply(findings(3)).len(), 3);

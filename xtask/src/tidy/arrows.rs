@@ -35,7 +35,7 @@ fn check_package(tree: &Tree, package: &Package) -> Vec<Finding> {
         findings.push(Finding::error(
             &path,
             line_of(file, "name", 1),
-            format!("{name} is no crate of the design"),
+            format!("{name} is not a crate of the design"),
         ));
     }
     for kind in ["dependencies", "dev-dependencies", "build-dependencies"] {
@@ -188,6 +188,6 @@ mod tests {
 
     #[test]
     fn a_package_must_be_in_the_design() {
-        assert!(messages("trundle-unknown", "")[0].contains("no crate of the design"));
+        assert!(messages("trundle-unknown", "")[0].contains("not a crate of the design"));
     }
 }

@@ -26,7 +26,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     findings
 }
 
-/// What is wrong with the constant that a line declares.
+/// The problem of the constant that a line declares.
 fn fault(line: &str) -> Option<String> {
     let visible = ["pub(crate) ", "pub(super) ", "pub "].iter().find_map(|v| line.strip_prefix(v));
     let (name, rest) = visible.unwrap_or(line).strip_prefix("const ")?.split_once(": ")?;
@@ -42,7 +42,7 @@ fn fault(line: &str) -> Option<String> {
         NUMBERS.contains(&kind) || NUMBERS[..2].iter().any(|f| kind.starts_with(&format!("[{f};")));
     let is_one_word = !name.contains('_') && !ONE_WORD_NAMES.contains(&name);
     (is_number && is_one_word)
-        .then(|| format!("constant {name} has one word: name its quantity, and its unit where it has one"))
+        .then(|| format!("constant {name} has one word: name its quantity, and its unit if it has one"))
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ pub struct Finding {
     pub severity: Severity,
     /// The rule, where findings of it can be on the allow-list.
     pub rule: Option<Rule>,
-    /// What is wrong.
+    /// The problem.
     pub message: String,
 }
 

@@ -25,7 +25,7 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     findings
 }
 
-/// What to write instead of a name: by the name itself, or by its beginning, which ends with `*` in the table.
+/// Replacement for a name: by the name itself, or by its beginning, which ends with `*` in the table.
 fn instead_of<'a>(refused: &BTreeMap<&str, &'a str>, name: &str) -> Option<&'a str> {
     let by_beginning = || {
         let beginning =

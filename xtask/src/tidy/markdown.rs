@@ -31,7 +31,7 @@ fn broken_links(tree: &Tree, file: &File) -> Vec<Finding> {
         .collect()
 }
 
-/// Relative links with their lines, without anchors; code is no link.
+/// Relative links with their lines, without anchors; code is not a link.
 fn links(text: &str) -> Vec<(usize, String)> {
     let (mut found, mut fenced) = (Vec::new(), false);
     for (i, line) in text.lines().enumerate() {

@@ -29,7 +29,7 @@ use finding::{Finding, Severity};
 use std::path::Path;
 use tree::Tree;
 
-/// Checks the workspace and prints one line a finding; whether there is no error.
+/// Checks the workspace and prints one line a finding. Returns whether there is no error.
 pub fn run(root: &Path) -> Verdict {
     let findings = check(root)?;
     for finding in &findings {

@@ -37,11 +37,11 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
     findings
 }
 
-/// An error where the command line holds more than command line.
+/// An error if the command line holds more than command line.
 fn large_command_line(tree: &Tree, package: &Package) -> Option<Finding> {
     let lines: usize = tree.sources(package).map(|source| source.code.len()).sum();
     let message = format!(
-        "{lines} lines of code, {MAX_COMMAND_LINE_LINES} at most: move what is no command line to app"
+        "{lines} lines of code, {MAX_COMMAND_LINE_LINES} at most: move what is not a command line to app"
     );
     let is_large = package.name == COMMAND_LINE && lines > MAX_COMMAND_LINE_LINES;
     is_large.then(|| Finding::error(&format!("{}/src", package.folder), 1, message))

@@ -68,7 +68,7 @@ pub fn identifiers(code: &str) -> impl Iterator<Item = &str> {
     code.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty())
 }
 
-/// What a line of code defines: the keyword and the name.
+/// Definition in a line of code: the keyword and the name.
 pub fn definitions(code: &str) -> Vec<(&str, &str)> {
     let words: Vec<&str> = identifiers(code).collect();
     words.windows(2).filter(|pair| KEYWORDS.contains(&pair[0])).map(|pair| (pair[0], pair[1])).collect()
@@ -143,7 +143,7 @@ fn string_end(chars: &[char], from: usize) -> usize {
     chars.len()
 }
 
-/// The end of a raw string whose `r` ends before `from`; `None` when it is none.
+/// The end of a raw string whose `r` ends before `from`; `None` if it is none.
 fn raw_string_end(chars: &[char], from: usize) -> Option<usize> {
     let hashes = chars[from..].iter().take_while(|&&c| c == '#').count();
     if chars.get(from + hashes) != Some(&'"') {
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn comments_strings_and_tests_are_no_code() {
+    fn comments_strings_and_tests_are_not_code() {
         let text = "// std::fs\nlet a = \"std::fs \\\" std::fs\"; /* std::fs /* x */ std::fs */\nlet b = r#\"std::fs\" \"#;\n\
             let c = ('\"', '\\'', 'x'); std::fs::read();\nfn f<'a>(x: &'a str) {}\n#[cfg(test)]\nmod tests { fn g() { std::fs::read(); } }\n\
             #[cfg(test)]\nmod more;\nuse std::fs;\n";

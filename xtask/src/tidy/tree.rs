@@ -100,7 +100,7 @@ fn collect(root: &Path, inner: &str, files: &mut Vec<File>) -> Result<(), String
                 collect(root, &path, files)?;
             }
         } else if name.rsplit_once('.').is_some_and(|(_, end)| EXTENSIONS.contains(&end)) {
-            // Editors and other tools come and go: a file that vanished is no finding.
+            // Editors and other tools come and go: a file that vanished is not a finding.
             if let Ok(text) = std::fs::read_to_string(entry.path()) {
                 files.push(File { path, text });
             }

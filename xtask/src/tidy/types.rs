@@ -116,7 +116,7 @@ fn body(code: &str) -> &str {
     code
 }
 
-/// What stands outside inner brackets of any kind.
+/// Text outside inner brackets of any kind.
 fn top_level(body: &str) -> String {
     let mut depth = 0;
     let mut outer = String::new();

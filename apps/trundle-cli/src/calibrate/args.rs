@@ -9,12 +9,12 @@ use trundle::vision::board::Board;
 #[derive(Debug, Args)]
 #[command(after_help = "Example: trundle calibrate mount out/demo/recording.mcap --write robot.toml")]
 pub struct CalibrateArgs {
-    /// What to measure.
+    /// The quantity to measure.
     #[command(subcommand)]
     pub command: CalibrateCommand,
 }
 
-/// What to measure.
+/// The quantity to measure.
 #[derive(Debug, Subcommand)]
 pub enum CalibrateCommand {
     /// Intrinsics and lens of a camera, by images of a board.
@@ -37,10 +37,10 @@ pub struct DriveArgs {
     /// Read a recording that is cut, as by a power failure, up to the cut.
     #[arg(long)]
     pub recover: bool,
-    /// Set the found keys in this robot file, which is created where there is none.
+    /// Set the found keys in this robot file, which is created if there is none.
     #[arg(long, value_name = "FILE")]
     pub write: Option<PathBuf>,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -60,10 +60,10 @@ pub struct BoardImageArgs {
     /// Write a camera file, for `trundle slam --camera`.
     #[arg(long, value_name = "FILE")]
     pub write_camera: Option<PathBuf>,
-    /// Set the camera in this robot file, which is created where there is none.
+    /// Set the camera in this robot file, which is created if there is none.
     #[arg(long, value_name = "FILE")]
     pub write: Option<PathBuf>,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -76,13 +76,13 @@ pub struct BoardSheetArgs {
     /// The file to write, SVG.
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
 
 impl CalibrateArgs {
-    /// What every command takes.
+    /// Options of every command.
     pub fn common(&self) -> &Common {
         match &self.command {
             CalibrateCommand::Camera(args) => &args.common,

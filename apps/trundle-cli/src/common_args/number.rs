@@ -8,7 +8,7 @@ use std::ffi::OsStr;
 /// The number of an option.
 #[derive(Debug, Clone, Copy)]
 pub struct NumberArg {
-    /// Unit, as `m`; empty where there is none.
+    /// Unit, as `m`; empty if there is none.
     unit: &'static str,
     /// Which numbers are taken.
     range: Range,

@@ -27,13 +27,13 @@ pub struct DemoArgs {
     /// The file that the robot's state is kept in.
     #[command(flatten)]
     pub state: CheckpointArgs,
-    /// What recording.mcap holds; a replay needs all. Below 1 GB of free disk the run goes on without recording.
+    /// Content of recording.mcap; a replay needs all. Below 1 GB of free disk the run goes on without recording.
     #[arg(long, value_name = "WHAT", default_value = "events", value_parser = choice(&RecordingContent::CHOICES))]
     pub record: RecordingContent,
     /// Recognise places by this vocabulary, in trundle's form [default: the built-in one]
     #[arg(long, value_name = "FILE")]
     pub vocabulary: Option<PathBuf>,
-    /// What breaks, and when: a TOML file as for `trundle sim --faults`.
+    /// Faults and their times: a TOML file as for `trundle sim --faults`.
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,
     /// Give the run up after this much of the robot's time, s [default: 600 a goal, 1800 for exploring]
@@ -48,7 +48,7 @@ pub struct DemoArgs {
     /// The live page; with it the demo is in real time.
     #[command(flatten)]
     pub live: LiveArgs,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }

@@ -38,7 +38,7 @@ pub struct DockArgs {
     /// Which method plans [default: the robot file's, or optimal]
     #[arg(long, value_parser = choice(&Method::CHOICES))]
     pub method: Option<Method>,
-    /// Only write the problem to a file, as text to change: with --from, --to and --footprint where they are given; a map's outlines as walls.
+    /// Only write the problem to a file, as text to change: with --from, --to and --footprint if they are given; a map's outlines as walls.
     #[arg(long, value_name = "FILE")]
     pub write_problem: Option<OutputFileArg>,
     /// Take unknown cells of the map, and what is off it, for free rather than blocked. With a map only.
@@ -53,7 +53,7 @@ pub struct DockArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/dock")]
     pub out: OutputDirArg,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }

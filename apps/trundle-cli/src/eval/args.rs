@@ -9,12 +9,12 @@ use trundle::eval::{Alignment, DeltaUnit};
 /// `trundle eval`
 #[derive(Debug, Args)]
 pub struct EvalArgs {
-    /// What is judged.
+    /// The object of the evaluation.
     #[command(subcommand)]
     pub which: Which,
 }
 
-/// What can be judged.
+/// Objects of an evaluation.
 #[derive(Debug, Subcommand)]
 pub enum Which {
     /// A trajectory, by its absolute and relative errors (ATE and RPE, as evo takes them).
@@ -34,7 +34,7 @@ pub enum Which {
 pub struct TrajectoryArgs {
     /// The true trajectory.
     pub reference: PathBuf,
-    /// The trajectory to judge.
+    /// The trajectory to evaluate.
     pub estimate: PathBuf,
     /// How the estimate is laid over the reference for the absolute error.
     #[arg(long, value_name = "HOW", default_value = "se3", value_parser = choice(&Alignment::CHOICES))]
@@ -54,7 +54,7 @@ pub struct TrajectoryArgs {
     /// Write report.html, its pictures and summary.json into this folder; the last one is kept in DIR.1
     #[arg(long, value_name = "DIR")]
     pub out: Option<OutputDirArg>,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -69,7 +69,7 @@ pub struct TrajectoryArgs {
 pub struct RelationsArgs {
     /// A reference trajectory, or with --file a relation file: from_time to_time x y z roll pitch yaw.
     pub reference: PathBuf,
-    /// The trajectory to judge.
+    /// The trajectory to evaluate.
     pub estimate: PathBuf,
     /// REFERENCE is a relation file.
     #[arg(long)]
@@ -80,7 +80,7 @@ pub struct RelationsArgs {
     /// Write summary.json into this folder; the last one is kept in DIR.1
     #[arg(long, value_name = "DIR")]
     pub out: Option<OutputDirArg>,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -94,12 +94,12 @@ pub struct RelationsArgs {
 pub struct MapsArgs {
     /// The true map, in map_server's form.
     pub truth: PathBuf,
-    /// The map to judge.
+    /// The map to evaluate.
     pub map: PathBuf,
     /// Where the map's frame lies in the true one's: m, m, deg.
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true, default_value = "0,0,0")]
     pub at: PoseArg,
-    /// --at is exact: the map is judged where it lies.
+    /// --at is exact: the map is evaluated where it lies.
     #[arg(long)]
     pub exact: bool,
     /// Occupied cells agree when their centres are at most so far apart, m.
@@ -108,13 +108,13 @@ pub struct MapsArgs {
     /// Write summary.json into this folder; the last one is kept in DIR.1
     #[arg(long, value_name = "DIR")]
     pub out: Option<OutputDirArg>,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
 
 impl EvalArgs {
-    /// What every command takes.
+    /// Options of every command.
     pub fn common(&self) -> &Common {
         match &self.which {
             Which::Trajectory(args) => &args.common,

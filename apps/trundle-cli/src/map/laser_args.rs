@@ -16,7 +16,7 @@ pub struct LaserArgs {
     /// The laser hangs upside down.
     #[arg(long)]
     pub upside_down: bool,
-    /// Ranges from here on are no returns, m [default: the reading at which many end]
+    /// Ranges from here on are not returns, m [default: the reading at which many end]
     #[arg(long, value_name = "M", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub max_range: Option<f64>,
     /// The topic of the scans, in a CARMEN log the name of the lines, as RAWLASER2 [default: that with the most scans]

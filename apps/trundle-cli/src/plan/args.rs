@@ -40,7 +40,7 @@ pub struct PlanArgs {
     /// Way-point graph, GeoJSON as Nav2's route server has it: drive along its lanes.
     #[arg(long, value_name = "FILE")]
     pub graph: Option<PathBuf>,
-    /// Where a goal is blocked, stop as near to it as can be reached, at most so far off, m [default when given: 1]
+    /// If a goal is blocked, stop as near to it as can be reached, at most so far off, m [default when given: 1]
     #[arg(long, value_name = "M", num_args = 0..=1, require_equals = true, default_missing_value = "1", value_parser = NumberArg::from_zero("m"), allow_negative_numbers = true)]
     pub near: Option<f64>,
     /// Print the curve's polynomials and the constraints that shape it.
@@ -52,7 +52,7 @@ pub struct PlanArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/plan")]
     pub out: OutputDirArg,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -67,7 +67,7 @@ pub enum PlaceArg {
 impl FromStr for PlaceArg {
     type Err = String;
 
-    /// What has a comma is a pose.
+    /// Text with a comma is a pose.
     fn from_str(text: &str) -> Result<Self, String> {
         match text.trim() {
             "" => Err("expected a pose X,Y,DEG (m, m, deg) or the name of a place".to_owned()),

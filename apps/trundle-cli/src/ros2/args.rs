@@ -27,7 +27,7 @@ pub struct Ros2Args {
     /// Intrinsics of a depth camera whose images are not registered to colour.
     #[arg(long, value_name = "TOPIC")]
     pub depth_info: Option<String>,
-    /// Gyro; where it has messages, it gives the heading in place of the odometry. `none`: not used.
+    /// Gyro; if it has messages, it gives the heading in place of the odometry. `none`: not used.
     #[arg(long, value_name = "TOPIC", default_value = "imu")]
     pub imu: String,
     /// A 2-D laser, in place of scans made of depth.

@@ -51,13 +51,13 @@ pub struct RunArgs {
     pub ros: crate::ros_node::RosArgs,
 }
 
-/// What every run on a live robot takes.
+/// Options of every run on a live robot.
 #[derive(Debug, Args)]
 pub struct RunOptions {
     /// Write the robot's maps and the state of its mission to FILE, every 3 to 10 s: `--resume FILE` goes on from there.
     #[arg(long, value_name = "FILE")]
     pub checkpoint: Option<OutputFileArg>,
-    /// What recording.mcap holds; a replay needs all. Below 1 GB of free disk the run goes on without recording.
+    /// Content of recording.mcap; a replay needs all. Below 1 GB of free disk the run goes on without recording.
     #[arg(long, value_name = "WHAT", default_value = "events", value_parser = choice(&RecordingContent::CHOICES))]
     pub record: RecordingContent,
     /// Recognise places by this vocabulary, in trundle's form [default: the built-in one]
@@ -69,7 +69,7 @@ pub struct RunOptions {
     /// The robot's settings.
     #[command(flatten)]
     pub robot: RobotArgs,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -96,7 +96,7 @@ impl RunOptions {
 }
 
 impl RunArgs {
-    /// The intrinsics of the robot file, where those are wished.
+    /// The intrinsics of the robot file, if those are wished.
     pub fn robot_camera(&self, robot: &RobotConfig) -> Option<PinholeCamera> {
         (self.intrinsics == IntrinsicsArg::Robot).then_some(robot.camera)
     }

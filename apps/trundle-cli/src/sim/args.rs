@@ -42,7 +42,7 @@ pub struct SimArgs {
     #[cfg(feature = "ros2")]
     #[command(flatten)]
     pub ros_robot: RosRobotArgs,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -59,7 +59,7 @@ pub struct DriverArgs {
     /// Drive by hand: arrows or WASD, space to stop, q to quit; shows a page with what the robot sees.
     #[arg(long, group = "driver")]
     pub keys: bool,
-    /// Stop after this time of the robot, s, or when the drive is over [default: 5 where there is no drive]
+    /// Stop after this time of the robot, s, or when the drive is over [default: 5 if there is no drive]
     #[arg(long, value_name = "S", value_parser = NumberArg::up_to(1e6, "s"), allow_negative_numbers = true)]
     pub duration: Option<f64>,
 }
@@ -102,7 +102,7 @@ pub struct WireArgs {
     /// Answer as a Kobuki at a pseudo terminal, in real time, until Ctrl-C or --duration; LINK becomes a symbolic link to it.
     #[arg(long, value_name = "LINK", conflicts_with_all = ["driver", "record", "map"])]
     pub kobuki: Option<PathBuf>,
-    /// Write the camera's frames into this FIFO (docs/camera-stream.md); it is made where it is not there.
+    /// Write the camera's frames into this FIFO (docs/camera-stream.md); it is made if it is not there.
     #[arg(long, value_name = "FIFO", requires = "kobuki")]
     pub camera_stream: Option<PathBuf>,
 }
@@ -113,13 +113,13 @@ pub struct SensorArgs {
     /// The camera.
     #[arg(long, default_value = "kinect-v2", value_parser = choice(&SimConfig::CAMERAS))]
     pub camera: fn() -> SimConfig,
-    /// Images a second.
+    /// Images per second.
     #[arg(long, value_name = "HZ", value_parser = NumberArg::above_zero("Hz"), allow_negative_numbers = true)]
     pub rate: Option<f64>,
     /// A 2-D laser on the robot.
     #[arg(long, value_name = "PRESET", value_parser = choice(&LaserConfig::PRESETS))]
     pub laser: Option<fn() -> LaserConfig>,
-    /// What breaks, and when: a TOML file of [[faults]].
+    /// Faults and their times: a TOML file of [[faults]].
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,
     /// No noise in the sensors, perfect wheels.

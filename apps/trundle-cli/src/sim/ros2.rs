@@ -8,7 +8,7 @@ use trundle::core::DifferentialDrive;
 use trundle::experiments::simulated::load_simulator;
 use trundle::ros2::server::{OfferedBody, serve_body};
 
-/// Publishes the robot's sensors and obeys `cmd_vel` until the time is over or the user interrupts.
+/// Publishes the robot's sensors and follows `cmd_vel` until the time is over or the user interrupts.
 pub fn serve(args: &SimArgs, name: &str) -> Result<Outcome, AppError> {
     let (options, config) = (args.ros_robot.ros.options()?, args.sensors.config()?);
     let (camera, base_from_camera) = (config.camera, config.base_from_camera);

@@ -21,10 +21,10 @@ pub struct TeleopDriver {
     pacer: RealTimePacer,
 }
 
-/// Refuses to drive by hand where there is no terminal to read keys from.
+/// Refuses to drive by hand if there is no terminal to read keys from.
 ///
 /// # Errors
-/// When standard input is no terminal.
+/// When standard input is not a terminal.
 pub fn require_terminal() -> Result<(), AppError> {
     terminal::require()
 }

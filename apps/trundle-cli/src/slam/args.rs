@@ -54,7 +54,7 @@ pub struct SlamArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/slam")]
     pub out: OutputDirArg,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -66,7 +66,7 @@ pub struct CameraArgs {
     /// [default: the recording's, or the one in the folder, camera.toml first, else freiburg1 with a warning]
     #[arg(long, value_name = "PRESET|FILE")]
     pub camera: Option<String>,
-    /// Depth units a metre [default: the camera's]
-    #[arg(long, value_name = "N", value_parser = NumberArg::above_zero("units a metre"), allow_negative_numbers = true)]
+    /// Depth units per metre [default: the camera's]
+    #[arg(long, value_name = "N", value_parser = NumberArg::above_zero("units per metre"), allow_negative_numbers = true)]
     pub depth_scale: Option<f64>,
 }

@@ -11,12 +11,12 @@ use trundle::experiments::vocabulary::ImageSources;
 #[derive(Debug, Args)]
 #[command(arg_required_else_help = true)]
 pub struct VocabularyArgs {
-    /// What to do.
+    /// The action.
     #[command(subcommand)]
     pub command: VocabularyCommand,
 }
 
-/// What can be done with a vocabulary.
+/// Actions on a vocabulary.
 #[derive(Debug, Subcommand)]
 pub enum VocabularyCommand {
     /// Train one on recorded images and on views of simulated scenes.
@@ -32,7 +32,7 @@ pub enum VocabularyCommand {
 }
 
 impl VocabularyArgs {
-    /// What every command takes, where this one does.
+    /// Options of every command, if this one takes them.
     pub fn common(&self) -> Option<&Common> {
         match &self.command {
             VocabularyCommand::Train(args) => Some(&args.common),
@@ -106,7 +106,7 @@ pub struct TrainArgs {
     /// The file to write.
     #[arg(long, value_name = "FILE")]
     pub out: OutputFileArg,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }
@@ -151,7 +151,7 @@ pub struct RecallArgs {
     /// Where images come from.
     #[command(flatten)]
     pub sources: Sources,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: Common,
 }

@@ -83,7 +83,7 @@ fn folders_and_recordings_that_are_none() {
     assert!(refusal(&["slam", text(&empty)]).contains("rgb.txt"));
     assert!(refusal(&["slam", text(&empty), "--camera", "freiburg9"]).contains("freiburg9"));
     let file = scratch.path().join("garbage.mcap");
-    fs::write(&file, b"this is no recording").unwrap();
+    fs::write(&file, b"this is not a recording").unwrap();
     assert!(refusal(&["replay", text(&file)]).contains("garbage.mcap"));
     assert!(refusal(&["replay", text(&scratch.path().join("gone.mcap"))]).contains("gone.mcap"));
     assert!(refusal(&["demo", "--out", text(&file)]).contains("garbage.mcap"));

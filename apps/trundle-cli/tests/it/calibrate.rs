@@ -22,7 +22,7 @@ fn squares(svg: &str) -> Vec<(f64, f64, f64)> {
     path.split('M').filter(|part| !part.is_empty()).map(square).collect()
 }
 
-/// The sheet seen by a camera: turned about its middle by `turn` (rad about x, then y), its middle at `at` (mm, camera frame).
+/// The sheet seen by a camera: turned around its middle by `turn` (rad around x, then y), its middle at `at` (mm, camera frame).
 fn photo(squares: &[(f64, f64, f64)], turn: (f64, f64), at: [f64; 3]) -> image::GrayImage {
     let extent = |f: fn(&(f64, f64, f64)) -> f64| squares.iter().map(f).fold(0.0, f64::max);
     let size = (extent(|s| s.0 + s.2), extent(|s| s.1 + s.2));

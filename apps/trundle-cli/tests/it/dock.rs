@@ -151,7 +151,7 @@ fn built_in_problems_are_written_and_read() {
     assert!(said.contains("`goal`"), "{said}");
 }
 
-/// What is written is what would have been solved.
+/// A written problem is the problem that would have been solved.
 #[test]
 fn a_problem_is_written_as_it_was_asked_for() {
     let scratch = tempfile::tempdir().unwrap();

@@ -168,7 +168,7 @@ fn a_signal_ends_a_command_whose_standard_error_has_no_reader() {
 }
 
 #[test]
-fn what_a_killed_run_left_is_named_and_swept() {
+fn files_of_a_killed_run_are_named_and_removed() {
     let scratch = tempfile::tempdir().unwrap();
     let out = scratch.path().join("out");
     let output = signalled(&["demo", "--direct", "--out", text(&out)], &out, "-KILL");
@@ -182,7 +182,7 @@ fn what_a_killed_run_left_is_named_and_swept() {
 
 /// A file that may not grow is as a disk that is full.
 #[test]
-fn what_a_full_disk_does_not_take_is_named_and_the_rest_is_there() {
+fn results_that_a_full_disk_refuses_are_named_and_the_rest_is_there() {
     let scratch = tempfile::tempdir().unwrap();
     let out = scratch.path().join("out");
     let program = env!("CARGO_BIN_EXE_trundle");
@@ -247,7 +247,7 @@ fn man_pages_take_the_place_of_no_other_file() {
     let count = || fs::read_dir(&pages).unwrap().count();
     let before = count();
     assert!(trundle(&["man", text(&pages)]).status.success());
-    assert_eq!(count(), before, "the same pages again are no new files");
+    assert_eq!(count(), before, "the same pages again are not new files");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Trajectories judged: the numbers of the PyPI tool evo, and what the folder holds.
+//! Trajectories evaluated: the numbers of the PyPI tool evo, and what the folder holds.
 
 use crate::program::{refusal, summary, text, trundle};
 use serde_json::Value;
@@ -65,7 +65,7 @@ fn poses_without_stamps_of_their_own_and_short_trajectories_are_refused() {
 }
 
 #[test]
-fn what_cannot_be_judged_is_named() {
+fn inputs_that_cannot_be_evaluated_are_named() {
     let scratch = tempfile::tempdir().unwrap();
     let (a, b) = (scratch.path().join("a.txt"), scratch.path().join("b.txt"));
     std::fs::write(&a, "1.0 0 0 0 0 0 0 1\n2.0 1 0 0 0 0 0 1\n").unwrap();

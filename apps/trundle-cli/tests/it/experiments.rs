@@ -43,7 +43,7 @@ fn a_plain_room_without_people_has_no_false_arrival() {
 }
 
 #[test]
-fn what_the_data_does_not_have_is_said() {
+fn missing_data_are_named() {
     assert!(refusal(&["experiment", "barn", "--data", "/nonexistent"]).contains("worlds.csv"));
     assert!(refusal(&["experiment", "mrpb", "--data", "/nonexistent"]).contains("start_goal.csv"));
     assert!(refusal(&["experiment", "barn", "--worlds", "5-2"]).contains("the last not below the first"));

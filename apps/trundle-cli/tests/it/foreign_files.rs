@@ -90,7 +90,7 @@ fn unreadable_depth_images_are_one_warning_and_an_assumed_camera_is_said() {
     )
     .unwrap();
     let said = refusal(&["slam", text(&data), "--quiet", "--out", text(&out)]);
-    assert!(said.contains("camera.toml, line 7: depth_scale is 0.001, expected units a metre"), "{said}");
+    assert!(said.contains("camera.toml, line 7: depth_scale is 0.001, expected units per metre"), "{said}");
 }
 
 #[test]

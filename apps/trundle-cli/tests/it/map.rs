@@ -123,7 +123,7 @@ fn the_old_map_survives_a_death_at_any_moment_of_saving() {
     use std::time::{Duration, Instant};
     let scratch = tempfile::tempdir().unwrap();
     let Some((log, first)) = mapped(scratch.path()) else { return };
-    // A run that is killed while it takes the place of another leaves that one's map here or where the last run is kept.
+    // A run that is killed while it replaces another leaves that one's map here or where the last run is kept.
     let last = first.with_file_name("first.1");
     let staging = || {
         let entries = fs::read_dir(scratch.path()).unwrap().flatten();

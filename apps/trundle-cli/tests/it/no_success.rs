@@ -19,7 +19,7 @@ fn log_of(dir: &Path, range: f64) -> String {
 }
 
 #[test]
-fn a_map_of_ranges_that_are_zero_or_in_millimetres_is_no_success() {
+fn a_map_of_ranges_that_are_zero_or_in_millimetres_fails() {
     for (range, cause) in [(0.0, "no beam of any scan met anything"), (4000.0, "are they in millimetres?")] {
         let scratch = tempfile::tempdir().unwrap();
         let log = log_of(scratch.path(), range);
@@ -34,7 +34,7 @@ fn a_map_of_ranges_that_are_zero_or_in_millimetres_is_no_success() {
 }
 
 #[test]
-fn docking_in_a_scan_that_met_nothing_is_no_success() {
+fn docking_in_a_scan_that_met_nothing_fails() {
     let scratch = tempfile::tempdir().unwrap();
     let log = log_of(scratch.path(), 0.0);
     let run = trundle(&["dock", &log, "--to=0.3,0,0", "--out", scratch.path().join("out").to_str().unwrap()]);
@@ -43,7 +43,7 @@ fn docking_in_a_scan_that_met_nothing_is_no_success() {
 }
 
 #[test]
-fn docking_in_a_scan_in_millimetres_is_no_success() {
+fn docking_in_a_scan_in_millimetres_fails() {
     let scratch = tempfile::tempdir().unwrap();
     let log = log_of(scratch.path(), 3000.0);
     let run = trundle(&["dock", &log, "--to=0.3,0,0", "--out", scratch.path().join("out").to_str().unwrap()]);
@@ -64,7 +64,7 @@ fn a_topic_of_the_odometry_goes_with_a_bag() {
 }
 
 #[test]
-fn images_of_one_timestamp_are_no_success() {
+fn images_of_one_timestamp_fail() {
     let scratch = tempfile::tempdir().unwrap();
     let data = scratch.path().join("data");
     let place = data.to_str().unwrap();

@@ -1,4 +1,4 @@
-//! No result takes the place of an input, or of a file that trundle did not write.
+//! No result replaces an input, or a file that trundle did not write.
 
 use crate::program::{refusal, summary, text, trundle};
 use std::collections::BTreeMap;

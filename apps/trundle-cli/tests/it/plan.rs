@@ -271,7 +271,7 @@ fn coefficients_are_the_curve_and_active_constraints_are_active() {
     }
 }
 
-/// Grey is dear: the way leads around it where that is no great detour.
+/// Grey is expensive: the way leads around it if that is not a great detour.
 #[test]
 fn grey_of_a_keep_out_mask_is_dear() {
     let room = Room::new();
@@ -328,7 +328,7 @@ fn lanes_of_a_graph_file_are_kept_to() {
 }
 
 #[test]
-fn what_is_wrong_is_said_clearly() {
+fn errors_are_named_clearly() {
     let room = Room::new();
     let elsewhere = write_mask(room.scratch.path(), "beside", (254, 0), TRINARY);
     let yaml = fs::read_to_string(&elsewhere).unwrap().replace("[0.0, 0.0", "[50.0, 0.0");
@@ -359,6 +359,6 @@ fn what_is_wrong_is_said_clearly() {
     let bare = trundle(&["plan", text(&room.map), "--from=desk", "--goal=1,1,0", "--out", text(&room.out())]);
     assert!(
         String::from_utf8_lossy(&bare.stderr)
-            .contains("'desk' is no pose X,Y,DEG; to name a place, give its file with --places")
+            .contains("'desk' is not a pose X,Y,DEG; to name a place, give its file with --places")
     );
 }

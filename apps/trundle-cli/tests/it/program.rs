@@ -25,7 +25,7 @@ pub fn summary(folder: &Path) -> serde_json::Value {
     serde_json::from_slice(&std::fs::read(folder.join("summary.json")).unwrap()).unwrap()
 }
 
-/// A file or folder of the workplace's data; says that it skips where there is none.
+/// A file or folder of the workplace's data; says that it skips if there is none.
 pub fn shared(name: &str) -> Option<PathBuf> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).join(name);
     if !path.exists() {

@@ -40,7 +40,7 @@ fn record(folder: &Path, name: &str, threads: &str, extra: &[&str]) -> PathBuf {
     out
 }
 
-/// What is recorded is tracked as it is: its own camera, odometry as prior, judged against its own ground truth.
+/// A recording is tracked as it is: its own camera, odometry as prior, evaluated against its own ground truth.
 #[test]
 fn a_recorded_drive_is_read_by_slam_as_it_is() {
     let scratch = tempfile::tempdir().unwrap();
@@ -204,5 +204,8 @@ fn the_documented_scene_file_runs_for_as_long_as_asked() {
 #[test]
 fn keys_need_a_keyboard() {
     let sentence = refusal(&["sim", "demo", "--keys"]);
-    assert!(sentence.contains("--keys reads the keyboard, but standard input is no terminal"), "{sentence}");
+    assert!(
+        sentence.contains("--keys reads the keyboard, but standard input is not a terminal"),
+        "{sentence}"
+    );
 }

@@ -1,4 +1,4 @@
-//! What `trundle sim` makes of files: scenes, maps, glTF, faults.
+//! `trundle sim` with files: scenes, maps, glTF, faults.
 
 use crate::plan::write_room;
 use crate::program::{refusal, text, trundle};

@@ -40,7 +40,7 @@ fn a_real_sequence_is_tracked_and_a_broken_frame_is_named_and_skipped() {
 }
 
 #[test]
-fn a_sequence_that_cannot_be_read_is_refused_and_a_black_one_is_no_success() {
+fn a_sequence_that_cannot_be_read_is_refused_and_a_black_one_fails() {
     let Some(data) = shared("tum_fr1_rpy_400") else { return };
     let scratch = tempfile::tempdir().unwrap();
     let (sequence, out) = (scratch.path().join("short"), scratch.path().join("out"));
@@ -62,7 +62,7 @@ fn a_sequence_that_cannot_be_read_is_refused_and_a_black_one_is_no_success() {
     assert!(String::from_utf8(output.stderr).unwrap().contains("no frame can be read"));
 }
 
-/// What tracking a sequence says, with more arguments.
+/// Output of tracking a sequence, with more arguments.
 fn track(sequence: &Path, out: &Path, extra: &[&str]) -> serde_json::Value {
     let mut args = vec!["slam", text(sequence), "--quiet", "--out", text(out)];
     args.extend(extra);

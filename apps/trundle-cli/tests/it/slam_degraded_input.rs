@@ -1,4 +1,4 @@
-//! What a robot with wheels meets: it turns faster than the camera can follow, stands in the dark, looks at nothing. Its
+//! Difficult input of a robot with wheels: it turns faster than the camera can follow, stands in the dark, looks at nothing. Its
 //! SLAM is never lost, and a second after the view is back it is where it says.
 
 use crate::program::{summary, text, trundle};
@@ -12,7 +12,7 @@ struct BadDay<'a> {
     scene: &'a str,
     drive: &'static str,
     faults: Option<&'static str>,
-    /// From when on the pose is judged again, s.
+    /// From when on the pose is evaluated again, s.
     judged_from: f64,
 }
 
@@ -21,7 +21,7 @@ fn pose_at(trajectory: &[(Stamp, Pose3)], at: f64) -> Pose3 {
     trajectory.iter().find(|(stamp, _)| stamp.as_secs() >= at - 1e-6).unwrap().1
 }
 
-/// Drives, tracks, and judges each frame from `judged_from` on by its motion since the first frame.
+/// Drives, tracks, and evaluates each frame from `judged_from` on by its motion since the first frame.
 fn live_through(day: &BadDay) {
     let scratch = tempfile::tempdir().unwrap();
     let file = |name: &str, content: &str| {

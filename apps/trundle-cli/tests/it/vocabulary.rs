@@ -82,7 +82,7 @@ fn bad_input_is_named_and_leaves_no_file() {
     );
     assert!(refused(&["info", "/nowhere"]).contains("cannot read /nowhere"));
     let import = ["import", text(&broken), "--out", text(&out)];
-    assert!(refused(&import).contains("broken.voc: line 1: 'trundle' is no number of its kind"));
+    assert!(refused(&import).contains("broken.voc: line 1: 'trundle' is not a number of its kind"));
     let export = ["export", "--dbow2", text(scratch.path())];
     assert!(refused(&export).contains("is a folder, expected the name of a file"));
     assert!(refused(&["recall", "--quiet"]).contains("no images"));

@@ -1,4 +1,4 @@
-//! What `examples/orb_features.rs` of trundle-vision prints, from kornia-imgproc's ORB: `kornia-orb REPEATS IMAGE.png...`
+//! The output of `examples/orb_features.rs` of trundle-vision, from kornia-imgproc's ORB: `kornia-orb REPEATS IMAGE.png...`
 
 use kornia_image::{Image, ImageSize};
 use kornia_imgproc::features::OrbDetector;

@@ -154,12 +154,12 @@ fn not_shown(keys: &str, error: &CalibrationError) -> String {
     format!("not found: {keys}: {error}")
 }
 
-/// A warning where the robot turns about another axis than the floor's normal.
+/// A warning if the robot turns around another axis than the floor's normal.
 fn axis_warning(angle: f64) -> Option<String> {
     let degrees = angle.to_degrees();
     (degrees > MAX_AXIS_ANGLE_DEG).then(|| {
         format!(
-            "the robot turns about an axis {degrees:.2} deg off the floor's normal, expected {MAX_AXIS_ANGLE_DEG} deg \
+            "the robot turns around an axis {degrees:.2} deg off the floor's normal, expected {MAX_AXIS_ANGLE_DEG} deg \
              or less: is the floor flat, the camera fixed, and the camera calibrated?"
         )
     })

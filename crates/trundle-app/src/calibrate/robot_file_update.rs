@@ -12,7 +12,7 @@ impl Calibration {
     /// Sets the found keys in a robot file. All other keys and comments stay; a file that does not exist is created.
     ///
     /// # Errors
-    /// When the file is no robot file, a found value is outside the range of its key, or the file cannot be written; it is unchanged
+    /// When the file is not a robot file, a found value is outside the range of its key, or the file cannot be written; it is unchanged
     /// then.
     pub fn write(&self, file: &Path) -> Result<(), AppError> {
         let keys: Vec<&CalibratedValue> = self.values.iter().filter(|value| value.is_key).collect();
@@ -28,7 +28,7 @@ impl Calibration {
 /// Checks that [`Calibration::write`] can set keys in this robot file.
 ///
 /// # Errors
-/// When the file is no robot file, or cannot be written.
+/// When the file is not a robot file, or cannot be written.
 pub fn require_robot_file(file: &Path) -> Result<(), AppError> {
     if file.exists() {
         let text = read_text(file)?;
@@ -61,7 +61,7 @@ fn updated(text: &str, values: &[&CalibratedValue]) -> Result<String, String> {
     Ok(document.to_string())
 }
 
-/// Sets the key at a dotted path; tables on the way are made where there are none.
+/// Sets the key at a dotted path; tables on the way are made if there are none.
 fn set(table: &mut Table, path: &str, value: &CalibratedValue) -> Result<(), String> {
     let Some((head, rest)) = path.split_once('.') else {
         set_leaf(table.entry(path).or_insert(Item::None), value);
@@ -78,7 +78,7 @@ fn set(table: &mut Table, path: &str, value: &CalibratedValue) -> Result<(), Str
             *inline = inner.into_inline_table();
             Ok(())
         }
-        _ => Err(format!("[{head}] is no table")),
+        _ => Err(format!("[{head}] is not a table")),
     }
 }
 
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_no_robot_file_stays_as_it_is() {
+    fn a_file_that_is_not_a_robot_file_stays_as_it_is() {
         let scratch = tempfile::tempdir().unwrap();
         for old in ["mount = 3\n", "[mount\n", "[mount]\nheight = 0.3\n"] {
             let file = scratch.path().join("robot.toml");

@@ -13,7 +13,7 @@ pub struct CalibratedValue {
     pub sigma: Option<f64>,
     /// Unit of both.
     pub unit: &'static str,
-    /// The value in use before, where there is one.
+    /// The value in use before, if there is one.
     pub before: Option<f64>,
     /// Decimals that are printed and written.
     pub decimals: usize,
@@ -24,7 +24,7 @@ pub struct CalibratedValue {
 pub struct Calibration {
     /// The values.
     pub values: Vec<CalibratedValue>,
-    /// What a person should know: quality of the fit, and values that the recording does not show.
+    /// Notes for a person: quality of the fit, and values that the recording does not show.
     pub notes: Vec<String>,
 }
 
@@ -48,7 +48,7 @@ impl CalibratedValue {
         }
     }
 
-    /// A number that is no key of the robot file.
+    /// A number that is not a key of the robot file.
     pub(super) fn info(name: &str, (value, sigma): (f64, f64), unit: &'static str, decimals: usize) -> Self {
         let name = name.to_owned();
         Self { name, is_key: false, value, sigma: Some(sigma), unit, before: None, decimals }

@@ -18,8 +18,8 @@ pub fn impossible_text(impossible: &Impossible) -> String {
             "a complete search in steps of docking.planner.position_tolerance found no way through; a way that is narrower than such a step is \
              not ruled out".to_owned()
         }
-        (Certificate::None, None) => "none was found, which is no proof".to_owned(),
-        (Certificate::None, Some(limit)) => format!("none was found, which is no proof: {}", ended(limit)),
+        (Certificate::None, None) => "none was found, which is not a proof".to_owned(),
+        (Certificate::None, Some(limit)) => format!("none was found, which is not a proof: {}", ended(limit)),
     };
     format!("No manoeuvre within {:.1} m{by} ({proof}).", impossible.within)
 }

@@ -30,7 +30,7 @@ pub struct DockingRequest {
     pub method: Option<Method>,
     /// Margin to every obstacle \[m\]; `None` for the robot's.
     pub margin: Option<f64>,
-    /// The robot, where one is given.
+    /// The robot, if one is given.
     pub robot: Option<RobotConfig>,
 }
 
@@ -68,7 +68,7 @@ impl DockingRequest {
         DockingResult::of(task, self.planner_config()).map_err(|invalid| named(&self.place, &invalid))
     }
 
-    /// The robot's `docking.planner` where a robot is given, else the planner's own defaults; method and margin as requested.
+    /// The robot's `docking.planner` if a robot is given, else the planner's own defaults; method and margin as requested.
     fn planner_config(&self) -> DockingConfig {
         let config =
             self.robot.as_ref().map_or_else(DockingConfig::default, |robot| robot.docking.planner.clone());

@@ -32,7 +32,7 @@ impl DockingResult {
         }
     }
 
-    /// The manoeuvre, where there is one.
+    /// The manoeuvre, if there is one.
     #[must_use]
     pub fn found(&self) -> Option<&Solution> {
         match self {

@@ -19,16 +19,16 @@ pub struct DockingTask {
     pub goal: Pose2,
     /// The obstacles, for the planner.
     pub scene: ObstacleScene,
-    /// The map, where the obstacles are a map's.
+    /// The map, if the obstacles are a map's.
     pub grid: Option<OccupancyGrid>,
-    /// The list, where the obstacles are a list's.
+    /// The list, if the obstacles are a list's.
     pub problem: Option<Problem>,
-    /// Why no manoeuvre can be planned for the task; `None` where the planner decides.
+    /// Why no manoeuvre can be planned for the task; `None` if the planner decides.
     pub refusal: Option<String>,
 }
 
 impl DockingTask {
-    /// A task on a map file, between two poses, refused where one is off the map. `unknown_is_free`: whether unknown cells are no obstacles.
+    /// A task on a map file, between two poses, refused if one is off the map. `unknown_is_free`: whether unknown cells are not obstacles.
     ///
     /// # Errors
     /// When the map cannot be read.

@@ -19,7 +19,7 @@ pub struct MapEvaluation {
 }
 
 impl MapEvaluation {
-    /// Judges the map of one file against the true map of another one. `at` is the pose of the map's frame in the true map's frame: exact, or
+    /// Evaluates the map of one file against the true map of another one. `at` is the pose of the map's frame in the true map's frame: exact, or
     /// the start of an alignment by closest points.
     ///
     /// # Errors

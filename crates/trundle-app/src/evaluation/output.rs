@@ -1,4 +1,4 @@
-//! The folder of a judged trajectory.
+//! The folder of an evaluated trajectory.
 
 use super::TrajectoryEvaluation;
 use super::page::{page, pictures};

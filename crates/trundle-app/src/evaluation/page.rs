@@ -1,4 +1,4 @@
-//! The page and the pictures of a judged trajectory.
+//! The page and the pictures of an evaluated trajectory.
 
 use super::TrajectoryEvaluation;
 use trundle_viz::{Card, Chart, Color, Figure, Report, Table, trajectory_picture};

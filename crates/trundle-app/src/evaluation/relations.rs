@@ -46,7 +46,7 @@ pub struct RelationEvaluation {
 }
 
 impl RelationEvaluation {
-    /// Judges the trajectory of the file `estimate`. A pose stands for a time at most `max_difference` \[s\] away.
+    /// Evaluates the trajectory of the file `estimate`. A pose stands for a time at most `max_difference` \[s\] away.
     ///
     /// # Errors
     /// When a file cannot be read, the reference has no relation, or the trajectory has no pose for one.

@@ -29,7 +29,7 @@ pub struct TrajectoryEvaluation {
 }
 
 impl TrajectoryEvaluation {
-    /// Judges `estimate` against `reference`.
+    /// Evaluates `estimate` against `reference`.
     ///
     /// # Errors
     /// Those of [`absolute_trajectory_error`] and [`relative_pose_error`].
@@ -52,7 +52,7 @@ impl TrajectoryEvaluation {
         })
     }
 
-    /// Judges the trajectory of one file against the reference of another one.
+    /// Evaluates the trajectory of one file against the reference of another one.
     ///
     /// # Errors
     /// When a file cannot be read, or as [`TrajectoryEvaluation::of`], with the name of the file.

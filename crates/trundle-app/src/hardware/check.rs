@@ -26,7 +26,7 @@ const MIN_TURN_RAD: f64 = 0.35;
 /// Smallest number of images that show the floor. Source: ours.
 const MIN_FLOOR_IMAGES: usize = 3;
 
-/// What is checked.
+/// The checks.
 pub struct CheckRequest<'a> {
     /// The base.
     pub base: &'a BaseSpec,
@@ -45,9 +45,9 @@ pub struct CheckRequest<'a> {
 pub struct HardwareReport {
     /// The table: what, value.
     pub rows: Vec<Vec<String>>,
-    /// What must be mended before a drive, each with the remedy; empty where all is well.
+    /// Faults to fix before a drive, each with the remedy; empty if there are none.
     pub problems: Vec<String>,
-    /// What was not checked, and how to check it.
+    /// Parts that were not checked, and how to check them.
     pub notes: Vec<String>,
     /// Values for the robot file.
     pub values: Calibration,
@@ -164,7 +164,7 @@ impl HardwareReport {
         }
     }
 
-    /// The signs of encoders and gyro, where the robot was pushed.
+    /// The signs of encoders and gyro, if the robot was pushed.
     fn check_wheels(&mut self, log: &CheckLog) {
         let [left, right] = log.distances;
         let (turn, gyro) = ((right - left) / log.wheelbase(), log.gyro_turn);

@@ -1,4 +1,4 @@
-//! What came from base and camera during a check.
+//! Readings from base and camera during a check.
 
 use std::time::Instant;
 use trundle_core::{
@@ -19,7 +19,7 @@ pub(super) struct ImageNote {
     pub depth_part: f64,
 }
 
-/// What the base reported of itself.
+/// Facts that the base reported about itself.
 #[derive(Debug, Default)]
 pub(super) struct BodyNotes {
     pub battery: Option<Battery>,
@@ -29,7 +29,7 @@ pub(super) struct BodyNotes {
     pub events: Vec<String>,
 }
 
-/// What came from base and camera during a check.
+/// Readings from base and camera during a check.
 #[derive(Debug)]
 pub(super) struct CheckLog {
     origin: Instant,

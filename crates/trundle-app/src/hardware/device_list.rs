@@ -1,4 +1,4 @@
-//! What is plugged in, what is missing and how to get it.
+//! Devices that are plugged in, missing parts and how to get them.
 
 use std::path::Path;
 use trundle_drivers::camera::kinect2::usb::KINECT2_USB_STATE;

@@ -91,7 +91,7 @@ impl OpenCamera {
         }
     }
 
-    /// What the camera says of itself.
+    /// Description of the camera by itself.
     #[must_use]
     pub fn info(&self) -> &CameraInfo {
         self.camera.info()
@@ -164,7 +164,7 @@ impl Drivers {
         self.base.versions()
     }
 
-    /// What was read and dropped so far.
+    /// Bytes read and dropped so far.
     #[must_use]
     pub fn counters(&self) -> (BaseCounters, CameraCounters) {
         (self.base.counters(), self.camera.counters())

@@ -192,7 +192,7 @@ fn about<T: Copy>(poses: &[(Stamp, T)], stamp: Stamp) -> Option<(T, T, f64)> {
     }
 }
 
-/// A base under the camera, its heading that of the optical axis; `None` where the axis is nearly vertical.
+/// A base under the camera, its heading that of the optical axis; `None` if the axis is nearly vertical.
 fn base_below(level_from_camera: &Pose3) -> Option<Pose2> {
     let axis = level_from_camera.rotate(Vector3::z());
     let at = level_from_camera.translation;

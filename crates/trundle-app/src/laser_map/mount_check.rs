@@ -7,7 +7,7 @@ use trundle_io::{LaserLog, LaserLogScan, LaserMount};
 
 /// Largest number of steps of each kind that are compared. Source: ours.
 const MAX_STEPS: usize = 24;
-/// Number of steps below which the mount is not judged. Source: ours.
+/// Number of steps below which the mount is not evaluated. Source: ours.
 const MIN_STEPS: usize = 8;
 /// Largest number of points of a scan that are compared. Source: ours.
 const MAX_POINTS: usize = 180;
@@ -31,7 +31,7 @@ const MAX_ERROR_SHARE: f64 = 0.6;
 
 /// Share of the steps with wrong odometry \[1\] from which on a warning is given, whatever the mount. Source: ours.
 const MIN_SHARE_NOT_BELIEVED: f64 = 0.3;
-/// Number of scans below which that share is not judged. Source: ours.
+/// Number of scans below which that share is not evaluated. Source: ours.
 const MIN_SCANS: usize = 10;
 
 /// A sentence for a log whose laser is probably mounted differently, or whose scans contradict the odometry at many steps.
@@ -49,7 +49,7 @@ pub(super) fn mount_hint(log: &LaserLog, counts: &ScanCounts) -> Option<String> 
     }
 }
 
-/// What a mount is called, and the options that are not given for it; `None` where it is the mount taken.
+/// Name of a mount, and the options that are not given for it; `None` if it is the mount taken.
 fn described(mount: LaserMount, taken: LaserMount) -> Option<String> {
     // Without the sign of a negative zero.
     let degrees = mount.turn.to_degrees().round() + 0.0;

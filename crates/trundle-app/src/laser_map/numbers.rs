@@ -61,7 +61,7 @@ pub fn map_rows(log: &LaserLog, run: &LaserMapRun) -> Vec<Vec<String>> {
     rows
 }
 
-/// The topics that made the log, and the unused ones; none where the log has no topics.
+/// The topics that made the log, and the unused ones. No rows if the log has no topics.
 fn source_rows(sources: &LaserLogSources) -> Vec<Vec<String>> {
     let left: Vec<String> = sources.left.iter().map(|(topic, count)| format!("{topic} ({count})")).collect();
     let rows = [

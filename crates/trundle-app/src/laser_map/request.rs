@@ -27,7 +27,7 @@ pub struct LaserMapRequest {
     pub seed: u64,
     /// Side of a cell, m.
     pub resolution: f64,
-    /// The laser, where the log does not hold it.
+    /// The laser, if the log does not hold it.
     pub laser: LaserLogOptions,
     /// The map of an earlier run, in which the robot is localized first.
     pub map: Option<PathBuf>,

@@ -21,12 +21,12 @@ pub struct LaserMapRun {
     pub is_interrupted: bool,
     /// Probable error of the laser's mount, where the scans contradict the odometry at many steps.
     pub mount_hint: Option<String>,
-    /// Why the run missed its aim; `None` where it did not.
+    /// Why the run missed its aim; `None` if it did not.
     pub failure: Option<String>,
 }
 
 impl LaserMapRun {
-    /// Why a log that gave these counts and this map, where one was made, missed the aim, with the likely cause. `is_stopped`: whether
+    /// Why a log that gave these counts and this map, if one was made, missed the aim, with the likely cause. `is_stopped`: whether
     /// the user ended the run.
     pub(super) fn failure_of(
         log: &LaserLog,

@@ -91,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_or_cannot_be_is_refused() {
+    fn missing_and_impossible_zones_are_refused() {
         let map = MapAnnotations { zones: vec![zone(1, "")], places: vec![place(2, "desk")] };
         for edit in [
             AnnotationEdit::RemoveZone(2),

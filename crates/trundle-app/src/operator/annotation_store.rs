@@ -11,7 +11,7 @@ use trundle_runtime::OperatorCommand;
 pub(super) struct AnnotationStore {
     pub(super) newest: Arc<MapAnnotations>,
     pub(super) file: Option<PathBuf>,
-    /// Changes that were sent and that the robot has not obeyed yet.
+    /// Changes that were sent and that the robot has not applied yet.
     pub(super) waiting: u32,
     /// Number of the last request that was sent before the map was replaced; 0 before that. Changes up to it are of an earlier map.
     pub(super) last_of_earlier_map: u64,
@@ -23,7 +23,7 @@ impl AnnotationStore {
         Self { newest, file, ..Self::default() }
     }
 
-    /// Takes over what the robot obeys, where it is no change that was sent here: a replay, or another way to the robot.
+    /// Takes over what the robot applies, if it is not a change that was sent here: a replay, or another way to the robot.
     pub(super) fn note_obeyed(&mut self, annotations: &MapAnnotations) {
         if self.waiting > 0 {
             self.waiting -= 1;
@@ -38,7 +38,7 @@ impl AnnotationStore {
         *self = Self { waiting: self.waiting, last_of_earlier_map: last, ..Self::default() };
     }
 
-    /// Whether a request changes the zones or places of an earlier map: the robot must not obey it on the present one.
+    /// Whether a request changes the zones or places of an earlier map: the robot must not apply it on the present one.
     pub(super) fn is_of_earlier_map(&self, request: &OperatorRequest) -> bool {
         matches!(request.command, OperatorCommand::Annotate(_)) && request.id <= self.last_of_earlier_map
     }

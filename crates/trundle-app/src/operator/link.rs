@@ -86,7 +86,7 @@ impl Operator {
     /// Sends a command; its number, by which [`RunView::mission`] names the mission that it begins.
     ///
     /// # Errors
-    /// When the command cannot be obeyed, too many wait, or the run is over.
+    /// When the command cannot be carried out, too many wait, or the run is over.
     pub fn send(&self, command: OperatorCommand) -> Result<u64, OperatorError> {
         let command = command.validated()?;
         let mut requests = self.shared.requests.lock().unwrap_or_else(PoisonError::into_inner);
@@ -121,7 +121,7 @@ impl Operator {
         self.shared.view.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// The newest view; `None` before the first step. Scan, image and map are kept up to date while somebody asks at least once a second.
+    /// The newest view; `None` before the first step. Scan, image and map are kept up to date while somebody asks at least once per second.
     #[must_use]
     pub fn view(&self) -> Option<Arc<RunView>> {
         self.shared.is_asked.store(true, Ordering::Relaxed);
@@ -147,7 +147,7 @@ impl OperatorLink {
         self.unwatched_steps < UNWATCHED_STEPS
     }
 
-    /// The next request, where one waits. Changes of the zones and places of a map that was replaced meanwhile are dropped: the file
+    /// The next request, if one waits. Changes of the zones and places of a map that was replaced meanwhile are dropped: the file
     /// of that map has them.
     pub(crate) fn next_request(&self) -> Option<OperatorRequest> {
         loop {
@@ -240,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn a_command_that_is_no_number_does_not_reach_the_run() {
+    fn a_command_that_is_not_a_number_does_not_reach_the_run() {
         let (operator, link) = operator_link();
         let pose = Pose2::new(f64::NAN, 0.0, 0.0);
         let guess = PoseGuess { pose, position_sigma: 0.1, heading_sigma: 0.1 };

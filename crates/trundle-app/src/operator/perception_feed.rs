@@ -28,7 +28,7 @@ impl PerceptionFeed {
         }
     }
 
-    /// Copies the features of an image that was tracked, where the last copy is old.
+    /// Copies the features of an image that was tracked, if the last copy is old.
     pub(super) fn update(&mut self, size_px: [usize; 2], robot: &Robot, report: &StepReport) {
         let (Some(track), Some(slam)) = (&report.track, robot.slam()) else { return };
         if self.features.as_ref().is_some_and(|(copied, _)| track.stamp - *copied < FEATURES_PERIOD_S) {

@@ -1,4 +1,4 @@
-//! What a run shows to its front ends.
+//! View of a run for its front ends.
 
 use std::sync::Arc;
 
@@ -23,7 +23,7 @@ pub struct RunView {
     pub state: DriveState,
     /// The mission.
     pub mission: MissionView,
-    /// The battery; `None` where the body has not reported it.
+    /// The battery; `None` if the body has not reported it.
     pub battery: Option<Battery>,
     /// The condition under which no wheel may turn.
     pub hold: Option<MotionHold>,
@@ -35,7 +35,7 @@ pub struct RunView {
     pub plan: Option<Arc<Trajectory>>,
     /// The map, at most one second old.
     pub map: Option<Arc<MapView>>,
-    /// What is around the robot besides the map.
+    /// Surroundings of the robot besides the map.
     pub perception: PerceptionView,
     /// How often stages ran so far.
     pub counts: RunCounts,
@@ -43,7 +43,7 @@ pub struct RunView {
     pub settings: [RunSetting; 2],
 }
 
-/// What is around a robot besides the map.
+/// Surroundings of a robot besides the map.
 #[derive(Debug, Clone, Default)]
 pub struct PerceptionView {
     /// The newest colour image.
@@ -140,7 +140,7 @@ pub struct MissionView {
 pub struct MapView {
     /// Number of maps that an operator has replaced until then.
     pub number: u64,
-    /// Number of scans that were drawn into it so far: maps of equal numbers are equal, where no loop was closed.
+    /// Number of scans that were drawn into it so far: maps of equal numbers are equal, if no loop was closed.
     pub revision: u64,
     /// The map.
     pub grid: OccupancyGrid,

@@ -52,7 +52,7 @@ impl ViewFeed {
         }
     }
 
-    /// The view after a step; `None` after a step without command or result. Scan and map are copied where the run `is_watched`.
+    /// The view after a step; `None` after a step without command or result. Scan and map are copied if the run `is_watched`.
     pub(super) fn view(
         &mut self,
         stamp: Stamp,

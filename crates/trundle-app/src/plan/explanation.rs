@@ -53,7 +53,7 @@ impl PlanRequest {
         }
     }
 
-    /// Part of the keep-out mask or of unknown space in a refusal; empty where the answer is the same without them.
+    /// Part of the keep-out mask or of unknown space in a refusal; empty if the answer is the same without them.
     fn what_changes(&mut self, why: &Plan, from: Pose2, goal: usize) -> &'static str {
         match self.without_the_mask(why, from, goal) {
             "" => self.with_unknown_free(why, from, goal),
@@ -61,7 +61,7 @@ impl PlanRequest {
         }
     }
 
-    /// Part of unknown space in a refusal; empty where the answer is the same if unknown cells are free.
+    /// Part of unknown space in a refusal; empty if the answer is the same if unknown cells are free.
     fn with_unknown_free(&mut self, why: &Plan, from: Pose2, goal: usize) -> &'static str {
         let Some(planner) = &mut self.unknown_free else { return "" };
         let open = plan_leg(planner, (&self.grid, self.graph.as_ref()), from, self.goals[goal].pose);
@@ -81,7 +81,7 @@ impl PlanRequest {
         }
     }
 
-    /// Part of the keep-out mask in a refusal; empty where the answer is the same without it.
+    /// Part of the keep-out mask in a refusal; empty if the answer is the same without it.
     fn without_the_mask(&mut self, why: &Plan, from: Pose2, goal: usize) -> &'static str {
         if self.keep_out.is_none() {
             return "";
@@ -104,7 +104,7 @@ impl PlanRequest {
     }
 }
 
-/// The plan of one leg from rest, along the graph where there is one.
+/// The plan of one leg from rest, along the graph if there is one.
 fn plan_leg(
     planner: &mut Planner,
     (grid, graph): (&OccupancyGrid, Option<&WaypointGraph>),

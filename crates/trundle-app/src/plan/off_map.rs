@@ -20,7 +20,7 @@ pub struct OffMap {
 }
 
 impl OffMap {
-    /// Where the outline leaves the map along the plan; `None` where it does not.
+    /// Where the outline leaves the map along the plan; `None` if it does not.
     #[must_use]
     pub fn of(request: &PlanRequest, plan: &MultiGoalPlan) -> Option<Self> {
         let geometry = request.grid.geometry();

@@ -23,7 +23,7 @@ pub struct PlanFiles {
     pub graph: Option<PathBuf>,
 }
 
-/// A pose in the map frame, with its name where it has one.
+/// A pose in the map frame, with its name if it has one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedPose {
     /// `map_from_base`.
@@ -44,7 +44,7 @@ impl NamedPose {
     ) -> Result<Self, AppError> {
         let (Some(file), Some(places)) = (file, places) else {
             let message =
-                format!("'{name}' is no pose X,Y,DEG; to name a place, give its file with --places");
+                format!("'{name}' is not a pose X,Y,DEG; to name a place, give its file with --places");
             return Err(AppError::Input(message));
         };
         match places.get(name) {
@@ -88,7 +88,7 @@ pub struct PlanRequest {
     pub(super) graph: Option<WaypointGraph>,
     /// Plans without the keep-out mask, to report the effect of the mask.
     pub(super) unmasked: Planner,
-    /// Plans with all masks and unknown cells as free, to report the effect of unknown space; `None` where they are free anyway.
+    /// Plans with all masks and unknown cells as free, to report the effect of unknown space; `None` if they are free anyway.
     pub(super) unknown_free: Option<Planner>,
 }
 

@@ -23,7 +23,7 @@ pub trait BackgroundBody {
     /// Where commands go.
     fn commands(&self) -> Sender<Twist2>;
 
-    /// The count of separate contacts, in truth; `None` where only the bumper reports contacts.
+    /// The count of separate contacts, in truth; `None` if only the bumper reports contacts.
     fn contacts(&self) -> Option<Arc<AtomicU32>>;
 
     /// Ends the body's threads.
@@ -47,7 +47,7 @@ pub struct Lateness {
 /// How the body kept time. Where a simulated body did not, the robot's figures are not the robot's alone.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct BodyTiming {
-    /// Lateness of the base's readings; `None` where the base is real.
+    /// Lateness of the base's readings; `None` if the base is real.
     #[serde(flatten)]
     pub lateness: Option<Lateness>,
     /// Images that the camera had no time to take.

@@ -45,7 +45,7 @@ impl EventFeed {
         Self::with_clock(events, origin, clock)
     }
 
-    /// The same with another clock of the run, as that of a simulator, which may run slower or stand still.
+    /// A feed with another clock of the run, as that of a simulator, which may run slower or stand still.
     #[must_use]
     pub fn with_clock(events: InboxSender<TimedEvent>, origin: Instant, clock: HostClock) -> Self {
         Self { events, origin, clock, state: Arc::default() }
@@ -65,7 +65,7 @@ impl EventFeed {
         }
     }
 
-    /// Reports silence where no event has come for long enough.
+    /// Reports silence if no event has come for long enough.
     pub(super) fn report_silence(&self) {
         let now = Instant::now();
         let mut state = self.state();

@@ -20,7 +20,7 @@ impl MemoryUsage {
         }
     }
 
-    /// Growth from `begin` s on by a straight line through it, MB an hour; `None` where that is less than half a minute.
+    /// Growth from `begin` s on by a straight line through it, MB per hour; `None` if that is less than half a minute.
     pub fn growth_mb_an_hour(&self, begin: f64) -> Option<f64> {
         let end = self.samples.last()?.0;
         let late: Vec<_> = self.samples.iter().filter(|(time, _)| *time >= begin).collect();

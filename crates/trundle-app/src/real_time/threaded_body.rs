@@ -27,7 +27,7 @@ pub struct ThreadedBody {
     /// Time from the start of a job to the use of its result \[ms\].
     waits: BTreeMap<Worker, Histogram>,
     costs: Vec<ThreadLoad>,
-    /// Separate contacts, in truth; `None` where they are not known.
+    /// Separate contacts, in truth; `None` if they are not known.
     contacts: Option<Arc<AtomicU32>>,
 }
 
@@ -63,7 +63,7 @@ impl ThreadedBody {
         self.inbox.sender()
     }
 
-    /// Sends commands to `commands` from now on, and reads the contacts, where they are known, from `contacts`.
+    /// Sends commands to `commands` from now on, and reads the contacts, if they are known, from `contacts`.
     pub fn connect(&mut self, commands: Sender<Twist2>, contacts: Option<Arc<AtomicU32>>) {
         self.commands = Some(commands);
         self.contacts = contacts;

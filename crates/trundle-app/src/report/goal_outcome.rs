@@ -47,7 +47,7 @@ impl GoalOutcome {
         })
     }
 
-    /// Whether the robot came within these distances of the goal, m and rad: in truth where it is known, else by its own estimate.
+    /// Whether the robot came within these distances of the goal, m and rad: in truth if it is known, else by its own estimate.
     /// Before a restart only the estimate is recorded.
     pub fn is_reached(&self, distance: f64, turn: f64) -> bool {
         let near = |error: GoalError| error.distance < distance && error.dtheta.abs() < turn;
@@ -66,7 +66,7 @@ impl GoalOutcome {
         vec![
             format!("goal {} at ({x:.2} m, {y:.2} m, {:.0} deg)", self.task + 1, theta.to_degrees()),
             if self.before_restart {
-                format!("{}, before it was switched off; believed {}", self.end, error(&self.believed))
+                format!("{}, before it was switched off; estimated error {}", self.end, error(&self.believed))
             } else {
                 let (by, found) = if self.error.is_some() {
                     ("", &self.error)

@@ -12,7 +12,7 @@ use trundle_runtime::{DriveState, GoalApproachReport, Reason, Stage, StageTimes,
 pub struct RunNumbers {
     /// The goals of the mission, as they came.
     pub goals: Vec<GoalOutcome>,
-    /// How many goals the mission has; `None` where it asks for nothing but to stand at the start.
+    /// How many goals the mission has; `None` if it asks for nothing but to stand at the start.
     pub goals_asked: Option<usize>,
     /// Where the robot stands in truth at the end, against the last goal; `None` without truth.
     pub goal_error: Option<GoalError>,
@@ -20,7 +20,7 @@ pub struct RunNumbers {
     pub believed_error: Option<GoalError>,
     /// The estimate's distance from truth over the run: root of the mean square, m.
     pub estimate_rmse: Option<f64>,
-    /// Number of contacts: true ones, where those are known.
+    /// Number of contacts: true ones, if those are known.
     pub contacts: usize,
     /// Distance driven, m.
     pub path_length: f64,
@@ -49,7 +49,7 @@ pub struct RunEnd {
     pub state: DriveState,
     /// Whether an operator gave the missions: the end of the run is then no failure.
     pub is_operated: bool,
-    /// The time limit that ended the run \[s\], where one did.
+    /// The time limit that ended the run \[s\], if one did.
     pub out_of_time: Option<f64>,
 }
 
@@ -111,7 +111,7 @@ impl RunNumbers {
         }
     }
 
-    /// The error against the last goal that judges the run: in truth where it is known, else of the estimate.
+    /// The error against the last goal, by which the run succeeds or fails: in truth if it is known, else of the estimate.
     fn judged_error(&self) -> Option<GoalError> {
         self.goal_error.or(self.believed_error)
     }
@@ -126,7 +126,7 @@ impl RunNumbers {
         self.judged_error().is_none_or(|error| error.dtheta.abs().to_degrees() < ALIGNED_DEG)
     }
 
-    /// Whether every goal was reached without a contact, in truth where it is known.
+    /// Whether every goal was reached without a contact, in truth if it is known.
     pub fn is_success(&self) -> bool {
         if self.end.is_operated {
             return self.goals_missed() == 0 && self.contacts == 0;
@@ -197,7 +197,7 @@ impl RunNumbers {
             rows.extend(self.goals.iter().map(GoalOutcome::row));
         }
         rows.extend(self.goal_error.as_ref().map(|e| row("goal error against truth", error(e))));
-        rows.extend(self.believed_error.as_ref().map(|e| row("goal error as believed", error(e))));
+        rows.extend(self.believed_error.as_ref().map(|e| row("goal error of the estimate", error(e))));
         rows.extend(
             self.estimate_rmse.map(|e| row("estimate against truth, rmse", format!("{:.1} cm", e * 100.0))),
         );

@@ -4,7 +4,7 @@ use crate::sequence_input::SequenceInput;
 use trundle_core::{CameraMotion, Pose2, Pose3, Stamp};
 use trundle_estimation::OdometryConfig;
 
-/// The camera's motion by the odometry of a sequence, where it has one; the camera is mounted as on the sequence's robot.
+/// The camera's motion by the odometry of a sequence, if it has one; the camera is mounted as on the sequence's robot.
 pub struct OdometryPrior<'a> {
     poses: &'a [(Stamp, Pose2)],
     base_from_camera: Pose3,

@@ -18,7 +18,7 @@ pub struct SequenceRequest {
     pub topics: RosSequenceOptions,
     /// A camera preset or a file of one; `None` for the input's own.
     pub camera: Option<String>,
-    /// Depth units a metre; `None` for the camera's own.
+    /// Depth units per metre; `None` for the camera's own.
     pub depth_scale: Option<f64>,
     /// Frames to track; `None` for all.
     pub frames: Option<usize>,

@@ -35,7 +35,7 @@ pub struct SequenceRun {
     pub is_interrupted: bool,
     /// The depth of all images read.
     depth: DepthStatistics,
-    /// Depth units a metre.
+    /// Depth units per metre.
     depth_scale: f64,
     /// Calibration issues that were logged.
     logged_issues: usize,
@@ -147,7 +147,7 @@ impl SequenceRun {
         })
     }
 
-    /// Why the run missed its aim, with the likely cause; `None` where it did not.
+    /// Why the run missed its aim, with the likely cause; `None` if it did not.
     #[must_use]
     pub fn failure(&self) -> Option<String> {
         let depth = self.depth.problem(self.depth_scale);

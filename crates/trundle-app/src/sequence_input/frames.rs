@@ -62,7 +62,7 @@ impl PendingFrame<'_> {
         Ok(decoded)
     }
 
-    /// The bytes to record for the decoded `image`: those that were read, where they are of the recordings' form.
+    /// The bytes to record for the decoded `image`: those that were read, if they are of the recordings' form.
     ///
     /// # Errors
     /// When the image cannot be encoded.

@@ -24,7 +24,7 @@ impl RecordedRun {
     /// Reads a recording; with `recover` one that is cut, up to the cut.
     ///
     /// # Errors
-    /// When the file is no recording, is broken, or names a robot that cannot be accepted.
+    /// When the file is not a recording, is broken, or names a robot that cannot be accepted.
     pub fn read(file: &Path, recover: bool) -> Result<Self, AppError> {
         let mut reader = open(file, recover)?;
         let setup =
@@ -66,7 +66,7 @@ impl RecordedRun {
         }))
     }
 
-    /// The robot that made it; `None` where the recording names none.
+    /// The robot that made it; `None` if the recording names none.
     #[must_use]
     pub fn robot(&self) -> Option<&RobotConfig> {
         self.robot.as_ref()
@@ -78,13 +78,13 @@ impl RecordedRun {
         self.images
     }
 
-    /// `odom_from_base` by wheels and gyro; `None` where the recording holds no wheels.
+    /// `odom_from_base` by wheels and gyro; `None` if the recording holds no wheels.
     #[must_use]
     pub fn odometry(&self) -> Option<&[(Stamp, Pose2)]> {
         (!self.odometry.is_empty()).then_some(&self.odometry)
     }
 
-    /// `world_from_camera`; `None` where the recording holds no truth.
+    /// `world_from_camera`; `None` if the recording holds no truth.
     #[must_use]
     pub fn ground_truth(&self) -> Option<&[(Stamp, Pose3)]> {
         (!self.camera_truth.is_empty()).then_some(&self.camera_truth)
@@ -96,7 +96,7 @@ impl RecordedRun {
         &self.scans
     }
 
-    /// Logs a warning where the recording was cut.
+    /// Logs a warning if the recording was cut.
     pub fn warn_of_cut(&self) {
         if let Some(report) = &self.cut_report {
             tracing::warn!("{}: {report}", self.file.display());

@@ -18,7 +18,7 @@ pub struct StillBody {
     pub events: std::collections::VecDeque<SensorEvent>,
     /// Commands so far.
     pub commands: Vec<Twist2>,
-    /// Contacts in truth; none where they are not counted.
+    /// Contacts in truth. `None` if they are not counted.
     pub contacts: Option<u32>,
     /// Whether the sensors fail once the events are used up.
     pub fails: bool,

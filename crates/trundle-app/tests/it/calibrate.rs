@@ -41,7 +41,7 @@ fn record(
     record_with(file, &RobotConfig::default(), config, script, change);
 }
 
-/// The same with another robot file.
+/// Records with the robot `in_use`.
 fn record_with(
     file: &Path,
     in_use: &RobotConfig,
@@ -103,7 +103,7 @@ fn late_drive() -> CalibrationInput {
     CalibrationInput::open(file, false).unwrap()
 }
 
-/// The same with images on time.
+/// The drive with images on time.
 fn drive_on_time() -> CalibrationInput {
     static FILE: OnceLock<(tempfile::TempDir, PathBuf)> = OnceLock::new();
     let (_, file) = FILE.get_or_init(|| {

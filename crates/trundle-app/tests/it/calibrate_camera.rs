@@ -15,7 +15,7 @@ fn camera() -> PinholeCamera {
     PinholeCamera::new((320, 240), (271.0, 269.0), (163.0, 117.0), Default::default()).unwrap()
 }
 
-/// An image of the board, 4 x 4 samples a pixel.
+/// An image of the board, 4 x 4 samples per pixel.
 fn draw(camera_from_board: &Pose3) -> ColorImage {
     let camera = camera();
     let board_from_camera = camera_from_board.inverse();

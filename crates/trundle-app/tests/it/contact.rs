@@ -1,4 +1,4 @@
-//! What counts as contact is the same for planning and for docking.
+//! Contact has one definition for planning and for docking.
 
 use trundle_core::{
     Cell, CellIndex, DifferentialDrive, DriveLimits, Footprint, GridGeometry, OccupancyGrid, Pose2, Twist2,

@@ -90,7 +90,7 @@ fn a_recorder_that_failed_takes_no_more_lines() {
 }
 
 #[test]
-fn files_that_are_no_recording_of_a_run_are_refused_by_name() {
+fn files_that_are_not_a_recording_of_a_run_are_refused_by_name() {
     let scratch = tempfile::tempdir().unwrap();
     let refusal = |file: &Path| RunReplayer::open(file).err().unwrap().to_string();
     let missing = scratch.path().join("missing.mcap");
@@ -121,7 +121,7 @@ fn a_disk_short_of_space_ends_the_recording_and_not_the_run() {
 }
 
 #[test]
-fn a_recording_without_images_is_no_replay_and_none_is_no_file() {
+fn a_recording_without_images_is_not_replayed_and_content_none_writes_no_file() {
     let scratch = tempfile::tempdir().unwrap();
     let mut files = Vec::new();
     for content in [RecordingContent::None, RecordingContent::Events] {

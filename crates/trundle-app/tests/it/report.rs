@@ -83,7 +83,7 @@ fn a_goal_is_reached_within_distance_and_turn_and_when_the_task_is_done() {
     let reached = |end, error| goal(end, error).is_reached(0.05, 0.05);
     assert!(reached(TaskEnd::Done, off(0.04, 2.0)));
     assert!(!reached(TaskEnd::Done, off(0.06, 0.0)) && !reached(TaskEnd::Done, off(0.0, 4.0)));
-    assert!(reached(TaskEnd::Done, None), "without truth the estimate judges");
+    assert!(reached(TaskEnd::Done, None), "without truth the estimate decides");
     let off_by_estimate = GoalOutcome { believed: off(0.2, 0.0), ..goal(TaskEnd::Done, None) };
     assert!(!off_by_estimate.is_reached(0.05, 0.05));
     let given_up = || TaskEnd::GivenUp { reason: Reason::MovingObstacle };
@@ -98,7 +98,7 @@ fn the_rows_of_a_goal_say_where_when_and_how() {
     assert_eq!(row[0], "goal 1 at (1.00 m, 0.00 m, 0 deg)");
     assert_eq!(row[1], "12.3 s: put off: a moving obstacle blocks the path, 50.0 cm, 0.00 deg");
     let earlier = GoalOutcome { before_restart: true, ..goal(TaskEnd::Done, None) };
-    assert_eq!(earlier.row()[1], "done, before it was switched off; believed 1.0 cm, 0.00 deg");
+    assert_eq!(earlier.row()[1], "done, before it was switched off; estimated error 1.0 cm, 0.00 deg");
 }
 
 #[test]

@@ -121,7 +121,7 @@ impl Follower {
         self.limiter.sent(twist);
     }
 
-    /// The present reference: a new trajectory that begins here causes no jump. `None` when idle or settling.
+    /// The present reference: a new trajectory that begins here causes no jump. `None` if idle or settling.
     pub fn reference(&self) -> Option<TrajectoryPoint> {
         self.task.as_ref().filter(|task| !task.settling).map(|task| task.clock.reference())
     }

@@ -8,7 +8,7 @@ use trundle_core::{Invalid, Twist2, require_in};
 ///
 /// The gains follow the reference: k1 = k2 = 2 `damping` sqrt(omega_d^2 + `k_cross` v_d^2), within
 /// [`gain_min`](Self::gain_min) and [`gain_max`](Self::gain_max). Linearised about a straight reference, the error
-/// beside the path then obeys s^2 + k2 s + k_cross v_d^2: with that gain it has the chosen damping at every speed, and
+/// beside the path then follows s^2 + k2 s + k_cross v_d^2: with that gain it has the chosen damping at every speed, and
 /// decays over 1 / sqrt(k_cross) metres of path at every speed \[DeLuca01\].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

@@ -12,7 +12,7 @@ pub struct SafetyConfig {
     pub deceleration: f64,
     /// Angular deceleration to count on when a polygon turns on the spot, rad/s^2, 0.1 to 100. Default 3, as above.
     pub angular_deceleration: f64,
-    /// From an image to the wheels obeying, s, 0 to 2, at least. Default 0.2: an image period, processing, delay and lag.
+    /// From an image to the response of the wheels, s, 0 to 2, at least. Default 0.2: an image period, processing, delay and lag.
     pub latency: f64,
     /// Room left before an obstacle ahead, m, 0 to 1. Default 0.04 (ours).
     pub stop_margin: f64,
@@ -34,7 +34,7 @@ pub struct SafetyConfig {
     pub uncounted_speed: f64,
     /// Speed below which a command is replaced by a stop, m/s, 0.001 to 0.1. Default 0.01 (ours).
     pub min_speed: f64,
-    /// Range about the robot in which safety reads the map, m from the footprint, 0 to 5. Default 0.8: the camera's blind
+    /// Range around the robot in which safety reads the map, m from the footprint, 0 to 5. Default 0.8: the camera's blind
     /// zone, and what
     /// lies beside its view.
     pub memory_reach: f64,

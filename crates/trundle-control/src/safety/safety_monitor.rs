@@ -1,4 +1,4 @@
-//! The safety monitor: judges one command.
+//! The safety monitor: evaluates one command.
 
 use crate::safety::hold::MotionHold;
 use crate::safety::obstacles::{Obstacle, SafetyMemory, SafetyScan, collect_memory, collect_scan};
@@ -42,12 +42,12 @@ pub struct SafetyInput<'a> {
     pub wheels: Option<Stamp>,
     /// The source that measures the robot's motion.
     pub motion: MotionSense,
-    /// The intended motion at a charging station; none anywhere else.
+    /// The intended motion at a charging station. `None` elsewhere.
     pub station: Option<StationMotion>,
 }
 
 impl SafetyInput<'_> {
-    /// The motion at a charging station, where the command is one.
+    /// The motion at a charging station, if the command is one.
     fn station_motion(&self) -> Option<StationMotion> {
         self.station.filter(|motion| motion.permits(self.twist))
     }
@@ -70,7 +70,7 @@ pub enum MotionSense {
 pub struct SafetyReport {
     /// The twist to send: always safe, always finite.
     pub twist: Twist2,
-    /// What was changed in the command, and the reason.
+    /// The change of the command, and its reason.
     pub action: SafetyAction,
 }
 
@@ -340,7 +340,7 @@ mod tests {
         let old = Some(now.after(-1.0));
         assert_eq!(reason(SafetyInput { image: old, ..input }), StopReason::StaleImage { age: 1.0 });
         let turn = SafetyInput { image: old, twist: Twist2::new(0.0, 0.1), ..input };
-        assert_eq!(monitor().check(&turn).twist, turn.twist, "a turn on the spot is no risk");
+        assert_eq!(monitor().check(&turn).twist, turn.twist, "a turn on the spot is not a risk");
         assert_eq!(reason(SafetyInput { wheels: old, ..input }), StopReason::StaleWheels { age: 1.0 });
         assert_eq!(reason(SafetyInput { twist: Twist2::new(f64::NAN, 0.0), ..input }), StopReason::NotFinite);
         assert_eq!(reason(SafetyInput { touched: true, ..input }), StopReason::Touched);

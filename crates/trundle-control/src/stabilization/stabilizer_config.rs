@@ -5,7 +5,7 @@ use trundle_core::{Invalid, require_in};
 
 /// How the robot settles on a goal pose.
 ///
-/// The default gains give the linearised law one double root: the distance and both angles fall by 1/e a second, without
+/// The default gains give the linearised law one double root: the distance and both angles fall by 1/e per second, without
 /// overshoot, and slowly enough for a base that answers within 0.1 s.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

@@ -54,7 +54,7 @@ impl Plant {
         DifferentialDrive::KOBUKI.twist(self.speed[0], self.speed[1])
     }
 
-    /// What localisation would say.
+    /// Estimate of localization.
     pub fn estimate(&mut self) -> PoseEstimate {
         let (p, a) = self.noise;
         let noisy = Pose2::new(

@@ -25,7 +25,7 @@ impl World {
         self
     }
 
-    /// What a Kinect sees from `pose`: 70 deg, half a metre and farther; one beam a degree.
+    /// Scan of a Kinect at `pose`: 70 deg, half a metre and farther; one beam per degree.
     fn scan(&self, pose: Pose2, stamp: Stamp) -> Scan {
         let mut nearest = vec![f64::INFINITY; 70];
         for point in &self.points {
@@ -45,7 +45,7 @@ impl World {
         Scan::new(stamp, Vector2::zeros(), (-34.5_f64).to_radians(), 1.0_f64.to_radians(), beams).unwrap()
     }
 
-    /// What a mapper would have drawn of it.
+    /// Map that a mapper would have drawn of it.
     fn grid(&self) -> OccupancyGrid {
         let geometry = GridGeometry::new(0.05, Vector2::new(-4.0, -4.0), 200, 160).unwrap();
         let mut grid = OccupancyGrid::filled(geometry, Cell::Free);

@@ -3,7 +3,7 @@ use proptest::prelude::*;
 use trundle_control::{Stabilizer, StabilizerConfig, StabilizerPhase};
 use trundle_core::{DifferentialDrive, DriveLimits, Pose2};
 
-/// What came of a run.
+/// Result of a run.
 #[derive(Debug)]
 struct Outcome {
     seconds: f64,

@@ -24,7 +24,7 @@ proptest! {
     }
 
     #[test]
-    fn what_is_not_ahead_of_the_camera_has_no_pixel(x in -1.0..1.0_f64, y in -1.0..1.0_f64, z in -9.0..0.0_f64) {
+    fn a_point_that_is_not_ahead_of_the_camera_has_no_pixel(x in -1.0..1.0_f64, y in -1.0..1.0_f64, z in -9.0..0.0_f64) {
         prop_assert_eq!(PinholeCamera::kinect_v1().project(Vector3::new(x, y, z)), None);
     }
 

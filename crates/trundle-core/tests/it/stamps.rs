@@ -48,7 +48,7 @@ fn arithmetic_saturates_at_both_ends_of_time() {
 }
 
 #[test]
-fn seconds_beyond_292_years_or_not_finite_are_no_stamp() {
+fn seconds_beyond_292_years_or_not_finite_are_not_a_stamp() {
     assert_eq!(Stamp::from_secs(9.3e9), None);
     assert_eq!(Stamp::from_secs(-9.3e9), None);
     assert_eq!(Stamp::from_secs(f64::INFINITY), None);

@@ -64,7 +64,7 @@ impl Legs {
         self.poses(start).map(|pose| pose.position())
     }
 
-    /// The same headings and first distances, with the last two distances such that the legs end at the goal; `None` when the last
+    /// The same headings and first distances, with the last two distances such that the legs end at the goal; `None` if the last
     /// two headings are parallel.
     pub fn closed(&self, query: &DockingQuery) -> Option<Self> {
         let n = self.0.len();

@@ -219,7 +219,7 @@ impl Bounding<'_, '_> {
         chain.min_time(&ends, [open; MAX_SPLIT_LEGS - 1]).unwrap_or(f64::INFINITY)
     }
 
-    /// The same bound with contacts; `None` when every manoeuvre of the family touches something.
+    /// The same bound with contacts; `None` if every manoeuvre of the family touches something.
     fn tested_bound(&mut self, family: &Family) -> Option<f64> {
         let places = self.places(family);
         let shrunk = self.shrunk.as_mut().expect("invariant: contacts are asked for among obstacles");

@@ -39,12 +39,12 @@ struct Sector {
 
 /// Largest number of sectors of a leg, forward and backward together. Source: ours.
 const MAX_SECTORS: usize = 16;
-/// Width of a sector, rad; wider where a leg has more headings than sectors. Source: ours.
+/// Width of a sector, rad; wider if a leg has more headings than sectors. Source: ours.
 const SECTOR_WIDTH_RAD: f64 = 0.06;
 
 impl Chain<'_> {
     /// Lower bound of the time of all manoeuvres through these boxes, s, with `gaps` the headings that may be free at each turning
-    /// position; `None` when none is possible.
+    /// position; `None` if none is possible.
     ///
     /// Each leg's headings are cut into sectors, and the minimum runs over one sector per leg. A leg that could point anywhere must
     /// still point somewhere, so that the turns before and after it add up.

@@ -30,7 +30,7 @@ impl<'a> ShrunkHulls<'a> {
         Self { whole: whole.clone(), spaces, gaps: BTreeMap::new(), blocked: Vec::new() }
     }
 
-    /// The hull for positions known to within `depth` (m); `None` where nothing of it remains.
+    /// The hull for positions known to within `depth` (m); `None` if nothing of it remains.
     fn space(&mut self, depth: f64) -> Option<&mut ContactSpace<'a>> {
         let step = (2.0 * (depth / MIN_SHRINK_M).log2()).ceil().max(0.0) as usize;
         let whole = &self.whole;

@@ -50,7 +50,7 @@ pub struct Heading {
 }
 
 impl Heading {
-    /// Minimum turn from `heading` into the range, no farther than `left` or `right`; `None` when out of reach.
+    /// Minimum turn from `heading` into the range, no farther than `left` or `right`; `None` if out of reach.
     pub fn min_turn_from(&self, heading: f64, left: f64, right: f64) -> Option<f64> {
         let to = wrap_angle(self.middle - heading);
         let amounts = [to, to - TAU, to + TAU].into_iter().filter_map(|to| {
@@ -60,7 +60,7 @@ impl Heading {
         amounts.min_by(f64::total_cmp)
     }
 
-    /// Minimum turn from this range into another without contact, with `gaps` the free headings; `None` when no gap contains a
+    /// Minimum turn from this range into another without contact, with `gaps` the free headings; `None` if no gap contains a
     /// heading of both.
     pub fn min_turn_to(&self, other: &Self, gaps: &[HeadingArc]) -> Option<f64> {
         let direct = (wrap_angle(other.middle - self.middle).abs() - self.spread - other.spread).max(0.0);

@@ -65,7 +65,7 @@ impl Default for PositionerConfig {
 
 impl PositionerConfig {
     /// The planner's configuration for closed loop: poses are noisy, so that an overlap may be an error, and a smaller margin is kept
-    /// only where there is no other manoeuvre.
+    /// only if there is no other manoeuvre.
     pub fn planner(&self, docking: DockingConfig) -> DockingConfig {
         DockingConfig { overlap: self.overlap, margin_saving: 1.0, ..docking }
     }

@@ -123,7 +123,7 @@ impl MotionPlanner {
         off > tolerance.position + arm * tolerance.heading + noise
     }
 
-    /// Continues a search from `pose`. Once it is complete: the first motion, `None` when there is nothing to do, or the reason why
+    /// Continues a search from `pose`. Once it is complete: the first motion, `None` if there is nothing to do, or the reason why
     /// there is none.
     pub(super) fn search_on(
         &mut self,

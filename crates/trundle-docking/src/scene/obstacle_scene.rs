@@ -126,7 +126,7 @@ impl ObstacleScene {
         self.points.ask(query)
     }
 
-    /// Distance of a footprint at a pose from the nearest obstacle, m, 0 when it overlaps one, and that obstacle; `None` when nothing
+    /// Distance of a footprint at a pose from the nearest obstacle, m, 0 when it overlaps one, and that obstacle; `None` if nothing
     /// is within `reach` (m).
     pub fn clearance(&self, footprint: &Footprint, pose: &Pose2, reach: f64) -> Option<(f64, Blocker)> {
         self.clearance_of(&RoundedHull::exact(footprint), pose, reach)

@@ -36,7 +36,7 @@ pub trait PointQuery {
     /// Counted cost of a visit, in units of [`crate::ContactSpace::work`].
     const COST: u64 = 1;
 
-    /// Whether points in a box can matter, given what is known: boxes with the smallest value are visited first. `None` when they
+    /// Whether points in a box can matter, given what is known: boxes with the smallest value are visited first. `None` if they
     /// cannot matter.
     fn relevance(&self, patch: &OrientedBox) -> Option<f64>;
 

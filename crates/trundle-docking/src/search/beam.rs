@@ -32,7 +32,7 @@ const SAME_POSE_SECTOR_RAD: f64 = 0.06;
 const NODE_HEADINGS: usize = 20;
 /// Largest number of legs of a manoeuvre. Source: ours.
 const MAX_LEGS: usize = 6;
-/// The same for the search led by the connectivity. Source: ours.
+/// Largest number of legs in the search led by the connectivity. Source: ours.
 const MAX_LEGS_GUIDED: usize = 60;
 
 /// Number of further layers of a guided beam after the first solution: the result is shortened anyway. Source: ours.
@@ -44,7 +44,7 @@ pub async fn beam(search: &mut LegSearch<'_, '_>, width: usize, nodes: usize) {
     layers(search, width, MAX_LEGS, (nodes, usize::MAX), |search, pose| search.estimate(pose)).await;
 }
 
-/// The same with many legs, led by the estimated time over connected poses.
+/// Beam search with many legs, led by the estimated time over connected poses.
 pub async fn guided_beam(
     search: &mut LegSearch<'_, '_>,
     guide: &mut TimeEstimate<'_, '_>,
@@ -120,7 +120,7 @@ fn spread(
     let query = search.query;
     search.space.spend(fan.len() as u64 * LEG_PARTS.len() as u64 * ESTIMATE_COST);
     for ray in fan {
-        // The first ray is the heading of the last leg: continuing along it is no new leg.
+        // The first ray is the heading of the last leg: continuing along it is not a new leg.
         if index > 0 && ray.cost == 0.0 {
             continue;
         }

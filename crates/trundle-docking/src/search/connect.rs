@@ -12,7 +12,7 @@ const END_HEADINGS: usize = 24;
 /// Smallest difference of two headings, rad. Source: ours.
 const MIN_HEADING_STEP_RAD: f64 = 2e-3;
 
-/// The fastest sampled connection of two poses by a turn alone or by one or two legs, and its time, s; `None` when none is free.
+/// The fastest sampled connection of two poses by a turn alone or by one or two legs, and its time, s; `None` if none is free.
 pub async fn connect(
     query: &DockingQuery,
     space: &mut ContactSpace<'_>,

@@ -35,7 +35,7 @@ struct Tail {
 
 /// Largest number of tails of one node that are tested for contact. Source: ours.
 const MAX_TESTED_TAILS: usize = 40;
-/// The same for the start, the origin of all manoeuvres of two legs. Source: ours.
+/// Largest number of tails tested at the start, the origin of all manoeuvres of two legs. Source: ours.
 const MAX_TESTED_TAILS_AT_START: usize = 2000;
 
 impl<'s, 'a> LegSearch<'s, 'a> {

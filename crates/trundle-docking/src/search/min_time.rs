@@ -60,7 +60,7 @@ fn has_small_budget(space: &ContactSpace<'_>) -> bool {
     space.most() < 5 * SHORT_SEARCH_WORK
 }
 
-/// Cost limit of a short search; smaller where the limit of the whole plan is less than a few times that.
+/// Cost limit of a short search; smaller if the limit of the whole plan is less than a few times that.
 fn short_search_work(space: &ContactSpace<'_>) -> u64 {
     SHORT_SEARCH_WORK.min(space.most() / 8)
 }
@@ -126,7 +126,7 @@ const GUIDED_BEAM_WIDTH: usize = 12;
 const NARROW_GUIDED_BEAM_WIDTH: usize = 5;
 /// Time beyond the start that the time estimate covers, s. Source: ours.
 const ESTIMATE_BEYOND_START_S: f64 = 3.0;
-/// The same with a small cost limit, s. Source: ours.
+/// Time beyond the start that the time estimate covers with a small cost limit, s. Source: ours.
 const SHORT_ESTIMATE_BEYOND_START_S: f64 = 0.5;
 /// Relative gap above which more legs are searched. Source: ours.
 const MIN_WORTHWHILE_GAP: f64 = 0.05;

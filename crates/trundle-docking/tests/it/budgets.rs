@@ -126,7 +126,7 @@ fn a_search_without_nodes_is_ended_by_them_and_names_them() {
 }
 
 #[test]
-fn what_is_found_with_less_effort_is_found_with_more_and_no_slower() {
+fn a_plan_found_with_less_effort_is_found_with_more_and_not_slower() {
     let efforts = [(0, 100_000), (500, 2_000_000), (2500, 50_000_000)];
     let planners = efforts.map(|(search_nodes, max_work)| {
         planner(DockingConfig { search_nodes, max_work, bound_boxes: 0, ..DockingConfig::default() })

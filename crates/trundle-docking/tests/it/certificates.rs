@@ -69,9 +69,9 @@ impl Lattice<'_> {
     }
 }
 
-/// What is proven impossible for any motion is not reached by poses that hang together; where a way was found they often are.
+/// A goal proven impossible for any motion is not reached by poses that hang together; where a way was found they often are.
 #[test]
-fn what_is_proven_impossible_is_not_reached_by_brute_force() {
+fn a_goal_proven_impossible_is_not_reached_by_brute_force() {
     let mut rng = ChaCha8Rng::seed_from_u64(33);
     let config =
         DockingConfig { reach: 0.2, max_work: 2_000_000, bound_boxes: 0, ..DockingConfig::default() };

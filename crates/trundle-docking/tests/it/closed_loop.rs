@@ -151,7 +151,7 @@ fn amid(reasons: &[PositionerReason]) -> usize {
     steps[steps.len() / 2]
 }
 
-/// Who is pushed while it plans plans anew from where it stands then.
+/// A robot that is pushed while it plans plans anew from where it stands then.
 #[test]
 fn a_plan_from_where_it_no_longer_stands_is_not_carried_out() {
     let scene = ObstacleScene::new(&far_off()).unwrap();

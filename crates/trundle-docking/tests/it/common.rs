@@ -26,7 +26,7 @@ pub fn scene(obstacles: &[Obstacle]) -> ObstacleScene {
     ObstacleScene::new(obstacles).expect("valid obstacles")
 }
 
-/// A robot of 0.6 m by 0.4 m about its axle.
+/// A robot of 0.6 m by 0.4 m around its axle.
 pub fn robot() -> Footprint {
     let corners = [(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)].map(|(x, y)| at(x, y));
     Footprint::polygon(corners.to_vec()).expect("convex")

@@ -72,7 +72,7 @@ pub fn cells(rng: &mut ChaCha8Rng) -> (ObstacleScene, Vec<Obstacle>) {
     (ObstacleScene::from_grid(&grid, Vector2::zeros(), 5.0, false), squares)
 }
 
-/// Brute force, on its own: the least distance of the footprint from any side; 0 where they cross or one holds the other.
+/// Brute force, on its own: the least distance of the footprint from any side; 0 if they cross or one holds the other.
 pub fn distance(footprint: &Footprint, pose: &Pose2, pieces: &[(Vector2, Vector2)]) -> f64 {
     let (outline, radius) = match footprint {
         Footprint::Disc { radius } => (vec![pose.position()], *radius),

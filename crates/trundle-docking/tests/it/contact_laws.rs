@@ -150,7 +150,7 @@ fn a_footprint_turned_about_drives_ahead_where_it_drove_back() {
 }
 
 #[test]
-fn what_is_free_after_a_part_of_a_motion_is_what_was_left_of_it() {
+fn the_free_rest_after_a_part_of_a_motion_is_the_rest_before() {
     for case in cases(69) {
         let ((turn, drive), scene) = (case.free(), case.scene());
         if turn.left.is_finite() && turn.left > 1e-3 {

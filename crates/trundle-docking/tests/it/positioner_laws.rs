@@ -249,7 +249,7 @@ fn something_in_front_of_a_straight_move_stops_it_in_the_same_step() {
 }
 
 #[test]
-fn stamps_that_stand_still_or_run_back_are_no_reason_to_move_faster() {
+fn stamps_that_stand_still_or_run_back_do_not_make_it_faster() {
     let free = scene(&[]);
     let mut standing = Standing::new(robot(), Pose2::new(0.8, 0.0, 0.0), &free);
     let before = standing.stand(Pose2::IDENTITY, 0.6).twist.v;

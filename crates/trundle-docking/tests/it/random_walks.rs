@@ -104,7 +104,7 @@ fn no_proof_excludes_a_goal_that_was_reached_and_no_bound_is_above_the_time_it_t
 }
 
 #[test]
-fn what_two_motions_reach_is_always_found_and_hardly_slower() {
+fn a_goal_reached_by_two_motions_is_always_found_and_hardly_slower() {
     let planner = planner(0);
     for (i, walk) in walks(82, 1..3).enumerate() {
         let DockingPlan::Found(solution) = plan(&planner, &walk) else { panic!("walk {i} is not found") };

@@ -64,7 +64,7 @@ pub struct Run {
     pub time: f64,
 }
 
-/// What the pose sensor says of its own noise.
+/// Noise that the pose sensor reports of itself.
 pub fn covariance() -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::new(0.002, 0.002, 0.15_f64.to_radians()).map(|sigma| sigma * sigma))
 }

@@ -5,10 +5,10 @@ use std::time::Duration;
 
 /// A camera that delivers pairs of a colour and a depth image.
 pub trait DepthCamera: Send {
-    /// What the camera is and what its streams look like. It does not change while the camera is open.
+    /// Facts of the camera and its streams. It does not change while the camera is open.
     fn info(&self) -> &CameraInfo;
 
-    /// The next frame; `None` when none came within `timeout`.
+    /// The next frame; `None` if none came within `timeout`.
     ///
     /// # Errors
     /// [`CameraError::BrokenFrame`] when one frame is damaged: the next call may succeed. Every other error means that the camera must be

@@ -33,9 +33,9 @@ pub enum CameraError {
         name: String,
         /// Its file, and who named it.
         file: String,
-        /// What the loader said.
+        /// Message of the loader.
         problem: String,
-        /// What to do.
+        /// The remedy.
         remedy: String,
     },
     /// A function of the library failed for a reason without a variant of its own.
@@ -47,7 +47,7 @@ pub enum CameraError {
         function: String,
         /// Its message.
         message: String,
-        /// What to do.
+        /// The remedy.
         remedy: String,
     },
     /// The camera does not offer the wanted streams.
@@ -57,7 +57,7 @@ pub enum CameraError {
         device: String,
         /// Size, rate and format of the streams.
         wanted: String,
-        /// What to do.
+        /// The remedy.
         remedy: String,
     },
     /// No such camera is connected.
@@ -120,7 +120,7 @@ pub enum CameraError {
     BadHeader {
         /// The file, pipe or folder.
         place: String,
-        /// What is wrong.
+        /// The problem.
         problem: String,
     },
     /// Reading failed.

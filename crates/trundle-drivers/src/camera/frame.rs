@@ -21,7 +21,7 @@ pub struct RawImage {
     pub width: usize,
     /// Rows \[px\].
     pub height: usize,
-    /// Bytes from the start of a row to the start of the next; 0 where rows follow each other without padding.
+    /// Bytes from the start of a row to the start of the next; 0 if rows follow each other without padding.
     pub stride: usize,
     /// The bytes.
     pub bytes: Vec<u8>,

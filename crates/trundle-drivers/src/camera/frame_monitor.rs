@@ -115,7 +115,7 @@ pub struct FrameMonitor {
 }
 
 impl FrameMonitor {
-    /// For the frames of a camera. `expects_noise` is `false` for rendered images, which repeat byte for byte where nothing moves.
+    /// For the frames of a camera. `expects_noise` is `false` for rendered images, which repeat byte for byte if nothing moves.
     pub fn new(info: &CameraInfo, expects_noise: bool) -> Self {
         Self {
             color: info.color,
@@ -129,7 +129,7 @@ impl FrameMonitor {
         }
     }
 
-    /// The same, after another opening of the camera whose last frame had these stamps: it may begin with that frame again.
+    /// This monitor after another opening of the camera whose last frame had these stamps: it may begin with that frame again.
     #[must_use]
     pub fn following(self, last_stamps: Option<(Stamp, Stamp)>) -> Self {
         Self { last_stamps, ..self }

@@ -1,20 +1,20 @@
-//! What a camera says of itself.
+//! Description of a camera by itself.
 
 use super::PixelFormat;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use trundle_core::{PinholeCamera, Pose3};
 
-/// What a camera says of itself.
+/// Description of a camera by itself.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraInfo {
     /// Name of the model.
     pub name: String,
-    /// Serial number; empty where unknown.
+    /// Serial number; empty if unknown.
     pub serial: String,
-    /// Version of the firmware; empty where unknown.
+    /// Version of the firmware; empty if unknown.
     pub firmware: String,
-    /// Speed of the USB connection; `None` where unknown or not USB.
+    /// Speed of the USB connection; `None` if unknown or not USB.
     pub usb: Option<UsbSpeed>,
     /// The colour stream. Its camera has the readout time of the rolling shutter.
     pub color: StreamInfo,
@@ -22,7 +22,7 @@ pub struct CameraInfo {
     pub depth: StreamInfo,
     /// Length of one unit of whole-numbered depth \[m\]. 0.001 for millimetres.
     pub depth_unit_m: f64,
-    /// Pose of the depth camera in the colour camera's frame; `None` when the camera delivers depth registered to colour.
+    /// Pose of the depth camera in the colour camera's frame; `None` if the camera delivers depth registered to colour.
     pub color_from_depth: Option<Pose3>,
     /// Time from the middle of the exposure to the arrival of the frame at the host \[s\].
     pub delay_s: f64,

@@ -161,7 +161,7 @@ impl DeviceClock {
         if self.bins.len() > 1 { self.config.max_early_s } else { self.config.max_delay_s }
     }
 
-    /// Forgets the device's clock, as after a lost link: the device may have been switched off. Results stay in order.
+    /// Discards the device's clock, as after a lost link: the device may have been switched off. Results stay in order.
     pub fn restart(&mut self) {
         (self.origin, self.slope, self.intercept) = (None, 0.0, 0.0);
         self.bins.clear();

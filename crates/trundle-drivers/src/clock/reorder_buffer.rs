@@ -100,7 +100,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_comes_out_is_in_order_and_complete(
+        fn the_output_is_in_order_and_complete(
             stamps in prop::collection::vec(0i64..2000, 0..200), hold_ms in 0i64..500, max in 0usize..20,
         ) {
             let mut buffer = ReorderBuffer::new(hold_ms as f64 * 1e-3, max);

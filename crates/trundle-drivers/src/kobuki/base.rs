@@ -27,7 +27,7 @@ const MAX_GAIN: f64 = 4_294_967.0;
 /// Oldest firmware that knows the commands of gains: 1.2.0. Source: the vendor's driver, issue 289 of yujinrobot/kobuki.
 const GAINS_FIRMWARE: Version = Version::new(1, 2, 0);
 
-/// What receives the events of a base, on a thread of its own.
+/// Receiver of the events of a base, on a thread of its own.
 pub type EventSink = Box<dyn FnMut(SensorEvent) + Send>;
 
 /// A running base. Dropping it stops the base.
@@ -123,7 +123,7 @@ impl KobukiBase {
         locked(&self.status).versions
     }
 
-    /// What happened on the link since the start.
+    /// Events on the link since the start.
     pub fn counters(&self) -> BaseCounters {
         locked(&self.status).counters
     }

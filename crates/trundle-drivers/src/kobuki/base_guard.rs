@@ -62,7 +62,7 @@ impl Drop for BaseGuard {
 /// The work of a guard: waits until `pipe` ends, then sends zero speed to `port` and releases the port.
 ///
 /// # Errors
-/// When the port takes nothing, as where the base was unplugged.
+/// When the port takes nothing, as when the base was unplugged.
 pub fn guard_base(mut pipe: impl Read, port: impl AsFd) -> io::Result<()> {
     let mut ignored = [0; 64];
     loop {

@@ -1,10 +1,10 @@
-//! What is known of a running base: counters, versions, the last packet.
+//! Status of a running base: counters, versions, the last packet.
 
 use super::decoder::DecoderCounters;
 use super::protocol::{Feedback, Gains, UniqueId, Version};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// What the base says about itself.
+/// Facts that the base reports about itself.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Versions {
     /// Version of the hardware.
@@ -19,7 +19,7 @@ pub struct Versions {
 const MIN_FIRMWARE: Version = Version::new(1, 1, 4);
 
 impl Versions {
-    /// Why the firmware is not one that the vendor recommends, with the remedy; `None` where it is.
+    /// Why the firmware is not one that the vendor recommends, with the remedy; `None` if it is.
     pub fn firmware_fault(&self) -> Option<String> {
         match self.firmware {
             Some(firmware) if firmware >= MIN_FIRMWARE => None,
@@ -44,10 +44,10 @@ impl Versions {
     }
 }
 
-/// What happened on the link to a base since the start.
+/// Events on the link to a base since the start.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct BaseCounters {
-    /// What was read and dropped.
+    /// Counts of bytes read and dropped.
     pub decoder: DecoderCounters,
     /// Speeds sent.
     pub speeds_sent: u64,
@@ -65,7 +65,7 @@ pub struct BaseCounters {
     pub stream_faults: u64,
 }
 
-/// What the threads of a base share.
+/// State that the threads of a base share.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Status {
     pub(super) counters: BaseCounters,
@@ -76,7 +76,7 @@ pub(super) struct Status {
     pub(super) is_stopping: bool,
 }
 
-/// The lock of `mutex`; a panic of another thread while it held the lock is no reason for a second one.
+/// The lock of `mutex`; a panic of another thread while it held the lock is not a reason for a second one.
 pub(super) fn locked(mutex: &Mutex<Status>) -> MutexGuard<'_, Status> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

@@ -31,7 +31,7 @@ impl CommandSchedule {
         self.wanted = Some((BaseControl::from_twist(twist), now));
     }
 
-    /// Forgets all commands: the next one sent is zero speed, at once.
+    /// Discards all commands: the next one sent is zero speed, at once.
     pub(super) fn restart(&mut self) {
         (self.wanted, self.sent) = (None, None);
     }

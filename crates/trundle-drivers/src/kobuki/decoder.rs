@@ -16,7 +16,7 @@ use super::protocol::frame::{
 /// Bytes of the largest frame. Source: the protocol's one length byte.
 const MAX_FRAME_BYTES: usize = MAX_PAYLOAD_BYTES + FRAME_OVERHEAD_BYTES;
 
-/// What a decoder read and what it dropped.
+/// Counts of bytes that a decoder read and dropped.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct DecoderCounters {
     /// Sound packets.
@@ -48,7 +48,7 @@ struct FrameDecoder {
     counters: DecoderCounters,
 }
 
-/// What the beginning of the buffer is.
+/// Kind of the beginning of the buffer.
 enum Candidate {
     Incomplete,
     Garbage(usize),
@@ -156,7 +156,7 @@ impl FeedbackDecoder {
         });
     }
 
-    /// What was read and dropped since the start.
+    /// Bytes read and dropped since the start.
     pub fn counters(&self) -> DecoderCounters {
         self.0.counters
     }
@@ -185,7 +185,7 @@ impl CommandDecoder {
         });
     }
 
-    /// What was read and dropped since the start.
+    /// Bytes read and dropped since the start.
     pub fn counters(&self) -> DecoderCounters {
         self.0.counters
     }

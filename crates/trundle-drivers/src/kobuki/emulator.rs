@@ -80,7 +80,7 @@ pub struct EmulatedKobuki {
     gains: Gains,
     outputs: Outputs,
     sounds: Vec<KobukiCommand>,
-    /// What the next packet carries besides the sensors.
+    /// Content of the next packet besides the sensors.
     answers: Feedback,
 }
 
@@ -148,7 +148,7 @@ impl EmulatedKobuki {
         self.gains
     }
 
-    /// What was read and dropped of the bytes of drivers.
+    /// Counts of read and dropped bytes of drivers.
     pub fn command_counters(&self) -> DecoderCounters {
         self.decoder.counters()
     }

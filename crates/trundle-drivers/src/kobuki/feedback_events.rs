@@ -1,7 +1,7 @@
 //! Sensor events out of feedback packets.
 //!
 //! The gyro's events come from its raw readings. The firmware's calibrated rate is one value a packet, so turns between packets are lost,
-//! and the firmware subtracts a bias of its own. The raw readings are all there, two or three a packet, with a steady bias that the
+//! and the firmware subtracts a bias of its own. The raw readings are all there, two or three per packet, with a steady bias that the
 //! localization estimates. Their z axis points up: counter-clockwise is positive, as in the base's frame.
 //!
 //! The base's stamps are mapped to the host's clock by a [`DeviceClock`]. Stamps of the events never run backwards.
@@ -27,10 +27,10 @@ const BATTERY_PERIOD_S: f64 = 1.0;
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum GyroSource {
-    /// The raw readings, two or three a packet, with the sensor's bias.
+    /// The raw readings, two or three per packet, with the sensor's bias.
     #[default]
     Raw,
-    /// The rate that the firmware calibrates, one a packet.
+    /// The rate that the firmware calibrates, one per packet.
     Calibrated,
 }
 
@@ -168,7 +168,7 @@ impl FeedbackEvents {
 }
 
 impl Reported {
-    /// The battery when it is news: a change of the charger at once, one of the voltage once a second.
+    /// The battery when it is news: a change of the charger at once, one of the voltage once per second.
     fn battery_change(&mut self, core: &CoreSensors, stamp: Stamp) -> Option<Battery> {
         let (charger, decivolts) = (core.charger, core.battery_decivolts);
         let is_news = self.battery.is_none_or(|(then, last_charger, last_decivolts)| {

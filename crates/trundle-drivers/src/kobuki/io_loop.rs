@@ -53,7 +53,7 @@ pub(super) struct IoLoop {
     schedule: CommandSchedule,
     check: StreamCheck,
     outbox: Outbox,
-    /// Outputs as last asked for: the base forgets them when it is switched off.
+    /// Outputs as last asked for: the base discards them when it is switched off.
     outputs: Option<Outputs>,
     /// Stamp of the newest packet \[ms\], of this connection or the one before.
     last_ms: Option<u16>,

@@ -63,7 +63,7 @@ pub enum ConnectError {
         /// The port.
         port: PathBuf,
     },
-    /// The file is no serial port.
+    /// The file is not a serial port.
     #[error("{} is not a serial port, expected one as /dev/ttyUSB0 or /dev/kobuki", port.display())]
     NotASerialPort {
         /// The file.

@@ -14,14 +14,14 @@ use std::time::Duration;
 const MIN_PACKETS: u64 = 12;
 /// Time between requests for the versions: 0.5 s. Source: ours.
 const REQUEST_PERIOD_S: f64 = 0.5;
-/// Bytes shown of what is no Kobuki: 16. Source: ours.
+/// Bytes shown of what is not a Kobuki: 16. Source: ours.
 const MAX_SHOWN_BYTES: usize = 16;
 /// Longest wait for bytes at once: 10 ms. Source: ours, half a packet's period.
 const READ_WAIT: Duration = Duration::from_millis(10);
 /// Major version of the firmware with this protocol: 1. Source: the vendor's driver, compatible major version.
 const FIRMWARE_MAJOR: u8 = 1;
 
-/// What the start has read so far.
+/// Bytes that the start has read so far.
 struct Probe<'a> {
     link: &'a mut dyn ByteLink,
     decoder: FeedbackDecoder,

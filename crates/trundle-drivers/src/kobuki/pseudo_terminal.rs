@@ -42,10 +42,10 @@ impl PseudoTerminal {
         Ok(Self { device, path, link: None })
     }
 
-    /// The same, with a symbolic link to the port at `link`. A link to a port that is gone is replaced; the link is removed at the end.
+    /// A new pseudo terminal with a symbolic link to its port at `link`. A link to a port that is gone is replaced; the link is removed at the end.
     ///
     /// # Errors
-    /// When the system has no terminal left, or the link cannot be made: its folder is missing, a file is there, or a link to a port that
+    /// When the system has no terminal left, or the link cannot be created: its folder is missing, a file is there, or a link to a port that
     /// exists.
     pub fn open_at(link: &Path) -> io::Result<Self> {
         let mut terminal = Self::open()?;

@@ -34,7 +34,7 @@ impl SerialConnector {
         Self { path: path.into(), guard_program: None }
     }
 
-    /// The same, with each open port guarded by a process of `program`, which has the command
+    /// This port, guarded while it is open by a process of `program`, which has the command
     /// [`GUARD_COMMAND`](super::base_guard::GUARD_COMMAND): it stops the base where this program dies.
     #[must_use]
     pub fn guarded_by(self, program: &Path) -> Self {
@@ -140,7 +140,7 @@ pub(super) fn wait_readable(fd: &OwnedFd, wait: Duration) -> io::Result<PollFlag
     }
 }
 
-/// Nothing, where the system says to come back later.
+/// Nothing, if the system says to come back later.
 pub(super) fn or_none(bytes: Result<usize, Errno>) -> io::Result<usize> {
     match bytes {
         Err(Errno::AGAIN | Errno::INTR) => Ok(0),

@@ -26,7 +26,7 @@ pub enum StartError {
     },
     /// Nothing comes.
     #[error(
-        "port {port}: no byte came within {waited_s} s, expected 50 packets a second: switch the base on, or check the cable"
+        "port {port}: no byte came within {waited_s} s, expected 50 packets per second: switch the base on, or check the cable"
     )]
     NoBytes {
         /// The port.

@@ -59,7 +59,7 @@ impl fmt::Display for StreamFault {
             Self::SlowBase { long_steps, longest_ms } => write!(
                 f,
                 "{long_steps} of {WINDOW_PACKETS} packets came more than {MAX_STEP_MS} ms after the one before by the base's clock, up to \
-                 {longest_ms} ms, expected 20 ms (50 packets a second): the base sends too slowly, or the line loses packets; check the \
+                 {longest_ms} ms, expected 20 ms (50 packets per second): the base sends too slowly, or the line loses packets; check the \
                  cable, switch the base off and on"
             ),
             Self::DamagedStream { refused } => write!(
@@ -177,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clock_that_stands_still_is_no_second_base() {
+    fn a_clock_that_stands_still_is_not_a_second_base() {
         let frozen = (0..40u16).map(|i| i.min(20) * 20);
         assert_eq!(fault_of(frozen), Some(StreamFault::FrozenClock { packets: 19 }));
     }

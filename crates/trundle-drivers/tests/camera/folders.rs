@@ -99,7 +99,7 @@ fn a_broken_image_costs_one_frame() {
     let folder = folder(true);
     write_pair(folder.path(), 1);
     write_pair(folder.path(), 2);
-    fs::write(folder.path().join("color/1.png"), b"this is no PNG").unwrap();
+    fs::write(folder.path().join("color/1.png"), b"this is not a PNG").unwrap();
     let mut camera = FolderCamera::open(folder.path()).unwrap();
     let error = camera.next_frame(LONG).unwrap_err();
     assert!(error.is_of_one_frame() && error.to_string().contains("color/1.png is not readable"), "{error}");

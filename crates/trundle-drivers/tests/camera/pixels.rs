@@ -88,7 +88,7 @@ fn whole_numbers_of_depth_have_the_unit_of_the_camera() {
 }
 
 #[test]
-fn a_depth_that_is_no_number_is_none() {
+fn a_depth_that_is_not_a_number_is_none() {
     let values = [1.5f32, f32::NAN, f32::INFINITY, -2.0, 0.0];
     let bytes = values.into_iter().flat_map(f32::to_le_bytes).collect();
     let found = depth(&raw(PixelFormat::DepthF32, (5, 1), bytes), 0.001).unwrap();

@@ -61,7 +61,7 @@ fn lens() -> Distortion {
 struct Shares {
     /// Of those with a depth: within 1 % of the ray caster.
     right: f64,
-    /// Of those that the depth camera sees and that are no edge: without depth.
+    /// Of those that the depth camera sees and that are not an edge: without depth.
     holes: f64,
     /// Pixels in the middle of a near panel with a depth behind it.
     shining_through: usize,

@@ -82,7 +82,7 @@ fn a_reader_may_join_midway_at_a_repeated_header() {
 }
 
 #[test]
-fn either_length_out_of_range_is_no_frame() {
+fn either_length_out_of_range_is_not_a_frame() {
     let whole = stream(&info(), &frames(1));
     let good = &whole[header_line(&info()).unwrap().len()..];
     for field in [12, 16] {

@@ -11,7 +11,7 @@ use trundle_drivers::camera::{
     CameraError, CameraFrame, CameraInfo, CameraThread, CameraThreadConfig, CameraThreadParts, DepthCamera,
 };
 
-/// What a scripted camera does with one call.
+/// Answer of a scripted camera to one call.
 enum Act {
     Frame(i64, u8),
     BadDepth(i64),

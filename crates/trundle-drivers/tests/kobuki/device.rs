@@ -8,7 +8,7 @@ use trundle_core::Twist2;
 use trundle_drivers::kobuki::protocol::Version;
 use trundle_drivers::kobuki::{ByteLink, EmulatedKobuki, KobukiState, PseudoTerminal};
 
-/// What the device sends.
+/// Data that the device sends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sends {
     /// Sound packets.
@@ -23,7 +23,7 @@ pub enum Sends {
     LostBytes,
     /// Ten packets at once.
     Bursts,
-    /// What a satellite receiver sends.
+    /// Message of a satellite receiver.
     OtherDevice,
 }
 

@@ -126,7 +126,7 @@ impl StationEstimator {
         self.contradictions = 0;
     }
 
-    /// The estimate; none before light was seen.
+    /// The estimate. `None` before light was seen.
     pub fn estimate(&self) -> Option<StationEstimate> {
         if self.particles.is_empty() {
             return None;
@@ -135,7 +135,7 @@ impl StationEstimator {
         Some(StationEstimate { pose, covariance: covariance.into() })
     }
 
-    /// Path of the receivers since the last reading that counted, m; none where the reading adds nothing.
+    /// Path of the receivers since the last reading that counted, m. `None` if the reading adds nothing.
     fn motion_since_last(&self, pose: Pose2, light: &DockInfrared) -> Option<f64> {
         let Some((last, before)) = &self.last else { return Some(0.0) };
         let distance = last.distance(&pose);

@@ -25,7 +25,7 @@ impl Particles {
         self.0.is_empty()
     }
 
-    /// Multiplies each weight by its likelihood; the mean likelihood, 0 where none is left.
+    /// Multiplies each weight by its likelihood; the mean likelihood, 0 if none is left.
     pub(super) fn weigh(&mut self, likelihood: impl Fn(Pose2) -> f64) -> f64 {
         for particle in &mut self.0 {
             particle.weight *= likelihood(particle.map_from_station);

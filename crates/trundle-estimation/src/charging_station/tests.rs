@@ -102,7 +102,7 @@ fn crossing_the_axis_at_two_distances_gives_the_axis() {
 }
 
 #[test]
-fn what_it_knows_is_what_it_says() {
+fn the_reported_uncertainty_is_the_true_one() {
     // The first turn leaves the distance open, and the survey does not.
     let rough = after(Pose2::IDENTITY, 5, &spin(2.0, 0.6)).unwrap();
     let fine = after(Pose2::IDENTITY, 5, &survey()).unwrap();

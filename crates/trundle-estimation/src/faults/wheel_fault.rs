@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn slow_commands_and_answered_commands_are_no_fault() {
+    fn slow_commands_and_answered_commands_are_not_a_fault() {
         let mut wheels = WheelFault::default();
         wheels.set_command(Twist2::new(0.01, 0.1));
         assert_eq!(steps(&mut wheels, 1000, false), (0.0, 0.0));

@@ -215,7 +215,7 @@ impl Localizer {
         self.divergence = DivergenceCheck::default();
     }
 
-    /// Forgets the poses of the visual maps in the map, as after the map was replaced. Each is anchored anew by its next pose.
+    /// Discards the poses of the visual maps in the map, as after the map was replaced. Each is anchored anew by its next pose.
     pub fn forget_visual_maps(&mut self) {
         self.visual.set_anchors(BTreeMap::new());
     }

@@ -1,7 +1,7 @@
 //! Odometry that the body computes itself, as increments of our own.
 //!
 //! Problem: a body restarts its odometry at any pose, and its stamps may jump. Idea: only the motion between two readings counts. It is
-//! judged as a reading of wheels is: from the past, after a gap, or too fast, it does not move the pose. The covariance grows as the body
+//! evaluated as a reading of wheels is: from the past, after a gap, or too fast, it does not move the pose. The covariance grows as the body
 //! says; where its covariance does not grow, by the noise of wheels without a gyro. Cost: O(1).
 
 use super::wheel_odometry::WheelOdometry;
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn what_comes_from_the_past_or_after_a_gap_does_not_move_the_pose() {
+    fn odometry_from_the_past_or_after_a_gap_does_not_move_the_pose() {
         let mut own = own();
         own.step_odometry(&given(1.0, arc(0), 0.0));
         own.step_odometry(&given(0.9, arc(40), 0.0));

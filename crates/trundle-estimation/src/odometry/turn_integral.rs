@@ -38,7 +38,7 @@ impl TurnIntegral {
         true
     }
 
-    /// The turn since the last call, rad, with its duration, s; `None` where the gyro does not cover that time.
+    /// The turn since the last call, rad, with its duration, s; `None` if the gyro does not cover that time.
     pub(crate) fn turn_until(&mut self, stamp: Stamp, timeout: f64) -> Option<(f64, f64)> {
         let newest = self.newest.filter(|newest| (stamp - newest.stamp).abs() <= timeout)?;
         let angle = self.angle + newest.omega * (stamp - newest.stamp);

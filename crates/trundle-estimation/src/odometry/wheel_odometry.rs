@@ -143,7 +143,7 @@ impl WheelOdometry {
         &self.odometry
     }
 
-    /// Motion between the newest reading of the wheels and the one before, without calibration; `None` where the newest reading was not used.
+    /// Motion between the newest reading of the wheels and the one before, without calibration; `None` if the newest reading was not used.
     pub fn increment(&self) -> Option<&MotionIncrement> {
         self.increment.as_ref()
     }
@@ -301,7 +301,7 @@ impl WheelOdometry {
         odometry.covariance = transported(&odometry.covariance, &motion) + of_step(&self.config, step);
     }
 
-    /// The gyro's turn over the last `dt` s, with bias and scale, rad; `None` where the gyro does not cover them.
+    /// The gyro's turn over the last `dt` s, with bias and scale, rad; `None` if the gyro does not cover them.
     fn measured_turn(&mut self, stamp: Stamp, dt: f64) -> Option<f64> {
         let (turn, covered) = self.integral.turn_until(stamp, self.config.gyro_timeout)?;
         ((covered - dt).abs() < 1e-6).then_some(turn)

@@ -44,7 +44,7 @@ pub struct SmootherNoise {
     pub visual_white_heading_deg: f64,
     /// Error of the visual map's parts besides the covariance of the pose (one sigma), m, 0 to 1. Default 0.001.
     pub visual_map_position: f64,
-    /// The same of the heading, deg, 0 to 30. Default 0.03.
+    /// Error of the heading of the visual map's parts (one sigma), deg, 0 to 30. Default 0.03.
     pub visual_map_heading_deg: f64,
     /// Factor on the sigma of the white noise of a weak visual pose, 1 to 100. Default 3.
     pub weak_factor: f64,

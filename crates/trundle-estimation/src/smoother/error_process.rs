@@ -119,7 +119,7 @@ impl PlaceSwitch {
         Self { weight: 1.0 - wrong_probability, prior_log_odds }
     }
 
-    /// The same with the posterior weight, by the error of the place without the place itself.
+    /// This switch with the posterior weight, by the error of the place without the place itself.
     #[must_use]
     pub(crate) fn judged(
         &self,

@@ -168,7 +168,7 @@ impl Smoother {
         self.failures
     }
 
-    /// Declares the pose unknown, as after a kidnapping. Calibration is kept, measurements are forgotten.
+    /// Declares the pose unknown, as after a kidnapping. Calibration is kept, measurements are discarded.
     pub fn set_pose_unknown(&mut self) {
         let (Some(window), Some(newest)) = (&self.window, &self.newest) else { return };
         let estimate = self.estimate();
@@ -233,7 +233,7 @@ impl Smoother {
         ErrorStep { stationary: own + map_part, correlation, displacement, start }
     }
 
-    /// A keyframe without measurements, where none was made for long.
+    /// A keyframe without measurements, if none was made for long.
     fn add_timed_keyframe(&mut self, stamp: Stamp) {
         let Some(window) = &self.window else { return };
         if self.head.duration < longest_time(&self.config.window, &self.head) {
@@ -265,7 +265,7 @@ impl Smoother {
         Pose2::new(0.0, 0.0, turn).rotate(moved)
     }
 
-    /// Inserts a keyframe with an image after keyframe `k` and solves the window. It takes the place of the newest keyframe where that one is
+    /// Inserts a keyframe with an image after keyframe `k` and solves the window. It replaces the newest keyframe where that one is
     /// still near the one before: the newest image counts, and images with the same error count once.
     pub(super) fn insert_image(&mut self, k: usize, keyframe: Keyframe) {
         let Some(window) = &mut self.window else { return };
@@ -288,7 +288,7 @@ impl Smoother {
         self.solve();
     }
 
-    /// Solves the window, judges its recognised places and removes what is too old.
+    /// Solves the window, evaluates its recognised places and removes what is too old.
     pub(super) fn solve(&mut self) {
         let Some(window) = &mut self.window else { return };
         let mut is_solved = window.optimise(&self.motions);

@@ -3,7 +3,7 @@
 //! Problem: one pose at the rate of the wheels, with a covariance that holds, from odometry that drifts and measurements that are late,
 //! correlated and at times of a wrong place. Idea: the poses of a window, the error of the visual poses along it and the calibration are
 //! unknowns of one least-squares problem. Late measurements enter at their stamp, correlated errors are in the model, and a recognised
-//! place is judged again by all that follows. What leaves the window stays as a Gaussian.
+//! place is evaluated again by all that follows. What leaves the window stays as a Gaussian.
 //!
 //! The graph: a chain of keyframes, each with pose x, error e of the visual pose and bias b of the gyro. Between neighbours stand the motion
 //! by wheels and gyro, the decay of e and the walk of b. On a keyframe stand a visual pose (x, e, anchor of the visual map, delay of the

@@ -1,4 +1,4 @@
-//! What has left the window, as a Gaussian over the oldest keyframe and the border.
+//! Measurements that have left the window, as a Gaussian over the oldest keyframe and the border.
 
 use super::factors::WindowSystem;
 use super::state::{
@@ -73,7 +73,7 @@ impl Prior {
         Self { information, gradient: JointVector::zeros(), chain, border }
     }
 
-    /// What is left of a keyframe that was removed, at these values; `time` s have passed.
+    /// The rest of a keyframe that was removed, at these values; `time` s have passed.
     pub(crate) fn after(
         marginal: &ArrowMarginal<CHAIN_SIZE, BORDER_SIZE>,
         chain: ChainState,

@@ -56,7 +56,7 @@ impl VisualMaps {
         self.slots[slot].map(|slot| slot.level_from_visual)
     }
 
-    /// The slot of a map; `None` where all slots are in use by the window (`is_used`).
+    /// The slot of a map; `None` if all slots are in use by the window (`is_used`).
     pub(crate) fn slot_for(&self, map: u32, is_used: impl Fn(usize) -> bool) -> Option<SlotFor> {
         let owns = |slot: &Option<Slot>| slot.is_some_and(|slot| slot.map == map);
         if let Some(known) = self.slots.iter().position(owns) {

@@ -95,7 +95,7 @@ impl Window {
         self.estimated(self.keyframes.len() - 1)
     }
 
-    /// Finds the values that agree best with all factors, and the factor of the system there. `false` where no step can be solved: the
+    /// Finds the values that agree best with all factors, and the factor of the system there. `false` if no step can be solved: the
     /// values are then those before.
     pub(crate) fn optimise(&mut self, motions: &MotionBuffer) -> bool {
         self.integrate_again(motions);
@@ -217,7 +217,7 @@ impl Window {
         self.keyframes.push(keyframe);
     }
 
-    /// Removes the oldest keyframe and keeps what it says as the prior of the next one. `false` where there is only one, or its equations
+    /// Removes the oldest keyframe and keeps what it says as the prior of the next one. `false` if there is only one, or its equations
     /// have no solution.
     pub(crate) fn remove_oldest(&mut self, config: &OdometryConfig) -> bool {
         let Self { keyframes, border, prior, leaving, .. } = self;
@@ -234,7 +234,7 @@ impl Window {
         true
     }
 
-    /// Judges each recognised place by all other factors; whether a switch has moved.
+    /// Evaluates each recognised place by all other factors. Returns whether a switch has moved.
     pub(crate) fn judge_places(&mut self) -> bool {
         let mut is_moved = false;
         for k in 1..self.keyframes.len() {

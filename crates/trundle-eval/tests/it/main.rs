@@ -8,14 +8,14 @@ use std::path::{Path, PathBuf};
 use trundle_core::{Pose3, Stamp};
 use trundle_eval::*;
 
-/// What two programs may differ by: rounding, nothing else.
+/// Largest difference of two programs: rounding, nothing else.
 const TOLERANCE: f64 = 1e-6;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The trajectory file, from the project's own data or, for the big ones, from beside it; `None` where absent.
+/// The trajectory file, from the project's own data or, for the big ones, from beside it; `None` if absent.
 fn trajectory(name: &str) -> Option<Vec<(Stamp, Pose3)>> {
     let folders = ["data/trajectories", "../shared/data/trajectories"];
     let path = folders.iter().map(|folder| root().join(folder).join(name)).find(|path| path.exists())?;

@@ -27,7 +27,7 @@ pub struct DockPlan {
 
 /// Result of a run.
 pub struct DockTrial {
-    /// Pose of the base in the station's frame at the end, in truth; identity where there is no station.
+    /// Pose of the base in the station's frame at the end, in truth; identity if there is no station.
     pub station_from_base: Pose2,
     /// Separate touches: a dock touches nothing, the plates are ahead of the bumper.
     pub contacts: u32,

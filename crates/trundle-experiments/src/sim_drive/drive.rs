@@ -95,7 +95,7 @@ pub fn drive_simulator(
     })
 }
 
-/// When the drive is over, s, where that is known: at the driver's end or the duration, the sooner of both.
+/// When the drive is over, s, if that is known: at the driver's end or the duration, the sooner of both.
 fn end_s(duration: Option<f64>, driver: &dyn SimDriver) -> Option<f64> {
     duration.into_iter().chain(driver.end_s()).reduce(f64::min)
 }

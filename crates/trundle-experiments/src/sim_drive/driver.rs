@@ -19,10 +19,10 @@ pub trait SimDriver {
     /// When the driver's device failed.
     fn twist(&mut self, stamp: Stamp, pose: Pose2) -> Result<Twist2, AppError>;
 
-    /// When the drive is over, s, where that is known.
+    /// When the drive is over, s, if that is known.
     fn end_s(&self) -> Option<f64>;
 
-    /// Way-points reached and way-points in all, where there are any.
+    /// Way-points reached and way-points in all, if there are any.
     fn waypoints(&self) -> Option<(usize, usize)> {
         None
     }

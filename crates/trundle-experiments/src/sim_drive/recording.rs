@@ -14,14 +14,14 @@ const ENCODED_BATCH: usize = 8;
 /// Size of a pixel of colour and depth as PNG \[bytes\]. Source: recordings of the built-in scenes.
 const BYTES_PER_PIXEL: f64 = 3.2;
 
-/// Size of the recording of a drive, in a sentence; `duration` in s, where it is known.
+/// Size of the recording of a drive, in a sentence; `duration` in s, if it is known.
 #[must_use]
 pub fn recording_announcement(robot: &Simulator, duration: Option<f64>) -> String {
     let (camera, config) = (robot.camera(), robot.config());
     let pixels = (camera.width() * camera.height()) as f64;
     let rate = BYTES_PER_PIXEL * pixels * config.camera_rate_hz / 1e6;
     let total = duration.map_or_else(String::new, |s| format!(", {:.0} MB in {s:.0} s", rate * s));
-    format!("Records about {rate:.1} MB a second of the robot's time{total}.")
+    format!("Records about {rate:.1} MB per second of the robot's time{total}.")
 }
 
 /// The TUM folder of a drive.

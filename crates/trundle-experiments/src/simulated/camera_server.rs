@@ -54,10 +54,10 @@ pub fn camera_info(config: &SimConfig) -> CameraInfo {
 }
 
 impl CameraServer {
-    /// A server at the FIFO `path`, which is made where it is not there.
+    /// A server at the FIFO `path`, which is made if it is not there.
     ///
     /// # Errors
-    /// When the FIFO cannot be made, or something else is at `path`.
+    /// When the FIFO cannot be created, or something else is at `path`.
     pub fn start(path: &Path, info: CameraInfo) -> Result<Self, AppError> {
         make_fifo(path)?;
         Ok(Self { path: path.to_owned(), info, shared: Arc::default(), shots: None, thread: None })
@@ -106,9 +106,9 @@ fn make_fifo(path: &Path) -> Result<(), AppError> {
     let problem = |what: String| AppError::Input(format!("{}: {what}", path.display()));
     match std::fs::metadata(path) {
         Ok(there) if there.file_type().is_fifo() => Ok(()),
-        Ok(_) => Err(problem("there is a file that is no FIFO: name another path".to_owned())),
+        Ok(_) => Err(problem("there is a file that is not a FIFO: name another path".to_owned())),
         Err(_) => mknodat(CWD, path, FileType::Fifo, Mode::RUSR | Mode::WUSR, 0)
-            .map_err(|error| problem(format!("cannot make a FIFO: {error}"))),
+            .map_err(|error| problem(format!("cannot create a FIFO: {error}"))),
     }
 }
 

@@ -31,7 +31,7 @@ pub struct EmulatedRobot {
     counts: EmulationCounts,
 }
 
-/// What went over the wires.
+/// Bytes over the wires.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EmulationCounts {
     /// Packets of the base.
@@ -45,10 +45,10 @@ pub struct EmulationCounts {
 }
 
 impl EmulatedRobot {
-    /// The base of `simulator` at `terminal`, its camera at `camera_stream`, a FIFO that is made where it is not there.
+    /// The base of `simulator` at `terminal`, its camera at `camera_stream`, a FIFO that is made if it is not there.
     ///
     /// # Errors
-    /// When the FIFO cannot be made.
+    /// When the FIFO cannot be created.
     pub fn new(
         mut simulator: Simulator,
         terminal: PseudoTerminal,
@@ -71,18 +71,18 @@ impl EmulatedRobot {
         })
     }
 
-    /// The same with its base at a new pseudo terminal, to which `port` becomes a symbolic link.
+    /// An emulated robot with its base at a new pseudo terminal, to which `port` becomes a symbolic link.
     ///
     /// # Errors
-    /// When the pseudo terminal, the link or the FIFO cannot be made.
+    /// When the pseudo terminal, the link or the FIFO cannot be created.
     pub fn at(simulator: Simulator, port: &Path, camera_stream: Option<&Path>) -> Result<Self, AppError> {
         let terminal = PseudoTerminal::open_at(port).map_err(|error| {
-            AppError::Input(format!("{}: cannot make the pseudo terminal: {error}", port.display()))
+            AppError::Input(format!("{}: cannot create the pseudo terminal: {error}", port.display()))
         })?;
         Self::new(simulator, terminal, camera_stream)
     }
 
-    /// What truly happened, and what went over the wires: a row each.
+    /// Truth, and bytes over the wires: one row each.
     #[must_use]
     pub fn rows(&self) -> Vec<Vec<String>> {
         let row = |name: &str, value: String| vec![name.to_owned(), value];
@@ -107,7 +107,7 @@ impl EmulatedRobot {
         &self.simulator
     }
 
-    /// What went over the wires so far.
+    /// Bytes over the wires so far.
     pub fn counts(&self) -> EmulationCounts {
         let (images, images_not_taken) = self.camera.as_ref().map_or((0, 0), CameraServer::counts);
         EmulationCounts { images, images_not_taken, ..self.counts }

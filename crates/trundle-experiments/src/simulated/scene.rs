@@ -31,9 +31,9 @@ pub struct SceneOptions {
 pub struct MeshOptions {
     /// The axis of the file that points up.
     pub up: UpAxis,
-    /// Metres a unit of the file; `None` is 1.
+    /// Metres per unit of the file; `None` is 1.
     pub scale: Option<f64>,
-    /// Height of the floor, m; `None` where it is found.
+    /// Height of the floor, m; `None` if it is found.
     pub floor: Option<f64>,
 }
 
@@ -84,7 +84,7 @@ pub fn load_simulator(name: &str, options: SceneOptions, robot: SimConfig) -> Re
     Simulator::new(scene, robot, options.seed).map_err(|error| AppError::Input(format!("{name}: {error}")))
 }
 
-/// The kind of the file that a scene's name stands for; `None` for a name that is no file.
+/// The kind of the file that a scene's name stands for; `None` for a name that is not a file.
 fn file_kind(name: &str) -> Result<Option<FileKind>, AppError> {
     let is_file = !Scene::NAMES.contains(&name) && (name.contains(['.', '/']) || Path::new(name).exists());
     Ok(if is_file { Some(Expected::Scene.check(Path::new(name))?) } else { None })
@@ -93,7 +93,7 @@ fn file_kind(name: &str) -> Result<Option<FileKind>, AppError> {
 /// The built-in scenes, a row each: name and size.
 ///
 /// # Errors
-/// When a built-in scene cannot be made.
+/// When a built-in scene cannot be created.
 pub fn list_scenes() -> Result<Vec<Vec<String>>, AppError> {
     let row = |name: &&str| {
         let (low, high) = Scene::by_name(name, 1)?.world.bounds();

@@ -20,7 +20,7 @@ pub fn import_mesh(file: &Path, options: &GltfOptions) -> Result<Mesh, ImportErr
 
 /// Reads the files that a scene is made of.
 pub(super) struct SceneFiles {
-    /// What their names are relative to.
+    /// Folder to which their names are relative.
     pub(super) folder: PathBuf,
 }
 

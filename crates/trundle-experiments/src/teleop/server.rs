@@ -65,7 +65,7 @@ fn receive(listener: &TcpListener, page: &Arc<TeleopPage>) {
         connections.fetch_add(1, Ordering::Relaxed);
         let (page, count) = (Arc::clone(page), Arc::clone(&connections));
         let handler = std::thread::Builder::new().spawn(move || {
-            let _ = serve(stream, &page); // a closed connection is no failure
+            let _ = serve(stream, &page); // a closed connection is not a failure
             count.fetch_sub(1, Ordering::Relaxed);
         });
         if handler.is_err() {

@@ -64,7 +64,7 @@ impl PlacementSampler {
         })
     }
 
-    /// A placement with clearance; `None` where the world has hardly any.
+    /// A placement with clearance; `None` if the world has hardly any.
     pub fn draw(&mut self) -> Option<CameraPlacement> {
         let [low, high] = self.corners;
         (0..MAX_DRAWN_PLACEMENTS).find_map(|_| {

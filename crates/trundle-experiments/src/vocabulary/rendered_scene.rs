@@ -9,7 +9,7 @@ use trundle_sim::{Lights, Scene, SceneSnapshot, World};
 
 /// A world and its lights.
 pub struct RenderedScene {
-    /// Its name, with its seed where it has one.
+    /// Its name, with its seed if it has one.
     pub name: String,
     /// The solids and meshes.
     pub world: World,

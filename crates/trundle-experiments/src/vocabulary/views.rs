@@ -21,7 +21,7 @@ const MAX_DRAWN_VIEWS: usize = 100;
 
 /// The features of an image.
 pub struct DescribedView {
-    /// `world_from_camera`, where it is known.
+    /// `world_from_camera`, if it is known.
     pub pose: Option<Pose3>,
     /// Its features.
     pub descriptors: Vec<Descriptor>,

@@ -1,4 +1,4 @@
-//! What goes to a broker and what comes from it.
+//! Messages to a broker and from it.
 
 use serde::Serialize;
 
@@ -24,7 +24,7 @@ impl Publication {
     }
 }
 
-/// What a connection reports.
+/// Events of a connection.
 #[derive(Debug, Clone, PartialEq)]
 pub enum BrokerEvent {
     /// The broker accepted the robot.

@@ -58,7 +58,7 @@ impl Broker {
         BrokerEvent::Lost(reason)
     }
 
-    /// Sends a message; whether there was room for it. The call does not wait.
+    /// Sends a message. Returns whether there was room for it. The call does not wait.
     pub fn publish(&self, publication: Publication) -> bool {
         self.session.as_ref().is_some_and(|session| session.publish(publication))
     }

@@ -10,7 +10,7 @@ pub(crate) const LINK_NICENESS: i32 = 10;
 
 /// Carries a session until its first error, or until its events have no reader. A full queue holds the broker back.
 pub fn read(mut connection: Connection, events: &SyncSender<BrokerEvent>) {
-    // Where the system refuses the niceness, the session goes on all the same.
+    // If the system refuses the niceness, the session goes on all the same.
     _ = ThreadPlacement { nice: LINK_NICENESS, ..ThreadPlacement::default() }.take();
     for event in connection.iter() {
         let event = match event {

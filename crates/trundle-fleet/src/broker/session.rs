@@ -20,7 +20,7 @@ const KEEP_ALIVE: Duration = Duration::from_secs(10);
 /// Time in which the last message leaves.
 const FAREWELL_TIME: Duration = Duration::from_secs(1);
 
-/// What a session needs.
+/// Parts of a session.
 #[derive(Debug, Clone)]
 pub struct SessionOptions {
     /// Name of this client, one at a time on a broker.
@@ -31,7 +31,7 @@ pub struct SessionOptions {
     pub password: Option<Password>,
     /// Topics that the robot listens to.
     pub topics: Vec<String>,
-    /// What the broker publishes when it loses the robot.
+    /// Message that the broker publishes when it loses the robot.
     pub last_will: Publication,
 }
 
@@ -79,7 +79,7 @@ impl Session {
         self.client.try_subscribe_many(self.topics.iter().map(filter)).is_ok()
     }
 
-    /// Sends a message; whether there was room for it. What is retained arrives at least once.
+    /// Sends a message. Returns whether there was room for it. What is retained arrives at least once.
     pub fn publish(&self, publication: Publication) -> bool {
         let Publication { topic, payload, is_retained } = publication;
         let quality = if is_retained { QoS::AtLeastOnce } else { QoS::AtMostOnce };

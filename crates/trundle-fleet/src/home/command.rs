@@ -23,7 +23,7 @@ pub enum HomeCommand {
     Return,
     /// Drive onto the charging station.
     Dock,
-    /// Drive to the charging station where it is known, else to the pose at power-on.
+    /// Drive to the charging station if it is known, else to the pose at power-on.
     GoHome,
     /// Drive to a pose in the map frame.
     GoTo(Pose2),
@@ -47,7 +47,7 @@ const WORDS: &str = "start, pause, continue, stop, explore, return, dock, return
 /// Reads a command: a word, or JSON with the fields `command`, `x`, `y` \[m\], `heading_deg` or `place`.
 ///
 /// # Errors
-/// What is expected.
+/// The accepted content.
 pub fn read_home_command(payload: &[u8]) -> Result<HomeCommand, String> {
     if payload.len() > MAX_COMMAND_BYTES {
         return Err(format!("command of {} bytes, expected at most {MAX_COMMAND_BYTES}", payload.len()));
@@ -73,7 +73,7 @@ fn of_word(word: &str) -> Result<HomeCommand, String> {
         "return_to_base" => HomeCommand::GoHome,
         other => {
             let other: String = other.chars().take(40).collect();
-            return Err(format!("'{other}' is no command; expected {WORDS}"));
+            return Err(format!("'{other}' is not a command; expected {WORDS}"));
         }
     })
 }

@@ -9,7 +9,7 @@ use trundle_runtime::{DriveState, MotionHold, Task};
 pub struct HomeState {
     /// One of Home Assistant's words for a vacuum cleaner.
     state: &'static str,
-    /// What the robot does, in one or two words.
+    /// Activity of the robot, in one or two words.
     doing: &'static str,
     /// Why it does not move on.
     reason: Option<String>,

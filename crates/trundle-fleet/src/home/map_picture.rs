@@ -18,7 +18,7 @@ pub struct MapPictures {
 }
 
 impl MapPictures {
-    /// The next picture is sent even where nothing changed.
+    /// The next picture is sent even if nothing changed.
     pub fn begin_anew(&mut self) {
         self.last = None;
         self.since_picture = PICTURE_PERIOD;

@@ -6,10 +6,10 @@ use crate::robot_commands::RobotCommands;
 use crate::robot_glance::RobotGlance;
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task};
 
-/// Obeys a command; in words what the robot does now.
+/// Carries out a command; in words what the robot does now.
 ///
 /// # Errors
-/// Why the robot cannot obey.
+/// Why the robot cannot carry the command out.
 pub fn obey(
     command: &HomeCommand,
     view: &RobotGlance,

@@ -1,4 +1,4 @@
-//! What a robot can do for a master, and what it must refuse.
+//! Abilities of a robot for a master, and requests that it must refuse.
 
 use super::message::{Action, ErrorReport, Order, OrderEdge, OrderNode};
 use crate::robot_facts::RobotFacts;

@@ -42,7 +42,7 @@ impl NodeAction {
         action.action_type == "startCharging"
     }
 
-    /// Begins an action; the number of its mission, where it has one.
+    /// Begins an action; the number of its mission, if it has one.
     ///
     /// # Errors
     /// Why it cannot begin.

@@ -88,7 +88,7 @@ impl OrderBook {
         released.map(|node| (node.node_id.as_str(), node.sequence_id)).or(self.last_node())
     }
 
-    /// Takes a new order over in place of the last one. Instant actions that have ended are forgotten.
+    /// Takes a new order over in place of the last one. Instant actions that have ended are discarded.
     pub fn begin(&mut self, order: Order) {
         let mut instant_actions = std::mem::take(&mut self.instant_actions);
         instant_actions.retain(|action| !action.action_status.is_over());
@@ -167,7 +167,7 @@ impl OrderBook {
         self.at_node.front()
     }
 
-    /// The same, taken out.
+    /// Takes the next action out.
     pub fn take_action(&mut self) -> Option<Action> {
         self.at_node.pop_front()
     }

@@ -9,7 +9,7 @@ use trundle_core::MAX_COORDINATE_M;
 /// Reads an order and checks its form: numbers, names, sequence of nodes and edges.
 ///
 /// # Errors
-/// What is not of the standard's form, as the error that is reported.
+/// Error of a message that is not of the standard's form.
 pub fn read_order(payload: &[u8]) -> Result<Order, ErrorReport> {
     require_size(payload, Topic::Order)?;
     let order: Order = serde_json::from_slice(payload).map_err(|error| invalid(error, Topic::Order))?;
@@ -128,7 +128,7 @@ fn check_edges(order: &Order) -> Result<(), String> {
             return Err(format!("edge {} does not lead from node {start} to node {end}", edge.edge_id));
         }
         if edge.max_speed.is_some_and(|speed| !speed.is_finite() || speed < 0.0) {
-            return Err(format!("edge {}: maxSpeed is no speed", edge.edge_id));
+            return Err(format!("edge {}: maxSpeed is not a speed", edge.edge_id));
         }
     }
     Ok(())

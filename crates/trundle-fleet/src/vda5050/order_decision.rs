@@ -7,7 +7,7 @@ use trundle_core::{Pose2, difference_of_angles};
 /// Deviation within which the robot stands at the first node of a new order that allows none \[m\]. Source: ours, a robot's radius.
 const START_DEVIATION_M: f64 = 0.2;
 
-/// What becomes of an order of the standard's form.
+/// Result of an order of the standard's form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OrderDecision {
     /// It replaces the last order, which has ended.

@@ -90,7 +90,7 @@ fn safety_state(view: &RobotGlance) -> SafetyState {
     SafetyState { e_stop: "NONE", field_violation }
 }
 
-/// What the robot does, why it does not move on, and what it does not know.
+/// Activity of the robot, why it does not move on, and its unknowns.
 fn information(view: &RobotGlance) -> Vec<Information> {
     let info = |info_type, info_description| Information { info_type, info_description, info_level: "INFO" };
     let mut all = vec![info("driveState", view.state.to_string())];

@@ -120,7 +120,7 @@ impl Vehicle {
         self.own_mission = self.own_mission.max(mission);
     }
 
-    /// Who controls the robot: a person where another front end gave the present mission.
+    /// Controller of the robot: a person where another front end gave the present mission.
     #[must_use]
     pub fn mode(&self, view: &RobotGlance) -> OperatingMode {
         let is_foreign = view.mission.id > self.own_mission;

@@ -1,4 +1,4 @@
-//! A robot that obeys at once, and messages to it.
+//! A robot that acts at once, and messages to it.
 
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task, TaskEnd, TaskR
 /// The map of the tests.
 pub const MAP: &str = "hall";
 
-/// A robot that obeys at once but drives only when a test says so.
+/// A robot that acts at once but drives only when a test says so.
 pub struct TestRobot {
     pub vehicle: Vehicle,
     pub view: RobotGlance,
@@ -173,7 +173,7 @@ pub fn errors(state: &Value) -> Vec<&str> {
     state["errors"].as_array().unwrap().iter().map(|error| error["errorType"].as_str().unwrap()).collect()
 }
 
-/// What an error of a state refers to under a key.
+/// Reference of an error of a state under a key.
 pub fn reference<'a>(error: &'a Value, key: &str) -> Option<&'a str> {
     let references = error["errorReferences"].as_array()?;
     references.iter().find(|reference| reference["referenceKey"] == key)?["referenceValue"].as_str()

@@ -55,7 +55,7 @@ pub fn vocabulary() -> Vec<Vec<u8>> {
     vec![trained().to_bytes()]
 }
 
-/// The same as text.
+/// The vocabulary as text of DBoW2.
 pub fn dbow2() -> Vec<Vec<u8>> {
     vec![trained().to_dbow2_text().into_bytes()]
 }

@@ -33,7 +33,7 @@ pub fn checkpoint(bytes: &[u8]) {
     }
 }
 
-/// The bytes with the checksum at `at` set right, little endian; the bytes themselves where they are too short.
+/// The bytes with the checksum at `at` set right, little endian; the bytes themselves if they are too short.
 fn with_checksum(bytes: &[u8], at: std::ops::Range<usize>, sum: impl Fn(&[u8]) -> u64) -> Vec<u8> {
     let mut bytes = bytes.to_vec();
     if bytes.len() >= at.end {

@@ -20,10 +20,10 @@ use transform::Transform;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
 use window::Window;
 
-/// The distance given where a map has no obstacle at all, m.
+/// The distance given if a map has no obstacle at all, m.
 pub const NO_OBSTACLE_DISTANCE_M: f64 = 1e6;
 
-/// What unknown cells, and everything outside the grid, count as.
+/// State that unknown cells, and everything outside the grid, count as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UnknownIs {
@@ -69,7 +69,7 @@ fn differing(was: &[bool], cells: &[Cell], unknown: UnknownIs) -> Option<Range<u
 #[derive(Debug, Clone, PartialEq)]
 pub struct DistanceField {
     geometry: GridGeometry,
-    /// Cells a metre.
+    /// Cells per metre.
     per_metre: f64,
     unknown: UnknownIs,
     is_obstacle: Vec<bool>,
@@ -203,7 +203,7 @@ impl DistanceField {
         self.among_centres(point).unwrap_or_else(|| self.distance_anywhere(point))
     }
 
-    /// [`DistanceField::distance`] between four centres; `None` where there are none around the point.
+    /// [`DistanceField::distance`] between four centres; `None` if there are none around the point.
     #[inline]
     fn among_centres(&self, point: Vector2) -> Option<f64> {
         let GridGeometry { origin, width, .. } = self.geometry;

@@ -22,7 +22,7 @@ impl Window {
         self.rows = self.rows.start.min(row)..self.rows.end.max(row + 1);
     }
 
-    /// The smallest box around the range `changed` of each row; `None` where no row changed.
+    /// The smallest box around the range `changed` of each row; `None` if no row changed.
     pub(super) fn around(
         geometry: &GridGeometry,
         changed: impl Fn(usize) -> Option<Range<usize>>,

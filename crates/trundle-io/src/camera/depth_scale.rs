@@ -8,20 +8,20 @@ pub const TUM_DEPTH_SCALE: f64 = 5000.0;
 /// Depth units per metre in the depth images of a Kinect V2, of ROS (REP 118) and of trundle's recordings: millimetres.
 pub const KINECT_V2_DEPTH_SCALE: f64 = 1000.0;
 
-/// Depth scale below which a file holds its inverse \[units a metre\]: RealSense's 0.001 is metres a unit. Source: ours.
+/// Depth scale below which a file holds its inverse \[units per metre\]: RealSense's 0.001 is metres per unit. Source: ours.
 const MIN_DEPTH_SCALE: f64 = 1.0;
 
-/// Depth scale above which no camera's is \[units a metre\]. Source: ours.
+/// Depth scale above which no camera's is \[units per metre\]. Source: ours.
 const MAX_DEPTH_SCALE: f64 = 1e6;
 
-/// A depth scale in units a metre; one below 1 is metres a unit and refused with its inverse.
+/// A depth scale in units per metre; one below 1 is metres per unit and refused with its inverse.
 pub(crate) fn checked_depth_scale(depth_scale: f64) -> Result<f64, Invalid> {
-    require_positive("depth_scale", depth_scale, "units a metre")?;
+    require_positive("depth_scale", depth_scale, "units per metre")?;
     if depth_scale < MIN_DEPTH_SCALE {
-        let expected = format!("units a metre; {depth_scale} m a unit are {:.0}", 1.0 / depth_scale);
+        let expected = format!("units per metre; {depth_scale} m per unit are {:.0}", 1.0 / depth_scale);
         return Err(Invalid::new("depth_scale", depth_scale, "", expected));
     }
-    require_in("depth_scale", depth_scale, "units a metre", MIN_DEPTH_SCALE, MAX_DEPTH_SCALE)
+    require_in("depth_scale", depth_scale, "units per metre", MIN_DEPTH_SCALE, MAX_DEPTH_SCALE)
 }
 
 #[cfg(test)]
@@ -32,7 +32,7 @@ mod tests {
     fn metres_a_unit_are_refused_with_units_a_metre() {
         assert_eq!(checked_depth_scale(5000.0), Ok(5000.0));
         let problem = checked_depth_scale(0.001).unwrap_err().to_string();
-        assert_eq!(problem, "depth_scale is 0.001, expected units a metre; 0.001 m a unit are 1000");
+        assert_eq!(problem, "depth_scale is 0.001, expected units per metre; 0.001 m per unit are 1000");
         assert!(checked_depth_scale(f64::NAN).is_err() && checked_depth_scale(1e9).is_err());
     }
 }

@@ -10,7 +10,7 @@ pub(super) struct CameraFields {
     pub focal: (f64, f64),
     pub centre: (f64, f64),
     pub lens: Distortion,
-    /// Units a metre, where the file holds them.
+    /// Units per metre, if the file holds them.
     pub depth_scale: Option<f64>,
     /// Readout time, s.
     pub readout: f64,

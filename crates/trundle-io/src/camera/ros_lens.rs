@@ -2,17 +2,17 @@
 
 use trundle_core::Distortion;
 
-/// Parts of the names of models whose image is no pinhole camera's, also with all numbers 0: there the angle from the optical
+/// Parts of the names of models whose image is not a pinhole camera's, also with all numbers 0: there the angle from the optical
 /// axis, not its tangent, is the distance in the image. Source: ROS REP 118's image_geometry, Kalibr.
 const FISHEYE_MODELS: [&str; 5] = ["equidist", "fisheye", "kannala", "omni", "spherical"];
 
-/// What is accepted, and what to do with a camera of another lens.
+/// Accepted lenses, and the remedy for another lens.
 const EXPECTED: &str = "plumb_bob with up to 5 numbers: rectify the images and give the rectified camera";
 
 /// The lens of model plumb_bob: k1, k2, p1, p2, k3. Other models but fisheyes pass where all that they add is 0.
 ///
 /// # Errors
-/// What is expected instead, where the lens is another.
+/// The accepted lens, if the lens is another.
 pub(super) fn lens_of(model: Option<&str>, numbers: &[f64]) -> Result<Distortion, &'static str> {
     let at = |i: usize| numbers.get(i).copied().unwrap_or(0.0);
     let is_pinhole = match model {

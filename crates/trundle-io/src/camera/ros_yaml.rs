@@ -52,5 +52,5 @@ fn lens(document: &YamlDocument<'_>) -> Result<Distortion, IoError> {
     })
 }
 
-/// A model whose name is no text: its lens passes where all numbers are 0.
+/// A model whose name is not text: its lens passes where all numbers are 0.
 const UNNAMED_MODEL: &str = "unnamed";

@@ -41,7 +41,7 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<CameraFields, IoError> {
 fn depth_scale(document: &YamlDocument<'_>) -> Result<Option<f64>, IoError> {
     let names = ["RGBD.DepthMapFactor", "DepthMapFactor", "Camera.depthmap_factor", "depthmap_factor"];
     let named = names.iter().find(|name| document.get(name).is_some());
-    named.map(|name| document.number(name, "depth units a metre")).transpose()
+    named.map(|name| document.number(name, "depth units per metre")).transpose()
 }
 
 fn refuse_other_lens(document: &YamlDocument<'_>) -> Result<(), IoError> {

@@ -150,7 +150,7 @@ impl Fields<'_> {
         count.ok_or_else(|| format!("{name} is '{}', expected {least} to {MAX_BEAMS}", excerpt(text)))
     }
 
-    /// Ranges, m. A text that is no number is NaN: an unseen beam.
+    /// Ranges, m. A text that is not a number is NaN: an unseen beam.
     fn ranges(&mut self) -> Result<Vec<f64>, String> {
         let count = self.count("number of beams", 1)?;
         let ranges: Vec<f64> =

@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_given_of_the_mount_overrides_that_alone() {
+    fn a_given_part_of_the_mount_overrides_that_part_alone() {
         let origin = |options: LaserLogOptions| {
             let scan = read(GOOD, options).unwrap().scans[0].scan.clone();
             (scan.origin().x, (scan.angle(0).to_degrees() * 1e6).round() / 1e6)
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn the_reading_where_many_end_is_no_return() {
+    fn the_reading_where_many_end_is_not_a_return() {
         let line = |range: f64| format!("FLASER 2 3 {range} 0 0 0 0 0 0 1 h 1\n");
         let text: String = (0..30).map(|i| line(81.83 + 0.005 * f64::from(i % 3))).collect();
         let log = read(&text, LaserLogOptions::default()).unwrap();
@@ -304,7 +304,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_text_is_no_panic(text in "(ODOM|FLASER|ROBOTLASER1|RAWLASER2|PARAM laser_front_laser_fov|PARAM|[0-9. naif\n-]{0,8}){0,30}") {
+        fn any_text_does_not_panic(text in "(ODOM|FLASER|ROBOTLASER1|RAWLASER2|PARAM laser_front_laser_fov|PARAM|[0-9. naif\n-]{0,8}){0,30}") {
             let _ = read(&text, LaserLogOptions::default());
         }
     }

@@ -48,7 +48,7 @@ impl TextLines {
         Ok(None)
     }
 
-    /// Reads the next line into the buffer; whether there was one.
+    /// Reads the next line into the buffer. Returns whether there was one.
     fn read_line(&mut self) -> Result<bool, IoError> {
         self.buffer.clear();
         let mut limited = self.reader.by_ref().take(MAX_LINE_BYTES);
@@ -74,7 +74,7 @@ impl TextLines {
     }
 }
 
-/// What is wrong with compressed data that end, or cannot be unpacked, after a line.
+/// The problem of compressed data that end, or cannot be unpacked, after a line.
 fn broken_gzip(line: usize, error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::UnexpectedEof => format!("the gzip file is cut off after line {line}"),
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_text_is_refused_by_line() {
+    fn bytes_that_are_not_text_are_refused_by_line() {
         assert_eq!(lines(b"a\n\xff".to_vec()).unwrap_err(), "a.log, line 2: is not UTF-8 text");
         let many: Vec<u8> =
             (0..9000_u32).flat_map(|i| format!("{}\n", i.wrapping_mul(2_654_435_761)).into_bytes()).collect();

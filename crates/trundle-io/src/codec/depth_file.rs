@@ -8,7 +8,7 @@ use crate::pgm::Pgm;
 use image::ImageFormat;
 use trundle_core::{DepthImage, Image};
 
-/// A depth image in metres, 0 where there is no depth. `depth_scale`: units a metre of whole-numbered pixels; floats are metres.
+/// A depth image in metres, 0 if there is no depth. `depth_scale`: units per metre of whole-numbered pixels; floats are metres.
 ///
 /// # Errors
 /// When the bytes are no such image, end too early, or hold more than 67 Mpx.
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn floats_that_are_no_depth_become_none() {
+    fn floats_that_are_not_depth_become_none() {
         let pixels =
             [f32::NAN, f32::INFINITY, -1.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
         let read = decode_depth_file(&tiff::<colortype::Gray32Float>(&pixels), 1.0).unwrap();

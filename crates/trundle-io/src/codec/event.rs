@@ -29,7 +29,7 @@ impl EncodedRgbd {
         })
     }
 
-    /// The same with colour as the JPEG that it was decoded from.
+    /// Encodes an image, with colour as the JPEG that it was decoded from.
     ///
     /// # Errors
     /// When a side is 0 or above 65,535 px.
@@ -40,7 +40,7 @@ impl EncodedRgbd {
     /// The decoded image: the one that the robot and a replay receive.
     ///
     /// # Errors
-    /// When the bytes are no images or their sizes differ.
+    /// When the bytes are not images or their sizes differ.
     pub fn decode(&self) -> Result<RgbdImage, CodecError> {
         let (color, depth) = (decode_color(&self.color_jpeg)?, decode_depth(&self.depth)?);
         Ok(RgbdImage::new(self.stamp, color, depth)?)

@@ -23,7 +23,7 @@ fn millimetres(metres: f32) -> u16 {
     if rounded > 0.0 && rounded <= f64::from(u16::MAX) { rounded as u16 } else { 0 }
 }
 
-/// A depth image (m, 0 where there is none) as 16-bit grey PNG in millimetres.
+/// A depth image (m, 0 if there is none) as 16-bit grey PNG in millimetres.
 ///
 /// # Errors
 /// When a side is 0 or above 2^31 px.
@@ -39,7 +39,7 @@ pub(crate) fn encode_grey16(image: &DepthImage, unit: impl Fn(f32) -> u16) -> Re
     encode_png("depth", (image.width(), image.height()), &format, &data)
 }
 
-/// A depth image (m, 0 where there is none) in millimetres as width, height and stream of RVL.
+/// A depth image (m, 0 if there is none) in millimetres as width, height and stream of RVL.
 ///
 /// # Errors
 /// When a side is 0.
@@ -64,7 +64,7 @@ pub fn decode_depth(bytes: &[u8]) -> Result<DepthImage, CodecError> {
 /// The 16-bit numbers of a grey PNG, in whatever unit the camera had.
 ///
 /// # Errors
-/// When the bytes are no PNG, end too early, have another pixel format, or hold more than 67 Mpx.
+/// When the bytes are not a PNG, end too early, have another pixel format, or hold more than 67 Mpx.
 pub fn decode_raw_depth(bytes: &[u8]) -> Result<Image<u16>, CodecError> {
     let failed = |error: png::DecodingError| CodecError::decode("depth", error);
     let limits = Limits { bytes: 4 * MAX_PIXELS };
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_depth_becomes_none() {
+    fn values_that_are_not_depth_become_none() {
         let depths = vec![f32::NAN, f32::INFINITY, -1.0, 65.536, 0.0004, 1.2344];
         let image = DepthImage::new(6, 1, depths).unwrap();
         let back = decode_depth(&encode_depth(&image).unwrap()).unwrap();

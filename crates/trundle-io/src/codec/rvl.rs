@@ -177,7 +177,7 @@ mod tests {
         }
 
         #[test]
-        fn any_bytes_are_no_panic(size in any::<[u8; 2]>(), bytes in prop::collection::vec(any::<u8>(), 0..80)) {
+        fn any_bytes_do_not_panic(size in any::<[u8; 2]>(), bytes in prop::collection::vec(any::<u8>(), 0..80)) {
             let head = [size[0], 0, 0, 0, size[1], 0, 0, 0];
             let _ = decode_rvl(&[&head[..], &bytes].concat());
         }

@@ -63,11 +63,14 @@ impl Expected {
         })
     }
 
-    /// What to do with a file of the kind `found`; a vocabulary of the other form is exchanged.
+    /// Remedy for a file of the kind `found`; a vocabulary of the other form is exchanged.
     fn remedy(self, found: FileKind, wants_map: bool) -> &'static str {
         match (self, found) {
             (Self::Vocabulary, K::Dbow2Vocabulary) => {
                 "`trundle vocabulary import FILE --out OWN.voc` makes one of it"
+            }
+            (Self::Sequence, K::Folder) => {
+                "name its lists of colour and depth images rgb.txt and depth.txt; each line is: timestamp filename"
             }
             (Self::Dbow2Vocabulary, K::Vocabulary) => "it needs no import: it goes with --vocabulary",
             _ => words::remedy(found, wants_map),

@@ -1,4 +1,4 @@
-//! What is inside a file that is packed with gzip or zstd.
+//! Content of a file that is packed with gzip or zstd.
 
 use super::head::HEAD_BYTES;
 use super::{FileKind, words};
@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_read_packed_passes() {
+    fn kinds_that_are_read_packed_pass() {
         assert_eq!(checked(&gzip(b"FLASER 1 2 0 0 0 0 0 0 1 h 1\n")), Ok(FileKind::Gzip));
         assert_eq!(checked(&zstd(b"\x89MCAP0\r\n\x01")), Ok(FileKind::Zstd));
         assert_eq!(checked(b"\x1f\x8b\x08\0broken"), Ok(FileKind::Gzip));
@@ -74,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_read_only_unpacked_is_named() {
+    fn kinds_that_are_read_only_unpacked_are_named() {
         let mcap = checked(&gzip(b"\x89MCAP0\r\n\x01")).unwrap_err();
         assert!(mcap.contains("packed with gzip") && mcap.ends_with("; unpack it with `gunzip`"), "{mcap}");
         let database = checked(&zstd(b"SQLite format 3\0....")).unwrap_err();

@@ -179,7 +179,7 @@ fn of_numbers(text: &str, content: &[&str]) -> Option<FileKind> {
     }
 }
 
-/// The text form of DBoW2: four numbers of the whole tree, then a line a node: parent, whether it is a leaf, 32 bytes, weight.
+/// The text form of DBoW2: four numbers of the whole tree, then one line per node: parent, whether it is a leaf, 32 bytes, weight.
 fn is_dbow2(content: &[&str]) -> bool {
     let [head, node, ..] = content else { return false };
     numbers(head) == Some(4) && numbers(node) == Some(35)

@@ -3,7 +3,7 @@
 use super::FileKind;
 use FileKind as K;
 
-/// Name of a kind and what to do with a file of it; empty where no general advice exists.
+/// Name of a kind and what to do with a file of it; empty if no general advice exists.
 const WORDS: &[(FileKind, &str, &str)] = &[
     (
         K::Ros1Bag,
@@ -29,9 +29,9 @@ const WORDS: &[(FileKind, &str, &str)] = &[
     (
         K::TrundleRecording,
         "a trundle recording",
-        "use `trundle replay`, or `slam` or `map` where it holds images",
+        "use `trundle replay`, or `slam` or `map` if it holds images",
     ),
-    (K::OtherMcap, "an MCAP file", "`trundle map` and `slam` read it where its messages are those of ROS 2"),
+    (K::OtherMcap, "an MCAP file", "`trundle map` and `slam` read it if its messages are those of ROS 2"),
     (K::Gzip, "a file packed with gzip", "unpack it with `gunzip`"),
     (K::Zstd, "a file packed with zstd", "unpack it with `unzstd`"),
     (K::Archive, "a packed archive", "unpack it first"),

@@ -6,12 +6,12 @@ use trundle_core::Beam;
 /// Median of the ranges of a log \[m\]. Beyond it they are in another unit. Source: ours; the medians of the shared logs are below
 /// 10 m, and no indoor laser reaches far beyond 80 m (SICK LMS200).
 const MAX_MEDIAN_RANGE_M: f64 = 50.0;
-/// Median of the ranges \[m\] from which on centimetres are ruled out: a room would be 10 m and more about the robot. Source: ours.
+/// Median of the ranges \[m\] from which on centimetres are ruled out: a room would be 10 m and more around the robot. Source: ours.
 const MAX_CENTIMETRE_MEDIAN: f64 = 1000.0;
 /// Median way by odometry between two scans \[m\]. Beyond it the odometry is in another unit. Source: ours.
 const MAX_MEDIAN_STEP_M: f64 = 3.0;
 
-/// What is wrong with the unit of a log's ranges, where they show it.
+/// Problem of the unit of a log's ranges, where they show it.
 #[must_use]
 pub fn range_unit_hint(log: &LaserLog) -> Option<String> {
     let median = median(hit_ranges(log))?;
@@ -23,7 +23,7 @@ pub fn range_unit_hint(log: &LaserLog) -> Option<String> {
     })
 }
 
-/// Why nothing is in a map of a log, judged by its ranges.
+/// Why nothing is in a map of a log, evaluated by its ranges.
 #[must_use]
 pub fn empty_map_cause(log: &LaserLog) -> String {
     if log.scans_without_return() == log.scans.len() {
@@ -33,7 +33,7 @@ pub fn empty_map_cause(log: &LaserLog) -> String {
         .unwrap_or_else(|| format!("{} of {} scans met nothing", log.scans_without_return(), log.scans.len()))
 }
 
-/// Why the scans of a log do not overlap with the map of it, judged by ranges and odometry.
+/// Why the scans of a log do not overlap with the map of it, evaluated by ranges and odometry.
 #[must_use]
 pub fn no_overlap_cause(log: &LaserLog) -> String {
     if log.scans_without_return() == log.scans.len() && !log.scans.is_empty() {
@@ -45,7 +45,7 @@ pub fn no_overlap_cause(log: &LaserLog) -> String {
     })
 }
 
-/// What is wrong with the unit of a log's odometry, where its steps show it.
+/// Problem of the unit of a log's odometry, where its steps show it.
 fn odometry_unit_hint(log: &LaserLog) -> Option<String> {
     let steps = log.scans.windows(2).map(|pair| pair[0].odom_from_base.distance(&pair[1].odom_from_base));
     let median = median(steps.collect())?;
@@ -65,7 +65,7 @@ pub fn no_return_cause(log: &LaserLog) -> String {
     }
     if log.bad_ranges > 0 {
         return format!(
-            "no beam of any scan met anything: {} ranges are zero, negative, no number, or below the laser's least range",
+            "no beam of any scan met anything: {} ranges are zero, negative, not a number, or below the laser's least range",
             log.bad_ranges
         );
     }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 /// The topics of a bag, or the lines of a CARMEN log, that made a laser log.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct LaserLogSources {
-    /// Of the scans; empty where the log has no topics.
+    /// Of the scans; empty if the log has no topics.
     pub scans: String,
     /// Of the odometry.
     pub odometry: String,

@@ -11,7 +11,7 @@ const MAX_SWEEP_RAD: f64 = 7.0;
 /// Largest number of beams of a scan. Beyond it the scan is refused. Source: ours.
 pub(crate) const MAX_BEAMS: usize = 100_000;
 
-/// Refuses the angles of a sweep that are no radians within one turn; `names` are those of first angle and step in the file.
+/// Refuses the angles of a sweep that are not radians within one turn; `names` are those of first angle and step in the file.
 pub(crate) fn check_sweep(
     names: [&str; 2],
     first_rad: f64,
@@ -34,7 +34,7 @@ pub(crate) fn check_sweep(
     Ok(())
 }
 
-/// The hint that an angle is one in degrees, where it can be.
+/// The hint that an angle is one in degrees, if it can be.
 fn degrees(angle: f64) -> &'static str {
     if (TAU..=361.0).contains(&angle.abs()) { "; it seems to be in degrees" } else { "" }
 }

@@ -85,7 +85,7 @@ fn kind_name(kind: ZoneKind) -> &'static str {
     }
 }
 
-/// What a feature is.
+/// Kind of a feature.
 enum Annotation {
     Zone(Zone),
     Place(NamedPlace),
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read_back() {
+    fn a_written_file_is_read_back() {
         assert_eq!(read(&annotations_text(&annotations())).unwrap(), annotations());
         assert_eq!(read(&annotations_text(&MapAnnotations::default())).unwrap(), MapAnnotations::default());
     }

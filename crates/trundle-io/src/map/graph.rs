@@ -25,7 +25,7 @@ struct Collection {
     features: Vec<Feature>,
 }
 
-/// A feature of GeoJSON (RFC 7946); a value that is no object is skipped.
+/// A feature of GeoJSON (RFC 7946); a value that is not an object is skipped.
 #[derive(Deserialize)]
 struct Feature {
     #[serde(default)]
@@ -162,7 +162,7 @@ fn lane(
         let node = node.ok_or_else(|| IoError::malformed(path, format!("lane {id} has no {name}")))?;
         let place = places.get(&node).copied();
         place.ok_or_else(|| {
-            IoError::malformed(path, format!("{name} of lane {id} is {node}, which is no node"))
+            IoError::malformed(path, format!("{name} of lane {id} is {node}, which is not a node"))
         })
     };
     Ok((end("startid")?, end("endid")?))
@@ -196,7 +196,7 @@ mod tests {
     fn errors_name_node_and_lane() {
         for (from, to, problem) in [
             ("\"id\": 9}", "\"id\": 5}", "g.geojson: node 5 comes twice"),
-            ("\"endid\": 9", "\"endid\": 7", "g.geojson: endid of lane 10 is 7, which is no node"),
+            ("\"endid\": 9", "\"endid\": 7", "g.geojson: endid of lane 10 is 7, which is not a node"),
             ("\"startid\": 5, ", "", "g.geojson: lane 10 has no startid"),
             (
                 "\"frame\": \"map\"",

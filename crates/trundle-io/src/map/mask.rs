@@ -42,7 +42,7 @@ impl FilterInfo {
         Ok(Self { kind: if kind == 1.0 { 1 } else { 2 }, base, multiplier })
     }
 
-    /// The limit of a value, m/s; infinite where there is none: value 0, unknown, and what Nav2 calls out of range.
+    /// The limit of a value, m/s; infinite if there is none: value 0, unknown, and what Nav2 calls out of range.
     fn limit(self, value: Option<u8>, full_speed: f64) -> f32 {
         let Some(value) = value.filter(|value| *value > 0) else { return f32::INFINITY };
         let limit = self.base + self.multiplier * f64::from(value);
@@ -60,7 +60,7 @@ impl FilterInfo {
 pub struct KeepOutFile {
     /// Occupied where the robot must not be, else free.
     pub forbidden: OccupancyGrid,
-    /// Cost of each of its cells, 0 to 100; 0 where it is forbidden or unknown.
+    /// Cost of each of its cells, 0 to 100; 0 if it is forbidden or unknown.
     pub costs: Vec<u8>,
 }
 
@@ -69,7 +69,7 @@ pub struct KeepOutFile {
 pub struct SpeedFile {
     /// Where its cells lie.
     pub geometry: GridGeometry,
-    /// Of each cell, row by row from the lowest y, the highest speed, m/s; infinite where it sets none.
+    /// Of each cell, row by row from the lowest y, the highest speed, m/s; infinite if it sets none.
     pub limits: Vec<f32>,
     /// How many cells have a value above 0 and set no limit all the same: what comes out is not above 0, or above 100 %.
     pub out_of_range: usize,
@@ -180,7 +180,7 @@ mod tests {
     const TRINARY: &str = "occupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
     #[test]
-    fn what_is_black_is_kept_out_and_what_is_grey_is_costly() {
+    fn black_is_kept_out_and_grey_is_costly() {
         let scratch = tempfile::tempdir().unwrap();
         let mask = read_keep_out_mask(&write(scratch.path(), &[0, 80, 128, 205, 254], TRINARY)).unwrap();
         use Cell::{Free, Occupied};
@@ -213,7 +213,7 @@ mod tests {
             let off = asked - f64::from(*found);
             assert!((-1e-6..0.0051).contains(&off), "{asked} m/s is {found} m/s");
         }
-        assert!(mask.limits[199].is_infinite(), "the full speed is no limit");
+        assert!(mask.limits[199].is_infinite(), "the full speed is not a limit");
     }
 
     #[test]

@@ -16,7 +16,7 @@ pub(super) struct Picture {
     /// White, 1 to 65,535.
     pub maxval: u16,
     pub values: Vec<u16>,
-    /// Of each pixel, whether it lets through what is behind it; empty where none does.
+    /// Of each pixel, whether it lets through what is behind it; empty if none does.
     pub transparent: Vec<bool>,
 }
 
@@ -46,7 +46,7 @@ impl Picture {
     }
 }
 
-/// What is wrong with a picture of another format.
+/// The problem of a picture of another format.
 fn other_picture(bytes: &[u8]) -> String {
     let found = FileKind::of_bytes(bytes, bytes.len() as u64);
     format!("this is {found}, expected a PGM, PNG or BMP; save it as PNG or PGM")
@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_such_picture_is_named() {
+    fn a_picture_of_another_kind_is_named() {
         let problem = |bytes: &[u8]| Picture::parse(Path::new("m.png"), bytes).unwrap_err().to_string();
         assert_eq!(problem(b"hello"), "m.png: no picture, expected a PGM, PNG or BMP");
         assert_eq!(

@@ -1,4 +1,4 @@
-//! Pictures that are turned about their lower-left corner: resampled on a lattice along the map's axes.
+//! Pictures that are turned around their lower-left corner: resampled on a lattice along the map's axes.
 
 use trundle_core::{GridGeometry, Invalid, Vector2};
 
@@ -7,7 +7,7 @@ const SAMPLES_PER_SIDE: usize = 3;
 /// Turns below this are none, rad: 1 um at 10 km.
 const MAX_STRAIGHT_TURN_RAD: f64 = 1e-10;
 
-/// The values of a picture with this geometry, turned by `yaw` rad about its origin: along the axes, as fine as before. Of the values
+/// The values of a picture with this geometry, turned by `yaw` rad around its origin: along the axes, as fine as before. Of the values
 /// that a new cell touches, the one that is first by `rank` counts: walls stay closed, and become up to a cell thicker. Cells
 /// beside the picture have the value `beyond`.
 ///

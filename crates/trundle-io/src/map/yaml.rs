@@ -17,7 +17,7 @@ pub(super) struct MapYaml {
     pub resolution: f64,
     /// Lower-left corner of the picture, map frame, m.
     pub origin: Vector2,
-    /// How far the picture is turned about that corner, counter-clockwise, rad.
+    /// How far the picture is turned around that corner, counter-clockwise, rad.
     pub yaw: f64,
     negate: bool,
     occupied: f64,
@@ -258,7 +258,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_text_is_no_panic(cut in 0..GOOD.len(), text in "[a-z0-9 :.'\"\\[\\]{}&*!|>-]{0,30}") {
+        fn any_text_does_not_panic(cut in 0..GOOD.len(), text in "[a-z0-9 :.'\"\\[\\]{}&*!|>-]{0,30}") {
             let _ = parse(&format!("{}{text}", &GOOD[..cut]));
         }
     }

@@ -12,14 +12,14 @@ type Inner = (u64, u64);
 type Inner = PathBuf;
 
 impl FileIdentity {
-    /// `None` where nothing is.
+    /// `None` if nothing is.
     #[cfg(unix)]
     pub(super) fn of(path: &Path) -> Option<Self> {
         use std::os::unix::fs::MetadataExt;
         std::fs::metadata(path).ok().map(|meta| Self((meta.dev(), meta.ino())))
     }
 
-    /// `None` where nothing is.
+    /// `None` if nothing is.
     #[cfg(not(unix))]
     pub(super) fn of(path: &Path) -> Option<Self> {
         std::fs::canonicalize(path).ok().map(Self)
@@ -56,7 +56,7 @@ pub(super) fn is_on_other_disk(a: &Path, b: &Path) -> bool {
     matches!((disk(a), disk(b)), (Some(a), Some(b)) if a != b)
 }
 
-/// Whether the two folders lie on different disks, where the system reports it.
+/// Whether the two folders lie on different disks, if the system reports it.
 #[cfg(not(unix))]
 pub(super) fn is_on_other_disk(_a: &Path, _b: &Path) -> bool {
     false

@@ -1,4 +1,4 @@
-//! The files that a command reads: no output may take their place.
+//! The files that a command reads: no output may replace them.
 
 use super::file_identity::{FileIdentity, is_same, resolved};
 use super::tree::files_below;
@@ -6,7 +6,7 @@ use crate::IoError;
 use std::collections::HashMap;
 use std::path::{Component, Path, PathBuf};
 
-/// The files and folders that a command reads, with the files that these name: no output may take their place.
+/// The files and folders that a command reads, with the files that these name: no output may replace them.
 #[derive(Debug, Clone, Default)]
 pub struct InputFiles {
     paths: Vec<PathBuf>,
@@ -28,7 +28,7 @@ impl InputFiles {
         files
     }
 
-    /// The same, and these files.
+    /// These inputs, and the files `files`.
     #[must_use]
     pub fn and(mut self, files: impl IntoIterator<Item = PathBuf>) -> Self {
         self.paths.extend(files);
@@ -121,7 +121,7 @@ fn named_in_text(path: &Path) -> Vec<PathBuf> {
     files.filter(|file| file.is_file()).collect()
 }
 
-/// What may be the name of a file in a line: each word, and, since names may hold blanks, what is between quotes or marks, and the
+/// Possible names of a file in a line: each word, and, since names may hold blanks, what is between quotes or marks, and the
 /// rest of the line from a word on.
 fn names_in_line(line: &str) -> impl Iterator<Item = &str> {
     let words = line.split(|c: char| c.is_whitespace() || MARKS.contains(c));

@@ -22,7 +22,7 @@ const HEAD: &str =
 /// The files that a run wrote into its folder, by their paths in it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct RunMarker {
-    /// `None` where the content is not known.
+    /// `None` if the content is not known.
     files: BTreeMap<PathBuf, Option<Fingerprint>>,
     /// Whether only a part of the files may be there.
     pub(super) is_unfinished: bool,
@@ -45,7 +45,7 @@ impl RunMarker {
         Self { files: self.files.into_iter().chain(next.files).collect(), is_unfinished: true }
     }
 
-    /// The marker in `folder`; `None` where there is none of trundle's.
+    /// The marker in `folder`; `None` if there is none of trundle's.
     pub(super) fn read(folder: &Path) -> Option<Self> {
         let text = std::fs::read_to_string(folder.join(MARKER_FILE)).ok()?;
         let mut lines = text.lines();

@@ -187,7 +187,7 @@ fn remove_entries(folder: &Path) -> io::Result<()> {
     })
 }
 
-/// A folder `to` with the files of `from` under a second name, or copied where the disk has no second names.
+/// A folder `to` with the files of `from` under a second name, or copied if the disk has no second names.
 fn link_tree(from: &Path, to: &Path) -> io::Result<()> {
     fs::create_dir(to)?;
     for file in files_below(from)? {

@@ -32,7 +32,7 @@ impl Scratch {
     /// A hidden folder in the folder `beside` for the results of `target`.
     ///
     /// # Errors
-    /// When it cannot be made.
+    /// When it cannot be created.
     pub(super) fn create(beside: &Path, target: &Path) -> io::Result<Self> {
         let dir = unfinished::begin(|| tempfile::Builder::new().prefix(PREFIX).tempdir_in(beside))?;
         let mut owner = File::create(dir.path().join(OWNER_FILE))?;

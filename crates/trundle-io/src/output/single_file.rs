@@ -1,4 +1,4 @@
-//! A single file of results, which appears whole or not at all and takes the place of no other.
+//! A single file of results, which appears whole or not at all and replaces no other.
 
 use super::inputs::InputFiles;
 use super::place::free_name;

@@ -158,7 +158,7 @@ fn a_file_in_the_way_is_named() {
 }
 
 #[test]
-fn what_the_disk_does_not_take_is_named_and_the_rest_is_written() {
+fn files_that_the_disk_refuses_are_named_and_the_rest_is_written() {
     let dir = tempfile::tempdir().unwrap();
     let target = dir.path().join("run");
     let out = OutputFolder::create(&target).unwrap();

@@ -68,7 +68,7 @@ fn decoded(compression: &str, packed: &[u8]) -> McapResult<Vec<u8>> {
     Ok(decoded)
 }
 
-/// The decodable beginning of a chunk; `None` where the compression is unknown.
+/// The decodable beginning of a chunk; `None` if the compression is unknown.
 pub(super) fn decoded_prefix(compression: &[u8], bytes: &[u8]) -> Option<Vec<u8>> {
     let mut decoded = Vec::new();
     // The error is the cut itself; what comes before it is there.

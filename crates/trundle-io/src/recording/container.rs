@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 /// Size at which the open chunks are written \[bytes\]. A program that is killed loses what is in them. The places of the chunks are kept for
-/// the index: in an hour of 30 images a second some 20 MB. Source: ours.
+/// the index: in an hour of 30 images per second some 20 MB. Source: ours.
 const FLUSH_BYTES: usize = 1 << 20;
 
 /// Writes messages into three chunks at a time, one a [`Group`], so that each is packed as its content needs.

@@ -49,7 +49,7 @@ pub(super) fn whole_part(file: &mut File, len: u64) -> io::Result<WholePart> {
     Ok(if is_whole { WHOLE } else { WholePart { end, is_cut: true } })
 }
 
-/// The whole records of the chunk that begins at `start` and is cut: opcodes and contents. None where another record is there.
+/// The whole records of the chunk that begins at `start` and is cut: opcodes and contents. Empty if another record is there.
 ///
 /// # Errors
 /// When the file cannot be read.

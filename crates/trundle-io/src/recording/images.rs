@@ -10,7 +10,7 @@ pub(super) const SCHEMA: &str = "sensor_msgs/msg/CompressedImage";
 
 /// Bytes in front of the image of a `compressedDepth` message.
 const DEPTH_HEADER_BYTES: usize = 12;
-/// Number of images that wait for their place; more are no recording of ours. Source: ours, ten times those of a chunk.
+/// Number of images that wait for their place; more are not a recording of ours. Source: ours, ten times those of a chunk.
 const MAX_WAITING: usize = 4096;
 
 /// An image's bytes and the stamp of its message.
@@ -23,7 +23,7 @@ pub(super) struct ImageBytes {
 /// The image of a `sensor_msgs/msg/CompressedImage`; of depth without the header of its transport.
 ///
 /// # Errors
-/// What is wrong, in words.
+/// The problem, in words.
 pub(super) fn decode(message: &[u8]) -> Result<ImageBytes, String> {
     let read = || {
         let mut reader = CdrReader::new(SCHEMA, message, Wire::Cdr)?;

@@ -65,7 +65,7 @@ pub(super) struct ScanMessage {
     origin_m: [f64; 2],
     angle_min_rad: f64,
     angle_increment_rad: f64,
-    /// `null` where nothing is known.
+    /// `null` if nothing is known.
     ranges_m: Vec<Option<f64>>,
     /// Whether an obstacle is at the range; else the beam is free up to it.
     hits: Vec<bool>,
@@ -171,7 +171,7 @@ impl ScanMessage {
 
 impl JsonImage {
     pub fn image(&self) -> Result<ImageBytes, String> {
-        let bytes = STANDARD.decode(&self.data).map_err(|error| format!("data is no base64: {error}"))?;
+        let bytes = STANDARD.decode(&self.data).map_err(|error| format!("data is not base64: {error}"))?;
         let stamp = self.timestamp.try_into().map_err(|invalid: Invalid| invalid.to_string())?;
         Ok(ImageBytes { stamp, bytes })
     }

@@ -30,7 +30,7 @@ impl PoseInFrame {
         Self { theta: Some(pose.theta), ..Self::new(stamp, frame_id, Pose3::from_pose2(pose)) }
     }
 
-    /// The planar pose again, exact; `None` when it was made of a pose in space.
+    /// The planar pose again, exact; `None` if it was made of a pose in space.
     pub fn pose2(&self) -> Option<Pose2> {
         let Xyz { x, y, .. } = self.pose.position;
         self.theta.map(|theta| Pose2 { x, y, theta })

@@ -46,16 +46,16 @@ impl RecordingReader {
     /// Opens a recording and reads the configuration of its run, where that is its first message.
     ///
     /// # Errors
-    /// When the file cannot be read or is no MCAP recording.
+    /// When the file cannot be read or is not an MCAP recording.
     pub fn open(path: &Path) -> Result<Self, IoError> {
         Expected::Recording.check(path)?;
         Self::of(MessageStream::open(path, Encoding::Own)?)
     }
 
-    /// The same of a recording that may be cut at any byte, as by a power failure: its messages up to there.
+    /// Opens a recording that may be cut at any byte, as by a power failure, and reads its messages up to the cut.
     ///
     /// # Errors
-    /// When the file cannot be read, is no MCAP recording, or is cut before its first message.
+    /// When the file cannot be read, is not an MCAP recording, or is cut before its first message.
     pub fn open_to_cut(path: &Path) -> Result<Self, IoError> {
         Expected::Recording.check(path)?;
         let reader = Self::of(MessageStream::open_to_cut(path, Encoding::Own)?)?;
@@ -173,7 +173,7 @@ impl RecordingReader {
         Ok(None)
     }
 
-    /// The image of a colour message and the depth message behind it; `None` where the recording was cut between both.
+    /// The image of a colour message and the depth message behind it; `None` if the recording was cut between both.
     fn image(&mut self, color: &RawMessage) -> Result<Option<RecordedMessage>, IoError> {
         let next = self.stream.next_message()?;
         if next.is_none() && self.cut().is_some() {

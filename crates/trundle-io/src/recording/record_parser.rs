@@ -25,7 +25,7 @@ pub(super) fn parse_needed_record(opcode: u8, data: &[u8]) -> McapResult<Option<
     parse_record(opcode, data).map(Some)
 }
 
-/// What follows `count` texts behind `head` bytes.
+/// Bytes behind `count` texts behind `head` bytes.
 fn require_texts(opcode: u8, data: &[u8], head: usize, count: usize) -> McapResult<&[u8]> {
     let mut rest = data.get(head..).ok_or(McapError::UnexpectedEof)?;
     for _ in 0..count {
@@ -34,7 +34,7 @@ fn require_texts(opcode: u8, data: &[u8], head: usize, count: usize) -> McapResu
     Ok(rest)
 }
 
-/// What follows a length of four bytes and as many bytes.
+/// Bytes behind a length of four bytes and as many bytes.
 fn skip_text(opcode: u8, data: &[u8]) -> McapResult<&[u8]> {
     let (length, rest) = data.split_first_chunk().ok_or(McapError::UnexpectedEof)?;
     let length = u32::from_le_bytes(*length);

@@ -15,7 +15,7 @@ use trundle_core::{FrameId, Invalid, PinholeCamera, Pose2, Pose3, Scan, Stamp};
 
 /// Writes a recording: MCAP with the profile `ros2`, every message in CDR.
 ///
-/// What a replay needs stands on topics below `/trundle` as JSON in `std_msgs/msg/String`, exact to the last bit. What other programs show
+/// The data of a replay are on topics below `/trundle` as JSON in `std_msgs/msg/String`, exact to the last bit. What other programs show
 /// stands beside it in messages of ROS 2. The bytes depend on nothing but what is recorded: no clock, no chance; log time and publish
 /// time are the stamp.
 pub struct Recorder<W: Write> {
@@ -27,7 +27,7 @@ pub struct Recorder<W: Write> {
     camera: Option<PinholeCamera>,
 }
 
-/// The name of the writer in the header of a bag that is no recording.
+/// The name of the writer in the header of a bag that is not a recording.
 const BAG_LIBRARY: &str = "trundle convert";
 
 struct Channel {
@@ -55,7 +55,7 @@ impl<W: Write> Recorder<W> {
         Self::named(writer, path, super::LIBRARY)
     }
 
-    /// A ROS 2 bag that is no recording of a run, into `writer`, called `path` in errors.
+    /// A ROS 2 bag that is not a recording of a run, into `writer`, called `path` in errors.
     ///
     /// # Errors
     /// When nothing can be written.
@@ -133,7 +133,7 @@ impl<W: Write> Recorder<W> {
     /// The run's configuration is a `trundle.Config`, recorded first (see [`crate::RecordingReader::config`]).
     ///
     /// # Errors
-    /// When the stamp is before the epoch, the topic had another schema before, the message is no JSON, or it cannot
+    /// When the stamp is before the epoch, the topic had another schema before, the message is not JSON, or it cannot
     /// be written.
     pub fn record_json(
         &mut self,

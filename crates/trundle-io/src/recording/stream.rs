@@ -169,7 +169,7 @@ impl MessageStream {
         Ok(None)
     }
 
-    /// Reads the next record, of a chunk all of its records; whether there was one.
+    /// Reads the next record, of a chunk all of its records. Returns whether there was one.
     fn read_records(&mut self) -> Result<bool, IoError> {
         loop {
             let Some(event) = self.reader.next_event() else {

@@ -239,7 +239,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_bytes_are_no_panic(bytes in prop::collection::vec(any::<u8>(), 0..60)) {
+        fn any_bytes_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..60)) {
             if let Ok(mut reader) = CdrReader::new("x", &bytes, Wire::Cdr) {
                 let _ = reader.string("a");
                 let _ = reader.f64("b");

@@ -1,6 +1,6 @@
 //! Definitions (ros2msg) of the messages that recordings hold: names and types of fields of the published interfaces of ROS 2.
 
-/// A type and its fields, one a line.
+/// A type and its fields, one per line.
 const FIELDS: &[(&str, &str)] = &[
     ("builtin_interfaces/msg/Time", "int32 sec\nuint32 nanosec\n"),
     ("builtin_interfaces/msg/Duration", "int32 sec\nuint32 nanosec\n"),
@@ -88,7 +88,7 @@ const FIELDS: &[(&str, &str)] = &[
     ),
 ];
 
-/// What stands between the definition of a message and those of the messages in it.
+/// Separator between the definition of a message and those of the messages in it.
 const SEPARATOR: &str =
     "================================================================================\nMSG: ";
 

@@ -21,7 +21,7 @@ const MOST_TILTED_DEG: f64 = 15.0;
 /// range are bad. Both are unseen: that nothing came back does not prove that nothing is there.
 ///
 /// # Errors
-/// With a sentence: no or too many beams, angles that are no angles, or a laser that is tilted.
+/// With a sentence: no or too many beams, angles that are not angles, or a laser that is tilted.
 pub(super) fn convert(
     message: &LaserScan,
     base_from_laser: &Pose3,
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_a_scan_is_refused() {
+    fn impossible_scans_are_refused() {
         let refuse = |message: &LaserScan, mount: &Pose3| convert(message, mount, None).unwrap_err();
         let flat = Pose3::from_pose2(Pose2::IDENTITY);
         assert_eq!(refuse(&message(&[]), &flat), "0 ranges, expected 1 to 100000");

@@ -142,7 +142,7 @@ fn pose(r: &mut CdrReader<'_>, field: &'static str) -> Result<MessagePose, CdrEr
     let rotation = UnitQuaternion::try_new(quaternion, MIN_QUATERNION_NORM);
     let rotation = rotation.filter(|_| quaternion.norm() < MAX_QUATERNION_NORM);
     Ok(rotation.map(|rotation| Pose3::new(rotation, Vector3::new(x, y, z))).ok_or_else(|| {
-        format!("the quaternion is {qx} {qy} {qz} {qw} (x y z w), which is no rotation, expected length 1")
+        format!("the quaternion is {qx} {qy} {qz} {qw} (x y z w), which is not a rotation, expected length 1")
     }))
 }
 

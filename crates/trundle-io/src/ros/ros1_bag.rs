@@ -30,7 +30,7 @@ pub(super) struct Ros1Bag {
     chunk: Vec<u8>,
     /// Where the next record of the chunk begins.
     at: usize,
-    /// What is to be said behind the last whole record, where the file breaks off in the chunk.
+    /// Note behind the last whole record, if the file breaks off in the chunk.
     cut: Option<IoError>,
 }
 
@@ -77,7 +77,7 @@ impl Ros1Bag {
         }
     }
 
-    /// Reads records of the file up to the next chunk; whether there is one.
+    /// Reads records of the file up to the next chunk. Returns whether there is one.
     fn next_chunk(&mut self) -> Result<bool, IoError> {
         if let Some(cut) = self.cut.take() {
             return Err(cut);

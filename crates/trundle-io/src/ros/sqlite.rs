@@ -196,7 +196,7 @@ fn local_bytes(length: usize, usable: usize) -> usize {
     if fitting <= most { fitting } else { least }
 }
 
-/// Seven bits a byte, the highest first; of a ninth byte all eight.
+/// Seven bits per byte, the highest first; of a ninth byte all eight.
 fn varint(bytes: &[u8], at: &mut usize) -> Option<i64> {
     let mut value = 0_u64;
     for i in 0..9 {
@@ -315,7 +315,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_bytes_are_no_panic(bytes in prop::collection::vec(any::<u8>(), 0..60), cell in 0..9_usize) {
+        fn any_bytes_do_not_panic(bytes in prop::collection::vec(any::<u8>(), 0..60), cell in 0..9_usize) {
             let _ = values(&bytes);
             let _ = Node::of(&bytes, 2, cell);
         }

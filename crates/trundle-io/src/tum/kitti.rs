@@ -66,7 +66,7 @@ pub(super) fn times(path: &Path, rows: usize) -> Result<Times, IoError> {
     Ok(Times { stamps, is_indexed: true, warnings })
 }
 
-/// The stamps of a file of one a line.
+/// The stamps of a file of one per line.
 fn stamps(path: &Path) -> Result<Vec<Stamp>, IoError> {
     let text = read_text(path)?;
     let lines: Vec<(usize, &str)> =
@@ -89,7 +89,7 @@ fn pose(line: &str) -> Result<Pose3, String> {
     let matrix = Matrix3::from_fn(|i, j| row(i)[j]);
     let off = (matrix.transpose() * matrix - Matrix3::identity()).amax();
     if off > ORTHOGONALITY_TOLERANCE || !off.is_finite() || matrix.determinant() < 0.0 {
-        return Err("the first three columns are no rotation matrix".to_owned());
+        return Err("the first three columns are not a rotation matrix".to_owned());
     }
     let rotation = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix(&matrix));
     Ok(Pose3::new(rotation, Vector3::new(row(0)[3], row(1)[3], row(2)[3])))

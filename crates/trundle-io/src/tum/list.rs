@@ -170,7 +170,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_text_is_no_panic(text in "[0-9 .,#ae/\n]{0,100}") {
+        fn any_text_does_not_panic(text in "[0-9 .,#ae/\n]{0,100}") {
             let _ = parse(&text);
             let _ = parse_pairs(Path::new("associations.txt"), &text, &mut Warnings::default());
         }

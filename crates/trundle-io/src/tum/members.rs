@@ -9,6 +9,12 @@ use std::io::Read;
 use std::path::Path;
 use trundle_core::Stamp;
 
+/// Text files of a TUM folder, which are not lists under another name.
+const KNOWN_TEXTS: [&str; 6] =
+    ["rgb.txt", "depth.txt", "associations.txt", "groundtruth.txt", "odometry.txt", "accelerometer.txt"];
+/// Number of text files that are named as possible lists. Source: ours.
+const MAX_NAMED_LISTS: usize = 4;
+
 /// The paired images of a folder.
 pub(super) struct Members {
     /// Colour and depth images.
@@ -32,7 +38,7 @@ impl Members {
             if !there(name) {
                 let problem =
                     format!("{name} is missing, expected rgb.txt and depth.txt, or associations.txt");
-                return Err(IoError::malformed(dir, problem));
+                return Err(IoError::malformed(dir, format!("{problem}{}", other_lists(dir))));
             }
         }
         Self::of_lists(dir, max_difference)
@@ -73,6 +79,20 @@ impl Members {
         frames.dedup_by_key(|(color, _)| color.stamp);
         Ok(Self { frames, unpaired: 0, listed, warnings })
     }
+}
+
+/// Names of text files that may be lists under another name, with the advice to rename them; empty if there are none.
+fn other_lists(dir: &Path) -> String {
+    let entries = std::fs::read_dir(dir).into_iter().flatten().flatten();
+    let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let is_other = |name: &String| name.ends_with(".txt") && !KNOWN_TEXTS.contains(&name.as_str());
+    let mut names: Vec<String> = names.filter(is_other).collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    names.sort();
+    names.truncate(MAX_NAMED_LISTS);
+    format!("; rename {} if its lines are: timestamp filename", names.join(" or "))
 }
 
 /// The first bytes of an image.

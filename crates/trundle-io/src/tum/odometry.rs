@@ -21,7 +21,7 @@ pub fn read_odometry(path: &Path) -> Result<Vec<(Stamp, Pose2)>, IoError> {
     Ok(read_odometry_file(path)?.0)
 }
 
-/// The same, with what was mended: rows that are sorted, a second row of a stamp that is left out, stamps in ms, us or ns; and what
+/// Odometry, with warnings about what was changed: rows that are sorted, a second row of a stamp that is left out, stamps in ms, us or ns; and what
 /// seems to be in another unit.
 pub(super) fn read_odometry_file(path: &Path) -> Result<(Vec<(Stamp, Pose2)>, Warnings), IoError> {
     parse_odometry(path, &read_text(path)?)

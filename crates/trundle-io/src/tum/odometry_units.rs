@@ -23,7 +23,7 @@ pub(super) struct OdometryRow {
     pub heading: f64,
 }
 
-/// What seems to be in another unit than metres and radians.
+/// Numbers that seem to be in another unit than metres and radians.
 pub(super) fn unit_problems(rows: &[(Stamp, OdometryRow)]) -> Vec<String> {
     let steps: Vec<Step> = rows.windows(2).filter_map(|pair| Step::between(&pair[0], &pair[1])).collect();
     [wrong_positions(&steps), wrong_headings(rows, &steps)].into_iter().flatten().collect()
@@ -85,7 +85,7 @@ fn follows_way_in_degrees(steps: &[Step]) -> bool {
     way > 0.0 && as_degrees > MIN_AGREEMENT * way && as_radians < MAX_CONTRADICTION * way
 }
 
-/// The median of the rates above `limit`, where they are too many for jumps.
+/// The median of the rates above `limit`, if they are too many for jumps.
 fn fast(rates: impl Iterator<Item = f64>, limit: f64) -> Option<f64> {
     let moving: Vec<f64> = rates.filter(|rate| *rate > 0.0).collect();
     let mut fast: Vec<f64> = moving.iter().copied().filter(|rate| *rate > limit).collect();
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn headings_beyond_one_turn_and_a_robot_that_was_carried_are_no_other_unit() {
+    fn headings_beyond_one_turn_and_a_robot_that_was_carried_are_not_another_unit() {
         let mut rows: Vec<_> = (0..1000)
             .map(|i| {
                 let heading = 0.006 * i as f64;

@@ -94,12 +94,12 @@ impl TumSequence {
         self.frames[i].0.stamp
     }
 
-    /// `world_from_camera` by motion capture, where the folder has it.
+    /// `world_from_camera` by motion capture, if the folder has it.
     pub fn ground_truth(&self) -> Option<&[(Stamp, Pose3)]> {
         self.ground_truth.as_deref()
     }
 
-    /// `odom_from_base`, where the folder has it.
+    /// `odom_from_base`, if the folder has it.
     pub fn odometry(&self) -> Option<&[(Stamp, Pose2)]> {
         self.odometry.as_deref()
     }
@@ -131,7 +131,7 @@ impl TumSequence {
     }
 }
 
-/// The ground truth, where there is one. Poses without times are those of the images, where they are as many.
+/// The ground truth, if there is one. Poses without times are those of the images, where they are as many.
 fn ground_truth(
     dir: &Path,
     frames: &[(ListedImage, ListedImage)],
@@ -150,7 +150,7 @@ fn ground_truth(
     (!file.poses.is_empty()).then_some(file.poses)
 }
 
-/// The odometry, where there is one.
+/// The odometry, if there is one.
 fn odometry(dir: &Path, warnings: &mut Warnings) -> Result<Option<Vec<(Stamp, Pose2)>>, IoError> {
     let path = dir.join("odometry.txt");
     if !path.exists() {

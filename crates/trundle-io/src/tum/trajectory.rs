@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::path::Path;
 use trundle_core::{Pose2, Pose3, Stamp};
 
-/// What is wrong with a file without poses.
+/// The problem of a file without poses.
 const NO_POSE: &str = "no pose in it, expected lines of: timestamp tx ty tz qx qy qz qw";
 
 /// A trajectory of a file, by rising stamps.
@@ -46,7 +46,7 @@ pub fn read_trajectory_file(path: &Path) -> Result<TrajectoryFile, IoError> {
     parse_trajectory(path, &read_text(path)?, BrokenRows::Refused)
 }
 
-/// The same of a file that a run can do without: rows that cannot be read are left out with a warning.
+/// Reads a trajectory that a run can do without: rows that cannot be read are left out with a warning.
 pub(super) fn read_optional_trajectory(path: &Path) -> TrajectoryFile {
     let text = Expected::Trajectory.check(path).and_then(|_| read_text(path));
     let read = text.and_then(|text| parse_trajectory(path, &text, BrokenRows::LeftOut));
@@ -97,7 +97,7 @@ pub fn trajectory_text(poses: &[(Stamp, Pose3)]) -> String {
     text
 }
 
-/// [`trajectory_text`] of poses in the plane: z is 0, the rotation about z.
+/// [`trajectory_text`] of poses in the plane: z is 0, the rotation around z.
 pub fn trajectory_text_from_planar(poses: &[(Stamp, Pose2)]) -> String {
     let lifted: Vec<_> = poses.iter().map(|&(stamp, pose)| (stamp, Pose3::from_pose2(pose))).collect();
     trajectory_text(&lifted)
@@ -233,12 +233,12 @@ mod tests {
         let read = read_trajectory_file(&path).unwrap();
         assert!(!read.is_indexed && read.warnings.is_empty());
         assert_eq!(read.poses[1].0.as_secs(), 0.25);
-        assert!(problem("2 0 0 5 0 1 0 0 0 0 1 0\n").contains("no rotation matrix"));
+        assert!(problem("2 0 0 5 0 1 0 0 0 0 1 0\n").contains("not a rotation matrix"));
     }
 
     proptest! {
         #[test]
-        fn what_is_written_is_read(tangents in prop::collection::vec(prop::array::uniform6(-3.0..3.0), 1..20)) {
+        fn a_written_text_is_read(tangents in prop::collection::vec(prop::array::uniform6(-3.0..3.0), 1..20)) {
             let poses: Vec<_> = tangents.into_iter().enumerate()
                 .map(|(i, t)| (Stamp::from_nanos(i as i64 * 33_333_333), Pose3::exp(Vector6::from(t)))).collect();
             let text = trajectory_text(&poses);
@@ -250,7 +250,7 @@ mod tests {
         }
 
         #[test]
-        fn any_text_is_no_panic(text in "[0-9 .eE#,\\-+naif\n]{0,200}") {
+        fn any_text_does_not_panic(text in "[0-9 .eE#,\\-+naif\n]{0,200}") {
             let _ = parse(&text);
             let _ = parse_trajectory(Path::new("a"), &text, BrokenRows::LeftOut);
         }

@@ -60,7 +60,7 @@ impl<'f> TumWriter<'f> {
         self.odometry.push((stamp, odom_from_base));
     }
 
-    /// Writes the lists, `groundtruth.txt` and `odometry.txt` (where there is any), `camera.toml` and `orb_slam.yaml`.
+    /// Writes the lists, `groundtruth.txt` and `odometry.txt` (if there is any), `camera.toml` and `orb_slam.yaml`.
     ///
     /// # Errors
     /// When there was no image, or a file cannot be written.

@@ -243,7 +243,7 @@ fn messages_that_lie_are_errors_with_topic_and_time() {
 }
 
 #[test]
-fn what_cannot_be_recorded_is_refused() {
+fn events_that_cannot_be_recorded_are_refused() {
     let mut recorder = Recorder::new(Cursor::new(Vec::new()), Path::new("a.mcap")).unwrap();
     let gyro = EncodedEvent::Gyro(GyroRate { stamp: stamp(0), omega: f64::NAN });
     let error = recorder.record_event(&gyro).unwrap_err().to_string();

@@ -131,14 +131,14 @@ fn a_quaternion_that_is_none_is_named() {
     let good = [0.0, 0.0, 0.0, 1.0];
     assert_eq!(
         log_of(&[odometry("laser", [0.0; 4]), scan(1.0, &[1.0])], "cdr").unwrap_err(),
-        "BAG: none of the 1 poses on /odom can be used: the quaternion is 0 0 0 0 (x y z w), which is no rotation, \
+        "BAG: none of the 1 poses on /odom can be used: the quaternion is 0 0 0 0 (x y z w), which is not a rotation, \
          expected length 1"
     );
     let problem =
         log_of(&[odometry("base", good), scan(1.0, &[1.0]), transform([0.0; 4])], "cdr").unwrap_err();
     assert!(
         problem.contains(
-            "the transform base > laser: the quaternion is 0 0 0 0 (x y z w), which is no rotation"
+            "the transform base > laser: the quaternion is 0 0 0 0 (x y z w), which is not a rotation"
         ),
         "{problem}"
     );
@@ -296,7 +296,7 @@ fn bad_messages_are_named_and_left_out() {
             "message 10 on /scan: 0 ranges, expected 1 to 100000",
         ]
     );
-    // Beams may change in number, and odometry that jumps 5 m is for the mapper to judge.
+    // Beams may change in number, and odometry that jumps 5 m is for the mapper to evaluate.
     assert_eq!(log.scans.iter().map(|s| s.scan.beams().len()).collect::<Vec<_>>(), [4, 9, 4]);
     assert_eq!(log.scans[2].odom_from_base, Pose2::new(5.5, 0.0, 0.0));
     assert_eq!((log.bad_ranges, log.scans[2].scan.beams()[3]), (2, Beam::Hit { range: 3.0 }));
@@ -351,7 +351,7 @@ fn where_the_laser_sits_can_be_given() {
 }
 
 #[test]
-fn what_breaks_off_is_worth_what_it_holds() {
+fn a_bag_that_breaks_off_is_read_to_its_end() {
     let whole = fs::read(bag("zstd.mcap")).unwrap();
     let log = read_bytes(&whole[..whole.len() * 3 / 4]).unwrap();
     assert!((1..10).contains(&log.scans.len()));

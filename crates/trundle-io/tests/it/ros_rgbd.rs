@@ -105,7 +105,7 @@ fn a_bag_whose_depth_comes_much_later_and_is_cut_is_read_too() {
 }
 
 #[test]
-fn what_is_missing_or_not_clear_is_named() {
+fn missing_and_ambiguous_topics_are_named() {
     let without = |topic: &str| lines().into_iter().filter(|line| line.1 != topic).collect::<Vec<_>>();
     let problem = refusal(&without("/camera/color/camera_info"));
     assert!(

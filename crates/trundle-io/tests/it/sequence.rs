@@ -27,7 +27,7 @@ fn open(dir: &Path) -> Result<TumSequence, IoError> {
     TumSequence::open(dir, 1000.0, TumSequence::MAX_DIFFERENCE)
 }
 
-/// What opening says, without the path of the temporary folder.
+/// Error of opening, without the path of the temporary folder.
 fn problem(dir: &TempDir) -> String {
     open(dir.path()).unwrap_err().to_string().replace(&dir.path().display().to_string(), "DIR")
 }
@@ -65,7 +65,19 @@ fn wrong_folders_are_one_clear_sentence() {
         "DIR: this is an empty folder, expected a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt), \
          a ROS bag or a trundle recording"
     );
+    fs::write(dir.path().join("depths.txt"), "7.5 a.png").unwrap();
+    assert_eq!(
+        problem(&dir),
+        "DIR: this is a folder, expected a TUM RGB-D folder (rgb.txt and depth.txt, or associations.txt), a ROS bag or a trundle recording; \
+         name its lists of colour and depth images rgb.txt and depth.txt; each line is: timestamp filename"
+    );
     fs::write(dir.path().join("rgb.txt"), "1.0 a.png").unwrap();
+    assert_eq!(
+        problem(&dir),
+        "DIR: depth.txt is missing, expected rgb.txt and depth.txt, or associations.txt; rename depths.txt if its lines are: \
+         timestamp filename"
+    );
+    fs::remove_file(dir.path().join("depths.txt")).unwrap();
     assert_eq!(
         problem(&dir),
         "DIR: depth.txt is missing, expected rgb.txt and depth.txt, or associations.txt"
@@ -89,10 +101,10 @@ fn wrong_folders_are_one_clear_sentence() {
     let error = open(&dir.path().join("rgb.txt")).unwrap_err().to_string();
     assert!(error.contains("rgb.txt: this is a list of images, expected a TUM RGB-D folder"), "{error}");
     let scale = TumSequence::open(dir.path(), 0.0, 0.02).unwrap_err().to_string();
-    assert!(scale.contains("depth_scale is 0 units a metre"), "{scale}");
+    assert!(scale.contains("depth_scale is 0 units per metre"), "{scale}");
     let scale = TumSequence::open(dir.path(), 0.001, 0.02).unwrap_err().to_string();
     assert!(
-        scale.contains("depth_scale is 0.001, expected units a metre; 0.001 m a unit are 1000"),
+        scale.contains("depth_scale is 0.001, expected units per metre; 0.001 m per unit are 1000"),
         "{scale}"
     );
 }

@@ -41,7 +41,7 @@ fn written() -> TempDir {
 }
 
 #[test]
-fn what_is_written_is_read_again() {
+fn a_written_folder_is_read_again() {
     let dir = written();
     let run = dir.path().join("run");
     let model = CameraModel::read(&run.join("camera.toml")).unwrap();

@@ -1,4 +1,4 @@
-//! What every answer must pass: a Host that is this machine, and headers that keep other pages away.
+//! Checks of every answer: a Host that is this machine, and headers that keep other pages away.
 
 use crate::page_state::PageState;
 use axum::extract::{Request, State};

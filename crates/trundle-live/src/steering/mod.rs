@@ -40,10 +40,10 @@ impl RunSteering {
         Self { operator, check, limits: facts.limits, is_paused_here: AtomicBool::new(false) }
     }
 
-    /// Obeys a request; requests that are not for the robot do nothing.
+    /// Carries out a request; requests that are not for the robot do nothing.
     ///
     /// # Errors
-    /// When the robot cannot obey: a goal in a wall, a number out of range, a run that is over.
+    /// When the robot cannot carry the request out: a goal in a wall, a number out of range, a run that is over.
     pub fn obey(&self, request: &Request) -> Result<(), CommandRefusal> {
         match request {
             Request::Go { goals, append, .. } => self.go(goals, *append),

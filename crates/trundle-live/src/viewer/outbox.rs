@@ -22,12 +22,12 @@ impl Outbox {
         Self { sink }
     }
 
-    /// Sends bytes; whether the viewer took them.
+    /// Sends bytes. Returns whether the viewer took them.
     pub async fn send_bytes(&mut self, bytes: Vec<u8>) -> bool {
         self.send(Message::Binary(bytes.into())).await
     }
 
-    /// Sends a value as JSON; whether the viewer took it.
+    /// Sends a value as JSON. Returns whether the viewer took it.
     pub async fn send_json(&mut self, value: &impl Serialize) -> bool {
         match serde_json::to_string(value) {
             Ok(text) => self.send(Message::Text(text.into())).await,

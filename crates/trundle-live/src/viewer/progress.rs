@@ -1,8 +1,8 @@
-//! What the two halves of a viewer's link share.
+//! State that the two halves of a viewer's link share.
 
 use std::sync::atomic::{AtomicBool, AtomicU64};
 
-/// What the two halves of a viewer's link share.
+/// State that the two halves of a viewer's link share.
 #[derive(Debug, Default)]
 pub struct ViewProgress {
     /// Number of the last view that the page has drawn.

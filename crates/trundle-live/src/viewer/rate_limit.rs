@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-/// Requests a second that a viewer may send on average: ten views seen and ten twists a second, and clicks. Source: ours.
+/// Requests per second that a viewer may send on average: ten views seen and ten twists per second, and clicks. Source: ours.
 const RATE_HZ: f64 = 50.0;
 /// Requests that may come at once. Source: ours; a page that wakes up sends what waited.
 const BURST_REQUESTS: f64 = 150.0;
@@ -20,7 +20,7 @@ impl RateLimit {
         Self { left: BURST_REQUESTS, filled: now }
     }
 
-    /// Takes one permission; whether there was one.
+    /// Takes one permission. Returns whether there was one.
     pub fn take(&mut self, now: Instant) -> bool {
         let seconds = now.saturating_duration_since(self.filled).as_secs_f64();
         self.left = (self.left + seconds * RATE_HZ).min(BURST_REQUESTS);

@@ -1,4 +1,4 @@
-//! What a viewer asks: who may, at what rate, with which answer.
+//! Requests of a viewer: who may, at what rate, with which answer.
 
 use super::progress::ViewProgress;
 use super::rate_limit::RateLimit;
@@ -14,16 +14,16 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 use tokio::sync::mpsc::Sender;
 
-/// Longest silence of a viewer: it answers ten views a second. Source: ours; a tab in the background answers once a second at least.
+/// Longest silence of a viewer: it answers ten views per second. Source: ours; a tab in the background answers once per second at least.
 const SILENCE_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// A viewer that asks.
 pub struct Viewer<'a> {
-    /// What all share.
+    /// Shared state.
     pub state: &'a PageState,
     /// Its number.
     pub id: ViewerId,
-    /// What it may do.
+    /// Its permissions.
     pub access: Access,
     /// How far it has seen.
     pub progress: &'a ViewProgress,
@@ -43,13 +43,13 @@ pub async fn receive(mut stream: SplitStream<WebSocket>, viewer: Viewer<'_>) -> 
             Ok(Some(Ok(Message::Ping(_) | Message::Pong(_)))) => String::new().into(),
         };
         if !rate.take(Instant::now()) {
-            return "too many requests a second";
+            return "too many requests per second";
         }
         if text.is_empty() {
             continue;
         }
         let Ok(request) = serde_json::from_str::<Request>(&text) else {
-            return "a message is no request of this version";
+            return "a message is not a request of this version";
         };
         if let Some(reply) = viewer.reply(&request)
             && viewer.answers.try_send(reply).is_err()
@@ -60,7 +60,7 @@ pub async fn receive(mut stream: SplitStream<WebSocket>, viewer: Viewer<'_>) -> 
 }
 
 impl Viewer<'_> {
-    /// Obeys a request; the answer, where there is one.
+    /// Carries out a request; the answer, if there is one.
     fn reply(&self, request: &Request) -> Option<Reply> {
         match request {
             Request::Seen { batch } => {

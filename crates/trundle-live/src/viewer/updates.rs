@@ -1,4 +1,4 @@
-//! What a viewer is sent: the newest of each kind, and never more than it takes.
+//! Data sent to a viewer: the newest of each kind, and never more than it takes.
 
 use super::outbox::Outbox;
 use super::progress::ViewProgress;
@@ -54,7 +54,7 @@ pub async fn send(
     }
 }
 
-/// What a viewer has been sent.
+/// State of the data sent to a viewer.
 struct Updates {
     id: ViewerId,
     batch: u64,
@@ -96,13 +96,13 @@ impl Updates {
         }
     }
 
-    /// What happened before the viewer came.
+    /// Events before the viewer came.
     async fn begin(&mut self, outbox: &mut Outbox, state: &PageState) -> bool {
         let trail = trail_message(state.history().points());
         outbox.send_bytes(trail).await
     }
 
-    /// Sends what is new, where the viewer has drawn what came before; whether it took it.
+    /// Sends what is new, where the viewer has drawn what came before. Returns whether it took it.
     async fn send(&mut self, outbox: &mut Outbox, state: &PageState, progress: &ViewProgress) -> bool {
         if self.batch.saturating_sub(progress.seen.load(Ordering::Relaxed)) >= MAX_UNSEEN {
             return true;

@@ -47,7 +47,7 @@ struct Tile {
     cells: Box<[u8; TILE_BYTES]>,
 }
 
-/// What a viewer has of the map.
+/// Part of the map that a viewer has.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct TileCursor {
     generation: u32,
@@ -106,7 +106,7 @@ impl MapTiles {
         }
     }
 
-    /// A message with tiles that the viewer at `cursor` lacks, the oldest changes first; `None` where it has all.
+    /// A message with tiles that the viewer at `cursor` lacks, the oldest changes first; `None` if it has all.
     pub fn message(&self, cursor: &mut TileCursor) -> Option<Vec<u8>> {
         let layout = self.layout?;
         if cursor.generation != self.generation {

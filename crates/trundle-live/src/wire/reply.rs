@@ -1,4 +1,4 @@
-//! What the server tells a page as JSON, besides the state.
+//! Messages of the server to a page as JSON, besides the state.
 
 use super::SettingText;
 use serde::Serialize;
@@ -14,7 +14,7 @@ pub enum Reply {
     Answer {
         /// Of the request.
         id: u64,
-        /// Why the request is refused; `None` for one that is obeyed.
+        /// Why the request is refused; `None` for one that is carried out.
         #[serde(skip_serializing_if = "Option::is_none")]
         refusal: Option<String>,
         /// Number of the goal that is refused, from 0.

@@ -1,4 +1,4 @@
-//! What a page asks.
+//! Requests of a page.
 
 use serde::Deserialize;
 use trundle_core::{NamedPlace, Zone};

@@ -5,7 +5,7 @@ use trundle_app::operator::RunView;
 use trundle_planning::MovingObstacle;
 use trundle_runtime::Task;
 
-/// The state of the robot, sent up to ten times a second.
+/// The state of the robot, sent up to ten times per second.
 #[derive(Debug, Clone, Serialize)]
 #[serde(tag = "type", rename = "state")]
 pub struct StateMessage {
@@ -16,7 +16,7 @@ pub struct StateMessage {
     /// Pose and speed.
     #[serde(flatten)]
     pub motion: MotionText,
-    /// What the robot does.
+    /// Activity of the robot.
     #[serde(flatten)]
     pub activity: ActivityText,
     /// The battery.
@@ -32,7 +32,7 @@ pub struct StateMessage {
     pub stages: Vec<(&'static str, f64)>,
     /// Loops that were closed: time \[s\], and where the robot stood \[m\].
     pub loops: Vec<[f64; 3]>,
-    /// The viewer in control; `None` where there is none.
+    /// The viewer in control; `None` if there is none.
     pub wheel: Option<WheelText>,
     /// Number of viewers.
     pub viewers: usize,
@@ -51,7 +51,7 @@ pub struct MotionText {
     pub command: [f64; 2],
 }
 
-/// What the robot does.
+/// Activity of the robot.
 #[derive(Debug, Clone, Serialize)]
 pub struct ActivityText {
     /// The state in one or two words.
@@ -81,7 +81,7 @@ pub struct PowerText {
     pub charging: bool,
 }
 
-/// Who holds the wheel.
+/// The viewer who drives.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WheelText {
     /// How the viewer is called.

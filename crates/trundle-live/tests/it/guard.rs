@@ -1,4 +1,4 @@
-//! Who is let in: hosts, origins, tokens, and what a viewer must not send.
+//! Access: hosts, origins, tokens, and what a viewer must not send.
 
 use crate::browser::{Browser, fetch};
 use crate::live_run::LiveRun;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
-/// What of a depth image becomes an obstacle, and what proves that there is none.
+/// Rules by which pixels of a depth image become obstacles or free space.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DepthScanConfig {
@@ -31,12 +31,12 @@ pub struct DepthScanConfig {
     /// The floor is fitted, and heights are taken from it, when it lies by no more than this from where the mount says, deg,
     /// 0 (off) to 10. Default 3.
     pub floor_fit_deg: f64,
-    /// What is so far below the floor is a hole, m, 0.02 to 1. Default 0.1: a Kobuki's wheel drops 0.04.
+    /// Depth below the floor from which on there is a hole, m, 0.02 to 1. Default 0.1: a Kobuki's wheel drops 0.04.
     pub drop_depth: f64,
     /// Of a pixel's 8 neighbours, how many must be about as deep for it to be an obstacle, 0 to 8. Default 3: a line of
     /// flying pixels along an edge, one pixel wide, has two.
     pub hit_support_px: u8,
-    /// The same for a pixel to prove free space, 0 to 8. Default 2: of a grazing floor only the pixels of one row agree.
+    /// Of a pixel's 8 neighbours, how many must be similarly deep for it to prove free space, 0 to 8. Default 2: of a grazing floor only the pixels of one row agree.
     pub free_support_px: u8,
 }
 

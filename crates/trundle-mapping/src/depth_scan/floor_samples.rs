@@ -85,7 +85,7 @@ impl FloorSamples {
     }
 
     /// Floor of an image: RANSAC \[Fischler81\] with fixed draws, then least squares with Tukey's weights and the mount as prior.
-    /// `None` when too few points lie near the floor, or the plane is beyond its limits.
+    /// `None` if too few points lie near the floor, or the plane is beyond its limits.
     pub(super) fn fit(&mut self, depth: &DepthImage, model: &PixelModel) -> Option<FloorFit> {
         if self.limits.rise <= 0.0 {
             return None;

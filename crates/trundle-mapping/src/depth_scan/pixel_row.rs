@@ -148,7 +148,7 @@ fn bin(range: f32, m: &PixelModel) -> u32 {
     (within + MAGIC).to_bits() & 255
 }
 
-/// The greater of two, the second where the first is no number.
+/// The greater of two, the second where the first is not a number.
 #[inline(always)]
 fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
@@ -166,7 +166,7 @@ mod tests {
     use proptest::prelude::*;
     use trundle_core::{Pose3, Vector3};
 
-    /// A level camera at this height that points ahead; v is how far a ray falls a metre of depth.
+    /// A level camera at this height that points ahead; v is how far a ray falls per metre of depth.
     fn model(height: f64) -> PixelModel {
         let ahead = nalgebra::Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
         PixelModel::new(

@@ -38,7 +38,7 @@ impl ScanFusionConfig {
     }
 }
 
-/// Fuses the scans of several sensors into one of the full circle about the base's origin.
+/// Fuses the scans of several sensors into one of the full circle around the base's origin.
 ///
 /// Of each bearing the nearest obstacle that any sensor saw; free is what any of them saw free and none a nearer obstacle in.
 /// Beams of sensors that sit elsewhere cross the fused ones, so what they cleared is laid out point by point. Cost: the

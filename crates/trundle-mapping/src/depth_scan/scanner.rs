@@ -104,7 +104,7 @@ impl DepthScanner {
         self.mount.blind_range
     }
 
-    /// The floor fitted to the last image; `None` where no floor was found and the mount's floor was used.
+    /// The floor fitted to the last image; `None` if no floor was found and the mount's floor was used.
     pub fn floor(&self) -> Option<FloorFit> {
         self.floor
     }

@@ -40,7 +40,7 @@ pub struct Insertion {
 }
 
 impl GridMapper {
-    /// Empty map about the origin of the map frame.
+    /// Empty map around the origin of the map frame.
     ///
     /// # Errors
     /// When the configuration is out of range.
@@ -177,7 +177,7 @@ impl GridMapper {
         f64::from(self.evidence.log_odds(cell))
     }
 
-    /// Probability of occupancy at a point of the map frame (m); 0.5 where nothing is known.
+    /// Probability of occupancy at a point of the map frame (m); 0.5 if nothing is known.
     pub fn probability_at(&self, point: Vector2) -> f64 {
         probability(self.log_odds_at(point))
     }

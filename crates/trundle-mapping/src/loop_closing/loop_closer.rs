@@ -15,7 +15,7 @@ use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
 use trundle_grid::tiles::TileMap;
 
-/// Searches for loops along the trajectory, and corrects the trajectory where one is proved.
+/// Searches for loops along the trajectory, and corrects the trajectory if one is proved.
 #[derive(Debug, Default)]
 pub(crate) struct LoopCloser {
     /// Path length since the last search, m.

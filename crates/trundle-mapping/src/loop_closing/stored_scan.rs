@@ -4,14 +4,14 @@ use crate::particle_config::ParticleConfig;
 use crate::scan_match::scan_points::ScanPoints;
 use trundle_grid::tiles::{RaySpan, ScanRay};
 
-/// A processed scan, packed: 5 bytes a beam, 6 with the sigma of its range, and 8 for each free span of a beam that is not free
+/// A processed scan, packed: 5 bytes per beam, 6 with the sigma of its range, and 8 for each free span of a beam that is not free
 /// throughout.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct StoredScan {
     /// Where the beams begin, base frame, cells.
     pub(crate) origin: (f32, f32),
     pub(crate) rays: Box<[PackedRay]>,
-    /// One sigma of each ray's range, mm; empty where the sensor gives none.
+    /// One sigma of each ray's range, mm; empty if the sensor gives none.
     pub(crate) sigmas: Box<[u8]>,
     pub(crate) spans: Box<[PackedSpan]>,
 }
@@ -38,7 +38,7 @@ pub(crate) struct PackedSpan {
 pub(crate) struct StoredRay {
     pub(crate) ray: ScanRay,
     pub(crate) beam: usize,
-    /// One sigma of its range, m; 0 where the sensor gives none.
+    /// One sigma of its range, m; 0 if the sensor gives none.
     pub(crate) sigma: f32,
 }
 

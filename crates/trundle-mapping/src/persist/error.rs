@@ -5,8 +5,8 @@ use trundle_core::Invalid;
 /// Why a saved filter was not loaded.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FilterFileError {
-    /// The file is no filter of this program.
-    #[error("no map of trundle-mapping")]
+    /// The file is not a filter of this program.
+    #[error("this is not a filter map of trundle (filter.map)")]
     Foreign,
     /// Made by a version that this one does not read.
     #[error("map of version {found}, expected {expected}")]

@@ -94,7 +94,7 @@ impl ParticleMapper {
     /// [`ParticleMapper::kidnapped`] after it.
     ///
     /// # Errors
-    /// When the configuration is out of range, or the bytes are no filter, of another version, damaged, cut off, made with
+    /// When the configuration is out of range, or the bytes are not a filter, of another version, damaged, cut off, made with
     /// other cells or another sensor model, or contradict themselves. No bytes make it panic.
     pub fn load(bytes: &[u8], config: ParticleConfig) -> Result<Self, FilterFileError> {
         let mut body = checked_body(bytes)?;

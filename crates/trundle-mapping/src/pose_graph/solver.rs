@@ -7,7 +7,7 @@ use trundle_optim::BlockMatrix;
 
 /// Poses that minimise the squared residuals of the constraints, the first pose fixed: Gauss-Newton (\[Grisetti10\]).
 ///
-/// `None` when the constraints do not determine all poses, or a number overflows. Cost of an iteration: linear in the poses for a
+/// `None` if the constraints do not determine all poses, or a number overflows. Cost of an iteration: linear in the poses for a
 /// chain with few loops.
 pub(crate) fn solve(mut poses: Vec<Pose2>, constraints: &[Constraint]) -> Option<Vec<Pose2>> {
     let information: Vec<Matrix3<f64>> = constraints.iter().map(Constraint::information).collect();

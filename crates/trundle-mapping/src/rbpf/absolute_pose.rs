@@ -15,7 +15,7 @@ pub(crate) struct AbsolutePose {
 }
 
 impl AbsolutePose {
-    /// With the base at `map_from_base` by the odometry, m and rad; none where the configuration has no `pose_prior`.
+    /// With the base at `map_from_base` by the odometry, m and rad. `None` if the configuration has no `pose_prior`.
     pub(crate) fn new(config: &ParticleConfig, map_from_base: Pose2) -> Option<Self> {
         let prior = config.pose_prior.as_ref()?;
         let sigma = Vector3::new(prior.shift, prior.shift, prior.turn);

@@ -147,7 +147,7 @@ mod tests {
             let wild = Innovation { off: Vector3::repeat(4.0), open: Vector3::repeat(0.01) };
             trust.learn(&wild, &covariance);
         }
-        assert!(trust.turn.scale() > 0.8, "eight wild steps are believed: {trust:?}");
+        assert!(trust.turn.scale() > 0.8, "eight wild steps are accepted: {trust:?}");
         assert_eq!(OdometryNoise::from_numbers(trust.numbers()), trust);
     }
 

@@ -30,7 +30,7 @@ pub(crate) struct LastScan {
 }
 
 impl LastScan {
-    /// Whether the robot cannot have got from here to there at `jump` m a second.
+    /// Whether the robot cannot have got from here to there at `jump` m per second.
     fn is_out_of_reach(&self, there: &Self, jump: f64) -> bool {
         let way = self.odom_from_base.distance(&there.odom_from_base);
         way > jump * (there.stamp - self.stamp).max(1.0)
@@ -49,7 +49,7 @@ pub(crate) struct OdometryStep {
 }
 
 impl UpdateGate {
-    /// The step to a scan that is to be processed; `None` when the robot has hardly moved. Where each pose counts, not the steps
+    /// The step to a scan that is to be processed; `None` if the robot has hardly moved. Where each pose counts, not the steps
     /// alone, poses that are too far off are refused.
     pub(crate) fn pass(
         &mut self,

@@ -115,7 +115,7 @@ pub(crate) fn thin(kept: &mut Vec<LogEntry>) {
     kept.retain(|_| stays.pop().expect("invariant: one word for each thing kept"));
 }
 
-/// Lets every second scan and disc of the older half go; whether there was one.
+/// Lets every second scan and disc of the older half go. Returns whether there was one.
 pub(crate) fn halve_the_older_half(kept: &mut Vec<LogEntry>) -> bool {
     let (before, half) = (kept.len(), kept.len() / 2);
     let (mut i, mut scans, mut discs) = (0, 0, 0);

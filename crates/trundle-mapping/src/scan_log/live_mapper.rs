@@ -11,7 +11,7 @@ use trundle_grid::{LogOddsGrid, MapperConfig};
 /// Problem: a loop closure moves poses of scans that were drawn minutes ago. The scans are kept. [`LiveMapper::correct`] sets their
 /// corrected poses, and [`LiveMapper::work`] redraws them beside the map in use, in slices of a budget in cells. Drawing begins at
 /// the last snapshot before the first scan that moved, not at the first scan. Snapshots share their tiles, so a snapshot costs what
-/// changed since the one before. At the end the new map takes the place of the old one. Cost of a call: its budget, and two passes over
+/// changed since the one before. At the end the new map replaces the old one. Cost of a call: its budget, and two passes over
 /// the grid for a whole redrawing.
 #[derive(Debug, Clone)]
 pub struct LiveMapper {

@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn what_single_precision_holds_comes_back_as_it_was() {
+    fn numbers_of_single_precision_come_back_unchanged() {
         let span = |beam, from, to| FreeSpan { beam, from, to };
         let beams =
             vec![Beam::Hit { range: 2.5 }, Beam::Unseen, Beam::Free { range: 0.0 }, Beam::Hit { range: 0.0 }];

@@ -57,7 +57,7 @@ impl CloudMatcher<'_> {
         self.find_in(&pyramid, map, guess, covariance, (reach, turn_reach), most)
     }
 
-    /// The same with a pyramid that is there already.
+    /// Matches of the cloud in a pyramid that exists already.
     pub(crate) fn find_in(
         &self,
         pyramid: &Pyramid,
@@ -83,7 +83,7 @@ impl CloudMatcher<'_> {
         };
         let mut places: Vec<Place> = Vec::new();
         while places.len() < most {
-            // A place with half of the best one's score is no rival.
+            // A place with half of the best one's score is not a competitor.
             let least = places.first().map_or(0.0, |best| 0.5 * best.score);
             let Some(place) =
                 pyramid.search(&query, &places, (MIN_PLACE_DISTANCE_CELLS, MIN_PLACE_TURN_RAD), least)

@@ -13,15 +13,15 @@ pub(crate) struct ScanPoints {
     pub(crate) rays: ScanRays,
     /// The hits, thinned, for matching.
     pub(crate) points: Vec<ScanPoint>,
-    /// The same, in groups for vector code; the last is filled up.
+    /// The thinned hits in groups for vector code; the last is filled up.
     pub(crate) groups: Vec<PointGroup>,
     /// Spread of the points, cells.
     pub(crate) spread: PointSpread,
-    /// Number of the beam, end, and one sigma of the range, 0 where the sensor gives none.
+    /// Number of the beam, end, and one sigma of the range, 0 if the sensor gives none.
     hits: Vec<(usize, Vector2, f64)>,
     /// The numbers of the rays' beams.
     pub(crate) beams: Vec<usize>,
-    /// One sigma of each ray's range, m; empty where the sensor gives none.
+    /// One sigma of each ray's range, m; empty if the sensor gives none.
     pub(crate) sigmas: Vec<f32>,
 }
 
@@ -30,7 +30,7 @@ pub(crate) struct ScanPoints {
 pub(crate) struct ScanPoint {
     pub(crate) x: f32,
     pub(crate) y: f32,
-    /// The normal of its surface; zero where there is none.
+    /// The normal of its surface; zero if there is none.
     pub(crate) normal: (f32, f32),
     /// 1 / sigma^2, 1 / cells^2.
     pub(crate) information: f32,
@@ -46,7 +46,7 @@ pub(crate) struct PointGroup {
     pub(crate) y: [f32; LANES],
     pub(crate) normal_x: [f32; LANES],
     pub(crate) normal_y: [f32; LANES],
-    /// 1 where there is a normal, else 0.
+    /// 1 if there is a normal, else 0.
     pub(crate) wall: [f32; LANES],
     pub(crate) information: [f32; LANES],
     /// How many of them are points.
@@ -135,7 +135,7 @@ impl ScanPoints {
         self.find_points(config, origin);
     }
 
-    /// Notes what was seen to be free of beam `i`, the next ray, up to `range`; whether that is all of it.
+    /// Notes what was seen to be free of beam `i`, the next ray, up to `range`. Returns whether that is all of it.
     fn take_spans(&mut self, scan: &Scan, i: usize, range: f64) -> bool {
         let (ray, first) = (self.rays.rays.len() as u32, self.rays.spans.len());
         for (from, to) in scan.free_spans(i).filter(|(from, _)| *from < range) {

@@ -48,7 +48,7 @@ pub fn mounted(position: [f64; 3], yaw_deg: f64, tilt_deg: f64, roll_deg: f64) -
     Pose3::from_matrix(turn.into_inner() * body_from_optical, position.into())
 }
 
-/// The depth image of `solids` on the floor (its height 0 beyond nothing), m; 0 where the ray meets nothing within 12 m.
+/// The depth image of `solids` on the floor (its height 0 beyond nothing), m; 0 if the ray meets nothing within 12 m.
 pub fn depth_of(
     camera: &PinholeCamera,
     base_from_camera: &Pose3,

@@ -10,7 +10,7 @@ pub struct Building {
     way: Vec<(f64, f64)>,
 }
 
-/// What a drive gives: true poses, odometry and scans.
+/// Data of a drive: true poses, odometry and scans.
 pub struct Drive {
     pub truth: Vec<Pose2>,
     pub odom: Vec<Pose2>,

@@ -92,7 +92,7 @@ fn a_table_top_is_found_though_the_floor_goes_on_under_it() {
 }
 
 #[test]
-fn what_the_robot_passes_under_or_over_is_no_obstacle() {
+fn objects_that_the_robot_passes_under_or_over_are_not_obstacles() {
     let shelf = Solid::new([2.0, -9.0, 0.7], [3.0, 9.0, 0.8]);
     let carpet = Solid::new([1.5, -9.0, 0.0], [2.5, 9.0, 0.02]);
     let scan = scan(mount(0.45, 8.0), &[shelf, carpet, Solid::wall(4.0, 2.0)]);
@@ -128,7 +128,7 @@ fn free_reaches_as_far_as_the_floor_was_seen_and_no_farther() {
 }
 
 #[test]
-fn flying_pixels_are_no_obstacles() {
+fn flying_pixels_are_not_obstacles() {
     let (camera, base_from_camera) = (small_camera(), mount(0.45, 8.0));
     let mut depth = depth_of(&camera, &base_from_camera, &[Solid::wall(4.0, 2.0)], true);
     for i in (0..depth.data().len()).step_by(37) {
@@ -207,7 +207,7 @@ fn index_ahead(scan: &Scan) -> usize {
 }
 
 #[test]
-fn what_gives_no_depth_is_not_cleared_though_the_wall_behind_it_is_seen() {
+fn an_object_without_depth_is_not_cleared_though_the_wall_behind_it_is_seen() {
     // A black box, 0.3 m high: it gives no depth, and hides the floor behind it as far as 2.35 / (1 - 0.3 / 0.45) m.
     let (camera, base_from_camera) = (small_camera(), mount(0.45, 8.0));
     let black = Solid::new([1.0, -0.3, 0.0], [1.2, 0.3, 0.3]);
@@ -301,7 +301,7 @@ proptest! {
         let mut scanner = DepthScanner::new(camera, mount(0.45, 8.0), DepthScanConfig::default()).unwrap();
         let scan = scanner.scan(&rgbd(depth));
         let floor = scanner.floor().unwrap();
-        // Looking lower than believed, the floor seems nearer, so that it seems to rise.
+        // Looking lower than estimated, the floor seems nearer, so that it seems to rise.
         prop_assert!((floor.rise_ahead.atan().to_degrees() - tilt_error).abs() < 0.3, "{:?}", floor);
         prop_assert!((floor.height + height_error).abs() < 0.01, "{:?} {}", floor, height_error);
         for point in scan.hits() {

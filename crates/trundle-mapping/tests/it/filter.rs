@@ -64,7 +64,7 @@ pub fn lap() -> Vec<Pose2> {
     poses
 }
 
-/// What wheels make of the poses: 3 % too short, turning 0.6 deg/m, and noise.
+/// Odometry of the poses: 3 % too short, turning 0.6 deg/m, and noise.
 pub fn odometry(poses: &[Pose2]) -> Vec<Pose2> {
     let mut odom = vec![Pose2::IDENTITY];
     for (i, pair) in poses.windows(2).enumerate() {
@@ -159,7 +159,7 @@ fn poses_that_do_not_drift_are_believed_as_poses() {
     assert!(dead_reckoned > 2.0 * believed, "{dead_reckoned} m off by the steps alone");
 }
 
-/// A new filter that believes poses, and the first `count` scans of the lap at poses that are right.
+/// A new filter that accepts poses, and the first `count` scans of the lap at poses that are right.
 fn believing(count: usize) -> (ParticleMapper, FlatRoom, Vec<Pose2>) {
     let config = ParticleConfig { pose_prior: Some(PosePriorConfig::default()), ..config(3) };
     let (mut mapper, room, poses) = (ParticleMapper::new(config, 1).unwrap(), ring(), lap());

@@ -19,7 +19,7 @@ fn hall() -> FlatRoom {
     ])
 }
 
-/// The same from two sides: turned by half a turn it looks as before.
+/// A room that looks alike from two sides: turned by half a turn it looks as before.
 fn twins() -> FlatRoom {
     FlatRoom::new(&[
         &[(-10.0, -10.0), (10.0, -10.0), (10.0, 10.0), (-10.0, 10.0)],
@@ -91,7 +91,7 @@ fn a_filter_that_was_saved_goes_on_as_if_it_had_not_been() {
 }
 
 #[test]
-fn what_is_no_map_is_refused_with_the_reason() {
+fn bytes_that_are_not_a_map_are_refused_with_the_reason() {
     let (room, poses) = (ring(), lap());
     let bytes = mapped(&room, &poses[..30]).save();
     let load = |bytes: &[u8]| ParticleMapper::load(bytes, config(5)).unwrap_err();

@@ -28,7 +28,7 @@ fn differ(a: &OccupancyGrid, b: &OccupancyGrid) -> usize {
 }
 
 #[test]
-fn what_a_correction_bent_is_redrawn_in_slices() {
+fn a_corrected_map_is_redrawn_in_slices() {
     let run = run();
     let mut live = LiveMapper::new(config()).unwrap();
     for (scan, _, drifted) in &run {
@@ -95,7 +95,7 @@ fn all_is_redrawn_within_the_calls_asked_for() {
 }
 
 #[test]
-fn what_comes_in_while_redrawing_is_not_lost() {
+fn scans_that_come_while_redrawing_are_not_lost() {
     let run = run();
     let mut live = LiveMapper::new(config()).unwrap();
     let half = run.len() / 2;
@@ -165,7 +165,7 @@ fn standing_still_keeps_nothing() {
 }
 
 #[test]
-fn what_is_kept_grows_with_the_floor_and_not_with_the_time() {
+fn the_log_grows_with_the_floor_and_not_with_the_time() {
     let room = ring();
     let lap: Vec<_> = lap().into_iter().enumerate().map(|(i, pose)| (laser(&room, pose, i), pose)).collect();
     let mut live = LiveMapper::new(config()).unwrap();

@@ -111,7 +111,7 @@ fn along_a_bare_corridor_nobody_can_tell() {
 }
 
 #[test]
-fn no_match_is_no_match() {
+fn poses_without_overlap_do_not_match() {
     let (mapper, room) = (room_map(), FlatRoom::furnished());
     let here = Pose2::new(0.0, 0.3, 0.4);
     let empty = GridMapper::new(MapperConfig::default()).unwrap();

@@ -6,7 +6,7 @@ use crate::block::{
     subtract_transposed_product,
 };
 
-/// Turns a system into its Cholesky factor; whether it is positive definite.
+/// Turns a system into its Cholesky factor. Returns whether it is positive definite.
 pub(super) fn factorise<const N: usize, const B: usize>(system: &mut ArrowSystem<N, B>) -> bool {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx") {

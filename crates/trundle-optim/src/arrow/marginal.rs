@@ -5,7 +5,7 @@ use super::system::ArrowSystem;
 use crate::block::{solve_lower, subtract_product};
 use nalgebra::{ArrayStorage, SMatrix, SVector};
 
-/// What a removed block says of the next one and the border: information and right side.
+/// Marginal of a removed block on the next one and the border: information and right side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArrowMarginal<const N: usize, const B: usize> {
     /// Information of the next block.

@@ -21,7 +21,7 @@ impl<const N: usize, const B: usize> ArrowSystem<N, B> {
         covariance::of_block(self, k)
     }
 
-    /// Removes the first of two blocks and returns what is known of the second one and the border; `None` where the first block is not
+    /// Removes the first of two blocks and returns what is known of the second one and the border; `None` if the first block is not
     /// positive definite, or there are not two blocks. The system is used up.
     pub fn marginalise_first(&mut self) -> Option<ArrowMarginal<N, B>> {
         marginal::of_first(self)

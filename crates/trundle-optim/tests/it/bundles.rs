@@ -136,7 +136,7 @@ fn problems_and_settings_that_are_not_valid_are_refused() {
     let point = refused(|bad| bad.observations[0].point = 60);
     assert_eq!(point, "observation is pose 0, point 60, expected less than 5 and 60");
     let parts = problem(&good).with_parts(vec![0; 4]).unwrap_err().to_string();
-    assert_eq!(parts, "parts is 4, expected 5, one a pose");
+    assert_eq!(parts, "parts is 4, expected 5, one per pose");
     let text = |config: BundleConfig| config.validated().unwrap_err().to_string();
     assert_eq!(text(BundleConfig { steps: 0, ..EXACT }), "bundle.steps is 0, expected 1 or more");
     assert!(text(BundleConfig { converged: 0.0, ..EXACT }).starts_with("bundle.converged is 0"));

@@ -9,7 +9,7 @@ fn any_point() -> impl Strategy<Value = Vector3> {
     (-1.0..1.0_f64, -1.0..1.0_f64, 0.3..8.0_f64).prop_map(|(x, y, z)| Vector3::new(x, y, z))
 }
 
-/// What a camera measures of a point without noise.
+/// Measurement of a point by a camera without noise.
 fn exact(point: Vector3) -> PointObservation {
     let depth = Some(InverseDepth { value: 1.0 / point.z, sigma: 0.003 });
     PointObservation { pixel: camera().project(point).unwrap(), pixel_sigma: 1.0, depth }

@@ -3,7 +3,7 @@
 //!
 //! Each map has the questions that come with it and random ones between connected places. Each is asked 20 times
 //! with the distance field up to date, and the best CPU time of the thread counts: it says something on a busy machine too.
-//! `--only-plans`, `--only-updates`, `--only-large` and `--only-printed` leave out the rest. Every trajectory is judged by the tests' independent checker.
+//! `--only-plans`, `--only-updates`, `--only-large` and `--only-printed` leave out the rest. Every trajectory is evaluated by the tests' independent checker.
 
 #![expect(
     clippy::print_stdout,
@@ -44,7 +44,7 @@ struct Row {
     way: f64,
     /// The shortest any-angle length for the footprint.
     shortest: f64,
-    /// The same for the room that the plan keeps, up to the margin.
+    /// The shortest any-angle length with the clearance that the plan keeps, up to the margin.
     roomy: f64,
     curves: usize,
     stages: PlanningTimes,
@@ -144,7 +144,7 @@ fn seconds() -> f64 {
     BEGIN.get_or_init(Instant::now).elapsed().as_secs_f64()
 }
 
-/// What each stage takes of all the time.
+/// Share of each stage in the whole time.
 fn shares_of(rows: &[&Row]) -> String {
     let sum = |of: fn(&PlanningTimes) -> f64| rows.iter().map(|row| of(&row.stages)).sum::<f64>();
     let stages = [sum(|s| s.field), sum(|s| s.waypoints), sum(|s| s.curve), sum(|s| s.timing)];
@@ -235,7 +235,7 @@ fn flood(geometry: &GridGeometry, from: CellIndex, open: impl Fn(CellIndex) -> b
     reached
 }
 
-/// What a change costs the distance field: on the maps, and in large empty halls.
+/// Cost of a change of the distance field: on the maps, and in large empty halls.
 fn field_updates(data: &std::path::Path) {
     println!("| map | cells | new field, ms | 6 x 6 m changed | ms CPU, median | worst of 80 |");
     println!("|---|---|---|---|---|---|");

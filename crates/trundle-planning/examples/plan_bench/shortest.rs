@@ -6,7 +6,7 @@ use trundle_planning::DistanceField;
 
 /// Spacing of the looks along a line of sight, cells.
 const LOOK: f64 = 0.2;
-/// What the looks forgive, m: rounding of the stored distances and the interpolation's error.
+/// Tolerance of the checks, m: rounding of the stored distances and the interpolation's error.
 const SLACK: f64 = 1e-3;
 
 #[derive(PartialEq)]

@@ -1,4 +1,4 @@
-//! What a change of 6 x 6 m costs the distance field: CPU time, each change the best of several, the worst of all changes.
+//! Cost of a change of 6 x 6 m for the distance field: CPU time, each change the best of several, the worst of all changes.
 
 use super::support::cpu_ms;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
@@ -7,7 +7,7 @@ use trundle_planning::{DistanceField, UnknownIs};
 /// Changes a map and a kind.
 const PLACES: usize = 40;
 const ROUNDS: usize = 5;
-/// What the planner of a disc of 0.26 m tells apart, at 5 cm.
+/// Resolution of the planner of a disc of 0.26 m, at 5 cm.
 pub const REACH: f64 = 1.46;
 /// Side of the changed window, m.
 const WINDOW: f64 = 6.0;

@@ -118,7 +118,7 @@ impl Curve {
         self.pose_and_curvature(s).0
     }
 
-    /// The signed curvature at `s`, counter-clockwise, 1/m; 0 where the tangent vanishes.
+    /// The signed curvature at `s`, counter-clockwise, 1/m; 0 if the tangent vanishes.
     pub fn curvature(&self, s: f64) -> f64 {
         self.pose_and_curvature(s).1
     }

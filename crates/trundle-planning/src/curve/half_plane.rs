@@ -15,7 +15,7 @@ pub struct HalfPlane {
 const OPEN_SIDE_M: f64 = 1e4;
 
 impl HalfPlane {
-    /// The corners of the polygon bounded by half-planes, in order; empty where they have nothing in common. Open sides end
+    /// The corners of the polygon bounded by half-planes, in order; empty if they have nothing in common. Open sides end
     /// `OPEN_SIDE_M` away.
     pub fn outline(planes: &[Self]) -> Vec<Vector2> {
         let square = [

@@ -35,7 +35,7 @@ pub(crate) struct RouteContext<'a> {
 }
 
 /// The phases from `start` to `goal` along the free waypoints `path`. `moving`: the curvature of a motion under way at `start`; then
-/// `None` when no curve continues it. From rest a disc always has a route; a polygon has `None` when it touches something.
+/// `None` if no curve continues it. From rest a disc always has a route; a polygon has `None` if it touches something.
 pub(crate) fn route(
     context: &RouteContext<'_>,
     path: &[Vector2],
@@ -81,7 +81,7 @@ pub(crate) fn route(
 }
 
 /// A curve no longer than `longest` m that was checked and found free: smoother where the first one exceeds the curvature, nearer to the
-/// path where it is too long.
+/// path if it is too long.
 fn verified_curve(
     context: &RouteContext<'_>,
     segments: &[PathSegment],
@@ -178,7 +178,7 @@ fn with_turns(
     Some(phases)
 }
 
-/// A turn at a pose, nothing where the angle is 0; `None` where the polygon has not the clearance.
+/// A turn at a pose, nothing where the angle is 0; `None` if the polygon has not the clearance.
 pub(crate) fn turn(context: &RouteContext<'_>, at: Pose2, from: f64, to: f64) -> Option<Option<Phase>> {
     /// Angle below which no turn is needed, rad. Source: ours.
     const MIN_TURN_RAD: f64 = 1e-6;

@@ -49,7 +49,7 @@ impl TravelDistances {
         travel
     }
 
-    /// The path length to a cell, m; `None` when it cannot be reached.
+    /// The path length to a cell, m; `None` if it cannot be reached.
     pub(super) fn length_to(&self, cell: CellIndex) -> Option<f64> {
         let length = self.length[self.geometry.linear(cell)];
         (length != UNREACHED).then(|| f64::from(length) * 1e-3)

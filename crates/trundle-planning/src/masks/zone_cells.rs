@@ -26,7 +26,7 @@ pub fn forbidden_cells<'z>(
     mask
 }
 
-/// The speed limits of zones, with cells of `resolution` \[m\] or larger ones where a zone is large; `None` without a slow zone. Where
+/// The speed limits of zones, with cells of `resolution` \[m\] or larger ones if a zone is large; `None` without a slow zone. Where
 /// zones overlap the lowest limit counts.
 #[must_use]
 pub fn slow_speeds<'z>(

@@ -1,4 +1,4 @@
-//! What users of the planner call: plans from pose to pose, through zones and around moving obstacles.
+//! Interface of the planner: plans from pose to pose, through zones and around moving obstacles.
 
 use crate::config::PlannerConfig;
 use crate::curve::fit::config::CurveConfig;
@@ -289,7 +289,7 @@ impl Planner {
         ShapeEscape::new(&around, self.core.config.unknown, pose, shape)
     }
 
-    /// Time until the robot, `from` seconds into `trajectory` now, first meets a moving obstacle, s; `None` where it meets none
+    /// Time until the robot, `from` seconds into `trajectory` now, first meets a moving obstacle, s; `None` if it meets none
     /// within 2 s. Costs microseconds.
     pub fn first_encounter(
         &self,

@@ -120,7 +120,7 @@ impl PlannerCore {
         }
     }
 
-    /// A plan by other points of cells than their centres: of cells of half the side, where these are not too many.
+    /// A plan by other points of cells than their centres: of cells of half the side, if these are not too many.
     fn plan_finely(
         &mut self,
         grid: &OccupancyGrid,

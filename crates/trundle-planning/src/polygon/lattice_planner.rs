@@ -181,7 +181,7 @@ pub(crate) fn shortened(space: &ConfigurationSpace<'_>, shape: &RobotShape, pose
     kept
 }
 
-/// The poses after `from` on a link to `to` by a turn, a straight move and a turn, where that is free.
+/// The poses after `from` on a link to `to` by a turn, a straight move and a turn, if that is free.
 pub(crate) fn link(
     space: &ConfigurationSpace<'_>,
     shape: &RobotShape,

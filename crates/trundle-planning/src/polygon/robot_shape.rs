@@ -24,7 +24,7 @@ pub(crate) struct RobotShape {
     corners: Vec<Vector2>,
     /// Largest distance of a point of the footprint from the axle, m.
     pub(crate) radius: f64,
-    /// Smallest distance of the boundary from the axle, m; 0 where the axle is outside.
+    /// Smallest distance of the boundary from the axle, m; 0 if the axle is outside.
     pub(crate) inner: f64,
     /// Centre and radius of the largest disc inside the footprint, base frame, m.
     pub(crate) inscribed: (Vector2, f64),
@@ -39,7 +39,7 @@ struct Leaving {
     slim: RobotShape,
 }
 
-/// By how much a disc overlaps obstacles, m; `None` where it touches none.
+/// By how much a disc overlaps obstacles, m; `None` if it touches none.
 pub(crate) fn missing_about_disc(field: &DistanceField, at: Vector2, radius: f64) -> Option<f64> {
     (!field.keeps(at, radius)).then(|| radius - field.clearance(at, radius))
 }
@@ -70,7 +70,7 @@ impl RobotShape {
         }
     }
 
-    /// The shape with its boundary `by` m further in; `None` where nothing remains, or a side vanishes.
+    /// The shape with its boundary `by` m further in; `None` if nothing remains, or a side vanishes.
     pub(crate) fn shrunk(&self, by: f64) -> Option<Self> {
         if self.is_disc() {
             let radius = self.radius - by;
@@ -101,7 +101,7 @@ impl RobotShape {
         (0..ROUNDS).fold((0.0, cap), halve).1
     }
 
-    /// By how much the shape overlaps obstacles at a goal, m; `None` where it stands free there. The one decision behind
+    /// By how much the shape overlaps obstacles at a goal, m; `None` if it stands free there. The one decision behind
     /// [`Plan::GoalInObstacle`](crate::Plan::GoalInObstacle).
     pub(crate) fn missing_at_goal(&self, field: &DistanceField, goal: Pose2) -> Option<f64> {
         if self.is_disc() {
@@ -123,7 +123,7 @@ impl RobotShape {
         Some(Self { leaving: Some(Box::new(Leaving { escape, slim })), ..self.clone() })
     }
 
-    /// Depth inside what it leaves, m; 0 where it leaves nothing.
+    /// Depth inside what it leaves, m; 0 if it leaves nothing.
     pub(crate) fn depth(&self) -> f64 {
         self.leaving.as_ref().map_or(0.0, |leaving| leaving.escape.depth)
     }
@@ -149,7 +149,7 @@ impl RobotShape {
         self.corners.iter().map(|c| pose.position() + along * c.x + across * c.y).collect()
     }
 
-    /// The exact distance between the footprint at a pose and the nearest obstacle, at most `cap` m; 0 where they meet. While it
+    /// The exact distance between the footprint at a pose and the nearest obstacle, at most `cap` m; 0 if they meet. While it
     /// leaves an overlap: the distance that it may still come nearer.
     pub(crate) fn gap(&self, field: &DistanceField, pose: Pose2, cap: f64) -> f64 {
         match &self.leaving {
@@ -208,7 +208,7 @@ impl RobotShape {
         }
     }
 
-    /// A turn in place from one heading to another without contact, rad: the shorter turn where that is free.
+    /// A turn in place from one heading to another without contact, rad: the shorter turn if that is free.
     pub(crate) fn turn(&self, field: &DistanceField, from: Pose2, to: f64) -> Option<f64> {
         let short = trundle_core::difference_of_angles(to, from.theta);
         let long = short - std::f64::consts::TAU.copysign(short);

@@ -8,7 +8,7 @@ use trundle_core::{Footprint, GridGeometry, OccupancyGrid, Pose2, Zone};
 use trundle_grid::{DistanceField, UnknownIs};
 
 /// Whether a robot could stand at a pose: the planner's own decision behind [`Plan::GoalInObstacle`](crate::Plan::GoalInObstacle),
-/// without a plan. Costs as much as the cells about the robot.
+/// without a plan. Costs as much as the cells around the robot.
 #[derive(Debug, Clone)]
 pub struct FootprintCheck {
     shape: RobotShape,
@@ -21,7 +21,7 @@ impl FootprintCheck {
         Self { shape: RobotShape::new(footprint) }
     }
 
-    /// By how much the footprint overlaps occupied cells at a pose of the map frame, m; 0 where it stands free. Unknown floor and floor
+    /// By how much the footprint overlaps occupied cells at a pose of the map frame, m; 0 if it stands free. Unknown floor and floor
     /// outside the map are free. A pose that is not finite overlaps nothing.
     #[must_use]
     pub fn overlap(&self, grid: &OccupancyGrid, pose: Pose2) -> f64 {
@@ -34,7 +34,7 @@ impl FootprintCheck {
         self.shape.missing_at_goal(&field, pose).unwrap_or(0.0)
     }
 
-    /// By how much the footprint reaches into a no-go zone at a pose of the map frame, m; 0 where it does not. The zone covers every cell
+    /// By how much the footprint reaches into a no-go zone at a pose of the map frame, m; 0 if it does not. The zone covers every cell
     /// of the lattice that it touches, as on the map that plans are made on.
     #[must_use]
     pub fn overlap_with_zone(&self, zone: &Zone, lattice: &GridGeometry, pose: Pose2) -> f64 {

@@ -5,7 +5,7 @@ use trundle_core::{GridGeometry, OccupancyGrid};
 /// Largest number of cells of a refined grid. Larger ones are not tried: memory and time grow with the cells. Source: ours.
 const MAX_REFINED_CELLS: usize = 16_000_000;
 
-/// The same grid in cells of half the side; `None` where it would have too many.
+/// The same grid in cells of half the side; `None` if it would have too many.
 pub(crate) fn refined(grid: &OccupancyGrid) -> Option<OccupancyGrid> {
     let GridGeometry { resolution, origin, width, height } = *grid.geometry();
     let geometry = GridGeometry::new(resolution / 2.0, origin, 2 * width, 2 * height).ok()?;

@@ -16,7 +16,7 @@ const MAX_ENTRY_RATIO: f64 = 1.5;
 /// Distance of an entry added to that ratio, m. Source: ours.
 const MAX_ENTRY_EXTRA_M: f64 = 1.0;
 
-/// The path to the goal: over the waypoint graph where there is one.
+/// The path to the goal: over the waypoint graph if there is one.
 pub(crate) fn find_path(
     query: &PlanQuery<'_>,
     search: &mut GeodesicSearch,

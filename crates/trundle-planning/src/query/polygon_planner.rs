@@ -21,7 +21,7 @@ struct PolygonPath {
     path: GridPath,
 }
 
-/// By straight moves and turns of the polygon; along a curve where one is free. A moving robot continues along a curve, or
+/// By straight moves and turns of the polygon; along a curve if one is free. A moving robot continues along a curve, or
 /// brakes on its arc first; where neither is free, the plan starts from rest and is marked so. `by_disc`: the plan of the
 /// circumscribed disc.
 pub(crate) fn plan_polygon(

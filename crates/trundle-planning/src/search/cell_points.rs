@@ -12,7 +12,7 @@ pub(crate) const NO_POINT: u8 = u8::MAX;
 pub(crate) enum CellPoints {
     Centres,
     UpperCorners,
-    /// The centre where that is free, else the free point with the largest clearance.
+    /// The centre if that is free, else the free point with the largest clearance.
     Free(FreePoints),
 }
 

@@ -10,7 +10,7 @@ use trundle_core::{Invalid, require_in};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ClearanceCostConfig {
-    /// Clearance that is given up only where there is no other path, m, 0 to 1. Default 0.05: a cell and the tracking error of a
+    /// Clearance that is given up only if there is no other path, m, 0 to 1. Default 0.05: a cell and the tracking error of a
     /// Kobuki (ours).
     pub margin: f64,
     /// Additional cost of a metre without any clearance; falls to 0 at `margin`. 0 to 100, default 4 (ours).

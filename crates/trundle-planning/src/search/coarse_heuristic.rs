@@ -18,7 +18,7 @@ const BLOCK_LENGTH: u32 = BLOCK_SIDE_CELLS as u32;
 pub(crate) struct CoarseHeuristic {
     /// Cost to the goal from each block's middle, in units.
     cost: Vec<u32>,
-    /// Cost of a unit of length in each block, in 1/256; 0 where the robot does not fit.
+    /// Cost of a unit of length in each block, in 1/256; 0 if the robot does not fit.
     price: Vec<u16>,
     queue: BucketQueue,
     width: usize,

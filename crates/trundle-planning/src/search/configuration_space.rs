@@ -37,7 +37,7 @@ pub(crate) struct ConfigurationSpace<'a> {
     cost_mask: Option<&'a CostMask>,
     /// Step between two checks along a straight line, m.
     check_step: f64,
-    /// Whole cells from the grid's origin to the field's; `None` where the two are equal.
+    /// Whole cells from the grid's origin to the field's; `None` if the two are equal.
     shift: Option<(i64, i64)>,
     /// The point that stands for each cell.
     points: CellPoints,
@@ -187,7 +187,7 @@ impl<'a> ConfigurationSpace<'a> {
         price + (self.mask_density(self.point_of(linear)) * 256.0) as u16
     }
 
-    /// The cost in known space where no cell centre is farther than `distance` from obstacles; 0 where the robot does not fit.
+    /// The cost in known space where no cell centre is farther than `distance` from obstacles; 0 if the robot does not fit.
     pub(crate) fn price_of_room(&self, distance: f32) -> u16 {
         let more = if matches!(self.points, CellPoints::Centres) { 0.0 } else { self.half_diagonal() };
         if f64::from(distance) + more < self.radius - CLEARANCE_TOLERANCE_M {

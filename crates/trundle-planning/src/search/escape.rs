@@ -23,7 +23,7 @@ pub(crate) struct Escape {
     zone: f64,
     /// Depth of the overlap, m: against what it overlaps the robot counts as that much smaller.
     pub(crate) depth: f64,
-    /// All obstacles around except the overlapped one; `None` where any obstacle may be overlapped by `depth`.
+    /// All obstacles around except the overlapped one; `None` if any obstacle may be overlapped by `depth`.
     others: Option<DistanceField>,
 }
 
@@ -35,7 +35,7 @@ impl Escape {
     }
 
     /// The same zone with full clearance from all that is not overlapped at the start. `gap` is the distance between the footprint
-    /// there and a cell with this centre, m, 0 where they overlap; no point is farther than `radius` m from the axle.
+    /// there and a cell with this centre, m, 0 if they overlap; no point is farther than `radius` m from the axle.
     pub(crate) fn with_clearance_from_others(
         self,
         field: &DistanceField,
@@ -52,7 +52,7 @@ impl Escape {
         (at - self.start).norm() <= self.zone
     }
 
-    /// Obstacles that must keep their full clearance; `None` where all may be overlapped.
+    /// Obstacles that must keep their full clearance; `None` if all may be overlapped.
     pub(crate) fn others(&self) -> Option<&DistanceField> {
         self.others.as_ref()
     }

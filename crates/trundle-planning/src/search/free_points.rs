@@ -7,7 +7,7 @@
 use crate::search::cell_points::{CellPoints, FreePoints, NO_POINT, OFFSETS, vector};
 use crate::search::configuration_space::ConfigurationSpace;
 
-/// The point of each cell: its centre where that is free, else its free point with the largest clearance.
+/// The point of each cell: its centre if that is free, else its free point with the largest clearance.
 pub(crate) fn free_points(space: &ConfigurationSpace<'_>) -> CellPoints {
     let cells = 0..space.field.geometry().len();
     CellPoints::Free(FreePoints(cells.map(|cell| choose(space, cell)).collect()))

@@ -135,7 +135,7 @@ fn unknown_space_is_allowed_dear_or_forbidden() {
             ..at_home()
         };
         let plan = found(planner(config, 0.17).plan(&grid, start, Twist2::ZERO, goal));
-        // The way keeps out of what is dear; the curve may cut its corners.
+        // The way keeps out of what is expensive; the curve may cut its corners.
         let deep =
             |at: Vector2| [at, at - Vector2::new(0.0, 0.17)].iter().all(|p| grid.at(*p) == Cell::Unknown);
         let unseen = plan.trajectory.points().iter().filter(|p| deep(p.pose.position())).count();
@@ -144,7 +144,7 @@ fn unknown_space_is_allowed_dear_or_forbidden() {
     let (allowed, length) = ask(0.0, UnknownIs::Free);
     assert!(allowed > 0 && (length - 4.0).abs() < 0.01, "allowed: {length}");
     let (unseen, length) = ask(5.0, UnknownIs::Free);
-    assert!(unseen * 4 < allowed && length > 4.3, "dear: {unseen} of {allowed}, {length}");
+    assert!(unseen * 4 < allowed && length > 4.3, "expensive: {unseen} of {allowed}, {length}");
     let (unseen, _) = ask(0.0, UnknownIs::Obstacle);
     assert_eq!(unseen, 0, "forbidden");
     (0..5).for_each(|row| grid.set(CellIndex { col: 30, row }, Cell::Unknown));
@@ -199,7 +199,7 @@ fn numbers_that_are_not_finite_are_refused_at_every_entry_point() {
     assert!(refused(&planner.plan_on_graph(&grid, &graph, here, Twist2::ZERO, nowhere)));
     let replan = planner.replan(&grid, &[], &first, 1.0, nowhere);
     assert!(matches!(replan, Replan::New(plan) if refused(&plan)));
-    // A time that is none, or after the end, is no panic.
+    // A time that is none, or after the end, is not a panic.
     for time in [f64::NAN, -5.0, 1e9] {
         let _ = planner.validate_trajectory(&grid, &first.trajectory, time);
         let _ = planner.replan(&grid, &[], &first, time, there);

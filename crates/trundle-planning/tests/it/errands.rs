@@ -11,7 +11,7 @@ fn hall() -> OccupancyGrid {
 }
 
 #[test]
-fn what_is_kept_out_is_kept_out() {
+fn keep_out_zones_are_kept() {
     let grid = hall();
     let (start, goal) = (Pose2::new(1.0, 3.0, 0.0), Pose2::new(9.0, 3.0, 0.0));
     // Another resolution, and only a part of the hall.
@@ -196,7 +196,7 @@ fn a_blocked_goal_is_approached_as_far_as_allowed() {
 }
 
 #[test]
-fn what_is_dear_is_avoided_where_that_is_no_great_detour() {
+fn expensive_cells_are_avoided_if_the_detour_is_small() {
     let grid = hall();
     let (start, goal) = (Pose2::new(1.0, 3.0, 0.0), Pose2::new(9.0, 3.0, 0.0));
     let geometry = GridGeometry::new(0.25, Vector2::new(4.0, 1.0), 8, 10).unwrap();
@@ -213,7 +213,7 @@ fn what_is_dear_is_avoided_where_that_is_no_great_detour() {
     let (around, longer) = within(90);
     assert!(through > 0 && (straight - 8.0).abs() < 0.01, "{through} {straight}");
     assert!(around == 0 && longer > 8.03 && longer < 9.5, "{around} {longer}");
-    // Where there is no way around, it is no wall.
+    // If there is no way around, it is not a wall.
     let everywhere = GridGeometry::new(1.0, Vector2::zeros(), 10, 6).unwrap();
     let mut planner = planner(at_home(), RADIUS);
     planner.set_cost_mask(Some(CostMask::new(everywhere, vec![99; 60]).unwrap()));

@@ -117,9 +117,9 @@ fn beside_a_wall(resolution: f64) -> OccupancyGrid {
     grid
 }
 
-/// What the planner lets out the watch lets on, all the way: no plan is made twice.
+/// A start that the planner accepts is accepted by the path validation on the whole path: no plan is made twice.
 #[test]
-fn coarse_cells_are_no_livelock() {
+fn coarse_cells_do_not_cause_a_livelock() {
     for resolution in [0.05, 0.1, 0.2, 0.4] {
         let grid = beside_a_wall(resolution);
         let start = Pose2::new(5.0 * resolution, resolution + RADIUS - 0.04, 0.0);

@@ -1,4 +1,4 @@
-//! Robots that are no discs: long ones, whose axle is not in the middle.
+//! Robots that are not discs: long ones, whose axle is not in the middle.
 
 use crate::support::{HALF_BASE, LIMITS, at_home, found};
 use trundle_core::{
@@ -82,7 +82,7 @@ fn two_rooms(corridor: usize) -> OccupancyGrid {
 
 #[test]
 fn a_long_robot_passes_a_corridor_narrower_than_its_circle() {
-    // The circle about the axle is 1.08 m across, the robot 0.4 m.
+    // The circle around the axle is 1.08 m across, the robot 0.4 m.
     let (start, goal) = (Pose2::new(0.7, 0.7, 1.3), Pose2::new(3.7, 1.1, -2.0));
     let result = found(cart_planner(at_home()).plan(&two_rooms(5), start, Twist2::ZERO, goal));
     judge_cart(&two_rooms(5), &result, start, goal);

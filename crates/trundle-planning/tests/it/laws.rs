@@ -1,4 +1,4 @@
-//! What holds on any map.
+//! Properties that hold on any map.
 
 use crate::support::{at_home, found, judge, planner, room};
 use proptest::prelude::*;
@@ -136,7 +136,7 @@ fn pieces_meet_in_position_heading_and_curvature() {
 }
 
 #[test]
-fn headings_straight_up_and_down_are_no_singularity() {
+fn headings_straight_up_and_down_are_not_singular() {
     let grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(60); 60].join("\n")).unwrap();
     for (a, b) in [(90.0, 90.0), (-90.0, -90.0), (90.0, 180.0), (-90.0, 0.0)] {
         let up = f64::signum(a);

@@ -19,7 +19,7 @@ fn min_gap(trajectory: &Trajectory, from: Vector2, velocity: Vector2) -> f64 {
     (0..=2000).map(|k| gap(f64::from(k) * 1e-3)).fold(9.0, f64::min)
 }
 
-/// The same while the steady motion is believed, 2 s.
+/// The minimum gap while the motion is predicted as steady, 2 s.
 fn min_gap_within(trajectory: &Trajectory, from: Vector2, velocity: Vector2) -> f64 {
     let gap =
         |time: f64| (trajectory.at(time).pose.position() - from - velocity * time).norm() - PERSON - RADIUS;

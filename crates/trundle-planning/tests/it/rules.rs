@@ -1,4 +1,4 @@
-//! What a user counts on: no swinging in corridors, the same bytes, speeds that go with room and sight, no jump in curvature.
+//! Guarantees for a user: no swinging in corridors, the same bytes, speeds that go with room and sight, no jump in curvature.
 
 use crate::support::{LIMITS, at_home, found, judge, planner};
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, TrajectoryPoint, Twist2, Vector2};

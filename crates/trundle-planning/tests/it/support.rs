@@ -1,4 +1,4 @@
-//! A robot, and a judge that shares nothing with the planner: it measures trajectories against the grid's squares.
+//! A robot, and a checker that shares nothing with the planner: it measures trajectories against the grid's squares.
 
 use trundle_core::{
     Cell, DifferentialDrive, DriveLimits, Footprint, OccupancyGrid, Pose2, Twist2, Vector2, wrap_angle,

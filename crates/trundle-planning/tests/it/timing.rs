@@ -52,7 +52,7 @@ fn a_motion_under_way_goes_on_without_a_jerk() {
 }
 
 #[test]
-fn what_was_never_seen_is_entered_slowly() {
+fn unseen_floor_is_entered_slowly() {
     let mut grid = hall();
     for col in 50..100 {
         (0..60).for_each(|row| grid.set(trundle_core::CellIndex { col, row }, Cell::Unknown));

@@ -71,7 +71,7 @@ fn tracker() -> MovingObstacleTracker {
     MovingObstacleTracker::new(ObstacleTrackerConfig::default()).unwrap()
 }
 
-/// So many seconds of scans, ten a second, from where the robot stands.
+/// So many seconds of scans, ten per second, from where the robot stands.
 fn watched(
     tracker: &mut MovingObstacleTracker,
     world: &mut World,
@@ -125,7 +125,7 @@ fn someone_who_comes_straight_at_the_robot_is_seen_soon() {
 
 /// The robot drives and turns, its pose wrong by up to 2 cm and a degree, past walls, legs, and things that were put down.
 #[test]
-fn what_stands_appears_or_comes_into_view_is_no_mover() {
+fn objects_that_stand_appear_or_come_into_view_are_not_movers() {
     for sensor in [LASER, CAMERA] {
         let (mut world, mut tracker) = (World::new(&[]), tracker());
         for k in 0..600 {
@@ -252,7 +252,7 @@ fn whoever_passes_one_who_stopped_goes_behind() {
     }
 }
 
-/// A camera that is blind nearer than `blind` (m) looks on, ten times a second, at those who walk until `stop` (s).
+/// A camera that is blind nearer than `blind` (m) looks on, ten times per second, at those who walk until `stop` (s).
 fn dim(
     tracker: &mut MovingObstacleTracker,
     world: &mut World,
@@ -274,7 +274,7 @@ fn dim(
     tracker.moving_obstacles(stamp(to))
 }
 
-/// What came lately within 2 m.
+/// New obstacles within 2 m.
 fn lately(tracker: &MovingObstacleTracker, now: f64) -> Vec<Vector2> {
     tracker.unconfirmed_hits(stamp(now), at(1.0, 3.0), 2.0)
 }
@@ -353,7 +353,7 @@ fn who_stood_where_the_camera_is_blind_now_still_stands_there() {
 }
 
 #[test]
-fn what_came_is_not_kept_when_scans_end_or_the_clock_is_set_back() {
+fn new_obstacles_are_not_kept_when_scans_end_or_the_clock_is_set_back() {
     let (mut tracker, mut nobody) = (tracker(), World::new(&[]));
     let mut world = World::new(&[(at(1.8, 3.0), at(0.0, 0.0))]);
     dim(&mut tracker, &mut nobody, (100.0, 101.0, 0.0), 0.3);

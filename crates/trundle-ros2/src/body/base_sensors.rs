@@ -31,9 +31,9 @@ const ODOMETRY_HISTORY: usize = 100;
 /// Receives events; replaced when a run begins.
 pub type Sink = Box<dyn Fn(SensorEvent) + Send>;
 
-/// What the handlers of a robot's topics share.
+/// State that the handlers of a robot's topics share.
 pub struct Shared {
-    /// Receives events; none before the run.
+    /// Receives events. `None` before the run.
     pub sink: Mutex<Option<Sink>>,
     /// Frames.
     pub frames: Mutex<FrameTree>,
@@ -108,7 +108,7 @@ pub struct BaseMonitors {
 /// Subscribes to odometry, gyro, laser and battery.
 ///
 /// # Errors
-/// When a topic cannot be made.
+/// When a topic cannot be created.
 pub fn subscribe(
     node: &mut RosNode,
     settings: &BodySettings,

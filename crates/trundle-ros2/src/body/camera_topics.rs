@@ -18,7 +18,7 @@ const MAX_IMAGE_SILENCE: Duration = Duration::from_secs(1);
 /// Subscribes to colour, depth and intrinsics. Images are best effort: reliable streams of large messages stall where packets get lost.
 ///
 /// # Errors
-/// When a topic cannot be made.
+/// When a topic cannot be created.
 pub fn subscribe(
     node: &mut RosNode,
     settings: &BodySettings,

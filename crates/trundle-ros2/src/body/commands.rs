@@ -38,7 +38,7 @@ impl CommandPublisher {
     /// The publisher of the topic `settings.cmd_vel`.
     ///
     /// # Errors
-    /// When the topic cannot be made.
+    /// When the topic cannot be created.
     pub fn new(node: &mut RosNode, settings: &BodySettings, clock: RosClock) -> Result<Self, Ros2Error> {
         let qos = qos::reliable(1);
         let form = if settings.stamped_commands {
@@ -105,7 +105,7 @@ impl Drop for CommandThread {
     }
 }
 
-/// Publishes each command until the end, which is a command that is no number.
+/// Publishes each command until the end, which is a command that is not a number.
 fn publish_all(publisher: &CommandPublisher, commands: &Receiver<Twist2>) {
     // The time of the newest command, where it moves the robot.
     let mut moving_since = None;

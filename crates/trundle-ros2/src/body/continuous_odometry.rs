@@ -5,7 +5,7 @@ use trundle_core::{Odometry, Pose2};
 /// Motion between two messages that is a restart of the odometry \[m\]. Source: ours; 10 m/s at 20 Hz.
 pub const MAX_STEP_M: f64 = 0.5;
 
-/// Takes jumps out of odometry: a jump is no motion.
+/// Takes jumps out of odometry: a jump is not motion.
 #[derive(Debug, Default)]
 pub struct ContinuousOdometry {
     /// The newest pose as it came, and without jumps.
@@ -13,7 +13,7 @@ pub struct ContinuousOdometry {
 }
 
 impl ContinuousOdometry {
-    /// The odometry without jumps, and the length of this jump \[m\] where it is one.
+    /// The odometry without jumps, and the length of this jump \[m\] if it is one.
     pub fn add(&mut self, odometry: &Odometry) -> (Odometry, Option<f64>) {
         let Some((raw, smooth)) = self.newest else {
             self.newest = Some((odometry.pose, odometry.pose));
@@ -35,7 +35,7 @@ mod tests {
     use trundle_core::{Stamp, Twist2};
 
     #[test]
-    fn a_jump_is_no_motion_and_the_next_step_counts() {
+    fn a_jump_is_not_motion_and_the_next_step_counts() {
         let mut continuous = ContinuousOdometry::default();
         let mut at = |x| {
             let (stamp, twist, covariance) = (Stamp::default(), Twist2::ZERO, Matrix3::zeros());

@@ -41,7 +41,7 @@ impl FrameTree {
         Ok(())
     }
 
-    /// `from_frame`: the pose of `frame` in the frame `from`; `None` where the tree does not connect both.
+    /// `from_frame`: the pose of `frame` in the frame `from`; `None` if the tree does not connect both.
     #[must_use]
     pub fn pose(&self, from: &str, frame: &str) -> Option<Pose3> {
         let (from, frame) = (bare(from), bare(frame));

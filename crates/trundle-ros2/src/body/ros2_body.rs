@@ -39,14 +39,14 @@ pub struct Ros2Body {
     commands: CommandPublisher,
 }
 
-/// What is known of the robot when all its topics have begun.
+/// Facts of the robot when all its topics have begun.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyDescription {
     /// The colour camera.
     pub camera: PinholeCamera,
-    /// `base_from_camera`, of the colour camera's optical frame; `None` where no transform says.
+    /// `base_from_camera`, of the colour camera's optical frame; `None` if no transform says.
     pub base_from_camera: Option<Pose3>,
-    /// The depth camera's pose in the colour camera's frame; `None` where depth is registered to colour.
+    /// The depth camera's pose in the colour camera's frame; `None` if depth is registered to colour.
     pub color_from_depth: Option<Pose3>,
 }
 
@@ -54,7 +54,7 @@ impl Ros2Body {
     /// Adds the robot's topics to a node. `drive` is the geometry of the base.
     ///
     /// # Errors
-    /// When a topic cannot be made.
+    /// When a topic cannot be created.
     pub fn new(
         node: &mut RosNode,
         settings: BodySettings,

@@ -19,14 +19,14 @@ const ASSUMED_RATE_HZ: f64 = 30.0;
 /// Length of a unit of whole-numbered depth \[m\] \[REP 118\].
 const DEPTH_UNIT_M: f64 = 0.001;
 
-/// What it takes to open the camera.
+/// Settings to open the camera.
 #[derive(Clone)]
 pub struct RosCameraSource {
     /// Where its messages come in.
     pub inbox: Arc<ImageInbox>,
     /// Topics.
     pub settings: BodySettings,
-    /// The depth camera's pose in the colour camera's frame; `None` where depth is registered to colour.
+    /// The depth camera's pose in the colour camera's frame; `None` if depth is registered to colour.
     pub color_from_depth: Option<Pose3>,
     /// Where broken images are reported.
     pub diagnostics: Diagnostics,

@@ -6,7 +6,7 @@ use trundle_core::{Distortion, Invalid, PinholeCamera, Stamp};
 
 /// Distortion of OpenCV's five parameters \[REP 104\].
 const PLUMB_BOB: &str = "plumb_bob";
-/// The same with three more, which are 0 in a lens that five describe.
+/// Distortion of OpenCV's eight parameters, the last three of which are 0 in a lens that five describe.
 const RATIONAL: &str = "rational_polynomial";
 
 /// Whether images are rectified: then the projection matrix `p` counts, else `k` and the distortion.

@@ -50,7 +50,7 @@ pub fn value(cell: Cell) -> i8 {
     }
 }
 
-/// The cells that differ between two grids of one geometry, as the rectangle around them; `None` where none does.
+/// The cells that differ between two grids of one geometry, as the rectangle around them; `None` if none does.
 #[must_use]
 pub fn update(
     old: &OccupancyGrid,

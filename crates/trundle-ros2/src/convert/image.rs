@@ -76,7 +76,7 @@ fn raw_from_ros(image: Image, known: &[(&str, PixelFormat)], expected: &str) -> 
 /// A compressed colour image of `size` \[px\]: a JPEG file.
 ///
 /// # Errors
-/// When the file is no JPEG.
+/// When the file is not a JPEG.
 pub fn compressed_color_from_ros(image: CompressedImage, size: (usize, usize)) -> Result<RawImage, Invalid> {
     if !image.data.0.starts_with(&JPEG_MAGIC) {
         let expected = "a JPEG file: set the publisher's parameter of the compressed transport to jpeg";

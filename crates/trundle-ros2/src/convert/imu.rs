@@ -1,4 +1,4 @@
-//! `sensor_msgs/Imu`: the turn rate about the vertical.
+//! `sensor_msgs/Imu`: the turn rate around the vertical.
 
 use super::{pose, stamp};
 use crate::generated::geometry_msgs::Vector3 as Message3;
@@ -9,7 +9,7 @@ use trundle_core::{GyroRate, Invalid, Stamp, Vector3, require_finite};
 /// The covariance element that says that a quantity is not measured \[REP 145, sensor_msgs/Imu\].
 const NOT_MEASURED: f64 = -1.0;
 
-/// The turn rate about the base's vertical axis, at `stamp` of the run. `base_from_imu` is the rotation of the sensor on the base.
+/// The turn rate around the base's vertical axis, at `stamp` of the run. `base_from_imu` is the rotation of the sensor on the base.
 ///
 /// # Errors
 /// When the message says that it has no turn rate, or a rate is not finite.

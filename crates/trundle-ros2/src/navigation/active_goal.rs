@@ -122,7 +122,7 @@ impl ActiveGoal {
     /// Sends a command to the run.
     ///
     /// # Errors
-    /// When the command cannot be obeyed, too many wait, or the run is over.
+    /// When the command cannot be carried out, too many wait, or the run is over.
     pub fn send(&self, command: OperatorCommand) -> Result<u64, OperatorError> {
         self.operator.send(command)
     }

@@ -1,11 +1,11 @@
-//! What became of a goal.
+//! Outcome of a goal.
 
 use trundle_runtime::Reason;
 
-/// What became of a goal, for its result.
+/// Outcome of a goal, for its result.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct NavigationOutcome {
-    /// What went wrong, in words; empty where nothing did.
+    /// The problem, in words; empty if there is none.
     pub message: String,
     /// Why the robot gave up.
     pub reason: Option<Reason>,
@@ -22,7 +22,7 @@ impl NavigationOutcome {
         Self { message: message.to_owned(), ..Self::default() }
     }
 
-    /// Another goal took its place.
+    /// Another goal replaced it.
     #[must_use]
     pub fn replaced() -> Self {
         Self::failed("a newer goal replaced it")

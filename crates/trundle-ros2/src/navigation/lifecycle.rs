@@ -29,7 +29,7 @@ const MANAGERS: [&str; 2] = ["lifecycle_manager_navigation", "lifecycle_manager_
 /// Offers `SERVER/get_state`, `MANAGER/manage_nodes` and `MANAGER/is_active`.
 ///
 /// # Errors
-/// When a service cannot be made.
+/// When a service cannot be created.
 pub fn offer(node: &mut RosNode, active: &ActiveGoal) -> Result<(), Ros2Error> {
     for server in SERVERS {
         let view = active.clone();
@@ -60,7 +60,7 @@ fn state(active: &ActiveGoal) -> State {
     State { id, label: label.to_owned() }
 }
 
-/// Obeys a command of the manager; whether it could.
+/// Carries out a command of the manager. Returns whether it could.
 fn manage(active: &ActiveGoal, command: u8) -> bool {
     let command = match command {
         ManageLifecycleNodesRequest::STARTUP | ManageLifecycleNodesRequest::CONFIGURE => return true,

@@ -21,7 +21,7 @@ use trundle_runtime::{OperatorCommand, RobotConfig, require_loadable};
 /// Offers `map_server/map`, `map_saver/save_map`, `map_server/load_map` and the clearing of both costmaps.
 ///
 /// # Errors
-/// When a service cannot be made.
+/// When a service cannot be created.
 pub fn offer(
     node: &mut RosNode,
     robot: &ActiveGoal,

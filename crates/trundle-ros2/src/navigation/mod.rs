@@ -30,7 +30,7 @@ use trundle_runtime::RobotConfig;
 /// Offers everything by which Nav2's users and tools give goals.
 ///
 /// # Errors
-/// When a topic, service or action cannot be made.
+/// When a topic, service or action cannot be created.
 pub fn offer(
     node: &mut RosNode,
     active: &ActiveGoal,

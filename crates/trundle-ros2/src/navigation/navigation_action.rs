@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use trundle_app::operator::RunView;
 use trundle_runtime::Task;
 
-/// What an action knows of the run.
+/// Facts of the run for an action.
 pub struct GoalContext<'c> {
     /// Names of frames.
     pub frames: &'c FrameNames,
@@ -59,7 +59,7 @@ pub trait NavigationAction: ActionType<Result: Default> + 'static {
 /// Offers an action.
 ///
 /// # Errors
-/// When the action cannot be made.
+/// When the action cannot be created.
 pub fn offer<A: NavigationAction>(
     node: &mut RosNode,
     name: &str,

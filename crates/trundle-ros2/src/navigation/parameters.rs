@@ -141,7 +141,7 @@ impl Parameters {
     /// Offers the six services of parameters.
     ///
     /// # Errors
-    /// When a service cannot be made.
+    /// When a service cannot be created.
     pub fn offer(&self, node: &mut RosNode, active: &ActiveGoal) -> Result<(), Ros2Error> {
         let own = self.clone();
         node.serve::<GetParameters>("~/get_parameters", move |request| GetParametersResponse {

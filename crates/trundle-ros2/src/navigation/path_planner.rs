@@ -40,7 +40,7 @@ struct Wanted {
 /// Offers `compute_path_to_pose` for `robot`.
 ///
 /// # Errors
-/// When the robot's settings are not usable, the action cannot be made, or the system refuses a thread.
+/// When the robot's settings are not usable, the action cannot be created, or the system refuses a thread.
 pub fn offer(
     node: &mut RosNode,
     active: &ActiveGoal,
@@ -69,7 +69,7 @@ struct Handler {
 }
 
 impl Handler {
-    /// What is wanted, or the result of a goal that fails.
+    /// The request, or the result of a goal that fails.
     fn wanted(&self, id: GoalId, goal: &Goal) -> Result<Wanted, GoalFailure> {
         if !PLANNER_IDS.contains(&goal.planner_id.as_str()) {
             let message = format!("planner_id is '{}', expected none or GridBased", goal.planner_id);

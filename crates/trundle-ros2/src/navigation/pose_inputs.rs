@@ -14,13 +14,13 @@ use trundle_runtime::{OperatorCommand, PoseGuess, Task};
 
 /// Standard deviation of a pose whose covariance is zero: position \[m\]. Source: RViz sends 0.5.
 const DEFAULT_POSITION_SIGMA_M: f64 = 0.5;
-/// The same for the heading \[rad\]. Source: RViz sends 0.26.
+/// Standard deviation of a pose whose covariance is zero: heading \[rad\]. Source: RViz sends 0.26.
 const DEFAULT_HEADING_SIGMA_RAD: f64 = 0.26;
 
 /// Subscribes to both topics and offers the service.
 ///
 /// # Errors
-/// When a topic or the service cannot be made.
+/// When a topic or the service cannot be created.
 pub fn offer(node: &mut RosNode, active: &ActiveGoal, frames: &FrameNames) -> Result<(), Ros2Error> {
     let (goals, own, diagnostics) = (active.clone(), frames.clone(), node.diagnostics());
     let mut limit = RateLimit::default();

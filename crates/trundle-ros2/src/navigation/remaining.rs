@@ -1,8 +1,8 @@
-//! What is left of a plan.
+//! The rest of a plan.
 
 use trundle_core::{Pose2, Trajectory};
 
-/// What is left of a plan.
+/// The rest of a plan.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Remaining {
     /// Distance along the path \[m\].
@@ -11,7 +11,7 @@ pub struct Remaining {
     pub time_s: f64,
 }
 
-/// What is left of `plan` for a robot at `pose`: from the plan's nearest point on.
+/// The rest of `plan` for a robot at `pose`: from the plan's nearest point on.
 #[must_use]
 pub fn remaining(plan: &Trajectory, pose: &Pose2) -> Remaining {
     let points = plan.points();

@@ -63,7 +63,7 @@ where
     /// Offers the action `name`; `handler` decides about its goals.
     ///
     /// # Errors
-    /// When the action cannot be made.
+    /// When the action cannot be created.
     pub fn offer(
         node: &mut RosNode,
         name: &str,
@@ -167,7 +167,7 @@ impl<A: ActionType + 'static> ActionEndpoint<A>
 where
     A::Result: Default,
 {
-    /// Takes one goal; whether there was one.
+    /// Takes one goal. Returns whether there was one.
     fn take_goal(&mut self) -> bool {
         let taken = self.handle.lock().server.receive_goal();
         let (request, SendGoalRequest { goal_id, goal }) = match taken {
@@ -198,7 +198,7 @@ where
         true
     }
 
-    /// Takes one request to cancel; whether there was one.
+    /// Takes one request to cancel. Returns whether there was one.
     fn take_cancel(&mut self) -> bool {
         let mut inner = self.handle.lock();
         let (request, asked) = match inner.server.receive_cancel_request() {
@@ -222,7 +222,7 @@ where
         true
     }
 
-    /// Takes one request for a result; whether there was one.
+    /// Takes one request for a result. Returns whether there was one.
     fn take_result_request(&mut self) -> bool {
         let mut inner = self.handle.lock();
         let (request, asked) = match inner.server.receive_result_request() {

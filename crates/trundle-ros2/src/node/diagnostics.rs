@@ -75,7 +75,7 @@ impl Diagnostics {
         entries.iter().map(|(name, entry)| (name.clone(), entry.condition.clone())).collect()
     }
 
-    /// The sentences of the conditions that are no good news, parted by `; `.
+    /// The sentences of the conditions that are not good news, parted by `; `.
     #[must_use]
     pub fn summary(&self) -> String {
         let conditions = self.conditions();

@@ -15,7 +15,7 @@ pub type GoalId = [u8; 16];
 const RESULT_LIFETIME: Duration = Duration::from_secs(60);
 /// Largest number of goals accepted within a second. Source: ours; a person clicks less often, a program has no reason to.
 pub const MAX_GOALS_PER_SECOND: usize = 20;
-/// Largest number of goals that are kept. Source: ours; that of [`RESULT_LIFETIME`] at one goal a second, and some.
+/// Largest number of goals that are kept. Source: ours; that of [`RESULT_LIFETIME`] at one goal per second, and some.
 const MAX_GOALS: usize = 100;
 /// Largest number of requests that wait for one result. Source: ours.
 const MAX_WAITING: usize = 16;
@@ -106,7 +106,7 @@ impl<R: Clone + Default> Goals<R> {
         Ok(())
     }
 
-    /// Forgets a goal that is refused after all.
+    /// Discards a goal that is refused after all.
     pub fn forget(&mut self, id: &GoalId) {
         self.goals.remove(id);
     }
@@ -142,7 +142,7 @@ impl<R: Clone + Default> Goals<R> {
         (response, asked)
     }
 
-    /// Ends a goal; those who wait for its result, and its status. `None` where it is unknown or has ended.
+    /// Ends a goal; those who wait for its result, and its status. `None` if it is unknown or has ended.
     pub fn end(
         &mut self,
         id: &GoalId,
@@ -189,7 +189,7 @@ impl<R: Clone + Default> Goals<R> {
         self.goals.retain(|_, goal| goal.ended.is_none_or(|ended| now - ended < RESULT_LIFETIME));
     }
 
-    /// Forgets the goal that ended first; whether there was one.
+    /// Discards the goal that ended first. Returns whether there was one.
     fn forget_oldest_ended(&mut self) -> bool {
         let ended = self.goals.iter().filter_map(|(id, goal)| Some((goal.ended?, *id)));
         let Some((_, id)) = ended.min() else { return false };

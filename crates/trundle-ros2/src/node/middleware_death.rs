@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::panic::{self, PanicHookInfo};
 use std::sync::{Mutex, Once, PoisonError};
 
-/// What the names of the middleware's threads begin with.
+/// Beginning of the names of the middleware's threads.
 const THREAD_PREFIX: &str = "RustDDS";
 
 /// Names of threads that died by a panic.

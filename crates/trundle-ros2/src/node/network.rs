@@ -25,7 +25,7 @@ impl Networks {
         }
     }
 
-    /// What others on the network can do; `None` on this computer alone.
+    /// Abilities of others on the network; `None` on this computer alone.
     #[must_use]
     pub fn warning(&self) -> Option<String> {
         let danger = "everyone there can read the camera and drive the robot: DDS has no password (docs/how-to/ros2.md, Security)";
@@ -51,7 +51,7 @@ impl FromStr for Networks {
             addresses => {
                 let address = |part: &str| {
                     part.trim().parse().map_err(|_| {
-                        format!("'{part}' is no network; expected loopback, all, or the IP address of an interface")
+                        format!("'{part}' is not a network; expected loopback, all, or the IP address of an interface")
                     })
                 };
                 Ok(Self::Only(addresses.split(',').map(address).collect::<Result<_, _>>()?))

@@ -16,7 +16,7 @@ pub const MAX_REPLY_BYTES: usize = 1152;
 /// Bytes in front of a message that name its encoding \[DDSI-RTPS 10.2\].
 const ENCAPSULATION_BYTES: usize = 4;
 
-/// The size of a reply on the wire \[bytes\] where it is too large to arrive.
+/// The size of a reply on the wire \[bytes\] if it is too large to arrive.
 pub(super) fn excess(reply: &impl Serialize) -> Option<usize> {
     let mut counter = Counter(ENCAPSULATION_BYTES);
     // A reply that cannot be written is refused by the middleware.
@@ -30,7 +30,7 @@ pub fn arrives(reply: &impl Serialize) -> bool {
     excess(reply).is_none()
 }
 
-/// What the diagnostics say of a reply of `bytes` bytes.
+/// Diagnostics of a reply of `bytes` bytes.
 pub(super) fn message(bytes: usize) -> String {
     format!(
         "a reply has {bytes} bytes, expected at most {MAX_REPLY_BYTES}: an empty reply was sent; ask for fewer values"

@@ -3,7 +3,7 @@
 use super::Names;
 use crate::Ros2Error;
 
-/// What the arguments set.
+/// Values that the arguments set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RosArguments {
     /// Namespace, node name and rules.

@@ -108,7 +108,7 @@ impl RosNode {
     /// Publishes messages of type `M` on a topic.
     ///
     /// # Errors
-    /// When the name is not allowed or the topic cannot be made.
+    /// When the name is not allowed or the topic cannot be created.
     pub fn publisher<M: MessageType>(
         &mut self,
         topic: &str,
@@ -119,7 +119,7 @@ impl RosNode {
         self.node.create_publisher(&topic, Some(qos.clone())).map_err(|error| Ros2Error::create(name, error))
     }
 
-    /// Whether others read a topic, looked up once a second.
+    /// Whether others read a topic, looked up once per second.
     pub fn readers(&mut self, topic: &str) -> Readers {
         let readers = Readers::new(self.names.resolve(topic));
         self.readers.push(readers.clone());
@@ -130,7 +130,7 @@ impl RosNode {
     /// stalled when no message comes for that time.
     ///
     /// # Errors
-    /// When the name is not allowed or the topic cannot be made.
+    /// When the name is not allowed or the topic cannot be created.
     pub fn subscribe<M: MessageType>(
         &mut self,
         topic: &str,
@@ -160,7 +160,7 @@ impl RosNode {
     /// [`super::MAX_REPLY_BYTES`] is replaced by an empty one and reported.
     ///
     /// # Errors
-    /// When the name is not allowed or the service cannot be made.
+    /// When the name is not allowed or the service cannot be created.
     pub fn serve<S: ServiceType + 'static>(
         &mut self,
         service: &str,

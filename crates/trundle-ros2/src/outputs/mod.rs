@@ -11,7 +11,7 @@ pub use published_map::PublishedMap;
 pub use publishers::{OutputTopic, RobotTopics};
 pub use robot_outputs::{OutputSources, RobotOutputs};
 
-/// What a robot publishes.
+/// Topics that a robot publishes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutputSettings {
     /// Names of frames.

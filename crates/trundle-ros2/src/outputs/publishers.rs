@@ -24,7 +24,7 @@ impl<M: MessageType> OutputTopic<M> {
     /// The topic `name`.
     ///
     /// # Errors
-    /// When the topic cannot be made.
+    /// When the topic cannot be created.
     pub fn new(node: &mut RosNode, name: &str, qos: &QosProfile) -> Result<Self, Ros2Error> {
         let publisher = node.publisher(name, qos)?;
         Ok(Self { publisher, name: node.names().resolve(name), diagnostics: node.diagnostics() })
@@ -48,17 +48,17 @@ fn cause<M>(error: &WriteError<M>) -> &'static str {
 
 /// The topics that a robot publishes.
 pub struct RobotTopics {
-    /// `map` to `odom`, and `odom` to the base where the body does not publish it itself.
+    /// `map` to `odom`, and `odom` to the base if the body does not publish it itself.
     pub tf: OutputTopic<TFMessage>,
     /// Base to camera and scan.
     pub tf_static: OutputTopic<TFMessage>,
-    /// Odometry; none where the body publishes it itself.
+    /// Odometry. `None` if the body publishes it itself.
     pub odom: Option<OutputTopic<Odometry>>,
     /// The map.
     pub map: OutputTopic<OccupancyGrid>,
-    /// What changed of the map since the newest update.
+    /// Changes of the map since the newest update.
     pub map_updates: OutputTopic<OccupancyGridUpdate>,
-    /// The scan made of depth images; none where a laser's scan has this name.
+    /// The scan made of depth images. `None` if a laser's scan has this name.
     pub scan: Option<OutputTopic<LaserScan>>,
     /// The plan.
     pub plan: OutputTopic<Path>,
@@ -70,7 +70,7 @@ pub struct RobotTopics {
     pub local_costmap: OutputTopic<OccupancyGrid>,
     /// State of the robot and of its topics.
     pub diagnostics: OutputTopic<DiagnosticArray>,
-    /// The battery; none where the body publishes it itself.
+    /// The battery. `None` if the body publishes it itself.
     pub battery: Option<OutputTopic<BatteryState>>,
 }
 
@@ -78,7 +78,7 @@ impl RobotTopics {
     /// The topics of a robot.
     ///
     /// # Errors
-    /// When a topic cannot be made.
+    /// When a topic cannot be created.
     pub fn new(node: &mut RosNode, settings: &OutputSettings) -> Result<Self, Ros2Error> {
         let own = settings.has_own_body;
         let battery = own.then(|| OutputTopic::new(node, "battery_state", &qos::reliable(1))).transpose()?;

@@ -30,7 +30,7 @@ const SLOWEST_PERIOD: Duration = Duration::from_secs(1);
 /// `transform_tolerance` is 1 s.
 const TRANSFORM_TOLERANCE_S: f64 = 0.1;
 
-/// What the outputs read.
+/// Inputs of the outputs.
 pub struct OutputSources {
     /// The run.
     pub operator: Operator,
@@ -167,7 +167,7 @@ impl OutputLoop {
         }
     }
 
-    /// Transforms, and odometry where the body does not publish its own.
+    /// Transforms, and odometry if the body does not publish its own.
     fn publish_poses(&self, view: &RunView) {
         let (clock, frames) = (&self.sources.clock, &self.settings.frames);
         let Some(odom_from_base) = self.odom_from_base(view) else { return };

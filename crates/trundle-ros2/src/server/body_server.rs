@@ -23,12 +23,12 @@ use trundle_core::{
 };
 use trundle_estimation::{OdometryConfig, WheelOdometry};
 
-/// Time after the newest command for which the base obeys it. Source: ours; Nav2 sends 20 a second.
+/// Time after the newest command for which the base follows it. Source: ours; Nav2 sends 20 per second.
 const COMMAND_LIFETIME: Duration = Duration::from_millis(500);
 /// Range of a laser's beams without echo \[m\]. Source: the simulated lasers reach 12 m.
 const LASER_RANGE_M: f64 = 12.0;
 
-/// What a body that is offered looks like.
+/// Description of a body that is offered.
 #[derive(Debug, Clone, Copy)]
 pub struct OfferedBody {
     /// The camera.
@@ -42,7 +42,7 @@ pub struct OfferedBody {
 /// Offers `body` as a ROS 2 robot, in real time, until it ends or `is_over` (called with the body's time) says so.
 ///
 /// # Errors
-/// When the network cannot be joined, a topic cannot be made, or the body fails.
+/// When the network cannot be joined, a topic cannot be created, or the body fails.
 pub fn serve_body<B: RobotBody>(
     options: &Ros2Options,
     raw_images: bool,
@@ -80,7 +80,7 @@ impl BodyServer {
     /// Adds the topics of a body to a node.
     ///
     /// # Errors
-    /// When a topic cannot be made.
+    /// When a topic cannot be created.
     pub fn new(node: &mut RosNode, settings: ServerSettings, body: OfferedBody) -> Result<Self, Ros2Error> {
         let config = OdometryConfig::default();
         let odometry =

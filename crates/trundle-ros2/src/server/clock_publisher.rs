@@ -23,7 +23,7 @@ impl ClockPublisher {
     /// Adds the topic to a node; the body's stamp 0 is the present time.
     ///
     /// # Errors
-    /// When the topic cannot be made.
+    /// When the topic cannot be created.
     pub(super) fn new(node: &mut RosNode) -> Result<Self, Ros2Error> {
         let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let origin = i64::try_from(since.as_nanos()).unwrap_or_default();

@@ -40,7 +40,7 @@ impl ImagePublisher {
     /// The topics `camera/color/...` and `camera/depth/...` of `camera`, and the thread.
     ///
     /// # Errors
-    /// When a topic cannot be made or the system refuses a thread.
+    /// When a topic cannot be created or the system refuses a thread.
     pub fn start(
         node: &mut RosNode,
         settings: &ServerSettings,

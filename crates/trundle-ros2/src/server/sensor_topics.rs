@@ -23,7 +23,7 @@ impl SensorTopics {
     /// Adds the topics to a node.
     ///
     /// # Errors
-    /// When a topic cannot be made or the system refuses a thread.
+    /// When a topic cannot be created or the system refuses a thread.
     pub fn new(
         node: &mut RosNode,
         settings: &ServerSettings,

@@ -105,7 +105,7 @@ pub(crate) struct Navigator {
     ends_without_path: bool,
     /// When the first of the plans since then found no path; none after a plan with a path.
     no_path_since: Option<Stamp>,
-    /// Place where the path to the goal is blocked, where there is no path.
+    /// Place where the path to the goal is blocked, if there is no path.
     blocked_at: Option<Vector2>,
     viewpoint: Viewpoint,
     visibility: VisibilityConstraint,
@@ -118,7 +118,7 @@ pub(crate) struct Navigator {
     progress: ProgressChecker,
     /// Of the safety monitor, s.
     image_timeout: f64,
-    /// Of the disc about the robot, m.
+    /// Of the disc around the robot, m.
     radius: f64,
     /// Distance from the base's origin to its front, m.
     reach: f64,
@@ -311,7 +311,7 @@ impl Navigator {
             || self.state == DriveState::Driving
             || self.goal == Goal::Spin && self.state == DriveState::Initializing;
         if s.hold.is_some() {
-            // What holds the robot is no fault of its goal.
+            // What holds the robot is not a fault of its goal.
             return self.progress.restart();
         }
         let stood = self.progress.standing_for(s.now, s.estimate.pose, turns_count);

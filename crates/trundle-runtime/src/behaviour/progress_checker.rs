@@ -14,7 +14,7 @@ pub(crate) struct ProgressChecker {
 const PROGRESS_DISTANCE_M: f64 = 0.15;
 /// Turn towards the goal's heading that counts as progress \[rad\]. A turn in search of a path does not count. Source: ours.
 const PROGRESS_TURN_RAD: f64 = 0.2;
-/// Number of turns that count as progress at one place: one whole turn. More of them are no progress. Source: ours.
+/// Number of turns that count as progress at one place: one whole turn. More of them are not progress. Source: ours.
 const MAX_TURNS_AT_ONE_PLACE: u32 = 32;
 
 impl ProgressChecker {
@@ -55,7 +55,7 @@ mod tests {
     }
 
     #[test]
-    fn to_turn_to_and_fro_on_the_spot_is_no_progress() {
+    fn to_turn_to_and_fro_on_the_spot_is_not_progress() {
         let mut watch = ProgressChecker::default();
         let turned = |i: i32| Pose2::new(1e-3 * f64::from(i), 0.0, f64::from(i % 2));
         let stood = |watch: &mut ProgressChecker, i: i32| {

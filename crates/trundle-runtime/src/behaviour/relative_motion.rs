@@ -49,7 +49,7 @@ pub(crate) struct RelativeMotionDrive {
 }
 
 impl RelativeMotionDrive {
-    /// The command; `None` where the motion is done.
+    /// The command; `None` if the motion is done.
     pub(crate) fn step(&mut self, motion: RelativeMotion, pose: Pose2) -> Option<Twist2> {
         if self.start.is_none() {
             self.heading = pose.theta;
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_safety_stops_is_given_up_after_five_seconds_in_a_row() {
+    fn a_motion_that_safety_stops_is_given_up_after_five_seconds_in_a_row() {
         let mut drive = RelativeMotionDrive::default();
         let at = |s: f64| Stamp::default().after(s);
         assert!(!drive.is_blocked(true, at(0.0)) && !drive.is_blocked(true, at(4.9)));

@@ -35,7 +35,7 @@ impl SightRecovery {
         }
     }
 
-    /// Records a usable scan at a place (map frame, m); whether a turn restored the view there for the second time. Where a whole turn
+    /// Records a usable scan at a place (map frame, m). Returns whether a turn restored the view there for the second time. Where a whole turn
     /// was without result, the camera was broken, and the turn did not restore the view.
     pub(crate) fn sees(&mut self, at: Vector2) -> bool {
         let look = std::mem::take(&mut self.look);

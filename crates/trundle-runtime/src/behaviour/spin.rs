@@ -29,7 +29,7 @@ impl Spin {
         self.twist_towards(SPIN_RATE_RAD_S, pose)
     }
 
-    /// The same to the side that this turn rate (rad/s) is of.
+    /// The command towards the side of this turn rate (rad/s), and a note of how far it has turned.
     pub(crate) fn twist_towards(&mut self, side: f64, pose: Pose2) -> Twist2 {
         let last = self.last.replace(pose.theta).unwrap_or(pose.theta);
         self.turned += wrap_angle(pose.theta - last).abs();
@@ -51,7 +51,7 @@ pub(crate) fn face(pose: Pose2, at: Vector2) -> Twist2 {
     if ahead.norm() < 1e-3 { Twist2::ZERO } else { turn_to(pose, ahead.y.atan2(ahead.x)) }
 }
 
-/// The turn on the spot towards a heading; none where it is near enough.
+/// The turn on the spot towards a heading. Zero if the heading is near enough.
 pub(crate) fn turn_to(pose: Pose2, heading: f64) -> Twist2 {
     let off = wrap_angle(heading - pose.theta);
     Twist2::new(
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_robot_stands_on_needs_no_turn() {
+    fn the_floor_under_the_robot_needs_no_turn() {
         assert_eq!(face(Pose2::new(1.0, 2.0, 0.5), Vector2::new(1.0, 2.0)), Twist2::ZERO);
     }
 

@@ -8,7 +8,7 @@ pub(crate) struct CheckpointSchedule {
     due: Option<Stamp>,
 }
 
-/// Mean rate of writing \[bytes/s\]: small maps are no load; a large map (20 MB after an hour) is saved seldom. Source: ours.
+/// Mean rate of writing \[bytes/s\]: small maps are not a load; a large map (20 MB after an hour) is saved seldom. Source: ours.
 const WRITE_RATE_BYTES_PER_S: f64 = 3e5;
 /// Shortest time between two checkpoints \[s\]. Source: ours.
 const MIN_PERIOD_S: f64 = 3.0;

@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wait_counts_once_and_a_pose_that_is_no_number_leaves_the_deviation() {
+    fn a_wait_counts_once_and_a_pose_that_is_not_a_number_leaves_the_deviation() {
         let notes = noted(&[PositionerReason::NoWay(None), PositionerReason::NoWay(None)]);
         assert_eq!((notes.report.waits, notes.stops), (1, 1));
         let mut notes = noted(&[PositionerReason::Measuring]);

@@ -13,7 +13,7 @@ const POSES_PER_STEP: usize = 100;
 pub(super) struct ApproachSelection {
     goal: Pose2,
     from: Pose2,
-    /// The arc, and the number of its poses that are checked; none where the arc cannot be continued.
+    /// The arc, and the number of its poses that are checked. `None` if the arc cannot be continued.
     arc: Option<(StabilizerPreview, usize)>,
     /// Obstacles around the arc.
     scene: Option<ObstacleScene>,
@@ -44,7 +44,7 @@ pub(super) struct ApproachContext<'a> {
 }
 
 impl ApproachSelection {
-    /// Between an arc, where there is one, and turns and straight moves from `from`.
+    /// Between an arc, if there is one, and turns and straight moves from `from`.
     pub(super) fn new(from: Pose2, goal: Pose2, arc: Option<StabilizerPreview>) -> Self {
         Self { goal, from, arc: arc.map(|arc| (arc, 0)), scene: None, planning: None }
     }
@@ -90,7 +90,7 @@ impl ApproachSelection {
         if arc_wins(arc, manoeuvre) { Verdict::Arc } else { Verdict::Manoeuvre }
     }
 
-    /// Checks a part of the arc; whether all of it is checked. An arc that is not free has no time.
+    /// Checks a part of the arc. Returns whether all of it is checked. An arc that is not free has no time.
     fn is_arc_looked_at(&mut self, s: &WorldState<'_>, means: &ApproachContext<'_>) -> bool {
         let Some((arc, looked)) = &mut self.arc else { return true };
         if arc.time.is_none() || *looked == arc.poses.len() {

@@ -96,7 +96,7 @@ fn until_given_up(
 }
 
 #[test]
-fn what_never_moves_ends_with_a_reason() {
+fn an_approach_that_never_moves_ends_with_a_reason() {
     let (grid, start, goal) = (corridor(), Pose2::new(1.2, 0.32, 0.0), Pose2::new(1.5, 0.38, 0.0));
     // The safety monitor stops every command.
     let mut held = stage();
@@ -109,7 +109,7 @@ fn what_never_moves_ends_with_a_reason() {
     let (time, reason) = until_given_up(&mut walled, &grid, start, false);
     assert!(time < 30.0 && reason.contains("goal"), "{time} {reason}");
     assert!(walled.report().waits > 5 && walled.report().ended.is_some());
-    // The pose is no number: nothing else ends it but the time.
+    // The pose is not a number: nothing else ends it but the time.
     let mut lost = stage();
     begin(&mut lost, goal);
     let (time, reason) = until_given_up(&mut lost, &grid, Pose2 { x: f64::NAN, ..start }, false);
@@ -155,7 +155,7 @@ fn settles_in(stage: &mut GoalApproach, grid: &OccupancyGrid, mut pose: Pose2, g
     f64::INFINITY
 }
 
-/// What is chosen is faster, driven to its end, than the other: arcs are kept where they are, and only there.
+/// The selected approach is faster, driven to its end, than the other: arcs are kept where they are, and only there.
 #[test]
 fn the_way_that_is_chosen_is_the_faster_one_when_both_are_driven() {
     let (robot, goal) = (crate::RobotConfig::default(), Pose2::new(1.5, 0.35, 0.0));
@@ -224,7 +224,7 @@ fn no_step_takes_longer_than_two_milliseconds() {
     // Too narrow to turn in: all that may be searched is searched.
     let narrow = OccupancyGrid::from_ascii(0.05, &(wall.clone() + &free.repeat(9) + &wall)).unwrap();
     let turned = (Pose2::new(1.9, 0.27, 0.0), Pose2::new(2.0, 0.28, 3.1));
-    // Free floor about the robot, posts farther away: every turn and straight move of the paper's method is checked by samples.
+    // Free floor around the robot, posts farther away: every turn and straight move of the paper's method is checked by samples.
     let posts = "#.".repeat(40) + "\n";
     let open = [posts.repeat(20), free.repeat(40), posts.repeat(20)].concat();
     let open = OccupancyGrid::from_ascii(0.05, &open).unwrap();

@@ -39,7 +39,7 @@ const MOVED_GOAL_M: f64 = 0.25;
 /// Rate at which that is checked \[1/s\]. Source: ours.
 const CHECK_RATE_HZ: f64 = 1.0;
 
-/// What a step of the task asks for.
+/// Result of a step of the task.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum DockStep {
     Keep,
@@ -120,7 +120,7 @@ impl DockTask {
         DockStep::Goal(Goal::Spin)
     }
 
-    /// On the way: the light was seen, or the station is elsewhere than it was believed.
+    /// On the way: the light was seen, or the station is elsewhere than estimated.
     fn on_way(&mut self, s: &WorldState<'_>, state: &DriveState) -> DockStep {
         let drives = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
         if !drives || !self.check_due.due(s.now) {
@@ -255,7 +255,7 @@ impl DockTask {
         }
     }
 
-    /// The readings contradict what was believed of the station: it is searched anew.
+    /// The readings contradict the estimate of the station: it is searched anew.
     fn lost(&mut self) -> DockStep {
         self.losses += 1;
         if self.losses > MAX_LOSSES {

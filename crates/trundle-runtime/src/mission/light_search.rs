@@ -31,7 +31,7 @@ impl LightSearch {
         self.searched.extend(place.filter(|_| has_failed));
     }
 
-    /// The nearest free place that is not searched, with the heading of the way there; none where all is searched.
+    /// The nearest free place that is not searched, with the heading of the way there. `None` if all is searched.
     pub(crate) fn next_place(&mut self, grid: &OccupancyGrid, from: Pose2) -> Option<Pose2> {
         let here = from.position();
         let distance = |at: &Vector2| (at - here).norm();
@@ -66,7 +66,7 @@ fn is_in_sight(grid: &OccupancyGrid, from: Vector2, to: Vector2) -> bool {
     (0..=count as usize).all(|i| grid.at(from + way * (i as f64 / count)) != Cell::Occupied)
 }
 
-/// Whether all cells about a point are free.
+/// Whether all cells around a point are free.
 fn is_clear(grid: &OccupancyGrid, at: Vector2) -> bool {
     let step = grid.geometry().resolution;
     let reach = (CLEARANCE_M / step).ceil() as i32;

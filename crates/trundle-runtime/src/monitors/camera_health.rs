@@ -39,7 +39,7 @@ impl CameraHealth {
         has_moved || now.stamp - first.stamp > MAX_IDENTICAL_IMAGES_S
     }
 
-    /// Records a scan of an image that is not frozen; whether it has content.
+    /// Records a scan of an image that is not frozen. Returns whether it has content.
     pub(crate) fn note(&mut self, scan: &Scan) -> bool {
         let seen = scan.beams().iter().filter(|beam| **beam != Beam::Unseen).count();
         let shows = seen as f64 >= MIN_SEEN_SHARE * scan.beams().len() as f64 && seen > 0;

@@ -26,7 +26,7 @@ pub(crate) enum Fit {
 const HIT_TOLERANCE_M: f64 = 0.25;
 /// Share of a scan's known hits that contradict the map, above which the scan contradicts it. A person nearby hides less. Source: ours.
 const CONTRADICTING_SHARE: f64 = 0.45;
-/// The same share where the scan before agreed with the map: new things come into view gradually. Source: ours.
+/// The share that contradicts if the scan before agreed with the map: new things come into view gradually. Source: ours.
 const SUDDEN_CONTRADICTING_SHARE: f64 = 0.15;
 /// Share of contradicting hits up to which a scan agrees with the map. Source: ours.
 const AGREEING_SHARE: f64 = 0.03;
@@ -88,7 +88,7 @@ fn contradicted(grid: &OccupancyGrid, map_from_base: Pose2, scan: &Scan) -> f64 
     if is_enough { contradict as f64 / known as f64 } else { 0.0 }
 }
 
-/// Whether the map has an occupied cell where a beam ends; `None` where the cell is unknown.
+/// Whether the map has an occupied cell where a beam ends; `None` if the cell is unknown.
 fn judged(grid: &OccupancyGrid, origin: Vector2, end: Vector2) -> Option<bool> {
     let about = |at| around(grid, at);
     if about(end).any(|cell| cell == Cell::Occupied) {
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn what_changes_at_once_needs_less() {
+    fn a_sudden_change_needs_a_smaller_share() {
         let (grid, here) = (room(f64::INFINITY), Pose2::new(1.0, 2.0, 0.0));
         let fits = |before: &[Option<f64>]| {
             let mut watch = ScanMapConsistency::default();

@@ -95,7 +95,7 @@ impl<E> Inbox<E> {
         self.sender.clone()
     }
 
-    /// The next item; none when nothing has come for `patience`. Items of a kind come in the order in which they were put in.
+    /// The next item. `None` if nothing has come for `patience`. Items of a kind come in the order in which they were put in.
     pub fn next(&mut self, loop_timer: &LoopTimer, patience: Duration) -> Option<Input<E>> {
         let start = Instant::now();
         loop {
@@ -116,7 +116,7 @@ impl<E> Inbox<E> {
         }
     }
 
-    /// The next result of a worker, ahead of all other items; urgent events are dropped. None when it does not come within `patience`.
+    /// The next result of a worker, ahead of all other items; urgent events are dropped. `None` if it does not come within `patience`.
     pub fn next_answer(&mut self, worker: Worker, patience: Duration) -> Option<Answer> {
         let start = Instant::now();
         loop {

@@ -108,7 +108,7 @@ impl LoopTimer {
         }
     }
 
-    /// None when there is time for other things; else in how long there will be, unless a reading comes first.
+    /// `None` if there is time for other things; else in how long there will be, unless a reading comes first.
     pub fn time_for_others(&self) -> Option<Duration> {
         let LoopTimerConfig { period, reserve, .. } = self.config;
         let since = self.beat?.elapsed().as_secs_f64();
@@ -116,7 +116,7 @@ impl LoopTimer {
         is_busy.then(|| Duration::from_secs_f64(period + reserve - since))
     }
 
-    /// How it kept time; none before the second command.
+    /// How it kept time. `None` before the second command.
     pub fn report(&self) -> Option<LoopTimerReport> {
         Some(LoopTimerReport {
             steps: self.responses.count(),

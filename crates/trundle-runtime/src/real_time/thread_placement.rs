@@ -9,13 +9,13 @@ pub struct ThreadPlacement {
     pub core: Option<usize>,
     /// Niceness above that of the starting thread, 0 to 39. Default 0.
     pub nice: i32,
-    /// Whether it runs before every thread that is not, whatever their niceness, where the system allows it (Linux: `SCHED_FIFO`).
+    /// Whether it runs before every thread that is not, whatever their niceness, if the system allows it (Linux: `SCHED_FIFO`).
     /// For threads that compute little. Default false.
     pub is_first: bool,
 }
 
 impl ThreadPlacement {
-    /// Puts the calling thread there; whether the system granted all of it. Elsewhere than on Linux nothing is granted.
+    /// Puts the calling thread there. Returns whether the system granted all of it. Elsewhere than on Linux nothing is granted.
     pub fn take(self) -> bool {
         let pinned = self.core.is_none_or(pin);
         let ranked = self.nice == 0 || rank(self.nice);
@@ -70,14 +70,14 @@ fn rank(_nice: i32) -> bool {
     false
 }
 
-/// Processor time of the calling thread; none where threads have no clock of their own.
+/// Processor time of the calling thread. `None` if threads have no clock of their own.
 #[cfg(unix)]
 pub fn thread_time() -> Option<Duration> {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     Some(Duration::new(time.tv_sec.unsigned_abs(), u32::try_from(time.tv_nsec).ok()?))
 }
 
-/// Processor time of the calling thread; none where threads have no clock of their own.
+/// Processor time of the calling thread. `None` if threads have no clock of their own.
 #[cfg(not(unix))]
 pub fn thread_time() -> Option<Duration> {
     None

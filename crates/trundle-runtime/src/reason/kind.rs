@@ -1,4 +1,4 @@
-//! The kinds of reasons: what a program judges by, without the numbers.
+//! The kinds of reasons: the part by which a program decides, without the numbers.
 
 use super::no_path::NoPath;
 use crate::mission::dock_failure::DockFailure;

@@ -25,7 +25,7 @@ pub enum NoPath {
     },
     /// The goal is in a no-go zone.
     GoalInZone {
-        /// What the zone is called: `zone 'stairs'`.
+        /// Name of the zone: `zone 'stairs'`.
         zone: String,
     },
     /// The start is off the map.
@@ -37,7 +37,7 @@ pub enum NoPath {
 }
 
 impl NoPath {
-    /// Why a plan holds no path; none where the plan holds one.
+    /// Why a plan holds no path. `None` if the plan holds one.
     #[must_use]
     pub fn of(plan: &Plan) -> Option<Self> {
         match plan {

@@ -5,7 +5,7 @@ use crate::mission::TaskEnd;
 use trundle_core::{Invalid, Pose2};
 use trundle_docking::PositionerReason;
 
-/// One reason of each variant, with the kind that a program judges by and a part of the text that a person reads.
+/// One reason of each variant, with the kind by which a program decides and a part of the text that a person reads.
 fn samples() -> Vec<(Reason, ReasonKind, &'static str)> {
     let at = Vector2::new(1.0, -2.0);
     let no_path = |cause| Reason::NoPath { cause, unseen: None };

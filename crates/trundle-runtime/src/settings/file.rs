@@ -25,7 +25,7 @@ impl RobotFile {
     /// Reads the text of a robot file, TOML, then applies `overrides`, each `key=value`.
     ///
     /// # Errors
-    /// When the text is no TOML, a key is unknown or stands twice, a value is of the wrong kind, outside its range or implausible.
+    /// When the text is not TOML, a key is unknown or stands twice, a value is of the wrong kind, outside its range or implausible.
     pub fn parse(text: &str, overrides: &[String]) -> Result<Self, SettingsError> {
         let mut warnings = Vec::new();
         let mut config = read(text, &mut warnings)?;

@@ -13,12 +13,12 @@ const FORMER_NAMES: [(&str, &str); 7] = [
     ("most_", "max_"),
 ];
 
-/// The present name of a table or of a setting without its table; `None` where it has no former name.
+/// The present name of a table or of a setting without its table; `None` if it has no former name.
 fn present_name(name: &str) -> Option<String> {
     FORMER_NAMES.iter().find_map(|(former, present)| Some(format!("{present}{}", name.strip_prefix(former)?)))
 }
 
-/// The present form of a dotted key; `None` where it has no former name.
+/// The present form of a dotted key; `None` if it has no former name.
 pub(super) fn present_key(key: &str) -> Option<String> {
     let present = |name: &str| present_name(name).unwrap_or_else(|| name.to_owned());
     let whole = key.split('.').map(present).collect::<Vec<_>>().join(".");

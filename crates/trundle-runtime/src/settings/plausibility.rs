@@ -21,7 +21,7 @@ const MAX_WHEELBASE_M: f64 = 2.0;
 const MAX_FOOTPRINT_RADIUS_M: f64 = 3.0;
 /// Largest forward speed \[m/s\]; ours: a running person.
 const MAX_SPEED_M_S: f64 = 5.0;
-/// Largest turn rate \[rad/s\]; ours: two turns a second.
+/// Largest turn rate \[rad/s\]; ours: two turns per second.
 const MAX_TURN_RATE_RAD_S: f64 = 15.0;
 /// Largest acceleration \[m/s^2\]; ours: twice that of gravity, which no wheel on a floor has.
 const MAX_ACCELERATION_M_S2: f64 = 20.0;

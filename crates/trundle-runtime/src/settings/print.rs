@@ -69,7 +69,7 @@ mod tests {
     use crate::settings::RobotFile;
 
     #[test]
-    fn what_is_printed_reads_back_the_same() {
+    fn printed_settings_read_back_the_same() {
         let text = to_commented_toml(&RobotConfig::default());
         let file = RobotFile::parse(&text, &[]).unwrap();
         assert_eq!(file.config, RobotConfig::default());

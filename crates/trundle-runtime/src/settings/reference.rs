@@ -9,7 +9,7 @@ pub struct Setting {
     pub path: &'static str,
     /// Dotted key in the file, with its unit, as `drive.wheel_radius_m`.
     pub key: &'static str,
-    /// Unit, as `m/s`; empty where there is none.
+    /// Unit, as `m/s`; empty if there is none.
     pub unit: &'static str,
     /// `number`, `integer`, `flag`, `list`, or the words of a choice parted by `|`.
     pub kind: &'static str,

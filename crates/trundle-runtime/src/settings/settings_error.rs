@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{}{message}", line.map_or(String::new(), |line| format!("line {line}: ")))]
 pub struct SettingsError {
-    /// The line in the file, from 1, where it is known.
+    /// The line in the file, from 1, if it is known.
     pub line: Option<usize>,
     /// The error, and the accepted values.
     pub message: String,

@@ -47,7 +47,7 @@ pub(super) fn translate<'i>(
     translated
 }
 
-/// What is wrong with the kind of a value in the file.
+/// The problem of the kind of a value in the file.
 fn kind_problem_of(key: &str, found: &Found, value: &Spanned<DeValue<'_>>) -> Option<String> {
     match found {
         Found::Key(setting) | Found::OldKey(setting) => {
@@ -65,14 +65,14 @@ fn kind_problem_of(key: &str, found: &Found, value: &Spanned<DeValue<'_>>) -> Op
     }
 }
 
-/// What a dotted key is.
+/// Kind of a dotted key.
 pub(super) enum Found {
     Key(&'static Setting),
     OldKey(&'static Setting),
     Table,
 }
 
-/// What a dotted key of a robot file is; `None` of an unknown key.
+/// Kind of a dotted key of a robot file; `None` of an unknown key.
 pub(super) fn find(full: &str) -> Option<Found> {
     let inside = |setting: &Setting| setting.key.strip_prefix(full).is_some_and(|rest| rest.starts_with('.'));
     let settings = reference();
@@ -105,7 +105,7 @@ pub(super) fn unknown(full: &str, prefix: &str) -> String {
     format!("unknown key {full}; {place} has {}", names.join(", "))
 }
 
-/// What the name before the last point of an unknown key is, where it is no table.
+/// Description of the name before the last point of an unknown key, if it is not a table.
 fn nearest(prefix: &str) -> String {
     match find(prefix) {
         Some(Found::Key(setting) | Found::OldKey(setting)) => {

@@ -3,7 +3,7 @@
 use super::reference::Setting;
 use toml::Value;
 
-/// What is wrong with a value that is not of the kind of its setting: key, value and what is expected; `None` where it fits.
+/// The problem of a value that is not of the kind of its setting: key, value and what is expected; `None` if it fits.
 pub(super) fn kind_problem(setting: &Setting, value: &Value) -> Option<String> {
     (!is_of_kind(setting.kind, value)).then(|| {
         let (key, wanted) = (setting.key, wanted(setting));
@@ -14,7 +14,7 @@ pub(super) fn kind_problem(setting: &Setting, value: &Value) -> Option<String> {
     })
 }
 
-/// What a setting expects, in words.
+/// Accepted value of a setting, in words.
 pub(super) fn wanted(setting: &Setting) -> String {
     let unit = if setting.unit.is_empty() { String::new() } else { format!(" in {}", setting.unit) };
     match setting.kind {

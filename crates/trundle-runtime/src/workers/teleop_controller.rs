@@ -43,7 +43,7 @@ impl TeleopController {
         self.wanted = None;
     }
 
-    /// The twist of a control step; `None` where no operator drives. `s.hold` holds the robot, a pause of its mission does not count.
+    /// The twist of a control step; `None` if no operator drives. `s.hold` holds the robot, a pause of its mission does not count.
     pub(crate) fn step(&mut self, s: &WorldState<'_>) -> Option<Twist2> {
         let wanted = self.wanted.filter(|(_, since)| s.now - *since <= TELEOP_SILENCE_S);
         let Some((wanted, _)) = wanted else {

@@ -94,7 +94,7 @@ fn each_hold_stops_at_once_with_its_kind_and_its_end_lets_the_robot_go_on() {
 }
 
 #[test]
-fn a_long_hold_is_no_lack_of_progress() {
+fn a_long_hold_is_not_a_lack_of_progress() {
     let (mut robot, mut base) = driving();
     let report = robot.step(&body(3.0, link(Device::Base, false)));
     base.command(report.twist);

@@ -73,7 +73,7 @@ fn each_change_of_state_is_one_event_with_time_and_reason() {
     assert!(changes.iter().any(|line| line.ends_with("-> driving")), "{changes:?}");
     let last = changes.last().unwrap();
     assert!(last.contains("driving -> waiting: the newest image") && last.contains(" s: "), "{last}");
-    assert!(changes.len() < 8, "a reason whose numbers alone change is no new event: {changes:?}");
+    assert!(changes.len() < 8, "a reason whose numbers alone change is not a new event: {changes:?}");
 }
 
 #[test]

@@ -134,7 +134,7 @@ fn a_mission_is_over_when_all_tasks_are_and_names_each_undone_one() {
 }
 
 #[test]
-fn goals_that_are_no_numbers_are_refused() {
+fn goals_that_are_not_numbers_are_refused() {
     let mut robot = Robot::new(RobotConfig::default()).unwrap();
     for (goal, field) in [(Pose2::new(f64::NAN, 0.0, 0.0), "x"), (Pose2::new(0.0, f64::INFINITY, 0.0), "y")] {
         let refusal = robot.drive_to(goal).unwrap_err();

@@ -8,7 +8,7 @@ use trundle_runtime::real_time::{
 };
 use trundle_runtime::{Job, LazyImage, Robot, Worker};
 
-/// What the robot was fed, in order.
+/// Inputs of the robot, in order.
 #[derive(Debug, Clone)]
 enum Fed {
     Event(SensorEvent),
@@ -83,7 +83,7 @@ fn again(robot: &mut Robot, fed: Vec<Fed>) -> Vec<Twist2> {
 }
 
 #[test]
-fn what_threads_did_can_be_done_again_without_them() {
+fn a_threaded_run_is_replayed_without_threads() {
     let robot = || robot(Pose2::new(1.0, 0.5, 1.0)).with_background_jobs();
     let (mut first, mut second) = (robot(), robot());
     let (fed, twists) = live(&mut first);

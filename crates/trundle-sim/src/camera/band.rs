@@ -37,7 +37,7 @@ impl Picture<'_> {
         self.draw_plainly(top, band);
     }
 
-    /// The same as [`Picture::draw_plainly`], more numbers an instruction.
+    /// The same as [`Picture::draw_plainly`], more numbers per instruction.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
     fn draw_by_avx2(&self, top: usize, band: &mut Band) {

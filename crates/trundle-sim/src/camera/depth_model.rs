@@ -36,9 +36,9 @@ pub(super) struct DepthModel {
     /// Disparity steps in a metre's inverse; 0 for time of flight.
     disparities: f32,
     quantum: f32,
-    /// Quanta a metre.
+    /// Quanta per metre.
     quanta: f32,
-    /// Table entries a metre.
+    /// Table entries per metre.
     steps_a_metre: f32,
     /// Sigma without slant, m, and z^p, by depth.
     by_depth: Box<[(f32, f32); TABLE_STEPS]>,

@@ -11,7 +11,7 @@ pub(super) struct Footprints {
     /// The middle, texels.
     pub(super) x: Row<f32>,
     pub(super) y: Row<f32>,
-    /// From the middle to each of the two samples, texels; zero where one sample is enough.
+    /// From the middle to each of the two samples, texels; zero if one sample is enough.
     pub(super) shift_x: Row<f32>,
     pub(super) shift_y: Row<f32>,
     /// log2 of the width of a sample, texels.

@@ -7,7 +7,7 @@ use crate::materials::Texture;
 pub(super) struct Patch<'w> {
     /// `normal . ray`.
     pub(super) facing: Linear,
-    /// Growth of the texture coordinates with depth along the ray, texels a metre.
+    /// Growth of the texture coordinates with depth along the ray, texels per metre.
     pub(super) across: Linear,
     pub(super) down: Linear,
     /// The texture coordinates that the camera's centre would have, texels.
@@ -21,7 +21,7 @@ pub(super) struct Patch<'w> {
 pub(super) struct Plane {
     /// Unit length.
     pub(super) normal: [f32; 3],
-    /// Growth of (u, v) a metre.
+    /// Growth of (u, v) per metre.
     pub(super) across: [f32; 3],
     pub(super) down: [f32; 3],
     /// (u, v) of the camera's centre: where along the two its foot point would be.

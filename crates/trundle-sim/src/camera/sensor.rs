@@ -117,7 +117,7 @@ fn luminance([r, g, b]: [u8; 3]) -> f32 {
 /// Stands for the depth of "nothing there", m.
 const NO_SURFACE_DEPTH_M: f32 = 1e6;
 
-/// For every pixel of row `y` the depth on the other side of the edge it lies at, m; 0 where there is no edge of at
+/// For every pixel of row `y` the depth on the other side of the edge it lies at, m; 0 if there is no edge of at
 /// least `step` m.
 ///
 /// Inverse depth is an affine function of the pixel on any plane, so its second difference vanishes there, however steep

@@ -10,7 +10,7 @@ pub(super) const ROWS: usize = 8;
 /// "Nothing" among the ids of a [`Tile`].
 pub(super) const NO_SURFACE_ID: u32 = u32::MAX;
 
-/// A row of numbers, one a pixel: plain loops over it become SIMD.
+/// A row of numbers, one per pixel: plain loops over it become SIMD.
 pub(super) type Row<T> = [T; TILE_COLUMNS];
 
 /// The nearest surface of every pixel of a small rectangle of the image so far.

@@ -17,7 +17,7 @@ pub struct StationConfig {
     pub near_range: f64,
     /// Distance up to which the far code is received, m, 0.2 to 10. Default 3 (ours).
     pub far_range: f64,
-    /// Radius of the circle about the base's origin on which the receivers sit, m, 0 to 2. Default 0.15 (ours).
+    /// Radius of the circle around the base's origin on which the receivers sit, m, 0 to 2. Default 0.15 (ours).
     pub receiver_radius: f64,
     /// Bearing of the left receiver and its axis; the right one is its mirror image, deg, 0 to 120. Default 60 (ours).
     pub receiver_bearing_deg: f64,

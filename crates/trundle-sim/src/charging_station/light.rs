@@ -18,7 +18,7 @@ pub(super) fn receivers(config: &StationConfig) -> [Pose2; 3] {
     })
 }
 
-/// What a receiver sees whose pose is `station_from_receiver`; every edge is moved by `edge_error` rad. Nothing is in between.
+/// Light at a receiver whose pose is `station_from_receiver`; every edge is moved by `edge_error` rad. Nothing is in between.
 pub(super) fn beams(config: &StationConfig, receiver: Pose2, edge_error: f64) -> DockBeams {
     let (range, bearing) = (receiver.position().norm(), receiver.y.atan2(receiver.x));
     let to_station = (-receiver.y).atan2(-receiver.x);

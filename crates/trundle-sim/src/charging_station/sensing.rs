@@ -1,4 +1,4 @@
-//! What the robot's body reports of the station: light on change, and the battery.
+//! Reports of the robot's body about the station: light on change, and the battery.
 
 use super::config::StationConfig;
 use super::contacts::touches_plates;

@@ -6,7 +6,7 @@ use trundle_core::Invalid;
 /// count.
 ///
 /// # Errors
-/// When a line has more or fewer columns or one is no finite number; names the line and the column.
+/// When a line has more or fewer columns or one is not a finite number; names the line and the column.
 pub(super) fn rows<const N: usize>(
     text: &str,
     columns: [&str; N],
@@ -43,7 +43,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_named() {
+    fn a_field_that_is_not_a_number_is_named() {
         let error = |text: &str| rows(text, ["t", "v"]).unwrap_err().to_string();
         assert_eq!(error("1 2\n3 fast"), "v in line 2 is fast, expected a finite number");
         assert_eq!(error("1 NaN"), "v in line 1 is NaN, expected a finite number");

@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn what_happens_once_happens_once_and_waits_until_it_may() {
+    fn a_single_fault_happens_once_and_waits_until_it_may() {
         let put = FaultKind::Kidnapped { x: 1.0, y: 2.0, heading_deg: 90.0 };
         let mut faults = faults(&[put, FaultKind::OdometryJumps { left_ticks: 5, right_ticks: -5 }]);
         faults.at(0.5);

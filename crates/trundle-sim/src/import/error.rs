@@ -46,7 +46,7 @@ pub enum ImportFault {
     /// A buffer outside the file is missing.
     #[error("{item}: {reason}")]
     Part {
-        /// Which one, with its file name where it has one.
+        /// Which one, with its file name if it has one.
         item: String,
         /// Why.
         reason: String,

@@ -13,7 +13,7 @@ const SLAB_SIDE_M: f64 = 10.0;
 /// Thickness of floor and ceiling, m.
 const SLAB_THICKNESS_M: f64 = 0.1;
 
-/// Bytes of a texel with its smaller levels, and texels a metre: those of the paints.
+/// Bytes of a texel with its smaller levels, and texels per metre: those of the paints.
 const TEXEL_BYTES: f64 = 16.0 / 3.0;
 const TEXELS_A_METRE: f64 = 250.0;
 

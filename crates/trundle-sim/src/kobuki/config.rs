@@ -30,9 +30,9 @@ pub struct KobukiConfig {
     pub slip: f64,
     /// Correlation time of slip, s, 0.001 to 10. Default 0.3: a tenth of a metre of floor.
     pub slip_time: f64,
-    /// Readings of the encoders a second, Hz, 1 to 1000. Default 50, the Kobuki's.
+    /// Readings of the encoders per second, Hz, 1 to 1000. Default 50, the Kobuki's.
     pub wheel_rate_hz: f64,
-    /// Readings of the gyro a second, Hz, 1 to 1000. Default 50, the Kobuki's.
+    /// Readings of the gyro per second, Hz, 1 to 1000. Default 50, the Kobuki's.
     pub gyro_rate_hz: f64,
     /// White noise of a gyro reading, rad/s, 0 to 1. Default 0.0037: 0.03 deg/s/sqrt(Hz) over 50 Hz, the L3G4200D's data sheet.
     pub gyro_noise: f64,
@@ -140,7 +140,7 @@ impl KobukiConfig {
         Ok(self)
     }
 
-    /// The outline of the base: the polygon where there is one, else the disc.
+    /// The outline of the base: the polygon if there is one, else the disc.
     ///
     /// # Errors
     /// When the polygon is not one: fewer than three corners, not convex, not finite; or the radius is not positive.

@@ -3,5 +3,5 @@
 /// Length of a step of the dynamics, s.
 pub(crate) const STEP_S: f64 = 1e-3;
 
-/// Steps a second.
+/// Steps per second.
 pub(crate) const STEPS_PER_SECOND: f64 = 1e3;

@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 /// Slip of both wheels, fraction of their distance: two independent Ornstein-Uhlenbeck processes.
 ///
 /// White noise in each step would shake the body. Slip has the correlation time `slip_time`, the time on one piece of floor.
-/// At speed v the distance's variance grows by 2 slip^2 slip_time v a metre \[Chong97\].
+/// At speed v the distance's variance grows by 2 slip^2 slip_time v per metre \[Chong97\].
 #[derive(Debug)]
 pub(super) struct Slip {
     rng: ChaCha8Rng,

@@ -22,7 +22,7 @@ pub struct LaserConfig {
     pub field_of_view: f64,
     /// Beams a scan, 1 to 100,000. Default 360.
     pub beams: usize,
-    /// Scans a second, Hz, 0.1 to 200. Default 10.
+    /// Scans per second, Hz, 0.1 to 200. Default 10.
     pub rate_hz: f64,
     /// Nearer things are not measured, m, 0 to 100. Default 0.1.
     pub range_min: f64,

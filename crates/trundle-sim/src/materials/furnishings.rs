@@ -1,4 +1,4 @@
-//! What furniture is made of: colour as a function of metres from the face's top left and of `grain`, fractal noise of
+//! Materials of furniture: colour as a function of metres from the face's top left and of `grain`, fractal noise of
 //! about unit strength.
 
 use super::color::{Rgb, lifted, mixed, pick, rgb, scaled};

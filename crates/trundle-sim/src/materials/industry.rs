@@ -1,4 +1,4 @@
-//! What halls, corridors and offices are made of, rich and poor in texture: colour as a function of metres from the
+//! Materials of halls, corridors and offices, rich and poor in texture: colour as a function of metres from the
 //! face's top left and of `grain`, fractal noise of about unit strength.
 
 use super::color::{Rgb, lifted, mixed, rgb, scaled};

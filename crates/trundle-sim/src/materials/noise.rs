@@ -70,7 +70,7 @@ pub(super) struct Fractal {
 }
 
 impl Fractal {
-    /// (seed, strength, waves a metre) of every octave.
+    /// (seed, strength, waves per metre) of every octave.
     fn scales(self, seed: u32) -> impl Iterator<Item = (u32, f32, f32)> {
         (0..self.octaves).map(move |octave| {
             let nth = octave as i32;

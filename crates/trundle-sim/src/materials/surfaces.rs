@@ -1,4 +1,4 @@
-//! What walls, floors and ceilings are made of: colour as a function of metres from the face's top left and of `grain`,
+//! Materials of walls, floors and ceilings: colour as a function of metres from the face's top left and of `grain`,
 //! fractal noise of about unit strength.
 
 use super::color::{Rgb, lifted, mixed, pick, rgb, scaled};

@@ -20,7 +20,7 @@ pub(crate) struct Texture {
     size: [f32; 2],
     /// Whether it repeats beyond its borders, rather than go on with the border's colour.
     repeats: bool,
-    /// Texels of level 0 a unit of (u, v).
+    /// Texels of level 0 per unit of (u, v).
     scale: [f32; 2],
 }
 
@@ -43,7 +43,7 @@ impl Texture {
         Self::with_levels(texels, (width, height), scale, false)
     }
 
-    /// Texture of a material: a colour, times a picture where there is one. (u, v) are in widths and heights of the
+    /// Texture of a material: a colour, times a picture if there is one. (u, v) are in widths and heights of the
     /// picture, which repeats.
     pub(crate) fn of_picture(color: [u8; 3], picture: Option<&ColorImage>) -> Self {
         let tinted = |texel: [u8; 3]| {
@@ -93,7 +93,7 @@ impl Texture {
         }
     }
 
-    /// Texels of level 0 a unit of (u, v).
+    /// Texels of level 0 per unit of (u, v).
     pub(crate) fn scale(&self) -> [f32; 2] {
         self.scale
     }

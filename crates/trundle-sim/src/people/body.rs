@@ -21,7 +21,7 @@ const HEAD_RADIUS_M: f64 = 0.095;
 const SHOULDER_HEIGHT_M: f64 = 1.48;
 const CROWN_HEIGHT_M: f64 = 1.75;
 
-/// What people wear: trousers and jumper, sRGB.
+/// Clothes of people: trousers and jumper, sRGB.
 const CLOTHES: [([u8; 3], [u8; 3]); 4] = [
     ([52, 62, 92], [168, 64, 56]),
     ([70, 66, 60], [72, 120, 156]),
@@ -31,7 +31,7 @@ const CLOTHES: [([u8; 3], [u8; 3]); 4] = [
 
 const SKIN: [u8; 3] = [206, 164, 134];
 
-/// The parts of a person, upright cylinders about their own origin; the pieces of a leg are one part for both legs.
+/// The parts of a person, upright cylinders around their own origin; the pieces of a leg are one part for both legs.
 #[derive(Debug)]
 pub(super) struct Body {
     pub(super) shin: Part,
@@ -44,7 +44,7 @@ pub(super) struct Body {
 #[derive(Debug)]
 pub(super) struct Part {
     pub(super) world: World,
-    /// What of it the robot can run into.
+    /// Part of it that the robot can run into.
     pub(super) obstacles: Obstacles,
 }
 

@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{Pose2, Vector3};
 
-/// What hides behind walls and under floors.
+/// Colour of faces behind walls and under floors.
 pub(super) const UNSEEN: Paint = Paint::Flat { color: [120, 118, 114] };
 
 /// Height of rooms, m.
@@ -46,7 +46,7 @@ impl Builder {
         Self { solids: Vec::new(), tint: None, lift: 0.0, rng, look: None }
     }
 
-    /// What `place` places, drawn and painted from `seed` alone: the same again wherever it is called so, and nothing else
+    /// Objects that `place` places, drawn and painted from `seed` alone: the same again wherever it is called so, and nothing else
     /// changes by it.
     pub(super) fn alike(&mut self, seed: u64, place: impl FnOnce(&mut Self)) {
         let rng = std::mem::replace(&mut self.rng, ChaCha8Rng::seed_from_u64(seed));

@@ -1,4 +1,4 @@
-//! What hangs on walls, lies on floors and stands on desks. What hangs is placed by a pose on the wall's face, x into the room.
+//! Objects on walls, floors and desks. An object on a wall is placed by a pose on the wall's face, x into the room.
 
 use super::builder::Builder;
 use super::partition::{DOOR_HEIGHT, DOOR_WIDTH};

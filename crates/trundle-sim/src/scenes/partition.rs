@@ -23,7 +23,7 @@ pub(super) struct Partition {
     pub(super) span: [f64; 2],
     /// Its faces across its direction, m.
     pub(super) faces: [f64; 2],
-    /// What is painted on them, the one toward lower coordinates first.
+    /// Paintings on them, the one toward lower coordinates first.
     pub(super) paints: [Paint; 2],
     /// On the sides of its openings.
     pub(super) jamb: Paint,

@@ -1,4 +1,4 @@
-//! What stands in warehouses, each placed by the pose of its middle on the floor.
+//! Objects in warehouses, each placed by the pose of its middle on the floor.
 
 use super::builder::Builder;
 use crate::materials::{Finish, Paint};

@@ -13,12 +13,12 @@ pub(super) struct CameraRig {
     renderer: Renderer,
     sensor: RgbdSensor,
     view: View,
-    /// Views at the moments of an exposure, where that takes time.
+    /// Views at the moments of an exposure, if that takes time.
     moments: Vec<View>,
     /// Seconds.
     shutter: f64,
     base_from_camera: Pose3,
-    /// The last image, where a camera that freezes needs it.
+    /// The last image, if a camera that freezes needs it.
     last: Option<RgbdImage>,
     may_freeze: bool,
 }

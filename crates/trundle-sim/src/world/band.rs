@@ -62,7 +62,7 @@ impl Outlines {
 }
 
 impl World {
-    /// What of every solid and triangle reaches into a height band, seen from above: one list a thread's share.
+    /// Parts of all solids and triangles within a height band, seen from above: one list per thread's share.
     pub(super) fn outlines_in(&self, band: HeightBand) -> Vec<Outlines> {
         let mut solids = Outlines::default();
         for (solid, outline) in self.solids.iter().zip(&self.outlines) {

@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_beyond_the_reach_is_left_out() {
+    fn items_beyond_the_reach_are_left_out() {
         let bvh = Bvh::new(&boxes(&[(1, 0, 0), (2, 0, 0), (9, 0, 0), (10, 0, 0), (11, 0, 0)]), 1);
         struct All;
         impl Probe for All {

@@ -32,7 +32,7 @@ impl Obstacles {
         }
     }
 
-    /// The same for obstacles that stand at `world_from_obstacles`: a person, a door.
+    /// Clearance from obstacles that stand at `world_from_obstacles`: a person, a door.
     pub fn clearance_at(
         &self,
         world_from_obstacles: Pose2,

@@ -70,7 +70,7 @@ impl World {
         self.cast_plainly(origin, direction, limit)
     }
 
-    /// The same as [`World::cast_plainly`], more numbers an instruction.
+    /// The same as [`World::cast_plainly`], more numbers per instruction.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
     fn cast_by_avx2(&self, origin: Vector3, direction: Vector3, limit: f64) -> Option<Hit> {
@@ -142,7 +142,7 @@ fn wide(reach: f64) -> f32 {
     (reach as f32).next_up()
 }
 
-/// `v` turned about z by the angle with this sine and cosine.
+/// `v` turned around z by the angle with this sine and cosine.
 pub(super) fn turned(v: Vector3, (s, c): (f64, f64)) -> Vector3 {
     Vector3::new(c * v.x - s * v.y, s * v.x + c * v.y, v.z)
 }

@@ -25,7 +25,7 @@ impl Region<'_> {
         self.corners.iter().fold((first, first), |(low, high), corner| (low.inf(corner), high.sup(corner)))
     }
 
-    /// The lowest and the highest x of what lies between two heights y; `None` when nothing does.
+    /// The lowest and the highest x of what lies between two heights y; `None` if nothing does.
     pub(super) fn span_between(&self, low: f64, high: f64) -> Option<(f64, f64)> {
         let mut span: Option<(f64, f64)> = None;
         let mut take = |x0: f64, x1: f64| {

@@ -4,14 +4,14 @@ use super::aabb::Aabb;
 use super::outline::Outline;
 use trundle_core::{Invalid, Vector2, Vector3};
 
-/// A box, turned about z.
+/// A box, turned around z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cuboid {
     /// Its middle, world frame, m.
     pub center: Vector3,
     /// Full lengths along its own axes, m.
     pub size: Vector3,
-    /// Turn about z, rad.
+    /// Turn around z, rad.
     pub yaw: f64,
 }
 

@@ -35,7 +35,7 @@ pub(crate) struct Surface {
     /// A point on it, and the texture coordinates there.
     pub(crate) corner: [f32; 3],
     pub(crate) uv: [f32; 2],
-    /// How much u and v grow a metre.
+    /// How much u and v grow per metre.
     pub(crate) across: [f32; 3],
     pub(crate) down: [f32; 3],
     /// Number of the material among those of all meshes.

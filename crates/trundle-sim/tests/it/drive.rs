@@ -184,7 +184,7 @@ fn an_edge_and_a_hole_in_the_floor_are_cliffs() {
     let mut robot = Simulator::new(scene, almost_blind().without_noise(), 1).unwrap();
     let mut listener = Listener::default();
     listener.drive(&mut robot, Twist2::new(0.5, 0.0), 5.0);
-    assert!(robot.true_pose().x > 0.3 && listener.cliffs.is_empty(), "3 cm are no cliff");
+    assert!(robot.true_pose().x > 0.3 && listener.cliffs.is_empty(), "3 cm are not a cliff");
     listener.drive(&mut robot, Twist2::new(0.2, 0.0), 1.5);
     let front = robot.true_pose().x + 0.156;
     assert!(front < 1.0 || listener.cliffs == [true], "{front}");
@@ -253,7 +253,7 @@ fn a_follower_says_that_it_is_blocked() {
     assert_eq!(follower.state(), Following::Blocked { waypoint: 1 });
 }
 
-/// A scene from the shared house, the robot in the first free place of a coarse grid; `None` where the file is absent.
+/// A scene from the shared house, the robot in the first free place of a coarse grid; `None` if the file is absent.
 fn small_house() -> Option<Scene> {
     let mesh = gltf(&shared_data("scenes/small_house.glb")?, &GltfOptions::z_up()).unwrap().mesh;
     let world = World::with_meshes(Vec::new(), vec![mesh], 1).unwrap();
@@ -284,7 +284,7 @@ fn in_a_house_of_triangles_no_way_of_driving_gets_into_anything() {
 }
 
 #[test]
-fn a_command_that_is_no_number_stops_the_robot_and_is_reported() {
+fn a_command_that_is_not_a_number_stops_the_robot_and_is_reported() {
     let mut robot = Simulator::new(hall(Pose2::IDENTITY), almost_blind(), 1).unwrap();
     Listener::default().drive(&mut robot, Twist2::new(0.4, 0.0), 1.0);
     let error = robot.command(Twist2::new(f64::NAN, 0.1)).unwrap_err();

@@ -21,7 +21,7 @@ fn broken_at(start: Pose2, kind: FaultKind) -> Result<Simulator, SimError> {
     Simulator::new(hall(start), config.without_noise(), 1)
 }
 
-/// What it says in three seconds of driving ahead.
+/// Events in three seconds of driving ahead.
 fn events(mut robot: Simulator) -> (Vec<SensorEvent>, Simulator) {
     robot.command(Twist2::new(0.3, 0.2)).unwrap();
     let mut events = Vec::new();

@@ -279,7 +279,7 @@ fn a_floor_elsewhere_comes_to_lie_at_zero() {
     assert_eq!((corner(&near.mesh, 2), near.notes.len()), ([1.0, 1.0, 0.1], 0), "left where it is");
     let wall =
         scene(&description(INDEXED, r#","translation":[0,5,0]"#, ""), &GltfOptions::default()).unwrap();
-    assert_eq!(corner(&wall.mesh, 0), [0.0, 0.0, 5.0], "a wall is no floor");
+    assert_eq!(corner(&wall.mesh, 0), [0.0, 0.0, 5.0], "a wall is not floor");
 }
 
 #[test]

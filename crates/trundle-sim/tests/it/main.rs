@@ -24,7 +24,7 @@ fn block(center: [f64; 3], size: [f64; 3], yaw: f64) -> Solid {
     Solid { shape, finish: Finish::all(Paint::Flat { color: [150; 3] }) }
 }
 
-/// A plain hall, 6 x 6 m about the origin, with a wall at x = 3.
+/// A plain hall, 6 x 6 m around the origin, with a wall at x = 3.
 fn hall(start: Pose2) -> Scene {
     let floor = block([0.0, 0.0, -0.05], [6.4, 6.4, 0.1], 0.0);
     let walls = [(3.1, 0.0, 0.2, 6.4), (-3.1, 0.0, 0.2, 6.4), (0.0, 3.1, 6.4, 0.2), (0.0, -3.1, 6.4, 0.2)]
@@ -47,7 +47,7 @@ fn almost_blind() -> SimConfig {
     SimConfig { camera, camera_rate_hz: 1.0, ..SimConfig::default() }
 }
 
-/// A file of the shared data; `None`, and says so, where it is absent.
+/// A file of the shared data; `None`, and says so, if it is absent.
 fn shared_data(name: &str) -> Option<std::path::PathBuf> {
     let path = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).join(name);
     if path.exists() {

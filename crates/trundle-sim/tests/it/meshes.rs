@@ -51,7 +51,7 @@ fn sphere(x: f64, radius: f64, n: u32) -> World {
 
 #[test]
 fn slanted_triangles_are_planes_to_a_tenth_of_a_millimetre_without_a_gap() {
-    // x = 4 + 1.5 y + 0.5 z, a fan of 24 triangles about a point seen in the middle.
+    // x = 4 + 1.5 y + 0.5 z, a fan of 24 triangles around a point seen in the middle.
     let place = |y: f64, z: f64| [(4.0 + 1.5 * y + 0.5 * z) as f32, y as f32, z as f32];
     let corner = |i: u32| {
         let (s, c) = (f64::from(i) / 24.0 * std::f64::consts::TAU).sin_cos();
@@ -126,7 +126,7 @@ fn rays_and_pixels_do_not_leak_between_triangles() {
 }
 
 #[test]
-fn what_moves_looks_like_what_stands() {
+fn a_moving_solid_looks_like_a_standing_one() {
     let scene = Scene::by_name("obstacles", 3).unwrap();
     let pose = Pose3::from_pose2(Pose2::new(1.0, 1.0, 0.6)) * camera_mount(0.0, 0.6, 0.1);
     let at = Pose2::new(2.2, 2.0, 0.7);

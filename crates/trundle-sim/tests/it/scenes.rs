@@ -6,7 +6,7 @@ use flood::Flood;
 use trundle_core::{Cell, Footprint, Pose2, Vector2};
 use trundle_sim::{HeightBand, Scene};
 
-/// What is in a Kobuki's way.
+/// Obstacles for a Kobuki.
 fn band() -> HeightBand {
     HeightBand::new(0.012, 0.6).unwrap()
 }
@@ -15,7 +15,7 @@ fn clearance(scene: &Scene, robot: &Footprint, pose: Pose2) -> f64 {
     scene.world.clearance(robot, pose, band()).unwrap()
 }
 
-/// What every seed of a scene keeps.
+/// Properties of every seed of a scene.
 struct Promise {
     name: &'static str,
     seeds: u64,
@@ -25,7 +25,7 @@ struct Promise {
     way: f64,
     /// Of the true grid, m.
     resolution: f64,
-    /// What can be reached beside the goal.
+    /// Reachable places beside the goal.
     places: &'static [[f64; 2]],
 }
 

@@ -40,7 +40,7 @@ impl Atlas {
         }
     }
 
-    /// Replaces all maps, the first of which becomes the active one; whether there was any.
+    /// Replaces all maps, the first of which becomes the active one. Returns whether there was any.
     pub fn replace(&mut self, maps: Vec<(MapId, LandmarkMap)>) -> bool {
         let vocabulary = Arc::clone(self.active.place_index.vocabulary());
         let mut maps = maps.into_iter().map(|(id, map)| SubMap::new(id, map, &vocabulary));
@@ -62,7 +62,7 @@ impl Atlas {
         maps
     }
 
-    /// Makes another map the active one; whether it was another one.
+    /// Makes another map the active one. Returns whether it was another one.
     pub fn enter(&mut self, map: MapId) -> bool {
         let Some(entered) = self.inactive.iter_mut().find(|inactive| inactive.id == map) else {
             return false;

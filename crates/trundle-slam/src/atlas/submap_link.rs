@@ -15,7 +15,7 @@ pub(crate) struct SubmapLink {
 }
 
 impl SubmapLink {
-    /// This link followed by `next`; `None` where `next` does not begin in the map where this link ends.
+    /// This link followed by `next`; `None` if `next` does not begin in the map where this link ends.
     pub fn then(self, next: Self) -> Option<Self> {
         let before_from_map = self.before_from_map.then(&next.before_from_map);
         (self.map == next.before).then_some(Self { before: self.before, before_from_map, ..next })

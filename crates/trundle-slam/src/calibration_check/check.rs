@@ -39,7 +39,7 @@ pub(crate) struct CalibrationCheck {
     pairs: Vec<Pair>,
     /// The camera by the first of these pairs, during its computation.
     judgement: Option<ModelSelection>,
-    /// How many pairs the last judgement had.
+    /// How many pairs the last evaluation had.
     judged: usize,
     camera_judged: bool,
     range: DepthRange,
@@ -97,7 +97,7 @@ impl CalibrationCheck {
         self.moved = Some(Pose3::identity());
     }
 
-    /// Goes on judging the camera, some rounds a frame, again whenever there are three more pairs.
+    /// Goes on evaluating the camera, some rounds a frame, again whenever there are three more pairs.
     fn judge(&mut self, camera: &PinholeCamera) {
         let count = self.pairs.len() / 3 * 3;
         if self.judgement.is_none() && count >= MIN_PAIRS && count > self.judged {

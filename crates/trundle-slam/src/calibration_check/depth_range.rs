@@ -24,7 +24,7 @@ pub(crate) struct DepthRange {
 }
 
 impl DepthRange {
-    /// Takes an image; judges after some.
+    /// Takes an image; evaluates after some.
     pub fn record(&mut self, image: &DepthImage, config: &DepthConfig) -> Option<CalibrationIssue> {
         if self.images == CHECKED_IMAGES {
             return None;

@@ -56,9 +56,9 @@ impl fmt::Display for CalibrationIssue {
                 100.0 * part,
                 if beyond { "farther" } else { "nearer" },
                 if beyond {
-                    "too small (1000 set where 5000 is right)"
+                    "too small (1000 is set, 5000 is right)"
                 } else {
-                    "too large (5000 set where 1000 is right)"
+                    "too large (5000 is set, 1000 is right)"
                 },
             ),
             Self::NoDepth => write!(

@@ -23,7 +23,7 @@ const MIN_CONTRAST_RATIO: f64 = 1.5;
 /// Largest difference between the shifts found in two halves of the images: 5 blocks. Near edges need another shift than far ones.
 /// Source: ours.
 const MAX_SHIFT_DIFFERENCE_BLOCKS: i64 = 5;
-/// Largest plausible shift along a row: 8 blocks. A larger one is no pair of cameras in one housing. Source: ours.
+/// Largest plausible shift along a row: 8 blocks. A larger one is not a pair of cameras in one housing. Source: ours.
 const MAX_SHIFT_X_BLOCKS: i64 = 8;
 /// Largest plausible shift along a column: 6 blocks. Source: ours.
 const MAX_SHIFT_Y_BLOCKS: i64 = 6;
@@ -45,7 +45,7 @@ impl Registration {
         self.images < CHECKED_IMAGES
     }
 
-    /// Takes an image; judges after some.
+    /// Takes an image; evaluates after some.
     pub fn record(&mut self, gray: &GrayImage, depth: &DepthImage) -> Option<CalibrationIssue> {
         if !self.is_open() || !gray.same_size(depth) {
             return None;
@@ -68,7 +68,7 @@ impl Registration {
         if self.is_open() { None } else { self.judge() }
     }
 
-    /// Both halves of the images must ask for about the same shift, and not for one out of all reason: where there is nothing
+    /// Both halves of the images must ask for about the same shift, and not for one out of all reason: if there is nothing
     /// to find, they do not.
     fn judge(&self) -> Option<CalibrationIssue> {
         let [a, b] = [shift_of(&self.scores[0])?, shift_of(&self.scores[1])?];

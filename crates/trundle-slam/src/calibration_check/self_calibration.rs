@@ -66,7 +66,7 @@ impl CalibrationFit {
         Self { free, offset: start, motions, rounds: 0, cost: f64::INFINITY, parts: Vec::new() }
     }
 
-    /// One round of Gauss-Newton; whether it was the last.
+    /// One round of Gauss-Newton. Returns whether it was the last.
     pub fn advance(&mut self, pairs: &[Pair]) -> bool {
         let parts: Vec<PairEquations> = pairs
             .iter()
@@ -87,7 +87,7 @@ impl CalibrationFit {
         is_lost || self.rounds >= MAX_ITERATIONS || gain.abs() <= MIN_COST_DECREASE * cost
     }
 
-    /// The result, once the last round is done; `None` where the fit failed.
+    /// The result, once the last round is done; `None` if the fit failed.
     pub fn result(&self) -> Option<FittedOffset> {
         let offset = self.offset;
         let sigmas = self.spread()?;
@@ -219,7 +219,7 @@ impl ResidualRows {
         if p.z <= 0.05 {
             return None;
         }
-        // Compared where it was measured, in the assumed coordinates: else a fit could shrink the picture to shrink the errors.
+        // Compared if it was measured, in the assumed coordinates: else a fit could shrink the picture to shrink the errors.
         let expected = uncorrected(Vector2::new(p.x, p.y) / p.z, offset);
         let unstretched = Matrix2::from_diagonal(&stretch(expected, offset).map(f64::recip));
         let projection =

@@ -17,7 +17,7 @@ const MAX_SLOPE_DEPTH_RATIO: f64 = 0.1;
 /// A depth whose standard deviation is a larger part of it than this does not make a point.
 pub(crate) const MAX_RELATIVE_SIGMA: f64 = 0.1;
 
-/// What the depth camera can be trusted with.
+/// Range and noise of the depth camera.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DepthConfig {
@@ -77,7 +77,7 @@ impl DepthConfig {
     }
 
     /// How the inverse depth rises around a raw `pixel`, 1/(m px), right and down: on a plane the same everywhere. By pixels up to
-    /// five times `px` off, as far as they are of the same thing; zero where these are too few.
+    /// five times `px` off, as far as they are of the same thing; zero if these are too few.
     pub fn slope(&self, image: &DepthImage, pixel: Vector2, px: f64) -> Vector2 {
         let Some(middle) = self.at(image, pixel) else { return Vector2::zeros() };
         let (mut normal, mut products) = (Matrix2::zeros(), Vector2::zeros());

@@ -1,4 +1,4 @@
-//! Corners on the outline of an object, which are no fixed points of a surface.
+//! Corners on the outline of an object, which are not fixed points of a surface.
 
 use crate::frame::aligned_feature::raw;
 use crate::frame::depth::DepthConfig;
@@ -15,7 +15,7 @@ const DIRECTIONS: [(f64, f64); 4] =
 const MAX_OCTAVE_SCALE: f64 = 2.0;
 /// Second difference of the inverse depth that is a step, as a fraction of it: 0.1. Source: docs/experiments/slam-depth-edges.md.
 const MIN_STEP_RATIO: f64 = 0.1;
-/// The same besides, in standard deviations of its noise: 3. See [`MIN_STEP_RATIO`].
+/// Second difference of the inverse depth that is a step, in standard deviations of its noise, besides the ratio: 3. See [`MIN_STEP_RATIO`].
 const MIN_STEP_SIGMAS: f64 = 3.0;
 /// Fewest features that must be left: 100. Otherwise none is dropped, as on railings, leaves and noisy depths. Source: ours.
 const MIN_KEPT_FEATURES: usize = 100;
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slanted_floor_is_no_depth_edge_and_a_chair_before_it_is() {
+    fn a_slanted_floor_is_not_a_depth_edge_and_a_chair_before_it_is() {
         // A floor 0.45 m below a level camera; a chair leg, 2 px wide, 1.5 m away.
         let image = DepthImage::from_fn(80, 80, |x, y| {
             let floor = 0.45 * 365.0 / (y as f32 + 25.0);
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn the_corner_of_floor_and_wall_is_no_depth_edge() {
+    fn the_corner_of_floor_and_wall_is_not_a_depth_edge() {
         for wall in [2.0_f32, 3.0, 4.0, 5.0] {
             let image = DepthImage::from_fn(80, 120, |_, y| (0.45 * 365.0 / (y as f32 + 1e-3)).min(wall));
             let seam = (0.45 * 365.0 / f64::from(wall)).round();

@@ -11,7 +11,7 @@ use trundle_vision::{Features, OrbConfig, OrbExtractor};
 pub(crate) struct FrontEnd {
     pub model: ObservationModel,
     extractor: OrbExtractor,
-    /// Buffers for the features of the next image, half a megabyte that is not allocated thirty times a second.
+    /// Buffers for the features of the next image, half a megabyte that is not allocated thirty times per second.
     spare: Features,
 }
 

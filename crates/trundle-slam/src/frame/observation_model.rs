@@ -35,7 +35,7 @@ impl ObservationModel {
         Self { camera, scale_factors, pixel_sigma, low, high }
     }
 
-    /// Where a camera-frame point (m) appears: rectified and raw pixel; `None` when it is out of view.
+    /// Where a camera-frame point (m) appears: rectified and raw pixel; `None` if it is out of view.
     pub fn project(&self, p_camera: Vector3) -> Option<(Vector2, Vector2)> {
         let pixel = self.camera.project(p_camera)?;
         let boxed = pixel.x >= self.low.x

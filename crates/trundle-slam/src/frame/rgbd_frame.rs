@@ -64,7 +64,7 @@ impl Frame {
         Self { stamp, features, pixels, depths, pixel_sigmas: vec![], slopes: vec![], grid }.unaligned(model)
     }
 
-    /// The same with features where they were aligned to.
+    /// This frame with features at the positions of their alignment.
     #[must_use]
     pub fn with_aligned(
         mut self,
@@ -81,7 +81,7 @@ impl Frame {
         self
     }
 
-    /// The same with all features as uncertain as plain ones.
+    /// This frame with all features as uncertain as plain ones.
     #[must_use]
     pub fn unaligned(mut self, model: &ObservationModel) -> Self {
         let sigmas = self.features.keypoints.iter().map(|k| model.sigma_of(k.octave) as f32);
@@ -89,7 +89,7 @@ impl Frame {
         self
     }
 
-    /// Median standard deviation of the aligned features, px of their octaves; that of a plain one where there are none.
+    /// Median standard deviation of the aligned features, px of their octaves; that of a plain one if there are none.
     pub fn median_aligned_sigma_px(&self, model: &ObservationModel) -> f64 {
         let in_octave = |(k, sigma): (&Keypoint, &f32)| f64::from(*sigma) / model.scale(k.octave);
         let sigmas = self.features.keypoints.iter().zip(&self.pixel_sigmas).map(in_octave);
@@ -116,7 +116,7 @@ impl Frame {
         }
     }
 
-    /// The same with the standard deviation of a feature that was not aligned: to judge whether the feature may be of another landmark
+    /// Observation of a feature with the standard deviation of one that was not aligned: to test whether the feature may be of another landmark
     /// than the one it was aligned to.
     pub fn unaligned_observation(&self, i: usize, model: &ObservationModel) -> PointObservation {
         PointObservation { pixel_sigma: model.sigma_of(self.octave(i)), ..self.observation(i) }

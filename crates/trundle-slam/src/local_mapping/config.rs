@@ -18,7 +18,7 @@ pub struct LocalMappingConfig {
     pub fused_keyframes: usize,
     /// Number of further keyframes after which a landmark seen by only one keyframe is removed. Default 3 \[MurArtal17\].
     pub trial_keyframes: usize,
-    /// Frames in which a landmark should have been seen before it is judged. Default 10.
+    /// Frames in which a landmark should have been seen before it is evaluated. Default 10.
     pub trial_frames: u32,
     /// Part of these in which it must have been found, 0 to 1. Default 0.25 \[MurArtal17\].
     pub found_ratio: f64,

@@ -18,10 +18,10 @@ pub struct KeyframeConfig {
     /// When farther than this from every keyframe, m, and half of `new_ratio` is new; always when twice as far. Default 0.3:
     /// smaller detail then appears different.
     pub max_translation: f64,
-    /// The same for what it is turned against it, rad. Default 0.35 (20 deg): a third of the picture is new.
+    /// When turned more than this against every keyframe, rad, and half of `new_ratio` is new; always when turned twice as far. Default 0.35 (20 deg): a third of the picture is new.
     pub max_rotation: f64,
     /// When more than this part of the features with depth is where the map has no landmark to show, 0 to 1. Default 0.25.
-    /// Judged by where landmarks should be, not by which were found: a blurred frame finds few, and is the worst
+    /// Evaluated by where landmarks should be, not by which were found: a blurred frame finds few, and is the worst
     /// keyframe there is.
     pub new_ratio: f64,
     /// When fewer landmarks than this are seen, though as many more features have a depth. Default 50: tracking is about

@@ -5,7 +5,7 @@ use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::landmark_map::LandmarkMap;
 use crate::map::reference_patch::{MAX_REFERENCE_PATCHES, ReferencePatch};
 
-/// Stores reference patches of a new keyframe's landmarks, where they are new, and frees the image. The feature of a landmark's
+/// Stores reference patches of a new keyframe's landmarks, if they are new, and frees the image. The feature of a landmark's
 /// first patch becomes as certain as the features that will be aligned to it.
 pub(crate) fn store_reference_patches(map: &mut LandmarkMap, id: KeyframeId, model: &ObservationModel) {
     let median_aligned_sigma_px = map.keyframe(id).frame.median_aligned_sigma_px(model);

@@ -65,7 +65,7 @@ fn pairs(
     found
 }
 
-/// The features that are no landmark and have no depth to become one.
+/// The features that are not landmarks and have no depth to become one.
 fn without_depth(keyframe: &Keyframe) -> impl Iterator<Item = usize> + '_ {
     let has_none = |i: usize| {
         keyframe.frame.depths[i].is_none_or(|depth| depth.sigma > MAX_RELATIVE_SIGMA * depth.value)

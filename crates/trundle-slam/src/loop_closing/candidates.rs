@@ -47,7 +47,7 @@ pub(crate) struct DriftBound<'a> {
 
 impl<'a> DriftBound<'a> {
     /// The drift between an old keyframe and a new one: the covariance that grew in between, and the drift along the least
-    /// uncertain path; the covariance alone where no path leads.
+    /// uncertain path; the covariance alone if no path leads.
     pub fn along(
         paths: &UncertaintyPaths,
         map: &LandmarkMap,

@@ -10,7 +10,7 @@ use trundle_optim::PoseGraphConfig;
 pub struct LoopConfig {
     /// Old keyframes that a new one is compared with, 0 (no loop is closed) or more. Default 3 \[MurArtal17\].
     pub candidates: usize,
-    /// Keyframes newer than this many before are no loop, 1 or more. Default 10: as many as a local bundle moves.
+    /// Keyframes newer than this many before are not a loop, 1 or more. Default 10: as many as a local bundle moves.
     pub min_age: usize,
     /// Largest distance between two keyframes that see the same, m, above 0. Default 1.5: half a room.
     pub reach: f64,
@@ -34,7 +34,7 @@ pub struct LoopConfig {
     /// Standard deviation of the drift, besides the covariance, as a fraction of the length of each constraint by common
     /// landmarks or a loop, along the least uncertain path, 0 to 1. Default 0.01, the drift of RGB-D odometry.
     pub drift_part: f64,
-    /// The same of an odometry constraint, 0 to 1. Default 0.003: twice the drift of the second worst of 25 drives at its first
+    /// Standard deviation of the drift of an odometry constraint, as a fraction of its length, 0 to 1. Default 0.003: twice the drift of the second worst of 25 drives at its first
     /// loop. With 0.01 a look-alike room 4.3 m away closed a false loop after 80 m.
     pub drift_part_on_wheels: f64,
     /// Landmarks that two keyframes share to be constrained in the pose graph, 1 or more. Default 100 \[MurArtal17\].

@@ -44,7 +44,7 @@ impl LoopSearch {
 }
 
 impl LoopCloser<'_> {
-    /// Does the next step of a search; whether that was the last.
+    /// Does the next step of a search. Returns whether that was the last.
     pub fn advance(&self, map: &LandmarkMap, search: &mut LoopSearch) -> bool {
         let Self { place_index, model, config, tracking, seed, .. } = *self;
         let Some(own) = place_index.frame_bow(map, search.keyframe) else { return true };

@@ -64,14 +64,14 @@ impl PlaceHypothesis for RecognizedPlace {
 }
 
 impl PlaceVerifier<'_> {
-    /// The one of these candidates that the frame shows; `None` when two that are apart do.
+    /// The one of these candidates that the frame shows; `None` if two that are apart do.
     pub fn recognize(&self, own: FrameBow, candidates: &[KeyframeId]) -> Option<RecognizedPlace> {
         without_rival(candidates.iter().filter_map(|id| self.verify(own, *id)).collect())
     }
 
     /// The place of one keyframe, if the frame shows it.
     pub fn verify(&self, own: FrameBow, candidate: KeyframeId) -> Option<RecognizedPlace> {
-        // The frame was aligned to the landmarks of its own track; these matches are no evidence for the old ones.
+        // The frame was aligned to the landmarks of its own track; these matches are not evidence for the old ones.
         let frame = own.frame.clone().unaligned(self.model);
         let own = FrameBow { frame: &frame, ..own };
         let rough = self.by_bow(own, candidate)?;

@@ -12,7 +12,7 @@ use trundle_core::Vector3;
 /// are indices into `ids` (by rising id), the lower first.
 ///
 /// Each keyframe observes a common landmark X with an information A and B (visual frame, with the Huber weight of its residual).
-/// With X itself unknown, the relative pose has the information (A^-1 + B^-1)^-1 of X, and a rotation about the origin moves X
+/// With X itself unknown, the relative pose has the information (A^-1 + B^-1)^-1 of X, and a rotation around the origin moves X
 /// by -X^. A landmark of n keyframes counts in n (n - 1) / 2 pairs but gives n - 1 constraints: its weight is 2 / n in each pair.
 pub(crate) fn shared_landmark_information(
     map: &LandmarkMap,
@@ -63,7 +63,7 @@ fn views(
     views
 }
 
-/// The information of the motion of a body about the origin (translation, rotation) from that of one point's motion.
+/// The information of the motion of a body around the origin (translation, rotation) from that of one point's motion.
 fn of_bodies(of_point: Matrix3<f64>, point: Vector3) -> Matrix6<f64> {
     let by_turn = -point.cross_matrix();
     let mixed = of_point * by_turn;

@@ -62,7 +62,7 @@ impl UncertaintyPaths {
         Self { ids, paths }
     }
 
-    /// The path to a keyframe; `None` where no constraint leads.
+    /// The path to a keyframe; `None` if no constraint leads.
     pub fn to(&self, id: KeyframeId) -> Option<PathUncertainty> {
         self.paths[self.ids.binary_search(&id).ok()?]
     }
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn a_parent_without_common_landmarks_is_no_constraint() {
+    fn a_parent_without_common_landmarks_is_not_a_constraint() {
         let (mut map, ids) = line(&[0.0, 1.0, 2.0]);
         map.keyframe_mut(ids[1]).tree.is_astray = true;
         let config = LoopConfig::default();

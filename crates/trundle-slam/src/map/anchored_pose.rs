@@ -10,7 +10,7 @@ pub(crate) struct AnchoredPose {
     pub stamp: Stamp,
     /// `None` before the first keyframe.
     pub reference: Option<KeyframeId>,
-    /// `visual_from_camera` where there is no reference.
+    /// `visual_from_camera` if there is no reference.
     pub reference_from_camera: Pose3,
 }
 

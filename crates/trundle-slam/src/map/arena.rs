@@ -33,7 +33,7 @@ impl<T> Arena<T> {
         self.places.len() - 1
     }
 
-    /// Takes a thing out; `None` when it is gone already.
+    /// Takes a thing out; `None` if it is gone already.
     pub fn remove(&mut self, number: usize) -> Option<T> {
         let place = std::mem::replace(self.places.get_mut(number)?, REMOVED_SLOT);
         let thing = self.things.get_mut(place as usize)?.take();

@@ -25,14 +25,14 @@ const MIN_ON_PLANE_RATIO: f64 = 0.8;
 pub(crate) struct FloorPlane {
     /// Across the plane, camera frame.
     axis: Vector3,
-    /// The same in the visual frame.
+    /// Across the plane, visual frame.
     normal: Vector3,
     /// Along it, m.
     height: f64,
 }
 
 impl FloorPlane {
-    /// The plane of most keyframes of a map whose camera turns about `axis` (camera frame); `None` where there is none.
+    /// The plane of most keyframes of a map whose camera turns around `axis` (camera frame); `None` if there is none.
     pub fn of(map: &LandmarkMap, axis: Vector3) -> Option<Self> {
         let normals: Vec<Vector3> = map.keyframes().map(|(_, k)| k.visual_from_camera.rotate(axis)).collect();
         let middle = |i: usize| median(normals.iter().map(|n| n[i]));

@@ -20,7 +20,7 @@ pub(crate) struct LandmarkMap {
     landmarks: Arena<Landmark>,
     /// Where the keyframes are.
     pub(crate) grid: KeyframeGrid,
-    /// The axis about which a camera on a floor turns, camera frame.
+    /// The axis around which a camera on a floor turns, camera frame.
     pub(crate) floor: Option<Vector3>,
     /// Removed keyframes: the one that took each over, and the pose in it, by id.
     pub(crate) removed: std::collections::BTreeMap<KeyframeId, (KeyframeId, Pose3)>,
@@ -140,7 +140,7 @@ impl LandmarkMap {
     }
 
     /// Records that feature `feature` of `keyframe` is of `landmark`. A feature or a landmark that is already taken in
-    /// this keyframe stays as it is; whether the observation was recorded.
+    /// this keyframe stays as it is. Returns whether the observation was recorded.
     pub fn observe(&mut self, landmark: LandmarkId, keyframe: KeyframeId, feature: usize) -> bool {
         let Some(observer) = self.keyframes.get_mut(keyframe.index()) else { return false };
         let Some(seen) = self.landmarks.get_mut(landmark.index()) else { return false };
@@ -181,7 +181,7 @@ impl LandmarkMap {
         }
     }
 
-    /// Makes one landmark of two: `kept` takes over the observations of `gone` in keyframes where it has none.
+    /// Makes one landmark of two: `kept` takes over the observations of `gone` in keyframes if it has none.
     pub fn merge(&mut self, kept: LandmarkId, gone: LandmarkId) {
         if kept == gone || self.landmark(kept).is_none() {
             return;

@@ -45,7 +45,7 @@ impl OdometryFactor {
         Self { from: self.from, from_to: self.from_to.then(&next.from_to) }
     }
 
-    /// The factor as a constraint between the poses of these indices; `None` where it has no information.
+    /// The factor as a constraint between the poses of these indices; `None` if it has no information.
     pub fn constraint(&self, from: usize, to: usize) -> Option<PoseConstraint> {
         Some(PoseConstraint { from, to, from_to: self.from_to.pose, information: self.information()? })
     }
@@ -56,7 +56,7 @@ impl OdometryFactor {
         PosePrior { world_from_camera, covariance: self.covariance_with_sway() }
     }
 
-    /// Inverse of [`Self::covariance_with_sway`]; `None` where the covariance is singular.
+    /// Inverse of [`Self::covariance_with_sway`]; `None` if the covariance is singular.
     pub fn information(&self) -> Option<Matrix6<f64>> {
         let information = self.covariance_with_sway().cholesky()?.inverse();
         information.iter().all(|v| v.is_finite()).then_some(information)

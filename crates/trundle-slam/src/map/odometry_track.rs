@@ -31,7 +31,7 @@ impl OdometryTrack {
         self.since_keyframe = None;
     }
 
-    /// The factor for a new keyframe, where the keyframe before is still in the map.
+    /// The factor for a new keyframe, if the keyframe before is still in the map.
     pub fn factor_in(&self, map: &LandmarkMap) -> Option<OdometryFactor> {
         self.since_keyframe.filter(|factor| map.live_keyframe(factor.from).is_some())
     }

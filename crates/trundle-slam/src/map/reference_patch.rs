@@ -29,7 +29,7 @@ pub(crate) struct ReferencePatch {
 
 impl ReferencePatch {
     /// Of the landmark at `position` (visual frame, m), which is feature `i` of a frame of a camera at `visual_from_camera`.
-    /// `None` where the frame has kept no image of it.
+    /// `None` if the frame has kept no image of it.
     pub fn of(
         frame: &Frame,
         i: usize,
@@ -118,7 +118,7 @@ mod tests {
         ReferencePatch::of(&frame, 0, (Pose3::identity(), points[0]), &model()).unwrap()
     }
 
-    /// Error of the first point as found from a camera there, px; `None` where the patch is not usable.
+    /// Error of the first point as found from a camera there, px; `None` if the patch is not usable.
     fn off_from(look: &ReferencePatch, visual_from_camera: Pose3) -> Option<f32> {
         let point = painted_points()[0];
         let template = look.seen_from(&visual_from_camera.inverse(), point, 0, &model())?;

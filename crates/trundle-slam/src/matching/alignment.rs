@@ -35,7 +35,7 @@ enum PatchComparison {
 }
 
 /// The matches with their features aligned, for a camera near `visual_from_camera`, without those whose patch differs from their
-/// landmark's. `None` where too few can be aligned.
+/// landmark's. `None` if too few can be aligned.
 pub(crate) fn aligned(
     matches: &[PointMatch],
     visual_from_camera: Pose3,
@@ -61,7 +61,7 @@ pub(crate) fn aligned(
     Some(matches.iter().zip(seen).filter_map(keep).collect())
 }
 
-/// Multiplies the standard deviations of all alignments by `spread`, the scale of their residuals, where that is above 1: the lens and the
+/// Multiplies the standard deviations of all alignments by `spread`, the scale of their residuals, if that is above 1: the lens and the
 /// shutter are not exactly as calibrated. The result is at most that of a feature by itself. Whether anything changed.
 pub(crate) fn inflate_sigmas(
     matches: &mut [PointMatch],
@@ -131,7 +131,7 @@ fn compare_patches(
     PatchComparison::Aligned(Aligned { raw, pixel: model.camera.undistort(raw), sigma, is_aligned: true })
 }
 
-/// Offset of the landmark's projection from its feature, px; zero where the landmark is out of view.
+/// Offset of the landmark's projection from its feature, px; zero if the landmark is out of view.
 fn predicted_offset(
     m: &PointMatch,
     camera_from_visual: &Pose3,

@@ -46,7 +46,7 @@ impl MatchedPose {
         Self { matches, solution }
     }
 
-    /// Scale of the errors of aligned features in their standard deviations, by the median; 0 where there are none.
+    /// Scale of the errors of aligned features in their standard deviations, by the median; 0 if there are none.
     pub fn spread(&self, model: &ObservationModel) -> f64 {
         let camera_from_visual = self.visual_from_camera().inverse();
         let errors = |m: &PointMatch| {

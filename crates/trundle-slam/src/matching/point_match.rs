@@ -22,7 +22,7 @@ pub(crate) struct PointMatch {
 }
 
 impl PointMatch {
-    /// A feature matched with a landmark, as certain as the landmark is; `None` when the landmark was removed.
+    /// A feature matched with a landmark, as certain as the landmark is; `None` if the landmark was removed.
     pub fn of_landmark(feature: usize, id: LandmarkId, map: &LandmarkMap) -> Option<Self> {
         let landmark = map.landmark(id)?;
         let (point, sigma_factor) = (landmark.position, landmark.sigma_factor());

@@ -1,4 +1,4 @@
-//! The axis about which a camera on a floor turns, from its motion priors.
+//! The axis around which a camera on a floor turns, from its motion priors.
 
 use trundle_core::{Pose3, Vector3};
 
@@ -8,7 +8,7 @@ const MIN_TURN_RAD: f64 = 1e-3;
 /// floor. Source: ours, the rounding of planar odometry.
 const MAX_OFF_PLANE: f64 = 1e-6;
 
-/// Axis of rotation that all motion priors share: wheels on a floor turn about one axis and translate across it.
+/// Axis of rotation that all motion priors share: wheels on a floor turn around one axis and translate across it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct FloorAxis {
     /// The axis, camera frame, unit length, up or down.
@@ -28,7 +28,7 @@ impl FloorAxis {
         self.axis = self.axis.filter(|axis| *axis != Vector3::zeros());
     }
 
-    /// The axis about which the camera turns, camera frame; `before`, the axis known earlier, while no prior has turned. `None` where
+    /// The axis around which the camera turns, camera frame; `before`, the axis known earlier, while no prior has turned. `None` where
     /// the camera is not on a floor.
     pub fn axis_after(&self, before: Option<Vector3>) -> Option<Vector3> {
         self.axis.or(before).filter(|_| !self.is_off_plane)

@@ -49,7 +49,7 @@ impl MotionModelConfig {
         })
     }
 
-    /// The camera, with the deprecated readout time where it has none of its own.
+    /// The camera, with the deprecated readout time if it has none of its own.
     pub(crate) fn with_readout_of(&self, camera: PinholeCamera) -> Result<PinholeCamera, Invalid> {
         if camera.readout() == 0.0 { camera.with_readout(self.readout) } else { Ok(camera) }
     }

@@ -43,7 +43,7 @@ impl GlobalBundle {
         }
     }
 
-    /// Goes on for about `work` units; whether it is done. `solver` lends its buffers.
+    /// Goes on for about `work` units. Returns whether it is done. `solver` lends its buffers.
     pub fn advance(
         &mut self,
         map: &LandmarkMap,
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_added_meanwhile_moves_along_and_slices_change_nothing() {
+    fn keyframes_added_meanwhile_move_along_and_slices_change_nothing() {
         let run = |work: usize| {
             let (mut map, ids, off) = bent();
             let (model, config) = (model(), BundleConfig { covariances: true, ..BundleConfig::default() });

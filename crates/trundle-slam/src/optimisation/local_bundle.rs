@@ -17,7 +17,7 @@ pub(crate) struct BundleSize {
 }
 
 /// Refines the keyframes covisible with `centre` and the landmarks that two or more keyframes observe. The other keyframes
-/// that observe those are fixed, or the oldest one where there is none. Observations that then disagree at 95 % are removed.
+/// that observe those are fixed, or the oldest one if there is none. Observations that then disagree at 95 % are removed.
 pub(crate) fn refine_around(
     map: &mut LandmarkMap,
     centre: KeyframeId,

@@ -21,7 +21,7 @@ pub(crate) struct MapBundle {
     observations: Vec<BundleObservation>,
     /// Landmark, keyframe and bound of each observation.
     sources: Vec<(LandmarkId, KeyframeId, f64)>,
-    /// Part of the map of each keyframe, by index; empty where there is only one.
+    /// Part of the map of each keyframe, by index; empty if there is only one.
     parts: Vec<usize>,
     solver: BundleSolver,
     is_done: bool,
@@ -116,7 +116,7 @@ impl MapBundle {
         self.solver
     }
 
-    /// Goes on for about `work` units of the solver; whether it is done.
+    /// Goes on for about `work` units of the solver. Returns whether it is done.
     pub fn advance(&mut self, work: usize) -> bool {
         self.is_done = self.solver.advance(work);
         self.is_done
@@ -192,7 +192,7 @@ impl MapBundle {
     }
 
     /// Covariance of a free keyframe relative to the fixed ones, and the part of it that its landmarks share, as of one rigid body.
-    /// `None` where the bundle did not compute them.
+    /// `None` if the bundle did not compute them.
     pub fn covariances(&self, place: usize) -> Option<(Matrix6<f64>, Matrix6<f64>)> {
         let whole = self.solver.covariance(place)?;
         let own = self.solver.information(place)?.cholesky()?.inverse();

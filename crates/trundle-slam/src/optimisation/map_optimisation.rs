@@ -61,7 +61,7 @@ impl MapOptimisation {
         self.global = Some(GlobalBundle::of(map));
     }
 
-    /// Goes on for about `work` units of the solver; whether the map moved.
+    /// Goes on for about `work` units of the solver. Returns whether the map moved.
     pub fn advance(
         &mut self,
         map: &mut LandmarkMap,

@@ -118,7 +118,7 @@ impl<'a> Reader<'a> {
         Ok(value)
     }
 
-    /// The same of an f32.
+    /// Reads an f32 in this range.
     pub fn f32_in(&mut self, name: &str, low: f32, high: f32) -> Read<f32> {
         let value = self.f32()?;
         self.require((low..=high).contains(&value), name, value, || format!("{low} to {high}"))?;

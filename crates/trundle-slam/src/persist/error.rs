@@ -5,8 +5,8 @@ use trundle_core::Invalid;
 /// Why a saved map was not loaded.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapFileError {
-    /// The file is no visual map of this program.
-    #[error("no map of trundle-slam")]
+    /// The file is not a visual map of this program.
+    #[error("this is not a visual map of trundle (visual.map)")]
     Foreign,
     /// Made by a version that this one does not read.
     #[error("map of version {found}, expected {expected}")]

@@ -41,7 +41,7 @@ pub(crate) fn save<'a>(
 /// Reads [`save`].
 ///
 /// # Errors
-/// When the bytes are no map, of another version, damaged, cut off, made with other settings, or contradict themselves.
+/// When the bytes are not a map, of another version, damaged, cut off, made with other settings, or contradict themselves.
 pub(crate) fn load(
     bytes: &[u8],
     model: &ObservationModel,

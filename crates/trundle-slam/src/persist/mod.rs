@@ -9,7 +9,7 @@
 //! | 4, then each | number of maps; a map: its number, keyframes with the odometry between them, the axis of the floor, landmarks with their observations and reference patches, loops |
 //!
 //! All little endian. What follows from the rest is not saved: rectified pixels, bags of words, spanning tree. The trajectory is
-//! no part of a map.
+//! not part of a map.
 
 pub(crate) mod bytes;
 pub(crate) mod error;

@@ -2,7 +2,7 @@
 
 use trundle_core::Pose3;
 
-/// Largest distance between two poses of the same place: 0.3 m. Poses farther apart are rivals. Source: ours.
+/// Largest distance between two poses of the same place: 0.3 m. Poses farther apart are competitors. Source: ours.
 const SAME_PLACE_M: f64 = 0.3;
 /// Largest rotation between two poses of the same place: 0.3 rad. See [`SAME_PLACE_M`].
 const SAME_PLACE_RAD: f64 = 0.3;
@@ -16,7 +16,7 @@ pub(crate) trait PlaceHypothesis {
     fn points(&self) -> usize;
     /// Whether enough of what should be seen there is seen.
     fn is_plausible(&self) -> bool;
-    /// Whether the hypothesis is accepted, if it has no rival.
+    /// Whether the hypothesis is accepted, if it has no competitor.
     fn is_certain(&self) -> bool;
 }
 

@@ -28,7 +28,7 @@ struct InsertedKeyframe {
 }
 
 impl RgbdSlam {
-    /// Takes a found pose over: counts landmarks, makes a keyframe where one is wanted.
+    /// Takes a found pose over: counts landmarks, makes a keyframe if one is wanted.
     pub(super) fn on_located(&mut self, frame: Frame, found: Localization) -> TrackReport {
         let Localization { map, localized } = found;
         let is_continuous = self.tracking.lost_frames == 0 && map == self.atlas.active.id;

@@ -14,7 +14,7 @@ pub struct TrackingConfig {
     /// Radius of the search for a point of the last frame around its prediction, px of its octave, above 0; twice as large at
     /// the second try. Default 15 \[MurArtal17\].
     pub motion_window_px: f64,
-    /// The same for a landmark of the map, once the pose is known from the last frame. Default 6: three standard
+    /// Radius of the search for a landmark of the map, px of its octave, once the pose is known from the last frame. Default 6: three standard
     /// deviations of a keypoint and as much for the map.
     pub map_window_px: f64,
     /// Highest distance of descriptors within a window, bits of 256. Default 80: unlike points differ by 128 on average.
@@ -35,7 +35,7 @@ pub struct TrackingConfig {
     /// Default 5: some 20 ms, 40 when another map is tried as well.
     pub relocalisation_keyframes: usize,
     /// Fraction of the view, of its cells with expected landmarks, in which a relocalisation must find some, 0 to 1. Default
-    /// 0.6: of 400 views of a simulated office with look-alike rooms, wrong ones without a rival reached 0.56; pictures that
+    /// 0.6: of 400 views of a simulated office with look-alike rooms, wrong ones without a competitor reached 0.56; pictures that
     /// hang in two rooms reach 0.45.
     pub recognised_part: f64,
     /// Largest standard deviation of a relocalisation's position, m, above 0, with the errors counted that points of one image

@@ -26,7 +26,7 @@ pub(crate) struct LocalizedFrame {
     pub pose: MatchedPose,
     /// The matches that agree with the pose, with aligned features where those fit.
     pub seen: Vec<PointMatch>,
-    /// Matches before features were aligned. Whether this is the place is judged by all of them, since fewer can be aligned.
+    /// Matches before features were aligned. Whether this is the place is evaluated by all of them, since fewer can be aligned.
     pub matches: usize,
     /// Matches that agreed before features were aligned.
     pub points: usize,
@@ -45,7 +45,7 @@ pub(crate) struct LocalizedFrame {
 }
 
 impl LocalizedFrame {
-    /// Tracks from the last frame, whose reference keyframe is `reference`, to the map. Where the map has too few landmarks, in a
+    /// Tracks from the last frame, whose reference keyframe is `reference`, to the map. If the map has too few landmarks, in a
     /// blurred or quite new view, the points of a fixed map's keyframes help. Where these do not suffice, the last frame alone gives the
     /// pose: drift is better than a lost camera.
     pub fn from_last(
@@ -116,7 +116,7 @@ impl LocalizedFrame {
         }
     }
 
-    /// The same with its features aligned, where enough of them can be and the pose stays at the same place.
+    /// This frame with its features aligned, if enough of them can be and the pose stays at its place.
     pub fn aligned(self, tracker: &Tracker, prior: PosePriorKind) -> Self {
         let Some(pose) = tracker.aligned(&self.pose, prior) else { return self };
         let pose = if self.recognized.is_some() { with_correlated_errors(pose) } else { pose };
@@ -126,7 +126,7 @@ impl LocalizedFrame {
         Self { seen: agreeing_matches(&self.pose, &pose, tracker.frame), pose, ..self }
     }
 
-    /// How many points contradict the odometry; `None` where the pose agrees with it.
+    /// How many points contradict the odometry; `None` if the pose agrees with it.
     pub fn points_against_odometry(&self) -> Option<usize> {
         let solution = &self.pose.solution;
         let points = if self.points_contradict { self.points } else { solution.inlier_count };

@@ -18,7 +18,7 @@ pub(crate) struct OdometryConflict {
 
 impl OdometryConflict {
     /// Whether to accept the tracked pose of a frame at `now`; `points_against_odometry` is the number of points that contradict the wheels,
-    /// `None` where they agree.
+    /// `None` if they agree.
     pub fn believes(&mut self, now: Stamp, points_against_odometry: Option<usize>) -> bool {
         let Some(points) = points_against_odometry else {
             self.since = None;
@@ -43,7 +43,7 @@ mod tests {
         let mut conflict = OdometryConflict::default();
         assert!(conflict.believes(at(0.0), None) && !conflict.is_active());
         assert!(!conflict.believes(at(1.0), Some(99)) && conflict.is_active());
-        assert!(conflict.believes(at(1.1), Some(100)), "many are believed at once");
+        assert!(conflict.believes(at(1.1), Some(100)), "many are accepted at once");
         assert!(!conflict.believes(at(1.2), Some(30)));
         assert!(conflict.believes(at(1.3), Some(30)), "after 0.3 s");
         assert!(conflict.believes(at(1.4), None), "points and wheels agree again");

@@ -34,7 +34,7 @@ fn look_alikes(tracker: &Tracker, keyframe: KeyframeId, max_groups: usize) -> Ve
 }
 
 /// The hypotheses of a number of tries. A group without a certain result is tried again by its next keyframe, before others that are
-/// as much less similar: at the edge of the map few of its keyframes show enough, and a look-alike would have no rival. Tries are
+/// as much less similar: at the edge of the map few of its keyframes show enough, and a look-alike would have no competitor. Tries are
 /// distributed as seats are by D'Hondt's method.
 fn try_groups<T: PlaceHypothesis>(
     groups: Vec<KeyframeGroup>,

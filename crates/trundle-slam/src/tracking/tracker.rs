@@ -134,7 +134,7 @@ impl Tracker<'_> {
         (pose, visible)
     }
 
-    /// The pose by the landmarks that agree with `found`, and by points that the nearest keyframes measured and that are no landmarks.
+    /// The pose by the landmarks that agree with `found`, and by points that the nearest keyframes measured and that are not landmarks.
     /// Landmarks that one keyframe alone saw are removed from the map, but that keyframe still holds their features and depths.
     pub fn by_keyframe_points(&self, found: &MatchedPose, prior: PosePriorKind) -> MatchedPose {
         let pose = found.visual_from_camera();
@@ -157,7 +157,7 @@ impl Tracker<'_> {
         keyframe.match_by_motion(self.frame, pose, window, thresholds, (self.map, self.model))
     }
 
-    /// The pose of `found` refined with its features aligned to reference patches; `None` where too few can be.
+    /// The pose of `found` refined with its features aligned to reference patches; `None` if too few can be.
     pub fn aligned(&self, found: &MatchedPose, prior: PosePriorKind) -> Option<MatchedPose> {
         let solve = |matches, start| {
             MatchedPose::by(matches, (start, prior), self.frame, self.model, &self.config.pose)
@@ -173,7 +173,7 @@ impl Tracker<'_> {
         pose.is_sound(self.config.min_inliers).then_some(pose)
     }
 
-    /// The same for a camera whose pose is known roughly.
+    /// This tracker for a camera whose pose is known roughly.
     pub fn searching_wider(&self) -> Self {
         Self {
             local_map: LocalMapQuery { window_px: self.config.motion_window_px, ..self.local_map },

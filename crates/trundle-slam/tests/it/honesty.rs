@@ -1,4 +1,4 @@
-//! Whether the covariances are honest: over many runs with the noise that the configuration promises, the error of the pose
+//! Whether the covariances are consistent: over many runs with the noise that the configuration promises, the error of the pose
 //! normalised by its covariance is that of a chi-square with six degrees of freedom [BarShalom01, sec. 5.4].
 
 use crate::points::{Dice, Room, camera, darkness, reported, stamp};
@@ -7,7 +7,7 @@ use trundle_core::Pose3;
 use trundle_slam::{RgbdSlam, SlamConfig, TrackReport, Tracking};
 
 const RUNS: u64 = 40;
-/// What the mean of 40 runs must be within: the 95 % band of the chi-square with 240 degrees of freedom, over 40.
+/// Range for the mean of 40 runs: the 95 % band of the chi-square with 240 degrees of freedom, over 40.
 const BAND: std::ops::Range<f64> = 4.97..7.13;
 
 /// A run of the SLAM in the room of points.

@@ -9,7 +9,7 @@ use trundle_slam::{Mode, RgbdSlam, SlamConfig, TrackReport, Tracking};
 
 /// The goal of localise-only: difference from the mapping run, m.
 const GOAL_M: f64 = 0.01;
-/// Squared error by the covariance that 99.9 % of honest ones do not exceed: chi-square of six degrees of freedom.
+/// Squared error by the covariance that 99.9 % of consistent ones do not exceed: chi-square of six degrees of freedom.
 const MAX_SQUARED_ERROR: f64 = 22.46;
 
 /// The SLAM that mapped these images, refined to the end.

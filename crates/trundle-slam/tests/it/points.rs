@@ -1,5 +1,5 @@
 //! A room of points and a camera that sees them with exactly the noise that the configuration promises: no image is drawn
-//! and no feature extracted, so that many runs cost little and the estimator is all that is judged.
+//! and no feature extracted, so that many runs cost little and the estimator is all that is evaluated.
 
 use nalgebra::Vector6;
 use trundle_core::{DepthImage, PinholeCamera, Pose3, Stamp, Vector2, Vector3};
@@ -69,7 +69,7 @@ impl Room {
         Self { points: (0..POINTS).map(point).collect() }
     }
 
-    /// What a camera sees of it: features and depth image, noise and all.
+    /// View of a camera: features and depth image, noise and all.
     pub fn seen_from(&self, room_from_camera: Pose3, dice: &mut Dice) -> (Features, DepthImage) {
         let (camera, config) = (camera(), SlamConfig::default());
         let camera_from_room = room_from_camera.inverse();

@@ -82,7 +82,7 @@ fn dead_reckoning_bridges_a_blank_wall_and_mapping_goes_on_behind_it() {
         let report = slam.step(&image(i, (320, 240), 128, 1.0), Some(step(1).into()));
         assert_eq!(report.tracking, Tracking::DeadReckoning);
     }
-    // What is seen twice is no noise.
+    // What is seen twice is not noise.
     for (i, begins) in [(20, false), (21, true)] {
         let report = slam.step(&shoot(i, step(i)), Some(step(1).into()));
         assert_eq!((report.new_keyframe, report.tracking), (begins, Tracking::DeadReckoning));

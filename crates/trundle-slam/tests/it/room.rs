@@ -1,4 +1,4 @@
-//! A box of textured walls, ray cast, with a little noise: shares only trundle-core with what it judges.
+//! A box of textured walls, ray cast, with a little noise: shares only trundle-core with what it evaluates.
 
 use trundle_core::{ColorImage, DepthImage, Image, PinholeCamera, Pose3, RgbdImage, Stamp, Vector2, Vector3};
 
@@ -10,7 +10,7 @@ pub fn camera() -> PinholeCamera {
     PinholeCamera::from_field_of_view((320, 240), (68_f64.to_radians(), 53_f64.to_radians())).unwrap()
 }
 
-/// What the camera sees at `room_from_camera`, as frame `number` of a 30 Hz stream.
+/// View of the camera at `room_from_camera`, as frame `number` of a 30 Hz stream.
 pub fn shoot(number: usize, room_from_camera: Pose3) -> RgbdImage {
     Clean::at(room_from_camera).shot(number)
 }

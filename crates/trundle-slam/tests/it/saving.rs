@@ -1,4 +1,4 @@
-//! Maps that last: what is saved comes back, and what is no map is refused.
+//! Maps that last: what is saved comes back, and what is not a map is refused.
 
 use crate::room::{camera, shoot};
 use crate::walks::{dark, turned};
@@ -111,10 +111,10 @@ fn a_map_of_other_settings_is_refused_by_name() {
 }
 
 #[test]
-fn bytes_that_are_no_map_are_refused_with_the_reason() {
+fn bytes_that_are_not_a_map_are_refused_with_the_reason() {
     let refused = |bytes: &[u8]| load(bytes).unwrap_err().to_string();
-    assert_eq!(refused(b""), "no map of trundle-slam");
-    assert_eq!(refused(b"ply\nformat ascii 1.0"), "no map of trundle-slam");
+    assert_eq!(refused(b""), "this is not a visual map of trundle (visual.map)");
+    assert_eq!(refused(b"ply\nformat ascii 1.0"), "this is not a visual map of trundle (visual.map)");
     assert_eq!(refused(&SAVED[..12]), "the map is cut off in its head");
     assert_eq!(refused(&SAVED[..SAVED.len() - 1]), "the map is damaged: its checksum is wrong");
     let mut newer = SAVED.clone();

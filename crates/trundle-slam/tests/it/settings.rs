@@ -6,8 +6,8 @@ use nalgebra::Vector6;
 use trundle_core::{ColorImage, DepthImage, Distortion, PinholeCamera, Pose3, RgbdImage, Vector2, Vector3};
 use trundle_slam::{CalibrationIssue, RgbdSlam, SlamConfig};
 
-/// What is suspected after the first 100 frames of freiburg1_rpy, changed by `change`, as `camera` is said to see them;
-/// `None` where the sequence is not at hand.
+/// Suspected settings after the first 100 frames of freiburg1_rpy, changed by `change`, as `camera` is said to see them;
+/// `None` if the sequence is not at hand.
 fn suspected(
     camera: PinholeCamera,
     change: impl Fn(RgbdImage) -> RgbdImage,
@@ -96,7 +96,7 @@ fn colour_and_depth_that_are_not_registered_are_noticed() {
     assert!(found.iter().any(|s| s.to_string().contains("not registered")), "{found:?}");
 }
 
-/// What is suspected of `said` after 100 frames of a robot that drives and turns in the rendered room; its wheels say
+/// Suspected settings of `said` after 100 frames of a robot that drives and turns in the rendered room; its wheels say
 /// `wheels` times the way.
 fn suspected_in_the_room(said: PinholeCamera, wheels: f64) -> Vec<CalibrationIssue> {
     let pose = |i: usize| {

@@ -1,4 +1,4 @@
-//! What wheels know besides the images: it helps while it is true, and does no harm where it is not.
+//! Odometry besides the images: it helps while it is true, and does no harm if it is not.
 
 use crate::points::{Dice, Room, camera, stamp};
 use nalgebra::{Matrix6, Vector6};

@@ -1,4 +1,4 @@
-//! The rigid alignment of two point sequences (Umeyama 1991, without scale), to judge trajectories by.
+//! The rigid alignment of two point sequences (Umeyama 1991, without scale), to evaluate trajectories by.
 
 #![allow(dead_code, reason = "each program uses a part of it")]
 

@@ -22,7 +22,7 @@ pub struct DriveFrame {
     pub stamp: Stamp,
     color: String,
     depth: String,
-    /// `world_from_camera`; `None` where the truth has a gap.
+    /// `world_from_camera`; `None` if the truth has a gap.
     pub truth: Option<Pose3>,
     /// Of the base, by the wheels.
     wheels: Option<Pose3>,
@@ -108,7 +108,7 @@ fn camera(text: &str) -> PinholeCamera {
     PinholeCamera::new(size, (setting("fx"), setting("fy")), (setting("cx"), setting("cy")), lens).unwrap()
 }
 
-/// A number of `camera.toml`, 0 where it is not named.
+/// A number of `camera.toml`, 0 if it is not named.
 fn setting(text: &str, name: &str) -> f64 {
     let line = text.lines().find_map(|line| line.split_once('=').filter(|(key, _)| key.trim() == name));
     line.map_or(0.0, |(_, value)| value.trim().parse().unwrap())
@@ -138,7 +138,7 @@ fn truth(text: &str) -> Vec<(f64, Pose3)> {
     numbers(text).map(|v| (v[0], Pose3::new(rotation(&v), Vector3::new(v[1], v[2], v[3])))).collect()
 }
 
-/// The numbers of each line that is no comment.
+/// The numbers of each line that is not a comment.
 fn numbers(text: &str) -> impl Iterator<Item = Vec<f64>> + '_ {
     let lines = text.lines().filter(|line| !line.starts_with('#'));
     lines.map(|line| line.split_whitespace().map(|v| v.parse().unwrap()).collect())

@@ -8,7 +8,7 @@
 //! | \[Baker04\] | here | unit |
 //! |---|---|---|
 //! | T(x) | `Template::values`, zero mean | grey values |
-//! | grad T | `Template::right`, `Template::down`, free of brightness and contrast | grey values a px |
+//! | grad T | `Template::right`, `Template::down`, free of brightness and contrast | grey values per px |
 //! | H | the inverse is `Template::inverse` | |
 //! | p | where the sought patch shows it | px |
 

@@ -20,7 +20,7 @@ impl ImagePatch {
     pub const BYTES: usize = PATCH_SIDE_PX * PATCH_SIDE_PX;
 
     /// A patch of these pixels, row by row. `feature` is the offset of the feature to the right and down from the middle pixel, px; `None`
-    /// where it is more than half a pixel.
+    /// if it is more than half a pixel.
     pub fn new(pixels: [u8; Self::BYTES], feature: [f32; 2]) -> Option<Self> {
         feature.iter().all(|v| v.abs() <= 0.5).then_some(Self { pixels, feature })
     }

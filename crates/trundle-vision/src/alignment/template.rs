@@ -50,7 +50,7 @@ pub struct PatchAlignment {
 }
 
 impl Template {
-    /// The template of `patch` for a view in which an offset of a px is one of `there_from_here`, px. `None` where the patch is too
+    /// The template of `patch` for a view in which an offset of a px is one of `there_from_here`, px. `None` if the patch is too
     /// small for that, or similar to itself at a small offset.
     pub fn new(patch: &ImagePatch, there_from_here: Matrix2<f32>) -> Option<Self> {
         let warped = warp(patch, there_from_here.try_inverse()?)?;
@@ -94,7 +94,7 @@ impl Template {
     }
 
     /// Position in `patch`, searched from `start` on, px of the patch's level right and down of the patch's own feature;
-    /// `None` where no similar position is found.
+    /// `None` if no similar position is found.
     pub fn find(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<PatchAlignment> {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
@@ -104,7 +104,7 @@ impl Template {
         self.find_plainly(patch, start)
     }
 
-    /// The same as [`Template::find_plainly`], more numbers an instruction.
+    /// The same as [`Template::find_plainly`], more numbers per instruction.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
     fn find_by_avx2(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<PatchAlignment> {
@@ -146,7 +146,7 @@ impl Template {
     }
 }
 
-/// The patch around its feature, an offset of a px being one of `here_from_there`; `None` where the patch is too small.
+/// The patch around its feature, an offset of a px being one of `here_from_there`; `None` if the patch is too small.
 fn warp(
     patch: &ImagePatch,
     here_from_there: Matrix2<f32>,
@@ -165,7 +165,7 @@ fn warp(
     Some(warped)
 }
 
-/// Pixels of `patch` in the square around `at`, px from its middle; `None` where the patch is too small.
+/// Pixels of `patch` in the square around `at`, px from its middle; `None` if the patch is too small.
 #[inline(always)]
 fn sample(patch: &ImagePatch, at: Vector2<f32>, seen: &mut Pixels) -> Option<()> {
     let corner = at.add_scalar((PATCH_RADIUS_PX - TEMPLATE_RADIUS_PX) as f32);

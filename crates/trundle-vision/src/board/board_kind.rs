@@ -1,4 +1,4 @@
-//! What is on a calibration board.
+//! Content of a calibration board.
 
 use super::board_view::{BoardProblem, BoardView};
 use super::checkerboard::find_checkerboard;
@@ -24,7 +24,7 @@ pub enum Board {
     AprilTag(TagBoard),
 }
 
-/// What the text of a board looks like.
+/// Form of the text of a board.
 const EXPECTED: &str = "checkerboard:COLUMNSxROWS:SQUARE, inner corners and a length with unit, for example checkerboard:9x6:25mm, or \
      apriltag:COLUMNSxROWS:SIDE:GAP[:FIRST_ID], tags of 587 in all, a length with unit, and the gap over the side, 0.1 to 1, for example \
      apriltag:6x6:88mm:0.3";

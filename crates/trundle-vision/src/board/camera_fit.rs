@@ -25,11 +25,11 @@ use trundle_core::{Pose3, Vector2, Vector3};
 pub struct CameraFit {
     /// The camera.
     pub parameters: CameraParameters,
-    /// Standard deviation of each parameter; 0 where it was not estimated.
+    /// Standard deviation of each parameter; 0 if it was not estimated.
     pub sigmas: [f64; PARAMETER_COUNT],
     /// Root mean square of the reprojection error over both axes, px.
     pub residual_px: f64,
-    /// The same for each view, by index into the given views; `None` of a rejected view.
+    /// Root mean square of the reprojection error of each view, px, by index into the given views; `None` of a rejected view.
     pub view_residuals_px: Vec<Option<f64>>,
     /// Views that were left out.
     pub rejected: Vec<RejectedView>,
@@ -38,7 +38,7 @@ pub struct CameraFit {
 }
 
 impl CameraFit {
-    /// What to improve, one sentence each; empty where nothing is missing.
+    /// Advice, one sentence each; empty if nothing is missing.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.coverage.warnings();

@@ -58,7 +58,7 @@ pub(super) fn find_checkerboard(
     }
 }
 
-/// The corners, refined where that is possible.
+/// The corners, refined if that is possible.
 fn view(
     image: &SmoothImage,
     corners: &[(usize, Vector2)],
@@ -91,7 +91,7 @@ struct Grid {
 }
 
 impl Grid {
-    /// The grid that grows from a seed; `None` where the seed has no neighbours in two directions.
+    /// The grid that grows from a seed; `None` if the seed has no neighbours in two directions.
     fn grow(corners: &[SaddlePoint], seed: usize) -> Option<Self> {
         let origin = corners[seed].pixel;
         let (along, across) = axes(corners, origin)?;
@@ -171,7 +171,7 @@ impl Grid {
         Some(ordered)
     }
 
-    /// Whether the grid is left-handed in the image; `None` where no corner has neighbours in both directions.
+    /// Whether the grid is left-handed in the image; `None` if no corner has neighbours in both directions.
     fn is_mirrored(&self) -> Option<bool> {
         self.cells.iter().find_map(|(cell, here)| {
             let right = self.cells.get(&(cell.0 + 1, cell.1))? - here;

@@ -12,7 +12,7 @@ const MAX_ROUND_COUNT: usize = 20;
 /// Move below which the corner stands, px. Source: ours.
 const CONVERGED_PX: f64 = 1e-3;
 
-/// The corner near `start`, by the pixels within `radius` px; `None` where there is none within `radius` px of the start.
+/// The corner near `start`, by the pixels within `radius` px; `None` if there is none within `radius` px of the start.
 pub(super) fn refine_corner(image: &SmoothImage, start: Vector2, radius: f64) -> Option<Vector2> {
     let mut corner = start;
     for _ in 0..MAX_ROUND_COUNT {

@@ -45,7 +45,7 @@ impl BoardCoverage {
         }
     }
 
-    /// What to improve, one sentence each; empty where nothing is missing.
+    /// Advice, one sentence each; empty if nothing is missing.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();

@@ -63,7 +63,7 @@ impl SmoothImage {
             + v * ((1.0 - u) * value(0, 1) + u * value(1, 1))
     }
 
-    /// The gradient at a position within the image, by central differences, grey values a px.
+    /// The gradient at a position within the image, by central differences, grey values per px.
     pub(super) fn gradient(&self, at: Vector2) -> Vector2 {
         let (right, down) = (Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0));
         let slope = |step: Vector2| (self.sample(at + step) - self.sample(at - step)) / 2.0;

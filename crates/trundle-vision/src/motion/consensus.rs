@@ -24,7 +24,7 @@ pub(crate) struct Consensus<'a> {
 
 impl Consensus<'_> {
     /// The motion `b_from_a`, and which observations agree with it, rising. `propose` turns three different observations,
-    /// given by their places, into motions. `None` when fewer than [`RansacConfig::min_inliers`] agree.
+    /// given by their places, into motions. `None` if fewer than [`RansacConfig::min_inliers`] agree.
     pub fn find<P>(&self, seed: u64, propose: impl Fn([usize; 3]) -> P) -> Option<(Pose3, Vec<usize>)>
     where
         P: IntoIterator<Item = Pose3>,
@@ -81,7 +81,7 @@ impl Consensus<'_> {
         (0..self.observations.len()).filter(|&i| agrees(&self.observations[i])).collect()
     }
 
-    /// Fits the motion to its inliers until they stay the same. `None` when they do not determine it.
+    /// Fits the motion to its inliers until they stay the same. `None` if they do not determine it.
     fn polish(&self, b_from_a: Pose3) -> Option<(Pose3, Vec<usize>)> {
         let mut motion = b_from_a;
         let mut inliers = self.inliers(motion);

@@ -1,6 +1,6 @@
 //! The perspective three-point problem: from where three known points are seen in three known directions.
 //!
-//! The distances l_i to the points obey three quadrics, l_i^2 + l_j^2 - 2 c_ij l_i l_j = a_ij (law of cosines). Two of their
+//! The distances l_i to the points satisfy three quadrics, l_i^2 + l_j^2 - 2 c_ij l_i l_j = a_ij (law of cosines). Two of their
 //! combinations have no constant: cones, that is conics in the ratios of the distances. Some member of the pencil of the two is
 //! a pair of lines, found by the one real root that a cubic always has; the lines meet the conics in at most four points
 //! \[Persson18, sec. 3\], \[Ding23\]. A few Newton steps on the three quadrics undo what rounding did on the way.
@@ -18,7 +18,7 @@ use nalgebra::Matrix3;
 use trundle_core::{Pose3, Vector3};
 
 /// The poses (none to four, in no particular order) that bring `points` (frame a, m) into the directions `bearings` (unit
-/// length, camera frame b), each in front of the camera along its bearing. None when the points lie on a line.
+/// length, camera frame b), each in front of the camera along its bearing. `None` if the points lie on a line.
 pub(crate) fn poses_of_three(points: [Vector3; 3], bearings: [Vector3; 3]) -> [Option<Pose3>; 4] {
     let triangle = Triangle::new(points, bearings);
     let pose = |distances: Vector3| {
@@ -59,7 +59,7 @@ impl Triangle {
         cones.sort_by(|a, b| a.determinant().abs().total_cmp(&b.determinant().abs()));
         let [first, second] = cones;
         let Some((root, lines)) = line_pair(&first, &second) else { return [None; 4] };
-        // Where one is the other times -root, the larger decides.
+        // If one is the other times -root, the larger decides.
         let conic = if root.abs() > 1.0 { first } else { second };
         let [a, b] = lines.map(|line| meet(&line, &conic));
         [a[0], a[1], b[0], b[1]].map(|ratios| self.polished(self.sized(ratios?)?))
@@ -74,14 +74,14 @@ impl Triangle {
         quadric
     }
 
-    /// The distances of these ratios, of the triangle's size; `None` when one is not in front of the camera.
+    /// The distances of these ratios, of the triangle's size; `None` if one is not in front of the camera.
     fn sized(&self, ratios: Vector3) -> Option<Vector3> {
         let size: f64 = (0..3).map(|side| ratios.dot(&(self.quadric(side) * ratios))).sum();
         let distances = ratios * ((self.squares.iter().sum::<f64>() / size).sqrt() * ratios.sum().signum());
         distances.iter().all(|d| *d > 0.0 && d.is_finite()).then_some(distances)
     }
 
-    /// The distances that fit the sides, by Newton's method; `None` when none near by do.
+    /// The distances that fit the sides, by Newton's method; `None` if none near by do.
     fn polished(&self, mut distances: Vector3) -> Option<Vector3> {
         for _ in 0..NEWTON_STEPS {
             let jacobian = Matrix3::from_fn(|side, k| 2.0 * (self.quadric(side) * distances)[k]);
@@ -102,7 +102,7 @@ impl Triangle {
 }
 
 /// A root of det(`first` + root * `second`) = 0, and the two lines that this conic consists of. Of several roots the one
-/// whose lines are clearest apart. `None` when there is none with real lines. `second` has the larger determinant.
+/// whose lines are clearest apart. `None` if there is none with real lines. `second` has the larger determinant.
 fn line_pair(first: &Matrix3<f64>, second: &Matrix3<f64>) -> Option<(f64, [Vector3; 2])> {
     let (adjoint_1, adjoint_2) = (adjoint(first), adjoint(second));
     let cubic = [

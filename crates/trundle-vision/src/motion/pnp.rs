@@ -18,7 +18,7 @@ const CHI2_95_2: f64 = 5.991;
 /// polished on its inliers by Gauss-Newton on the reprojection errors, robustly weighted (Huber). The numbers for depth in
 /// `config` are not used.
 ///
-/// Pairs that are not finite never agree. The same input and `seed` give the same result. `None` when fewer than
+/// Pairs that are not finite never agree. The same input and `seed` give the same result. `None` if fewer than
 /// [`RansacConfig::min_inliers`] pairs agree, or the points do not determine a pose, as on one line. Panics when the slices
 /// differ in length.
 pub fn estimate_pose_pnp(

@@ -26,7 +26,7 @@ pub struct RansacResult {
 /// is then polished on its inliers by Gauss-Newton on the reprojection and depth errors, robustly weighted (Huber).
 ///
 /// Pairs with a point that is not finite or not in front of its camera never agree. The same input and `seed` give the same
-/// result. `None` when fewer than [`RansacConfig::min_inliers`] pairs agree. Panics when the slices differ in length.
+/// result. `None` if fewer than [`RansacConfig::min_inliers`] pairs agree. Panics when the slices differ in length.
 pub fn estimate_rigid_motion(
     points_a: &[Vector3],
     points_b: &[Vector3],
@@ -63,7 +63,7 @@ struct Pair {
 }
 
 impl Pair {
-    /// `None` when a point is not finite or not in front of its camera.
+    /// `None` if a point is not finite or not in front of its camera.
     fn new(
         index: usize,
         a: Vector3,

@@ -11,14 +11,14 @@ pub struct RansacConfig {
     pub confidence: f64,
     /// Samples at most, 1 or more. Default 1000: sure enough (0.999) down to one right pair in five.
     pub max_iterations: usize,
-    /// Fewer right pairs than this are no motion, 3 or more. Default 12: that many do not agree by chance.
+    /// Fewer right pairs than this are not motion, 3 or more. Default 12: that many do not agree by chance.
     pub min_inliers: usize,
     /// Standard deviation of a keypoint moved into the other image, px, positive. Default 1.5: a corner of the middle
     /// octaves.
     pub pixel_sigma: f64,
     /// Standard deviation of a depth close by, m, positive. Default 0.004: an uneven surface under a corner.
     pub depth_sigma: f64,
-    /// What the standard deviation of a depth grows by with the square of the depth, 1/m, 0 or more. Default 0.002:
+    /// Growth of the standard deviation of a depth with the square of the depth, 1/m, 0 or more. Default 0.002:
     /// 1.4e-3 \[Khoshelham12\] for the Kinect, and some for what else is wrong.
     pub depth_sigma_per_m2: f64,
 }

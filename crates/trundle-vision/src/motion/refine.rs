@@ -45,7 +45,7 @@ impl RefineConfig {
 /// The pose near `b_from_a` that brings `points_a` (camera frame a, m) nearest to their rectified `pixels_b`, by Gauss-Newton
 /// on the Huber loss of the reprojection errors. `camera` is that of image b. A step that makes it worse is not taken.
 ///
-/// `None` when the points do not determine a pose: fewer than three, or degenerate. Panics when the slices differ in length.
+/// `None` if the points do not determine a pose: fewer than three, or degenerate. Panics when the slices differ in length.
 pub fn refine_pose_by_reprojection(
     b_from_a: Pose3,
     points_a: &[Vector3],
@@ -91,7 +91,7 @@ pub(crate) fn gauss_newton(
     Some(pose)
 }
 
-/// The solution of `hessian * x = gradient`; `None` where the hessian is singular to working precision. Metres and rad are
+/// The solution of `hessian * x = gradient`; `None` if the hessian is singular to working precision. Metres and rad are
 /// brought to one measure by the hessian's diagonal.
 fn solve(hessian: Matrix6<f64>, gradient: &Vector6<f64>) -> Option<Vector6<f64>> {
     let scale = hessian.diagonal().map(|d| 1.0 / d.sqrt());

@@ -35,7 +35,7 @@ fn turned(direction: Direction) -> Places {
     turned_plainly(direction)
 }
 
-/// The same as [`turned_plainly`], more numbers an instruction. No product and sum are fused, so that the bits are the same.
+/// The same as [`turned_plainly`], more numbers per instruction. No product and sum are fused, so that the bits are the same.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn turned_by_avx2(direction: Direction) -> Places {

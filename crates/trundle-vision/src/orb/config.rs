@@ -15,13 +15,13 @@ pub struct OrbConfig {
     pub scale_factor: f64,
     /// A corner's nine neighbours differ from it by more than this, grey values, 1 to 254. Default 20 \[Rublee11\].
     pub fast_threshold: u8,
-    /// The same where a cell would stay empty, grey values, 1 to `fast_threshold`. Default 7 \[MurArtal17\].
+    /// Threshold for a corner if a cell would stay empty, grey values, 1 to `fast_threshold`. Default 7 \[MurArtal17\].
     pub fast_min_threshold: u8,
     /// Side of the cells in which the lower threshold is resorted to, px of the level, 8 to 65535. Default 32: about the size
     /// of a descriptor's patch.
     pub cell_px: usize,
     /// Smallest gradient in every direction of the smoothed image around a corner (15 x 15 px of its level), root mean square, in
-    /// standard deviations of the image's own noise a px, 0 to 100. 0 accepts corners of noise and steps along edges too.
+    /// standard deviations of the image's own noise per px, 0 to 100. 0 accepts corners of noise and steps along edges too.
     /// Default 0.5. Source: ours, swept on simulated drives.
     pub min_texture: f64,
 }

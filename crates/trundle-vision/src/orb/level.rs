@@ -53,7 +53,7 @@ impl Level {
         }
     }
 
-    /// Finds the corners that are far enough from the border for a descriptor, with gradients of at least `least` grey values a px
+    /// Finds the corners that are far enough from the border for a descriptor, with gradients of at least `least` grey values per px
     /// around them in every direction.
     pub fn detect(&mut self, config: &OrbConfig, least: f32) {
         self.corners.clear();

@@ -12,7 +12,7 @@ pub(crate) struct Direction {
     pub sin: f32,
 }
 
-/// The direction of the intensity centroid within the disc; along x where there is none.
+/// The direction of the intensity centroid within the disc; along x if there is none.
 pub(crate) fn direction(patch: &Patch) -> Direction {
     let (m10, m01) = moments(patch);
     let (x, y) = (m10 as f32, m01 as f32);
@@ -32,7 +32,7 @@ fn moments(patch: &Patch) -> (i32, i32) {
     moments_plainly(patch)
 }
 
-/// The same as [`moments_plainly`], more numbers an instruction.
+/// The same as [`moments_plainly`], more numbers per instruction.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn moments_by_avx2(patch: &Patch) -> (i32, i32) {

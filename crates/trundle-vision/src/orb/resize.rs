@@ -11,7 +11,7 @@ use trundle_core::GrayImage;
 pub(crate) struct Resize {
     sizes: [usize; 4],
     columns: Vec<Tap>,
-    /// The same columns, four at a time; empty where four need more samples than a register has.
+    /// The same columns, four at a time; empty if four need more samples than a register has.
     quads: Vec<Quad>,
     /// A row of the larger image, interpolated downwards, in 1/128, with [`SAMPLES_PER_REGISTER`] more after its end.
     row: Vec<i16>,
@@ -78,7 +78,7 @@ fn tap(i: usize, from: usize, to: usize) -> Tap {
     Tap { first: (in_256ths / 256) as u32, weight: (in_256ths % 256) as u16 }
 }
 
-/// `None` when the columns span too many samples.
+/// `None` if the columns span too many samples.
 fn quad(columns: &[Tap; 4]) -> Option<Quad> {
     let first = columns[0].first;
     (columns[3].first + 2 - first <= SAMPLES_PER_REGISTER as u32).then_some(())?;

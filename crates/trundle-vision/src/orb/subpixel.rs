@@ -16,7 +16,7 @@ pub(crate) fn offset(scores: &[u8], width: usize, corner: Corner) -> (f32, f32) 
     (top([0, 1, 2].map(column)), top([0, 1, 2].map(row)))
 }
 
-/// Where the parabola through the values at -1, 0 and 1 is highest, at most 0.5 from the middle; 0 where it has no top.
+/// Where the parabola through the values at -1, 0 and 1 is highest, at most 0.5 from the middle; 0 if it has no top.
 fn top([before, middle, after]: [i32; 3]) -> f32 {
     let bend = 2 * middle - before - after;
     if bend <= 0 {

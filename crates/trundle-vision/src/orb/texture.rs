@@ -14,7 +14,7 @@ const COUNT_WEIGHTS: [i16; TEXTURE_STRIDE] = {
     counts
 };
 
-/// Root mean square of the gradient around `corner` in the direction in which it is least, grey values a px: the smaller
+/// Root mean square of the gradient around `corner` in the direction in which it is least, grey values per px: the smaller
 /// eigenvalue of the structure tensor \[Shi94\]. An edge has none along itself, however strong it is.
 ///
 /// `image` is smoothed, so that its noise counts little; the corner is far enough from its border to be described.
@@ -35,7 +35,7 @@ fn tensor(image: &GrayImage, corner: Corner) -> [i32; 3] {
     tensor_plainly(image, corner)
 }
 
-/// The same as [`tensor_plainly`], more numbers an instruction.
+/// The same as [`tensor_plainly`], more numbers per instruction.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn tensor_by_avx2(image: &GrayImage, corner: Corner) -> [i32; 3] {

@@ -25,7 +25,7 @@ pub(super) struct Cluster {
 /// At most `k` clusters of descriptors under the Hamming distance, none of them empty.
 ///
 /// Seeds by k-means++ \[Arthur07\], then Lloyd's rounds with the bitwise majority as the centre, which minimises the sum of
-/// distances. Fewer clusters come out where there are fewer distinct descriptors. The same on any number of threads.
+/// distances. Fewer clusters come out if there are fewer distinct descriptors. The same on any number of threads.
 pub(super) fn clusters(descriptors: &[Descriptor], k: usize, rng: &mut ChaCha8Rng) -> Vec<Cluster> {
     let mut centers = seeds(descriptors, k, rng);
     let mut assigned = Vec::new();

@@ -23,10 +23,10 @@ pub enum VocabularyError {
         /// The problem.
         problem: String,
     },
-    /// The bytes are no vocabulary of this version, or damaged.
+    /// The bytes are not a vocabulary of this version, or damaged.
     #[error("{0}")]
     Bytes(String),
-    /// The nodes are no tree.
+    /// The nodes are not a tree.
     #[error(transparent)]
     Invalid(#[from] Invalid),
 }
@@ -55,7 +55,7 @@ impl Vocabulary {
     /// Reads [`Vocabulary::to_bytes`].
     ///
     /// # Errors
-    /// When the bytes are of another kind or version, cut off, damaged, or the nodes are no tree.
+    /// When the bytes are of another kind or version, cut off, damaged, or the nodes are not a tree.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, VocabularyError> {
         let bad = |problem: String| Err(VocabularyError::Bytes(problem));
         if bytes.len() < HEAD_BYTES || bytes[..7] != MAGIC[..7] {

@@ -27,7 +27,7 @@ impl Vocabulary {
     /// and weights other than L1 and tf-idf are taken as these.
     ///
     /// # Errors
-    /// When a line is not as it should be, with its number, or the nodes are no tree.
+    /// When a line is not as it should be, with its number, or the nodes are not a tree.
     pub fn from_dbow2_text(text: &str) -> Result<Self, VocabularyError> {
         let mut lines = (1..).zip(text.lines());
         let (_, head) = lines.next().ok_or_else(|| bad_line(1, "the file is empty"))?;
@@ -63,7 +63,7 @@ fn numbers<T: std::str::FromStr>(line: &str, number: usize) -> Result<Vec<T>, Vo
 }
 
 fn one<T: std::str::FromStr>(field: &str, number: usize) -> Result<T, VocabularyError> {
-    field.parse().map_err(|_| bad_line(number, &format!("'{field}' is no number of its kind")))
+    field.parse().map_err(|_| bad_line(number, &format!("'{field}' is not a number of its kind")))
 }
 
 fn bad_line(number: usize, problem: &str) -> VocabularyError {
@@ -98,7 +98,7 @@ mod tests {
         let text = trained().to_dbow2_text();
         let refused = |text: &str| Vocabulary::from_dbow2_text(text).unwrap_err().to_string();
         assert_eq!(refused(""), "line 1: the file is empty");
-        assert_eq!(refused("4 x"), "line 1: 'x' is no number of its kind");
+        assert_eq!(refused("4 x"), "line 1: 'x' is not a number of its kind");
         assert_eq!(refused("4"), "line 1: expected 'branching depth scoring weighting'");
         assert_eq!(refused("4 3 0 0\n0 1 7 5"), "line 2: expected 'parent is_leaf 32 bytes weight'");
         let cut = &text[..text.len() - 40];

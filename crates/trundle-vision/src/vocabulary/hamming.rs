@@ -2,7 +2,7 @@
 
 use crate::Descriptor;
 
-/// Index and distance of the nearest of `candidates`, the first of equally near ones; `None` where there is none.
+/// Index and distance of the nearest of `candidates`, the first of equally near ones; `None` if there is none.
 #[inline]
 pub(super) fn nearest(candidates: &[Descriptor], descriptor: &Descriptor) -> Option<(usize, u32)> {
     #[cfg(target_arch = "x86_64")]

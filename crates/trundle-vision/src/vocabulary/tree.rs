@@ -161,7 +161,7 @@ fn first_children(counts: &[u8], nodes: usize) -> Result<Vec<NodeId>, Invalid> {
     let mut first_child: Vec<NodeId> = Vec::with_capacity(counts.len() + 1);
     let mut next = 1;
     for (i, count) in counts.iter().enumerate() {
-        // A node that is no child of one before it.
+        // A node that is not a child of one before it.
         if i >= next {
             return wrong(next - 1);
         }
@@ -193,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_that_are_no_tree_are_refused() {
+    fn counts_that_are_not_a_tree_are_refused() {
         let tree = |counts: &[u8]| Tree {
             descriptors: vec![Descriptor::default(); 4],
             weights: vec![0.0; 4],

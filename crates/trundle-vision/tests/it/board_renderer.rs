@@ -7,7 +7,7 @@ use trundle_core::{GrayImage, PinholeCamera, Pose3, Vector2, Vector3};
 use trundle_vision::board::TagBoard;
 use trundle_vision::board::tags::{TAG_CELLS, tag_cells};
 
-/// Brightness on a sheet about its middle, m.
+/// Brightness on a sheet around its middle, m.
 pub struct Pattern {
     /// Grey value at a position; `None` off the sheet.
     paint: Box<dyn Fn(Vector2) -> Option<f64>>,

@@ -1,6 +1,6 @@
 use trundle_core::{GrayImage, Vector2};
 
-/// Turns by `degrees` and magnifies about the middle of an image.
+/// Turns by `degrees` and magnifies around the middle of an image.
 pub fn about(
     (width, height): (usize, usize),
     degrees: f64,

@@ -46,7 +46,7 @@ pub fn curve() -> Vec<Vector2> {
     (0..=160).map(at).map(|p| p + Vector2::new(0.0, 0.55 * ((p.x - 4.1) * -1.4).tanh() + 0.55)).collect()
 }
 
-/// What the robot believed, and what was true.
+/// Estimate of the robot, and truth.
 pub fn paths() -> (Vec<Pose2>, Vec<Pose2>) {
     let points = curve();
     let pose = |i: usize| {

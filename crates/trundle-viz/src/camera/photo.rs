@@ -18,7 +18,7 @@ pub(crate) struct Photo {
 }
 
 impl Photo {
-    /// Paints `color(x, y)` for each pixel of an image; none when the image is empty. Enlarged smoothly or in blocks.
+    /// Paints `color(x, y)` for each pixel of an image. `None` if the image is empty. Enlarged smoothly or in blocks.
     pub(crate) fn new<T>(image: &Image<T>, smooth: bool, color: impl Fn(&T) -> [u8; 3]) -> Option<Self> {
         let (width, height) = (image.width(), image.height());
         let long = width.max(height);

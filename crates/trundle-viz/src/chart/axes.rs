@@ -45,7 +45,7 @@ impl Axis {
         Self { low, high, logarithmic, ends }
     }
 
-    /// The place of a number; none when it cannot be shown.
+    /// The place of a number. `None` if it cannot be shown.
     pub(crate) fn place(&self, value: f64) -> Option<f64> {
         let value = if self.logarithmic { value.log10() } else { value };
         let fraction = (value - self.low) / (self.high - self.low);

@@ -55,7 +55,7 @@ impl<'a> PlanScene<'a> {
         }
         if let Some(mask) = self.keep_out {
             let dear = mask.shares.iter().map(|share| if *share < 1.0 { 0.8 * share } else { 0.0 });
-            picture = picture.tint("dear by the keep-out mask", mask.geometry, dear.collect(), DEAR);
+            picture = picture.tint("high cost by the keep-out mask", mask.geometry, dear.collect(), DEAR);
         }
         self.forbidden(picture, FORBIDDEN)
     }

@@ -76,7 +76,7 @@ mod tests {
     use trundle_core::{Footprint, OccupancyGrid, Pose2, TrajectoryPoint, Twist2};
 
     #[test]
-    fn parts_are_drawn_and_nothing_is_no_panic() {
+    fn parts_are_drawn_and_nothing_does_not_panic() {
         let grid = OccupancyGrid::from_ascii(0.1, "#####\n#...#\n#...#\n#####").unwrap();
         let way = [Vector2::new(0.15, 0.15), Vector2::new(0.35, 0.25)];
         let mask = MaskShares { geometry: *grid.geometry(), shares: vec![0.4; 20] };

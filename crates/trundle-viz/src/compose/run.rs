@@ -74,7 +74,7 @@ impl RunReport {
     }
 }
 
-/// A section of figures; none when there is no figure.
+/// Adds a section of figures to a report. The report stays as it is if there are no figures.
 fn add_figures(report: Report, title: &str, figures: Vec<Figure>) -> Report {
     if figures.is_empty() {
         return report;
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_given_is_shown() {
+    fn given_parts_are_shown() {
         let pose = Pose2::new(0.2, 0.2, 0.0);
         let run = RunReport {
             map: RunMap {

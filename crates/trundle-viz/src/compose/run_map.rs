@@ -38,7 +38,7 @@ impl RunMap {
         self.picture().to_png()
     }
 
-    /// The map from above; `None` where there is neither map nor path.
+    /// The map from above; `None` if there is neither map nor path.
     pub(super) fn figure(&self) -> Option<Figure> {
         if self.grid.is_none() && self.estimated_path.is_empty() && self.true_path.is_empty() {
             return None;

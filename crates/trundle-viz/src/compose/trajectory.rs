@@ -8,7 +8,7 @@ use trundle_core::{Vector2, Vector3};
 /// At most this many ties between estimate and truth.
 const MAX_ERROR_LINES: usize = 400;
 
-/// The picture of `trundle slam`: a trajectory, and the true one where there is one, both in the same frame (aligned), m.
+/// The picture of `trundle slam`: a trajectory, and the true one if there is one, both in the same frame (aligned), m.
 ///
 /// It is seen along the axis in which the motion was least, so that the picture shows the two that matter; the axes are
 /// named. Where both have the same number of points, point i of one belongs to point i of the other, and a thin grey line

@@ -29,7 +29,7 @@ pub(super) fn draw_dot(canvas: &mut Canvas, center: Px, style: &DotStyle, unit: 
     }
 }
 
-/// A wedge along the heading, as large as the robot but never too small to see. Its name keeps off `lines` where it can.
+/// A wedge along the heading, as large as the robot but never too small to see. Its name keeps off `lines` if it can.
 pub(super) fn draw_pose(
     canvas: &mut Canvas,
     view: &View,

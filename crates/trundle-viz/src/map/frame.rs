@@ -78,7 +78,7 @@ fn label_y(canvas: &mut Canvas, view: &View, ticks: &Ticks, (left, top): (i64, i
     }
 }
 
-/// A bar of a round length, its right end at `right`. Left out where it would meet the axis name, `taken` px wide.
+/// A bar of a round length, its right end at `right`. Left out if it would meet the axis name, `taken` px wide.
 fn paint_scale_bar(canvas: &mut Canvas, view: &View, right: i64, top: i64, taken: i64) {
     let metres = round_step(view.metres(view.width as f64 / 5.0) / 2.5);
     let (unit, label) = (view.unit, length_label(metres));

@@ -10,7 +10,7 @@ const TARGET_PX: f64 = 1100.0;
 /// The longer side of a plot is at most this, px.
 const MAX_PX: i64 = 3000;
 
-/// How many pixels a cell gets, or how many cells a pixel.
+/// How many pixels a cell gets, or how many cells one pixel shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Zoom {
     /// Each cell is this many pixels wide.
@@ -28,7 +28,7 @@ pub(crate) struct View {
     /// Size of the plot, px.
     pub width: i64,
     pub height: i64,
-    /// The cells shown, where there is a grid.
+    /// The cells shown, if there is a grid.
     pub cells: Option<(CellBox, Zoom)>,
     /// The unit of all that does not scale with the map: text dots and line widths, px.
     pub unit: i64,

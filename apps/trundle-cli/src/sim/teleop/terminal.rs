@@ -10,12 +10,12 @@ use trundle::app::AppError;
 #[derive(Debug)]
 pub struct RawTerminal(());
 
-/// Refuses a standard input that is no terminal.
+/// Refuses a standard input that is not a terminal.
 pub fn require() -> Result<(), AppError> {
     if std::io::stdin().is_terminal() {
         Ok(())
     } else {
-        Err(AppError::Input("--keys reads the keyboard, but standard input is no terminal".to_owned()))
+        Err(AppError::Input("--keys reads the keyboard, but standard input is not a terminal".to_owned()))
     }
 }
 

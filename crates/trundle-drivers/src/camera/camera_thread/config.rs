@@ -1,4 +1,4 @@
-//! What a camera thread is made of, and its settings.
+//! Parts of a camera thread, and its settings.
 
 use super::StampMapFactory;
 use crate::camera::{CameraError, DepthCamera};

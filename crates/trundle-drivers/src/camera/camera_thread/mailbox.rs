@@ -42,7 +42,7 @@ impl Mailbox {
         dropped.is_some()
     }
 
-    /// The next frame; `None` when the mailbox was closed and is empty, or was stopped.
+    /// The next frame; `None` if the mailbox was closed and is empty, or was stopped.
     pub(super) fn take(&self) -> Option<Box<GrabbedFrame>> {
         let mut content = self.lock();
         while content.frame.is_none() && !content.is_closed && !content.is_stopped {

@@ -48,7 +48,7 @@ impl CameraThread {
         self.outbox.counters()
     }
 
-    /// The sentence of the last fault; `None` when there was none.
+    /// The sentence of the last fault; `None` if there was none.
     pub fn last_fault(&self) -> Option<String> {
         self.outbox.last_fault()
     }

@@ -1,6 +1,6 @@
 //! Measurements from their 11-bit codes.
 //!
-//! A code is a sign and a magnitude of 10 bits. Magnitudes are coarser where they are larger: the step is 1 below 256 and doubles with every
+//! A code is a sign and a magnitude of 10 bits. Magnitudes are coarser if they are larger: the step is 1 below 256 and doubles with every
 //! further 128 codes. That is the division into segments of \[G711\], A-law, with seven bits a segment. The code of minus zero marks a
 //! saturated pixel. This code is an assumption; see [`super`].
 

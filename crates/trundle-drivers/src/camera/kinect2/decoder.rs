@@ -108,7 +108,7 @@ impl DepthDecoder {
     }
 
     /// Decodes the ten packed images of a frame; the last one, ambient light, is not used. The result is depth along the optical axis \[m\],
-    /// 512 x 424 px, 0 where there is none.
+    /// 512 x 424 px, 0 if there is none.
     ///
     /// # Errors
     /// When an image has not 298,496 bytes.
@@ -130,7 +130,7 @@ impl DepthDecoder {
         Ok(&self.depth)
     }
 
-    /// Mean amplitude of the last decoded frame \[1\]: an infrared image; 0 where there is no depth.
+    /// Mean amplitude of the last decoded frame \[1\]: an infrared image; 0 if there is no depth.
     pub fn amplitude(&self) -> &Image<f32> {
         &self.amplitude
     }

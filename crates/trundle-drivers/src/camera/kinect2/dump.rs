@@ -168,7 +168,7 @@ fn table(reader: &mut impl Read) -> io::Result<Vec<u16>> {
     Ok(bytes.as_chunks::<2>().0.iter().map(|pair| u16::from_le_bytes(*pair)).collect())
 }
 
-/// `length` bytes; `None` when the reader ends before.
+/// `length` bytes; `None` if the reader ends before.
 fn read_or_end(reader: &mut impl Read, length: usize) -> io::Result<Option<Vec<u8>>> {
     let mut bytes = Vec::new();
     reader.take(length as u64).read_to_end(&mut bytes)?;

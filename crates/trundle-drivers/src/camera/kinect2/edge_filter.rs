@@ -7,7 +7,7 @@ use super::layout::{COLUMNS, ROWS};
 use trundle_core::DepthImage;
 
 /// Difference of depth up to which a neighbour supports a pixel, as a share of the depth: 0.02. Source: ours; a surface at 75 degrees from the
-/// line of sight steps by 0.01 a pixel.
+/// line of sight steps by 0.01 per pixel.
 const SUPPORT_SHARE: f32 = 0.02;
 /// Difference of depth up to which a neighbour supports a pixel in any case \[m\]: 0.02. Source: ours; four times the noise at 4 m.
 const MIN_SUPPORT_M: f32 = 0.02;

@@ -18,7 +18,7 @@ const THIRD_TURN_SIN: f32 = 0.866_025_4;
 /// Planes of a phasor image: real and imaginary part at each frequency.
 pub const PLANE_COUNT: usize = 2 * FREQUENCY_COUNT;
 
-/// The phasors of one pixel: real and imaginary part at each frequency. All zero where there is no measurement.
+/// The phasors of one pixel: real and imaginary part at each frequency. All zero if there is no measurement.
 pub type Phasors = [f32; PLANE_COUNT];
 
 /// The phasors of all pixels, one plane for each part, so that several pixels are computed at once.

@@ -10,7 +10,7 @@ use std::f32::consts::TAU;
 
 /// The highest frequency, which makes the hypotheses.
 const FINEST_INDEX: usize = 2;
-/// The frequencies that judge the hypotheses.
+/// The frequencies by which the hypotheses are scored.
 const JUDGE_INDICES: [usize; 2] = [0, 1];
 /// Largest difference of a predicted phase \[turn\]: 0.12. Beyond it no hypothesis is right. Source: ours; hypotheses differ by 0.33 turn at
 /// 80 MHz.
@@ -37,7 +37,7 @@ impl Unwrapper {
         Self { wrap_m, hypotheses, min_amplitude }
     }
 
-    /// Distance along the ray of a pixel \[m\], and its mean amplitude; `None` where the light is too weak or the phases do not agree.
+    /// Distance along the ray of a pixel \[m\], and its mean amplitude; `None` if the light is too weak or the phases do not agree.
     pub(super) fn distance(&self, phasors: &Phasors) -> Option<(f32, f32)> {
         let [a_re, a_im, b_re, b_im, c_re, c_im] = *phasors;
         let parts = [[a_re, a_im], [b_re, b_im], [c_re, c_im]];

@@ -9,6 +9,6 @@ pub struct RgbdCalibration {
     pub color: PinholeCamera,
     /// The depth camera.
     pub depth: PinholeCamera,
-    /// Pose of the depth camera in the colour camera's frame; `None` when depth comes registered to colour.
+    /// Pose of the depth camera in the colour camera's frame; `None` if depth comes registered to colour.
     pub color_from_depth: Option<Pose3>,
 }

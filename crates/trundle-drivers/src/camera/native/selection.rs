@@ -86,10 +86,10 @@ impl Selection {
 pub struct DeviceEntry {
     /// Name of the model.
     pub name: String,
-    /// Serial number; empty where unknown.
+    /// Serial number; empty if unknown.
     pub serial: String,
-    /// Version of the firmware; empty where unknown.
+    /// Version of the firmware; empty if unknown.
     pub firmware: String,
-    /// Speed of the USB connection; `None` where unknown or not USB.
+    /// Speed of the USB connection; `None` if unknown or not USB.
     pub usb: Option<UsbSpeed>,
 }

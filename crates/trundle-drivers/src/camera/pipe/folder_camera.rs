@@ -15,7 +15,7 @@ const MAX_PAIR_WAIT_MS: u64 = 1000;
 /// Largest image file \[bytes\]: 256 MiB. Source: ours; an uncompressed image of the largest size.
 const MAX_IMAGE_FILE_BYTES: u64 = 1 << 28;
 
-/// What a folder held.
+/// Content of a folder.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct FolderCounts {
     /// Pairs delivered.

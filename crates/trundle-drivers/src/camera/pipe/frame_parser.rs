@@ -61,7 +61,7 @@ fn limits(stream: &StreamInfo) -> (usize, usize) {
     exact(stream.format).map_or((1, largest), |length| (length, length))
 }
 
-/// What a parser skipped.
+/// Counts of bytes and frames that a parser skipped.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ParserCounts {
     /// Frames found.
@@ -83,7 +83,7 @@ pub struct FrameParser {
     refused: Option<(usize, usize)>,
 }
 
-/// What the front of the bytes is.
+/// Kind of the first bytes.
 enum Front {
     /// A frame with lengths of colour and depth.
     Frame(Stamp, usize, usize),
@@ -110,7 +110,7 @@ impl FrameParser {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// The next whole frame; `None` when more bytes are needed.
+    /// The next whole frame; `None` if more bytes are needed.
     pub fn next_frame(&mut self) -> Option<StreamFrame> {
         loop {
             match self.front() {
@@ -134,12 +134,12 @@ impl FrameParser {
         }
     }
 
-    /// What was found and skipped so far.
+    /// Frames found and skipped so far.
     pub fn counts(&self) -> ParserCounts {
         self.counts
     }
 
-    /// What is wrong with the last frame of wrong lengths, once.
+    /// The problem of the last frame of wrong lengths, once.
     pub fn take_refusal(&mut self) -> Option<Invalid> {
         let (color, depth) = self.refused.take()?;
         let expected = |(low, high): (usize, usize)| {

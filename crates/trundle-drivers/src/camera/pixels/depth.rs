@@ -15,7 +15,7 @@ const NO_DISPARITY: u16 = 2047;
 /// disparity is 0.3 m there.
 const MAX_DISPARITY_DEPTH_M: f64 = 10.0;
 
-/// Converts `raw` into `image` (metres, 0 where there is none), whose memory is used again when the size is the same.
+/// Converts `raw` into `image` (metres, 0 if there is none), whose memory is used again when the size is the same.
 /// `unit_m` is the length of one unit of whole-numbered depth \[m\].
 ///
 /// # Errors
@@ -40,7 +40,7 @@ pub fn depth_from_raw(raw: &RawImage, unit_m: f64, image: &mut DepthImage) -> Re
     }
 }
 
-/// Depth \[m\] of a raw disparity of the Kinect v1; 0 where there is none or where it is beyond 10 m.
+/// Depth \[m\] of a raw disparity of the Kinect v1; 0 if there is none or if it is beyond 10 m.
 pub fn metres_from_disparity(raw: u16) -> f32 {
     let inverse = raw as f64 * DISPARITY_SLOPE + DISPARITY_OFFSET;
     if raw >= NO_DISPARITY || inverse < 1.0 / MAX_DISPARITY_DEPTH_M { 0.0 } else { (1.0 / inverse) as f32 }

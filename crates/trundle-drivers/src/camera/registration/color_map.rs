@@ -8,7 +8,7 @@ use trundle_core::{ColorImage, Invalid, PinholeCamera, Vector2};
 pub(super) struct ColorMap {
     camera: PinholeCamera,
     output: PinholeCamera,
-    /// Of each output pixel: its place in the colour image \[px\]; `None` outside. Empty where both cameras are the same.
+    /// Of each output pixel: its place in the colour image \[px\]; `None` outside. Empty if both cameras are the same.
     places: Vec<Option<[f32; 2]>>,
     /// Samples across and down for one output pixel. 1 takes four pixels by bilinear weights.
     samples: [usize; 2],

@@ -6,7 +6,7 @@ use trundle_core::DepthImage;
 /// ours; the floor 4 m ahead of a Kinect V2 at 0.4 m height steps by 0.027 a row.
 const MAX_SURFACE_STEP: f32 = 0.03;
 
-/// Overlap of neighbouring footprints \[px\]: 0.1. Footprints stay upright where the cameras are turned about the optical axis, which leaves
+/// Overlap of neighbouring footprints \[px\]: 0.1. Footprints stay upright where the cameras are turned around the optical axis, which leaves
 /// gaps at their corners. Source: ours; it closes the gaps of a turn of 0.03 rad.
 const FOOTPRINT_OVERLAP_PX: f32 = 0.1;
 
@@ -17,11 +17,11 @@ pub(super) struct Footprint {
     pub x: f32,
     /// Row of its middle \[px\].
     pub y: f32,
-    /// Depth in the output camera \[m\]; 0 where there is none.
+    /// Depth in the output camera \[m\]; 0 if there is none.
     pub z: f32,
-    /// Half its width where it has no neighbour \[px\].
+    /// Half its width if it has no neighbour \[px\].
     pub half_x: f32,
-    /// Half its height where it has no neighbour \[px\].
+    /// Half its height if it has no neighbour \[px\].
     pub half_y: f32,
 }
 

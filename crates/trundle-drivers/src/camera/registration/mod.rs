@@ -66,7 +66,7 @@ impl Registration {
 #[derive(Debug, Clone)]
 pub struct DepthRegistration {
     output: PinholeCamera,
-    /// `None` where both cameras are the same.
+    /// `None` if both cameras are the same.
     moved: Option<(Projection, Footprints)>,
 }
 
@@ -81,7 +81,7 @@ impl DepthRegistration {
         Self { output, moved: (!is_same).then(moved) }
     }
 
-    /// Writes the moved depth \[m\] into `moved`, which has the size of the output camera; 0 where no depth pixel lands.
+    /// Writes the moved depth \[m\] into `moved`, which has the size of the output camera; 0 if no depth pixel lands.
     ///
     /// # Errors
     /// When `depth` has not the size of the depth camera, or `moved` not that of the output camera.

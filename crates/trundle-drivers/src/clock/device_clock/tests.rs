@@ -102,7 +102,7 @@ fn jumps_of_the_device_are_followed_both_ways() {
 }
 
 #[test]
-fn a_stall_of_the_host_is_no_jump() {
+fn a_stall_of_the_host_is_not_a_jump() {
     let (mut device, mut clock) = (Device::new(50.0, 0.01), clock());
     worst_error(&mut device, &mut clock, 0.0, 60.0, 15.0);
     device.last_arrival = 61.5;

@@ -14,7 +14,7 @@ const SPIN_RADIUS_MM: f64 = 1.0;
 /// that curvature is nearer to none.
 const STRAIGHT_RADIUS_MM: f64 = 65534.0;
 
-/// What the base control command carries.
+/// Content of the base control command.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct BaseControl {
     /// Speed of the wheel on the outside of the curve, mm/s; of both wheels when straight.

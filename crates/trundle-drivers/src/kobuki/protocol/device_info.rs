@@ -1,4 +1,4 @@
-//! What the base says about itself on request: versions, unique id, gains.
+//! Facts that the base reports on request: versions, unique id, gains.
 
 use super::fields::Fields;
 use std::fmt;

@@ -1,6 +1,6 @@
 //! A reader of little-endian numbers from the data of a sub-payload.
 
-/// Little-endian numbers, taken one after the other. `None` where the data ends.
+/// Little-endian numbers, taken one after the other. `None` if the data ends.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fields<'a>(pub(super) &'a [u8]);
 

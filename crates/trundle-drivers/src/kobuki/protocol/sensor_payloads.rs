@@ -119,13 +119,13 @@ pub struct RawGyro {
 }
 
 impl RawGyro {
-    /// Turn rates of the base, rad/s, with the sensor's bias: x forward, y left, z up. The sensor is turned by 90 deg about z.
+    /// Turn rates of the base, rad/s, with the sensor's bias: x forward, y left, z up. The sensor is turned by 90 deg around z.
     pub fn rates(&self) -> impl ExactSizeIterator<Item = [f64; 3]> + '_ {
         let rate = |raw: i16| (f64::from(raw) * GYRO_UNIT_DEG_S).to_radians();
         self.readings.iter().map(move |[x, y, z]| [-rate(*y), rate(*x), rate(*z)])
     }
 
-    /// The raw number nearest to a turn rate about z, rad/s; clamped to the sensor's 16 bits.
+    /// The raw number nearest to a turn rate around z, rad/s; clamped to the sensor's 16 bits.
     pub fn nearest_z(rate: f64) -> i16 {
         (rate.to_degrees() / GYRO_UNIT_DEG_S).round() as i16
     }

@@ -15,7 +15,7 @@ pub enum CalibrationError {
         found: usize,
         /// Readings that are needed.
         expected: usize,
-        /// What to do.
+        /// The remedy.
         advice: &'static str,
     },
     /// The motion does not show a value.
@@ -31,7 +31,7 @@ pub enum CalibrationError {
         unit: &'static str,
         /// The accepted range.
         expected: String,
-        /// What to do.
+        /// The remedy.
         advice: &'static str,
     },
     /// Two sensors contradict each other.
@@ -45,7 +45,7 @@ pub enum CalibrationError {
         found: f64,
         /// The accepted range.
         expected: String,
-        /// What to do.
+        /// The remedy.
         advice: &'static str,
     },
 }

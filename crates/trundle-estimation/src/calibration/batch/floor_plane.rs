@@ -3,7 +3,7 @@
 //! Problem: the floor's plane in the camera frame from depth images with walls and objects in them. Idea: a plane `q * p = 1` gives an
 //! inverse depth `1/z = q * ray`, linear in q. Consensus of three pixels proposes a floor for each image \[Fischler81\]; the median over
 //! the images is right where most proposals are. From the median, each image's floor is refined by least squares on the inverse
-//! depth. Cost: 500 planes over some 1,000 samples an image.
+//! depth. Cost: 500 planes over some 1,000 samples per image.
 
 use super::estimate::Estimate;
 use super::planar_track::tilt_of;
@@ -28,7 +28,7 @@ pub struct FloorMount {
     pub height: Estimate,
     /// Tilt downward, rad.
     pub pitch: Estimate,
-    /// Roll about the optical axis, rad.
+    /// Roll around the optical axis, rad.
     pub roll: Estimate,
     /// Images that show the floor.
     pub images: usize,
@@ -117,7 +117,7 @@ impl FloorSearch {
 }
 
 impl FloorView {
-    /// The plane with the most support that lies like a floor; `None` where no floor is seen.
+    /// The plane with the most support that lies like a floor; `None` if no floor is seen.
     fn propose(samples: &[Vector3], expected_up: Vector3) -> Option<Self> {
         if samples.len() < MIN_SAMPLES {
             return None;
@@ -150,7 +150,7 @@ impl FloorView {
         Self::of_inverse_depth(rows.try_inverse()? * Vector3::repeat(1.0))
     }
 
-    /// The plane `q * p = 1`; `None` where it is not below a camera on a robot.
+    /// The plane `q * p = 1`; `None` if it is not below a camera on a robot.
     fn of_inverse_depth(q: Vector3) -> Option<Self> {
         let height = 1.0 / q.norm();
         (MIN_HEIGHT_M..=MAX_HEIGHT_M).contains(&height).then(|| Self { up: -q * height, height })
@@ -179,7 +179,7 @@ impl FloorView {
 
 impl FloorMount {
     /// The mean over images; `None` without one. The standard deviations contain what the images share: the bias of the depth, and the
-    /// angle between the floor's normal and the `axis` about which the robot turns (camera frame), where that is known.
+    /// angle between the floor's normal and the `axis` around which the robot turns (camera frame), if that is known.
     #[must_use]
     pub fn of(views: &[FloorView], axis: Option<&Vector3>) -> Option<Self> {
         let mean = |value: &dyn Fn(&FloorView) -> f64, shared: &dyn Fn(f64) -> f64| {

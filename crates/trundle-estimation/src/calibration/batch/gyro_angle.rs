@@ -60,7 +60,7 @@ impl GyroAngle {
         self.readings.is_empty()
     }
 
-    /// Turn between two stamps, rad; `None` where the gyro does not cover the time between.
+    /// Turn between two stamps, rad; `None` if the gyro does not cover the time between.
     #[must_use]
     pub fn turn(&self, from: Stamp, to: Stamp) -> Option<f64> {
         let (start, end) = (self.at(from)?, self.at(to)?);

@@ -24,7 +24,7 @@ const MIN_SEGMENTS: usize = 5;
 /// Smallest noise of a segment's turn: 0.5 mrad. Source: ours.
 const MIN_TURN_SIGMA_RAD: f64 = 5e-4;
 
-/// Fits scale and bias of the gyro to the camera's turns about `axis` (camera frame), in segments of 2 s.
+/// Fits scale and bias of the gyro to the camera's turns around `axis` (camera frame), in segments of 2 s.
 ///
 /// # Errors
 /// When camera and gyro cover less than 10 s together.

@@ -47,7 +47,7 @@ impl<const N: usize> LinearFit<N> {
         self.prior.1 += row * (value * sigma.powi(-2));
     }
 
-    /// The solution by iteratively reweighted least squares; `None` where the equations do not determine it.
+    /// The solution by iteratively reweighted least squares; `None` if the equations do not determine it.
     pub(super) fn solve(&self) -> Option<LinearSolution<N>> {
         let mut weights = vec![1.0; self.rows.len()];
         let mut sigma = self.min_sigma;

@@ -53,7 +53,7 @@ impl Default for Truth {
     }
 }
 
-/// What the robot's sensors give.
+/// Readings of the robot's sensors.
 #[derive(Default)]
 struct Drive {
     poses: Vec<(Stamp, Pose3)>,

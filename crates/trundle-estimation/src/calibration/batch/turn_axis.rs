@@ -1,4 +1,4 @@
-//! The axis about which a camera on wheels turns.
+//! The axis around which a camera on wheels turns.
 
 use super::error::CalibrationError;
 use nalgebra::{Matrix3, SymmetricEigen};
@@ -28,7 +28,7 @@ pub fn turn_axis(poses: &[(Stamp, Pose3)], expected: Vector3) -> Result<Vector3,
     Ok(if axis.dot(&expected) < 0.0 { -axis } else { axis })
 }
 
-/// Difference of the largest and the smallest heading about `axis`, rad: noise does not add up in it.
+/// Difference of the largest and the smallest heading around `axis`, rad: noise does not add up in it.
 fn turned_range(poses: &[(Stamp, Pose3)], axis: Vector3) -> f64 {
     let (mut heading, mut low, mut high) = (0.0, 0.0_f64, 0.0_f64);
     for turn in turns(poses, axis) {
@@ -49,7 +49,7 @@ fn not_turned(turned: f64) -> CalibrationError {
     }
 }
 
-/// Turns about `axis` (camera frame) from each pose to the next: stamps of both poses, and the turn \[rad\].
+/// Turns around `axis` (camera frame) from each pose to the next: stamps of both poses, and the turn \[rad\].
 pub(super) fn turns(poses: &[(Stamp, Pose3)], axis: Vector3) -> impl Iterator<Item = Turn> + '_ {
     poses.windows(2).map(move |pair| Turn {
         from: pair[0].0,

@@ -70,7 +70,7 @@ impl WheelAngles {
         self.readings.is_empty()
     }
 
-    /// Turns of the wheels between two stamps; `None` where a stamp is not covered or a gap lies between.
+    /// Turns of the wheels between two stamps; `None` if a stamp is not covered or a gap lies between.
     pub(super) fn turn(&self, from: Stamp, to: Stamp) -> Option<WheelTurn> {
         let (start, end) = (self.at(from)?, self.at(to)?);
         let turn = WheelTurn { left: end.left - start.left, right: end.right - start.right };

@@ -1,4 +1,4 @@
-//! What the robot can do, for the master.
+//! Abilities of the robot, for the master.
 
 use super::header::MessageHeader;
 use crate::robot_facts::RobotFacts;
@@ -10,7 +10,7 @@ use crate::vda5050::limits::{
 use serde::Serialize;
 use serde_json::{Value, json};
 
-/// What the robot can do.
+/// Abilities of the robot.
 #[derive(Debug, Clone, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Factsheet {

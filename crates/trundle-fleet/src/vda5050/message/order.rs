@@ -35,7 +35,7 @@ pub struct OrderNode {
     pub released: bool,
     /// Where it is.
     pub node_position: Option<NodePosition>,
-    /// What is done there.
+    /// The action there.
     pub actions: Vec<Action>,
 }
 
@@ -82,7 +82,7 @@ pub struct OrderEdge {
     pub max_height: Option<f64>,
     /// Whether the robot may turn on the edge.
     pub rotation_allowed: Option<bool>,
-    /// What is done on the edge.
+    /// The action on the edge.
     pub actions: Vec<Action>,
     /// Fields that this robot cannot use.
     #[serde(flatten)]
@@ -117,14 +117,14 @@ pub struct Action {
     pub action_id: String,
     /// For people.
     pub action_description: Option<String>,
-    /// What may happen beside it.
+    /// Actions that may run beside it.
     pub blocking_type: BlockingType,
     /// Its parameters.
     #[serde(default)]
     pub action_parameters: Vec<ActionParameter>,
 }
 
-/// What may happen beside an action.
+/// Actions that may run beside an action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum BlockingType {

@@ -8,18 +8,18 @@ use serde::Serialize;
 pub struct ErrorReport {
     /// One of the standard's words, or one of ours.
     pub error_type: String,
-    /// What it refers to.
+    /// The reference.
     pub error_references: Vec<ErrorReference>,
     /// In a sentence.
     pub error_description: String,
-    /// What to do.
+    /// The remedy.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error_hint: Option<String>,
     /// Whether the robot can go on.
     pub error_level: ErrorLevel,
 }
 
-/// What an error refers to: the name of a field and its value.
+/// Reference of an error: the name of a field and its value.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ErrorReference {
@@ -49,7 +49,7 @@ impl ErrorReport {
         }
     }
 
-    /// The same with what it refers to.
+    /// This report with a reference: key and value.
     #[must_use]
     pub fn about(mut self, key: &str, value: impl ToString) -> Self {
         let (reference_key, reference_value) = (key.to_owned(), value.to_string());
@@ -57,7 +57,7 @@ impl ErrorReport {
         self
     }
 
-    /// The same with what to do.
+    /// This report with a hint: the remedy.
     #[must_use]
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.error_hint = Some(hint.into());

@@ -21,7 +21,7 @@ pub struct VehicleState {
     pub agv_position: RobotPosition,
     /// How fast it moves.
     pub velocity: Velocity,
-    /// What it carries: nothing.
+    /// The load: nothing.
     pub loads: [(); 0],
     /// Whether it drives or turns.
     pub driving: bool,
@@ -29,11 +29,11 @@ pub struct VehicleState {
     pub paused: bool,
     /// The battery.
     pub battery_state: ChargeState,
-    /// Who controls the robot.
+    /// Controller of the robot.
     pub operating_mode: OperatingMode,
-    /// What is wrong.
+    /// The problem.
     pub errors: Vec<ErrorReport>,
-    /// What else a person may want to know.
+    /// Further notes for a person.
     pub information: Vec<Information>,
     /// Stops by safety.
     pub safety_state: SafetyState,
@@ -173,7 +173,7 @@ pub struct Velocity {
 pub struct ActionState {
     /// Its name.
     pub action_id: String,
-    /// What it is.
+    /// The kind.
     pub action_type: String,
     /// For people.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -220,7 +220,7 @@ pub struct ChargeState {
     pub charging: bool,
 }
 
-/// Who controls the robot.
+/// Controller of the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum OperatingMode {
@@ -230,7 +230,7 @@ pub enum OperatingMode {
     Manual,
 }
 
-/// What else a person may want to know.
+/// Further notes for a person.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Information {

@@ -11,10 +11,10 @@ use trundle_fuzz::FuzzTarget;
 
 /// Deaths of one target after which it is left.
 const MAX_DEATHS: u64 = 3;
-/// Memory disk, where there is one.
+/// Memory disk, if there is one.
 const MEMORY_DISK: &str = "/dev/shm";
 
-/// Runs each target for some time, as many at once as there are cores; whether nothing was found.
+/// Runs each target for some time, as many at once as there are cores. Returns whether nothing was found.
 pub fn run(targets: &[FuzzTarget], time: Duration, seed: u64) -> Result<bool, String> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let (next, is_clean) = (AtomicUsize::new(0), AtomicBool::new(true));
@@ -68,11 +68,11 @@ fn work(target: &FuzzTarget, seconds: u64, seed: u64, folder: &Path) -> Result<E
     command.stdin(Stdio::null()).status().map_err(|error| format!("{}: cannot start: {error}", target.name))
 }
 
-/// A folder for the inputs, in memory where there is a memory disk.
+/// A folder for the inputs, in memory if there is a memory disk.
 fn scratch() -> Result<tempfile::TempDir, String> {
     let made =
         if Path::new(MEMORY_DISK).is_dir() { tempfile::tempdir_in(MEMORY_DISK) } else { tempfile::tempdir() };
-    made.map_err(|error| format!("a temporary folder cannot be made: {error}"))
+    made.map_err(|error| format!("a temporary folder cannot be created: {error}"))
 }
 
 fn death(status: ExitStatus) -> String {

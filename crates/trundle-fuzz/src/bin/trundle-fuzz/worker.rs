@@ -20,7 +20,7 @@ const CASES: &str = "../shared/cases";
 /// The place and the message of the last panic.
 static LAST_PANIC: Mutex<String> = Mutex::new(String::new());
 
-/// Runs `target` for some time; whether nothing was found. A panic is reported and the run goes on.
+/// Runs `target` for some time. Returns whether nothing was found. A panic is reported and the run goes on.
 pub fn run(target: &FuzzTarget, time: Duration, seed: u64, folder: &Path) -> Result<bool, String> {
     watchdog::start();
     record_panics();
@@ -60,7 +60,7 @@ struct Work<'a> {
     coverage: Coverage,
     current: CurrentInput,
     count: u64,
-    /// What was reported.
+    /// The reported text.
     found: BTreeSet<String>,
 }
 
@@ -85,7 +85,7 @@ impl<'a> Work<'a> {
         mutate(&self.inputs[parent], &self.inputs[other], self.target.words, &mut self.rng)
     }
 
-    /// Reads an input; whether it ran through new code.
+    /// Reads an input. Returns whether it ran through new code.
     fn read(&mut self, input: &[u8]) -> Result<bool, String> {
         self.count += 1;
         self.current.set(input)?;

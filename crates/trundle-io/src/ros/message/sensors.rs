@@ -45,7 +45,7 @@ pub fn camera_info(stamp: Stamp, frame: &str, camera: &PinholeCamera) -> RosMess
     RosMessage::new("sensor_msgs/msg/CameraInfo", writer)
 }
 
-/// `sensor_msgs/msg/Imu` of a gyro about the vertical axis; nothing else was measured.
+/// `sensor_msgs/msg/Imu` of a gyro around the vertical axis; nothing else was measured.
 #[must_use]
 pub fn gyro(frame: &str, rate: &GyroRate) -> RosMessage {
     let writer = CdrWriter::with_header(rate.stamp, frame).f64s([0.0, 0.0, 0.0, 1.0]);
@@ -54,7 +54,7 @@ pub fn gyro(frame: &str, rate: &GyroRate) -> RosMessage {
     RosMessage::new("sensor_msgs/msg/Imu", writer.f64s([0.0; 3]).f64s(unmeasured))
 }
 
-/// `sensor_msgs/msg/LaserScan` in a frame at the sweep's origin: infinite where a beam met nothing, NaN where nothing is known.
+/// `sensor_msgs/msg/LaserScan` in a frame at the sweep's origin: infinite if a beam met nothing, NaN if nothing is known.
 #[must_use]
 pub fn scan(frame: &str, scan: &Scan) -> RosMessage {
     let (first, step, count) = (scan.angle_min(), scan.angle_increment(), scan.beams().len());

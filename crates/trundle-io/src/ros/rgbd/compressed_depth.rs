@@ -13,7 +13,7 @@ pub(super) fn is_compressed_depth(format: &str) -> bool {
     format.contains("compressedDepth")
 }
 
-/// Depth in metres, 0 where there is none. `format` is that of the message, as `16UC1; compressedDepth png`. Images of 32 bits hold
+/// Depth in metres, 0 if there is none. `format` is that of the message, as `16UC1; compressedDepth png`. Images of 32 bits hold
 /// quantised inverse depth d: metres = a / (d - b). Of all others `depth_scale` units are a metre.
 ///
 /// # Errors
@@ -48,7 +48,7 @@ pub fn decode_compressed_depth(
     metres(&raw, |value| a / (f64::from(value) - b))
 }
 
-/// The depths of the numbers that are none of 0; what is no depth becomes 0.
+/// The depths of the numbers that are none of 0; what is not depth becomes 0.
 fn metres(raw: &Image<u16>, depth: impl Fn(u16) -> f64) -> Result<DepthImage, CodecError> {
     let metres = |&value: &u16| {
         let depth = if value == 0 { 0.0 } else { depth(value) };

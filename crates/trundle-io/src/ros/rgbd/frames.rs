@@ -70,7 +70,7 @@ impl<'a> RosFrames<'a> {
         Some(RosFrame { color, depth: depth_image, depth_scale: self.depth_scale })
     }
 
-    /// Reads the next message; whether there was one. A bag that breaks off ends here, as it did in the first pass.
+    /// Reads the next message. Returns whether there was one. A bag that breaks off ends here, as it did in the first pass.
     fn read_message(&mut self) -> Result<bool, IoError> {
         let Ok(Some(message)) = self.bag.next_message() else { return Ok(false) };
         let is_color = message.topic == self.topics.color;

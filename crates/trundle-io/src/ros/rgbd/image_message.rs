@@ -22,11 +22,11 @@ enum Content {
     Compressed { format: String, bytes: Vec<u8> },
 }
 
-/// What an image shows.
+/// Content of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ImageKind {
     Color,
-    /// Brightness only: used as colour where there is no other.
+    /// Brightness only: used as colour if there is no other.
     Grey,
     Depth,
     /// An encoding that is not read.
@@ -63,7 +63,7 @@ impl BagImage {
         Ok(Self { stamp, frame, content: Content::Compressed { format, bytes } })
     }
 
-    /// What the image shows, by its encoding and its first bytes.
+    /// Content of the image, by its encoding and its first bytes.
     pub(super) fn kind(&self) -> ImageKind {
         match &self.content {
             Content::Raw(raw) if is_raw_depth(&raw.encoding) => ImageKind::Depth,
@@ -102,7 +102,7 @@ impl BagImage {
         }
     }
 
-    /// The JPEG of a colour image, where it is one.
+    /// The JPEG of a colour image, if it is one.
     pub(super) fn jpeg(&self) -> Option<&[u8]> {
         match &self.content {
             Content::Compressed { bytes, .. } if bytes.starts_with(JPEG_MAGIC) => Some(bytes),
@@ -110,7 +110,7 @@ impl BagImage {
         }
     }
 
-    /// Depth in metres, 0 where there is none. `depth_scale`: units a metre of whole-numbered images.
+    /// Depth in metres, 0 if there is none. `depth_scale`: units per metre of whole-numbered images.
     pub(super) fn depth(&self, depth_scale: f64) -> Result<DepthImage, CodecError> {
         match &self.content {
             Content::Raw(raw) => depth_of_raw(raw, depth_scale),

@@ -48,7 +48,7 @@ pub(super) fn color_of_raw(raw: &RawImage) -> Result<ColorImage, CodecError> {
     Ok(ColorImage::new(raw.width, raw.height, pixels)?)
 }
 
-/// Depth in metres of an image of 16 bits in units, or of 32-bit floats in metres; 0 where there is none.
+/// Depth in metres of an image of 16 bits in units, or of 32-bit floats in metres; 0 if there is none.
 ///
 /// # Errors
 /// When its encoding is another, or its bytes are too few for its size.
@@ -104,7 +104,7 @@ mod tests {
         assert!(problem.contains("its encoding is 'bayer_rggb8', expected rgb8"), "{problem}");
         let problem = color_of_raw(&raw("rgb8", 6, &[1; 5])).unwrap_err().to_string();
         assert!(
-            problem.contains("2 x 1 px of 'rgb8' with 6 bytes a row do not fit into 5 bytes"),
+            problem.contains("2 x 1 px of 'rgb8' with 6 bytes per row do not fit into 5 bytes"),
             "{problem}"
         );
         let huge = RawImage { width: usize::MAX, ..raw("rgb8", 6, &[1; 6]) };

@@ -29,7 +29,7 @@ impl RawImage {
             _ => Err(CodecError::decode(
                 kind,
                 format!(
-                    "{width} x {height} px of '{}' with {step} bytes a row do not fit into {} bytes",
+                    "{width} x {height} px of '{}' with {step} bytes per row do not fit into {} bytes",
                     self.encoding,
                     data.len()
                 ),

@@ -41,7 +41,7 @@ pub struct RosSequence {
 const BASE_FRAMES: [&str; 2] = ["base_footprint", "base_link"];
 /// Distance of the depth camera from the colour camera \[m\], from which depth is not registered to colour. Source: ours.
 const MAX_DEPTH_OFFSET_M: f64 = 1e-3;
-/// The same for the turn between both \[rad\]. Source: ours.
+/// Turn between both cameras \[rad\] from which depth is not registered to colour. Source: ours.
 const MAX_DEPTH_TURN_RAD: f64 = 1e-3;
 
 impl RosSequence {
@@ -106,13 +106,13 @@ impl RosSequence {
         &self.topics
     }
 
-    /// The camera of the bag; `None` where none was needed.
+    /// The camera of the bag; `None` if none was needed.
     #[must_use]
     pub fn camera(&self) -> Option<PinholeCamera> {
         self.camera
     }
 
-    /// Where the camera sits on the base by the bag's transforms, optical frame; `None` where none lead from the one to the other.
+    /// Where the camera sits on the base by the bag's transforms, optical frame; `None` if none lead from the one to the other.
     #[must_use]
     pub fn base_from_camera(&self) -> Option<Pose3> {
         self.base_from_camera
@@ -142,7 +142,7 @@ impl RosSequence {
         self.listed - self.pairs.len()
     }
 
-    /// `odom_from_base`; `None` where the bag holds none.
+    /// `odom_from_base`; `None` if the bag holds none.
     #[must_use]
     pub fn odometry(&self) -> Option<&[(Stamp, Pose2)]> {
         (!self.odometry.is_empty()).then_some(&self.odometry)
@@ -160,7 +160,7 @@ impl RosSequence {
         &self.warnings
     }
 
-    /// The images in the order of their stamps, not decoded. `depth_scale`: units a metre of depth in whole numbers.
+    /// The images in the order of their stamps, not decoded. `depth_scale`: units per metre of depth in whole numbers.
     ///
     /// # Errors
     /// When the bag cannot be opened again.

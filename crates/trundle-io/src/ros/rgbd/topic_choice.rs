@@ -25,7 +25,7 @@ pub struct RosImageTopics {
     pub color: String,
     /// Of the depth images.
     pub depth: String,
-    /// Of the camera's intrinsics; empty where a camera was given.
+    /// Of the camera's intrinsics; empty if a camera was given.
     pub info: String,
     /// Of the odometry; empty without one.
     pub odometry: String,

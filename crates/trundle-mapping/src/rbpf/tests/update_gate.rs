@@ -75,7 +75,7 @@ proptest! {
 }
 
 #[test]
-fn a_jump_of_dead_reckoning_is_no_motion_and_an_uncertain_one() {
+fn a_jump_of_dead_reckoning_is_not_motion_and_adds_uncertainty() {
     let step = pass(&mut opened(), Pose2::new(6.0, 0.0, 0.0), 1.5).unwrap().unwrap();
     assert!(step.jumped && step.motion == Pose2::IDENTITY);
     let usual = pass(&mut opened(), Pose2::new(0.5, 0.0, 0.0), 1.5).unwrap().unwrap();

@@ -15,7 +15,7 @@ pub(crate) struct Query<'a> {
     /// How far to turn, rad.
     pub(crate) turn_reach: f64,
     pub(crate) turn_step: f64,
-    /// One sigma of the guess: cells, cells, rad; infinite where nothing is known.
+    /// One sigma of the guess: cells, cells, rad; infinite if nothing is known.
     pub(crate) sigma: (f64, f64, f64),
     /// Gain of a point that fits, nats.
     pub(crate) gain: f64,
@@ -57,7 +57,7 @@ struct Turned {
 
 impl Pyramid {
     /// The best pose for a query that is apart (cells, rad) from all of `known`, by branch and bound: no pose of the lattice
-    /// is better. `None` where all score less than `least`.
+    /// is better. `None` if all score less than `least`.
     pub(crate) fn search(
         &self,
         query: &Query<'_>,

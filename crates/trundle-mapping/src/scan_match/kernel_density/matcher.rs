@@ -52,7 +52,7 @@ impl ScanMatcher {
         Ok(Self { config: config.validated()? })
     }
 
-    /// The pose near `guess` (`map_from_base`) at which `scan` fits the map; `None` when there are too few hits on known
+    /// The pose near `guess` (`map_from_base`) at which `scan` fits the map; `None` if there are too few hits on known
     /// ground, the map explains too few of them, or the fit runs out of the window.
     pub fn refine(&self, mapper: &GridMapper, scan: &Scan, guess: Pose2) -> Option<ScanMatch> {
         if !guess.is_finite() {

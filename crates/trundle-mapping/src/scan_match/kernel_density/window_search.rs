@@ -29,7 +29,7 @@ pub(crate) fn search(
     fine.best(config, field, points, best, guess)
 }
 
-/// Poses about a middle, in equal steps of the map's x and y and of the heading.
+/// Poses around a middle, in equal steps of the map's x and y and of the heading.
 struct Lattice {
     step: f64,
     step_turn: f64,

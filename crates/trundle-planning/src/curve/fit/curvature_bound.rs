@@ -19,7 +19,7 @@ const BOUND_SHARE: f64 = 0.97;
 /// Parametric speed below which a curve is near a cusp, ratio: a small change of the curve does not help there. Source: ours.
 const MIN_PARAMETRIC_SPEED: f64 = 0.3;
 
-/// The points where the curve's curvature exceeds `most`, 1/m; `None` when it is near a cusp at one of them.
+/// The points where the curve's curvature exceeds `most`, 1/m; `None` if it is near a cusp at one of them.
 pub(super) fn exceeding(curve: &Curve, most: f64) -> Option<Vec<CurvePoint>> {
     let mut points = Vec::new();
     for (piece, bezier) in curve.pieces().iter().enumerate() {

@@ -24,7 +24,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use trundle_core::Vector2;
 
-/// The curve along `segments` with these end tangents; `smoothing` is a length, m. `None` when there is none.
+/// The curve along `segments` with these end tangents; `smoothing` is a length, m. `None` if there is none.
 ///
 /// Few of the corridors' sides matter. The program is solved with the sides near the path first, then again with those near the
 /// last curve, until all are kept (cutting planes); the result is that of the whole program. Where the curvature exceeds
@@ -112,7 +112,7 @@ const MIN_MULTIPLIER_M2: f64 = 1e-7;
 /// Distance of a control point from a side above which the side is inactive, m. Source: ours.
 const ACTIVE_DISTANCE_M: f64 = 1e-4;
 
-/// The sides near control points that are not in `known`; empty where no side is violated. The two ends are inside.
+/// The sides near control points that are not in `known`; empty if no side is violated. The two ends are inside.
 fn violated(curve: &Curve, segments: &[PathSegment], known: &[Side]) -> Vec<Side> {
     let (mut near, mut is_violated) = (Vec::new(), false);
     let last = segments.len() - 1;

@@ -15,7 +15,7 @@ const UNITS_PER_M: f64 = 1000.0;
 /// A compressed depth image in metres.
 ///
 /// # Errors
-/// When the bytes are no whole image of the transport, or its quantisation makes no depth.
+/// When the bytes are not a whole image of the transport, or its quantisation makes no depth.
 pub fn compressed_depth_from_ros(image: CompressedImage) -> Result<RawImage, Invalid> {
     let device_stamp = stamp::from_ros(&image.header.stamp)?;
     let depth = decode_compressed_depth(&image.format, &image.data.0, UNITS_PER_M).map_err(|error| {

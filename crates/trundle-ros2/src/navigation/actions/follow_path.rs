@@ -44,7 +44,7 @@ impl NavigationAction for FollowPath {
     }
 }
 
-/// The last pose of the path; `None` where it has none. A pose without a frame is in that of the path.
+/// The last pose of the path; `None` if it has none. A pose without a frame is in that of the path.
 fn end_in_map(
     goal: &Goal,
     frames: &FrameNames,

@@ -19,12 +19,12 @@ fn current_pose(view: &RunView, frames: &FrameNames) -> PoseStamped {
     pose::stamped(&view.estimate.pose, view.estimate.stamp, &frames.map)
 }
 
-/// Seconds as a duration; 0 where they are not known.
+/// Seconds as a duration; 0 if they are not known.
 fn duration(seconds: f64) -> Duration {
     stamp::duration(if seconds.is_finite() { seconds } else { 0.0 })
 }
 
-/// Distance that is left along the plan \[m\], and the time for it \[s\]; straight to `goal` where there is no plan.
+/// Distance that is left along the plan \[m\], and the time for it \[s\]; straight to `goal` if there is no plan.
 fn left(view: &RunView, goal: &Pose2) -> (f32, Duration) {
     let pose = &view.estimate.pose;
     match &view.plan {

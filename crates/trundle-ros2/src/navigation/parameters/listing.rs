@@ -16,7 +16,7 @@ pub(super) fn list<'n>(
     lists.find(arrives).unwrap_or_default()
 }
 
-/// How deep `name` lies below the prefixes, from 1 on; 0 where it is one of them. `None` where no prefix holds it.
+/// How deep `name` lies below the prefixes, from 1 on; 0 if it is one of them. `None` if no prefix holds it.
 fn level(name: &str, prefixes: &[String]) -> Option<usize> {
     let below = |prefix: &String| match name.strip_prefix(prefix.as_str())? {
         "" => Some(0),

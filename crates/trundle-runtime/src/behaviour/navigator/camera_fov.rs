@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_ahead_is_seen_before_it_is_driven_on() {
+    fn floor_ahead_is_seen_before_it_is_driven_on() {
         let ahead = floor(|at| at.x > 4.0);
         let straight = way((0..60).map(|i| Pose2::new(2.0 + 0.05 * f64::from(i), 2.0, 0.0)));
         let mut in_vain = VisibilityConstraint::default();
@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_round_a_tight_bend_is_not() {
+    fn floor_around_a_tight_bend_is_not() {
         let beside = floor(|at| at.y > 2.3);
         // Along the edge of what is known, then a turn on the spot, and on.
         let along = (0..8).map(|i| Pose2::new(3.6 + 0.05 * f64::from(i), 2.0, 0.0));

@@ -24,7 +24,7 @@ const MAX_SEEN_PATH_RATIO: f64 = 1.5;
 const MAX_SEEN_PATH_EXTRA_S: f64 = 10.0;
 
 impl Navigator {
-    /// A plan that shows the camera what it leads onto, where there is one that is worth it. Asks for two plans at most.
+    /// A plan that shows the camera what it leads onto, if there is one that is worth it. Asks for two plans at most.
     pub(super) fn plan_in_view(
         &mut self,
         s: &WorldState<'_>,

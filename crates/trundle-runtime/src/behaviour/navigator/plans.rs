@@ -233,7 +233,7 @@ impl Navigator {
         };
     }
 
-    /// Whether the goal is given up without a wait for a path: a viewpoint at once; a goal that does not wait, where no path leads to it
+    /// Whether the goal is given up without a wait for a path: a viewpoint at once; a goal that does not wait, if no path leads to it
     /// over known or unknown floor.
     fn is_final(&mut self, cause: &NoPath, now: Stamp) -> bool {
         let since = *self.no_path_since.get_or_insert(now);
@@ -244,7 +244,7 @@ impl Navigator {
         matches!(self.goal, Goal::Viewpoint(_)) || self.ends_without_path && is_proven
     }
 
-    /// Near the goal, where no path is found or safety holds the robot: by turns and straight moves, if there are such.
+    /// Near the goal, if no path is found or safety holds the robot: by turns and straight moves, if there are such.
     fn starts_maneuver_if_possible(&mut self, goal: Pose2, s: &WorldState<'_>) -> bool {
         let stands = s.estimate.twist.v.abs() < STANDING_SPEED_M_S;
         let is_exact = matches!(self.goal, Goal::Exact(_));

@@ -56,7 +56,7 @@ impl Navigator {
         self.plan_to_viewpoint(s)
     }
 
-    /// Plans to one of the candidate viewpoints; whether there is a path, or another candidate.
+    /// Plans to one of the candidate viewpoints. Returns whether there is a path, or another candidate.
     fn plan_to_viewpoint(&mut self, s: &WorldState<'_>) -> bool {
         let Viewpoint::Choosing(aim, places) = &mut self.viewpoint else {
             return self.is_at_viewpoint_or_going();

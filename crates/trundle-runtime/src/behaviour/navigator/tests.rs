@@ -30,7 +30,7 @@ impl Base {
         Self { navigator: navigator(), grid, pose, twist: Twist2::ZERO, now: Stamp::default() }
     }
 
-    /// The same with a goal.
+    /// A base with a goal.
     fn to(goal: Goal) -> Self {
         let mut base = Self::new(Pose2::new(3.0, 2.0, 0.0));
         base.navigator.set_goal(goal);

@@ -33,7 +33,7 @@ pub(super) enum ViewTarget {
 const VIEWPOINT_DISTANCES_M: [f64; 2] = [1.2, 0.9];
 /// Number of bearings at which viewpoints are sought. Source: ours.
 const VIEWPOINT_BEARINGS: usize = 16;
-/// Number of viewpoints, the nearest first, to which a path is planned, one a step. Source: ours.
+/// Number of viewpoints, the nearest first, to which a path is planned, one per step. Source: ours.
 const MAX_VIEWPOINT_PLANS: usize = 4;
 /// These poses by falling distance: the nearest is last and tried first.
 pub(super) fn best_last(mut places: Vec<Pose2>) -> Vec<Pose2> {

@@ -26,7 +26,7 @@ struct Look {
     is_in_vain: bool,
 }
 
-/// Radius of a virtual obstacle about a point that the path must not reach unseen \[m\]. Source: ours.
+/// Radius of a virtual obstacle around a point that the path must not reach unseen \[m\]. Source: ours.
 pub(super) const VIRTUAL_OBSTACLE_RADIUS_M: f64 = 0.3;
 /// Number of virtual obstacles of one search. Source: ours.
 pub(super) const MAX_VIRTUAL_OBSTACLES: usize = 3;
@@ -99,7 +99,7 @@ impl VisibilityConstraint {
         self.observations_of(at).all(|old| (old - from).norm() > MIN_VIEWPOINT_SPACING_M)
     }
 
-    /// Adds a keep-out zone; whether it is new.
+    /// Adds a keep-out zone. Returns whether it is new.
     pub(super) fn bar(&mut self, at: Vector2, now: Stamp) -> bool {
         let is_new = self.keep_out.iter().all(|(old, _)| (old - at).norm() > VIRTUAL_OBSTACLE_RADIUS_M / 2.0);
         if is_new {
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_looked_at_in_vain_is_looked_at_again_after_a_while() {
+    fn floor_observed_in_vain_is_observed_again_after_a_while() {
         let (mut unseen, at) = (VisibilityConstraint::default(), Vector2::new(1.0, 2.0));
         let time = |s: f64| Stamp::default().after(s);
         unseen.record_observation(at, Vector2::zeros(), time(-15.0));

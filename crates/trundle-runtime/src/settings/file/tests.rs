@@ -95,7 +95,7 @@ fn errors_of_range_name_the_key_of_the_file() {
     assert!(error.contains("odometry.max_speed_m_s is 0.3 m/s"), "{error}");
 }
 
-/// The value of a setting in a configuration, as text for an override; none where it is not set.
+/// The value of a setting in a configuration, as text for an override. `None` if it is not set.
 fn value_of(config: &RobotConfig, setting: &Setting) -> Option<toml::Value> {
     let root = toml::Value::try_from(config).unwrap();
     setting.path.split('.').try_fold(root, |value, field| value.get(field).cloned())
@@ -161,7 +161,7 @@ fn of_two_overrides_of_one_key_the_later_one_holds() {
 }
 
 #[test]
-fn whole_numbers_are_numbers_and_points_are_no_counts() {
+fn whole_numbers_are_numbers_and_points_are_not_counts() {
     assert_eq!(parse("[schedule]\nmap_hz = 4\n").unwrap().config.schedule.map_hz, 4.0);
     let file = RobotFile::parse("", &["schedule.map_hz=4".to_owned()]).unwrap();
     assert_eq!(file.config.schedule.map_hz, 4.0);

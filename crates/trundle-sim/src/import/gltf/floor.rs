@@ -6,14 +6,14 @@ use std::collections::BTreeMap;
 
 /// Height of a level \[m\]. Surfaces that differ by less are one level. Source: ours.
 const LEVEL_HEIGHT_M: f64 = 0.1;
-/// Angle between a surface and the horizontal \[deg\]. A steeper surface is no floor. Source: ours.
+/// Angle between a surface and the horizontal \[deg\]. A steeper surface is not floor. Source: ours.
 const MAX_SLOPE_DEG: f64 = 15.0;
 /// Share of the largest level's area that makes a level a floor. Source: ours.
 const MIN_FLOOR_SHARE: f64 = 0.3;
 /// Distance from z = 0 within which a level is at z = 0 \[m\]. Source: ours.
 const MAX_DISTANCE_FROM_ZERO_M: f64 = 0.15;
 
-/// The height of the floor where it is not at z = 0, world frame, m; `None` where it is there, or where there is no level.
+/// The height of the floor where it is not at z = 0, world frame, m; `None` if it is there, or if there is no level.
 pub(super) fn floor_elsewhere(positions: &[[f32; 3]], triangles: &[Triangle]) -> Option<f64> {
     let levels = levels(positions, triangles);
     let largest = levels.values().map(|level| level.area).fold(0.0, f64::max);
@@ -83,7 +83,7 @@ mod tests {
         assert_eq!(scene(&[(4.0, 1.5), (1.0, 0.9)]), Some(1.5), "a small step lies below the floor");
         assert_eq!(scene(&[(4.0, 0.05), (4.0, 2.5)]), None);
         assert_eq!(scene(&[(4.0, 0.0), (5.0, -3.0)]), None, "a cellar leaves the ground floor where it is");
-        assert_eq!(scene(&[(4.0, -0.75), (1.2, 0.0)]), Some(-0.75), "a table top at zero is no floor");
+        assert_eq!(scene(&[(4.0, -0.75), (1.2, 0.0)]), Some(-0.75), "a table top at zero is not floor");
         assert_eq!(scene(&[]), None);
     }
 }

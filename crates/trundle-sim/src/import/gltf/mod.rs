@@ -34,13 +34,13 @@ pub struct ImportedScene {
 
 /// Reads a glTF 2.0 file, `.gltf` or `.glb`, as one mesh in the world frame, m, z up.
 ///
-/// What it reads: the default scene with its nodes' transforms; triangle lists, strips and fans, indexed or not, sparse or
+/// Supported content: the default scene with its nodes' transforms; triangle lists, strips and fans, indexed or not, sparse or
 /// quantised; of materials the base colour and its texture (PNG or JPEG; alpha is ignored, everything is opaque and seen
-/// from both sides); KHR_texture_transform; the colours of vertices where there is no texture. Textures repeat. A texture that
+/// from both sides); KHR_texture_transform; the colours of vertices if there is no texture. Textures repeat. A texture that
 /// is missing or in another form is grey, and noted. Triangles without area are left out. What it ignores: skins, morph targets,
 /// animations, other maps of the material, cameras and lights.
 ///
-/// The floor, the lowest large level, is moved to z = 0 where it is elsewhere.
+/// The floor, the lowest large level, is moved to z = 0 if it is elsewhere.
 ///
 /// The up axis is the standard's, +y, unless `options` sets another: a z-up file without a declaration lies on its side.
 ///

@@ -27,7 +27,7 @@ impl UpAxis {
 pub struct GltfOptions {
     /// The file's up axis. Default +y, by the standard.
     pub up: UpAxis,
-    /// Metres a unit of the file, 1e-6 to 1e6. Default 1, by the standard.
+    /// Metres per unit of the file, 1e-6 to 1e6. Default 1, by the standard.
     pub scale: f64,
     /// Height of the model's floor, m, which comes to lie at z = 0. Default: where it is found, if `pose` is the identity.
     pub floor: Option<f64>,
@@ -52,7 +52,7 @@ impl GltfOptions {
     /// # Errors
     /// When the scale is outside its range or the pose is not finite.
     pub fn validated(self) -> Result<Self, Invalid> {
-        require_in("scale", self.scale, "m a unit", 1e-6, 1e6)?;
+        require_in("scale", self.scale, "m per unit", 1e-6, 1e6)?;
         self.floor.map_or(Ok(0.0), |floor| require_in("floor", floor, "m", -1e5, 1e5))?;
         if !self.pose.is_finite() {
             return Err(Invalid::new("pose", "not finite", "", "finite numbers"));

@@ -56,7 +56,7 @@ pub(super) fn parse(json: &[u8]) -> Result<Root, ImportFault> {
     first.map_or(Ok(root), |reason| Err(not_gltf(reason)))
 }
 
-/// Where and how a file is no JSON.
+/// Where and how a file is not JSON.
 fn broken_json(error: &gltf::json::Error) -> String {
     let (line, column) = (error.line(), error.column());
     if error.is_eof() {
@@ -67,7 +67,7 @@ fn broken_json(error: &gltf::json::Error) -> String {
     format!("its JSON is broken at line {line}, column {column}")
 }
 
-/// What of the JSON is not as glTF has it.
+/// Part of the JSON that is not as glTF has it.
 fn wrong_value(error: &gltf::json::Error) -> String {
     let problem = error.to_string();
     match problem.split_once("missing field ") {
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_index_of_a_map_that_is_not_drawn_is_no_fault() {
+    fn a_wrong_index_of_a_map_that_is_not_drawn_is_not_a_fault() {
         for map in [
             r#"{"normalTexture": {"index": 7}}"#,
             r#"{"occlusionTexture": {"index": 7}}"#,

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use trundle_core::{Invalid, Pose2, require_in};
 
-/// What a scene is built on: exactly one of `scene`, `gltf` and `map`.
+/// The base of a scene: exactly one of `scene`, `gltf` and `map`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Base {
@@ -22,7 +22,7 @@ pub struct Base {
     pub gltf: Option<PathBuf>,
     /// The glTF's axis that points up. Default `y`, as glTF 2.0 has it.
     pub up: Option<UpAxis>,
-    /// Metres a unit of the glTF, 0.0001 to 1000. Default 1.
+    /// Metres per unit of the glTF, 0.0001 to 1000. Default 1.
     pub scale: Option<f64>,
     /// Height of the glTF's floor, m, -1000 to 1000, which comes to lie at z = 0. Default: where it is found.
     pub floor: Option<f64>,
@@ -64,7 +64,7 @@ impl Base {
         match (&self.scene, &self.gltf, &self.map) {
             (Some(name), None, None) => built_in(name, seed),
             (None, Some(path), None) => {
-                let scale = require_in("base.scale", self.scale.unwrap_or(1.0), "m a unit", 1e-4, 1e3)?;
+                let scale = require_in("base.scale", self.scale.unwrap_or(1.0), "m per unit", 1e-4, 1e3)?;
                 self.floor.map_or(Ok(0.0), |z| {
                     require_in("base.floor", z, "m", -MAX_COORDINATE_M, MAX_COORDINATE_M)
                 })?;

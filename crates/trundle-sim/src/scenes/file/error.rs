@@ -6,7 +6,7 @@ use trundle_core::Invalid;
 /// Why a file that a scene file names could not be loaded.
 pub type LoadError = Box<dyn std::error::Error + Send + Sync>;
 
-/// What can be wrong with a scene file.
+/// Problems of a scene file.
 #[derive(Debug, thiserror::Error)]
 pub enum SceneError {
     /// An item, named as in the file (`props[3].size`).

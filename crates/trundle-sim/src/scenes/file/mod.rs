@@ -26,15 +26,15 @@ const MAX_COORDINATE_M: f64 = 1000.0;
 pub struct SceneFile {
     /// The scene's name. Default: the base's.
     pub name: Option<String>,
-    /// What it is built on.
+    /// The base of the scene.
     pub base: Base,
     /// Where the robot starts and shall go.
     #[serde(default)]
     pub robot: RobotPlaces,
-    /// What stands there beside the base.
+    /// Props beside the base.
     #[serde(default)]
     pub props: Vec<Prop>,
-    /// Who walks about, beside the base's people.
+    /// People who walk, beside the base's people.
     #[serde(default)]
     pub people: Vec<Person>,
     /// How it is lit. Default: as the base is.

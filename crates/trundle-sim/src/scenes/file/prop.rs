@@ -15,7 +15,7 @@ const WOOD: [u8; 3] = [176, 128, 80];
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Prop {
-    /// What it is.
+    /// The kind.
     pub kind: PropKind,
     /// Its middle, world frame, m.
     pub x: f64,

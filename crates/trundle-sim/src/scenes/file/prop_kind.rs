@@ -122,7 +122,7 @@ pub enum PaintName {
 }
 
 impl PaintName {
-    /// The paint in a colour, where it has one.
+    /// The paint in a colour, if it has one.
     pub(super) fn paint(self, color: [u8; 3]) -> Paint {
         match self {
             Self::Flat => Paint::Flat { color },

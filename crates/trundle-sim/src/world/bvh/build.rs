@@ -87,7 +87,7 @@ impl Builder<'_> {
         (self.part(part.first, middle), self.part(middle, part.end))
     }
 
-    /// Orders the items by the best plane; where its right side begins. `None` when no plane parts them.
+    /// Orders the items by the best plane; where its right side begins. `None` if no plane parts them.
     fn partition(&mut self, part: Part, depth: usize) -> Option<usize> {
         let items = &mut self.tree.items[part.first..part.end];
         let scale = Scale::over(items, &self.centers);

@@ -114,7 +114,7 @@ fn a_robot_inside_a_prop_is_refused_by_the_simulator() {
 }
 
 #[test]
-fn what_is_wrong_is_named() {
+fn errors_of_scene_files_are_named() {
     let with = |item: &str| refusal(&format!(r#"{{"base": {{"scene": "room"}}, {item}}}"#));
     let prop = |rest: &str| with(&format!(r#""props": [{{"kind": "box", "x": 0, "y": 0}}, {{{rest}}}]"#));
     for (said, expected) in [

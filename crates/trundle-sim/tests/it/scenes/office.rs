@@ -44,7 +44,7 @@ fn look(renderer: &Renderer, scene: &Scene, pose: Pose2) -> View {
     view
 }
 
-/// What place recognition is tempted by: the images are the same to the last byte.
+/// Look-alikes for place recognition: the images are the same to the last byte.
 #[test]
 fn look_alike_rooms_cannot_be_told_apart() {
     let renderer =

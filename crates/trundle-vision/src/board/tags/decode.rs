@@ -9,7 +9,7 @@ use crate::board::smooth_image::SmoothImage;
 use nalgebra::Matrix3;
 use trundle_core::Vector2;
 
-/// What a quad with a black border is.
+/// Kind of a quad with a black border.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Decoded {
     /// A marker of the family.
@@ -33,7 +33,7 @@ const PAPER_CELLS: f64 = 0.4;
 /// Smallest number of white and of black cells in a code: each of the family has more. Source: ours.
 const MIN_CELLS: usize = 6;
 
-/// Reads the cells of a quad; `None` where it has no black border on light paper, or a code of one colour.
+/// Reads the cells of a quad; `None` if it has no black border on light paper, or a code of one colour.
 pub(super) fn decode(image: &SmoothImage, quad: &Quad) -> Option<Decoded> {
     let cells = Cells::new(image, quad)?;
     let dark = mean(border().map(|(row, column)| cells.value(row, column)));

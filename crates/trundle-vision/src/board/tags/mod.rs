@@ -29,7 +29,7 @@ use quad::{outline_quad, refined_quad};
 use threshold::dark_mask;
 use trundle_core::GrayImage;
 
-/// What is in an image.
+/// Content of an image.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TagSearch {
     /// Markers of the family, by id.

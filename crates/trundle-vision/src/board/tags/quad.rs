@@ -19,7 +19,7 @@ const SEARCH_ROUNDS: usize = 3;
 /// Largest move of a corner by the refinement, over the mean side. Source: ours.
 const MAX_MOVE_RATIO: f64 = 0.2;
 
-/// The quad that an outline becomes when corners with the smallest triangles are removed; `None` where that is no quad.
+/// The quad that an outline becomes when corners with the smallest triangles are removed; `None` if that is not a quad.
 pub(super) fn outline_quad(component: &Component) -> Option<Quad> {
     let mut corners: Vec<Vector2> =
         component.hull.iter().map(|(x, y)| Vector2::new(*x as f64, *y as f64)).collect();
@@ -36,13 +36,13 @@ pub(super) fn outline_quad(component: &Component) -> Option<Quad> {
     (is_large && is_filled && area(&quad) >= MIN_AREA_RATIO * outline_area).then_some(quad)
 }
 
-/// Area of a polygon, positive where it runs clockwise in the image.
+/// Area of a polygon, positive if it runs clockwise in the image.
 fn area(corners: &[Vector2]) -> f64 {
     let n = corners.len();
     (0..n).map(|i| corners[i].perp(&corners[(i + 1) % n])).sum::<f64>() / 2.0
 }
 
-/// The corners at which curves along the edges meet; `None` where an edge is missing.
+/// The corners at which curves along the edges meet; `None` if an edge is missing.
 pub(super) fn refined_quad(image: &SmoothImage, start: Quad) -> Option<Quad> {
     let mut quad = start;
     for _ in 0..SEARCH_ROUNDS {

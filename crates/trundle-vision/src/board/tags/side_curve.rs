@@ -34,9 +34,9 @@ const MIN_SEARCH_PX: f64 = 3.0;
 const STEP_PX: f64 = 0.5;
 /// Half width of the window in which the mean of the gradient is the edge, px. Source: ours.
 const WINDOW_PX: f64 = 2.0;
-/// The same over the length: the border is an eighth of the side, less where the marker is tilted. Source: ours.
+/// Half width of that window as a fraction of the side's length: the border is an eighth of the side, less where the marker is tilted. Source: ours.
 const WINDOW_RATIO: f64 = 0.05;
-/// Smallest gradient of an edge, grey values a px. Source: ours.
+/// Smallest gradient of an edge, grey values per px. Source: ours.
 const MIN_GRADIENT: f64 = 4.0;
 /// Length from which the curve is a parabola; below, a line, px. Source: ours; the bend of shorter sides is below 0.1 px.
 const MIN_CURVED_PX: f64 = 24.0;
@@ -48,7 +48,7 @@ const SELECTION_COUNT: usize = 3;
 const MAX_RESIDUAL_PX: f64 = 0.5;
 
 impl SideCurve {
-    /// The edge near the chord between two corners, dark on its right side seen from the start; `None` where there is none.
+    /// The edge near the chord between two corners, dark on its right side seen from the start; `None` if there is none.
     pub(super) fn fit(image: &SmoothImage, start: Vector2, end: Vector2) -> Option<Self> {
         let chord = end - start;
         let along = chord.normalize();
@@ -69,7 +69,7 @@ impl SideCurve {
         Some(curve)
     }
 
-    /// Where this curve's end meets the start of the next, by Newton's method; `None` where they are parallel.
+    /// Where this curve's end meets the start of the next, by Newton's method; `None` if they are parallel.
     pub(super) fn end_meets_start_of(&self, next: &Self) -> Option<Vector2> {
         let (mut u, mut v) = (1.0, -1.0);
         for _ in 0..5 {

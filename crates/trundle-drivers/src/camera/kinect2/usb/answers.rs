@@ -5,7 +5,7 @@ const MAIN_VERSION: usize = 3;
 /// Words of one version: major and minor, revision, build, unused.
 const VERSION_WORDS: usize = 4;
 
-/// The main version of the firmware, as 4.3.3912.0; `None` where the answer is too short.
+/// The main version of the firmware, as 4.3.3912.0; `None` if the answer is too short.
 pub fn firmware(data: &[u8]) -> Option<String> {
     let words = words(data);
     let version = words.chunks_exact(VERSION_WORDS).nth(MAIN_VERSION)?;
@@ -20,7 +20,7 @@ pub fn serial_number(data: &[u8]) -> String {
     codes.map(|code| char::from_u32(code.into()).filter(char::is_ascii_graphic).unwrap_or('?')).collect()
 }
 
-/// Whether the sensor is ready; `None` where the answer is too short.
+/// Whether the sensor is ready; `None` if the answer is too short.
 pub fn is_ready(data: &[u8]) -> Option<bool> {
     words(data).first().map(|word| word & 1 != 0)
 }

@@ -60,7 +60,7 @@ pub fn p0_tables(page: &[u8]) -> Result<[Vec<u16>; FREQUENCY_COUNT], Invalid> {
 /// The depth camera of the device's mirrored image: f_x, f_y, unknown, c_x, c_y, k1, k2, p1, p2, k3.
 ///
 /// # Errors
-/// When the page is too short, or a number is no property of a camera.
+/// When the page is too short, or a number is not a property of a camera.
 pub fn depth_camera(page: &[u8]) -> Result<PinholeCamera, Invalid> {
     let [fx, fy, _, cx, cy, k1, k2, p1, p2, k3] = numbers(page, "depth parameters of the Kinect V2")?;
     PinholeCamera::new((COLUMNS, ROWS), (fx, fy), centre(cx, cy), Distortion { k1, k2, p1, p2, k3 })
@@ -80,7 +80,7 @@ pub fn turned_back(camera: &PinholeCamera) -> Result<PinholeCamera, Invalid> {
 /// The colour camera and the pose of the depth camera in its frame, both of the images turned back.
 ///
 /// # Errors
-/// When the page is too short, or a number is no property of a camera.
+/// When the page is too short, or a number is not a property of a camera.
 pub fn color_camera(page: &[u8]) -> Result<(PinholeCamera, Pose3), Invalid> {
     // The first byte is the number of the table.
     let place = "colour parameters of the Kinect V2";

@@ -36,7 +36,7 @@ const COLOR_TRANSFERS: (usize, usize) = (20, 0x4000);
 /// Depth transfers that wait at the same time, and their packets: 60 ms of packets of 0.125 ms.
 const DEPTH_TRANSFERS: (usize, usize) = (60, 8);
 
-/// What the device says of itself.
+/// Description of the device by itself.
 #[derive(Debug)]
 pub(super) struct Identity {
     pub(super) serial: String,

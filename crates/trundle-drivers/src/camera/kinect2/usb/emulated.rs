@@ -235,7 +235,7 @@ impl Emulated {
         self.replies.push_back(words(&[reply::COMPLETION_MAGIC, sequence, 0, 0]));
     }
 
-    /// Ends a transfer where there is something to end it with.
+    /// Ends a transfer if there is something to end it with.
     ///
     /// # Safety
     /// The transfer has its packets and its buffer.

@@ -7,7 +7,7 @@ use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What is known of libusb. Versions before 1.0.20 limit isochronous packets to 192 bytes.
+/// Specification of libusb. Versions before 1.0.20 limit isochronous packets to 192 bytes.
 pub const LIBRARY: LibrarySpec = LibrarySpec {
     name: "libusb-1.0",
     variable: "TRUNDLE_LIBUSB_LIB",
@@ -132,7 +132,7 @@ functions! {
 }
 
 impl UsbApi {
-    /// Loads the library; `setting` is its file in the settings, where there is one.
+    /// Loads the library; `setting` is its file in the settings, if there is one.
     ///
     /// # Errors
     /// When the library is missing, broken, lacks functions, or has a version that does not suit.

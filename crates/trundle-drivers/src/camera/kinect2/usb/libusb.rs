@@ -98,7 +98,7 @@ unsafe impl Sync for UsbSession {}
 /// A Kinect V2 in the list of devices.
 #[derive(Debug)]
 pub(super) struct Found {
-    /// Speed of its connection; `None` where unknown.
+    /// Speed of its connection; `None` if unknown.
     pub(super) speed: Option<UsbSpeed>,
     /// The open device, or why it cannot be opened.
     pub(super) opened: Result<UsbConnection, CameraError>,
@@ -163,7 +163,7 @@ impl Drop for UsbSession {
 }
 
 impl Found {
-    /// The serial number; empty where it cannot be read.
+    /// The serial number; empty if it cannot be read.
     pub(super) fn serial(&self) -> String {
         self.opened.as_ref().map(|handle| handle.text(self.serial_text)).unwrap_or_default()
     }
@@ -294,7 +294,7 @@ impl Drop for UsbConnection {
     }
 }
 
-/// What arrived at an endpoint: the bytes, or `None` where they were lost.
+/// Arrival at an endpoint: the bytes, or `None` if they were lost.
 pub(super) type Arrival<'a> = (u8, Option<&'a [u8]>);
 
 /// Sizes of the transfers of one endpoint.
@@ -310,7 +310,7 @@ pub(super) struct TransferPlan {
     pub(super) bytes: usize,
 }
 
-/// What the callbacks share.
+/// State that the callbacks share.
 struct Shared<'a> {
     api: Arc<UsbApi>,
     on_arrival: Box<dyn FnMut(Arrival<'_>) + 'a>,
@@ -401,7 +401,7 @@ impl<'a> Transfers<'a> {
         unsafe { (*self.shared.as_ptr()).waiting }
     }
 
-    /// Cancels all transfers and waits for their end; whether all ended.
+    /// Cancels all transfers and waits for their end. Returns whether all ended.
     fn cancel(&mut self) -> bool {
         // SAFETY: no callback runs outside of `run_events`.
         unsafe { (*self.shared.as_ptr()).is_stopping = true };

@@ -59,7 +59,7 @@ pub struct ReplyReader {
 }
 
 impl ReplyReader {
-    /// The reply to the request `sequence`, with at most `limit` bytes of data; 0 where only the completion comes.
+    /// The reply to the request `sequence`, with at most `limit` bytes of data; 0 if only the completion comes.
     pub fn new(sequence: u32, limit: u32) -> Self {
         Self { sequence, limit: limit as usize, data: None }
     }
@@ -100,7 +100,7 @@ impl ReplyReader {
     }
 }
 
-/// The sequence in a completion; `None` where `transfer` is none.
+/// The sequence in a completion; `None` if `transfer` is none.
 fn completed_sequence(transfer: &[u8]) -> Option<u32> {
     let (words, []) = transfer.as_chunks::<4>() else { return None };
     let [magic, sequence, _, _] = *words else { return None };

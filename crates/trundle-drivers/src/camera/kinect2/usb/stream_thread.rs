@@ -18,7 +18,7 @@ const QUEUE_IMAGES: usize = 4;
 /// Longest wait for a transfer \[ms\]; the thread looks for its end in between. Source: ours.
 const POLL_MS: u64 = 50;
 
-/// What the thread delivers.
+/// Results of the thread.
 #[derive(Debug)]
 pub(super) enum Streamed {
     Color(ColorPacket),
@@ -33,7 +33,7 @@ pub(super) struct StreamThread {
     thread: Option<JoinHandle<Result<(), CameraError>>>,
 }
 
-/// What the transfers fill.
+/// Buffers that the transfers fill.
 struct Collector {
     color: ColorPackets,
     depth: DepthPackets,
@@ -56,7 +56,7 @@ impl StreamThread {
         Ok((identity, Self { images, is_stopping, thread: Some(thread) }))
     }
 
-    /// The next image; `None` when none came within `timeout`.
+    /// The next image; `None` if none came within `timeout`.
     ///
     /// # Errors
     /// The error that ended the thread.
@@ -120,7 +120,7 @@ impl Collector {
         self.unread += u64::from(is_dropped);
     }
 
-    /// What was lost, for the log.
+    /// Losses, for the log.
     fn report(&self) {
         tracing::info!(
             "{}: {} images of depth incomplete, {} images not read in time, {} bytes of colour and {} bytes of depth skipped",

@@ -25,7 +25,7 @@ pub struct FreenectSettings {
     pub calibration: Option<RgbdCalibration>,
     /// Time from the middle of the exposure to the arrival of a frame \[s\]. Default 0.05, assumed.
     pub delay_s: f64,
-    /// File of the library; `None` where it is searched.
+    /// File of the library; `None` if it is searched.
     pub library: Option<PathBuf>,
 }
 

@@ -39,7 +39,7 @@ impl Receiver {
         result
     }
 
-    /// A pair of images of the same time, where there is one.
+    /// A pair of images of the same time, if there is one.
     pub(super) fn take_pair(&mut self) -> Option<CameraFrame> {
         self.pair.take()
     }

@@ -57,7 +57,7 @@ impl Session {
         Ok(Self { api: Arc::clone(api), context })
     }
 
-    /// The connected cameras. Their serial numbers are empty where the library cannot list them.
+    /// The connected cameras. Their serial numbers are empty if the library cannot list them.
     pub(super) fn devices(&self) -> Vec<DeviceEntry> {
         // SAFETY: the context is alive.
         let count = unsafe { (self.api.freenect_num_devices)(self.context.as_ptr()) };

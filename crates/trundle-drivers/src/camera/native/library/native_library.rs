@@ -19,7 +19,7 @@ pub struct NativeLibrary {
 }
 
 impl NativeLibrary {
-    /// Loads the library `spec`; `setting` is its file in the settings, where there is one.
+    /// Loads the library `spec`; `setting` is its file in the settings, if there is one.
     ///
     /// # Errors
     /// [`CameraError::LibraryMissing`] when there is no such file; [`CameraError::LibraryBroken`] when it, or a library that it needs,
@@ -38,7 +38,7 @@ impl NativeLibrary {
         Err(failure(&spec, candidates.named_by, problems))
     }
 
-    /// What was known of the library.
+    /// Specification of the library.
     pub fn spec(&self) -> &LibrarySpec {
         &self.spec
     }
@@ -51,7 +51,7 @@ impl NativeLibrary {
         self.spec.check(found)
     }
 
-    /// The function `name`, `None` where the library lacks it.
+    /// The function `name`, `None` if the library lacks it.
     ///
     /// # Safety
     /// `T` is the type of a pointer to that function, as its documentation declares it.
@@ -114,7 +114,7 @@ fn failure(spec: &LibrarySpec, named_by: Option<String>, problems: Vec<(PathBuf,
     }
 }
 
-/// What to do about a message of the loader. It begins with the missing file, where one is missing.
+/// Remedy for a message of the loader. It begins with the missing file, if one is missing.
 fn remedy_of(spec: &LibrarySpec, problem: &str) -> String {
     let missing = problem.split(": cannot open shared object file").next().filter(|name| *name != problem);
     match missing {

@@ -21,12 +21,12 @@ pub enum LibraryState {
     Usable {
         /// Its file.
         file: PathBuf,
-        /// Its version; `None` where the library has no function that tells it.
+        /// Its version; `None` if the library has no function that tells it.
         version: Option<LibraryVersion>,
     },
     /// The library cannot be used.
     Unusable {
-        /// What is missing, and how to get it.
+        /// The missing part, and how to get it.
         problem: String,
     },
 }

@@ -18,7 +18,7 @@ const WELL_KNOWN_FOLDERS: &[&str] = &[
 /// The files to try for a library, first to last.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Candidates {
-    /// Who named the file; `None` where the default places are tried.
+    /// Source of the file's name; `None` if the default places are tried.
     pub named_by: Option<String>,
     /// The files.
     pub files: Vec<Candidate>,

@@ -1,4 +1,4 @@
-//! What is known of a library before it is loaded.
+//! Specification of a library before it is loaded.
 
 use crate::camera::CameraError;
 use std::fmt;
@@ -12,7 +12,7 @@ pub struct LibrarySpec {
     pub variable: &'static str,
     /// Names under which the loader finds it, best first.
     pub sonames: &'static [&'static str],
-    /// Its place inside a Python wheel; `None` where there is no wheel.
+    /// Its place inside a Python wheel; `None` if there is no wheel.
     pub wheel: Option<WheelFile>,
     /// First version that suits.
     pub from: LibraryVersion,

@@ -67,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn files_with_debug_information_are_no_libraries() {
+    fn files_with_debug_information_are_not_libraries() {
         assert!(is_library(Path::new("libOrbbecSDK.so.2"), "libOrbbecSDK"));
         assert!(!is_library(Path::new("pyrealsense2.cpython-311.so.debug"), "pyrealsense2"));
     }

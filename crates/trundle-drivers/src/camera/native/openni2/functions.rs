@@ -7,7 +7,7 @@ use std::ffi::{CStr, c_char, c_int, c_void};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-/// What is known of OpenNI2.
+/// Specification of OpenNI2.
 pub const LIBRARY: LibrarySpec = LibrarySpec {
     name: "OpenNI2",
     variable: "TRUNDLE_OPENNI2_LIB",
@@ -117,7 +117,7 @@ functions! {
 }
 
 impl OpenNiApi {
-    /// Loads the library and starts its drivers, which stay until the program ends; `setting` is its file in the settings, where there is
+    /// Loads the library and starts its drivers, which stay until the program ends; `setting` is its file in the settings, if there is
     /// one.
     ///
     /// # Errors

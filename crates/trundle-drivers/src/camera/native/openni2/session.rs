@@ -102,7 +102,7 @@ impl OpenDevice {
         Ok(())
     }
 
-    /// Asks for depth registered to colour; `false` where the device does not offer it.
+    /// Asks for depth registered to colour; `false` if the device does not offer it.
     pub(super) fn register_depth(&self) -> bool {
         let mode = REGISTRATION_DEPTH_TO_COLOR;
         // SAFETY: the device is alive, and the value has the size of its type.
@@ -117,7 +117,7 @@ impl OpenDevice {
         }
     }
 
-    /// What the device says of itself.
+    /// Description of the device by itself.
     pub(super) fn about(&self) -> Result<DeviceEntry, CameraError> {
         // SAFETY: all fields of the structure may be zero.
         let mut info: DeviceInfo = unsafe { std::mem::zeroed() };
@@ -137,7 +137,7 @@ impl OpenDevice {
         self.api.check("oniStreamGetProperty", status, &self.name).map(|()| mode)
     }
 
-    /// Fields of view \[rad\]; 0 where the stream does not tell them.
+    /// Fields of view \[rad\]; 0 if the stream does not tell them.
     pub(super) fn fields_of_view(&self, kind: Kind) -> (f64, f64) {
         let (mut across, mut down) = (0_f32, 0_f32);
         self.property(kind, STREAM_PROPERTY_HORIZONTAL_FOV, &mut across);
@@ -162,7 +162,7 @@ impl OpenDevice {
         })
     }
 
-    /// The next image of either stream; `None` when none came within `timeout`.
+    /// The next image of either stream; `None` if none came within `timeout`.
     pub(super) fn next_image(&mut self, timeout: Duration) -> Result<Option<(Kind, RawImage)>, CameraError> {
         let ms = c_int::try_from(timeout.as_millis()).unwrap_or(c_int::MAX);
         let mut index = -1;

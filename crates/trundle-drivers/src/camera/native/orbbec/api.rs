@@ -13,7 +13,7 @@ const EXCEPTION_CAMERA_DISCONNECTED: c_int = 2;
 /// How to get the permission to open an Orbbec camera.
 const PERMISSION_REMEDY: &str = "install the udev rules of OrbbecSDK: run 'sudo scripts/env_setup/install_udev_rules.sh' of \
     https://github.com/orbbec/OrbbecSDK_v2 and plug the camera in again";
-/// What to do about other errors.
+/// Remedy for other errors.
 const GENERAL_REMEDY: &str = "unplug the camera and plug it in again; if the error stays, search the message in the issues of OrbbecSDK_v2";
 
 /// An error of the library.
@@ -46,7 +46,7 @@ impl OrbbecError {
 }
 
 impl OrbbecApi {
-    /// Loads the library; `setting` is its file in the settings, where there is one. The library writes no log.
+    /// Loads the library; `setting` is its file in the settings, if there is one. The library writes no log.
     ///
     /// # Errors
     /// When the library is missing, broken, or of another version.
@@ -122,7 +122,7 @@ impl OrbbecApi {
         })
     }
 
-    /// As [`OrbbecApi::owned`]; `None` where the function returned no object.
+    /// As [`OrbbecApi::owned`]; `None` if the function returned no object.
     pub(super) fn owned_or_none<T>(
         self: &Arc<Self>,
         delete: unsafe extern "C" fn(*mut T, ErrorOut),
@@ -161,7 +161,7 @@ impl<T> Drop for Handle<T> {
     }
 }
 
-/// A copy of a text of the library; empty where there is none.
+/// A copy of a text of the library; empty if there is none.
 ///
 /// # Safety
 /// `text` is null or ends with a zero.

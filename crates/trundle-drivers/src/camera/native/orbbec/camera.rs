@@ -20,7 +20,7 @@ const FIRST_FRAME_TIMEOUT: Duration = Duration::from_secs(5);
 /// Time from the middle of the exposure to the arrival of a frame \[s\]. Source: ours, assumed as for a RealSense camera.
 const DEFAULT_DELAY_S: f64 = 0.045;
 
-/// What to ask of an Orbbec camera. A size or rate of 0 means any.
+/// Settings to request from an Orbbec camera. A size or rate of 0 means any.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OrbbecSettings {
     /// Columns and rows of the colour image \[px\]. Default any.
@@ -31,7 +31,7 @@ pub struct OrbbecSettings {
     pub rate_hz: u32,
     /// Time from the middle of the exposure to the arrival of a frame \[s\]. Default 0.045, assumed.
     pub delay_s: f64,
-    /// File of the library; `None` where it is searched.
+    /// File of the library; `None` if it is searched.
     pub library: Option<PathBuf>,
 }
 
@@ -134,7 +134,7 @@ impl Running {
         Ok(Self { pipeline, _device: device, _context: context, api: Arc::clone(api), name })
     }
 
-    /// The next set with both images; `None` when none came within `timeout`.
+    /// The next set with both images; `None` if none came within `timeout`.
     fn wait(&self, timeout: Duration) -> Result<Option<FrameSet>, CameraError> {
         let start = Instant::now();
         loop {

@@ -24,7 +24,7 @@ pub(super) fn device_list(
     api.owned(api.ob_delete_device_list, |error| unsafe { (api.ob_query_device_list)(context.get(), error) })
 }
 
-/// What the library says of each camera of its list.
+/// Facts that the library reports of each camera of its list.
 pub(super) fn entries(api: &OrbbecApi, list: &Handle<DeviceList>) -> Result<Vec<DeviceEntry>, OrbbecError> {
     // SAFETY: the list is alive.
     let count = api.call(|error| unsafe { (api.ob_device_list_get_count)(list.get(), error) })?;

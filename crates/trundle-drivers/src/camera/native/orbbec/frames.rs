@@ -15,7 +15,7 @@ const NANOS_PER_US: i64 = 1000;
 /// Metres in a millimetre.
 const M_PER_MM: f64 = 1e-3;
 
-/// The form of the pixels for a number of `ob_format`; `None` where [`PixelFormat`] has none.
+/// The form of the pixels for a number of `ob_format`; `None` if [`PixelFormat`] has none.
 fn pixel_format(format: c_int) -> Option<PixelFormat> {
     Some(match format {
         0 | 1 => PixelFormat::Yuyv,
@@ -38,7 +38,7 @@ pub(super) struct FrameSet {
 }
 
 impl FrameSet {
-    /// The images of a set; `None` where one is missing.
+    /// The images of a set; `None` if one is missing.
     pub(super) fn new(api: &Arc<OrbbecApi>, set: &Handle<Frame>) -> Result<Option<Self>, OrbbecError> {
         // SAFETY: the set is alive.
         let color = api.owned_or_none(api.ob_delete_frame, |error| unsafe {

@@ -5,7 +5,7 @@ use crate::camera::native::library::functions::functions;
 use crate::camera::native::library::{LibrarySpec, LibraryVersion, NativeLibrary, WheelFile};
 use std::ffi::{c_char, c_float, c_int};
 
-/// What is known of OrbbecSDK.
+/// Specification of OrbbecSDK.
 pub const LIBRARY: LibrarySpec = LibrarySpec {
     name: "OrbbecSDK",
     variable: "TRUNDLE_ORBBEC_LIB",

@@ -62,7 +62,7 @@ fn rational(lens: Distortion, [k4, k5, k6]: [f64; 3], n: Vector2) -> Vector2 {
 /// The pose of the source stream's camera in the target's frame.
 ///
 /// # Errors
-/// When the numbers are no pose.
+/// When the numbers are not a pose.
 pub fn pose(raw: &Extrinsic) -> Result<Pose3, Invalid> {
     let rotation = Matrix3::from_row_slice(&raw.rotation.map(f64::from));
     let translation = Vector3::from(raw.translation.map(f64::from)) * M_PER_MM;

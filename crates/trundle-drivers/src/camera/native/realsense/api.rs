@@ -8,7 +8,7 @@ use std::ffi::{CStr, c_char, c_int};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What is known of librealsense2.
+/// Specification of librealsense2.
 pub const LIBRARY: LibrarySpec = LibrarySpec {
     name: "librealsense2",
     variable: "TRUNDLE_REALSENSE_LIB",
@@ -44,7 +44,7 @@ pub(super) struct RealSenseError {
 }
 
 impl RealSenseApi {
-    /// Loads the library; `setting` is its file in the settings, where there is one.
+    /// Loads the library; `setting` is its file in the settings, if there is one.
     ///
     /// # Errors
     /// When the library is missing, broken, or of another version.
@@ -111,7 +111,7 @@ impl RealSenseApi {
     }
 }
 
-/// A copy of a text of the library; empty where there is none.
+/// A copy of a text of the library; empty if there is none.
 ///
 /// # Safety
 /// `text` is null or ends with a zero.

@@ -65,7 +65,7 @@ impl RealSenseCamera {
         self.gyro.take()
     }
 
-    /// The next frame that is no repetition, within `timeout`.
+    /// The next frame that is not a repetition, within `timeout`.
     fn wait(&mut self, timeout: Duration) -> Result<Option<CameraFrame>, CameraError> {
         let start = Instant::now();
         loop {

@@ -27,7 +27,7 @@ pub(super) const DOMAIN_HARDWARE_CLOCK: c_int = 0;
 
 pub(super) const PLAYBACK_STATUS_STOPPED: c_int = 3;
 
-/// The form of the pixels for a number of `rs2_format`; `None` where [`PixelFormat`] has none.
+/// The form of the pixels for a number of `rs2_format`; `None` if [`PixelFormat`] has none.
 pub(super) fn pixel_format(format: c_int) -> Option<PixelFormat> {
     Some(match format {
         FORMAT_Z16 => PixelFormat::Depth16,

@@ -44,7 +44,7 @@ fn connected(
         .collect()
 }
 
-/// What a device says of itself.
+/// Description of a device by itself.
 pub(super) fn entry(api: &RealSenseApi, device: &Handle<Device>) -> Result<DeviceEntry, RealSenseError> {
     Ok(DeviceEntry {
         name: info(api, device, CAMERA_INFO_NAME)?,
@@ -54,7 +54,7 @@ pub(super) fn entry(api: &RealSenseApi, device: &Handle<Device>) -> Result<Devic
     })
 }
 
-/// A text of the device; empty where it has none.
+/// A text of the device; empty if it has none.
 fn info(api: &RealSenseApi, device: &Handle<Device>, number: c_int) -> Result<String, RealSenseError> {
     // SAFETY: the device is alive.
     let is_there =

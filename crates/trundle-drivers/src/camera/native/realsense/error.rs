@@ -8,7 +8,7 @@ use std::ffi::c_int;
 /// How to get the permission to open a RealSense camera.
 const PERMISSION_REMEDY: &str = "install the udev rules of librealsense: copy 99-realsense-libusb.rules from \
     https://github.com/realsenseai/librealsense/tree/master/config to /etc/udev/rules.d, run 'sudo udevadm control --reload' and plug the camera in again";
-/// What to do about other errors.
+/// Remedy for other errors.
 const GENERAL_REMEDY: &str = "unplug the camera and plug it in again; if the error stays, search the message in the issues of librealsense";
 
 impl RealSenseError {

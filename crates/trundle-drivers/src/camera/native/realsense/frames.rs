@@ -16,7 +16,7 @@ use trundle_core::{Stamp, Vector3};
 /// Nanoseconds in a millisecond.
 const NANOS_PER_MS: f64 = 1e6;
 
-/// What a frame of the library holds.
+/// Content of a frame of the library.
 #[derive(Debug)]
 pub(super) enum Content {
     /// An image of the stream.

@@ -11,7 +11,7 @@ const MAX_SAMPLES: usize = 90;
 pub struct GyroSample {
     /// Time of the sample on the clock of the images.
     pub device_stamp: Stamp,
-    /// Turn rate about the axes of the gyro, which are those of the depth camera \[rad/s\].
+    /// Turn rate around the axes of the gyro, which are those of the depth camera \[rad/s\].
     pub rate: Vector3,
 }
 

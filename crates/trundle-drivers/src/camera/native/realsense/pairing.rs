@@ -37,7 +37,7 @@ impl Pairing {
         Self { pair: ImagePair::new(rate_hz), color: Source::default(), depth: Source::default() }
     }
 
-    /// The next frame, after the images of a set; `None` where an image is missing.
+    /// The next frame, after the images of a set; `None` if an image is missing.
     ///
     /// # Errors
     /// When only one of the images has a stamp of the camera's own clock.

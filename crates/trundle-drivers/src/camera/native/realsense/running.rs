@@ -47,7 +47,7 @@ impl Running {
         Ok((Self { pipeline, device, hub, _config: config, _context: context, api }, started))
     }
 
-    /// What the camera says of itself.
+    /// Description of the camera by itself.
     pub(super) fn info(
         &self,
         about: DeviceEntry,
@@ -71,7 +71,7 @@ impl Running {
         })
     }
 
-    /// The next set of frames; `None` when none came within `timeout`.
+    /// The next set of frames; `None` if none came within `timeout`.
     pub(super) fn wait(&self, timeout: Duration) -> Result<Option<Handle<Frame>>, RealSenseError> {
         let ms = c_uint::try_from(timeout.as_millis()).unwrap_or(c_uint::MAX);
         let mut set: *mut Frame = std::ptr::null_mut();

@@ -14,7 +14,7 @@ const DEFAULT_DELAY_S: f64 = 0.045;
 /// Longest delay: 1 s. A longer one is refused. Source: ours, the limit of a camera stream.
 const MAX_DELAY_S: f64 = 1.0;
 
-/// What to ask of a RealSense camera. A recording delivers its own sizes and rates.
+/// Settings to request from a RealSense camera. A recording delivers its own sizes and rates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RealSenseSettings {
     /// Columns and rows of the colour image \[px\]. Default 640 x 480.
@@ -27,7 +27,7 @@ pub struct RealSenseSettings {
     pub gyro: bool,
     /// Time from the middle of the exposure to the arrival of a frame \[s\], 0 to 1. Default 0.045, assumed.
     pub delay_s: f64,
-    /// File of the library; `None` where it is searched.
+    /// File of the library; `None` if it is searched.
     pub library: Option<PathBuf>,
 }
 

@@ -1,4 +1,4 @@
-//! What librealsense2 says of the streams of a started pipeline.
+//! Facts that librealsense2 reports of the streams of a started pipeline.
 
 use super::api::RealSenseError;
 use super::constants::{EXTENSION_DEPTH_SENSOR, STREAM_COLOR, STREAM_DEPTH, pixel_format};
