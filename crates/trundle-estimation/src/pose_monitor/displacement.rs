@@ -7,7 +7,7 @@ use trundle_core::{Pose2, Scan, Stamp};
 ///
 /// Images that are not located, and scans that contradict the map, are no such evidence: people and moved furniture cause both.
 /// Evidence is a break in the sequence of scans, a time without scans, or wheels that hung. It counts until an image is located, or a
-/// scan shows again what stood before the break. A break is proof by itself. The other two are proof only with images that show enough
+/// scan shows again what stood before the break. A break that lasts is proof by itself. The other two are proof only with images that show enough
 /// and are not located.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct DisplacementMonitor {
@@ -26,8 +26,8 @@ pub(crate) struct DisplacementMonitor {
 enum Displacement {
     /// The motion was not measured for a while.
     Possible,
-    /// Two successive scans contradict the odometry.
-    Certain,
+    /// Two successive scans contradict the odometry, since this stamp.
+    Certain(Stamp),
 }
 
 /// What an image shows of the robot's place.
@@ -43,6 +43,9 @@ pub enum ImageEvidence {
 
 /// Time without a located image \[s\] after which a robot with evidence of displacement is elsewhere. Source: ours.
 const DISPLACED_AFTER_S: f64 = 1.5;
+/// Time after a certain displacement \[s\] after which a robot whose images show too little to be located is elsewhere. Source: ours,
+/// a scan that contradicts the map decides sooner.
+const BLIND_DISPLACED_AFTER_S: f64 = 3.0;
 /// Time without a located image \[s\] after which an image with few features does not restart the time. Source: ours.
 const UNLOCATED_FOR_LONG_S: f64 = 0.7;
 
@@ -52,7 +55,7 @@ impl DisplacementMonitor {
         let continuity = self.continuity.add(odom_from_base, scan);
         match continuity {
             Continuity::Continuous => {}
-            Continuity::Broken => self.displaced = Some(Displacement::Certain),
+            Continuity::Broken => self.is_displaced_since(scan.stamp()),
             Continuity::Unknown => self.may_be_displaced(),
             Continuity::Restored => self.displaced = None,
         }
@@ -62,6 +65,12 @@ impl DisplacementMonitor {
     /// A wheel hangs.
     pub(crate) fn add_lift(&mut self) {
         self.may_be_displaced();
+    }
+
+    fn is_displaced_since(&mut self, now: Stamp) {
+        if !matches!(self.displaced, Some(Displacement::Certain(_))) {
+            self.displaced = Some(Displacement::Certain(now));
+        }
     }
 
     fn may_be_displaced(&mut self) {
@@ -78,16 +87,25 @@ impl DisplacementMonitor {
         if self.is_placed_by_scans {
             return false;
         }
-        let is_certain = self.displaced == Some(Displacement::Certain);
-        if evidence == ImageEvidence::Blind && !is_certain {
-            if !self.unlocated.is_some_and(|since| now - since > UNLOCATED_FOR_LONG_S) {
-                (self.unlocated, self.searched) = (None, None);
-            }
-            return false;
+        if evidence == ImageEvidence::Blind {
+            return self.add_blind(now);
         }
         let since = *self.unlocated.get_or_insert(now);
         let is_time = now - self.searched.unwrap_or(since) > DISPLACED_AFTER_S;
         let is_elsewhere = is_time && self.is_displaced();
+        if is_elsewhere {
+            self.searched = Some(now);
+        }
+        is_elsewhere
+    }
+
+    /// Takes in an image that cannot be located: after a certain displacement it begins one search.
+    fn add_blind(&mut self, now: Stamp) -> bool {
+        if self.unlocated.is_some_and(|since| now - since <= UNLOCATED_FOR_LONG_S) {
+            (self.unlocated, self.searched) = (None, None);
+        }
+        let is_elsewhere = self.searched.is_none()
+            && matches!(self.displaced, Some(Displacement::Certain(since)) if now - since > BLIND_DISPLACED_AFTER_S);
         if is_elsewhere {
             self.searched = Some(now);
         }
@@ -164,7 +182,8 @@ mod tests {
 
     #[test]
     fn before_a_bare_wall_a_break_of_the_scans_is_proof_and_a_lift_is_not() {
-        assert!(!elsewhere(&mut displaced(), |_| ImageEvidence::Blind).is_empty());
+        let seconds = elsewhere(&mut displaced(), |_| ImageEvidence::Blind);
+        assert!(seconds.len() == 1 && (seconds[0] - BLIND_DISPLACED_AFTER_S).abs() < 0.11, "{seconds:?}");
         let mut lifted = DisplacementMonitor::default();
         lifted.add_lift();
         assert!(elsewhere(&mut lifted, |_| ImageEvidence::Blind).is_empty());
