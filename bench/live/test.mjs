@@ -6,7 +6,7 @@ import { connect, createServer as createTcpServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
-import { start } from "./program.mjs";
+import { start, startCommand } from "./program.mjs";
 
 const [trundle, pictures = mkdtempSync(join(tmpdir(), "live-pictures-"))] = process.argv.slice(2);
 const CHROMIUM = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
@@ -501,9 +501,83 @@ await check("the page comes back after a restart of the program", async () => {
   return `after ${seconds.toFixed(1)} s`;
 });
 
+await program.end();
+main.mayFail = true;
+
+/** Another command with its page, until the program is ended. */
+async function withCommand(args, work) {
+  const other = await startCommand(trundle, [...args, "--live", "127.0.0.1:0"]);
+  const viewer = await open(other.drive ?? other.view);
+  try {
+    await until("a state", () => viewer.state !== null, 30);
+    return await work(viewer, other);
+  } finally {
+    await viewer.context.close();
+    await other.end();
+  }
+}
+const isShown = (page, selector) => page.locator(selector).first().isVisible();
+const tracked = join(place, "tracked");
+
+await check("sim: the page drives by keys, shows camera and depth, and offers no missions", () =>
+  withCommand(["sim", "office", "--laser", "rplidar-a1", "--record", tracked, "--rate", "10", "--duration", "60"], async (viewer) => {
+    const { page } = viewer;
+    for (const absent of ["#explore", "[data-tool=goal]", "#mission-card", "#settings-card"])
+      assert(!(await isShown(page, absent)), `${absent} is offered`);
+    assert((await isShown(page, "#stop")) && (await isShown(page, "[data-tool=drive]")));
+    const [x, y] = viewer.state.pose;
+    await page.keyboard.down("w");
+    await until("motion", () => speed(viewer) > 0.1, 5);
+    assert.equal(viewer.state.state, "driven by hand");
+    await page.waitForTimeout(4000);
+    await page.keyboard.down("a");
+    await page.waitForTimeout(1500);
+    await page.locator("#depth-toggle").click();
+    await page.waitForTimeout(700);
+    await picture("sim", page);
+    await page.keyboard.up("a");
+    await page.keyboard.up("w");
+    const seconds = await until("rest", () => speed(viewer) === 0, 3);
+    await page.keyboard.down("w");
+    await until("motion", () => speed(viewer) > 0.1, 5);
+    await page.keyboard.press("Space");
+    const stopped = await until("stop", () => speed(viewer) === 0, 2);
+    await page.keyboard.up("w");
+    const driven = Math.hypot(viewer.state.pose[0] - x, viewer.state.pose[1] - y);
+    assert(driven > 0.5, `${driven} m`);
+    return `${driven.toFixed(1)} m, at rest ${seconds.toFixed(2)} s after the keys, ${stopped.toFixed(2)} s after STOP`;
+  }),
+);
+
+await check("slam: features, landmarks, map and progress, and nothing that drives", () =>
+  withCommand(["slam", tracked, "--height", "0.45", "--tilt", "8", "--out", join(place, "slam")], async (viewer) => {
+    const { page } = viewer;
+    for (const absent of ["#stop", "#explore", "[data-tool=drive]", "#mission-card", "#notes-card"])
+      assert(!(await isShown(page, absent)), `${absent} is offered`);
+    const landmarks = () => page.evaluate(() => window.trundle.map.landmarks.length / 3);
+    await until("landmarks", async () => (await landmarks()) > 100, 30);
+    await until("half of the images", async () => parseInt(await text(page, "series-count")) > 30, 30);
+    await picture("slam", page);
+    return `${await text(page, "series-count")}, ${await landmarks()} landmarks`;
+  }),
+);
+
+await check("experiment: the run that goes on, and the results of those that have ended", () =>
+  withCommand(["experiment", "poses", "--only", ", seed 1", "--out", join(place, "poses")], async (viewer) => {
+    const { page } = viewer;
+    assert(!(await isShown(page, "#stop")) && (await isShown(page, "#mission-card")));
+    assert.match(await text(page, "series-shown"), /Shown: \d, seed 1/);
+    await until("a result", async () => (await page.locator("#series-ended li").count()) > 0, 120);
+    const first = await text(page, "series-shown");
+    await until("another run", async () => (await text(page, "series-shown")) !== first, 60);
+    await page.waitForTimeout(3000);
+    await picture("experiment", page);
+    return `${await text(page, "series-count")}; ${await page.locator("#series-ended li").first().innerText()}`;
+  }),
+);
+
 await check("no error in the console", async () => assert.deepEqual(problems, []));
 
-await program.end();
 await browser.close();
 console.log(`pictures: ${pictures}`);
 process.exit(failures ? 1 : 0);

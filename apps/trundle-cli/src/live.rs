@@ -1,9 +1,9 @@
-//! What stands beside a run: --live, a page that shows it and steers it, and --mqtt.
+//! What stands beside a run: --live, a page that shows it and, where it can, steers it, and --mqtt.
 
 use crate::console;
 use clap::Args;
-use std::path::PathBuf;
-use trundle::app::operator::{FrontEnd, OperatorLink, operator_link};
+use std::path::{Path, PathBuf};
+use trundle::app::operator::{FrontEnd, Operator, OperatorLink, operator_link};
 use trundle::app::{AppError, Progress, RunSetup};
 use trundle::live::{LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
 
@@ -82,10 +82,45 @@ impl LiveArgs {
         is_steered: bool,
     ) -> Result<Option<LivePage>, AppError> {
         let Some(address) = self.live else { return Ok(None) };
-        let tokens = self.live_tokens.as_deref().map_or_else(Tokens::random, Tokens::of_file)?;
-        let options = LiveOptions { address, tokens, is_steered };
-        let page = LivePage::start(options, link.operator(), RunFacts::of(setup)?)?;
-        console::print(&page.announcement());
-        Ok(Some(page))
+        start_page(address, self.live_tokens.as_deref(), link.operator(), RunFacts::of(setup)?, is_steered)
+            .map(Some)
+    }
+}
+
+/// Serves a page and prints its links.
+pub fn start_page(
+    address: LiveAddress,
+    token_file: Option<&Path>,
+    operator: Operator,
+    facts: RunFacts,
+    is_steered: bool,
+) -> Result<LivePage, AppError> {
+    let tokens = token_file.map_or_else(Tokens::random, Tokens::of_file)?;
+    let page = LivePage::start(LiveOptions { address, tokens, is_steered }, operator, facts)?;
+    console::print(&page.announcement());
+    Ok(page)
+}
+
+/// A live page that shows and takes no commands.
+#[derive(Debug, Args)]
+pub struct ViewArgs {
+    /// Show how it goes in a browser: prints the link. ADDR is IP:PORT [default: 127.0.0.1:8642, or a free port where it is in use]
+    #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = LiveAddress::DEFAULT)]
+    pub live: Option<LiveAddress>,
+    /// Keep the tokens of the links in FILE, so that links stay valid over restarts.
+    #[arg(long, value_name = "FILE", requires = "live")]
+    pub live_tokens: Option<PathBuf>,
+}
+
+impl ViewArgs {
+    /// The page with `facts`, where it is asked for, and what it shows. Dropping the page ends it.
+    pub fn start(
+        &self,
+        facts: impl FnOnce() -> Result<RunFacts, AppError>,
+    ) -> Result<Option<(LivePage, OperatorLink)>, AppError> {
+        let Some(address) = self.live else { return Ok(None) };
+        let (operator, link) = operator_link();
+        let page = start_page(address, self.live_tokens.as_deref(), operator, facts()?, false)?;
+        Ok(Some((page, link)))
     }
 }

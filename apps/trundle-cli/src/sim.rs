@@ -10,19 +10,22 @@ mod teleop;
 pub use args::SimArgs;
 
 use crate::console;
+use crate::live;
 use crate::logging;
 use crate::outcome::Outcome;
 use crate::output_args::write_file;
 use std::path::Path;
-use teleop::{TeleopDriver, require_terminal};
+use teleop::{KeyDriver, require_terminal};
 use trundle::app::AppError;
-use trundle::core::OccupancyGrid;
+use trundle::app::operator::{OperatorLink, operator_link};
+use trundle::core::{DriveLimits, Footprint, OccupancyGrid};
 use trundle::experiments::sim_drive::{
-    DriveRecording, ScriptDriver, SimDrive, SimDriver, Standing, WaypointDriver, drive_rows, drive_simulator,
-    drive_summary, drive_verdict, recording_announcement, recording_hint, true_map,
+    DriveRecording, LiveDrive, ScriptDriver, SimDrive, SimDriver, Standing, WaypointDriver, drive_rows,
+    drive_simulator, drive_summary, drive_verdict, recording_announcement, recording_hint, true_map,
 };
 use trundle::experiments::simulated::{list_scenes, load_simulator};
 use trundle::io::{OutputFolder, map_files};
+use trundle::live::{LivePage, RunFacts, RunKind};
 use trundle::sim::{HeightBand, Simulator};
 
 /// `trundle sim`.
@@ -65,7 +68,7 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
     Ok(if drive.is_complete { Outcome::Reached } else { Outcome::Missed })
 }
 
-/// The driver that the arguments name; `None` for one at the keys, who starts when the robot is there.
+/// The driver that the arguments name; `None` for a person at the keys or the page, who starts when the robot is there.
 fn driver(args: &SimArgs) -> Result<Option<Box<dyn SimDriver>>, AppError> {
     Ok(match (&args.driver.drive, &args.driver.follow) {
         (Some(file), _) => Some(Box::new(ScriptDriver::read(file)?)),
@@ -74,6 +77,7 @@ fn driver(args: &SimArgs) -> Result<Option<Box<dyn SimDriver>>, AppError> {
             require_terminal()?;
             None
         }
+        (None, None) if args.is_driven_by_page() => None,
         (None, None) => Some(Box::new(Standing::new(args.driver.duration))),
     })
 }
@@ -85,9 +89,16 @@ fn drive(
     grid: Option<&OccupancyGrid>,
     folder: Option<&OutputFolder>,
 ) -> Result<SimDrive, AppError> {
-    let mut driver: Box<dyn SimDriver> = match (driver, grid) {
-        (None, Some(grid)) => Box::new(TeleopDriver::start(grid.clone(), args.common.quiet)?),
-        (driver, _) => driver.unwrap_or_else(|| Box::new(Standing::new(args.driver.duration))),
+    let (page, link) = args.is_shown().then(|| start_page(args, robot)).transpose()?.unzip();
+    let driver = match driver {
+        None if args.driver.keys => {
+            Some(Box::new(KeyDriver::start(args.common.quiet)?) as Box<dyn SimDriver>)
+        }
+        driver => driver,
+    };
+    let mut driver: Box<dyn SimDriver> = match (link, grid) {
+        (Some(link), Some(grid)) => Box::new(LiveDrive::start(driver, link, grid.clone())),
+        _ => driver.unwrap_or_else(|| Box::new(Standing::new(args.driver.duration))),
     };
     if folder.is_some() && !args.common.quiet {
         console::print(&recording_announcement(robot, args.driver.duration.or_else(|| driver.end_s())));
@@ -96,11 +107,28 @@ fn drive(
     let display = console::StepDisplay::new(args.common.quiet);
     let drive = drive_simulator(robot, driver.as_mut(), args.driver.duration, recording.as_mut(), &display)?;
     drop(driver); // a driver at the keys gives the terminal back
+    drop(page);
     if let (Some(recording), Some(grid)) = (recording, grid) {
         let scene = robot.scene();
         recording.finish(grid, scene.start, &drive_summary(&drive, &scene.name, args.place.seed))?;
     }
     Ok(drive)
+}
+
+/// The page of the drive and what it shows. It takes commands where nobody else drives.
+fn start_page(args: &SimArgs, robot: &Simulator) -> Result<(LivePage, OperatorLink), AppError> {
+    let (operator, link) = operator_link();
+    let facts = RunFacts {
+        kind: RunKind::Drive,
+        title: format!("sim: {}", robot.scene().name),
+        footprint: Footprint::Disc { radius: robot.config().kobuki.footprint_radius },
+        limits: DriveLimits::KOBUKI,
+        recording: if args.record.is_some() { "all" } else { "none" },
+    };
+    let address = args.live.live.unwrap_or_default();
+    let tokens = args.live.live_tokens.as_deref();
+    let page = live::start_page(address, tokens, operator, facts, args.is_driven_by_page())?;
+    Ok((page, link))
 }
 
 /// Prints the numbers, and what to do with the recording.

@@ -7,9 +7,12 @@ pub use args::{CameraArgs, SlamArgs};
 use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
+use std::path::Path;
 use trundle::app::AppError;
 use trundle::app::report::stage_rows;
 use trundle::app::sequence::{SequenceRequest, track_sequence, write_sequence};
+use trundle::core::{DriveLimits, Footprint};
+use trundle::live::{RunFacts, RunKind};
 
 /// `trundle slam DIR`.
 pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
@@ -17,7 +20,9 @@ pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
     let input = request.open()?;
     let folder = logging::output_folder(&args.out)?;
     let display = console::StepDisplay::new(args.common.quiet);
-    let run = track_sequence(&request, &input, &folder, &display)?;
+    let (page, link) = args.live.start(|| Ok(facts(&args.input)))?.unzip();
+    let run = track_sequence(&request, &input, &folder, &display, link)?;
+    drop(page);
     let output = write_sequence(&request, &input, &run, folder)?;
     if !args.common.quiet {
         console::print_table(&output.rows);
@@ -26,6 +31,19 @@ pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
         console::print(&format!("See {}", output.folder.join("report.html").display()));
     }
     Ok(Outcome::unless(run.failure().map(|failure| format!("{}: {failure}", args.input.display()))))
+}
+
+/// What the live page tells of the sequence. The camera is drawn as a small disc.
+fn facts(input: &Path) -> RunFacts {
+    const CAMERA_RADIUS_M: f64 = 0.08;
+    let name = input.file_name().unwrap_or(input.as_os_str()).display();
+    RunFacts {
+        kind: RunKind::Sequence,
+        title: format!("slam: {name}"),
+        footprint: Footprint::Disc { radius: CAMERA_RADIUS_M },
+        limits: DriveLimits::KOBUKI,
+        recording: "",
+    }
 }
 
 impl SlamArgs {

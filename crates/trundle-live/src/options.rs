@@ -9,6 +9,6 @@ pub struct LiveOptions {
     pub address: LiveAddress,
     /// Who may drive and who may look.
     pub tokens: Tokens,
-    /// Whether the run takes commands; a replay takes none.
+    /// Whether the run takes commands; a replay and an experiment take none.
     pub is_steered: bool,
 }

@@ -1,4 +1,4 @@
-//! Driving by hand: keys in the terminal, a page in the browser, in real time.
+//! Driving by keys in the terminal.
 
 mod keys;
 mod terminal;
@@ -7,21 +7,16 @@ use crate::console;
 use keys::steering_key;
 use terminal::RawTerminal;
 use trundle::app::AppError;
-use trundle::app::real_time::RealTimePacer;
-use trundle::core::{OccupancyGrid, Pose2, RgbdImage, Stamp, Twist2};
-use trundle::experiments::sim_drive::SimDriver;
-use trundle::experiments::teleop::{RobotView, Steering, TeleopPage, TeleopServer};
-use trundle::sim::Simulator;
+use trundle::core::{Pose2, Stamp, Twist2};
+use trundle::experiments::sim_drive::{SimDriver, Steering};
 
-/// A driver at the keys.
-pub struct TeleopDriver {
+/// A driver at the keys of the terminal.
+pub struct KeyDriver {
     steering: Steering,
     terminal: RawTerminal,
-    server: TeleopServer,
-    pacer: RealTimePacer,
 }
 
-/// Refuses to drive by hand where there is no terminal to read keys from.
+/// Refuses to drive by keys where there is no terminal to read them from.
 ///
 /// # Errors
 /// When standard input is no terminal.
@@ -29,26 +24,21 @@ pub fn require_terminal() -> Result<(), AppError> {
     terminal::require()
 }
 
-impl TeleopDriver {
-    /// Starts to drive; `grid` is the map on the page.
+impl KeyDriver {
+    /// Starts to read keys.
     ///
     /// # Errors
-    /// When the page cannot be served or the terminal gives no keys.
-    pub fn start(grid: OccupancyGrid, quiet: bool) -> Result<Self, AppError> {
-        let server = TeleopServer::start(TeleopPage::new(grid))?;
+    /// When the terminal gives no keys.
+    pub fn start(quiet: bool) -> Result<Self, AppError> {
         if !quiet {
-            console::print(&format!("See {} for what the robot sees.", server.url()));
             console::print("Arrows or WASD: faster, slower, left, right. Space: stop. Q: quit.");
         }
-        let terminal = RawTerminal::new()?;
-        Ok(Self { steering: Steering::default(), terminal, server, pacer: RealTimePacer::start() })
+        Ok(Self { steering: Steering::default(), terminal: RawTerminal::new()? })
     }
 }
 
-impl SimDriver for TeleopDriver {
-    /// The twist of the keys; waits until real time has come to `stamp`.
-    fn twist(&mut self, stamp: Stamp, _pose: Pose2) -> Result<Twist2, AppError> {
-        self.pacer.wait_for(stamp.as_secs());
+impl SimDriver for KeyDriver {
+    fn twist(&mut self, _stamp: Stamp, _pose: Pose2) -> Result<Twist2, AppError> {
         self.terminal
             .pressed()?
             .into_iter()
@@ -59,9 +49,5 @@ impl SimDriver for TeleopDriver {
 
     fn end_s(&self) -> Option<f64> {
         self.steering.has_quit().then_some(0.0)
-    }
-
-    fn show(&mut self, image: &RgbdImage, robot: &Simulator) {
-        self.server.page().show(RobotView::of(image, robot, self.steering.twist()));
     }
 }

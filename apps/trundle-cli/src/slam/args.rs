@@ -1,6 +1,7 @@
 //! The command line of `trundle slam`.
 
 use crate::common_args::{BagTopicsArgs, Common, NumberArg, choice};
+use crate::live::ViewArgs;
 use crate::output_args::OutputDirArg;
 use clap::Args;
 use std::path::PathBuf;
@@ -54,6 +55,9 @@ pub struct SlamArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/slam")]
     pub out: OutputDirArg,
+    /// The live page: it shows the tracking, and takes no commands.
+    #[command(flatten)]
+    pub live: ViewArgs,
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,

@@ -1,12 +1,13 @@
 // The live page: what the robot sees, and how it is steered.
 
 import { Annotations } from "./annotations";
-import { drawFeatures } from "./camera";
+import { drawDepth, drawFeatures } from "./camera";
 import { Link, type LinkState } from "./link";
 import { MapView, type Layers } from "./map_view";
 import { addToLog, element, Panel } from "./panel";
 import { Teleop } from "./teleop";
 import { saveMap } from "./map_files";
+import { SeriesCard } from "./series";
 import { Settings } from "./settings";
 import { SpaceView } from "./space_view";
 import { startTheme, toggleTheme } from "./theme";
@@ -49,6 +50,10 @@ const annotations = new Annotations(map, () => state?.pose ?? null, {
   onClosed: () => tools.tool !== "move" && selectTool("move"),
 });
 const settings = new Settings(async (message) => (await link.ask(message)).refusal);
+const series = new SeriesCard(() => {
+  map.forgetRun();
+  timeline.begin(new Float32Array());
+});
 const tools = new MapTools(canvas, map, () => state?.pose[2] ?? 0, annotations.tool, {
   onPlace: (pose) => annotations.newPlace(pose),
   onGoal: (pose, append) => void go(pose, append),
@@ -74,8 +79,10 @@ function onReply(reply: Reply): void {
       document.title = `${reply.title} – trundle`;
       element("title").textContent = reply.title;
       document.body.dataset["access"] = reply.drives ? "drive" : "view";
+      document.body.dataset["kind"] = reply.kind;
+      showKind(reply);
       element("log").replaceChildren();
-      element("recording").textContent = RECORDINGS[reply.recording] ?? reply.recording;
+      element("recording").textContent = RECORDINGS[reply.recording] ?? "";
       sendCamera();
       sendVisualMap();
       break;
@@ -94,6 +101,9 @@ function onReply(reply: Reply): void {
     case "settings":
       settings.show(reply.settings);
       inspected.settings = reply.settings;
+      break;
+    case "series":
+      series.show(reply);
       break;
     case "states":
       addToLog(reply.states, (time) => timeline.look(time));
@@ -131,6 +141,9 @@ function onBytes(message: ByteMessage): void {
       break;
     case "image":
       showImage(message.jpeg);
+      break;
+    case "depth":
+      drawDepth(message);
       break;
   }
 }
@@ -182,11 +195,13 @@ function connectButtons(): void {
   press("dock", () => void request({ type: "dock" }));
   press("pause", () => void request({ type: state?.paused ? "continue" : "pause" }));
   press("map-save", () => void saveMap(location.hash.slice(1)).then((problem) => problem && toast(problem, "bad")));
-  press("features-toggle", () => {
-    const canvas = element("camera-features");
-    canvas.hidden = !canvas.hidden;
-    element("features-toggle").setAttribute("aria-pressed", String(!canvas.hidden));
-  });
+  const showOver = (button: string, canvas: string) =>
+    press(button, () => {
+      element(canvas).hidden = !element(canvas).hidden;
+      element(button).setAttribute("aria-pressed", String(!element(canvas).hidden));
+    });
+  showOver("features-toggle", "camera-features");
+  showOver("depth-toggle", "camera-depth");
   press("wheel-take", () => void request({ type: "take_wheel" }));
   press("theme", () => {
     toggleTheme();
@@ -293,7 +308,9 @@ function toggleSpace(): void {
 }
 
 function selectTool(tool: Tool): void {
-  const isDenied = document.body.dataset["access"] === "view" && tool !== "move";
+  const { access, kind } = document.body.dataset;
+  const isForRobot = tool !== "move" && tool !== "drive";
+  const isDenied = (access === "view" && tool !== "move") || (isForRobot && kind !== undefined && kind !== "robot");
   const chosen = isDenied ? "move" : tool;
   if (space.isShown && chosen !== "move" && chosen !== "drive") toggleSpace();
   if (tools.tool !== chosen || chosen === "move") annotations.close(false);
@@ -382,6 +399,20 @@ function wallPixel(): [number, number] | null {
 }
 
 // ---- what the page says
+
+/** Offers what this run can do: a base without autonomy is driven by hand alone, a sequence of images is looked at. */
+function showKind({ kind, drives }: Welcome): void {
+  const words = { robot: "Robot", drive: "Robot", sequence: "Camera pose" };
+  element("robot-title").textContent = words[kind];
+  if (kind === "sequence") {
+    const layer = document.querySelector<HTMLInputElement>('[data-layer="visual"]')!;
+    layer.checked = map.layers.visual = true;
+    element("camera-features").hidden = false;
+    element("features-toggle").setAttribute("aria-pressed", "true");
+  }
+  if (kind === "drive" && drives) selectTool("drive");
+  else if (tools.tool !== "move") selectTool(tools.tool);
+}
 
 function showLink(next: LinkState, reason: string): void {
   document.body.dataset["link"] = next;

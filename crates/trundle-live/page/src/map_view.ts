@@ -115,6 +115,15 @@ export class MapView {
     this.dirty();
   }
 
+  /** Another run is shown: path, scan, plan and landmarks were those of the last one. */
+  forgetRun(): void {
+    this.trail = [];
+    this.scan = this.plan = this.keyframes = this.landmarks = new Float32Array();
+    this.past = null;
+    this.isFitted = false;
+    this.dirty();
+  }
+
   /** The path driven before this page came: x, y, heading and time of each point. */
   setTrail(poses: Float32Array): void {
     this.trail = [];

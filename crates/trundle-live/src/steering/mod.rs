@@ -5,7 +5,7 @@ mod refusal;
 
 pub use refusal::CommandRefusal;
 
-use crate::run_facts::RunFacts;
+use crate::run_facts::{RunFacts, RunKind};
 use crate::wire::{Goal, Request, SettingText};
 use goal_check::require_free;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -27,6 +27,7 @@ const HAND_SPEED: f64 = 0.6;
 #[derive(Debug)]
 pub struct RunSteering {
     operator: Operator,
+    kind: RunKind,
     check: FootprintCheck,
     limits: DriveLimits,
     /// Whether a stop or a drive by hand of this page paused the robot: the next task of the page ends that pause.
@@ -37,7 +38,8 @@ impl RunSteering {
     /// The steering of a run.
     pub fn new(operator: Operator, facts: &RunFacts) -> Self {
         let check = FootprintCheck::new(&facts.footprint);
-        Self { operator, check, limits: facts.limits, is_paused_here: AtomicBool::new(false) }
+        let (kind, limits) = (facts.kind, facts.limits);
+        Self { operator, kind, check, limits, is_paused_here: AtomicBool::new(false) }
     }
 
     /// Obeys a request; requests that are not for the robot do nothing.
@@ -45,6 +47,12 @@ impl RunSteering {
     /// # Errors
     /// When the robot cannot obey: a goal in a wall, a number out of range, a run that is over.
     pub fn obey(&self, request: &Request) -> Result<(), CommandRefusal> {
+        let is_for_hand = matches!(request, Request::Drive { .. } | Request::Stop { .. });
+        if self.kind != RunKind::Robot && !is_for_hand {
+            return Err(CommandRefusal::of(
+                "Nothing here has missions, poses or zones: drive by hand, or stop.",
+            ));
+        }
         match request {
             Request::Go { goals, append, .. } => self.go(goals, *append),
             Request::Explore { .. } => self.begin(vec![Task::Explore]),
@@ -166,7 +174,8 @@ mod tests {
     fn steering() -> (RunSteering, trundle_app::operator::OperatorLink) {
         let (operator, link) = operator_link();
         let limits = DriveLimits::KOBUKI;
-        let facts = RunFacts { title: String::new(), footprint: Footprint::KOBUKI, limits, recording: "all" };
+        let (kind, title, recording) = (RunKind::Robot, String::new(), "all");
+        let facts = RunFacts { kind, title, footprint: Footprint::KOBUKI, limits, recording };
         (RunSteering::new(operator, &facts), link)
     }
 
