@@ -1,6 +1,6 @@
 // The live page in a real browser: `node test.mjs TRUNDLE [PICTURES]`. Prints one line for each thing that holds; ends with 1 where one does not.
 import assert from "node:assert/strict";
-import { existsSync, mkdirSync, mkdtempSync, readFileSync } from "node:fs";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { connect, createServer as createTcpServer } from "node:net";
 import { tmpdir } from "node:os";
@@ -101,7 +101,7 @@ async function check(name, work) {
 
 const tokens = join(place, "tokens");
 const zones = join(place, "zones.geojson");
-const quiet = ["--direct", "--goal", "0.2,0,0", "--zones", zones];
+const quiet = ["--direct", "--goal", "0.2,0,0", "--zones", zones, "--maps", join(place, "maps")];
 let program = await start(trundle, ["--live", "127.0.0.1:0", "--live-tokens", tokens, ...quiet], join(place, "run"));
 const main = await open(program.drive);
 const { page } = main;
@@ -292,6 +292,34 @@ await check("the map is saved as files", async () => {
   await page.locator("#map-save").click();
   await until("three files", () => names.length === 3, 10);
   assert.deepEqual(names.sort(), ["map.pgm", "map.yaml", "zones.geojson"]);
+});
+
+await check("a map of the folder is loaded by two presses, and the robot gets its pose", async () => {
+  const maps = join(place, "maps");
+  mkdirSync(maps, { recursive: true });
+  const headers = { Authorization: `Bearer ${new URL(program.drive).hash.slice(1)}` };
+  for (const [from, to] of [["map.pgm", "map.pgm"], ["map.yaml", "home.yaml"]]) {
+    const response = await fetch(new URL(`/files/${from}`, program.drive), { headers });
+    writeFileSync(join(maps, to), Buffer.from(await response.arrayBuffer()));
+  }
+  await page.reload();
+  await page.locator("#map-name").waitFor({ timeout: 5000 });
+  const [x, y, theta] = main.state.pose;
+  await page.locator("#map-load").click();
+  await page.waitForTimeout(300);
+  assert(!main.state.reason?.includes("map"), "one press does nothing");
+  await page.locator("#map-load").click();
+  await until("an unknown pose", () => main.state.covariance[0] > 0.5, 5);
+  await picture("map-loaded");
+  const robot = await page.evaluate(([x, y]) => (window.trundle.map.fit(), window.trundle.map.toWindow([x, y])), [x, y]);
+  await page.keyboard.press("p");
+  await page.mouse.move(...robot);
+  await page.mouse.down();
+  await page.mouse.move(robot[0] + 60 * Math.cos(theta), robot[1] - 60 * Math.sin(theta), { steps: 4 });
+  await page.mouse.up();
+  await until("a pose", () => Math.hypot(main.state.pose[0] - x, main.state.pose[1] - y) < 0.3 && main.state.covariance[0] < 0.1, 30);
+  await page.keyboard.press("Escape");
+  return `${main.state.state}, ${main.state.reason ?? "no reason"}`;
 });
 
 await check("the space bar stops the robot within 0.2 s", async () => {

@@ -3,7 +3,7 @@
 use crate::console;
 use clap::Args;
 use std::path::{Path, PathBuf};
-use trundle::app::operator::{FrontEnd, Operator, OperatorLink, operator_link};
+use trundle::app::operator::{FrontEnd, MapFolder, Operator, OperatorLink, operator_link};
 use trundle::app::{AppError, Progress, RunSetup};
 use trundle::live::{LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
 
@@ -21,6 +21,9 @@ pub struct LiveArgs {
     /// Keep the tokens of the links in FILE, so that links stay valid over restarts.
     #[arg(long, value_name = "FILE", requires = "live")]
     pub live_tokens: Option<PathBuf>,
+    /// Maps that the live page may load while the robot runs: each NAME.yaml of DIR.
+    #[arg(long, value_name = "DIR", requires = "live")]
+    pub maps: Option<PathBuf>,
     /// Home and fleet.
     #[cfg(feature = "mqtt")]
     #[command(flatten)]
@@ -82,21 +85,21 @@ impl LiveArgs {
         is_steered: bool,
     ) -> Result<Option<LivePage>, AppError> {
         let Some(address) = self.live else { return Ok(None) };
-        start_page(address, self.live_tokens.as_deref(), link.operator(), RunFacts::of(setup)?, is_steered)
-            .map(Some)
+        let maps = self.maps.clone().map(|folder| MapFolder::new(folder, setup.robot.clone()));
+        let tokens = tokens(self.live_tokens.as_deref())?;
+        let options = LiveOptions { address, tokens, is_steered, maps };
+        start_page(options, link.operator(), RunFacts::of(setup)?).map(Some)
     }
 }
 
+/// The tokens of a file, or new ones.
+pub fn tokens(file: Option<&Path>) -> Result<Tokens, AppError> {
+    Ok(file.map_or_else(Tokens::random, Tokens::of_file)?)
+}
+
 /// Serves a page and prints its links.
-pub fn start_page(
-    address: LiveAddress,
-    token_file: Option<&Path>,
-    operator: Operator,
-    facts: RunFacts,
-    is_steered: bool,
-) -> Result<LivePage, AppError> {
-    let tokens = token_file.map_or_else(Tokens::random, Tokens::of_file)?;
-    let page = LivePage::start(LiveOptions { address, tokens, is_steered }, operator, facts)?;
+pub fn start_page(options: LiveOptions, operator: Operator, facts: RunFacts) -> Result<LivePage, AppError> {
+    let page = LivePage::start(options, operator, facts)?;
     console::print(&page.announcement());
     Ok(page)
 }
@@ -120,7 +123,9 @@ impl ViewArgs {
     ) -> Result<Option<(LivePage, OperatorLink)>, AppError> {
         let Some(address) = self.live else { return Ok(None) };
         let (operator, link) = operator_link();
-        let page = start_page(address, self.live_tokens.as_deref(), operator, facts()?, false)?;
+        let tokens = tokens(self.live_tokens.as_deref())?;
+        let options = LiveOptions { address, tokens, is_steered: false, maps: None };
+        let page = start_page(options, operator, facts()?)?;
         Ok(Some((page, link)))
     }
 }

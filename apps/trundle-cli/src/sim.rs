@@ -25,7 +25,7 @@ use trundle::experiments::sim_drive::{
 };
 use trundle::experiments::simulated::{list_scenes, load_simulator};
 use trundle::io::{OutputFolder, map_files};
-use trundle::live::{LivePage, RunFacts, RunKind};
+use trundle::live::{LiveOptions, LivePage, RunFacts, RunKind};
 use trundle::sim::{HeightBand, Simulator};
 
 /// `trundle sim`.
@@ -126,8 +126,9 @@ fn start_page(args: &SimArgs, robot: &Simulator) -> Result<(LivePage, OperatorLi
         recording: if args.record.is_some() { "all" } else { "none" },
     };
     let address = args.live.live.unwrap_or_default();
-    let tokens = args.live.live_tokens.as_deref();
-    let page = live::start_page(address, tokens, operator, facts, args.is_driven_by_page())?;
+    let tokens = live::tokens(args.live.live_tokens.as_deref())?;
+    let options = LiveOptions { address, tokens, is_steered: args.is_driven_by_page(), maps: None };
+    let page = live::start_page(options, operator, facts)?;
     Ok((page, link))
 }
 

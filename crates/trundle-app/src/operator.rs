@@ -9,6 +9,7 @@ mod annotations;
 mod image_feed;
 mod link;
 mod map_file;
+mod map_folder;
 mod perception_feed;
 mod request;
 mod run_view;
@@ -20,6 +21,7 @@ pub use annotation_edit::AnnotationEdit;
 pub(crate) use image_feed::ImageFeed;
 pub use link::{Operator, OperatorError, OperatorLink, operator_link};
 pub use map_file::{ZONES_FILE, map_file};
+pub use map_folder::MapFolder;
 pub(crate) use perception_feed::PerceptionFeed;
 pub use request::OperatorRequest;
 pub use run_view::{

@@ -1,6 +1,7 @@
 //! How the live page is served.
 
 use crate::{LiveAddress, Tokens};
+use trundle_app::operator::MapFolder;
 
 /// How the live page is served.
 #[derive(Debug, Clone)]
@@ -11,4 +12,6 @@ pub struct LiveOptions {
     pub tokens: Tokens,
     /// Whether the run takes commands; a replay and an experiment take none.
     pub is_steered: bool,
+    /// Maps that may be loaded.
+    pub maps: Option<MapFolder>,
 }

@@ -25,6 +25,8 @@ pub(super) struct SequenceFeed {
     scan: Option<(Pose2, Arc<Scan>)>,
     tracked: u64,
     last: Option<(Stamp, Pose2)>,
+    /// Time of the first image: views count from there.
+    first: Option<Stamp>,
 }
 
 impl SequenceFeed {
@@ -39,6 +41,7 @@ impl SequenceFeed {
             scan: None,
             tracked: 0,
             last: None,
+            first: None,
         }
     }
 
@@ -80,6 +83,7 @@ impl SequenceFeed {
         );
         let activity = Activity { name: state_name(report.tracking), reason: Some(reason) };
         let stages = [Stage::Slam, Stage::Scan];
+        let since_first = Stamp::default().after(stamp - *self.first.get_or_insert(stamp));
         RunView {
             scan_pose: self.scan.as_ref().map(|(base, _)| *base),
             scan: self.scan.as_ref().map(|(_, scan)| Arc::clone(scan)),
@@ -98,7 +102,7 @@ impl SequenceFeed {
                 stages: stages.map(|stage| (stage.name(), run.times.total(stage))).to_vec(),
                 ..RunCounts::default()
             },
-            ..RunView::of_activity(stamp, pose, twist, activity)
+            ..RunView::of_activity(since_first, pose, twist, activity)
         }
     }
 }

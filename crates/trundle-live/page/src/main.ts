@@ -6,7 +6,7 @@ import { Link, type LinkState } from "./link";
 import { MapView, type Layers } from "./map_view";
 import { addToLog, element, Panel } from "./panel";
 import { Teleop } from "./teleop";
-import { saveMap } from "./map_files";
+import { mapNames, saveMap } from "./map_files";
 import { SeriesCard } from "./series";
 import { Settings } from "./settings";
 import { SpaceView } from "./space_view";
@@ -85,6 +85,7 @@ function onReply(reply: Reply): void {
       element("recording").textContent = RECORDINGS[reply.recording] ?? "";
       sendCamera();
       sendVisualMap();
+      void offerMaps();
       break;
     case "state":
       state = reply;
@@ -181,6 +182,29 @@ async function stop(): Promise<void> {
   if (answer.refusal) toast(`Not stopped: ${answer.refusal}`, "bad");
 }
 
+/** Shows the maps that may be loaded. */
+async function offerMaps(): Promise<void> {
+  const names = await mapNames(location.hash.slice(1));
+  element("maps").hidden = names.length === 0;
+  element("map-name").replaceChildren(...names.map((name) => new Option(name)));
+}
+
+/** Time for the second press that loads a map [ms]. */
+const LOAD_PRESS_MS = 5000;
+let loadPressed = -Infinity;
+
+/** The first press says what a map costs, the second loads it. A dialog would keep the stop from working. */
+async function loadMap(): Promise<void> {
+  const name = element<HTMLSelectElement>("map-name").value;
+  if (performance.now() - loadPressed > LOAD_PRESS_MS) {
+    loadPressed = performance.now();
+    toast("Press Load again: the robot stops, drops mission, zones and places, and must find out where it stands.", "warn");
+    return;
+  }
+  loadPressed = -Infinity;
+  if (await request({ type: "load_map", name })) toast(`Map ${name} is loaded. Set the pose, or let the robot find it.`, "good");
+}
+
 function asGoal([x, y, theta]: Pose): { x: number; y: number; theta: number } {
   return { x, y, theta };
 }
@@ -202,6 +226,7 @@ function connectButtons(): void {
     });
   showOver("features-toggle", "camera-features");
   showOver("depth-toggle", "camera-depth");
+  press("map-load", () => void loadMap());
   press("wheel-take", () => void request({ type: "take_wheel" }));
   press("theme", () => {
     toggleTheme();
@@ -401,7 +426,7 @@ function wallPixel(): [number, number] | null {
 // ---- what the page says
 
 /** Offers what this run can do: a base without autonomy is driven by hand alone, a sequence of images is looked at. */
-function showKind({ kind, drives }: Welcome): void {
+function showKind({ kind, drives, is_steered: isSteered }: Welcome): void {
   const words = { robot: "Robot", drive: "Robot", sequence: "Camera pose" };
   element("robot-title").textContent = words[kind];
   if (kind === "sequence") {
@@ -410,6 +435,8 @@ function showKind({ kind, drives }: Welcome): void {
     element("camera-features").hidden = false;
     element("features-toggle").setAttribute("aria-pressed", "true");
   }
+  // Nobody points at a map that is looked at alone: it is shown as a whole while it grows.
+  map.keepsFit = !isSteered;
   if (kind === "drive" && drives) selectTool("drive");
   else if (tools.tool !== "move") selectTool(tools.tool);
 }

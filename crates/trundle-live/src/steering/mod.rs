@@ -9,7 +9,7 @@ use crate::run_facts::{RunFacts, RunKind};
 use crate::wire::{Goal, Request, SettingText};
 use goal_check::require_free;
 use std::sync::atomic::{AtomicBool, Ordering};
-use trundle_app::operator::{AnnotationEdit, Operator};
+use trundle_app::operator::{AnnotationEdit, MapFolder, Operator};
 use trundle_core::{DriveLimits, Pose2, Twist2, Zone, require_in};
 use trundle_planning::{FootprintCheck, require_on_map};
 use trundle_runtime::{Mission, OperatorCommand, PoseGuess, RunSetting, Task};
@@ -30,16 +30,17 @@ pub struct RunSteering {
     kind: RunKind,
     check: FootprintCheck,
     limits: DriveLimits,
+    maps: Option<MapFolder>,
     /// Whether a stop or a drive by hand of this page paused the robot: the next task of the page ends that pause.
     is_paused_here: AtomicBool,
 }
 
 impl RunSteering {
     /// The steering of a run.
-    pub fn new(operator: Operator, facts: &RunFacts) -> Self {
+    pub fn new(operator: Operator, facts: &RunFacts, maps: Option<MapFolder>) -> Self {
         let check = FootprintCheck::new(&facts.footprint);
         let (kind, limits) = (facts.kind, facts.limits);
-        Self { operator, kind, check, limits, is_paused_here: AtomicBool::new(false) }
+        Self { operator, kind, check, limits, maps, is_paused_here: AtomicBool::new(false) }
     }
 
     /// Obeys a request; requests that are not for the robot do nothing.
@@ -78,6 +79,7 @@ impl RunSteering {
             Request::SetPlace { place, .. } => self.edit(&AnnotationEdit::SetPlace(place.clone())),
             Request::RemovePlace { number, .. } => self.edit(&AnnotationEdit::RemovePlace(*number)),
             Request::Change { key, value, .. } => self.change(key, *value),
+            Request::LoadMap { name, .. } => self.load_map(name),
             _ => Ok(()),
         }
     }
@@ -140,6 +142,20 @@ impl RunSteering {
         self.send(OperatorCommand::Change(setting))
     }
 
+    /// The names of the maps that may be loaded.
+    pub fn map_names(&self) -> Vec<String> {
+        self.maps.as_ref().map_or_else(Vec::new, MapFolder::names)
+    }
+
+    fn load_map(&self, name: &str) -> Result<(), CommandRefusal> {
+        let maps = self
+            .maps
+            .as_ref()
+            .ok_or_else(|| CommandRefusal::of("No folder of maps was given: --maps DIR"))?;
+        let grid = maps.read(name).map_err(CommandRefusal::of)?;
+        self.send(OperatorCommand::LoadMap(Box::new(grid)))
+    }
+
     fn begin(&self, tasks: Vec<Task>) -> Result<(), CommandRefusal> {
         self.send(OperatorCommand::Begin(Mission::new(tasks)?))?;
         if self.is_paused_here.swap(false, Ordering::Relaxed) {
@@ -176,7 +192,7 @@ mod tests {
         let limits = DriveLimits::KOBUKI;
         let (kind, title, recording) = (RunKind::Robot, String::new(), "all");
         let facts = RunFacts { kind, title, footprint: Footprint::KOBUKI, limits, recording };
-        (RunSteering::new(operator, &facts), link)
+        (RunSteering::new(operator, &facts, None), link)
     }
 
     fn go(x: f64) -> Request {
