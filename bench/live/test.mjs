@@ -536,6 +536,8 @@ main.mayFail = true;
 async function withCommand(args, work) {
   const other = await startCommand(trundle, [...args, "--live", "127.0.0.1:0"]);
   const viewer = await open(other.drive ?? other.view);
+  // A command that ends by itself refuses the page's next link.
+  other.child.on("exit", () => (viewer.mayFail = true));
   try {
     await until("a state", () => viewer.state !== null, 30);
     return await work(viewer, other);
@@ -554,15 +556,22 @@ await check("sim: the page drives by keys, shows camera and depth, and offers no
       assert(!(await isShown(page, absent)), `${absent} is offered`);
     assert((await isShown(page, "#stop")) && (await isShown(page, "[data-tool=drive]")));
     const [x, y] = viewer.state.pose;
+    await page.locator("#depth-toggle").click();
+    const depths = () =>
+      page.evaluate(() => {
+        const canvas = document.getElementById("camera-depth");
+        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+        return data.filter((value, i) => i % 4 === 1 && value > 0).length;
+      });
+    await until("depth", async () => (await depths()) > 5000, 5);
     await page.keyboard.down("w");
     await until("motion", () => speed(viewer) > 0.1, 5);
     assert.equal(viewer.state.state, "driven by hand");
-    await page.waitForTimeout(4000);
+    await page.waitForTimeout(3000);
+    await picture("sim", page);
+    await page.waitForTimeout(1000);
     await page.keyboard.down("a");
     await page.waitForTimeout(1500);
-    await page.locator("#depth-toggle").click();
-    await page.waitForTimeout(700);
-    await picture("sim", page);
     await page.keyboard.up("a");
     await page.keyboard.up("w");
     const seconds = await until("rest", () => speed(viewer) === 0, 3);
@@ -598,7 +607,8 @@ await check("experiment: the run that goes on, and the results of those that hav
     await until("a result", async () => (await page.locator("#series-ended li").count()) > 0, 120);
     const first = await text(page, "series-shown");
     await until("another run", async () => (await text(page, "series-shown")) !== first, 60);
-    await page.waitForTimeout(3000);
+    await until("a drive", () => speed(viewer) > 0.3, 30);
+    await page.waitForTimeout(500);
     await picture("experiment", page);
     return `${await text(page, "series-count")}; ${await page.locator("#series-ended li").first().innerText()}`;
   }),

@@ -78,7 +78,7 @@ impl SequenceFeed {
         let twist =
             self.last.replace((stamp, pose)).map_or(Twist2::ZERO, |last| twist_since(last, (stamp, pose)));
         let reason = format!(
-            "{} of {} features on the map, {} keyframes, {} landmarks",
+            "features on the map: {} of {}, keyframes: {}, landmarks: {}",
             report.inliers, report.features, report.keyframes, report.landmarks
         );
         let activity = Activity { name: state_name(report.tracking), reason: Some(reason) };

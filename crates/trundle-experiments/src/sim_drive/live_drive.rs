@@ -2,7 +2,6 @@
 
 use super::driver::SimDriver;
 use super::hand::Hand;
-use std::collections::VecDeque;
 use std::sync::Arc;
 use trundle_app::AppError;
 use trundle_app::operator::{Activity, MapView, OperatorLink, RunView};
@@ -17,14 +16,9 @@ pub struct LiveDrive<'d> {
     link: OperatorLink,
     pacer: RealTimePacer,
     map: Arc<MapView>,
-    /// True poses of the last [`MAX_SCAN_AGE_S`].
-    poses: VecDeque<(Stamp, Pose2)>,
     scan: Option<(Pose2, Arc<Scan>)>,
     contacts: u32,
 }
-
-/// Longest time from the stamp of a sweep to its end \[s\]. Source: ours; a slow laser turns five times a second.
-const MAX_SCAN_AGE_S: f64 = 0.5;
 
 impl<'d> LiveDrive<'d> {
     /// Shows what `driver` does on `map`; without a driver those who watch drive. All is in the world frame.
@@ -32,7 +26,7 @@ impl<'d> LiveDrive<'d> {
     pub fn start(driver: Option<Box<dyn SimDriver + 'd>>, link: OperatorLink, map: OccupancyGrid) -> Self {
         let map = Arc::new(MapView { number: 0, revision: 1, grid: map });
         let (hand, pacer) = (Hand::default(), RealTimePacer::start());
-        Self { driver, hand, link, pacer, map, poses: VecDeque::new(), scan: None, contacts: 0 }
+        Self { driver, hand, link, pacer, map, scan: None, contacts: 0 }
     }
 
     fn activity(&self, twist: Twist2) -> Activity {
@@ -71,10 +65,6 @@ impl SimDriver for LiveDrive<'_> {
             Some(driver) => driver.twist(stamp, pose)?,
             None => self.hand.twist(stamp),
         };
-        self.poses.push_back((stamp, pose));
-        while self.poses.front().is_some_and(|(then, _)| stamp - *then > MAX_SCAN_AGE_S) {
-            self.poses.pop_front();
-        }
         self.publish(stamp, pose, twist);
         Ok(twist)
     }
@@ -94,9 +84,8 @@ impl SimDriver for LiveDrive<'_> {
 
     fn show_scan(&mut self, scan: &Scan, robot: &Simulator) {
         if self.link.is_watched() {
-            let before = self.poses.iter().rev().find(|(stamp, _)| *stamp <= scan.stamp());
-            let pose = before.map_or_else(|| robot.true_pose(), |(_, pose)| *pose);
-            self.scan = Some((pose, Arc::new(scan.clone())));
+            // A sweep bears the time of its end. Of a base that turns it is bent, as the robot receives it.
+            self.scan = Some((robot.true_pose(), Arc::new(scan.clone())));
         }
     }
 }
