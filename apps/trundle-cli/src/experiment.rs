@@ -14,8 +14,7 @@ use trundle::experiments::{
     fault_scenarios, look_alikes, missions, mrpb, people, poses, real_time,
 };
 use trundle::io::OutputFolder;
-use trundle::live::{LivePage, RunFacts, RunKind};
-use trundle::runtime::RobotConfig;
+use trundle::live::LivePage;
 
 /// `trundle experiment`
 #[derive(Debug, Args)]
@@ -243,7 +242,7 @@ fn runs<R: ExperimentReport>(
     experiment: impl FnOnce(&RunsRequest, &ExperimentDisplay) -> Result<R, AppError>,
 ) -> Result<Outcome, AppError> {
     let robot = args.robot.robot()?;
-    let page = args.live.start(|| facts(name, &robot))?;
+    let page = args.live.of_experiment(name, &robot)?;
     let request = RunsRequest { seeds: args.seeds, only: args.only.clone(), robot };
     in_folder(&args.out, &args.common, page, |_, display| experiment(&request, display))
 }
@@ -255,7 +254,7 @@ fn run_barn(args: &BarnArgs) -> Result<Outcome, AppError> {
         seeds: args.seeds,
         robot: args.robot.robot_if_given()?,
     };
-    let page = args.live.start(|| facts("barn", &request.robot()))?;
+    let page = args.live.of_experiment("barn", &request.robot())?;
     in_folder(&args.out, &args.common, page, |_, display| barn::run(&request, display))
 }
 
@@ -266,22 +265,15 @@ fn run_mrpb(args: &MrpbArgs) -> Result<Outcome, AppError> {
         seeds: args.seeds,
         robot: args.robot.robot_if_given()?,
     };
-    let page = args.live.start(|| facts("mrpb", &request.robot()))?;
+    let page = args.live.of_experiment("mrpb", &request.robot())?;
     in_folder(&args.out, &args.common, page, |_, display| mrpb::run(&request, display))
 }
 
 fn run_real_time(args: &RealTimeArgs) -> Result<Outcome, AppError> {
     let robot = args.robot.robot()?;
     let request = real_time::RealTimeRequest { minutes: args.minutes, seed: args.seed, robot };
-    let page = args.live.start(|| facts("real-time", &request.robot))?;
+    let page = args.live.of_experiment("real-time", &request.robot)?;
     in_folder(&args.out, &args.common, page, |folder, display| real_time::run(&request, folder, display))
-}
-
-/// What the live page tells of an experiment with this robot.
-fn facts(name: &str, robot: &RobotConfig) -> Result<RunFacts, AppError> {
-    let (footprint, limits) = (robot.footprint()?, robot.limits);
-    let title = format!("experiment: {name}");
-    Ok(RunFacts { kind: RunKind::Robot, title, footprint, limits, recording: "" })
 }
 
 /// Runs an experiment beside its page, writes its folder and prints its table.

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use trundle::app::operator::{FrontEnd, MapFolder, Operator, OperatorLink, operator_link};
 use trundle::app::{AppError, Progress, RunSetup};
 use trundle::live::{LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
+use trundle::runtime::RobotConfig;
 
 /// The live page of a run.
 #[derive(Debug, Args)]
@@ -93,18 +94,18 @@ impl LiveArgs {
 }
 
 /// The tokens of a file, or new ones.
-pub fn tokens(file: Option<&Path>) -> Result<Tokens, AppError> {
+fn tokens(file: Option<&Path>) -> Result<Tokens, AppError> {
     Ok(file.map_or_else(Tokens::random, Tokens::of_file)?)
 }
 
 /// Serves a page and prints its links.
-pub fn start_page(options: LiveOptions, operator: Operator, facts: RunFacts) -> Result<LivePage, AppError> {
+fn start_page(options: LiveOptions, operator: Operator, facts: RunFacts) -> Result<LivePage, AppError> {
     let page = LivePage::start(options, operator, facts)?;
     console::print(&page.announcement());
     Ok(page)
 }
 
-/// A live page that shows and takes no commands.
+/// A live page beside work that is no robot's run.
 #[derive(Debug, Args)]
 pub struct ViewArgs {
     /// Show how it goes in a browser: prints the link. ADDR is IP:PORT [default: 127.0.0.1:8642, or a free port where it is in use]
@@ -120,12 +121,21 @@ impl ViewArgs {
     pub fn start(
         &self,
         facts: impl FnOnce() -> Result<RunFacts, AppError>,
+        is_steered: bool,
     ) -> Result<Option<(LivePage, OperatorLink)>, AppError> {
         let Some(address) = self.live else { return Ok(None) };
         let (operator, link) = operator_link();
         let tokens = tokens(self.live_tokens.as_deref())?;
-        let options = LiveOptions { address, tokens, is_steered: false, maps: None };
-        let page = start_page(options, operator, facts()?)?;
-        Ok(Some((page, link)))
+        let options = LiveOptions { address, tokens, is_steered, maps: None };
+        Ok(Some((start_page(options, operator, facts()?)?, link)))
+    }
+
+    /// The page of an experiment with this robot.
+    pub fn of_experiment(
+        &self,
+        name: &str,
+        robot: &RobotConfig,
+    ) -> Result<Option<(LivePage, OperatorLink)>, AppError> {
+        self.start(|| Ok(RunFacts::of_experiment(name, robot)?), false)
     }
 }

@@ -5,27 +5,24 @@ mod args;
 mod ros2;
 #[cfg(unix)]
 mod serve;
-mod teleop;
 
 pub use args::SimArgs;
 
 use crate::console;
-use crate::live;
 use crate::logging;
 use crate::outcome::Outcome;
 use crate::output_args::write_file;
 use std::path::Path;
-use teleop::{KeyDriver, require_terminal};
 use trundle::app::AppError;
-use trundle::app::operator::{OperatorLink, operator_link};
-use trundle::core::{DriveLimits, Footprint, OccupancyGrid};
+use trundle::core::OccupancyGrid;
 use trundle::experiments::sim_drive::{
-    DriveRecording, LiveDrive, ScriptDriver, SimDrive, SimDriver, Standing, WaypointDriver, drive_rows,
-    drive_simulator, drive_summary, drive_verdict, recording_announcement, recording_hint, true_map,
+    DriveRecording, KeyDriver, LiveDrive, ScriptDriver, SimDrive, SimDriver, Standing, WaypointDriver,
+    drive_rows, drive_simulator, drive_summary, drive_verdict, recording_announcement, recording_hint,
+    true_map,
 };
 use trundle::experiments::simulated::{list_scenes, load_simulator};
 use trundle::io::{OutputFolder, map_files};
-use trundle::live::{LiveOptions, LivePage, RunFacts, RunKind};
+use trundle::live::RunFacts;
 use trundle::sim::{HeightBand, Simulator};
 
 /// `trundle sim`.
@@ -74,7 +71,7 @@ fn driver(args: &SimArgs) -> Result<Option<Box<dyn SimDriver>>, AppError> {
         (Some(file), _) => Some(Box::new(ScriptDriver::read(file)?)),
         (None, Some(file)) => Some(Box::new(WaypointDriver::read(file)?)),
         (None, None) if args.driver.keys => {
-            require_terminal()?;
+            KeyDriver::require_terminal()?;
             None
         }
         (None, None) if args.is_driven_by_page() => None,
@@ -89,10 +86,11 @@ fn drive(
     grid: Option<&OccupancyGrid>,
     folder: Option<&OutputFolder>,
 ) -> Result<SimDrive, AppError> {
-    let (page, link) = args.is_shown().then(|| start_page(args, robot)).transpose()?.unzip();
+    let (page, link) = args.page_args().start(|| Ok(facts(args, robot)), args.is_driven_by_page())?.unzip();
     let driver = match driver {
         None if args.driver.keys => {
-            Some(Box::new(KeyDriver::start(args.common.quiet)?) as Box<dyn SimDriver>)
+            console::print(KeyDriver::HELP);
+            Some(Box::new(KeyDriver::start()?) as Box<dyn SimDriver>)
         }
         driver => driver,
     };
@@ -115,21 +113,9 @@ fn drive(
     Ok(drive)
 }
 
-/// The page of the drive and what it shows. It takes commands where nobody else drives.
-fn start_page(args: &SimArgs, robot: &Simulator) -> Result<(LivePage, OperatorLink), AppError> {
-    let (operator, link) = operator_link();
-    let facts = RunFacts {
-        kind: RunKind::Drive,
-        title: format!("sim: {}", robot.scene().name),
-        footprint: Footprint::Disc { radius: robot.config().kobuki.footprint_radius },
-        limits: DriveLimits::KOBUKI,
-        recording: if args.record.is_some() { "all" } else { "none" },
-    };
-    let address = args.live.live.unwrap_or_default();
-    let tokens = live::tokens(args.live.live_tokens.as_deref())?;
-    let options = LiveOptions { address, tokens, is_steered: args.is_driven_by_page(), maps: None };
-    let page = live::start_page(options, operator, facts)?;
-    Ok((page, link))
+fn facts(args: &SimArgs, robot: &Simulator) -> RunFacts {
+    let (name, radius_m) = (&robot.scene().name, robot.config().kobuki.footprint_radius);
+    RunFacts::of_drive(name, radius_m, args.record.is_some())
 }
 
 /// Prints the numbers, and what to do with the recording.

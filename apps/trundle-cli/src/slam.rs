@@ -7,12 +7,10 @@ pub use args::{CameraArgs, SlamArgs};
 use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
-use std::path::Path;
 use trundle::app::AppError;
 use trundle::app::report::stage_rows;
 use trundle::app::sequence::{SequenceRequest, track_sequence, write_sequence};
-use trundle::core::{DriveLimits, Footprint};
-use trundle::live::{RunFacts, RunKind};
+use trundle::live::RunFacts;
 
 /// `trundle slam DIR`.
 pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
@@ -20,7 +18,7 @@ pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
     let input = request.open()?;
     let folder = logging::output_folder(&args.out)?;
     let display = console::StepDisplay::new(args.common.quiet);
-    let (page, link) = args.live.start(|| Ok(facts(&args.input)))?.unzip();
+    let (page, link) = args.live.start(|| Ok(RunFacts::of_sequence(&args.input)), false)?.unzip();
     let run = track_sequence(&request, &input, &folder, &display, link)?;
     drop(page);
     let output = write_sequence(&request, &input, &run, folder)?;
@@ -33,19 +31,6 @@ pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
     Ok(Outcome::unless(run.failure().map(|failure| format!("{}: {failure}", args.input.display()))))
 }
 
-/// What the live page tells of the sequence. The camera is drawn as a small disc.
-fn facts(input: &Path) -> RunFacts {
-    const CAMERA_RADIUS_M: f64 = 0.08;
-    let name = input.file_name().unwrap_or(input.as_os_str()).display();
-    RunFacts {
-        kind: RunKind::Sequence,
-        title: format!("slam: {name}"),
-        footprint: Footprint::Disc { radius: CAMERA_RADIUS_M },
-        limits: DriveLimits::KOBUKI,
-        recording: "",
-    }
-}
-
 impl SlamArgs {
     fn request(&self) -> SequenceRequest {
         SequenceRequest {
@@ -55,9 +40,9 @@ impl SlamArgs {
             depth_scale: self.camera.depth_scale,
             recover: self.recover,
             frames: self.frames.map(|frames| frames as usize),
-            height: self.height,
-            tilt_deg: self.tilt,
-            roll_deg: self.roll,
+            height: self.first_camera.height,
+            tilt_deg: self.first_camera.tilt,
+            roll_deg: self.first_camera.roll,
             map: self.map.clone(),
             localize_only: self.localise,
             vocabulary: self.vocabulary.clone(),

@@ -26,7 +26,7 @@ pub(crate) use perception_feed::PerceptionFeed;
 pub use request::OperatorRequest;
 pub use run_view::{
     Activity, ClosedLoop, DepthView, FeatureSpot, FeatureView, ImageView, MapView, MissionView,
-    PerceptionView, RunCounts, RunView, VisualMapView,
+    PerceptionView, RunCounts, RunState, RunView, VisualMapView,
 };
 pub use series::{EndedRun, SeriesView};
 pub use visual_map_feed::VISUAL_MAP_PERIOD_S;

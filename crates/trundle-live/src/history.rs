@@ -42,7 +42,7 @@ impl History {
         if self.points.back().is_none_or(|(_, last)| is_far(last)) {
             self.points.push_back((time, pose));
         }
-        let (name, reason) = (view.state_name(), view.state_reason());
+        let (name, reason) = (view.state.name(), view.state.reason());
         // A reason that only counts on is the same state.
         if self.states.back().is_none_or(|last| last.name != name) {
             self.states.push_back(StateEntry { time, name: name.to_owned(), reason });

@@ -1,6 +1,7 @@
 //! The command line of `trundle sim`.
 
 use crate::common_args::{Common, NumberArg, PlaceArgs, choice};
+use crate::live::ViewArgs;
 use crate::output_args::{OutputDirArg, OutputFileArg};
 use clap::Args;
 use std::path::PathBuf;
@@ -10,8 +11,12 @@ use trundle::io::MapImage;
 use trundle::live::LiveAddress;
 use trundle::sim::{LaserConfig, SimConfig};
 
+const LIVE_HELP: &str = "Show the drive in a browser, in real time: prints the link. Without another driver the page drives, by keys, \
+                         stick or gamepad, until Ctrl-C or --duration. ADDR is IP:PORT [default: 127.0.0.1:8642, or a free port where it is in use]";
+
 /// `trundle sim`
 #[derive(Debug, Args)]
+#[command(mut_arg("live", |live| live.help(LIVE_HELP)))]
 #[command(after_help = "Example: trundle sim office --follow waypoints.txt --record out/office\n\n\
     Exit code: 0 done, 1 a way-point was not reached, 2 bad input.")]
 pub struct SimArgs {
@@ -29,7 +34,7 @@ pub struct SimArgs {
     pub driver: DriverArgs,
     /// The live page.
     #[command(flatten)]
-    pub live: DriveLiveArgs,
+    pub live: ViewArgs,
     /// Write a TUM RGB-D folder: images, ground truth, odometry, calibration, the true map; the last one is kept as DIR.1
     #[arg(long, value_name = "DIR")]
     pub record: Option<OutputDirArg>,
@@ -66,18 +71,6 @@ pub struct DriverArgs {
     /// Stop after this time of the robot, s, or when the drive is over [default: 5 where there is no drive]
     #[arg(long, value_name = "S", value_parser = NumberArg::up_to(1e6, "s"), allow_negative_numbers = true)]
     pub duration: Option<f64>,
-}
-
-/// The live page of a drive.
-#[derive(Debug, Args)]
-pub struct DriveLiveArgs {
-    /// Show the drive in a browser, in real time: prints the link. Without another driver the page drives, by keys, stick or gamepad,
-    /// until Ctrl-C or --duration. ADDR is IP:PORT [default: 127.0.0.1:8642, or a free port where it is in use]
-    #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = LiveAddress::DEFAULT)]
-    pub live: Option<LiveAddress>,
-    /// Keep the tokens of the links in FILE, so that links stay valid over restarts.
-    #[arg(long, value_name = "FILE", requires = "live")]
-    pub live_tokens: Option<PathBuf>,
 }
 
 /// The simulator as a ROS 2 robot.
@@ -164,6 +157,12 @@ impl SimArgs {
     /// Whether the true map is written or shown.
     pub fn needs_map(&self) -> bool {
         self.true_map.map.is_some() || self.record.is_some() || self.is_shown()
+    }
+
+    /// The page: one at the keys always has one.
+    pub fn page_args(&self) -> ViewArgs {
+        let default = self.driver.keys.then(LiveAddress::default);
+        ViewArgs { live: self.live.live.or(default), live_tokens: self.live.live_tokens.clone() }
     }
 
     /// Whether a page shows the drive.

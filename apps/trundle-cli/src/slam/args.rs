@@ -28,15 +28,9 @@ pub struct SlamArgs {
     /// Stop after this many frames.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,
-    /// Height of the first camera above the floor, m, for the map [default: the recorded robot's, else 1]
-    #[arg(long, value_name = "M", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
-    pub height: Option<f64>,
-    /// Downward tilt of the first camera, deg, for the map [default: the recorded robot's, else 0]
-    #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
-    pub tilt: Option<f64>,
-    /// Roll of the first camera to its right, deg, for the map [default: the recorded robot's, else 0]
-    #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
-    pub roll: Option<f64>,
+    /// The pose of the first camera.
+    #[command(flatten)]
+    pub first_camera: FirstCameraArgs,
     /// Begin with the visual map of an earlier run (its visual.map): the camera is localized in it
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
@@ -61,6 +55,20 @@ pub struct SlamArgs {
     /// What every command takes.
     #[command(flatten)]
     pub common: Common,
+}
+
+/// The pose of the first camera.
+#[derive(Debug, Args)]
+pub struct FirstCameraArgs {
+    /// Height of the first camera above the floor, m, for the map [default: the recorded robot's, else 1]
+    #[arg(long, value_name = "M", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
+    pub height: Option<f64>,
+    /// Downward tilt of the first camera, deg, for the map [default: the recorded robot's, else 0]
+    #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
+    pub tilt: Option<f64>,
+    /// Roll of the first camera to its right, deg, for the map [default: the recorded robot's, else 0]
+    #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
+    pub roll: Option<f64>,
 }
 
 /// The camera of the images.

@@ -2,13 +2,11 @@
 
 use crate::program::{summary, text, trundle};
 use serde_json::{Value, json};
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::Duration;
-use tokio_tungstenite::tungstenite::client::IntoClientRequest;
-use tokio_tungstenite::tungstenite::{Message, WebSocket, client};
 
 /// Version of the messages, as the page has it.
 const WIRE_VERSION: u32 = 3;
@@ -45,12 +43,7 @@ impl LiveProgram {
     }
 
     fn browser(&self) -> Browser {
-        let stream = TcpStream::connect(&self.address).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
-        let mut request = format!("ws://{}/live", self.address).into_client_request().unwrap();
-        request.headers_mut().insert("Origin", format!("http://{}", self.address).parse().unwrap());
-        let (socket, _) = client(request, stream).unwrap();
-        let mut browser = Browser { socket, last_id: 0, kinds: Vec::new() };
+        let mut browser = Browser { link: WebSocket::open(&self.address), last_id: 0, kinds: Vec::new() };
         browser.send(json!({"type": "hello", "version": WIRE_VERSION, "token": self.token, "name": "test"}));
         browser.send(json!({"type": "camera", "on": true}));
         browser.send(json!({"type": "visual_map", "on": true}));
@@ -68,8 +61,67 @@ impl LiveProgram {
     }
 }
 
+/// The client's end of a link by RFC 6455, as far as the page needs it.
+struct WebSocket(BufReader<TcpStream>);
+
+impl WebSocket {
+    const TEXT: u8 = 1;
+    const BYTES: u8 = 2;
+    const CLOSE: u8 = 8;
+
+    fn open(address: &str) -> Self {
+        let mut stream = TcpStream::connect(address).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
+        write!(
+            stream,
+            "GET /live HTTP/1.1\r\nHost: {address}\r\nOrigin: http://{address}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\n\
+             Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n"
+        )
+        .unwrap();
+        let mut reader = BufReader::new(stream);
+        let mut head = String::new();
+        while !head.ends_with("\r\n\r\n") {
+            assert!(reader.read_line(&mut head).unwrap() > 0, "{head}");
+        }
+        assert!(head.starts_with("HTTP/1.1 101"), "{head}");
+        Self(reader)
+    }
+
+    /// Sends a text, masked by zeros; whether the other end is there.
+    fn send(&mut self, text: &str) -> bool {
+        let length = text.len() as u16;
+        let mut frame = vec![0x80 | Self::TEXT];
+        if length < 126 {
+            frame.push(0x80 | length as u8);
+        } else {
+            frame.push(0x80 | 126);
+            frame.extend(length.to_be_bytes());
+        }
+        frame.extend([0; 4]);
+        frame.extend(text.as_bytes());
+        self.0.get_mut().write_all(&frame).is_ok()
+    }
+
+    /// Kind and content of the next message; `None` at the end.
+    fn receive(&mut self) -> Option<(u8, Vec<u8>)> {
+        let mut head = [0; 2];
+        self.0.read_exact(&mut head).ok()?;
+        let mut length = [0; 8];
+        match head[1] {
+            126 => self.0.read_exact(&mut length[6..]).ok()?,
+            127 => self.0.read_exact(&mut length).ok()?,
+            short => length[7] = short,
+        }
+        assert_eq!(head[0] & 0x80, 0x80, "the page's messages are whole");
+        let mut content = vec![0; u64::from_be_bytes(length) as usize];
+        self.0.read_exact(&mut content).ok()?;
+        let kind = head[0] & 0x0f;
+        (kind != Self::CLOSE).then_some((kind, content))
+    }
+}
+
 struct Browser {
-    socket: WebSocket<TcpStream>,
+    link: WebSocket,
     last_id: u64,
     /// First bytes of the messages of bytes so far.
     kinds: Vec<u8>,
@@ -77,24 +129,22 @@ struct Browser {
 
 impl Browser {
     fn send(&mut self, message: Value) {
-        self.socket.send(Message::Text(message.to_string().into())).unwrap();
+        assert!(self.link.send(&message.to_string()), "{message}");
     }
 
     /// The next message of JSON; `None` where the program has ended.
     fn next(&mut self) -> Option<Value> {
         loop {
-            match self.socket.read().ok()? {
-                Message::Text(text) => {
-                    let value: Value = serde_json::from_str(&text).unwrap();
+            match self.link.receive()? {
+                (WebSocket::TEXT, text) => {
+                    let value: Value = serde_json::from_slice(&text).unwrap();
                     if value["type"] == "state" {
-                        // The link may close meanwhile: the next read tells.
-                        _ = self.socket.send(Message::Text(
-                            json!({"type": "seen", "batch": value["batch"]}).to_string().into(),
-                        ));
+                        // The program may end meanwhile: the next message tells.
+                        self.link.send(&json!({"type": "seen", "batch": value["batch"]}).to_string());
                     }
                     return Some(value);
                 }
-                Message::Binary(bytes) => self.kinds.push(bytes[0]),
+                (WebSocket::BYTES, bytes) => self.kinds.push(bytes[0]),
                 _ => {}
             }
         }

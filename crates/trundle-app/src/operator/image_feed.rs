@@ -2,25 +2,29 @@
 
 use super::run_view::{DepthView, ImageView};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 use trundle_core::{DepthImage, RgbdImage, Stamp};
 use trundle_io::{JPEG_QUALITY, encode_color};
 
 /// Time between two copies of the camera's image \[s\]. A copy of 100 kB takes 10 us. Source: ours.
 const IMAGE_PERIOD_S: f64 = 0.1;
-/// Time between two images that are encoded for views alone \[s\]. An image takes some 3 ms. Source: ours.
-const ENCODED_PERIOD_S: f64 = 0.2;
+/// Time by the clock between two images that are encoded for views alone: a simulator is faster than real time, and an image takes
+/// some 3 ms. Source: ours; a page is sent an image each 180 ms.
+const ENCODING_PERIOD: Duration = Duration::from_millis(150);
 
 /// Keeps the newest image of the camera.
 #[derive(Debug, Default)]
 pub(crate) struct ImageFeed {
     image: Option<Arc<ImageView>>,
     depth: Option<Arc<DepthView>>,
+    /// When an image was last encoded for views alone.
+    encoded: Option<Instant>,
 }
 
 impl ImageFeed {
     /// Keeps a copy of an image where the last one is old.
     pub(crate) fn note_jpeg(&mut self, stamp: Stamp, jpeg: &[u8]) {
-        if self.is_due(stamp, IMAGE_PERIOD_S) {
+        if self.image.as_ref().is_none_or(|image| is_apart(image.stamp, stamp, IMAGE_PERIOD_S)) {
             self.image = Some(Arc::new(ImageView { stamp, jpeg: jpeg.to_vec() }));
         }
     }
@@ -33,14 +37,15 @@ impl ImageFeed {
         }
     }
 
-    /// Encodes an image of a simulator where the last one is old. One that cannot be encoded is not shown.
+    /// Encodes an image of a simulator, not too often. One that cannot be encoded is not shown.
     pub(crate) fn note_rgbd(&mut self, image: &RgbdImage) {
         let stamp = image.stamp();
-        if self.is_due(stamp, ENCODED_PERIOD_S)
+        if self.encoded.is_none_or(|encoded| encoded.elapsed() >= ENCODING_PERIOD)
             && let Ok(jpeg) = encode_color(image.color(), JPEG_QUALITY)
         {
             self.image = Some(Arc::new(ImageView { stamp, jpeg }));
-            self.note_depth(stamp, image.depth());
+            self.depth = Some(Arc::new(DepthView::of(stamp, image.depth())));
+            self.encoded = Some(Instant::now());
         }
     }
 
@@ -52,10 +57,6 @@ impl ImageFeed {
     /// The newest depth image.
     pub(crate) fn depth(&self) -> Option<Arc<DepthView>> {
         self.depth.clone()
-    }
-
-    fn is_due(&self, stamp: Stamp, period: f64) -> bool {
-        self.image.as_ref().is_none_or(|image| is_apart(image.stamp, stamp, period))
     }
 }
 

@@ -1,5 +1,6 @@
 //! What a run shows to its front ends.
 
+use std::fmt;
 use std::sync::Arc;
 
 use trundle_core::{
@@ -20,10 +21,8 @@ pub struct RunView {
     pub odometry: Option<Odometry>,
     /// The last command.
     pub twist: Twist2,
-    /// State of the robot; of the whole mission when it is over.
-    pub state: DriveState,
-    /// What goes on where no robot decides, in place of `state`: a drive by hand, a tracked sequence.
-    pub activity: Option<Activity>,
+    /// What goes on; of the whole mission when it is over.
+    pub state: RunState,
     /// The mission.
     pub mission: MissionView,
     /// The battery; `None` where the body has not reported it.
@@ -46,6 +45,15 @@ pub struct RunView {
     pub settings: Option<[RunSetting; 2]>,
 }
 
+/// What goes on in a run.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RunState {
+    /// A robot decides.
+    Robot(DriveState),
+    /// No robot decides: a drive by hand, a tracked sequence.
+    Activity(Activity),
+}
+
 /// What goes on where no robot decides.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Activity {
@@ -65,8 +73,7 @@ impl RunView {
             estimate,
             odometry: None,
             twist: Twist2::ZERO,
-            state: DriveState::Idle,
-            activity: Some(activity),
+            state: RunState::Activity(activity),
             mission: MissionView::default(),
             battery: None,
             hold: None,
@@ -79,19 +86,42 @@ impl RunView {
             settings: None,
         }
     }
+}
 
-    /// What goes on, in one or two words.
+impl fmt::Display for RunState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Robot(state) => state.fmt(f),
+            Self::Activity(activity) => f.write_str(activity.name),
+        }
+    }
+}
+
+impl RunState {
+    /// In one or two words.
     #[must_use]
-    pub fn state_name(&self) -> &'static str {
-        self.activity.as_ref().map_or_else(|| self.state.name(), |activity| activity.name)
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Robot(state) => state.name(),
+            Self::Activity(activity) => activity.name,
+        }
     }
 
-    /// Why, in a sentence.
+    /// Why the robot does not move on, or more about the activity, in a sentence.
     #[must_use]
-    pub fn state_reason(&self) -> Option<String> {
-        match &self.activity {
-            Some(activity) => activity.reason.clone(),
-            None => self.state.reason().map(ToString::to_string),
+    pub fn reason(&self) -> Option<String> {
+        match self {
+            Self::Robot(state) => state.reason().map(ToString::to_string),
+            Self::Activity(activity) => activity.reason.clone(),
+        }
+    }
+
+    /// The state of a robot that decides.
+    #[must_use]
+    pub fn drive(&self) -> Option<&DriveState> {
+        match self {
+            Self::Robot(state) => Some(state),
+            Self::Activity(_) => None,
         }
     }
 }

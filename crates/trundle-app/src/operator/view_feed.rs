@@ -2,7 +2,7 @@
 
 use super::image_feed::ImageFeed;
 use super::perception_feed::PerceptionFeed;
-use super::run_view::{MapView, MissionView, PerceptionView, RunCounts, RunView};
+use super::run_view::{MapView, MissionView, PerceptionView, RunCounts, RunState, RunView};
 use super::visual_map_feed::VisualMapFeed;
 use std::sync::Arc;
 use trundle_core::{Scan, Stamp, Trajectory, Twist2};
@@ -78,8 +78,7 @@ impl ViewFeed {
             estimate: robot.estimate(),
             odometry: robot.odometry(),
             twist: self.twist,
-            state: report.state.clone(),
-            activity: None,
+            state: RunState::Robot(report.state.clone()),
             mission: self.mission.clone(),
             battery: robot.battery(),
             hold: robot.hold(),

@@ -1,6 +1,5 @@
 //! Views of a tracked sequence for a front end that watches.
 
-use super::run::SequenceRun;
 use crate::operator::{
     Activity, ImageFeed, MapView, OperatorLink, PerceptionFeed, PerceptionView, RunCounts, RunView,
     SeriesView, VisualMapFeed, on_floor,
@@ -9,8 +8,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_core::{Pose2, Pose3, RgbdImage, Scan, Stamp, Twist2};
 use trundle_mapping::{GridMapper, MapperConfig};
-use trundle_runtime::{LevelMap, Stage};
-use trundle_slam::{TrackReport, Tracking};
+use trundle_runtime::{LevelMap, Stage, StageTimes};
+use trundle_slam::{RgbdSlam, TrackReport, Tracking};
 
 /// Time between two copies of the map. Source: ours; as that of a robot.
 const MAP_PERIOD: Duration = Duration::from_secs(1);
@@ -27,6 +26,13 @@ pub(super) struct SequenceFeed {
     last: Option<(Stamp, Pose2)>,
     /// Time of the first image: views count from there.
     first: Option<Stamp>,
+}
+
+/// What is shown of the tracker.
+pub(super) struct Tracker<'t> {
+    pub(super) slam: &'t RgbdSlam,
+    pub(super) map: &'t LevelMap,
+    pub(super) times: &'t StageTimes,
 }
 
 impl SequenceFeed {
@@ -51,7 +57,7 @@ impl SequenceFeed {
         image: &RgbdImage,
         jpeg: &[u8],
         report: &TrackReport,
-        run: &SequenceRun,
+        tracker: &Tracker<'_>,
         (done, total): (usize, usize),
     ) {
         let pose = on_floor(&report.visual_from_camera);
@@ -61,19 +67,19 @@ impl SequenceFeed {
             self.images.note_jpeg(report.stamp, jpeg);
             self.images.note_depth(report.stamp, image.depth());
             let size_px = [image.color().width(), image.color().height()];
-            self.perception.update(size_px, report, &run.slam);
-            self.visual_map.update(report.stamp, Some(&run.slam), Some(Pose3::identity()));
-            self.map.update(report, run);
-            let scan = run.map.scan_at(report.stamp, &report.visual_from_camera);
+            self.perception.update(size_px, report, tracker.slam);
+            self.visual_map.update(report.stamp, Some(tracker.slam), Some(Pose3::identity()));
+            self.map.update(report, tracker);
+            let scan = tracker.map.scan_at(report.stamp, &report.visual_from_camera);
             self.scan = scan.map(|(base, scan)| (base, Arc::new(scan.clone()))).or(self.scan.take());
         }
-        let view = self.view(report, pose, run);
+        let view = self.view(report, pose, tracker);
         self.link.publish_view(view);
         let (unit, total) = ("images", Some(total));
         self.link.operator().show_series(SeriesView { unit, done, total, ..SeriesView::default() });
     }
 
-    fn view(&mut self, report: &TrackReport, pose: Pose2, run: &SequenceRun) -> RunView {
+    fn view(&mut self, report: &TrackReport, pose: Pose2, tracker: &Tracker<'_>) -> RunView {
         let stamp = report.stamp;
         let twist =
             self.last.replace((stamp, pose)).map_or(Twist2::ZERO, |last| twist_since(last, (stamp, pose)));
@@ -98,8 +104,8 @@ impl SequenceFeed {
             },
             counts: RunCounts {
                 slam: self.tracked,
-                mapping: run.map.scan_count() as u64,
-                stages: stages.map(|stage| (stage.name(), run.times.total(stage))).to_vec(),
+                mapping: tracker.map.scan_count() as u64,
+                stages: stages.map(|stage| (stage.name(), tracker.times.total(stage))).to_vec(),
                 ..RunCounts::default()
             },
             ..RunView::of_activity(since_first, pose, twist, activity)
@@ -118,15 +124,15 @@ struct MapFeed {
 }
 
 impl MapFeed {
-    fn update(&mut self, report: &TrackReport, run: &SequenceRun) {
+    fn update(&mut self, report: &TrackReport, tracker: &Tracker<'_>) {
         let is_corrected = report.closed_loop.is_some() || report.merged.is_some();
-        let count = run.map.scan_count();
+        let count = tracker.map.scan_count();
         // Scans that came while nobody watched are missing.
         if is_corrected || self.mapper.is_none() || count > self.count + 1 {
-            self.mapper = redrawn(&run.map, run, &self.config);
+            self.mapper = redrawn(tracker, &self.config);
         } else if count > self.count
             && let (Some(mapper), Some((base, scan))) =
-                (&mut self.mapper, run.map.scan_at(report.stamp, &report.visual_from_camera))
+                (&mut self.mapper, tracker.map.scan_at(report.stamp, &report.visual_from_camera))
         {
             mapper.insert(base, scan);
         }
@@ -141,8 +147,8 @@ impl MapFeed {
     }
 }
 
-fn redrawn(map: &LevelMap, run: &SequenceRun, config: &MapperConfig) -> Option<GridMapper> {
-    map.mapper(&run.slam.trajectory(), config.clone()).ok()
+fn redrawn(tracker: &Tracker<'_>, config: &MapperConfig) -> Option<GridMapper> {
+    tracker.map.mapper(&tracker.slam.trajectory(), config.clone()).ok()
 }
 
 fn twist_since((then, before): (Stamp, Pose2), (now, pose): (Stamp, Pose2)) -> Twist2 {

@@ -1,6 +1,6 @@
 //! Tracking of a sequence, frame by frame.
 
-use super::live_view::SequenceFeed;
+use super::live_view::{SequenceFeed, Tracker};
 use super::odometry_prior::OdometryPrior;
 use super::recorder::SequenceRecorder;
 use super::request::SequenceRequest;
@@ -100,7 +100,8 @@ pub fn track_sequence(
                 let encoded = frame.encoded(&image).map_err(AppError::input)?;
                 let report = run.step(image, &odometry);
                 if let (Some(feed), Some(image)) = (&mut feed, &run.last_image) {
-                    feed.note(image, &encoded.color_jpeg, &report, &run, (i + 1, frames));
+                    let tracker = Tracker { slam: &run.slam, map: &run.map, times: &run.times };
+                    feed.note(image, &encoded.color_jpeg, &report, &tracker, (i + 1, frames));
                 }
                 recorder.record(encoded, &report, &run.slam);
                 run.warn_of_calibration(progress);

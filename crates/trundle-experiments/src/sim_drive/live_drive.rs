@@ -114,7 +114,7 @@ mod tests {
     fn those_who_watch_drive_and_their_silence_stops_the_robot() {
         let (distance, view) = drive(None);
         assert!((0.03..0.1).contains(&distance), "0.3 m/s for 0.3 s: {distance} m");
-        assert_eq!((view.twist, view.state_name()), (Twist2::ZERO, "standing"));
+        assert_eq!((view.twist, view.state.name()), (Twist2::ZERO, "standing"));
         let seen = &view.perception;
         assert!(view.map.is_some() && view.scan.is_some() && seen.image.is_some() && seen.depth.is_some());
     }

@@ -68,11 +68,41 @@ struct Updates {
     /// Number of the view with the last image.
     image_batch: u64,
     features: Option<Arc<FeatureView>>,
+    notes: SentNotes,
+    visual_map: Option<Arc<VisualMapView>>,
+    states: usize,
+}
+
+/// What a viewer has been sent as notes beside the state.
+#[derive(Default)]
+struct SentNotes {
     annotations: Option<Arc<MapAnnotations>>,
     settings: Option<[RunSetting; 2]>,
     series: Option<Arc<SeriesView>>,
-    visual_map: Option<Arc<VisualMapView>>,
-    states: usize,
+}
+
+impl SentNotes {
+    /// Zones, places, settings and series, where they changed.
+    fn changed(&mut self, view: &RunView, state: &PageState) -> Vec<Reply> {
+        let annotations = state.operator.annotations();
+        let is_new = self.annotations.as_ref().is_none_or(|known| !Arc::ptr_eq(known, &annotations));
+        let zones = is_new.then(|| Reply::Annotations { annotations: annotations.as_ref().clone() });
+        self.annotations = Some(annotations);
+        let known = std::mem::replace(&mut self.settings, view.settings);
+        let changed = view.settings.filter(|_| known != view.settings);
+        let limits = &state.facts.limits;
+        let text = |setting: &RunSetting| SettingText::of(*setting, limits);
+        let settings = changed.map(|all| Reply::Settings { settings: all.iter().map(text).collect() });
+        zones.into_iter().chain(settings).chain(self.series_note(state)).collect()
+    }
+
+    fn series_note(&mut self, state: &PageState) -> Option<Reply> {
+        let series = state.operator.series()?;
+        let is_new = self.series.as_ref().is_none_or(|known| *known != series);
+        let note = is_new.then(|| Reply::Series(SeriesText::of(&series)));
+        self.series = Some(series);
+        note
+    }
 }
 
 impl Updates {
@@ -90,9 +120,7 @@ impl Updates {
             image_sent: now,
             image_batch: 0,
             features: None,
-            annotations: None,
-            settings: None,
-            series: None,
+            notes: SentNotes::default(),
             visual_map: None,
             states: 0,
         }
@@ -118,7 +146,7 @@ impl Updates {
         self.view_sent = Instant::now();
         let parts = self.parts(&view, state, progress);
         let message = self.state_message(&view, state);
-        let notes = self.notes(&view, state);
+        let notes = self.notes.changed(&view, state);
         self.view = Some(view);
         let (states, so_far) = state.history().states_after(self.states);
         self.states = so_far;
@@ -144,28 +172,6 @@ impl Updates {
         let roster = state.roster();
         let wheel = roster.holder().map(|(id, name)| WheelText { name, is_you: id == self.id });
         StateMessage::of(view, self.batch, wheel, roster.count())
-    }
-
-    /// Zones, places and settings, where they changed.
-    fn notes(&mut self, view: &RunView, state: &PageState) -> Vec<Reply> {
-        let annotations = state.operator.annotations();
-        let is_new = self.annotations.as_ref().is_none_or(|known| !Arc::ptr_eq(known, &annotations));
-        let zones = is_new.then(|| Reply::Annotations { annotations: annotations.as_ref().clone() });
-        self.annotations = Some(annotations);
-        let known = std::mem::replace(&mut self.settings, view.settings);
-        let changed = view.settings.filter(|_| known != view.settings);
-        let limits = &state.facts.limits;
-        let text = |setting: &RunSetting| SettingText::of(*setting, limits);
-        let settings = changed.map(|all| Reply::Settings { settings: all.iter().map(text).collect() });
-        zones.into_iter().chain(settings).chain(self.series_note(state)).collect()
-    }
-
-    fn series_note(&mut self, state: &PageState) -> Option<Reply> {
-        let series = state.operator.series()?;
-        let is_new = self.series.as_ref().is_none_or(|known| *known != series);
-        let note = is_new.then(|| Reply::Series(SeriesText::of(&series)));
-        self.series = Some(series);
-        note
     }
 
     /// The messages of bytes with what the viewer lacks.

@@ -147,8 +147,8 @@ impl ActivityText {
         let ended = &view.mission.ended;
         let shown = ended.len().saturating_sub(SHOWN_ENDED_TASKS);
         Self {
-            state: view.state_name(),
-            reason: view.state_reason(),
+            state: view.state.name(),
+            reason: view.state.reason(),
             hold: view.hold.map(|hold| hold.to_string()),
             paused: view.hold == Some(trundle_runtime::MotionHold::Paused),
             left: view.mission.left.iter().map(TaskText::of).collect(),
