@@ -26,7 +26,8 @@ async function open(link, options = {}) {
   const page = await context.newPage();
   const watch = { page, context, state: null, states: [], mayFail: false };
   page.on("console", (message) => {
-    if (message.type() === "error" && !watch.mayFail) problems.push(message.text());
+    const isLoss = watch.mayLose && message.text().includes("ERR_CONNECTION_REFUSED");
+    if (message.type() === "error" && !watch.mayFail && !isLoss) problems.push(message.text());
   });
   page.on("pageerror", (error) => problems.push(String(error)));
   page.on("websocket", (socket) =>
@@ -536,8 +537,8 @@ main.mayFail = true;
 async function withCommand(args, work) {
   const other = await startCommand(trundle, [...args, "--live", "127.0.0.1:0"]);
   const viewer = await open(other.drive ?? other.view);
-  // A command that ends by itself refuses the page's next link.
-  other.child.on("exit", () => (viewer.mayFail = true));
+  // The page of a command that ends by itself finds no server any more.
+  viewer.mayLose = true;
   try {
     await until("a state", () => viewer.state !== null, 30);
     return await work(viewer, other);
