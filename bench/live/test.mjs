@@ -530,8 +530,8 @@ await check("the page comes back after a restart of the program", async () => {
   return `after ${seconds.toFixed(1)} s`;
 });
 
-await program.end();
 main.mayFail = true;
+await program.end();
 
 /** Another command with its page, until the program is ended. */
 async function withCommand(args, work) {
