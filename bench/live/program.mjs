@@ -1,16 +1,19 @@
-// Starts `trundle demo --live` and finds the links that it prints.
+// Starts trundle with `--live` and finds the links that it prints.
 import { spawn } from "node:child_process";
 
-/** A program with its links; `end` stops it by Ctrl-C. */
-export async function start(trundle, args, out) {
-  const child = spawn(trundle, ["demo", "--out", out, "--record", "none", ...args], { stdio: ["ignore", "pipe", "pipe"] });
+/** `trundle demo` with its links. */
+export const start = (trundle, args, out) => startCommand(trundle, ["demo", "--out", out, "--record", "none", ...args]);
+
+/** A program with its links, that which drives where there is one; `end` stops it by Ctrl-C. */
+export async function startCommand(trundle, args) {
+  const child = spawn(trundle, args, { stdio: ["ignore", "pipe", "pipe"] });
   let text = "";
   const links = new Promise((resolve, reject) => {
     const read = (chunk) => {
       text += chunk;
       const drive = /Live page: (\S+)/.exec(text)?.[1];
       const view = /to look only: (\S+)/.exec(text)?.[1];
-      if (drive && view) resolve({ drive, view });
+      if (view) resolve({ drive, view });
     };
     child.stdout.on("data", read);
     child.stderr.on("data", read);

@@ -1,12 +1,12 @@
 // The live page in a real browser: `node test.mjs TRUNDLE [PICTURES]`. Prints one line for each thing that holds; ends with 1 where one does not.
 import assert from "node:assert/strict";
-import { existsSync, mkdirSync, mkdtempSync, readFileSync } from "node:fs";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { connect, createServer as createTcpServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
-import { start } from "./program.mjs";
+import { start, startCommand } from "./program.mjs";
 
 const [trundle, pictures = mkdtempSync(join(tmpdir(), "live-pictures-"))] = process.argv.slice(2);
 const CHROMIUM = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
@@ -26,7 +26,8 @@ async function open(link, options = {}) {
   const page = await context.newPage();
   const watch = { page, context, state: null, states: [], mayFail: false };
   page.on("console", (message) => {
-    if (message.type() === "error" && !watch.mayFail) problems.push(message.text());
+    const isLoss = watch.mayLose && message.text().includes("ERR_CONNECTION_REFUSED");
+    if (message.type() === "error" && !watch.mayFail && !isLoss) problems.push(message.text());
   });
   page.on("pageerror", (error) => problems.push(String(error)));
   page.on("websocket", (socket) =>
@@ -101,7 +102,7 @@ async function check(name, work) {
 
 const tokens = join(place, "tokens");
 const zones = join(place, "zones.geojson");
-const quiet = ["--direct", "--goal", "0.2,0,0", "--zones", zones];
+const quiet = ["--direct", "--goal", "0.2,0,0", "--zones", zones, "--maps", join(place, "maps")];
 let program = await start(trundle, ["--live", "127.0.0.1:0", "--live-tokens", tokens, ...quiet], join(place, "run"));
 const main = await open(program.drive);
 const { page } = main;
@@ -292,6 +293,34 @@ await check("the map is saved as files", async () => {
   await page.locator("#map-save").click();
   await until("three files", () => names.length === 3, 10);
   assert.deepEqual(names.sort(), ["map.pgm", "map.yaml", "zones.geojson"]);
+});
+
+await check("a map of the folder is loaded by two presses, and the robot gets its pose", async () => {
+  const maps = join(place, "maps");
+  mkdirSync(maps, { recursive: true });
+  const headers = { Authorization: `Bearer ${new URL(program.drive).hash.slice(1)}` };
+  for (const [from, to] of [["map.pgm", "map.pgm"], ["map.yaml", "home.yaml"]]) {
+    const response = await fetch(new URL(`/files/${from}`, program.drive), { headers });
+    writeFileSync(join(maps, to), Buffer.from(await response.arrayBuffer()));
+  }
+  await page.reload();
+  await page.locator("#map-name").waitFor({ timeout: 5000 });
+  const [x, y, theta] = main.state.pose;
+  await page.locator("#map-load").click();
+  await page.waitForTimeout(300);
+  assert(!main.state.reason?.includes("map"), "one press does nothing");
+  await page.locator("#map-load").click();
+  await until("an unknown pose", () => main.state.covariance[0] > 0.5, 5);
+  await picture("map-loaded");
+  const robot = await page.evaluate(([x, y]) => (window.trundle.map.fit(), window.trundle.map.toWindow([x, y])), [x, y]);
+  await page.keyboard.press("p");
+  await page.mouse.move(...robot);
+  await page.mouse.down();
+  await page.mouse.move(robot[0] + 60 * Math.cos(theta), robot[1] - 60 * Math.sin(theta), { steps: 4 });
+  await page.mouse.up();
+  await until("a pose", () => Math.hypot(main.state.pose[0] - x, main.state.pose[1] - y) < 0.3 && main.state.covariance[0] < 0.1, 30);
+  await page.keyboard.press("Escape");
+  return `${main.state.state}, ${main.state.reason ?? "no reason"}`;
 });
 
 await check("the space bar stops the robot within 0.2 s", async () => {
@@ -501,9 +530,93 @@ await check("the page comes back after a restart of the program", async () => {
   return `after ${seconds.toFixed(1)} s`;
 });
 
+main.mayFail = true;
+await program.end();
+
+/** Another command with its page, until the program is ended. */
+async function withCommand(args, work) {
+  const other = await startCommand(trundle, [...args, "--live", "127.0.0.1:0"]);
+  const viewer = await open(other.drive ?? other.view);
+  // The page of a command that ends by itself finds no server any more.
+  viewer.mayLose = true;
+  try {
+    await until("a state", () => viewer.state !== null, 30);
+    return await work(viewer, other);
+  } finally {
+    await viewer.context.close();
+    await other.end();
+  }
+}
+const isShown = (page, selector) => page.locator(selector).first().isVisible();
+const tracked = join(place, "tracked");
+
+await check("sim: the page drives by keys, shows camera and depth, and offers no missions", () =>
+  withCommand(["sim", "office", "--laser", "rplidar-a1", "--record", tracked, "--rate", "10", "--duration", "60"], async (viewer) => {
+    const { page } = viewer;
+    for (const absent of ["#explore", "[data-tool=goal]", "#mission-card", "#settings-card"])
+      assert(!(await isShown(page, absent)), `${absent} is offered`);
+    assert((await isShown(page, "#stop")) && (await isShown(page, "[data-tool=drive]")));
+    const [x, y] = viewer.state.pose;
+    await page.locator("#depth-toggle").click();
+    const depths = () =>
+      page.evaluate(() => {
+        const canvas = document.getElementById("camera-depth");
+        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+        return data.filter((value, i) => i % 4 === 1 && value > 0).length;
+      });
+    await until("depth", async () => (await depths()) > 5000, 5);
+    await page.keyboard.down("w");
+    await until("motion", () => speed(viewer) > 0.1, 5);
+    assert.equal(viewer.state.state, "driven by hand");
+    await page.waitForTimeout(3000);
+    await picture("sim", page);
+    await page.waitForTimeout(1000);
+    await page.keyboard.down("a");
+    await page.waitForTimeout(1500);
+    await page.keyboard.up("a");
+    await page.keyboard.up("w");
+    const seconds = await until("rest", () => speed(viewer) === 0, 3);
+    await page.keyboard.down("w");
+    await until("motion", () => speed(viewer) > 0.1, 5);
+    await page.keyboard.press("Space");
+    const stopped = await until("stop", () => speed(viewer) === 0, 2);
+    await page.keyboard.up("w");
+    const driven = Math.hypot(viewer.state.pose[0] - x, viewer.state.pose[1] - y);
+    assert(driven > 0.5, `${driven} m`);
+    return `${driven.toFixed(1)} m, at rest ${seconds.toFixed(2)} s after the keys, ${stopped.toFixed(2)} s after STOP`;
+  }),
+);
+
+await check("slam: features, landmarks, map and progress, and nothing that drives", () =>
+  withCommand(["slam", tracked, "--height", "0.45", "--tilt", "8", "--out", join(place, "slam")], async (viewer) => {
+    const { page } = viewer;
+    for (const absent of ["#stop", "#explore", "[data-tool=drive]", "#mission-card", "#notes-card"])
+      assert(!(await isShown(page, absent)), `${absent} is offered`);
+    const landmarks = () => page.evaluate(() => window.trundle.map.landmarks.length / 3);
+    await until("landmarks", async () => (await landmarks()) > 100, 30);
+    await until("half of the images", async () => parseInt(await text(page, "series-count")) > 30, 30);
+    await picture("slam", page);
+    return `${await text(page, "series-count")}, ${await landmarks()} landmarks`;
+  }),
+);
+
+await check("experiment: the run that goes on, and the results of those that have ended", () =>
+  withCommand(["experiment", "poses", "--only", ", seed 1", "--out", join(place, "poses")], async (viewer) => {
+    const { page } = viewer;
+    assert(!(await isShown(page, "#stop")) && (await isShown(page, "#mission-card")));
+    assert.match(await text(page, "series-shown"), /Shown: \d, seed 1/);
+    await until("a result", async () => (await page.locator("#series-ended li").count()) > 0, 120);
+    const first = await text(page, "series-shown");
+    await until("another run", async () => (await text(page, "series-shown")) !== first, 60);
+    await until("a drive", () => speed(viewer) > 0.3, 30);
+    await page.waitForTimeout(500);
+    await picture("experiment", page);
+    return `${await text(page, "series-count")}; ${await page.locator("#series-ended li").first().innerText()}`;
+  }),
+);
+
 await check("no error in the console", async () => assert.deepEqual(problems, []));
 
-await program.end();
 await browser.close();
 console.log(`pictures: ${pictures}`);
 process.exit(failures ? 1 : 0);

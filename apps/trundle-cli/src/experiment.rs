@@ -1,17 +1,20 @@
 //! `trundle experiment`: the papers' experiments as commands; exit code 1 if a limit is missed.
 
 use crate::common_args::{Common, RobotArgs};
+use crate::live::ViewArgs;
 use crate::outcome::Outcome;
 use crate::output_args::OutputDirArg;
 use crate::{console, logging};
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
-use trundle::app::{AppError, Progress, stop};
+use trundle::app::operator::OperatorLink;
+use trundle::app::{AppError, stop};
 use trundle::experiments::{
-    ExperimentReport, IndexRange, RunsRequest, barn, corridor, docking_station, fault_scenarios, look_alikes,
-    missions, mrpb, people, poses, real_time,
+    ExperimentDisplay, ExperimentReport, IndexRange, RunsRequest, barn, corridor, docking_station,
+    fault_scenarios, look_alikes, missions, mrpb, people, poses, real_time,
 };
 use trundle::io::OutputFolder;
+use trundle::live::LivePage;
 
 /// `trundle experiment`
 #[derive(Debug, Args)]
@@ -64,6 +67,9 @@ pub struct RunsArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/experiment")]
     pub out: OutputDirArg,
+    /// The live page: it shows the runs, and takes no commands.
+    #[command(flatten)]
+    pub live: ViewArgs,
     /// Options of every command.
     #[command(flatten)]
     pub common: Common,
@@ -112,6 +118,9 @@ pub struct BarnArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/barn")]
     pub out: OutputDirArg,
+    /// The live page: it shows the runs, and takes no commands.
+    #[command(flatten)]
+    pub live: ViewArgs,
     /// Options of every command.
     #[command(flatten)]
     pub common: Common,
@@ -138,6 +147,9 @@ pub struct MrpbArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/mrpb")]
     pub out: OutputDirArg,
+    /// The live page: it shows the runs, and takes no commands.
+    #[command(flatten)]
+    pub live: ViewArgs,
     /// Options of every command.
     #[command(flatten)]
     pub common: Common,
@@ -162,6 +174,9 @@ pub struct RealTimeArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/real-time")]
     pub out: OutputDirArg,
+    /// The live page: it shows the runs, and takes no commands.
+    #[command(flatten)]
+    pub live: ViewArgs,
     /// Options of every command.
     #[command(flatten)]
     pub common: Common,
@@ -203,31 +218,33 @@ impl ExperimentArgs {
 /// Runs the experiment that was asked for.
 pub fn run(args: &ExperimentArgs) -> Result<Outcome, AppError> {
     match &args.which {
-        Which::Poses(args) if args.wires => runs(&args.runs, |request, _| poses::run_over_wires(request)),
-        Which::Poses(args) => runs(&args.runs, poses::run),
-        Which::Obstacles(args) => runs(args, missions::run_obstacles),
+        Which::Poses(args) if args.wires => runs(&args.runs, "poses", poses::run_over_wires),
+        Which::Poses(args) => runs(&args.runs, "poses", poses::run),
+        Which::Obstacles(args) => runs(args, "obstacles", missions::run_obstacles),
         Which::House(args) => {
-            runs(&args.runs, |request, progress| missions::run_house(request, &args.mesh, progress))
+            runs(&args.runs, "house", |request, display| missions::run_house(request, &args.mesh, display))
         }
-        Which::Faults(args) => runs(args, fault_scenarios::run),
-        Which::People(args) => runs(args, people::run),
-        Which::LookAlikes(args) => runs(args, look_alikes::run),
-        Which::DockingStation(args) => runs(args, docking_station::run),
+        Which::Faults(args) => runs(args, "faults", fault_scenarios::run),
+        Which::People(args) => runs(args, "people", people::run),
+        Which::LookAlikes(args) => runs(args, "look-alikes", look_alikes::run),
+        Which::DockingStation(args) => runs(args, "docking-station", docking_station::run),
         Which::Barn(args) => run_barn(args),
         Which::Mrpb(args) => run_mrpb(args),
         Which::RealTime(args) => run_real_time(args),
-        Which::Corridor(args) => in_folder(&args.out, &args.common, |_, _| corridor::run()),
+        Which::Corridor(args) => in_folder(&args.out, &args.common, None, |_, _| corridor::run()),
     }
 }
 
 /// An experiment of closed-loop runs.
 fn runs<R: ExperimentReport>(
     args: &RunsArgs,
-    experiment: impl FnOnce(&RunsRequest, &Progress) -> Result<R, AppError>,
+    name: &str,
+    experiment: impl FnOnce(&RunsRequest, &ExperimentDisplay) -> Result<R, AppError>,
 ) -> Result<Outcome, AppError> {
     let robot = args.robot.robot()?;
+    let page = args.live.of_experiment(name, &robot)?;
     let request = RunsRequest { seeds: args.seeds, only: args.only.clone(), robot };
-    in_folder(&args.out, &args.common, |_, progress| experiment(&request, progress))
+    in_folder(&args.out, &args.common, page, |_, display| experiment(&request, display))
 }
 
 fn run_barn(args: &BarnArgs) -> Result<Outcome, AppError> {
@@ -237,7 +254,8 @@ fn run_barn(args: &BarnArgs) -> Result<Outcome, AppError> {
         seeds: args.seeds,
         robot: args.robot.robot_if_given()?,
     };
-    in_folder(&args.out, &args.common, |_, progress| barn::run(&request, progress))
+    let page = args.live.of_experiment("barn", &request.robot())?;
+    in_folder(&args.out, &args.common, page, |_, display| barn::run(&request, display))
 }
 
 fn run_mrpb(args: &MrpbArgs) -> Result<Outcome, AppError> {
@@ -247,25 +265,33 @@ fn run_mrpb(args: &MrpbArgs) -> Result<Outcome, AppError> {
         seeds: args.seeds,
         robot: args.robot.robot_if_given()?,
     };
-    in_folder(&args.out, &args.common, |_, progress| mrpb::run(&request, progress))
+    let page = args.live.of_experiment("mrpb", &request.robot())?;
+    in_folder(&args.out, &args.common, page, |_, display| mrpb::run(&request, display))
 }
 
 fn run_real_time(args: &RealTimeArgs) -> Result<Outcome, AppError> {
     let robot = args.robot.robot()?;
     let request = real_time::RealTimeRequest { minutes: args.minutes, seed: args.seed, robot };
-    in_folder(&args.out, &args.common, |folder, progress| real_time::run(&request, folder, progress))
+    let page = args.live.of_experiment("real-time", &request.robot)?;
+    in_folder(&args.out, &args.common, page, |folder, display| real_time::run(&request, folder, display))
 }
 
-/// Runs an experiment, writes its folder and prints its table.
+/// Runs an experiment beside its page, writes its folder and prints its table.
 fn in_folder<R: ExperimentReport>(
     out: &Path,
     common: &Common,
-    experiment: impl FnOnce(&OutputFolder, &Progress) -> Result<R, AppError>,
+    page: Option<(LivePage, OperatorLink)>,
+    experiment: impl FnOnce(&OutputFolder, &ExperimentDisplay) -> Result<R, AppError>,
 ) -> Result<Outcome, AppError> {
     let folder = logging::output_folder(out)?;
     let (line, progress) = console::progress(common.quiet);
-    let report = experiment(&folder, &progress);
+    let display = match &page {
+        Some((_, link)) => ExperimentDisplay::with_stage(progress, link.operator()),
+        None => ExperimentDisplay::from(progress),
+    };
+    let report = experiment(&folder, &display);
     line.finish_and_clear();
+    drop(page);
     let report = report?;
     report.write(&folder)?;
     stop::note_in(&folder)?;

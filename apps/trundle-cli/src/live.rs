@@ -1,11 +1,12 @@
-//! Front ends beside a run: --live, a page that shows it and steers it, and --mqtt.
+//! Front ends beside a run: --live, a page that shows it and, if the command drives, steers it, and --mqtt.
 
 use crate::console;
 use clap::Args;
-use std::path::PathBuf;
-use trundle::app::operator::{FrontEnd, OperatorLink, operator_link};
+use std::path::{Path, PathBuf};
+use trundle::app::operator::{FrontEnd, MapFolder, Operator, OperatorLink, operator_link};
 use trundle::app::{AppError, Progress, RunSetup};
 use trundle::live::{LiveAddress, LiveOptions, LivePage, RunFacts, Tokens};
+use trundle::runtime::RobotConfig;
 
 /// The live page of a run.
 #[derive(Debug, Args)]
@@ -21,6 +22,9 @@ pub struct LiveArgs {
     /// Keep the tokens of the links in FILE, so that links stay valid over restarts.
     #[arg(long, value_name = "FILE", requires = "live")]
     pub live_tokens: Option<PathBuf>,
+    /// Maps that the live page may load while the robot runs: each NAME.yaml of DIR.
+    #[arg(long, value_name = "DIR", requires = "live")]
+    pub maps: Option<PathBuf>,
     /// Home and fleet.
     #[cfg(feature = "mqtt")]
     #[command(flatten)]
@@ -82,10 +86,56 @@ impl LiveArgs {
         is_steered: bool,
     ) -> Result<Option<LivePage>, AppError> {
         let Some(address) = self.live else { return Ok(None) };
-        let tokens = self.live_tokens.as_deref().map_or_else(Tokens::random, Tokens::of_file)?;
-        let options = LiveOptions { address, tokens, is_steered };
-        let page = LivePage::start(options, link.operator(), RunFacts::of(setup)?)?;
-        console::print(&page.announcement());
-        Ok(Some(page))
+        let maps = self.maps.clone().map(|folder| MapFolder::new(folder, setup.robot.clone()));
+        let tokens = tokens(self.live_tokens.as_deref())?;
+        let options = LiveOptions { address, tokens, is_steered, maps };
+        start_page(options, link.operator(), RunFacts::of(setup)?).map(Some)
+    }
+}
+
+/// The tokens of a file, or new ones.
+fn tokens(file: Option<&Path>) -> Result<Tokens, AppError> {
+    Ok(file.map_or_else(Tokens::random, Tokens::of_file)?)
+}
+
+/// Serves a page and prints its links.
+fn start_page(options: LiveOptions, operator: Operator, facts: RunFacts) -> Result<LivePage, AppError> {
+    let page = LivePage::start(options, operator, facts)?;
+    console::print(&page.announcement());
+    Ok(page)
+}
+
+/// A live page beside work that is no robot's run.
+#[derive(Debug, Args)]
+pub struct ViewArgs {
+    /// Show how it goes in a browser: prints the link. ADDR is IP:PORT [default: 127.0.0.1:8642, or a free port where it is in use]
+    #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = LiveAddress::DEFAULT)]
+    pub live: Option<LiveAddress>,
+    /// Keep the tokens of the links in FILE, so that links stay valid over restarts.
+    #[arg(long, value_name = "FILE", requires = "live")]
+    pub live_tokens: Option<PathBuf>,
+}
+
+impl ViewArgs {
+    /// The page with `facts`, where it is asked for, and what it shows. Dropping the page ends it.
+    pub fn start(
+        &self,
+        facts: impl FnOnce() -> Result<RunFacts, AppError>,
+        is_steered: bool,
+    ) -> Result<Option<(LivePage, OperatorLink)>, AppError> {
+        let Some(address) = self.live else { return Ok(None) };
+        let (operator, link) = operator_link();
+        let tokens = tokens(self.live_tokens.as_deref())?;
+        let options = LiveOptions { address, tokens, is_steered, maps: None };
+        Ok(Some((start_page(options, operator, facts()?)?, link)))
+    }
+
+    /// The page of an experiment with this robot.
+    pub fn of_experiment(
+        &self,
+        name: &str,
+        robot: &RobotConfig,
+    ) -> Result<Option<(LivePage, OperatorLink)>, AppError> {
+        self.start(|| Ok(RunFacts::of_experiment(name, robot)?), false)
     }
 }

@@ -5,7 +5,6 @@ mod args;
 mod ros2;
 #[cfg(unix)]
 mod serve;
-mod teleop;
 
 pub use args::SimArgs;
 
@@ -14,15 +13,16 @@ use crate::logging;
 use crate::outcome::Outcome;
 use crate::output_args::write_file;
 use std::path::Path;
-use teleop::{TeleopDriver, require_terminal};
 use trundle::app::AppError;
 use trundle::core::OccupancyGrid;
 use trundle::experiments::sim_drive::{
-    DriveRecording, ScriptDriver, SimDrive, SimDriver, Standing, WaypointDriver, drive_rows, drive_simulator,
-    drive_summary, drive_verdict, recording_announcement, recording_hint, true_map,
+    DriveRecording, KeyDriver, LiveDrive, ScriptDriver, SimDrive, SimDriver, Standing, WaypointDriver,
+    drive_rows, drive_simulator, drive_summary, drive_verdict, recording_announcement, recording_hint,
+    true_map,
 };
 use trundle::experiments::simulated::{list_scenes, load_simulator};
 use trundle::io::{OutputFolder, map_files};
+use trundle::live::RunFacts;
 use trundle::sim::{HeightBand, Simulator};
 
 /// `trundle sim`.
@@ -65,15 +65,16 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
     Ok(if drive.is_complete { Outcome::Reached } else { Outcome::Missed })
 }
 
-/// The driver that the arguments name; `None` for one at the keys, who starts when the robot is there.
+/// The driver that the arguments name; `None` for a person at the keys or the page, who starts when the robot is there.
 fn driver(args: &SimArgs) -> Result<Option<Box<dyn SimDriver>>, AppError> {
     Ok(match (&args.driver.drive, &args.driver.follow) {
         (Some(file), _) => Some(Box::new(ScriptDriver::read(file)?)),
         (None, Some(file)) => Some(Box::new(WaypointDriver::read(file)?)),
         (None, None) if args.driver.keys => {
-            require_terminal()?;
+            KeyDriver::require_terminal()?;
             None
         }
+        (None, None) if args.is_driven_by_page() => None,
         (None, None) => Some(Box::new(Standing::new(args.driver.duration))),
     })
 }
@@ -85,9 +86,17 @@ fn drive(
     grid: Option<&OccupancyGrid>,
     folder: Option<&OutputFolder>,
 ) -> Result<SimDrive, AppError> {
-    let mut driver: Box<dyn SimDriver> = match (driver, grid) {
-        (None, Some(grid)) => Box::new(TeleopDriver::start(grid.clone(), args.common.quiet)?),
-        (driver, _) => driver.unwrap_or_else(|| Box::new(Standing::new(args.driver.duration))),
+    let (page, link) = args.page_args().start(|| Ok(facts(args, robot)), args.is_driven_by_page())?.unzip();
+    let driver = match driver {
+        None if args.driver.keys => {
+            console::print(KeyDriver::HELP);
+            Some(Box::new(KeyDriver::start()?) as Box<dyn SimDriver>)
+        }
+        driver => driver,
+    };
+    let mut driver: Box<dyn SimDriver> = match (link, grid) {
+        (Some(link), Some(grid)) => Box::new(LiveDrive::start(driver, link, grid.clone())),
+        _ => driver.unwrap_or_else(|| Box::new(Standing::new(args.driver.duration))),
     };
     if folder.is_some() && !args.common.quiet {
         console::print(&recording_announcement(robot, args.driver.duration.or_else(|| driver.end_s())));
@@ -96,11 +105,17 @@ fn drive(
     let display = console::StepDisplay::new(args.common.quiet);
     let drive = drive_simulator(robot, driver.as_mut(), args.driver.duration, recording.as_mut(), &display)?;
     drop(driver); // a driver at the keys gives the terminal back
+    drop(page);
     if let (Some(recording), Some(grid)) = (recording, grid) {
         let scene = robot.scene();
         recording.finish(grid, scene.start, &drive_summary(&drive, &scene.name, args.place.seed))?;
     }
     Ok(drive)
+}
+
+fn facts(args: &SimArgs, robot: &Simulator) -> RunFacts {
+    let (name, radius_m) = (&robot.scene().name, robot.config().kobuki.footprint_radius);
+    RunFacts::of_drive(name, radius_m, args.record.is_some())
 }
 
 /// Prints the numbers, and what to do with the recording.

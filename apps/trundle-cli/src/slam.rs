@@ -10,6 +10,7 @@ use crate::outcome::Outcome;
 use trundle::app::AppError;
 use trundle::app::report::stage_rows;
 use trundle::app::sequence::{SequenceRequest, track_sequence, write_sequence};
+use trundle::live::RunFacts;
 
 /// `trundle slam DIR`.
 pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
@@ -17,7 +18,9 @@ pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
     let input = request.open()?;
     let folder = logging::output_folder(&args.out)?;
     let display = console::StepDisplay::new(args.common.quiet);
-    let run = track_sequence(&request, &input, &folder, &display)?;
+    let (page, link) = args.live.start(|| Ok(RunFacts::of_sequence(&args.input)), false)?.unzip();
+    let run = track_sequence(&request, &input, &folder, &display, link)?;
+    drop(page);
     let output = write_sequence(&request, &input, &run, folder)?;
     if !args.common.quiet {
         console::print_table(&output.rows);
@@ -37,9 +40,9 @@ impl SlamArgs {
             depth_scale: self.camera.depth_scale,
             recover: self.recover,
             frames: self.frames.map(|frames| frames as usize),
-            height: self.height,
-            tilt_deg: self.tilt,
-            roll_deg: self.roll,
+            height: self.first_camera.height,
+            tilt_deg: self.first_camera.tilt,
+            roll_deg: self.first_camera.roll,
             map: self.map.clone(),
             localize_only: self.localise,
             vocabulary: self.vocabulary.clone(),

@@ -6,23 +6,31 @@
 mod annotation_edit;
 mod annotation_store;
 mod annotations;
+mod image_feed;
 mod link;
 mod map_file;
+mod map_folder;
 mod perception_feed;
 mod request;
 mod run_view;
+mod series;
 mod view_feed;
 mod visual_map_feed;
 
 pub use annotation_edit::AnnotationEdit;
+pub(crate) use image_feed::ImageFeed;
 pub use link::{Operator, OperatorError, OperatorLink, operator_link};
 pub use map_file::{ZONES_FILE, map_file};
+pub use map_folder::MapFolder;
+pub(crate) use perception_feed::PerceptionFeed;
 pub use request::OperatorRequest;
 pub use run_view::{
-    ClosedLoop, FeatureSpot, FeatureView, ImageView, MapView, MissionView, PerceptionView, RunCounts,
-    RunView, VisualMapView,
+    Activity, ClosedLoop, DepthView, FeatureSpot, FeatureView, ImageView, MapView, MissionView,
+    PerceptionView, RunCounts, RunState, RunView, VisualMapView,
 };
+pub use series::{EndedRun, SeriesView};
 pub use visual_map_feed::VISUAL_MAP_PERIOD_S;
+pub(crate) use visual_map_feed::{VisualMapFeed, on_floor};
 
 use crate::Progress;
 

@@ -9,10 +9,11 @@ pub use trial::BarnTrial;
 
 use crate::laser_run::{LaserPlan, drive};
 use crate::run_each::run_each;
-use crate::{ExperimentReport, IndexRange};
+use crate::{ExperimentDisplay, ExperimentReport, IndexRange};
 use std::path::PathBuf;
 use trial::{TIME_LIMIT_S, is_at_goal};
-use trundle_app::{AppError, Progress};
+use trundle_app::AppError;
+use trundle_app::operator::OperatorLink;
 use trundle_io::{OutputFolder, write_map};
 use trundle_runtime::{Mission, RobotConfig, Task};
 use worlds::BarnWorld;
@@ -29,6 +30,14 @@ pub struct BarnRequest {
     pub robot: Option<RobotConfig>,
 }
 
+impl BarnRequest {
+    /// The robot that drives: the one asked for, else the benchmark's.
+    #[must_use]
+    pub fn robot(&self) -> RobotConfig {
+        self.robot.clone().unwrap_or_else(jackal::robot)
+    }
+}
+
 /// The runs through the BARN worlds.
 pub struct BarnOutcome {
     /// A run for each world and seed.
@@ -39,7 +48,7 @@ pub struct BarnOutcome {
 ///
 /// # Errors
 /// When the data cannot be read, or a run cannot be created.
-pub fn run(request: &BarnRequest, progress: &Progress) -> Result<BarnOutcome, AppError> {
+pub fn run(request: &BarnRequest, display: &ExperimentDisplay) -> Result<BarnOutcome, AppError> {
     let worlds = worlds::read(&request.data)?;
     let max = (worlds.len() as u64).saturating_sub(1);
     let IndexRange { first, last } = request.worlds.unwrap_or(IndexRange { first: 0, last: max });
@@ -50,8 +59,10 @@ pub fn run(request: &BarnRequest, progress: &Progress) -> Result<BarnOutcome, Ap
     let plans: Vec<(BarnWorld, u64)> = chosen
         .flat_map(|(_, world)| (1..=u64::from(request.seeds)).map(move |seed| (world.clone(), seed)))
         .collect();
-    let robot = request.robot.clone().unwrap_or_else(jackal::robot);
-    let trials = run_each(plans, "worlds", progress, |(world, seed)| one(&robot, world, seed))?;
+    let robot = request.robot();
+    let name_of = |(world, seed): &(BarnWorld, u64)| format!("world {}, seed {seed}", world.id);
+    let one = |(world, seed), watch| one(&robot, world, seed, watch);
+    let trials = run_each(plans, "worlds", display, name_of, one)?;
     Ok(BarnOutcome { trials })
 }
 
@@ -83,7 +94,12 @@ impl ExperimentReport for BarnOutcome {
     }
 }
 
-fn one(robot: &RobotConfig, world: BarnWorld, seed: u64) -> Result<BarnTrial, AppError> {
+fn one(
+    robot: &RobotConfig,
+    world: BarnWorld,
+    seed: u64,
+    watch: Option<OperatorLink>,
+) -> Result<BarnTrial, AppError> {
     let robot = robot.clone();
     let plan = LaserPlan {
         body: jackal::body(&robot)?,
@@ -94,6 +110,6 @@ fn one(robot: &RobotConfig, world: BarnWorld, seed: u64) -> Result<BarnTrial, Ap
         seed,
         time_limit: TIME_LIMIT_S,
     };
-    let run = drive(plan, |moment| is_at_goal(moment) || moment.contacts > 0)?;
+    let run = drive(plan, watch, |moment| is_at_goal(moment) || moment.contacts > 0)?;
     Ok(BarnTrial::of(world, seed, run))
 }

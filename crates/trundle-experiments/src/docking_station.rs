@@ -7,9 +7,9 @@ mod trial;
 pub use trial::{DockPlan, DockTrial, body_of, dock, docking_alone};
 
 use crate::run_each::run_each;
-use crate::{ExperimentReport, RunsRequest};
+use crate::{ExperimentDisplay, ExperimentReport, RunResult, RunsRequest};
 use std::f64::consts::{PI, TAU};
-use trundle_app::{AppError, Progress};
+use trundle_app::AppError;
 use trundle_core::Pose2;
 use trundle_io::{OutputFolder, Summary, table_csv};
 use trundle_sim::Scene;
@@ -34,16 +34,30 @@ pub struct DocksOutcome {
 ///
 /// # Errors
 /// When a number of the robot is outside its range.
-pub fn run(request: &RunsRequest, progress: &Progress) -> Result<DocksOutcome, AppError> {
+pub fn run(request: &RunsRequest, display: &ExperimentDisplay) -> Result<DocksOutcome, AppError> {
     let seeds: Vec<u64> = (1..=u64::from(request.seeds)).collect();
-    let dock_from = |seed: u64| {
+    let dock_from = |seed: u64, watch| {
         let start = start_of(seed);
         let scene = Scene { start, ..Scene::by_name("room", seed)? }.with_station(station())?;
         let (robot, mission) = (request.robot.clone(), docking_alone()?);
         let body = body_of(&robot)?;
-        Ok((start, dock(DockPlan { scene, robot, body, mission, seed })?))
+        Ok(DockFrom(start, dock(DockPlan { scene, robot, body, mission, seed }, watch)?))
     };
-    Ok(DocksOutcome { trials: run_each(seeds, "docks", progress, dock_from)? })
+    let docks = run_each(seeds, "docks", display, |seed| format!("seed {seed}"), dock_from)?;
+    Ok(DocksOutcome { trials: docks.into_iter().map(|DockFrom(start, trial)| (start, trial)).collect() })
+}
+
+/// A dock and its start.
+struct DockFrom(Pose2, DockTrial);
+
+impl RunResult for DockFrom {
+    fn is_success(&self) -> bool {
+        self.1.is_docked() && self.1.contacts == 0
+    }
+
+    fn sentence(&self) -> String {
+        format!("{} after {:.0} s, {} contacts", self.1.state, self.1.time, self.1.contacts)
+    }
 }
 
 /// The station at the east wall of the room, x out of its front.

@@ -2,8 +2,8 @@
 //! stops, reports why, and goes on when the view is back.
 
 use crate::trial::{self, ComputerFault, Trial, TrialPlan};
-use crate::{ExperimentReport, RunsRequest, missions};
-use trundle_app::{AppError, Progress};
+use crate::{ExperimentDisplay, ExperimentReport, RunsRequest, missions};
+use trundle_app::AppError;
 use trundle_core::{Pose2, Vector2};
 use trundle_eval::GoalError;
 use trundle_io::{OutputFolder, Summary};
@@ -144,14 +144,14 @@ pub struct FaultsOutcome {
 ///
 /// # Errors
 /// When a run cannot be created, or no run has the name asked for.
-pub fn run(request: &RunsRequest, progress: &Progress) -> Result<FaultsOutcome, AppError> {
+pub fn run(request: &RunsRequest, display: &ExperimentDisplay) -> Result<FaultsOutcome, AppError> {
     let mut plans = Vec::new();
     for scenario in scenarios() {
         for seed in 1..=u64::from(request.seeds) {
             plans.push(scenario.plan(seed, &request.robot)?);
         }
     }
-    Ok(FaultsOutcome { trials: trial::run_all(plans, request, progress)? })
+    Ok(FaultsOutcome { trials: trial::run_all(plans, request, display)? })
 }
 
 impl FaultScenario {

@@ -1,6 +1,7 @@
 //! A run of a robot with a laser and without a camera.
 
 use crate::cpu_clock;
+use trundle_app::operator::OperatorLink;
 use trundle_app::{AppError, stop};
 use trundle_core::{OccupancyGrid, Pose2, RobotBody, SensorEvent, Twist2};
 use trundle_runtime::{DriveState, Mission, Robot, RobotConfig};
@@ -70,11 +71,15 @@ pub fn hokuyo(forward: f64) -> LaserConfig {
     }
 }
 
-/// Runs the robot until `is_over` is true, its mission is over, or its time is.
+/// Runs the robot until `is_over` is true, its mission is over, or its time is; shows it to those who `watch`.
 ///
 /// # Errors
 /// When a number of the plan is outside its range, or the start is not free.
-pub fn drive(plan: LaserPlan, is_over: impl Fn(&Moment) -> bool) -> Result<LaserRun, AppError> {
+pub fn drive(
+    plan: LaserPlan,
+    mut watch: Option<OperatorLink>,
+    is_over: impl Fn(&Moment) -> bool,
+) -> Result<LaserRun, AppError> {
     let config = plan.robot.with_seed(plan.seed);
     let mut robot = match &plan.known {
         Some(known) => Robot::on_map(config, known)?,
@@ -89,6 +94,10 @@ pub fn drive(plan: LaserPlan, is_over: impl Fn(&Moment) -> bool) -> Result<Laser
         let before = cpu_clock::now();
         let report = robot.step(&event);
         let elapsed = (cpu_clock::now() - before).as_secs_f64() * 1e3;
+        if let Some(link) = &mut watch {
+            link.note_event(&event);
+            link.publish(event.stamp(), &robot, &report);
+        }
         plans += usize::from(report.replanned);
         state = report.state;
         let (SensorEvent::Wheels(_), Some(twist)) = (&event, report.twist) else { continue };

@@ -18,6 +18,7 @@ mod cpu_clock;
 mod csv_rows;
 pub mod data_sets;
 pub mod docking_station;
+mod experiment_display;
 mod experiment_report;
 pub mod fault_scenarios;
 mod index_range;
@@ -31,12 +32,12 @@ pub mod real_time;
 mod run_each;
 pub mod sim_drive;
 pub mod simulated;
-pub mod teleop;
 mod trial;
 pub mod vocabulary;
 #[cfg(unix)]
 mod wired_trial;
 
+pub use experiment_display::{ExperimentDisplay, RunResult, StagedRun};
 pub use experiment_report::{ExperimentReport, RunsRequest};
 pub use index_range::IndexRange;
 pub use trial::{ComputerFault, Trial, TrialPlan, run_all, run_one};

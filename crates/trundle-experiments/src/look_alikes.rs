@@ -1,9 +1,9 @@
 //! Plain rooms that look alike from several poses, with people in them: no goal may count as reached that is not.
 
 use crate::trial::{self, Trial, TrialPlan};
-use crate::{ExperimentReport, RunsRequest};
+use crate::{ExperimentDisplay, ExperimentReport, RunsRequest};
+use trundle_app::AppError;
 use trundle_app::report::GoalOutcome;
-use trundle_app::{AppError, Progress};
 use trundle_core::Pose2;
 use trundle_io::{OutputFolder, Summary};
 use trundle_runtime::{Mission, RobotConfig, Task, TaskEnd};
@@ -48,14 +48,14 @@ pub struct LookAlikesOutcome {
 ///
 /// # Errors
 /// When a run cannot be created, or no run has the name asked for.
-pub fn run(request: &RunsRequest, progress: &Progress) -> Result<LookAlikesOutcome, AppError> {
+pub fn run(request: &RunsRequest, display: &ExperimentDisplay) -> Result<LookAlikesOutcome, AppError> {
     let mut plans = Vec::new();
     for seed in 1..=u64::from(request.seeds) {
         for variant in VARIANTS {
             plans.push(plan(seed, variant, &request.robot)?);
         }
     }
-    Ok(LookAlikesOutcome { trials: trial::run_all(plans, request, progress)? })
+    Ok(LookAlikesOutcome { trials: trial::run_all(plans, request, display)? })
 }
 
 /// Explore, the goal, back to the start, the goal again.

@@ -3,10 +3,10 @@
 use crate::data_sets::SMALL_HOUSE;
 use crate::simulated::{MeshOptions, SceneOptions, load_scene, require_free};
 use crate::trial::{self, Trial, TrialPlan};
-use crate::{ExperimentReport, RunsRequest};
+use crate::{ExperimentDisplay, ExperimentReport, RunsRequest};
 use std::path::Path;
+use trundle_app::AppError;
 use trundle_app::report::GoalOutcome;
-use trundle_app::{AppError, Progress};
 use trundle_core::{Pose2, Vector2};
 use trundle_io::{OutputFolder, Summary, table_csv, write_map};
 use trundle_runtime::{Mission, Task, TaskEnd};
@@ -49,8 +49,11 @@ pub struct MissionsOutcome {
 ///
 /// # Errors
 /// When a run cannot be created, or no run has the name asked for.
-pub fn run_obstacles(request: &RunsRequest, progress: &Progress) -> Result<MissionsOutcome, AppError> {
-    run_story(&OBSTACLES, request, progress, |seed| {
+pub fn run_obstacles(
+    request: &RunsRequest,
+    display: &ExperimentDisplay,
+) -> Result<MissionsOutcome, AppError> {
+    run_story(&OBSTACLES, request, display, |seed| {
         let scene = Scene::by_name("obstacles", seed)?;
         let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
         Ok((scene, mission))
@@ -80,7 +83,7 @@ const HOUSE_GOALS: [(f64, f64, f64); 10] = [
 pub fn run_house(
     request: &RunsRequest,
     mesh: &Path,
-    progress: &Progress,
+    display: &ExperimentDisplay,
 ) -> Result<MissionsOutcome, AppError> {
     if !mesh.exists() {
         let problem = format!("is not there, --mesh names its file: {}", SMALL_HOUSE.how_to_get());
@@ -88,7 +91,7 @@ pub fn run_house(
     }
     let pose = |(x, y, degrees): (f64, f64, f64)| Pose2::new(x, y, degrees.to_radians());
     let start = pose(HOUSE_START_XY_DEG);
-    run_story(&HOUSE, request, progress, |seed| {
+    run_story(&HOUSE, request, display, |seed| {
         let options = SceneOptions {
             seed,
             mesh: MeshOptions { up: UpAxis::Z, ..MeshOptions::default() },
@@ -108,7 +111,7 @@ pub fn run_house(
 fn run_story(
     story: &'static Story,
     request: &RunsRequest,
-    progress: &Progress,
+    display: &ExperimentDisplay,
     story_of: impl Fn(u64) -> Result<(Scene, Mission), AppError>,
 ) -> Result<MissionsOutcome, AppError> {
     let plan = |seed| -> Result<TrialPlan, AppError> {
@@ -125,7 +128,7 @@ fn run_story(
         })
     };
     let plans = (1..=u64::from(request.seeds)).map(plan).collect::<Result<Vec<_>, _>>()?;
-    Ok(MissionsOutcome { story, trials: trial::run_all(plans, request, progress)? })
+    Ok(MissionsOutcome { story, trials: trial::run_all(plans, request, display)? })
 }
 
 impl ExperimentReport for MissionsOutcome {
@@ -291,7 +294,7 @@ mod tests {
     #[test]
     fn a_house_that_is_not_there_is_named() {
         let request = RunsRequest { seeds: 1, only: None, robot: trundle_runtime::RobotConfig::default() };
-        let refused = run_house(&request, Path::new("no/house.glb"), &Progress::hidden());
+        let refused = run_house(&request, Path::new("no/house.glb"), &ExperimentDisplay::default());
         assert!(refused.err().unwrap().to_string().starts_with("no/house.glb is not there"));
     }
 

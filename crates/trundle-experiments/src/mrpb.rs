@@ -8,14 +8,15 @@ mod trial;
 
 pub use trial::MrpbTrial;
 
-use crate::ExperimentReport;
 use crate::laser_run::{LaserPlan, drive, hokuyo};
 use crate::run_each::run_each;
 use crate::simulated::simulated_body;
+use crate::{ExperimentDisplay, ExperimentReport};
 use course::Course;
 use std::path::{Path, PathBuf};
 use trial::{GOAL_TOLERANCE_M, GOAL_TOLERANCE_RAD};
-use trundle_app::{AppError, Progress};
+use trundle_app::AppError;
+use trundle_app::operator::OperatorLink;
 use trundle_control::{FollowerConfig, StabilizerConfig};
 use trundle_core::{DriveLimits, Invalid};
 use trundle_estimation::LocalizerConfig;
@@ -47,6 +48,14 @@ pub struct MrpbRequest {
     pub robot: Option<RobotConfig>,
 }
 
+impl MrpbRequest {
+    /// The robot that drives: the one asked for, else the benchmark's.
+    #[must_use]
+    pub fn robot(&self) -> RobotConfig {
+        self.robot.clone().unwrap_or_else(robot)
+    }
+}
+
 /// The runs over the benchmark's courses.
 pub struct MrpbOutcome {
     /// A run for each course and seed.
@@ -57,8 +66,8 @@ pub struct MrpbOutcome {
 ///
 /// # Errors
 /// When the data cannot be read, no course has the name asked for, or a run cannot be created.
-pub fn run(request: &MrpbRequest, progress: &Progress) -> Result<MrpbOutcome, AppError> {
-    let robot = request.robot.clone().unwrap_or_else(robot);
+pub fn run(request: &MrpbRequest, display: &ExperimentDisplay) -> Result<MrpbOutcome, AppError> {
+    let robot = request.robot();
     let chosen =
         |course: &Course| request.only.as_ref().is_none_or(|only| course.name().contains(only.as_str()));
     let all = course::read(&request.data)?;
@@ -72,8 +81,9 @@ pub fn run(request: &MrpbRequest, progress: &Progress) -> Result<MrpbOutcome, Ap
         .into_iter()
         .flat_map(|course| (1..=u64::from(request.seeds)).map(move |seed| (course.clone(), seed)))
         .collect();
-    let one = |(course, seed)| one(&request.data, &robot, course, seed);
-    Ok(MrpbOutcome { trials: run_each(plans, "runs", progress, one)? })
+    let name_of = |(course, seed): &(Course, u64)| format!("{}, seed {seed}", course.name());
+    let one = |(course, seed), watch| one(&request.data, &robot, course, seed, watch);
+    Ok(MrpbOutcome { trials: run_each(plans, "runs", display, name_of, one)? })
 }
 
 impl ExperimentReport for MrpbOutcome {
@@ -141,7 +151,13 @@ fn body(robot: &RobotConfig) -> Result<SimConfig, Invalid> {
     config.validated()
 }
 
-fn one(data: &Path, robot: &RobotConfig, course: Course, seed: u64) -> Result<MrpbTrial, AppError> {
+fn one(
+    data: &Path,
+    robot: &RobotConfig,
+    course: Course,
+    seed: u64,
+    watch: Option<OperatorLink>,
+) -> Result<MrpbTrial, AppError> {
     let plan = LaserPlan {
         robot: robot.clone(),
         body: body(robot)?,
@@ -151,5 +167,5 @@ fn one(data: &Path, robot: &RobotConfig, course: Course, seed: u64) -> Result<Mr
         seed,
         time_limit: TIME_LIMIT_S,
     };
-    Ok(MrpbTrial::of(course, seed, drive(plan, |_| false)?))
+    Ok(MrpbTrial::of(course, seed, drive(plan, watch, |_| false)?))
 }

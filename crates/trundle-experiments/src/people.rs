@@ -1,8 +1,8 @@
 //! People who step into the robot's path a metre before it: it stops, waits or goes around, without a contact.
 
 use crate::trial::{self, Trial, TrialPlan};
-use crate::{ExperimentReport, RunsRequest};
-use trundle_app::{AppError, Progress, stop};
+use crate::{ExperimentDisplay, ExperimentReport, RunsRequest};
+use trundle_app::{AppError, stop};
 use trundle_core::{Pose2, Vector2};
 use trundle_io::{OutputFolder, Summary, table_csv};
 use trundle_runtime::{Mission, RobotConfig, Task};
@@ -74,10 +74,13 @@ pub struct PeopleOutcome {
 ///
 /// # Errors
 /// When a run cannot be created, or no run has the name asked for.
-pub fn run(request: &RunsRequest, progress: &Progress) -> Result<PeopleOutcome, AppError> {
+pub fn run(request: &RunsRequest, display: &ExperimentDisplay) -> Result<PeopleOutcome, AppError> {
     let robot = &request.robot;
     let radius = robot.footprint()?.circumscribed_radius();
-    let alone = trial::run_one(plan("alone", 1, robot)?)?;
+    let alone = plan("alone", 1, robot)?;
+    let staged = display.enter(alone.label());
+    let alone = trial::run_one(alone, staged.link())?;
+    drop(staged);
     if stop::stopped().is_some() {
         return Err(AppError::Stopped);
     }
@@ -88,7 +91,7 @@ pub fn run(request: &RunsRequest, progress: &Progress) -> Result<PeopleOutcome, 
         plan.scene.people.push(StepOut::of(seed).person(&timetable, radius));
         plans.push(plan);
     }
-    Ok(PeopleOutcome { trials: trial::run_all(plans, request, progress)? })
+    Ok(PeopleOutcome { trials: trial::run_all(plans, request, display)? })
 }
 
 impl ExperimentReport for PeopleOutcome {

@@ -1,7 +1,7 @@
 //! The point stabilisation of \[Li18\]: eight start poses about one goal, from an empty map, on the robot's own senses.
 
 use crate::trial::{self, Trial, TrialPlan};
-use crate::{ExperimentReport, RunsRequest};
+use crate::{ExperimentDisplay, ExperimentReport, RunsRequest};
 use trundle_app::{AppError, Progress};
 use trundle_core::{Footprint, Pose2, Vector2};
 use trundle_io::{OutputFolder, Summary, table_csv};
@@ -60,8 +60,8 @@ fn plans(request: &RunsRequest) -> Result<Vec<TrialPlan>, AppError> {
 ///
 /// # Errors
 /// When a run cannot be created, or no run has the name asked for.
-pub fn run(request: &RunsRequest, progress: &Progress) -> Result<PosesOutcome, AppError> {
-    Ok(PosesOutcome { trials: trial::run_all(plans(request)?, request, progress)? })
+pub fn run(request: &RunsRequest, display: &ExperimentDisplay) -> Result<PosesOutcome, AppError> {
+    Ok(PosesOutcome { trials: trial::run_all(plans(request)?, request, display)? })
 }
 
 /// The runs over a serial line and a stream of camera frames, one run after the other, by the wall clock.
@@ -69,10 +69,16 @@ pub fn run(request: &RunsRequest, progress: &Progress) -> Result<PosesOutcome, A
 /// # Errors
 /// As [`run`].
 #[cfg(unix)]
-pub fn run_over_wires(request: &RunsRequest) -> Result<PosesOutcome, AppError> {
+pub fn run_over_wires(request: &RunsRequest, display: &ExperimentDisplay) -> Result<PosesOutcome, AppError> {
     let plans = trial::selected(plans(request)?, request)?;
-    let trials: Result<Vec<Trial>, AppError> =
-        plans.into_iter().map(crate::wired_trial::run_over_wires).collect();
+    display.begin(plans.len(), "runs");
+    let one = |plan: TrialPlan| {
+        let staged = display.enter(plan.label());
+        let trial = crate::wired_trial::run_over_wires(plan, staged.front_end(Progress::hidden()))?;
+        staged.end(&trial);
+        Ok(trial)
+    };
+    let trials: Result<Vec<Trial>, AppError> = plans.into_iter().map(one).collect();
     Ok(PosesOutcome { trials: trials? })
 }
 

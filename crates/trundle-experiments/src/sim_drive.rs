@@ -2,12 +2,20 @@
 
 mod drive;
 mod driver;
+mod hand;
+mod key_driver;
+mod live_drive;
 mod numbers;
 mod recording;
+mod steering;
+mod steering_keys;
+mod terminal;
 mod true_map;
 
 pub use drive::{SimDrive, drive_simulator};
 pub use driver::{ScriptDriver, SimDriver, Standing, WaypointDriver};
+pub use key_driver::KeyDriver;
+pub use live_drive::LiveDrive;
 pub use numbers::{drive_rows, drive_summary, drive_verdict, recording_hint};
 pub use recording::{DriveRecording, recording_announcement};
 pub use true_map::true_map;

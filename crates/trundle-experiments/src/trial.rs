@@ -1,10 +1,12 @@
 //! Closed-loop runs of robot and simulator, many at once.
 
 use crate::RunsRequest;
+use crate::experiment_display::{ExperimentDisplay, RunResult};
 use crate::run_each::run_each;
 use crate::simulated::{simulated_body, time_limit};
 use std::collections::BTreeSet;
 use std::time::Instant;
+use trundle_app::operator::{FrontEnd, OperatorLink};
 use trundle_app::report::RunNumbers;
 use trundle_app::{
     AFTER_ARRIVAL_S, AppError, BestView, FinishedRun, Progress, RecordingCost, RunLog, RunRecorder, RunSetup,
@@ -34,6 +36,24 @@ pub struct TrialPlan {
     pub faults: FaultSchedule,
     /// Fault of the computer.
     pub computer_fault: Option<ComputerFault>,
+}
+
+impl TrialPlan {
+    /// Name and seed: `lights out, seed 2`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        format!("{}, seed {}", self.name, self.seed)
+    }
+}
+
+impl RunResult for Trial {
+    fn is_success(&self) -> bool {
+        self.numbers.is_success()
+    }
+
+    fn sentence(&self) -> String {
+        self.numbers.verdict()
+    }
 }
 
 /// A fault of the robot's computer.
@@ -90,7 +110,7 @@ impl Trial {
 pub fn selected(mut plans: Vec<TrialPlan>, request: &RunsRequest) -> Result<Vec<TrialPlan>, AppError> {
     let names: BTreeSet<String> = plans.iter().map(|plan| plan.name.clone()).collect();
     if let Some(word) = &request.only {
-        plans.retain(|plan| format!("{}, seed {}", plan.name, plan.seed).contains(word.as_str()));
+        plans.retain(|plan| plan.label().contains(word.as_str()));
     }
     if plans.is_empty() {
         let word = request.only.as_deref().unwrap_or_default();
@@ -109,16 +129,17 @@ pub fn selected(mut plans: Vec<TrialPlan>, request: &RunsRequest) -> Result<Vec<
 pub fn run_all(
     plans: Vec<TrialPlan>,
     request: &RunsRequest,
-    progress: &Progress,
+    display: &ExperimentDisplay,
 ) -> Result<Vec<Trial>, AppError> {
-    run_each(selected(plans, request)?, "runs", progress, run_one)
+    let name_of = |plan: &TrialPlan| plan.label();
+    run_each(selected(plans, request)?, "runs", display, name_of, run_one)
 }
 
-/// Makes one run.
+/// Makes one run, which is shown to those who `watch`.
 ///
 /// # Errors
 /// When the plan cannot be carried out.
-pub fn run_one(plan: TrialPlan) -> Result<Trial, AppError> {
+pub fn run_one(plan: TrialPlan, watch: Option<OperatorLink>) -> Result<Trial, AppError> {
     let TrialPlan { name, seed, scene, mission, robot, faults, computer_fault } = plan;
     let world_from_map = scene.start;
     let limit = time_limit(&mission);
@@ -128,15 +149,15 @@ pub fn run_one(plan: TrialPlan) -> Result<Trial, AppError> {
     let config = simulated_body(&setup.robot, faults)?;
     let mut body = Simulator::new(scene, config, seed).map_err(|error| AppError::Input(error.to_string()))?;
     let run = match computer_fault {
-        None => run_unrecorded(&setup, &mut body, None),
-        Some(ComputerFault::Restart(at)) => run_unrecorded(&setup, &mut body, Some(at))
+        None => run_unrecorded(&setup, &mut body, None, watch),
+        Some(ComputerFault::Restart(at)) => run_unrecorded(&setup, &mut body, Some(at), watch)
             .map_err(|error| AppError::Input(format!("{name}, seed {seed}: {error}"))),
         Some(ComputerFault::FullDisk) => run_on_body(
             &setup,
             &mut body,
             RunRecorder::onto_full_disk()?,
             RunLog::default(),
-            Progress::hidden(),
+            FrontEnd { progress: Progress::hidden(), operator: watch },
         ),
     }?;
     let planned = planned(&run);
@@ -172,6 +193,7 @@ fn run_unrecorded(
     setup: &RunSetup,
     body: &mut Simulator,
     mut restart: Option<f64>,
+    mut watch: Option<OperatorLink>,
 ) -> Result<FinishedRun, AppError> {
     let start = Instant::now();
     let mut robot = setup.start_robot()?;
@@ -181,6 +203,9 @@ fn run_unrecorded(
     let mut checkpoint = None;
     let mut log = RunLog::default();
     let mut finished = None;
+    if let Some(link) = &mut watch {
+        link.note_image_size([setup.robot.camera.width(), setup.robot.camera.height()]);
+    }
     while let Some(event) = RobotBody::next_event(body).map_err(AppError::input)? {
         log.on_event(&event, setup.map_from_world);
         log.true_contacts = Some(body.contacts());
@@ -189,6 +214,10 @@ fn run_unrecorded(
             RobotBody::command(body, twist).map_err(AppError::input)?;
         }
         log.on_report(event.stamp(), &report);
+        if let Some(link) = &mut watch {
+            link.note_event(&event);
+            link.publish(event.stamp(), &robot, &report);
+        }
         let is_over = report.finished && log.now - *finished.get_or_insert(log.now) >= AFTER_ARRIVAL_S;
         if is_over || log.elapsed() > setup.time_limit || is_stopped(&log) {
             break;
@@ -287,7 +316,7 @@ mod tests {
         };
         let only = Some("no such run".to_owned());
         let request = RunsRequest { seeds: 1, only, robot: RobotConfig::default() };
-        let refused = run_all(vec![plan("one"), plan("two")], &request, &Progress::hidden());
+        let refused = run_all(vec![plan("one"), plan("two")], &request, &ExperimentDisplay::default());
         let text = refused.err().unwrap().to_string();
         assert!(text.contains("no such run") && text.ends_with("there are 'one', 'two'"), "{text}");
     }

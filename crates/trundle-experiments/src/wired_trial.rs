@@ -7,9 +7,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use trundle_app::hardware::{OpenCamera, start_hardware};
+use trundle_app::operator::FrontEnd;
 use trundle_app::real_time::run_in_real_time;
 use trundle_app::report::RunNumbers;
-use trundle_app::{AppError, FinishedRun, Progress, RecordingContent, RunLog, RunSetup};
+use trundle_app::{AppError, FinishedRun, RecordingContent, RunLog, RunSetup};
 use trundle_core::{Pose2, Vector2};
 use trundle_drivers::kobuki::PseudoTerminal;
 use trundle_drivers::{BaseSpec, CameraSpec};
@@ -20,11 +21,11 @@ use trundle_sim::Simulator;
 /// Time between two points of the true path \[s\]. Source: ours.
 const PATH_PERIOD_S: f64 = 0.1;
 
-/// Makes one run over wires. Faults of the computer are not made.
+/// Makes one run over wires, beside its front end. Faults of the computer are not made.
 ///
 /// # Errors
 /// When the plan cannot be carried out, or base or camera do not answer.
-pub fn run_over_wires(plan: TrialPlan) -> Result<Trial, AppError> {
+pub fn run_over_wires(plan: TrialPlan, front_end: FrontEnd) -> Result<Trial, AppError> {
     let TrialPlan { name, seed, scene, mission, robot, faults, .. } = plan;
     let (world_from_map, limit) = (scene.start, time_limit(&mission));
     let mut setup = RunSetup::new(&scene.name, mission, robot.with_seed(seed)).with_time_limit(limit);
@@ -35,7 +36,7 @@ pub fn run_over_wires(plan: TrialPlan) -> Result<Trial, AppError> {
     let simulator = Simulator::new(scene, config, seed).map_err(AppError::input)?;
     let folder = tempfile::tempdir().map_err(|error| failed("make a folder", &error))?;
     let emulation = Emulation::start(simulator, folder.path())?;
-    let run = drive(&setup, folder.path());
+    let run = drive(&setup, folder.path(), front_end);
     let truth = emulation.stop()?;
     Ok(trial(&setup, &run?, (name, seed, world_from_map), &truth))
 }
@@ -53,14 +54,14 @@ fn camera(folder: &Path) -> std::path::PathBuf {
 }
 
 /// The robot, on the wires in `folder`.
-fn drive(setup: &RunSetup, folder: &Path) -> Result<FinishedRun, AppError> {
+fn drive(setup: &RunSetup, folder: &Path, front_end: FrontEnd) -> Result<FinishedRun, AppError> {
     let (base, camera) = (BaseSpec::Kobuki(Some(port(folder))), CameraSpec::Stream(camera(folder)));
     let output = OutputFolder::create(&folder.join("run"))?;
     let camera = OpenCamera::open(&camera)?;
     let start = |events, _place| {
         start_hardware(&base, camera, setup.robot.camera, events, std::time::Instant::now(), None)
     };
-    let (run, _) = run_in_real_time(setup, start, &output, None, RunLog::default(), Progress::hidden())?;
+    let (run, _) = run_in_real_time(setup, start, &output, None, RunLog::default(), front_end)?;
     Ok(run)
 }
 

@@ -41,7 +41,7 @@ impl From<&RunView> for RobotGlance {
     fn from(view: &RunView) -> Self {
         Self {
             estimate: view.estimate,
-            state: view.state.clone(),
+            state: view.state.drive().cloned().unwrap_or_default(),
             mission: view.mission.clone(),
             battery: view.battery,
             hold: view.hold,

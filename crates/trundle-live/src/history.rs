@@ -24,11 +24,17 @@ pub struct History {
     states: VecDeque<StateEntry>,
     /// States so far, those included that are not kept.
     states_so_far: usize,
+    /// Number of runs that were shown before this one.
+    run: u64,
 }
 
 impl History {
-    /// Takes a view over.
-    pub fn add(&mut self, view: &RunView) {
+    /// Takes a view over, of the run with this number. The path of an earlier run is dropped.
+    pub fn add(&mut self, view: &RunView, run: u64) {
+        if self.run != run {
+            self.points.clear();
+            self.run = run;
+        }
         let (time, pose) = (view.stamp.as_secs(), view.estimate.pose);
         let is_far = |last: &Pose2| {
             last.distance(&pose) > POINT_DISTANCE_M || (last.inverse() * pose).theta.abs() > POINT_TURN_RAD
@@ -36,7 +42,7 @@ impl History {
         if self.points.back().is_none_or(|(_, last)| is_far(last)) {
             self.points.push_back((time, pose));
         }
-        let (name, reason) = (view.state.name(), view.state.reason().map(ToString::to_string));
+        let (name, reason) = (view.state.name(), view.state.reason());
         // A reason that only counts on is the same state.
         if self.states.back().is_none_or(|last| last.name != name) {
             self.states.push_back(StateEntry { time, name: name.to_owned(), reason });

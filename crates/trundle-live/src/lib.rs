@@ -31,6 +31,6 @@ pub use access::{Access, Tokens};
 pub use address::LiveAddress;
 pub use error::LiveError;
 pub use options::LiveOptions;
-pub use run_facts::RunFacts;
+pub use run_facts::{RunFacts, RunKind};
 pub use server::LivePage;
 pub use wire::WIRE_VERSION;

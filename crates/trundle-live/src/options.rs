@@ -1,6 +1,7 @@
 //! How the live page is served.
 
 use crate::{LiveAddress, Tokens};
+use trundle_app::operator::MapFolder;
 
 /// How the live page is served.
 #[derive(Debug, Clone)]
@@ -9,6 +10,8 @@ pub struct LiveOptions {
     pub address: LiveAddress,
     /// Permissions to drive and to look.
     pub tokens: Tokens,
-    /// Whether the run takes commands; a replay takes none.
+    /// Whether the run takes commands; a replay and an experiment take none.
     pub is_steered: bool,
+    /// Maps that may be loaded.
+    pub maps: Option<MapFolder>,
 }

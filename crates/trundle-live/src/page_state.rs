@@ -33,7 +33,7 @@ impl PageState {
     /// The state of a page without viewers.
     pub fn new(options: LiveOptions, operator: Operator, facts: RunFacts) -> Self {
         Self {
-            steering: RunSteering::new(operator.clone(), &facts),
+            steering: RunSteering::new(operator.clone(), &facts, options.maps),
             operator,
             tokens: options.tokens,
             is_steered: options.is_steered,

@@ -78,14 +78,16 @@ impl LivePage {
         if let Some(link) = self.link(Access::Drive) {
             lines.push(format!("Live page: {link}"));
         }
+        let before = if lines.is_empty() { "Live page," } else { " " };
         if let Some(link) = self.link(Access::View) {
-            lines.push(format!("  to look only: {link}"));
+            lines.push(format!("{before} to look only: {link}"));
         }
         if self.is_shared {
-            lines.push(
-                "warning: other machines can reach the live page, and its network is not encrypted: who reads the link can drive the robot"
-                    .to_owned(),
-            );
+            let can =
+                if self.drive_token.is_some() { "drive the robot" } else { "see all that the page shows" };
+            lines.push(format!(
+                "warning: other machines can reach the live page, and its network is not encrypted: who reads the link can {can}"
+            ));
         }
         lines.join("\n")
     }
@@ -121,7 +123,8 @@ async fn keep_history(state: &PageState) {
     loop {
         ticks.tick().await;
         if let Some(view) = state.operator.glance() {
-            state.history().add(&view);
+            let run = state.operator.series().map_or(0, |series| series.number);
+            state.history().add(&view, run);
         }
     }
 }

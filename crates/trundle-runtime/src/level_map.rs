@@ -46,13 +46,33 @@ impl LevelMap {
         trajectory: &[(Stamp, Pose3)],
         config: MapperConfig,
     ) -> Result<OccupancyGrid, Invalid> {
+        Ok(self.mapper(trajectory, config)?.grid().clone())
+    }
+
+    /// A mapper with all scans, as [`LevelMap::draw`]: further scans may be inserted.
+    ///
+    /// # Errors
+    /// When the map's configuration is not valid.
+    pub fn mapper(&self, trajectory: &[(Stamp, Pose3)], config: MapperConfig) -> Result<GridMapper, Invalid> {
         let mut mapper = GridMapper::new(config)?;
         for (stamp, pose) in trajectory {
             if let (Some(scan), Some(base)) = (self.scans.get(stamp), base_below(pose)) {
                 mapper.insert(base, scan);
             }
         }
-        Ok(mapper.grid().clone())
+        Ok(mapper)
+    }
+
+    /// The scan of an image, where it is kept, and `level_from_base` of a base below the camera's pose.
+    #[must_use]
+    pub fn scan_at(&self, stamp: Stamp, level_from_camera: &Pose3) -> Option<(Pose2, &Scan)> {
+        Some((base_below(level_from_camera)?, self.scans.get(&stamp)?))
+    }
+
+    /// Number of scans.
+    #[must_use]
+    pub fn scan_count(&self) -> usize {
+        self.scans.len()
     }
 }
 

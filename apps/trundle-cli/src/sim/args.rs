@@ -1,16 +1,22 @@
 //! The command line of `trundle sim`.
 
 use crate::common_args::{Common, NumberArg, PlaceArgs, choice};
+use crate::live::ViewArgs;
 use crate::output_args::{OutputDirArg, OutputFileArg};
 use clap::Args;
 use std::path::PathBuf;
 use trundle::app::AppError;
 use trundle::experiments::simulated::read_faults;
 use trundle::io::MapImage;
+use trundle::live::LiveAddress;
 use trundle::sim::{LaserConfig, SimConfig};
+
+const LIVE_HELP: &str = "Show the drive in a browser, in real time: prints the link. Without another driver the page drives, by keys, \
+                         stick or gamepad, until Ctrl-C or --duration. ADDR is IP:PORT [default: 127.0.0.1:8642, or a free port where it is in use]";
 
 /// `trundle sim`
 #[derive(Debug, Args)]
+#[command(mut_arg("live", |live| live.help(LIVE_HELP)))]
 #[command(after_help = "Example: trundle sim office --follow waypoints.txt --record out/office\n\n\
     Exit code: 0 done, 1 a way-point was not reached, 2 bad input.")]
 pub struct SimArgs {
@@ -26,6 +32,9 @@ pub struct SimArgs {
     /// The driver.
     #[command(flatten)]
     pub driver: DriverArgs,
+    /// The live page.
+    #[command(flatten)]
+    pub live: ViewArgs,
     /// Write a TUM RGB-D folder: images, ground truth, odometry, calibration, the true map; the last one is kept as DIR.1
     #[arg(long, value_name = "DIR")]
     pub record: Option<OutputDirArg>,
@@ -56,7 +65,7 @@ pub struct DriverArgs {
     /// Drive to way-points, a line each: x y heading_deg (m, m, deg, world frame).
     #[arg(long, value_name = "FILE", group = "driver")]
     pub follow: Option<PathBuf>,
-    /// Drive by hand: arrows or WASD, space to stop, q to quit; shows a page with what the robot sees.
+    /// Drive by keys in the terminal: arrows or WASD, space to stop, q to quit. The live page shows what the robot sees.
     #[arg(long, group = "driver")]
     pub keys: bool,
     /// Stop after this time of the robot, s, or when the drive is over [default: 5 if there is no drive]
@@ -69,7 +78,7 @@ pub struct DriverArgs {
 #[derive(Debug, Args)]
 pub struct RosRobotArgs {
     /// Be a ROS 2 robot, in real time, until Ctrl-C or --duration.
-    #[arg(long, conflicts_with_all = ["driver", "record", "map", "kobuki"])]
+    #[arg(long, conflicts_with_all = ["driver", "record", "map", "kobuki", "live"])]
     pub ros2: bool,
     /// With --ros2: raw images in place of JPEG and PNG files.
     #[arg(long, requires = "ros2")]
@@ -100,7 +109,7 @@ pub struct TrueMapArgs {
 #[derive(Debug, Args)]
 pub struct WireArgs {
     /// Answer as a Kobuki at a pseudo terminal, in real time, until Ctrl-C or --duration; LINK becomes a symbolic link to it.
-    #[arg(long, value_name = "LINK", conflicts_with_all = ["driver", "record", "map"])]
+    #[arg(long, value_name = "LINK", conflicts_with_all = ["driver", "record", "map", "live"])]
     pub kobuki: Option<PathBuf>,
     /// Write the camera's frames into this FIFO (docs/camera-stream.md); it is made if it is not there.
     #[arg(long, value_name = "FIFO", requires = "kobuki")]
@@ -147,12 +156,29 @@ impl SensorArgs {
 impl SimArgs {
     /// Whether the true map is written or shown.
     pub fn needs_map(&self) -> bool {
-        self.true_map.map.is_some() || self.record.is_some() || self.driver.keys
+        self.true_map.map.is_some() || self.record.is_some() || self.is_shown()
+    }
+
+    /// The page: one at the keys always has one.
+    pub fn page_args(&self) -> ViewArgs {
+        let default = self.driver.keys.then(LiveAddress::default);
+        ViewArgs { live: self.live.live.or(default), live_tokens: self.live.live_tokens.clone() }
+    }
+
+    /// Whether a page shows the drive.
+    pub fn is_shown(&self) -> bool {
+        self.live.live.is_some() || self.driver.keys
+    }
+
+    /// Whether the page is the driver.
+    pub fn is_driven_by_page(&self) -> bool {
+        let has_driver = self.driver.drive.is_some() || self.driver.follow.is_some() || self.driver.keys;
+        self.live.live.is_some() && !has_driver
     }
 
     /// Whether the map is all that is asked for.
     pub fn wants_only_map(&self) -> bool {
-        let drives = self.driver.drive.is_some() || self.driver.follow.is_some() || self.driver.keys;
+        let drives = self.driver.drive.is_some() || self.driver.follow.is_some() || self.is_shown();
         self.true_map.map.is_some() && !drives && self.driver.duration.is_none() && self.record.is_none()
     }
 }

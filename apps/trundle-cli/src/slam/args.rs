@@ -1,6 +1,7 @@
 //! The command line of `trundle slam`.
 
 use crate::common_args::{BagTopicsArgs, Common, NumberArg, choice};
+use crate::live::ViewArgs;
 use crate::output_args::OutputDirArg;
 use clap::Args;
 use std::path::PathBuf;
@@ -27,15 +28,9 @@ pub struct SlamArgs {
     /// Stop after this many frames.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,
-    /// Height of the first camera above the floor, m, for the map [default: the recorded robot's, else 1]
-    #[arg(long, value_name = "M", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
-    pub height: Option<f64>,
-    /// Downward tilt of the first camera, deg, for the map [default: the recorded robot's, else 0]
-    #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
-    pub tilt: Option<f64>,
-    /// Roll of the first camera to its right, deg, for the map [default: the recorded robot's, else 0]
-    #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
-    pub roll: Option<f64>,
+    /// The pose of the first camera.
+    #[command(flatten)]
+    pub first_camera: FirstCameraArgs,
     /// Begin with the visual map of an earlier run (its visual.map): the camera is localized in it
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
@@ -54,9 +49,26 @@ pub struct SlamArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/slam")]
     pub out: OutputDirArg,
+    /// The live page: it shows the tracking, and takes no commands.
+    #[command(flatten)]
+    pub live: ViewArgs,
     /// Options of every command.
     #[command(flatten)]
     pub common: Common,
+}
+
+/// The pose of the first camera.
+#[derive(Debug, Args)]
+pub struct FirstCameraArgs {
+    /// Height of the first camera above the floor, m, for the map [default: the recorded robot's, else 1]
+    #[arg(long, value_name = "M", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
+    pub height: Option<f64>,
+    /// Downward tilt of the first camera, deg, for the map [default: the recorded robot's, else 0]
+    #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
+    pub tilt: Option<f64>,
+    /// Roll of the first camera to its right, deg, for the map [default: the recorded robot's, else 0]
+    #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
+    pub roll: Option<f64>,
 }
 
 /// The camera of the images.

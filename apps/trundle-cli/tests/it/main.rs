@@ -13,6 +13,7 @@ mod fault_scenarios;
 mod foreign_files;
 mod help;
 mod inputs;
+mod live_page;
 #[cfg(unix)]
 mod live_run;
 mod logs;

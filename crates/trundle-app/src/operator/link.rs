@@ -3,19 +3,21 @@
 use super::annotation_store::AnnotationStore;
 use super::request::OperatorRequest;
 use super::run_view::RunView;
+use super::series::SeriesView;
 use super::view_feed::ViewFeed;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 use thiserror::Error;
-use trundle_core::{Invalid, MapAnnotations, Stamp};
+use trundle_core::{Invalid, MapAnnotations, RgbdImage, SensorEvent, Stamp};
 use trundle_runtime::{OperatorCommand, Robot, StepReport};
 
 /// Largest number of requests that wait for the run. A run takes one at each step. Source: ours.
 const MAX_WAITING_REQUESTS: usize = 64;
-/// Steps without a request for a view after which the run counts as unwatched: more than a second of events. Source: ours.
-const UNWATCHED_STEPS: u32 = 200;
+/// Time without a request for a view after which the run counts as unwatched. Source: ours; a viewer asks ten times a second.
+const UNWATCHED_AFTER: Duration = Duration::from_secs(1);
 
 /// A front end's end of the link. Clones share it.
 #[derive(Debug, Clone)]
@@ -29,8 +31,8 @@ pub struct OperatorLink {
     requests: Receiver<OperatorRequest>,
     shared: Arc<Shared>,
     feed: ViewFeed,
-    /// Steps since a front end last asked for a view.
-    unwatched_steps: u32,
+    /// When a front end last asked for a view, as the run noticed.
+    asked: Instant,
 }
 
 #[derive(Debug)]
@@ -40,6 +42,7 @@ struct Shared {
     view: Mutex<Option<Arc<RunView>>>,
     /// Whether a front end has asked for a view since the last step.
     is_asked: AtomicBool,
+    series: Mutex<Option<Arc<SeriesView>>>,
     annotations: Mutex<AnnotationStore>,
     /// Held while zones or places are changed and written.
     editing: Mutex<()>,
@@ -76,9 +79,9 @@ pub fn operator_link() -> (Operator, OperatorLink) {
     let (sender, requests) = sync_channel(MAX_WAITING_REQUESTS);
     let (requests_in, view) = (Mutex::new((sender, 0)), Mutex::default());
     let (is_asked, annotations, editing) = (AtomicBool::new(false), Mutex::default(), Mutex::default());
-    let shared = Arc::new(Shared { requests: requests_in, view, is_asked, annotations, editing });
-    let link =
-        OperatorLink { requests, shared: Arc::clone(&shared), feed: ViewFeed::default(), unwatched_steps: 0 };
+    let series = Mutex::default();
+    let shared = Arc::new(Shared { requests: requests_in, view, is_asked, series, annotations, editing });
+    let link = OperatorLink::new(requests, Arc::clone(&shared));
     (Operator { shared }, link)
 }
 
@@ -129,7 +132,30 @@ impl Operator {
     }
 }
 
+impl Operator {
+    /// The end of this link for another run that is shown and takes no commands.
+    #[must_use]
+    pub fn link_of_shown_run(&self) -> OperatorLink {
+        OperatorLink::new(sync_channel(0).1, Arc::clone(&self.shared))
+    }
+
+    /// Shows how far a series has come.
+    pub fn show_series(&self, series: SeriesView) {
+        *self.shared.series.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(series));
+    }
+
+    /// The series that the run is a part of.
+    #[must_use]
+    pub fn series(&self) -> Option<Arc<SeriesView>> {
+        self.shared.series.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+}
+
 impl OperatorLink {
+    fn new(requests: Receiver<OperatorRequest>, shared: Arc<Shared>) -> Self {
+        Self { requests, shared, feed: ViewFeed::default(), asked: Instant::now() }
+    }
+
     /// Another front end's end of this link.
     #[must_use]
     pub fn operator(&self) -> Operator {
@@ -139,17 +165,40 @@ impl OperatorLink {
     /// Takes an image of the camera over into later views, where somebody watches.
     pub(crate) fn note_image(&mut self, stamp: Stamp, jpeg: &[u8]) {
         if self.is_watched() {
-            self.feed.note_image(stamp, jpeg);
+            self.feed.images.note_jpeg(stamp, jpeg);
         }
     }
 
-    fn is_watched(&self) -> bool {
-        self.unwatched_steps < UNWATCHED_STEPS
+    /// Takes an image of a simulator over into later views, where somebody watches.
+    pub fn note_rgbd(&mut self, image: &RgbdImage) {
+        if self.is_watched() {
+            self.feed.images.note_rgbd(image);
+        }
+    }
+
+    /// As [`OperatorLink::note_rgbd`] for an event with an image; other events show nothing.
+    pub fn note_event(&mut self, event: &SensorEvent) {
+        if let SensorEvent::Rgbd(image) = event {
+            self.note_rgbd(image);
+        }
+    }
+
+    /// Whether somebody watches: large parts of views are made only then.
+    #[must_use]
+    pub fn is_watched(&self) -> bool {
+        self.asked.elapsed() < UNWATCHED_AFTER
+    }
+
+    /// Notes whether a front end has asked for a view.
+    fn note_asked(&mut self) {
+        if self.shared.is_asked.swap(false, Ordering::Relaxed) {
+            self.asked = Instant::now();
+        }
     }
 
     /// The next request, if one waits. Changes of the zones and places of a map that was replaced meanwhile are dropped: the file
     /// of that map has them.
-    pub(crate) fn next_request(&self) -> Option<OperatorRequest> {
+    pub fn next_request(&self) -> Option<OperatorRequest> {
         loop {
             let request = self.requests.try_recv().ok()?;
             let operator = self.operator();
@@ -165,7 +214,7 @@ impl OperatorLink {
     }
 
     /// Width and height of the camera's images \[px\].
-    pub(crate) fn note_image_size(&mut self, size_px: [usize; 2]) {
+    pub fn note_image_size(&mut self, size_px: [usize; 2]) {
         self.feed.image_size_px = size_px;
     }
 
@@ -198,12 +247,24 @@ impl OperatorLink {
     }
 
     /// Publishes the state of the robot after a step.
-    pub(crate) fn publish(&mut self, stamp: Stamp, robot: &Robot, report: &StepReport) {
-        let is_asked = self.shared.is_asked.swap(false, Ordering::Relaxed);
-        self.unwatched_steps = if is_asked { 0 } else { self.unwatched_steps.saturating_add(1) };
+    pub fn publish(&mut self, stamp: Stamp, robot: &Robot, report: &StepReport) {
+        self.note_asked();
         if let Some(view) = self.feed.view(stamp, robot, report, self.is_watched()) {
-            *self.shared.view.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(view));
+            self.set_view(view);
         }
+    }
+
+    /// Publishes a view of work without a robot. Its images are those of [`OperatorLink::note_rgbd`], where it has none.
+    pub fn publish_view(&mut self, mut view: RunView) {
+        self.note_asked();
+        let images = &self.feed.images;
+        view.perception.image = view.perception.image.or_else(|| images.image());
+        view.perception.depth = view.perception.depth.or_else(|| images.depth());
+        self.set_view(view);
+    }
+
+    fn set_view(&self, view: RunView) {
+        *self.shared.view.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(view));
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::run_view::{ClosedLoop, FeatureSpot, FeatureView};
 use std::sync::Arc;
-use trundle_core::Stamp;
-use trundle_runtime::{Robot, StepReport};
+use trundle_core::{Pose2, Stamp};
+use trundle_slam::{RgbdSlam, TrackReport};
 
 /// Time between two copies of the features \[s\]. A copy of 1,000 features takes 5 us. Source: ours.
 const FEATURES_PERIOD_S: f64 = 0.2;
@@ -12,25 +12,23 @@ const MAX_LOOPS: usize = 20;
 
 /// Keeps features of the last image and closed loops.
 #[derive(Debug, Default)]
-pub(super) struct PerceptionFeed {
+pub(crate) struct PerceptionFeed {
     features: Option<(Stamp, Arc<FeatureView>)>,
     loops: Vec<ClosedLoop>,
 }
 
 impl PerceptionFeed {
-    /// Notes a loop that was closed.
-    pub(super) fn note_loop(&mut self, robot: &Robot, report: &StepReport) {
-        let closed = report.track.as_ref().filter(|track| track.closed_loop.is_some());
-        if let Some(track) = closed {
-            self.loops.push(ClosedLoop { stamp: track.stamp, pose: robot.estimate().pose });
+    /// Notes a loop that was closed, with `map_from_base` after it.
+    pub(crate) fn note_loop(&mut self, track: &TrackReport, pose: Pose2) {
+        if track.closed_loop.is_some() {
+            self.loops.push(ClosedLoop { stamp: track.stamp, pose });
             let extra = self.loops.len().saturating_sub(MAX_LOOPS);
             self.loops.drain(..extra);
         }
     }
 
     /// Copies the features of an image that was tracked, if the last copy is old.
-    pub(super) fn update(&mut self, size_px: [usize; 2], robot: &Robot, report: &StepReport) {
-        let (Some(track), Some(slam)) = (&report.track, robot.slam()) else { return };
+    pub(crate) fn update(&mut self, size_px: [usize; 2], track: &TrackReport, slam: &RgbdSlam) {
         if self.features.as_ref().is_some_and(|(copied, _)| track.stamp - *copied < FEATURES_PERIOD_S) {
             return;
         }
@@ -42,12 +40,12 @@ impl PerceptionFeed {
     }
 
     /// The newest features.
-    pub(super) fn features(&self) -> Option<Arc<FeatureView>> {
+    pub(crate) fn features(&self) -> Option<Arc<FeatureView>> {
         Some(Arc::clone(&self.features.as_ref()?.1))
     }
 
     /// The last closed loops.
-    pub(super) fn loops(&self) -> &[ClosedLoop] {
+    pub(crate) fn loops(&self) -> &[ClosedLoop] {
         &self.loops
     }
 }

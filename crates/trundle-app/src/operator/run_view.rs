@@ -1,9 +1,11 @@
 //! View of a run for its front ends.
 
+use std::fmt;
 use std::sync::Arc;
 
 use trundle_core::{
-    Battery, OccupancyGrid, Odometry, Pose2, PoseEstimate, Scan, Stamp, Trajectory, Twist2, Vector3,
+    Battery, DepthImage, OccupancyGrid, Odometry, Pose2, PoseEstimate, Scan, Stamp, Trajectory, Twist2,
+    Vector3,
 };
 use trundle_planning::MovingObstacle;
 use trundle_runtime::{DriveState, MotionHold, RunSetting, Task, TaskRecord};
@@ -19,8 +21,8 @@ pub struct RunView {
     pub odometry: Option<Odometry>,
     /// The last command.
     pub twist: Twist2,
-    /// State of the robot; of the whole mission when it is over.
-    pub state: DriveState,
+    /// What goes on; of the whole mission when it is over.
+    pub state: RunState,
     /// The mission.
     pub mission: MissionView,
     /// The battery; `None` if the body has not reported it.
@@ -39,8 +41,89 @@ pub struct RunView {
     pub perception: PerceptionView,
     /// How often stages ran so far.
     pub counts: RunCounts,
-    /// Present values of the settings that may change while the robot runs.
-    pub settings: [RunSetting; 2],
+    /// Present values of the settings that may change while the robot runs; `None` where there is no robot with settings.
+    pub settings: Option<[RunSetting; 2]>,
+}
+
+/// What goes on in a run.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RunState {
+    /// A robot decides.
+    Robot(DriveState),
+    /// No robot decides: a drive by hand, a tracked sequence.
+    Activity(Activity),
+}
+
+/// What goes on where no robot decides.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Activity {
+    /// In one or two words.
+    pub name: &'static str,
+    /// More about it, in a sentence.
+    pub reason: Option<String>,
+}
+
+impl RunView {
+    /// A view of a moment without mission and without robot: `map_from_base`, the base's twist and what goes on; all else empty.
+    #[must_use]
+    pub fn of_activity(stamp: Stamp, pose: Pose2, twist: Twist2, activity: Activity) -> Self {
+        let estimate = PoseEstimate { stamp, pose, twist, covariance: Default::default() };
+        Self {
+            stamp,
+            estimate,
+            odometry: None,
+            twist: Twist2::ZERO,
+            state: RunState::Activity(activity),
+            mission: MissionView::default(),
+            battery: None,
+            hold: None,
+            scan: None,
+            scan_pose: None,
+            plan: None,
+            map: None,
+            perception: PerceptionView::default(),
+            counts: RunCounts::default(),
+            settings: None,
+        }
+    }
+}
+
+impl fmt::Display for RunState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Robot(state) => state.fmt(f),
+            Self::Activity(activity) => f.write_str(activity.name),
+        }
+    }
+}
+
+impl RunState {
+    /// In one or two words.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Robot(state) => state.name(),
+            Self::Activity(activity) => activity.name,
+        }
+    }
+
+    /// Why the robot does not move on, or more about the activity, in a sentence.
+    #[must_use]
+    pub fn reason(&self) -> Option<String> {
+        match self {
+            Self::Robot(state) => state.reason().map(ToString::to_string),
+            Self::Activity(activity) => activity.reason.clone(),
+        }
+    }
+
+    /// The state of a robot that decides.
+    #[must_use]
+    pub fn drive(&self) -> Option<&DriveState> {
+        match self {
+            Self::Robot(state) => Some(state),
+            Self::Activity(_) => None,
+        }
+    }
 }
 
 /// Surroundings of a robot besides the map.
@@ -48,6 +131,8 @@ pub struct RunView {
 pub struct PerceptionView {
     /// The newest colour image.
     pub image: Option<Arc<ImageView>>,
+    /// Its depth, where it is at hand.
+    pub depth: Option<Arc<DepthView>>,
     /// The visual map, at most [`super::VISUAL_MAP_PERIOD_S`] old.
     pub visual_map: Option<Arc<VisualMapView>>,
     /// Features of the last image that was tracked.
@@ -120,6 +205,34 @@ pub struct ImageView {
     pub jpeg: Vec<u8>,
 }
 
+/// A thinned depth image of the camera.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DepthView {
+    /// Time of the image.
+    pub stamp: Stamp,
+    /// Pixels in a row.
+    pub width: usize,
+    /// Depth of each pixel in [`DepthView::UNIT_M`], row by row; 0: not measured.
+    pub pixels: Vec<u8>,
+}
+
+impl DepthView {
+    /// Unit of depth \[m\]: up to 10.2 m. Source: ours; the depth cameras see less far.
+    pub const UNIT_M: f64 = 0.04;
+    /// Largest width \[px\]: an image of 20 kB. Source: ours.
+    const MAX_WIDTH: usize = 160;
+
+    /// Every second, third ... pixel of an image.
+    #[must_use]
+    pub fn of(stamp: Stamp, depth: &DepthImage) -> Self {
+        let stride = depth.width().div_ceil(Self::MAX_WIDTH).max(1);
+        let unit = |depth: f32| if depth > 0.0 { (f64::from(depth) / Self::UNIT_M).ceil() as u8 } else { 0 };
+        let rows = (0..depth.height()).step_by(stride).map(|y| depth.row(y));
+        let pixels = rows.flat_map(|row| row.iter().step_by(stride).map(|depth| unit(*depth))).collect();
+        Self { stamp, width: depth.width().div_ceil(stride), pixels }
+    }
+}
+
 /// A mission as a run shows it.
 #[derive(Debug, Clone, Default)]
 pub struct MissionView {
@@ -144,4 +257,20 @@ pub struct MapView {
     pub revision: u64,
     /// The map.
     pub grid: OccupancyGrid,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_depth_image_is_thinned_and_keeps_what_was_not_measured() {
+        let mut depth = DepthImage::filled(640, 480, 2.0);
+        depth[(4, 0)] = 0.0;
+        depth[(8, 0)] = 60.0;
+        let view = DepthView::of(Stamp::default(), &depth);
+        assert_eq!((view.width, view.pixels.len()), (160, 160 * 120));
+        assert_eq!(view.pixels[..3], [50, 0, 255]);
+        assert_eq!(DepthView::of(Stamp::default(), &DepthImage::filled(3, 2, 0.01)).pixels, [1; 6]);
+    }
 }

@@ -1,7 +1,8 @@
 //! Makes the views of a run.
 
+use super::image_feed::ImageFeed;
 use super::perception_feed::PerceptionFeed;
-use super::run_view::{ImageView, MapView, MissionView, PerceptionView, RunCounts, RunView};
+use super::run_view::{MapView, MissionView, PerceptionView, RunCounts, RunState, RunView};
 use super::visual_map_feed::VisualMapFeed;
 use std::sync::Arc;
 use trundle_core::{Scan, Stamp, Trajectory, Twist2};
@@ -9,9 +10,6 @@ use trundle_runtime::{Robot, Stage, StepReport};
 
 /// Time between two copies of the map \[s\]. A map of 100 x 100 m is 4 million cells, a copy of 1 ms. Source: ours.
 const MAP_PERIOD_S: f64 = 1.0;
-
-/// Time between two copies of the camera's image \[s\]. A copy of 100 kB takes 10 us. Source: ours.
-const IMAGE_PERIOD_S: f64 = 0.1;
 
 /// Makes the views of a run: keeps the large parts that did not change.
 #[derive(Debug, Default)]
@@ -24,7 +22,8 @@ pub(super) struct ViewFeed {
     map_copied: Option<Stamp>,
     /// Number of maps that stood before the present one.
     map_number: u64,
-    image: Option<Arc<ImageView>>,
+    /// Images of the camera.
+    pub(super) images: ImageFeed,
     visual_map: VisualMapFeed,
     perception: PerceptionFeed,
     /// Width and height of the camera's images \[px\].
@@ -45,13 +44,6 @@ impl ViewFeed {
         self.map_copied = None;
     }
 
-    /// Keeps a copy of an image where the last one is old.
-    pub(super) fn note_image(&mut self, stamp: Stamp, jpeg: &[u8]) {
-        if self.image.as_ref().is_none_or(|image| stamp - image.stamp >= IMAGE_PERIOD_S) {
-            self.image = Some(Arc::new(ImageView { stamp, jpeg: jpeg.to_vec() }));
-        }
-    }
-
     /// The view after a step; `None` after a step without command or result. Scan and map are copied if the run `is_watched`.
     pub(super) fn view(
         &mut self,
@@ -68,21 +60,25 @@ impl ViewFeed {
         self.twist = report.twist.unwrap_or(self.twist);
         self.update_mission(robot, report);
         self.update_plan(robot, report);
-        self.perception.note_loop(robot, report);
+        if let Some(track) = &report.track {
+            self.perception.note_loop(track, robot.estimate().pose);
+        }
         if is_watched || report.map_replaced {
             self.update_map(stamp, robot);
         }
         if is_watched {
-            self.perception.update(self.image_size_px, robot, report);
+            if let (Some(track), Some(slam)) = (&report.track, robot.slam()) {
+                self.perception.update(self.image_size_px, track, slam);
+            }
             self.update_scan(robot);
-            self.visual_map.update(stamp, robot);
+            self.visual_map.update(stamp, robot.slam(), robot.map_from_visual());
         }
         Some(RunView {
             stamp,
             estimate: robot.estimate(),
             odometry: robot.odometry(),
             twist: self.twist,
-            state: report.state.clone(),
+            state: RunState::Robot(report.state.clone()),
             mission: self.mission.clone(),
             battery: robot.battery(),
             hold: robot.hold(),
@@ -91,7 +87,8 @@ impl ViewFeed {
             plan: self.plan.clone(),
             map: self.map.clone(),
             perception: PerceptionView {
-                image: self.image.clone(),
+                image: self.images.image(),
+                depth: self.images.depth(),
                 visual_map: self.visual_map.newest(),
                 features: self.perception.features(),
                 loops: self.perception.loops().to_vec(),
@@ -99,7 +96,7 @@ impl ViewFeed {
                 station: robot.station().map(|station| station.pose),
             },
             counts: counts(robot),
-            settings: robot.run_settings(),
+            settings: Some(robot.run_settings()),
         })
     }
 

@@ -3,7 +3,7 @@
 use super::run_view::VisualMapView;
 use std::sync::Arc;
 use trundle_core::{Pose2, Pose3, Stamp, Vector3};
-use trundle_runtime::Robot;
+use trundle_slam::RgbdSlam;
 
 /// Time between two copies of the visual map \[s\]. A copy of 6,000 landmarks takes 0.1 ms. Source: ours.
 pub const VISUAL_MAP_PERIOD_S: f64 = 3.0;
@@ -12,17 +12,17 @@ const MAX_LANDMARKS: usize = 6000;
 
 /// Copies the visual map for views.
 #[derive(Debug, Default)]
-pub(super) struct VisualMapFeed {
+pub(crate) struct VisualMapFeed {
     newest: Option<(Stamp, Arc<VisualMapView>)>,
 }
 
 impl VisualMapFeed {
     /// Copies the visual map where the last copy is old. While a perception job runs the map is away, and the last copy stays.
-    pub(super) fn update(&mut self, now: Stamp, robot: &Robot) {
+    pub(crate) fn update(&mut self, now: Stamp, slam: Option<&RgbdSlam>, map_from_visual: Option<Pose3>) {
         if self.newest.as_ref().is_some_and(|(copied, _)| now - *copied < VISUAL_MAP_PERIOD_S) {
             return;
         }
-        let (Some(slam), Some(map_from_visual)) = (robot.slam(), robot.map_from_visual()) else { return };
+        let (Some(slam), Some(map_from_visual)) = (slam, map_from_visual) else { return };
         let stride = slam.landmarks().count().div_ceil(MAX_LANDMARKS).max(1);
         let landmarks = slam.landmarks().step_by(stride).map(|at| map_from_visual.transform(at)).collect();
         let keyframes = slam.keyframes().map(|(_, _, pose)| on_floor(&(map_from_visual * pose))).collect();
@@ -30,13 +30,13 @@ impl VisualMapFeed {
     }
 
     /// The newest copy.
-    pub(super) fn newest(&self) -> Option<Arc<VisualMapView>> {
+    pub(crate) fn newest(&self) -> Option<Arc<VisualMapView>> {
         Some(Arc::clone(&self.newest.as_ref()?.1))
     }
 }
 
 /// A camera's pose on the floor, its heading that of the optical axis.
-fn on_floor(map_from_camera: &Pose3) -> Pose2 {
+pub(crate) fn on_floor(map_from_camera: &Pose3) -> Pose2 {
     let axis = map_from_camera.rotate(Vector3::z());
     let at = map_from_camera.translation;
     Pose2::new(at.x, at.y, axis.y.atan2(axis.x))

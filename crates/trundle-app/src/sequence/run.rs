@@ -1,8 +1,10 @@
 //! Tracking of a sequence, frame by frame.
 
+use super::live_view::{SequenceFeed, Tracker};
 use super::odometry_prior::OdometryPrior;
 use super::recorder::SequenceRecorder;
 use super::request::SequenceRequest;
+use crate::operator::OperatorLink;
 use crate::sequence_input::SequenceInput;
 use crate::{AppError, StepProgress, TrackCounts, stop};
 use std::time::Instant;
@@ -73,7 +75,7 @@ impl LeftOut {
     }
 }
 
-/// Tracks a sequence and records every frame into `recording.mcap` of `folder`.
+/// Tracks a sequence and records every frame into `recording.mcap` of `folder`; `watch` is shown how it goes.
 ///
 /// # Errors
 /// When a setting cannot be accepted or no frame can be read. A recording that the disk does not take ends; tracking goes on.
@@ -82,9 +84,11 @@ pub fn track_sequence(
     input: &SequenceInput,
     folder: &OutputFolder,
     progress: &dyn StepProgress,
+    watch: Option<OperatorLink>,
 ) -> Result<SequenceRun, AppError> {
     let mut run = SequenceRun::new(request, input)?;
     let mut recorder = SequenceRecorder::new(folder.recorder("recording.mcap")?, input.camera.model.camera);
+    let mut feed = watch.map(|link| SequenceFeed::new(link, input.robot.mapping.clone()));
     let odometry = OdometryPrior::new(input);
     let frames = request.frames.map_or(input.len(), |frames| input.len().min(frames));
     progress.begin(Some(frames));
@@ -95,6 +99,10 @@ pub fn track_sequence(
             Ok(image) => {
                 let encoded = frame.encoded(&image).map_err(AppError::input)?;
                 let report = run.step(image, &odometry);
+                if let (Some(feed), Some(image)) = (&mut feed, &run.last_image) {
+                    let tracker = Tracker { slam: &run.slam, map: &run.map, times: &run.times };
+                    feed.note(image, &encoded.color_jpeg, &report, &tracker, (i + 1, frames));
+                }
                 recorder.record(encoded, &report, &run.slam);
                 run.warn_of_calibration(progress);
             }

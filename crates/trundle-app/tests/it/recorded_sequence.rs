@@ -68,7 +68,7 @@ fn slam_tracks_the_images_of_a_recording_with_its_wheels_and_its_camera() {
     let input = request.open().unwrap();
     assert!(input.len() > 15 && input.camera.model.camera == input.robot.camera);
     let folder = OutputFolder::create(&scratch.path().join("slam")).unwrap();
-    let run = track_sequence(&request, &input, &folder, &()).unwrap();
+    let run = track_sequence(&request, &input, &folder, &(), None).unwrap();
     assert_eq!(run.failure(), None);
     assert_eq!((run.counts.ok, run.odometry_priors), (input.len(), input.len() - 1));
     let (_, first) = run.slam.trajectory()[0];

@@ -1,6 +1,7 @@
 //! A world of the BARN challenge, crossed or not, with the challenge's score.
 
 use super::worlds::BarnWorld;
+use crate::RunResult;
 use crate::laser_run::{LaserRun, Moment};
 use trundle_core::{OccupancyGrid, Vector2};
 use trundle_runtime::DriveState;
@@ -89,6 +90,16 @@ impl BarnTrial {
             }
             false => self.state.to_string(),
         }
+    }
+}
+
+impl RunResult for BarnTrial {
+    fn is_success(&self) -> bool {
+        self.success
+    }
+
+    fn sentence(&self) -> String {
+        format!("{} after {:.1} s, score {:.2}", self.outcome_text(), self.time, self.score)
     }
 }
 

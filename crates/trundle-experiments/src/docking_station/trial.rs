@@ -4,6 +4,7 @@ use crate::laser_run::{LaserPlan, LaserRun, drive, hokuyo};
 use crate::simulated::simulated_body;
 use std::f64::consts::PI;
 use trundle_app::AppError;
+use trundle_app::operator::OperatorLink;
 use trundle_core::{Pose2, difference_of_angles};
 use trundle_runtime::{DriveState, Mission, RangeSource, RobotConfig, Task};
 use trundle_sim::{FaultSchedule, Scene, SimConfig};
@@ -73,15 +74,16 @@ pub fn body_of(robot: &RobotConfig) -> Result<SimConfig, AppError> {
     Ok(body)
 }
 
-/// Makes a run.
+/// Makes a run, which is shown to those who `watch`.
 ///
 /// # Errors
 /// When a number of the plan is outside its range, or the start is not free.
-pub fn dock(plan: DockPlan) -> Result<DockTrial, AppError> {
+pub fn dock(plan: DockPlan, watch: Option<OperatorLink>) -> Result<DockTrial, AppError> {
     let DockPlan { scene, robot, body, mission, seed } = plan;
     let station = scene.station;
     let run = drive(
         LaserPlan { robot, body, scene, mission, known: None, seed, time_limit: TIME_LIMIT_S },
+        watch,
         |_| false,
     )?;
     let end = *run.end();

@@ -2,6 +2,7 @@
 
 use super::course::Course;
 use super::metrics::Metrics;
+use crate::RunResult;
 use crate::laser_run::LaserRun;
 use trundle_core::{OccupancyGrid, Vector2, difference_of_angles};
 use trundle_runtime::DriveState;
@@ -35,6 +36,16 @@ pub struct MrpbTrial {
     pub(super) driven: Vec<Vector2>,
     /// The map, map frame.
     pub(super) grid: OccupancyGrid,
+}
+
+impl RunResult for MrpbTrial {
+    fn is_success(&self) -> bool {
+        self.success()
+    }
+
+    fn sentence(&self) -> String {
+        format!("{}, {:.2} m from the goal, {} contacts", self.state, self.distance, self.contacts)
+    }
 }
 
 impl MrpbTrial {

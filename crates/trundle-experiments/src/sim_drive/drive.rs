@@ -67,7 +67,10 @@ pub fn drive_simulator(
                 driver.show(image, robot);
                 show(progress, robot, now, started);
             }
-            SensorEvent::Scan(_) => scans += 1,
+            SensorEvent::Scan(scan) => {
+                scans += 1;
+                driver.show_scan(scan, robot);
+            }
             _ => {}
         }
         if let Some(recording) = recording.as_deref_mut() {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use trundle_app::{AppError, read_text};
-use trundle_core::{Invalid, Pose2, RgbdImage, Stamp, Twist2};
+use trundle_core::{Invalid, Pose2, RgbdImage, Scan, Stamp, Twist2};
 use trundle_sim::{CommandScript, Following, Simulator, WaypointFollower};
 
 /// Time for which a robot without a driver is simulated \[s\]. Source: ours.
@@ -29,6 +29,9 @@ pub trait SimDriver {
 
     /// Shows the newest image to the driver.
     fn show(&mut self, _image: &RgbdImage, _robot: &Simulator) {}
+
+    /// Shows the newest sweep of the laser to the driver.
+    fn show_scan(&mut self, _scan: &Scan, _robot: &Simulator) {}
 }
 
 /// Does not move.

@@ -1,4 +1,4 @@
-// Features of the camera's last image, drawn over it.
+// Features of the camera's last image and its depth, drawn over it.
 
 import { element } from "./panel";
 import type { ByteMessage } from "./wire";
@@ -22,4 +22,51 @@ export function drawFeatures(message: Extract<ByteMessage, { kind: "features" }>
     const [x, y] = [left + scale * message.spots[2 * i]!, top + scale * message.spots[2 * i + 1]!];
     context.fillRect(x - size / 2, y - size / 2, size, size);
   });
+}
+
+/** Unit of a depth that is sent [m]. */
+const DEPTH_UNIT_M = 0.04;
+/** Depth of the last colour [m]. */
+const FAR_M = 6;
+
+export function drawDepth(message: Extract<ByteMessage, { kind: "depth" }>): void {
+  const canvas = element<HTMLCanvasElement>("camera-depth");
+  element("depth-toggle").hidden = false;
+  const height = Math.floor(message.pixels.length / Math.max(1, message.width));
+  if (canvas.hidden || height === 0) return;
+  if (canvas.width !== message.width) canvas.width = message.width;
+  if (canvas.height !== height) canvas.height = height;
+  const context = canvas.getContext("2d")!;
+  const picture = context.createImageData(message.width, height);
+  const colors = depthColors();
+  for (let i = 0; i < message.width * height; i++) {
+    const color = 3 * message.pixels[i]!;
+    picture.data[4 * i] = colors[color]!;
+    picture.data[4 * i + 1] = colors[color + 1]!;
+    picture.data[4 * i + 2] = colors[color + 2]!;
+    picture.data[4 * i + 3] = 255;
+  }
+  context.putImageData(picture, 0, 0);
+}
+
+let colorTable: Uint8ClampedArray | null = null;
+
+/** The colour of each depth, near yellow, far violet: viridis, which the colour blind read too. Without depth: black. */
+function depthColors(): Uint8ClampedArray {
+  if (colorTable) return colorTable;
+  const stops = [
+    [253, 231, 37],
+    [94, 201, 98],
+    [33, 145, 140],
+    [59, 82, 139],
+    [68, 1, 84],
+  ];
+  const table = new Uint8ClampedArray(3 * 256);
+  for (let unit = 1; unit < 256; unit++) {
+    const at = Math.min(0.9999, (unit * DEPTH_UNIT_M) / FAR_M) * (stops.length - 1);
+    const [near, far] = [stops[Math.floor(at)]!, stops[Math.floor(at) + 1]!];
+    for (let part = 0; part < 3; part++) table[3 * unit + part] = near[part]! + (at % 1) * (far[part]! - near[part]!);
+  }
+  colorTable = table;
+  return table;
 }

@@ -1,12 +1,13 @@
 // The live page: what the robot sees, and how it is steered.
 
 import { Annotations } from "./annotations";
-import { drawFeatures } from "./camera";
+import { drawDepth, drawFeatures } from "./camera";
 import { Link, type LinkState } from "./link";
 import { MapView, type Layers } from "./map_view";
 import { addToLog, element, Panel } from "./panel";
 import { Teleop } from "./teleop";
-import { saveMap } from "./map_files";
+import { mapNames, saveMap } from "./map_files";
+import { SeriesCard } from "./series";
 import { Settings } from "./settings";
 import { SpaceView } from "./space_view";
 import { startTheme, toggleTheme } from "./theme";
@@ -49,6 +50,10 @@ const annotations = new Annotations(map, () => state?.pose ?? null, {
   onClosed: () => tools.tool !== "move" && selectTool("move"),
 });
 const settings = new Settings(async (message) => (await link.ask(message)).refusal);
+const series = new SeriesCard(() => {
+  map.forgetRun();
+  timeline.begin(new Float32Array());
+});
 const tools = new MapTools(canvas, map, () => state?.pose[2] ?? 0, annotations.tool, {
   onPlace: (pose) => annotations.newPlace(pose),
   onGoal: (pose, append) => void go(pose, append),
@@ -74,10 +79,13 @@ function onReply(reply: Reply): void {
       document.title = `${reply.title} – trundle`;
       element("title").textContent = reply.title;
       document.body.dataset["access"] = reply.drives ? "drive" : "view";
+      document.body.dataset["kind"] = reply.kind;
+      showKind(reply);
       element("log").replaceChildren();
-      element("recording").textContent = RECORDINGS[reply.recording] ?? reply.recording;
+      element("recording").textContent = RECORDINGS[reply.recording] ?? "";
       sendCamera();
       sendVisualMap();
+      void offerMaps();
       break;
     case "state":
       state = reply;
@@ -94,6 +102,9 @@ function onReply(reply: Reply): void {
     case "settings":
       settings.show(reply.settings);
       inspected.settings = reply.settings;
+      break;
+    case "series":
+      series.show(reply);
       break;
     case "states":
       addToLog(reply.states, (time) => timeline.look(time));
@@ -132,6 +143,9 @@ function onBytes(message: ByteMessage): void {
     case "image":
       showImage(message.jpeg);
       break;
+    case "depth":
+      drawDepth(message);
+      break;
   }
 }
 
@@ -168,6 +182,29 @@ async function stop(): Promise<void> {
   if (answer.refusal) toast(`Not stopped: ${answer.refusal}`, "bad");
 }
 
+/** Shows the maps that may be loaded. */
+async function offerMaps(): Promise<void> {
+  const names = await mapNames(location.hash.slice(1));
+  element("maps").hidden = names.length === 0;
+  element("map-name").replaceChildren(...names.map((name) => new Option(name)));
+}
+
+/** Time for the second press that loads a map [ms]. */
+const LOAD_PRESS_MS = 5000;
+let loadPressed = -Infinity;
+
+/** The first press says what a map costs, the second loads it. A dialog would keep the stop from working. */
+async function loadMap(): Promise<void> {
+  const name = element<HTMLSelectElement>("map-name").value;
+  if (performance.now() - loadPressed > LOAD_PRESS_MS) {
+    loadPressed = performance.now();
+    toast("Press Load again: the robot stops, drops mission, zones and places, and must find out where it stands.", "warn");
+    return;
+  }
+  loadPressed = -Infinity;
+  if (await request({ type: "load_map", name })) toast(`Map ${name} is loaded. Set the pose, or let the robot find it.`, "good");
+}
+
 function asGoal([x, y, theta]: Pose): { x: number; y: number; theta: number } {
   return { x, y, theta };
 }
@@ -182,11 +219,14 @@ function connectButtons(): void {
   press("dock", () => void request({ type: "dock" }));
   press("pause", () => void request({ type: state?.paused ? "continue" : "pause" }));
   press("map-save", () => void saveMap(location.hash.slice(1)).then((problem) => problem && toast(problem, "bad")));
-  press("features-toggle", () => {
-    const canvas = element("camera-features");
-    canvas.hidden = !canvas.hidden;
-    element("features-toggle").setAttribute("aria-pressed", String(!canvas.hidden));
-  });
+  const showOver = (button: string, canvas: string) =>
+    press(button, () => {
+      element(canvas).hidden = !element(canvas).hidden;
+      element(button).setAttribute("aria-pressed", String(!element(canvas).hidden));
+    });
+  showOver("features-toggle", "camera-features");
+  showOver("depth-toggle", "camera-depth");
+  press("map-load", () => void loadMap());
   press("wheel-take", () => void request({ type: "take_wheel" }));
   press("theme", () => {
     toggleTheme();
@@ -293,7 +333,9 @@ function toggleSpace(): void {
 }
 
 function selectTool(tool: Tool): void {
-  const isDenied = document.body.dataset["access"] === "view" && tool !== "move";
+  const { access, kind } = document.body.dataset;
+  const isForRobot = tool !== "move" && tool !== "drive";
+  const isDenied = (access === "view" && tool !== "move") || (isForRobot && kind !== undefined && kind !== "robot");
   const chosen = isDenied ? "move" : tool;
   if (space.isShown && chosen !== "move" && chosen !== "drive") toggleSpace();
   if (tools.tool !== chosen || chosen === "move") annotations.close(false);
@@ -382,6 +424,22 @@ function wallPixel(): [number, number] | null {
 }
 
 // ---- what the page says
+
+/** Offers what this run can do: a base without autonomy is driven by hand alone, a sequence of images is looked at. */
+function showKind({ kind, drives, is_steered: isSteered }: Welcome): void {
+  const words = { robot: "Robot", drive: "Robot", sequence: "Camera pose" };
+  element("robot-title").textContent = words[kind];
+  if (kind === "sequence") {
+    const layer = document.querySelector<HTMLInputElement>('[data-layer="visual"]')!;
+    layer.checked = map.layers.visual = true;
+    element("camera-features").hidden = false;
+    element("features-toggle").setAttribute("aria-pressed", "true");
+  }
+  // Nobody points at a map that is looked at alone: it is shown as a whole while it grows.
+  map.keepsFit = !isSteered;
+  if (kind === "drive" && drives) selectTool("drive");
+  else if (tools.tool !== "move") selectTool(tools.tool);
+}
 
 function showLink(next: LinkState, reason: string): void {
   document.body.dataset["link"] = next;

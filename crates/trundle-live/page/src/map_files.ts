@@ -1,4 +1,4 @@
-// Saves the map on the computer of the viewer: picture, YAML, zones and places.
+// Saves the map on the computer of the viewer: picture, YAML, zones and places. Names of the maps that may be loaded.
 
 const FILES = ["map.pgm", "map.yaml", "zones.geojson"];
 
@@ -15,4 +15,10 @@ export async function saveMap(token: string): Promise<string> {
     setTimeout(() => URL.revokeObjectURL(url), 10_000);
   }
   return "";
+}
+
+/** The names of the maps that may be loaded; none without a link. */
+export async function mapNames(token: string): Promise<string[]> {
+  const response = await fetch("/maps", { headers: { Authorization: `Bearer ${token}` } }).catch(() => null);
+  return response?.ok ? ((await response.json()) as string[]) : [];
 }

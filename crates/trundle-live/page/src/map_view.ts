@@ -75,6 +75,8 @@ export class MapView {
   private trail: number[] = [];
   private isDirty = true;
   private isFitted = false;
+  /** Whether the map is shown as a whole while it grows, until a person moves it. */
+  keepsFit = false;
   private last = 0;
 
   constructor(private readonly canvas: HTMLCanvasElement) {
@@ -115,6 +117,15 @@ export class MapView {
     this.dirty();
   }
 
+  /** Another run is shown: path, scan, plan and landmarks were those of the last one. */
+  forgetRun(): void {
+    this.trail = [];
+    this.scan = this.plan = this.keyframes = this.landmarks = new Float32Array();
+    this.past = null;
+    this.isFitted = false;
+    this.dirty();
+  }
+
   /** The path driven before this page came: x, y, heading and time of each point. */
   setTrail(poses: Float32Array): void {
     this.trail = [];
@@ -124,7 +135,8 @@ export class MapView {
 
   /** The map has grown: the first map is shown as a whole. */
   mapChanged(): void {
-    if (!this.isFitted && this.tiles.knownBounds()) {
+    const isDue = !this.isFitted || (this.keepsFit && !this.follows);
+    if (isDue && this.tiles.knownBounds()) {
       this.isFitted = true;
       this.fit();
     }
@@ -164,12 +176,14 @@ export class MapView {
   }
 
   pan(dx: number, dy: number): void {
+    this.keepsFit = false;
     this.follows = false;
     this.center = [this.center[0] - dx / this.scale, this.center[1] + dy / this.scale];
     this.dirty();
   }
 
   zoom(factor: number, x?: number, y?: number): void {
+    this.keepsFit = false;
     const box = this.canvas.getBoundingClientRect();
     const at: Point = [x ?? box.left + box.width / 2, y ?? box.top + box.height / 2];
     const before = this.toMap(...at);

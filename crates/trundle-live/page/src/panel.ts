@@ -16,6 +16,11 @@ export const TONES: Record<string, Tone> = {
   lost: "bad",
   arrived: "good",
   stopped: "bad",
+  standing: "idle",
+  "driven by hand": "busy",
+  tracking: "good",
+  "tracking weakly": "warn",
+  "dead reckoning": "warn",
 };
 
 /** Time between two rates [s]. */

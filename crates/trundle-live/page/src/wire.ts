@@ -1,6 +1,6 @@
 // The messages between page and server. The server's side is crates/trundle-live/src/wire.
 
-export const WIRE_VERSION = 2;
+export const WIRE_VERSION = 3;
 
 export type Pose = [x: number, y: number, theta: number];
 export type Point = [x: number, y: number];
@@ -37,6 +37,9 @@ export interface RobotState {
   viewers: number;
 }
 
+/** What is shown: a robot with missions, a base driven by hand, a recorded sequence of images. */
+export type RunKind = "robot" | "drive" | "sequence";
+
 export interface Welcome {
   type: "welcome";
   version: number;
@@ -44,6 +47,7 @@ export interface Welcome {
   title: string;
   drives: boolean;
   is_steered: boolean;
+  kind: RunKind;
   footprint: { disc: number } | { polygon: Point[] };
   max_v: number;
   max_omega: number;
@@ -54,6 +58,18 @@ export interface StateEntry {
   time: number;
   name: string;
   reason?: string;
+}
+
+/** A series of images or runs, one of which is shown. */
+export interface Series {
+  unit: string;
+  done: number;
+  total: number | null;
+  /** Number of runs that were shown before this one. */
+  number: number;
+  shown: string;
+  ended: number;
+  last: { name: string; is_success: boolean; text: string }[];
 }
 
 /** The rule of a zone; a slow one has a speed [m/s]. */
@@ -90,6 +106,7 @@ export type Reply =
   | { type: "refused"; refusal: string }
   | { type: "annotations"; zones: Zone[]; places: Place[] }
   | { type: "settings"; settings: Setting[] }
+  | ({ type: "series" } & Series)
   | { type: "states"; states: StateEntry[] };
 
 export const TILE_CELLS = 64;
@@ -110,7 +127,8 @@ export type ByteMessage =
   | { kind: "trail"; poses: Float32Array }
   | { kind: "visual"; keyframes: Float32Array; landmarks: Float32Array }
   | { kind: "features"; width: number; height: number; spots: Float32Array; tracked: boolean[] }
-  | { kind: "image"; jpeg: Uint8Array<ArrayBuffer> };
+  | { kind: "image"; jpeg: Uint8Array<ArrayBuffer> }
+  | { kind: "depth"; width: number; pixels: Uint8Array };
 
 /** Reads a message of bytes; null for a kind that this page does not know. */
 export function readBytes(buffer: ArrayBuffer): ByteMessage | null {
@@ -130,6 +148,8 @@ export function readBytes(buffer: ArrayBuffer): ByteMessage | null {
       return readVisualMap(view);
     case 7:
       return readFeatures(view);
+    case 8:
+      return { kind: "depth", width: view.getUint16(2, true), pixels: new Uint8Array(buffer, 4) };
     default:
       return null;
   }

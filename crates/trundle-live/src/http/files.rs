@@ -1,4 +1,4 @@
-//! The map as files, for viewers who save it.
+//! The map as files, for viewers who save it, and the names of maps that may be loaded.
 
 use crate::page_state::PageState;
 use axum::extract::{Path, State};
@@ -13,8 +13,7 @@ pub async fn file(
     Path(name): Path<String>,
     headers: HeaderMap,
 ) -> Response {
-    let token = headers.get(header::AUTHORIZATION).and_then(|value| value.to_str().ok());
-    if token.and_then(|token| state.tokens.access(token.strip_prefix("Bearer ")?)).is_none() {
+    if !may_look(&state, &headers) {
         return (StatusCode::FORBIDDEN, "this link may not look").into_response();
     }
     let Some(map) = state.operator.view().and_then(|view| view.map.clone()) else {
@@ -24,4 +23,18 @@ pub async fn file(
         Some(bytes) => ([(header::CONTENT_TYPE, "application/octet-stream")], bytes).into_response(),
         None => (StatusCode::NOT_FOUND, "there is no such file").into_response(),
     }
+}
+
+/// The names of the maps that may be loaded, as JSON; for every valid token.
+pub async fn maps(State(state): State<Arc<PageState>>, headers: HeaderMap) -> Response {
+    if !may_look(&state, &headers) {
+        return (StatusCode::FORBIDDEN, "this link may not look").into_response();
+    }
+    let names = serde_json::Value::from(state.steering.map_names());
+    ([(header::CONTENT_TYPE, "application/json")], names.to_string()).into_response()
+}
+
+fn may_look(state: &PageState, headers: &HeaderMap) -> bool {
+    let token = headers.get(header::AUTHORIZATION).and_then(|value| value.to_str().ok());
+    token.and_then(|token| state.tokens.access(token.strip_prefix("Bearer ")?)).is_some()
 }

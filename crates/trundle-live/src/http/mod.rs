@@ -28,6 +28,7 @@ pub fn router(state: Arc<PageState>) -> Router {
         .route("/live", get(open_link))
         .route("/stop", post(stop))
         .route("/files/{name}", get(files::file))
+        .route("/maps", get(files::maps))
         .fallback(get(assets::file))
         .layer(from_fn_with_state(Arc::clone(&state), guard::check))
         .with_state(state)

@@ -5,11 +5,11 @@ mod refusal;
 
 pub use refusal::CommandRefusal;
 
-use crate::run_facts::RunFacts;
+use crate::run_facts::{RunFacts, RunKind};
 use crate::wire::{Goal, Request, SettingText};
 use goal_check::require_free;
 use std::sync::atomic::{AtomicBool, Ordering};
-use trundle_app::operator::{AnnotationEdit, Operator};
+use trundle_app::operator::{AnnotationEdit, MapFolder, Operator};
 use trundle_core::{DriveLimits, Pose2, Twist2, Zone, require_in};
 use trundle_planning::{FootprintCheck, require_on_map};
 use trundle_runtime::{Mission, OperatorCommand, PoseGuess, RunSetting, Task};
@@ -27,17 +27,20 @@ const HAND_SPEED: f64 = 0.6;
 #[derive(Debug)]
 pub struct RunSteering {
     operator: Operator,
+    kind: RunKind,
     check: FootprintCheck,
     limits: DriveLimits,
+    maps: Option<MapFolder>,
     /// Whether a stop or a drive by hand of this page paused the robot: the next task of the page ends that pause.
     is_paused_here: AtomicBool,
 }
 
 impl RunSteering {
     /// The steering of a run.
-    pub fn new(operator: Operator, facts: &RunFacts) -> Self {
+    pub fn new(operator: Operator, facts: &RunFacts, maps: Option<MapFolder>) -> Self {
         let check = FootprintCheck::new(&facts.footprint);
-        Self { operator, check, limits: facts.limits, is_paused_here: AtomicBool::new(false) }
+        let (kind, limits) = (facts.kind, facts.limits);
+        Self { operator, kind, check, limits, maps, is_paused_here: AtomicBool::new(false) }
     }
 
     /// Carries out a request; requests that are not for the robot do nothing.
@@ -45,6 +48,12 @@ impl RunSteering {
     /// # Errors
     /// When the robot cannot carry the request out: a goal in a wall, a number out of range, a run that is over.
     pub fn obey(&self, request: &Request) -> Result<(), CommandRefusal> {
+        let is_for_hand = matches!(request, Request::Drive { .. } | Request::Stop { .. });
+        if self.kind != RunKind::Robot && !is_for_hand {
+            return Err(CommandRefusal::of(
+                "Nothing here has missions, poses or zones: drive by hand, or stop.",
+            ));
+        }
         match request {
             Request::Go { goals, append, .. } => self.go(goals, *append),
             Request::Explore { .. } => self.begin(vec![Task::Explore]),
@@ -70,6 +79,7 @@ impl RunSteering {
             Request::SetPlace { place, .. } => self.edit(&AnnotationEdit::SetPlace(place.clone())),
             Request::RemovePlace { number, .. } => self.edit(&AnnotationEdit::RemovePlace(*number)),
             Request::Change { key, value, .. } => self.change(key, *value),
+            Request::LoadMap { name, .. } => self.load_map(name),
             _ => Ok(()),
         }
     }
@@ -132,6 +142,20 @@ impl RunSteering {
         self.send(OperatorCommand::Change(setting))
     }
 
+    /// The names of the maps that may be loaded.
+    pub fn map_names(&self) -> Vec<String> {
+        self.maps.as_ref().map_or_else(Vec::new, MapFolder::names)
+    }
+
+    fn load_map(&self, name: &str) -> Result<(), CommandRefusal> {
+        let maps = self
+            .maps
+            .as_ref()
+            .ok_or_else(|| CommandRefusal::of("No folder of maps was given: --maps DIR"))?;
+        let grid = maps.read(name).map_err(CommandRefusal::of)?;
+        self.send(OperatorCommand::LoadMap(Box::new(grid)))
+    }
+
     fn begin(&self, tasks: Vec<Task>) -> Result<(), CommandRefusal> {
         self.send(OperatorCommand::Begin(Mission::new(tasks)?))?;
         if self.is_paused_here.swap(false, Ordering::Relaxed) {
@@ -166,8 +190,9 @@ mod tests {
     fn steering() -> (RunSteering, trundle_app::operator::OperatorLink) {
         let (operator, link) = operator_link();
         let limits = DriveLimits::KOBUKI;
-        let facts = RunFacts { title: String::new(), footprint: Footprint::KOBUKI, limits, recording: "all" };
-        (RunSteering::new(operator, &facts), link)
+        let (kind, title, recording) = (RunKind::Robot, String::new(), "all");
+        let facts = RunFacts { kind, title, footprint: Footprint::KOBUKI, limits, recording };
+        (RunSteering::new(operator, &facts, None), link)
     }
 
     fn go(x: f64) -> Request {

@@ -37,6 +37,7 @@ pub async fn receive(socket: &mut WebSocket, state: &PageState, id: ViewerId) ->
     let welcome = Welcome {
         drives: access == Access::Drive && state.is_steered,
         is_steered: state.is_steered,
+        kind: facts.kind,
         ..Welcome::new(facts.title.clone(), &facts.footprint, facts.limits, facts.recording)
     };
     let text = serde_json::to_string(&Reply::Welcome(Box::new(welcome))).ok()?;

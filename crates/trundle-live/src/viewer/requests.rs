@@ -92,7 +92,7 @@ impl Viewer<'_> {
     fn obey(&self, request: &Request) -> Result<(), CommandRefusal> {
         let state = self.state;
         if !state.is_steered {
-            return Err(CommandRefusal::of("A replay takes no commands."));
+            return Err(CommandRefusal::of("This run takes no commands."));
         }
         if self.access != Access::Drive {
             return Err(CommandRefusal::of(

@@ -5,15 +5,15 @@ use super::progress::ViewProgress;
 use crate::page_state::PageState;
 use crate::roster::ViewerId;
 use crate::wire::{
-    Reply, SettingText, StateMessage, TileCursor, WheelText, features_message, image_message, path_message,
-    scan_message, trail_message, visual_map_message,
+    Reply, SeriesText, SettingText, StateMessage, TileCursor, WheelText, depth_message, features_message,
+    image_message, path_message, scan_message, trail_message, visual_map_message,
 };
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 use tokio::sync::mpsc::Receiver;
 use tokio::time::{Instant, MissedTickBehavior, interval};
-use trundle_app::operator::{FeatureView, RunView, VisualMapView};
+use trundle_app::operator::{FeatureView, RunView, SeriesView, VisualMapView};
 use trundle_core::{MapAnnotations, Stamp, Trajectory};
 use trundle_runtime::RunSetting;
 
@@ -68,10 +68,41 @@ struct Updates {
     /// Number of the view with the last image.
     image_batch: u64,
     features: Option<Arc<FeatureView>>,
-    annotations: Option<Arc<MapAnnotations>>,
-    settings: Option<[RunSetting; 2]>,
+    notes: SentNotes,
     visual_map: Option<Arc<VisualMapView>>,
     states: usize,
+}
+
+/// What a viewer has been sent as notes beside the state.
+#[derive(Default)]
+struct SentNotes {
+    annotations: Option<Arc<MapAnnotations>>,
+    settings: Option<[RunSetting; 2]>,
+    series: Option<Arc<SeriesView>>,
+}
+
+impl SentNotes {
+    /// Zones, places, settings and series, where they changed.
+    fn changed(&mut self, view: &RunView, state: &PageState) -> Vec<Reply> {
+        let annotations = state.operator.annotations();
+        let is_new = self.annotations.as_ref().is_none_or(|known| !Arc::ptr_eq(known, &annotations));
+        let zones = is_new.then(|| Reply::Annotations { annotations: annotations.as_ref().clone() });
+        self.annotations = Some(annotations);
+        let known = std::mem::replace(&mut self.settings, view.settings);
+        let changed = view.settings.filter(|_| known != view.settings);
+        let limits = &state.facts.limits;
+        let text = |setting: &RunSetting| SettingText::of(*setting, limits);
+        let settings = changed.map(|all| Reply::Settings { settings: all.iter().map(text).collect() });
+        zones.into_iter().chain(settings).chain(self.series_note(state)).collect()
+    }
+
+    fn series_note(&mut self, state: &PageState) -> Option<Reply> {
+        let series = state.operator.series()?;
+        let is_new = self.series.as_ref().is_none_or(|known| *known != series);
+        let note = is_new.then(|| Reply::Series(SeriesText::of(&series)));
+        self.series = Some(series);
+        note
+    }
 }
 
 impl Updates {
@@ -89,8 +120,7 @@ impl Updates {
             image_sent: now,
             image_batch: 0,
             features: None,
-            annotations: None,
-            settings: None,
+            notes: SentNotes::default(),
             visual_map: None,
             states: 0,
         }
@@ -116,7 +146,7 @@ impl Updates {
         self.view_sent = Instant::now();
         let parts = self.parts(&view, state, progress);
         let message = self.state_message(&view, state);
-        let notes = self.notes(&view, state);
+        let notes = self.notes.changed(&view, state);
         self.view = Some(view);
         let (states, so_far) = state.history().states_after(self.states);
         self.states = so_far;
@@ -144,19 +174,6 @@ impl Updates {
         StateMessage::of(view, self.batch, wheel, roster.count())
     }
 
-    /// Zones, places and settings, where they changed.
-    fn notes(&mut self, view: &RunView, state: &PageState) -> Vec<Reply> {
-        let annotations = state.operator.annotations();
-        let is_new = self.annotations.as_ref().is_none_or(|known| !Arc::ptr_eq(known, &annotations));
-        let zones = is_new.then(|| Reply::Annotations { annotations: annotations.as_ref().clone() });
-        self.annotations = Some(annotations);
-        let has_changed = self.settings.replace(view.settings) != Some(view.settings);
-        let limits = &state.facts.limits;
-        let texts = || view.settings.iter().map(|setting| SettingText::of(*setting, limits)).collect();
-        let settings = has_changed.then(|| Reply::Settings { settings: texts() });
-        zones.into_iter().chain(settings).collect()
-    }
-
     /// The messages of bytes with what the viewer lacks.
     fn parts(&mut self, view: &RunView, state: &PageState, progress: &ViewProgress) -> Vec<Vec<u8>> {
         let mut parts = Vec::new();
@@ -170,6 +187,7 @@ impl Updates {
         if progress.wants_images.load(Ordering::Relaxed) {
             parts.extend(self.features_part(view));
             parts.extend(self.image_part(view, progress));
+            parts.extend(self.depth_part(view));
         }
         if progress.wants_visual_map.load(Ordering::Relaxed) {
             parts.extend(self.visual_map_part(view));
@@ -205,6 +223,12 @@ impl Updates {
         self.image = Some(image.stamp);
         self.image_sent = Instant::now();
         Some(image_message(image))
+    }
+
+    /// The depth goes with its image: only then.
+    fn depth_part(&mut self, view: &RunView) -> Option<Vec<u8>> {
+        let depth = view.perception.depth.as_ref()?;
+        (self.image_batch == self.batch).then(|| depth_message(depth))
     }
 
     fn features_part(&mut self, view: &RunView) -> Option<Vec<u8>> {

@@ -3,6 +3,7 @@
 //! The page sends [`Request`]s as JSON. The server sends [`Reply`]s as JSON, and messages of bytes, little-endian, whose first byte is
 //! their [`Kind`]. Frames: map frame where nothing else is said; m and rad.
 
+mod depth;
 mod features;
 mod image;
 mod map_tiles;
@@ -14,11 +15,12 @@ mod scan;
 mod state;
 mod visual_map;
 
+pub use depth::depth_message;
 pub use features::features_message;
 pub use image::image_message;
 pub use map_tiles::{MapTiles, TileCursor};
 pub use path::{path_message, trail_message};
-pub use reply::{Reply, StateEntry, Welcome};
+pub use reply::{Reply, SeriesText, StateEntry, Welcome};
 pub use request::{Goal, Request};
 pub use run_setting::SettingText;
 pub use scan::scan_message;
@@ -26,7 +28,7 @@ pub use state::{StateMessage, WheelText};
 pub use visual_map::visual_map_message;
 
 /// Version of the messages. A page of another version loads itself anew.
-pub const WIRE_VERSION: u32 = 2;
+pub const WIRE_VERSION: u32 = 3;
 
 /// First byte of a message of bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,4 +48,6 @@ pub enum Kind {
     VisualMap = 6,
     /// Features of the last image, and how often loops were closed.
     Features = 7,
+    /// The depth of an image.
+    Depth = 8,
 }

@@ -1,7 +1,9 @@
 //! Messages of the server to a page as JSON, besides the state.
 
 use super::SettingText;
+use crate::run_facts::RunKind;
 use serde::Serialize;
+use trundle_app::operator::{EndedRun, SeriesView};
 use trundle_core::{DriveLimits, Footprint, MapAnnotations};
 
 /// A message of the server.
@@ -37,6 +39,8 @@ pub enum Reply {
         /// With their present values.
         settings: Vec<SettingText>,
     },
+    /// How far the series has come that the run is a part of.
+    Series(SeriesText),
     /// States of the robot since some time ago.
     States {
         /// In the order of time.
@@ -57,6 +61,8 @@ pub struct Welcome {
     pub drives: bool,
     /// Whether the run takes commands.
     pub is_steered: bool,
+    /// What the run is.
+    pub kind: RunKind,
     /// Outline of the robot.
     pub footprint: FootprintText,
     /// Highest speed \[m/s\].
@@ -65,6 +71,59 @@ pub struct Welcome {
     pub max_omega: f64,
     /// Content of the recording, in a word.
     pub recording: &'static str,
+}
+
+/// A series of steps or runs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SeriesText {
+    /// What is counted.
+    pub unit: &'static str,
+    /// Number of those that are done.
+    pub done: usize,
+    /// Number of all, where it is known.
+    pub total: Option<usize>,
+    /// Number of runs that were shown before this one.
+    pub number: u64,
+    /// The run that is shown; empty where there is one alone.
+    pub shown: String,
+    /// Number of runs that have ended.
+    pub ended: usize,
+    /// The last of them, in the order of their ends.
+    pub last: Vec<EndedRunText>,
+}
+
+/// A run that has ended.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct EndedRunText {
+    /// Its name.
+    pub name: String,
+    /// Whether it is as it should be.
+    pub is_success: bool,
+    /// Its result in a sentence.
+    pub text: String,
+}
+
+/// Most ended runs that are sent: some 10 kB. Source: ours.
+const MAX_ENDED_RUNS: usize = 100;
+
+impl SeriesText {
+    /// The text of a series.
+    pub fn of(series: &SeriesView) -> Self {
+        let text = |run: &EndedRun| {
+            let EndedRun { name, is_success, text } = run.clone();
+            EndedRunText { name, is_success, text }
+        };
+        let skipped = series.ended.len().saturating_sub(MAX_ENDED_RUNS);
+        Self {
+            unit: series.unit,
+            done: series.done,
+            total: series.total,
+            number: series.number,
+            shown: series.shown.clone(),
+            ended: series.ended.len(),
+            last: series.ended.iter().skip(skipped).map(text).collect(),
+        }
+    }
 }
 
 /// The outline of the robot, base frame \[m\].
@@ -104,6 +163,7 @@ impl Welcome {
             title,
             drives: false,
             is_steered: false,
+            kind: RunKind::Robot,
             footprint,
             max_v: limits.v,
             max_omega: limits.omega,

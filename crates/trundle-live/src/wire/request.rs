@@ -123,6 +123,13 @@ pub enum Request {
         /// Its value, in the unit of the key.
         value: f64,
     },
+    /// Another map of the folder of maps in place of the present one.
+    LoadMap {
+        /// Of the request.
+        id: u64,
+        /// Its name.
+        name: String,
+    },
     /// Take control, from the viewer that has it.
     TakeWheel {
         /// Of the request.
@@ -169,6 +176,7 @@ impl Request {
             | Self::SetPlace { id, .. }
             | Self::RemovePlace { id, .. }
             | Self::Change { id, .. }
+            | Self::LoadMap { id, .. }
             | Self::TakeWheel { id }
             | Self::LeaveWheel { id } => Some(*id),
         }

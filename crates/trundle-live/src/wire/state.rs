@@ -148,7 +148,7 @@ impl ActivityText {
         let shown = ended.len().saturating_sub(SHOWN_ENDED_TASKS);
         Self {
             state: view.state.name(),
-            reason: view.state.reason().map(ToString::to_string),
+            reason: view.state.reason(),
             hold: view.hold.map(|hold| hold.to_string()),
             paused: view.hold == Some(trundle_runtime::MotionHold::Paused),
             left: view.mission.left.iter().map(TaskText::of).collect(),

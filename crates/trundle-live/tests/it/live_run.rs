@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
-use trundle_app::operator::{FrontEnd, Operator, RunView, operator_link};
+use trundle_app::operator::{FrontEnd, MapFolder, Operator, RunView, operator_link};
 use trundle_app::{Progress, RunLog, RunRecorder, RunSetup, run_on_body};
 use trundle_core::{RobotBody, SensorEvent, Stamp, Twist2, WheelTicks};
 use trundle_io::OutputFolder;
@@ -41,7 +41,8 @@ pub struct LiveRun {
     pub tokens: Tokens,
     is_over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
-    _place: tempfile::TempDir,
+    /// A folder; its maps may be loaded.
+    pub place: tempfile::TempDir,
 }
 
 impl LiveRun {
@@ -57,7 +58,8 @@ impl LiveRun {
         let (operator, link) = operator_link();
         let tokens = Tokens::random().unwrap();
         let address = "127.0.0.1:0".parse().unwrap();
-        let options = LiveOptions { address, tokens: tokens.clone(), is_steered };
+        let maps = Some(MapFolder::new(place.path().to_owned(), setup.robot.clone()));
+        let options = LiveOptions { address, tokens: tokens.clone(), is_steered, maps };
         let page = LivePage::start(options, operator.clone(), RunFacts::of(&setup).unwrap()).unwrap();
         let is_over = Arc::<AtomicBool>::default();
         let mut body = PacedBody { step: 0, is_over: Arc::clone(&is_over) };
@@ -68,7 +70,7 @@ impl LiveRun {
             run_on_body(&setup, &mut body, recorder, RunLog::default(), front_end).unwrap();
         };
         let thread = Some(std::thread::spawn(run));
-        Self { page, operator, tokens, is_over, thread, _place: place }
+        Self { page, operator, tokens, is_over, thread, place }
     }
 
     /// The token of an access.

@@ -3,7 +3,8 @@
 use crate::browser::{Browser, fetch};
 use crate::live_run::LiveRun;
 use serde_json::json;
-use trundle_core::ZoneKind;
+use trundle_core::{OccupancyGrid, ZoneKind};
+use trundle_io::{map_pgm, map_yaml};
 use trundle_live::Access;
 
 #[test]
@@ -78,4 +79,25 @@ fn the_map_is_saved_by_whoever_may_look() {
     assert!(get("zones.geojson", &bearer).1.contains("FeatureCollection"));
     assert!(get("map.yaml", "Bearer 00").0.starts_with("HTTP/1.1 403"));
     assert!(get("other", &bearer).0.starts_with("HTTP/1.1 404"));
+}
+
+#[test]
+fn a_map_of_the_folder_is_loaded_and_another_name_is_refused() {
+    let run = LiveRun::start();
+    run.wait_for("a step", |view| view.odometry.is_some());
+    let wall = OccupancyGrid::from_ascii(0.05, &"#########\n#.......#\n".repeat(40)).unwrap();
+    std::fs::write(run.place.path().join("attic.yaml"), map_yaml(&wall, "attic.pgm")).unwrap();
+    std::fs::write(run.place.path().join("attic.pgm"), map_pgm(&wall)).unwrap();
+    let bearer = format!("Bearer {}", run.token(Access::View));
+    let headers = [("Host", "127.0.0.1"), ("Authorization", bearer.as_str())];
+    let (head, body) = fetch(run.page.address(), "GET /maps", &headers);
+    assert!(head.starts_with("HTTP/1.1 200") && body.contains(r#"["attic"]"#), "{head} {body}");
+    assert!(fetch(run.page.address(), "GET /maps", &headers[..1]).0.starts_with("HTTP/1.1 403"));
+    let mut viewer = Browser::enter(&run, Access::View, "viewer");
+    assert!(viewer.ask(json!({"type": "load_map", "name": "attic"})).unwrap().contains("only looks"));
+    let mut page = Browser::enter(&run, Access::Drive, "page");
+    let refusal = page.ask(json!({"type": "load_map", "name": "../attic"})).unwrap();
+    assert!(refusal.contains("no map '../attic'"), "{refusal}");
+    assert_eq!(page.ask(json!({"type": "load_map", "name": "attic"})), None);
+    run.wait_for("the map", |view| view.map.as_ref().is_some_and(|map| map.number == 1));
 }

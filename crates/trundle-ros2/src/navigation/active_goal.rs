@@ -206,7 +206,7 @@ fn end_of(view: &RunView) -> (GoalEnd, NavigationOutcome) {
     };
     let missed: Vec<(usize, Reason)> =
         view.mission.ended.iter().filter_map(|record| Some((record.index, reason(&record.end)?))).collect();
-    let state = view.state.reason().cloned();
+    let state = view.state.drive().and_then(|state| state.reason()).cloned();
     let failure = missed.last().map(|(_, reason)| reason.clone()).or(state);
     let end = if failure.is_none() { GoalEnd::Succeeded } else { GoalEnd::Aborted };
     let message = failure.as_ref().map(ToString::to_string).unwrap_or_default();

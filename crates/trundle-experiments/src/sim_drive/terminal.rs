@@ -4,7 +4,7 @@ use crossterm::event::{Event, KeyEvent, KeyEventKind, poll, read};
 use crossterm::terminal::{disable_raw_mode, enable_raw_mode};
 use std::io::IsTerminal;
 use std::time::Duration;
-use trundle::app::AppError;
+use trundle_app::AppError;
 
 /// The terminal in raw mode: each key at once, without echo. Dropping restores it.
 #[derive(Debug)]

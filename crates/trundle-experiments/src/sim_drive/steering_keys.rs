@@ -1,7 +1,7 @@
 //! Keys of the terminal.
 
+use super::steering::SteeringKey;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
-use trundle::experiments::teleop::SteeringKey;
 
 /// The effect of a key; `None` of any other key.
 pub fn steering_key(key: KeyEvent) -> Option<SteeringKey> {

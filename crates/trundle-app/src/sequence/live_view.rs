@@ -1,0 +1,171 @@
+//! Views of a tracked sequence for a front end that watches.
+
+use crate::operator::{
+    Activity, ImageFeed, MapView, OperatorLink, PerceptionFeed, PerceptionView, RunCounts, RunView,
+    SeriesView, VisualMapFeed, on_floor,
+};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use trundle_core::{Pose2, Pose3, RgbdImage, Scan, Stamp, Twist2};
+use trundle_mapping::{GridMapper, MapperConfig};
+use trundle_runtime::{LevelMap, Stage, StageTimes};
+use trundle_slam::{RgbdSlam, TrackReport, Tracking};
+
+/// Time between two copies of the map. Source: ours; as that of a robot.
+const MAP_PERIOD: Duration = Duration::from_secs(1);
+
+/// Makes views of a tracked sequence. Without somebody who watches they hold pose and counts alone.
+pub(super) struct SequenceFeed {
+    link: OperatorLink,
+    images: ImageFeed,
+    perception: PerceptionFeed,
+    visual_map: VisualMapFeed,
+    map: MapFeed,
+    scan: Option<(Pose2, Arc<Scan>)>,
+    tracked: u64,
+    last: Option<(Stamp, Pose2)>,
+    /// Time of the first image: views count from there.
+    first: Option<Stamp>,
+}
+
+/// What is shown of the tracker.
+pub(super) struct Tracker<'t> {
+    pub(super) slam: &'t RgbdSlam,
+    pub(super) map: &'t LevelMap,
+    pub(super) times: &'t StageTimes,
+}
+
+impl SequenceFeed {
+    /// Views for `link`; the map is drawn by `config`.
+    pub(super) fn new(link: OperatorLink, config: MapperConfig) -> Self {
+        Self {
+            link,
+            images: ImageFeed::default(),
+            perception: PerceptionFeed::default(),
+            visual_map: VisualMapFeed::default(),
+            map: MapFeed { config, mapper: None, count: 0, view: None, copied: None },
+            scan: None,
+            tracked: 0,
+            last: None,
+            first: None,
+        }
+    }
+
+    /// Publishes the state after an image; `done` images of `total` are tracked.
+    pub(super) fn note(
+        &mut self,
+        image: &RgbdImage,
+        jpeg: &[u8],
+        report: &TrackReport,
+        tracker: &Tracker<'_>,
+        (done, total): (usize, usize),
+    ) {
+        let pose = on_floor(&report.visual_from_camera);
+        self.tracked += 1;
+        self.perception.note_loop(report, pose);
+        if self.link.is_watched() {
+            self.images.note_jpeg(report.stamp, jpeg);
+            self.images.note_depth(report.stamp, image.depth());
+            let size_px = [image.color().width(), image.color().height()];
+            self.perception.update(size_px, report, tracker.slam);
+            self.visual_map.update(report.stamp, Some(tracker.slam), Some(Pose3::identity()));
+            self.map.update(report, tracker);
+            let scan = tracker.map.scan_at(report.stamp, &report.visual_from_camera);
+            self.scan = scan.map(|(base, scan)| (base, Arc::new(scan.clone()))).or(self.scan.take());
+        }
+        let view = self.view(report, pose, tracker);
+        self.link.publish_view(view);
+        let (unit, total) = ("images", Some(total));
+        self.link.operator().show_series(SeriesView { unit, done, total, ..SeriesView::default() });
+    }
+
+    fn view(&mut self, report: &TrackReport, pose: Pose2, tracker: &Tracker<'_>) -> RunView {
+        let stamp = report.stamp;
+        let twist =
+            self.last.replace((stamp, pose)).map_or(Twist2::ZERO, |last| twist_since(last, (stamp, pose)));
+        let reason = format!(
+            "features on the map: {} of {}, keyframes: {}, landmarks: {}",
+            report.inliers, report.features, report.keyframes, report.landmarks
+        );
+        let activity = Activity { name: state_name(report.tracking), reason: Some(reason) };
+        let stages = [Stage::Slam, Stage::Scan];
+        let since_first = Stamp::default().after(stamp - *self.first.get_or_insert(stamp));
+        RunView {
+            scan_pose: self.scan.as_ref().map(|(base, _)| *base),
+            scan: self.scan.as_ref().map(|(_, scan)| Arc::clone(scan)),
+            map: self.map.view.clone(),
+            perception: PerceptionView {
+                image: self.images.image(),
+                depth: self.images.depth(),
+                visual_map: self.visual_map.newest(),
+                features: self.perception.features(),
+                loops: self.perception.loops().to_vec(),
+                ..PerceptionView::default()
+            },
+            counts: RunCounts {
+                slam: self.tracked,
+                mapping: tracker.map.scan_count() as u64,
+                stages: stages.map(|stage| (stage.name(), tracker.times.total(stage))).to_vec(),
+                ..RunCounts::default()
+            },
+            ..RunView::of_activity(since_first, pose, twist, activity)
+        }
+    }
+}
+
+/// The floor map as it grows: each scan once, and all anew when a loop was closed.
+struct MapFeed {
+    config: MapperConfig,
+    mapper: Option<GridMapper>,
+    /// Scans that the mapper has.
+    count: usize,
+    view: Option<Arc<MapView>>,
+    copied: Option<Instant>,
+}
+
+impl MapFeed {
+    fn update(&mut self, report: &TrackReport, tracker: &Tracker<'_>) {
+        let is_corrected = report.closed_loop.is_some() || report.merged.is_some();
+        let count = tracker.map.scan_count();
+        // Scans that came while nobody watched are missing.
+        if is_corrected || self.mapper.is_none() || count > self.count + 1 {
+            self.mapper = redrawn(tracker, &self.config);
+        } else if count > self.count
+            && let (Some(mapper), Some((base, scan))) =
+                (&mut self.mapper, tracker.map.scan_at(report.stamp, &report.visual_from_camera))
+        {
+            mapper.insert(base, scan);
+        }
+        let is_due = self.copied.is_none_or(|copied| copied.elapsed() >= MAP_PERIOD);
+        let is_new = is_corrected || self.view.as_ref().is_none_or(|view| view.revision != count as u64);
+        self.count = count;
+        if let (true, Some(mapper)) = (is_due && is_new, &self.mapper) {
+            let grid = mapper.grid().clone();
+            self.view = Some(Arc::new(MapView { number: 0, revision: count as u64, grid }));
+            self.copied = Some(Instant::now());
+        }
+    }
+}
+
+fn redrawn(tracker: &Tracker<'_>, config: &MapperConfig) -> Option<GridMapper> {
+    tracker.map.mapper(&tracker.slam.trajectory(), config.clone()).ok()
+}
+
+fn twist_since((then, before): (Stamp, Pose2), (now, pose): (Stamp, Pose2)) -> Twist2 {
+    let seconds = now - then;
+    let step = before.inverse() * pose;
+    if seconds > 0.0 {
+        Twist2::new(step.x.hypot(step.y) / seconds, step.theta / seconds)
+    } else {
+        Twist2::ZERO
+    }
+}
+
+fn state_name(tracking: Tracking) -> &'static str {
+    match tracking {
+        Tracking::Ok => "tracking",
+        Tracking::Weak => "tracking weakly",
+        Tracking::DeadReckoning => "dead reckoning",
+        Tracking::Lost => "lost",
+    }
+}

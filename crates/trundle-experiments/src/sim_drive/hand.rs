@@ -1,0 +1,44 @@
+//! Driving by the commands of those who watch.
+
+use trundle_core::{Stamp, Twist2};
+use trundle_runtime::{OperatorCommand, TELEOP_SILENCE_S};
+
+/// The last twist of those who watch. Without a new one for [`TELEOP_SILENCE_S`] the robot stops.
+#[derive(Debug, Default)]
+pub struct Hand {
+    wanted: Option<(Twist2, Stamp)>,
+}
+
+impl Hand {
+    /// Obeys a command at `now`: a twist drives, all others stop.
+    pub fn obey(&mut self, command: &OperatorCommand, now: Stamp) {
+        self.wanted = match command {
+            OperatorCommand::Drive(twist) => Some((*twist, now)),
+            _ => None,
+        };
+    }
+
+    /// The twist at `now`.
+    #[must_use]
+    pub fn twist(&self, now: Stamp) -> Twist2 {
+        let fresh = self.wanted.filter(|(_, since)| now - *since <= TELEOP_SILENCE_S);
+        fresh.map_or(Twist2::ZERO, |(twist, _)| twist)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_twist_holds_until_silence_or_another_command() {
+        let (mut hand, twist) = (Hand::default(), Twist2::new(0.2, 0.1));
+        let at = |seconds: f64| Stamp::default().after(seconds);
+        assert_eq!(hand.twist(at(0.0)), Twist2::ZERO);
+        hand.obey(&OperatorCommand::Drive(twist), at(1.0));
+        assert_eq!((hand.twist(at(1.29)), hand.twist(at(1.31))), (twist, Twist2::ZERO));
+        hand.obey(&OperatorCommand::Drive(twist), at(2.0));
+        hand.obey(&OperatorCommand::Pause, at(2.0));
+        assert_eq!(hand.twist(at(2.0)), Twist2::ZERO);
+    }
+}

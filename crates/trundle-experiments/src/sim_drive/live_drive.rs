@@ -1,0 +1,127 @@
+//! A drive that is shown to those who watch, in real time, and driven by them where nobody else drives.
+
+use super::driver::SimDriver;
+use super::hand::Hand;
+use std::sync::Arc;
+use trundle_app::AppError;
+use trundle_app::operator::{Activity, MapView, OperatorLink, RunView};
+use trundle_app::real_time::RealTimePacer;
+use trundle_core::{OccupancyGrid, Pose2, RgbdImage, Scan, Stamp, Twist2};
+use trundle_sim::Simulator;
+
+/// Shows a drive, and drives by the requests of those who watch where there is no other driver.
+pub struct LiveDrive<'d> {
+    driver: Option<Box<dyn SimDriver + 'd>>,
+    hand: Hand,
+    link: OperatorLink,
+    pacer: RealTimePacer,
+    map: Arc<MapView>,
+    scan: Option<(Pose2, Arc<Scan>)>,
+    contacts: u32,
+}
+
+impl<'d> LiveDrive<'d> {
+    /// Shows what `driver` does on `map`; without a driver those who watch drive. All is in the world frame.
+    #[must_use]
+    pub fn start(driver: Option<Box<dyn SimDriver + 'd>>, link: OperatorLink, map: OccupancyGrid) -> Self {
+        let map = Arc::new(MapView { number: 0, revision: 1, grid: map });
+        let (hand, pacer) = (Hand::default(), RealTimePacer::start());
+        Self { driver, hand, link, pacer, map, scan: None, contacts: 0 }
+    }
+
+    fn activity(&self, twist: Twist2) -> Activity {
+        let name = match (&self.driver, twist == Twist2::ZERO) {
+            (_, true) => "standing",
+            (None, false) => "driven by hand",
+            (Some(_), false) => "driving",
+        };
+        let waypoints = self.driver.as_ref().and_then(|driver| driver.waypoints());
+        let reached = waypoints.map(|(reached, all)| format!("{reached} of {all} way-points reached"));
+        let touched = (self.contacts > 0).then(|| format!("contacts so far: {}", self.contacts));
+        let texts: Vec<String> = reached.into_iter().chain(touched).collect();
+        Activity { name, reason: (!texts.is_empty()).then(|| texts.join(", ")) }
+    }
+
+    fn publish(&mut self, stamp: Stamp, pose: Pose2, twist: Twist2) {
+        let view = RunView {
+            twist,
+            map: Some(Arc::clone(&self.map)),
+            scan_pose: self.scan.as_ref().map(|(pose, _)| *pose),
+            scan: self.scan.as_ref().map(|(_, scan)| Arc::clone(scan)),
+            ..RunView::of_activity(stamp, pose, twist, self.activity(twist))
+        };
+        self.link.publish_view(view);
+    }
+}
+
+impl SimDriver for LiveDrive<'_> {
+    /// The twist of the driver or of those who watch; waits until real time has come to `stamp`.
+    fn twist(&mut self, stamp: Stamp, pose: Pose2) -> Result<Twist2, AppError> {
+        self.pacer.wait_for(stamp.as_secs());
+        while let Some(request) = self.link.next_request() {
+            self.hand.obey(&request.command, stamp);
+        }
+        let twist = match &mut self.driver {
+            Some(driver) => driver.twist(stamp, pose)?,
+            None => self.hand.twist(stamp),
+        };
+        self.publish(stamp, pose, twist);
+        Ok(twist)
+    }
+
+    fn end_s(&self) -> Option<f64> {
+        self.driver.as_ref()?.end_s()
+    }
+
+    fn waypoints(&self) -> Option<(usize, usize)> {
+        self.driver.as_ref()?.waypoints()
+    }
+
+    fn show(&mut self, image: &RgbdImage, robot: &Simulator) {
+        self.contacts = robot.contacts();
+        self.link.note_rgbd(image);
+    }
+
+    fn show_scan(&mut self, scan: &Scan, robot: &Simulator) {
+        if self.link.is_watched() {
+            // A sweep bears the time of its end. Of a base that turns it is bent, as the robot receives it.
+            self.scan = Some((robot.true_pose(), Arc::new(scan.clone())));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::drive::drive_simulator;
+    use super::super::driver::Standing;
+    use super::*;
+    use trundle_app::operator::operator_link;
+    use trundle_runtime::OperatorCommand;
+    use trundle_sim::{LaserConfig, Scene, SimConfig};
+
+    fn drive(driver: Option<Box<dyn SimDriver>>) -> (f64, Arc<RunView>) {
+        let config = SimConfig { laser: Some(LaserConfig::default()), ..SimConfig::default() };
+        let mut robot = Simulator::new(Scene::by_name("room", 1).unwrap(), config, 1).unwrap();
+        let (operator, link) = operator_link();
+        operator.send(OperatorCommand::Drive(Twist2::new(0.3, 0.0))).unwrap();
+        let map = OccupancyGrid::from_ascii(0.5, "##").unwrap();
+        let mut live = LiveDrive::start(driver, link, map);
+        let drive = drive_simulator(&mut robot, &mut live, Some(1.0), None, &()).unwrap();
+        (drive.distance, operator.glance().unwrap())
+    }
+
+    #[test]
+    fn those_who_watch_drive_and_their_silence_stops_the_robot() {
+        let (distance, view) = drive(None);
+        assert!((0.03..0.1).contains(&distance), "0.3 m/s for 0.3 s: {distance} m");
+        assert_eq!((view.twist, view.state.name()), (Twist2::ZERO, "standing"));
+        let seen = &view.perception;
+        assert!(view.map.is_some() && view.scan.is_some() && seen.image.is_some() && seen.depth.is_some());
+    }
+
+    #[test]
+    fn a_driver_is_shown_and_not_disturbed() {
+        let (distance, view) = drive(Some(Box::new(Standing::new(Some(0.5)))));
+        assert!(distance < 1e-3 && view.stamp.as_secs() < 0.5, "{distance} m, {:?}", view.stamp);
+    }
+}
