@@ -62,13 +62,13 @@ impl RobotArgs {
 #[derive(Debug, Clone, Copy, Args)]
 pub struct MeshArgs {
     /// The axis that points up in a .glb or .gltf.
-    #[arg(long, value_name = "AXIS", default_value = "y", value_parser = choice(&UpAxis::CHOICES))]
+    #[arg(long, value_name = "AXIS", default_value = "y", hide_short_help = true, value_parser = choice(&UpAxis::CHOICES))]
     pub up: UpAxis,
     /// Metres a unit of a .glb or .gltf, as 0.01 for centimetres [default: 1]
     #[arg(long, value_name = "M", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub scale: Option<f64>,
     /// Height of the floor in a .glb or .gltf, m: it comes to lie at z = 0 [default: the lowest large level]
-    #[arg(long, value_name = "Z", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "Z", hide_short_help = true, value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub floor: Option<f64>,
 }
 

@@ -81,7 +81,7 @@ pub struct RosRobotArgs {
     #[arg(long, conflicts_with_all = ["driver", "record", "map", "kobuki", "live"])]
     pub ros2: bool,
     /// With --ros2: raw images in place of JPEG and PNG files.
-    #[arg(long, requires = "ros2")]
+    #[arg(long, requires = "ros2", hide_short_help = true)]
     pub raw_images: bool,
     /// Network and names.
     #[command(flatten)]
@@ -95,13 +95,13 @@ pub struct TrueMapArgs {
     #[arg(long, value_name = "FILE.yaml")]
     pub map: Option<OutputFileArg>,
     /// Format of the picture of that map.
-    #[arg(long, value_name = "FORMAT", default_value = "pgm", value_parser = choice(&MapImage::CHOICES))]
+    #[arg(long, value_name = "FORMAT", default_value = "pgm", hide_short_help = true, value_parser = choice(&MapImage::CHOICES))]
     pub map_image: MapImage,
     /// Side of the map's cells, m.
     #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub resolution: f64,
     /// Heights between which something is in the way, m, for the map [default: the robot's]
-    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
+    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], hide_short_help = true, value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub band: Option<Vec<f64>>,
 }
 
