@@ -238,6 +238,7 @@ impl RunNumbers {
             .set("success", self.is_success())
             .set("state", self.end.state.to_string())
             .set("reason_kinds", self.end.state.reason().map(Reason::kinds).unwrap_or_default())
+            .set("out_of_time_s", self.end.out_of_time)
             .set("goals", &self.goals)
             .set("goal_error_m", self.goal_error.map(|e| e.distance))
             .set("goal_error_dx_m", self.goal_error.map(|e| e.dx))

@@ -26,7 +26,7 @@ pub struct SafetyConfig {
     pub creep_speed: f64,
     /// Highest speed backward, out of the camera's view, m/s, 0.02 to 2. Default 0.2 (ours).
     pub reverse_speed: f64,
-    /// Speed of backing out while the bumper is pressed, m/s, 0.01 to 0.5. Default 0.05 (ours).
+    /// Highest speed of backing out while the bumper is pressed, m/s, 0.01 to 0.5. The robot backs out at 0.05. Default 0.05 (ours).
     pub back_out_speed: f64,
     /// Highest speed while the wheels are commanded and the encoders count nothing, m/s, 0.02 to 2. Default 0.15 (ours): 1 cm
     /// from image to

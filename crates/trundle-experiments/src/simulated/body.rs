@@ -28,8 +28,8 @@ pub fn require_free(name: &str, scene: &Scene, pose: Pose2, robot: &RobotConfig)
     let Pose2 { x, y, .. } = pose;
     if !(low.x..=high.x).contains(&x) || !(low.y..=high.y).contains(&y) {
         return Err(AppError::Input(format!(
-            "{name} is outside the room '{}': at ({x:.2}, {y:.2}) m of its frame",
-            scene.name
+            "{name} is outside the room '{}': at ({x:.2}, {y:.2}) m of its frame; the room is x {:.2} to {:.2} m, y {:.2} to {:.2} m",
+            scene.name, low.x, high.x, low.y, high.y
         )));
     }
     let body = SimConfig::default().kobuki;
