@@ -37,9 +37,6 @@ const MIN_POINTS: usize = 30;
 /// Minimum fraction of points that the map explains \[1\]. A lower fraction is another or a changed building: some place of
 /// a large map always explains half of the points. Source: ours.
 const MIN_EXPLAINED: f64 = 0.75;
-/// Minimum fraction of points that the map explains at a place that only unknown ground makes less likely \[1\]. Source: ours, a lower
-/// fraction is reached by chance.
-const MIN_RIVAL_EXPLAINED: f64 = 0.5;
 /// Sigma of the position of a robot that may be anywhere \[cells\]. Source: ours.
 const UNKNOWN_POSITION_SIGMA_CELLS: f64 = 1e5;
 /// Sigma of the heading of a robot that may be anywhere \[rad\]. Source: ours.
@@ -90,28 +87,9 @@ impl GlobalSearch {
             |best: &&CloudMatch| best.log_likelihood - unseen > MIN_PROOF_NATS && best.degenerate == 0;
         let best = found.first().filter(is_proved).filter(|best| best.explained >= MIN_EXPLAINED);
         let best = best.ok_or(Lost::NothingFits)?;
-        if found[1..].iter().all(|rival| is_better(&finder, map, best, rival)) {
-            Ok(*best)
-        } else {
-            Err(Lost::SeveralPlaces)
-        }
+        let rival = found.get(1).map_or(f64::NEG_INFINITY, |rival| rival.log_likelihood);
+        if best.log_likelihood - rival > MIN_MARGIN_NATS { Ok(*best) } else { Err(Lost::SeveralPlaces) }
     }
-}
-
-/// Whether the best place is so much better than another one that the other one is excluded.
-///
-/// A wall that is not mapped yet makes a place less likely than its look-alike with a mapped wall, and yet it does not exclude the place.
-/// If the other place explains a large part of the hits, hits on unknown ground therefore count at both places like those that fit.
-fn is_better(finder: &CloudMatcher<'_>, map: &TileMap, best: &CloudMatch, rival: &CloudMatch) -> bool {
-    let is_better = |of_best: f64, of_rival: f64| of_best - of_rival > MIN_MARGIN_NATS;
-    let unknown_cost = -0.5 * finder.config.outliers.ln() * finder.cloud.points.len() as f64;
-    let without_unknown = |place: &CloudMatch| {
-        let (explained, contradicted) = finder.fit(map, place.pose);
-        let unknown = (1.0 - explained - contradicted).max(0.0);
-        place.log_likelihood + unknown * unknown_cost / finder.config.correlation
-    };
-    is_better(best.log_likelihood, rival.log_likelihood)
-        && (rival.explained < MIN_RIVAL_EXPLAINED || is_better(without_unknown(best), without_unknown(rival)))
 }
 
 /// Minimum log-likelihood ratio of the best to the second-best place [nats], 1 in 3000. Below it the places are
