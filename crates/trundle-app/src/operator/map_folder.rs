@@ -3,6 +3,7 @@
 mod bounded_file;
 
 use bounded_file::BoundedFile;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use trundle_core::{MAX_TEXT_CELLS, OccupancyGrid};
 use trundle_io::{MapDescription, picture_size};
@@ -24,21 +25,49 @@ pub struct MapFolder {
 
 impl MapFolder {
     /// The maps of `folder` for a robot of this configuration.
-    #[must_use]
-    pub fn new(folder: PathBuf, robot: RobotConfig) -> Self {
-        Self { folder, robot }
+    ///
+    /// # Errors
+    /// As [`MapFolder::check`].
+    pub fn open(folder: PathBuf, robot: RobotConfig) -> Result<Self, String> {
+        Self::check(&folder)?;
+        Ok(Self { folder, robot })
     }
 
-    /// The names of the maps, sorted; none where the folder cannot be read.
+    /// Refuses a path that is no folder that can be read.
+    ///
+    /// # Errors
+    /// Why not, and what is expected.
+    pub fn check(folder: &Path) -> Result<(), String> {
+        let problem = match std::fs::read_dir(folder) {
+            Ok(_) => return Ok(()),
+            Err(error) => match error.kind() {
+                ErrorKind::NotFound => "there is no such folder".to_owned(),
+                ErrorKind::NotADirectory => "this is no folder".to_owned(),
+                ErrorKind::PermissionDenied => "no permission to read it".to_owned(),
+                _ => error.to_string(),
+            },
+        };
+        Err(format!(
+            "{}: {problem}, expected a folder of maps, each NAME.yaml with its picture",
+            folder.display()
+        ))
+    }
+
+    /// The names of the maps that are offered, sorted; none where the folder can no longer be read.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
+        let mut names = self.all_names();
+        names.truncate(MAX_NAMES);
+        names
+    }
+
+    fn all_names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(&self.folder).into_iter().flatten().flatten();
         let files = entries.map(|entry| PathBuf::from(entry.file_name()));
         let yaml = files.filter(|file| file.extension().is_some_and(|extension| extension == "yaml"));
         let mut names: Vec<String> =
             yaml.filter_map(|file| Some(file.file_stem()?.to_str()?.to_owned())).collect();
         names.sort();
-        names.truncate(MAX_NAMES);
         names
     }
 
@@ -50,7 +79,7 @@ impl MapFolder {
     /// folder, or the robot cannot take it. What is broken goes to the log: whoever asks need not be allowed to read the files.
     pub fn read(&self, name: &str) -> Result<OccupancyGrid, String> {
         // Only names of the list: none leads out of the folder.
-        if !self.names().iter().any(|known| known == name) {
+        if !self.all_names().iter().any(|known| known == name) {
             return Err(format!("There is no map '{name}' in the folder of maps."));
         }
         self.read_files(name).map_err(|problem| format!("Map '{name}': {problem}."))
@@ -103,14 +132,13 @@ mod tests {
     }
 
     fn maps(place: &Path) -> MapFolder {
-        MapFolder::new(place.to_owned(), RobotConfig::default())
+        MapFolder::open(place.to_owned(), RobotConfig::default()).unwrap()
     }
 
     #[test]
     fn maps_of_the_folder_are_read_and_nothing_else() {
         let place = tempfile::tempdir().unwrap();
-        let (ground, _) =
-            (write(place.path(), "ground floor", 0.05), write(place.path(), "coarse", 0.3));
+        let (ground, _) = (write(place.path(), "ground floor", 0.05), write(place.path(), "coarse", 0.3));
         std::fs::create_dir(place.path().join("inner")).unwrap();
         std::fs::write(place.path().join("broken.yaml"), "image: none.pgm").unwrap();
         let maps = maps(place.path());
@@ -119,7 +147,18 @@ mod tests {
         for wrong in ["../ground floor", "inner/x", "", "broken", "coarse"] {
             assert!(maps.read(wrong).is_err(), "{wrong}");
         }
-        assert!(MapFolder::new("/nowhere".into(), RobotConfig::default()).names().is_empty());
+    }
+
+    #[test]
+    fn what_is_no_folder_is_refused() {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("a.yaml");
+        std::fs::write(&file, "").unwrap();
+        let refusal = |path: &Path| MapFolder::open(path.to_owned(), RobotConfig::default()).unwrap_err();
+        let expected = "expected a folder of maps, each NAME.yaml with its picture";
+        let nowhere = refusal(Path::new("/nowhere"));
+        assert_eq!(nowhere, format!("/nowhere: there is no such folder, {expected}"));
+        assert_eq!(refusal(&file), format!("{}: this is no folder, {expected}", file.display()));
     }
 
     #[cfg(unix)]
