@@ -5,6 +5,8 @@ mod bounded_file;
 use bounded_file::BoundedFile;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use trundle_core::{MAX_TEXT_CELLS, OccupancyGrid};
 use trundle_io::{MapDescription, picture_size};
 use trundle_runtime::{RobotConfig, require_loadable};
@@ -21,6 +23,8 @@ const MAX_PICTURE_BYTES: u64 = 2 * MAX_TEXT_CELLS as u64 + 64 * 1024;
 pub struct MapFolder {
     folder: PathBuf,
     robot: RobotConfig,
+    /// Whether it was logged that there are more names than are offered.
+    is_cut_told: Arc<AtomicBool>,
 }
 
 impl MapFolder {
@@ -30,7 +34,10 @@ impl MapFolder {
     /// As [`MapFolder::check`].
     pub fn open(folder: PathBuf, robot: RobotConfig) -> Result<Self, String> {
         Self::check(&folder)?;
-        Ok(Self { folder, robot })
+        let maps = Self { folder, robot, is_cut_told: Arc::default() };
+        // More names than are offered are told at the start, not when a page asks.
+        drop(maps.names());
+        Ok(maps)
     }
 
     /// Refuses a path that is no folder that can be read.
@@ -53,12 +60,24 @@ impl MapFolder {
         ))
     }
 
-    /// The names of the maps that are offered, sorted; none where the folder can no longer be read.
+    /// The names of the maps that are offered, sorted; none where the folder can no longer be read. The first names beyond those are
+    /// logged once, with their number.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
         let mut names = self.all_names();
+        if let Some(warning) = self.cut_warning(names.len()) {
+            tracing::warn!("{warning}");
+        }
         names.truncate(MAX_NAMES);
         names
+    }
+
+    /// The first time that there are more names than are offered: how many.
+    fn cut_warning(&self, count: usize) -> Option<String> {
+        let is_new = count > MAX_NAMES && !self.is_cut_told.swap(true, Ordering::Relaxed);
+        let folder = self.folder.display();
+        is_new
+            .then(|| format!("{folder} has {count} maps: the live page offers the first {MAX_NAMES} by name"))
     }
 
     fn all_names(&self) -> Vec<String> {
@@ -159,6 +178,25 @@ mod tests {
         let nowhere = refusal(Path::new("/nowhere"));
         assert_eq!(nowhere, format!("/nowhere: there is no such folder, {expected}"));
         assert_eq!(refusal(&file), format!("{}: this is no folder, {expected}", file.display()));
+    }
+
+    #[test]
+    fn names_beyond_the_limit_are_logged_once_and_load_all_the_same() {
+        let place = tempfile::tempdir().unwrap();
+        let last = write(place.path(), "zz", 0.05);
+        for i in 0..MAX_NAMES {
+            std::fs::write(place.path().join(format!("{i:03}.yaml")), "").unwrap();
+        }
+        let maps = maps(place.path());
+        assert!(maps.is_cut_told.load(Ordering::Relaxed), "at the start");
+        assert_eq!(maps.clone().cut_warning(MAX_NAMES + 1), None, "once for the page and its copies");
+        let names = maps.names();
+        assert_eq!((names.len(), names.last().map(String::as_str)), (MAX_NAMES, Some("199")));
+        assert_eq!(maps.read("zz").unwrap(), last);
+        let new = MapFolder { is_cut_told: Arc::default(), ..maps };
+        assert_eq!(new.cut_warning(MAX_NAMES), None);
+        let warning = new.cut_warning(MAX_NAMES + 1).unwrap();
+        assert!(warning.ends_with("has 201 maps: the live page offers the first 200 by name"), "{warning}");
     }
 
     #[cfg(unix)]
