@@ -219,7 +219,7 @@ impl Robot {
         let before = self.latest.body.hold(self.range_source);
         self.latest.body.update(event.kind);
         if self.latest.body.is_lifted() {
-            self.latest.pose_monitor.add_lift();
+            self.latest.pose_monitor.add_lift(event.stamp);
         }
         let is_contact = matches!(event.kind, BodyEventKind::Battery(_)) && self.latest.body.is_docked();
         if is_contact && self.is_pose_known(event.stamp) {

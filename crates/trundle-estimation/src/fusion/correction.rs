@@ -21,6 +21,13 @@ pub struct VisualPose {
     pub recognised: bool,
 }
 
+impl VisualPose {
+    /// Whether pose and covariance are finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.visual_from_camera.is_finite() && self.covariance.iter().all(|v| v.is_finite())
+    }
+}
+
 /// Quality of a visual pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VisualQuality {

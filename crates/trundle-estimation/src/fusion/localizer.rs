@@ -88,7 +88,7 @@ impl Localizer {
 
     /// Corrects the estimate by a visual pose. The first one of a visual map anchors the visual frame in the map.
     pub fn correct_visual(&mut self, visual: &VisualPose) -> Correction {
-        if !(visual.visual_from_camera.is_finite() && visual.covariance.iter().all(|v| v.is_finite())) {
+        if !visual.is_finite() {
             return Correction::NotFinite;
         }
         let moment = match self.find(visual.stamp) {
@@ -189,6 +189,9 @@ impl Localizer {
 
     /// Anchors the frame of a visual map anew, so that this pose of it agrees with the estimate.
     pub fn anchor_again(&mut self, visual: &VisualPose) -> Correction {
+        if !visual.is_finite() {
+            return Correction::NotFinite;
+        }
         match self.find(visual.stamp) {
             Ok(moment) => {
                 self.visual.anchor(&moment.belief, visual);

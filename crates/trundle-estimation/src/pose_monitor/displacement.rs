@@ -6,14 +6,16 @@ use trundle_core::{Pose2, Scan, Stamp};
 /// Evidence that the robot stands elsewhere than odometry leads.
 ///
 /// Images that are not located, and scans that contradict the map, are no such evidence: people and moved furniture cause both.
-/// Evidence is a break in the sequence of scans, a time without scans, or wheels that hung. It counts until an image is located, or a
-/// scan shows again what stood before the break. A break that lasts is proof by itself. The other two are proof only with images that show enough
-/// and are not located.
+/// A break in the sequence of scans is certain evidence. A doubtful sequence, a time without scans and a wheel that hung are possible
+/// evidence: they need images that show enough and are not located.
+///
+/// Evidence ends with a recognised place, and with a scan that shows again what stood before the break. An image that is only tracked ends
+/// it as long as tracking has not paused since then: after a pause, tracking goes on from the pose that odometry leads to.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct DisplacementMonitor {
     continuity: ScanContinuity,
-    displaced: Option<Displacement>,
-    /// Since when images that count have not been located.
+    evidence: Option<Evidence>,
+    /// Since when images that show enough have not been located.
     unlocated: Option<Stamp>,
     /// Stamp at which global localization last began in that time.
     searched: Option<Stamp>,
@@ -22,29 +24,46 @@ pub(crate) struct DisplacementMonitor {
 }
 
 /// Evidence of displacement.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Displacement {
-    /// The motion was not measured for a while.
-    Possible,
-    /// Two successive scans contradict the odometry, since this stamp.
-    Certain(Stamp),
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Evidence {
+    since: Stamp,
+    /// Whether two successive scans contradict the odometry.
+    is_certain: bool,
+    /// Whether an image was not located since then.
+    is_track_cut: bool,
 }
 
 /// What an image shows of the robot's place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ImageEvidence {
-    /// It was located, at the estimated pose.
-    Located,
+    /// A place was recognised, and the pose accepted.
+    Recognised,
+    /// It was tracked from the image before, and the pose accepted.
+    Tracked,
     /// It has enough features, and was not located.
     Unlocated,
     /// It has too few features to be located.
     Blind,
 }
 
-/// Time without a located image \[s\] after which a robot with evidence of displacement is elsewhere. Source: ours.
-const DISPLACED_AFTER_S: f64 = 1.5;
-/// Time after a certain displacement \[s\] after which a robot whose images show too little to be located is elsewhere. Source: ours,
-/// a scan that contradicts the map decides sooner.
+/// What a visual pose may do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum VisualUse {
+    /// Correct the estimate, if scans and motion agree.
+    Checked,
+    /// Give the pose anywhere.
+    Anywhere,
+    /// Nothing: tracking went on from a pose that is wrong.
+    Nothing,
+}
+
+/// Time after the evidence without a located image \[s\] after which the robot is elsewhere. Shorter than the 30 images at 30 Hz after
+/// which visual tracking goes on from the pose of the odometry. Source: ours.
+const DISPLACED_AFTER_S: f64 = 0.8;
+/// Time between two searches \[s\]. Source: ours.
+const SEARCH_AGAIN_S: f64 = 1.5;
+/// Time after certain evidence \[s\] after which a robot whose images show too little to be located is elsewhere. Source: ours, a scan
+/// that contradicts the map decides sooner.
 const BLIND_DISPLACED_AFTER_S: f64 = 3.0;
 /// Time without a located image \[s\] after which an image with few features does not restart the time. Source: ours.
 const UNLOCATED_FOR_LONG_S: f64 = 0.7;
@@ -56,63 +75,78 @@ impl DisplacementMonitor {
         match continuity {
             Continuity::Continuous => {}
             Continuity::Broken => self.is_displaced_since(scan.stamp()),
-            Continuity::Unknown => self.may_be_displaced(),
-            Continuity::Restored => self.displaced = None,
+            Continuity::Doubtful | Continuity::Unknown => self.may_be_displaced(scan.stamp()),
+            Continuity::Restored => self.evidence = None,
         }
         matches!(continuity, Continuity::Broken | Continuity::Unknown)
     }
 
     /// A wheel hangs.
-    pub(crate) fn add_lift(&mut self) {
-        self.may_be_displaced();
+    pub(crate) fn add_lift(&mut self, now: Stamp) {
+        self.may_be_displaced(now);
     }
 
-    fn is_displaced_since(&mut self, now: Stamp) {
-        if !matches!(self.displaced, Some(Displacement::Certain(_))) {
-            self.displaced = Some(Displacement::Certain(now));
+    fn is_displaced_since(&mut self, since: Stamp) {
+        if !self.evidence.is_some_and(|evidence| evidence.is_certain) {
+            self.evidence = Some(Evidence { since, is_certain: true, is_track_cut: false });
+            self.is_placed_by_scans = false;
         }
     }
 
-    fn may_be_displaced(&mut self) {
-        self.displaced.get_or_insert(Displacement::Possible);
+    fn may_be_displaced(&mut self, since: Stamp) {
+        self.evidence.get_or_insert(Evidence { since, is_certain: false, is_track_cut: false });
+    }
+
+    /// What a visual pose may do, `recognised` or only tracked.
+    pub(crate) fn visual_use(&self, recognised: bool) -> VisualUse {
+        match self.evidence {
+            Some(evidence) if recognised && evidence.is_certain => VisualUse::Anywhere,
+            Some(evidence) if !recognised && evidence.is_track_cut => VisualUse::Nothing,
+            _ => VisualUse::Checked,
+        }
     }
 
     /// Takes in an image. Whether the robot is elsewhere: global localization begins.
-    pub(crate) fn add_image(&mut self, now: Stamp, evidence: ImageEvidence) -> bool {
-        if evidence == ImageEvidence::Located {
+    pub(crate) fn add_image(&mut self, now: Stamp, image: ImageEvidence) -> bool {
+        if matches!(image, ImageEvidence::Recognised | ImageEvidence::Tracked) {
             self.settle();
             self.is_placed_by_scans = false;
             return false;
         }
+        if let Some(evidence) = &mut self.evidence {
+            evidence.is_track_cut |= evidence.is_certain || image == ImageEvidence::Unlocated;
+        }
         if self.is_placed_by_scans {
             return false;
         }
-        if evidence == ImageEvidence::Blind {
-            return self.add_blind(now);
-        }
-        let since = *self.unlocated.get_or_insert(now);
-        let is_time = now - self.searched.unwrap_or(since) > DISPLACED_AFTER_S;
-        let is_elsewhere = is_time && self.is_displaced();
+        let is_elsewhere = match image {
+            ImageEvidence::Unlocated => self.add_unlocated(now),
+            _ => self.add_blind(now),
+        };
         if is_elsewhere {
             self.searched = Some(now);
         }
         is_elsewhere
     }
 
-    /// Takes in an image that cannot be located: after a certain displacement it begins one search.
+    fn add_unlocated(&mut self, now: Stamp) -> bool {
+        self.unlocated.get_or_insert(now);
+        let is_long = |since: Stamp| now - since > DISPLACED_AFTER_S;
+        let is_time = self.searched.is_none_or(|searched| now - searched > SEARCH_AGAIN_S);
+        is_time && self.unlocated_since().is_some_and(is_long)
+    }
+
+    /// Takes in an image that cannot be located: after certain evidence it begins one search.
     fn add_blind(&mut self, now: Stamp) -> bool {
         if self.unlocated.is_some_and(|since| now - since <= UNLOCATED_FOR_LONG_S) {
-            (self.unlocated, self.searched) = (None, None);
+            self.unlocated = None;
         }
-        let is_elsewhere = self.searched.is_none()
-            && matches!(self.displaced, Some(Displacement::Certain(since)) if now - since > BLIND_DISPLACED_AFTER_S);
-        if is_elsewhere {
-            self.searched = Some(now);
-        }
-        is_elsewhere
+        let is_long =
+            |evidence: Evidence| evidence.is_certain && now - evidence.since > BLIND_DISPLACED_AFTER_S;
+        self.searched.is_none() && self.evidence.is_some_and(is_long)
     }
 
-    /// Scans gave the pose. Images that are not located do not make it unknown again until one is located.
+    /// Scans gave the pose. Images that are not located do not make it unknown again until one is located, or the scans break again.
     pub(crate) fn localized_by_scans(&mut self) {
         self.settle();
         self.is_placed_by_scans = true;
@@ -120,16 +154,16 @@ impl DisplacementMonitor {
 
     /// Whether there is evidence that the robot was carried away.
     pub(crate) fn is_displaced(&self) -> bool {
-        self.displaced.is_some()
+        self.evidence.is_some()
     }
 
-    /// Since when images that show enough have not been located, while there is evidence that the robot was carried away.
+    /// Since when images that show enough have not been located, from the evidence that the robot was carried away on.
     pub(crate) fn unlocated_since(&self) -> Option<Stamp> {
-        self.unlocated.filter(|_| self.is_displaced())
+        Some(self.unlocated?.max(self.evidence?.since))
     }
 
     fn settle(&mut self) {
-        (self.displaced, self.unlocated, self.searched) = (None, None, None);
+        (self.evidence, self.unlocated, self.searched) = (None, None, None);
         self.continuity.settle();
     }
 }
@@ -169,14 +203,52 @@ mod tests {
     #[test]
     fn a_displaced_robot_is_elsewhere_after_a_while_without_a_located_image_and_again() {
         let seconds = elsewhere(&mut displaced(), |_| ImageEvidence::Unlocated);
-        assert_eq!(seconds.len(), 3, "{seconds:?}");
-        let pauses = seconds.windows(2).map(|pair| pair[1] - pair[0]).chain([seconds[0]]);
-        assert!(pauses.into_iter().all(|pause| (pause - DISPLACED_AFTER_S).abs() < 0.11), "{seconds:?}");
+        assert!((seconds[0] - DISPLACED_AFTER_S).abs() < 0.11, "{seconds:?}");
+        let pauses = seconds.windows(2).map(|pair| pair[1] - pair[0]);
+        assert!(pauses.into_iter().all(|pause| (pause - SEARCH_AGAIN_S).abs() < 0.11), "{seconds:?}");
+        assert_eq!(seconds.len(), 4, "{seconds:?}");
+    }
+
+    #[test]
+    fn after_a_pause_only_a_recognised_place_ends_it_and_without_one_tracking_does() {
+        let mut monitor = displaced();
+        assert_eq!(
+            (monitor.visual_use(false), monitor.visual_use(true)),
+            (VisualUse::Checked, VisualUse::Anywhere)
+        );
+        monitor.add_image(Stamp::default(), ImageEvidence::Unlocated);
+        assert_eq!(
+            (monitor.visual_use(false), monitor.visual_use(true)),
+            (VisualUse::Nothing, VisualUse::Anywhere)
+        );
+        monitor.add_image(Stamp::default(), ImageEvidence::Recognised);
+        assert!(!monitor.is_displaced());
+        let mut through = displaced();
+        through.add_image(Stamp::default(), ImageEvidence::Tracked);
+        assert!(!through.is_displaced());
+    }
+
+    #[test]
+    fn the_time_begins_at_the_evidence() {
+        let mut monitor = DisplacementMonitor::default();
+        for i in 0..50 {
+            assert!(!monitor.add_image(Stamp::default().after(0.1 * f64::from(i)), ImageEvidence::Unlocated));
+        }
+        monitor.add_lift(Stamp::default().after(5.0));
+        let at = |time: f64| Stamp::default().after(time);
+        assert!(!monitor.add_image(at(5.1), ImageEvidence::Unlocated));
+        assert!(monitor.add_image(at(5.9), ImageEvidence::Unlocated));
+    }
+
+    #[test]
+    fn images_with_features_now_and_then_do_not_begin_one_search_after_the_other() {
+        let now_and_then = |i: u32| if i % 2 == 0 { ImageEvidence::Unlocated } else { ImageEvidence::Blind };
+        assert!(elsewhere(&mut displaced(), now_and_then).len() <= 4);
     }
 
     #[test]
     fn a_located_image_ends_it() {
-        let once = |i: u32| if i == 5 { ImageEvidence::Located } else { ImageEvidence::Unlocated };
+        let once = |i: u32| if i == 5 { ImageEvidence::Tracked } else { ImageEvidence::Unlocated };
         assert!(elsewhere(&mut displaced(), once).is_empty());
     }
 
@@ -185,14 +257,14 @@ mod tests {
         let seconds = elsewhere(&mut displaced(), |_| ImageEvidence::Blind);
         assert!(seconds.len() == 1 && (seconds[0] - BLIND_DISPLACED_AFTER_S).abs() < 0.11, "{seconds:?}");
         let mut lifted = DisplacementMonitor::default();
-        lifted.add_lift();
+        lifted.add_lift(Stamp::default());
         assert!(elsewhere(&mut lifted, |_| ImageEvidence::Blind).is_empty());
     }
 
     #[test]
     fn wheels_that_hang_are_evidence() {
         let mut monitor = DisplacementMonitor::default();
-        monitor.add_lift();
+        monitor.add_lift(Stamp::default());
         assert!(!elsewhere(&mut monitor, |_| ImageEvidence::Unlocated).is_empty());
     }
 
@@ -200,10 +272,10 @@ mod tests {
     fn a_pose_found_by_scans_holds_until_an_image_is_located_again() {
         let mut monitor = displaced();
         monitor.localized_by_scans();
-        monitor.add_lift();
+        monitor.add_lift(Stamp::default());
         assert!(elsewhere(&mut monitor, |_| ImageEvidence::Unlocated).is_empty());
-        assert!(!monitor.add_image(Stamp::default(), ImageEvidence::Located));
-        monitor.add_lift();
+        assert!(!monitor.add_image(Stamp::default(), ImageEvidence::Recognised));
+        monitor.add_lift(Stamp::default());
         assert!(!elsewhere(&mut monitor, |_| ImageEvidence::Unlocated).is_empty(), "images count again");
     }
 
@@ -211,7 +283,7 @@ mod tests {
     fn before_a_bare_wall_a_long_time_without_a_located_image_goes_on_and_a_short_one_ends() {
         let since = |unlocated: u32| {
             let mut monitor = DisplacementMonitor::default();
-            monitor.add_lift();
+            monitor.add_lift(Stamp::default());
             elsewhere(&mut monitor, |i| {
                 if i < unlocated { ImageEvidence::Unlocated } else { ImageEvidence::Blind }
             });

@@ -1,7 +1,7 @@
 //! The pose monitor: which visual poses may correct the estimate, and when the robot is elsewhere.
 
 use crate::fusion::correction::VisualPose;
-use crate::pose_monitor::displacement::{DisplacementMonitor, ImageEvidence};
+use crate::pose_monitor::displacement::{DisplacementMonitor, ImageEvidence, VisualUse};
 use crate::pose_monitor::recent_scans::RecentScans;
 use crate::pose_monitor::visual_jump::{PoseBelief, VisualJump};
 use crate::pose_monitor::visual_motion::{VisualMotion, VisualMotionMonitor};
@@ -52,7 +52,7 @@ pub struct VisualEvidence<'a> {
 pub enum VisualVerdict {
     /// It corrects the estimate, by its covariance.
     Accepted,
-    /// It follows something that moves.
+    /// It follows something that moves, or tracking went on from a wrong pose after the robot was carried away.
     Ignored,
     /// The frame of its visual map has moved: it is anchored anew at the estimate.
     FrameMoved,
@@ -71,15 +71,17 @@ impl PoseMonitor {
     }
 
     /// A wheel hangs.
-    pub fn add_lift(&mut self) {
-        self.displacement.add_lift();
+    pub fn add_lift(&mut self, now: Stamp) {
+        self.displacement.add_lift(now);
     }
 
     /// The use of a visual pose.
     pub fn judge(&mut self, evidence: &VisualEvidence<'_>) -> VisualVerdict {
-        if self.displacement.is_displaced() {
+        let visual_use = self.displacement.visual_use(evidence.visual.recognised);
+        if visual_use != VisualUse::Checked {
             self.motion.restart();
-            return VisualVerdict::Accepted;
+            let is_used = visual_use == VisualUse::Anywhere;
+            return if is_used { VisualVerdict::Accepted } else { VisualVerdict::Ignored };
         }
         match self.motion_of(evidence) {
             VisualMotion::Own => {}

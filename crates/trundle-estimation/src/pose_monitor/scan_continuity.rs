@@ -1,5 +1,6 @@
 //! Continuity of the scans: whether odometry explains how a scan follows from the one before.
 
+use std::f64::consts::TAU;
 use trundle_core::{Beam, Pose2, Scan, Vector2};
 
 /// Compares each scan with the last one that shows enough.
@@ -17,6 +18,8 @@ pub(crate) enum Continuity {
     Continuous,
     /// The scan shows other surfaces: the sensor was moved otherwise, or covered.
     Broken,
+    /// The scan shows a part of the same surfaces only.
+    Doubtful,
     /// The scans break again, and show what stood before the first break: the sensor was covered for a while. A look-alike place comes
     /// into view without a second break.
     Restored,
@@ -37,9 +40,12 @@ const RANGE_TOLERANCE_M: f64 = 0.1;
 const RANGE_TOLERANCE_SHARE: f64 = 0.04;
 /// Smallest number of points of a scan that lie in the view of the next one. Source: ours.
 const MIN_COMMON_POINTS: usize = 20;
-/// Share of the common points that are seen again, below which the sequence is broken. Two people who walk past at 1 m leave 0.85,
-/// a robot that is put elsewhere 0.04. Source: docs/experiments/pose-monitor.md.
+/// Share of the common points that are seen again, below which the sequence is broken. Three people who walk past leave 0.7, a
+/// robot that is put elsewhere 0.04 in a furnished room. Source: docs/experiments/pose-monitor.md.
 const BROKEN_SHARE: f64 = 0.4;
+/// Share of the common points that are seen again, below which the sequence is doubtful: a robot that is put before another wall at the same
+/// distance leaves 0.55. Source: docs/experiments/pose-monitor.md.
+const DOUBTFUL_SHARE: f64 = 0.65;
 /// Share from which a scan shows again what stood before the break. Source: ours.
 const RESTORED_SHARE: f64 = 0.8;
 /// Time without a comparison \[s\] after which nothing is known of the motion in between. Source: ours, a robot cannot be put elsewhere sooner.
@@ -62,6 +68,7 @@ impl ScanContinuity {
         }
         let continuity = match share {
             Some(_) if is_broken => Continuity::Broken,
+            Some(share) if share < DOUBTFUL_SHARE => Continuity::Doubtful,
             Some(_) => Continuity::Continuous,
             None => self.without_comparison(scan),
         };
@@ -140,9 +147,9 @@ fn shows(scan: &Scan, point: Vector2) -> Option<bool> {
 /// The range of a point of the base frame from the sensor, m, and the three beams about it; `None` outside the view.
 fn beams_near(scan: &Scan, point: Vector2) -> Option<(f64, &[Beam])> {
     let way = point - scan.origin();
-    let beam = (way.y.atan2(way.x) - scan.angle_min()) / scan.angle_increment();
+    let beam = (way.y.atan2(way.x) - scan.angle_min()).rem_euclid(TAU) / scan.angle_increment();
     let last = scan.beams().len().checked_sub(1)?;
-    if !(beam >= 0.0 && beam <= last as f64) {
+    if !(beam <= last as f64) {
         return None;
     }
     let middle = beam.round() as usize;

@@ -12,8 +12,10 @@ const RANGE_SIGMA_PER_M: f64 = 0.03;
 const P_IN_FRONT: f64 = 0.2;
 /// Probability of a range beyond the wall of the map: a thing that was removed, or a wrong range. Source: ours.
 const P_BEYOND: f64 = 0.1;
-/// Largest range of the model \[m\]. Source: a Kinect V2's range.
+/// Extent of the uniform distribution of ranges \[m\]. Source: a Kinect V2's range.
 const MAX_RANGE_M: f64 = 8.0;
+/// Distance behind a beam's end in which its wall is searched \[m\]. Source: ours, ten standard deviations at 5 m.
+const BEHIND_END_M: f64 = 2.5;
 /// Share of the log-likelihood that counts: beams share the errors of pose and map. Source: ours.
 const LIKELIHOOD_EXPONENT: f64 = 0.3;
 
@@ -25,20 +27,20 @@ pub(crate) fn scan_log_likelihood(grid: &OccupancyGrid, pose: Pose2, scan: &Scan
     let beam = |i: usize| {
         let angle = pose.theta + scan.angle(i);
         let direction = Vector2::new(angle.cos(), angle.sin());
-        let wall = || wall_range(grid, origin, direction);
+        let wall = |range: f64| wall_range(grid, origin, direction, MAX_RANGE_M.max(range + BEHIND_END_M));
         match scan.beams()[i] {
-            Beam::Hit { range } => hit_ratio(wall(), grid.at(origin + direction * range), range),
-            Beam::Free { range } => free_ratio(wall(), range),
+            Beam::Hit { range } => hit_ratio(wall(range), grid.at(origin + direction * range), range),
+            Beam::Free { range } => free_ratio(wall(range), range),
             Beam::Unseen => 0.0,
         }
     };
     LIKELIHOOD_EXPONENT * (0..scan.beams().len()).step_by(step).map(beam).sum::<f64>()
 }
 
-/// Range of the first occupied cell along a beam, m. Unknown cells hide nothing.
-fn wall_range(grid: &OccupancyGrid, origin: Vector2, direction: Vector2) -> Option<f64> {
+/// Range of the first occupied cell along a beam, up to `reach`, m. Unknown cells hide nothing.
+fn wall_range(grid: &OccupancyGrid, origin: Vector2, direction: Vector2, reach: f64) -> Option<f64> {
     let step = 0.5 * grid.geometry().resolution;
-    let count = (MAX_RANGE_M / step) as usize;
+    let count = (reach / step) as usize;
     (0..count).map(|i| i as f64 * step).find(|range| grid.at(origin + direction * *range) == Cell::Occupied)
 }
 
@@ -108,6 +110,22 @@ mod tests {
         let at = |pose| scan_log_likelihood(&room.map(), pose, &scan);
         assert!(at(HERE) - at(HERE * Pose2::new(0.4, 0.0, 0.1)) > 3.0);
         assert!(at(HERE) - at(half_turn(HERE)) > 0.0);
+    }
+
+    #[test]
+    fn a_wall_beyond_the_range_of_a_depth_camera_counts_too() {
+        let geometry = trundle_core::GridGeometry::new(0.05, Vector2::new(-1.0, -1.0), 500, 40).unwrap();
+        let mut map = OccupancyGrid::filled(geometry, Cell::Free);
+        (0..40).for_each(|y| {
+            map.set(
+                geometry.cell_at(Vector2::new(12.02, -0.99 + 0.05 * f64::from(y))).unwrap(),
+                Cell::Occupied,
+            )
+        });
+        let beams = vec![Beam::Hit { range: 12.0 }; 3];
+        let scan = Scan::new(trundle_core::Stamp::default(), Vector2::zeros(), -0.02, 0.02, beams).unwrap();
+        let at = |x: f64| scan_log_likelihood(&map, Pose2::new(x, 0.0, 0.0), &scan);
+        assert!(at(0.0) > at(2.0) + 0.3 && at(0.0) > at(60.0) + 0.3, "{} {} {}", at(0.0), at(2.0), at(60.0));
     }
 
     #[test]

@@ -61,7 +61,8 @@ impl VisualMotionMonitor {
         scan: &Scan,
     ) -> VisualMotion {
         let stamp = scan.stamp();
-        if map != self.map {
+        let is_earlier = self.window.back().is_some_and(|newest| stamp < newest.stamp);
+        if map != self.map || is_earlier {
             self.map = map;
             self.restart();
         }

@@ -120,7 +120,9 @@ pub(super) fn visual_verdict(at: Stamp, verdict: VisualVerdict) {
     match verdict {
         VisualVerdict::Accepted => {}
         VisualVerdict::Ignored => {
-            tracing::debug!("{at:.3} s: the images follow something that moves; scans agree with the wheels")
+            tracing::debug!(
+                "{at:.3} s: the visual pose is ignored: it follows something that moves, or tracking went on from a wrong pose"
+            )
         }
         VisualVerdict::FrameMoved => {
             tracing::info!("{at:.3} s: the visual map does not fit the scans; it is anchored anew")

@@ -10,6 +10,7 @@ use crate::{
 };
 use std::sync::Arc;
 use trundle_core::{Invalid, MapAnnotations, OccupancyGrid, Stamp, Vector3};
+use trundle_estimation::PoseMonitor;
 
 impl Robot {
     /// Obeys an operator, between two events.
@@ -60,6 +61,7 @@ impl Robot {
         self.localizer.forget_visual_maps();
         self.station.forget();
         self.annotate(MapAnnotations::default());
+        self.latest.pose_monitor = PoseMonitor::default();
         self.lose_pose();
         if self.perception.is_some() {
             self.on_map_replaced(report);
@@ -99,6 +101,7 @@ impl Robot {
         let variances =
             Vector3::new(guess.position_sigma, guess.position_sigma, guess.heading_sigma).map(|s| s * s);
         event_log::pose_given(now, guess);
+        self.latest.pose_monitor = PoseMonitor::default();
         self.lose_pose();
         self.apply_global_localization(Some(LocalizedPose {
             stamp: now,

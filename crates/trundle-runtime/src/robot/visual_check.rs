@@ -62,11 +62,12 @@ impl Robot {
     /// What an image shows of the place. Without evidence that the robot was carried away the pose goes on by odometry and scans.
     pub(super) fn add_image_evidence(&mut self, track: &TrackReport, verdict: Option<VisualVerdict>) {
         let evidence = match verdict {
-            Some(VisualVerdict::Accepted) => ImageEvidence::Located,
+            Some(VisualVerdict::Accepted) if track.relocalised => ImageEvidence::Recognised,
+            Some(VisualVerdict::Accepted) => ImageEvidence::Tracked,
             None if track.features < MIN_FEATURES_TO_LOCATE => ImageEvidence::Blind,
             _ => ImageEvidence::Unlocated,
         };
-        if evidence == ImageEvidence::Located {
+        if matches!(evidence, ImageEvidence::Recognised | ImageEvidence::Tracked) {
             self.latest.located = self.latest.located.max(Some(track.stamp));
         }
         if self.latest.pose_monitor.add_image(track.stamp, evidence) {
