@@ -23,7 +23,7 @@ pub struct LiveArgs {
     #[arg(long, value_name = "FILE", requires = "live")]
     pub live_tokens: Option<PathBuf>,
     /// Maps that the live page may load while the robot runs: each NAME.yaml of DIR.
-    #[arg(long, value_name = "DIR", requires = "live")]
+    #[arg(long, value_name = "DIR", requires = "live", value_parser = map_folder)]
     pub maps: Option<PathBuf>,
     /// Home and fleet.
     #[cfg(feature = "mqtt")]
@@ -86,11 +86,19 @@ impl LiveArgs {
         is_steered: bool,
     ) -> Result<Option<LivePage>, AppError> {
         let Some(address) = self.live else { return Ok(None) };
-        let maps = self.maps.clone().map(|folder| MapFolder::new(folder, setup.robot.clone()));
+        let maps = self.maps.clone().map(|folder| MapFolder::open(folder, setup.robot.clone()));
+        let maps = maps.transpose().map_err(|problem| AppError::Input(format!("--maps {problem}")))?;
         let tokens = tokens(self.live_tokens.as_deref())?;
         let options = LiveOptions { address, tokens, is_steered, maps };
         start_page(options, link.operator(), RunFacts::of(setup)?).map(Some)
     }
+}
+
+/// A folder of maps, refused before anything is done if it cannot be read.
+fn map_folder(text: &str) -> Result<PathBuf, String> {
+    let folder = PathBuf::from(text);
+    MapFolder::check(&folder)?;
+    Ok(folder)
 }
 
 /// The tokens of a file, or new ones.

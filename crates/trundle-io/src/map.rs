@@ -12,7 +12,9 @@ mod yaml;
 pub use annotations::{annotations_text, read_annotations};
 pub use graph::{GraphFile, read_graph};
 pub use mask::{KeepOutFile, SpeedFile, read_keep_out_mask, read_speed_mask, write_speed_mask};
+pub use picture::picture_size;
 pub use places::read_places;
+pub use source::MapDescription;
 
 use crate::codec::encode_grey8;
 use crate::{CodecError, IoError, OutputFolder, Warnings};
@@ -56,8 +58,12 @@ pub fn read_map(yaml_path: &Path) -> Result<OccupancyGrid, IoError> {
 /// When a file is missing or truncated, a field is missing or not accepted, thresholds are out of order, or the picture is
 /// larger than 2^28 cells.
 pub fn read_map_file(yaml_path: &Path) -> Result<MapFile, IoError> {
-    let source = MapSource::read(yaml_path)?;
-    let cells = source.picture.indices().map(|i| cell(&source, i)).collect();
+    map_of(&MapSource::read(yaml_path)?)
+}
+
+/// The map of its files.
+fn map_of(source: &MapSource) -> Result<MapFile, IoError> {
+    let cells = source.picture.indices().map(|i| cell(source, i)).collect();
     let rank = |cell| match cell {
         Cell::Occupied => 0,
         Cell::Unknown => 1,
@@ -65,9 +71,9 @@ pub fn read_map_file(yaml_path: &Path) -> Result<MapFile, IoError> {
     };
     let (geometry, cells) =
         turned::straightened(source.geometry()?, cells, source.yaml.yaw, Cell::Unknown, rank)
-            .map_err(IoError::field(yaml_path))?;
+            .map_err(IoError::field(&source.yaml_path))?;
     let grid = OccupancyGrid::new(geometry, cells).map_err(IoError::field(&source.picture_path))?;
-    Ok(MapFile { grid, warnings: warnings(&source) })
+    Ok(MapFile { grid, warnings: warnings(source) })
 }
 
 /// Cell of pixel `i`.

@@ -25,8 +25,7 @@ impl Pgm {
             Some(b"P2") => false,
             _ => return Err("not a PGM picture: it starts with neither P5 nor P2".to_owned()),
         };
-        let width = scan.number("width")?;
-        let height = scan.number("height")?;
+        let (width, height) = scan.size()?;
         let maxval = scan.number("maxval")?;
         let pixels = width.checked_mul(height).filter(|pixels| (1..=MAX_PIXELS).contains(pixels));
         let pixels = pixels
@@ -38,6 +37,11 @@ impl Pgm {
             Some(i) => Err(format!("pixel {i} is {}, expected 0 to maxval {maxval}", values[i])),
             None => Ok(Self { width, height, maxval, values }),
         }
+    }
+
+    /// Width and height that the header claims.
+    pub fn size(bytes: &[u8]) -> Result<(usize, usize), String> {
+        Scanner { bytes, at: 2 }.size()
     }
 }
 
@@ -61,6 +65,10 @@ impl<'a> Scanner<'a> {
         let len = word.iter().take_while(|&&byte| !byte.is_ascii_whitespace() && byte != b'#').count();
         self.at += len;
         &word[..len]
+    }
+
+    fn size(&mut self) -> Result<(usize, usize), String> {
+        Ok((self.number("width")?, self.number("height")?))
     }
 
     fn number(&mut self, name: &str) -> Result<usize, String> {

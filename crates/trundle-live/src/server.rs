@@ -9,12 +9,19 @@ use crate::{LiveError, LiveOptions};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::sync::Arc;
 use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+use tokio::runtime::Runtime;
 use tokio::sync::oneshot;
 use trundle_app::operator::Operator;
 use trundle_runtime::real_time::ThreadPlacement;
 
 /// Niceness of the page's thread above that of the robot's threads. Source: ours.
 const PAGE_NICENESS: i32 = 10;
+
+/// Longest wait for the page's thread at the end of a run. Source: ours; it ends within milliseconds unless it hangs.
+const END_TIMEOUT: Duration = Duration::from_secs(2);
+/// Time between two looks at whether it has ended.
+const END_CHECK_PERIOD: Duration = Duration::from_millis(5);
 
 /// A live page that is served. Dropping it ends the page's thread and all its links.
 #[derive(Debug)]
@@ -45,7 +52,7 @@ impl LivePage {
         let work = move || {
             // If the system refuses the niceness, the page is served all the same.
             _ = ThreadPlacement { nice: PAGE_NICENESS, ..ThreadPlacement::default() }.take();
-            runtime.block_on(serve(listener, state, ended));
+            run_to_end(runtime, serve(listener, state, ended));
         };
         let thread = std::thread::Builder::new().name("live-page".to_owned()).spawn(work).map_err(system)?;
         Ok(Self { address, is_shared, drive_token, view_token, end: Some(end), thread: Some(thread) })
@@ -96,10 +103,25 @@ impl LivePage {
 impl Drop for LivePage {
     fn drop(&mut self) {
         drop(self.end.take());
-        if self.thread.take().is_some_and(|thread| thread.join().is_err()) {
+        let Some(thread) = self.thread.take() else { return };
+        let start = Instant::now();
+        while !thread.is_finished() && start.elapsed() < END_TIMEOUT {
+            std::thread::sleep(END_CHECK_PERIOD);
+        }
+        if !thread.is_finished() {
+            // The results of the run count more than the page: the thread ends with the program.
+            return tracing::warn!("the thread of the live page does not end and is left alone");
+        }
+        if thread.join().is_err() {
             tracing::error!("the thread of the live page panicked");
         }
     }
+}
+
+/// Runs a future to its end. A file that is still being read is not waited for: the disk may never answer.
+fn run_to_end(runtime: Runtime, future: impl Future<Output = ()>) {
+    runtime.block_on(future);
+    runtime.shutdown_background();
 }
 
 /// Serves until the page is dropped.
@@ -149,4 +171,49 @@ fn own_address() -> Option<IpAddr> {
 
 fn system(error: std::io::Error) -> LiveError {
     LiveError::System(error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn runtime() -> Runtime {
+        tokio::runtime::Builder::new_current_thread().build().unwrap()
+    }
+
+    #[test]
+    fn a_thread_that_hangs_does_not_hold_up_the_end() {
+        let (hang, hung) = std::sync::mpsc::channel::<()>();
+        let page = LivePage {
+            address: (Ipv4Addr::LOCALHOST, 1).into(),
+            is_shared: false,
+            drive_token: None,
+            view_token: String::new(),
+            end: None,
+            thread: Some(std::thread::spawn(move || _ = hung.recv())),
+        };
+        let (send, dropped) = std::sync::mpsc::channel();
+        std::thread::spawn(move || {
+            drop(page);
+            send.send(()).unwrap();
+        });
+        let end = dropped.recv_timeout(END_TIMEOUT + Duration::from_secs(10));
+        drop(hang);
+        end.expect("the drop waits for the thread");
+    }
+
+    #[test]
+    fn a_file_that_is_never_read_does_not_hold_up_the_end() {
+        let (hang, hung) = std::sync::mpsc::channel::<()>();
+        let (send, ended) = std::sync::mpsc::channel();
+        std::thread::spawn(move || {
+            run_to_end(runtime(), async move {
+                drop(tokio::task::spawn_blocking(move || _ = hung.recv()));
+            });
+            send.send(()).unwrap();
+        });
+        let end = ended.recv_timeout(Duration::from_secs(10));
+        drop(hang);
+        end.expect("the end waits for the file");
+    }
 }

@@ -131,3 +131,18 @@ fn a_file_of_another_kind_is_named_whatever_its_name_by_every_command() {
     );
     assert!(refusal(&["plan", text(&picture), poses[0], poses[1]]).contains("give the map's YAML file"));
 }
+
+#[test]
+fn a_folder_of_maps_that_is_none_is_refused() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (file, out) = (scratch.path().join("map.yaml"), scratch.path().join("out"));
+    fs::write(&file, "").unwrap();
+    for (maps, problem) in [("/nowhere", "there is no such folder"), (text(&file), "this is no folder")] {
+        let sentence = refusal(&["demo", "--live", "127.0.0.1:0", "--maps", maps, "--out", text(&out)]);
+        let expected = "expected a folder of maps, each NAME.yaml with its picture";
+        for part in ["--maps", maps, problem, expected] {
+            assert!(sentence.contains(part), "'{part}': {sentence}");
+        }
+    }
+    assert!(!out.exists());
+}

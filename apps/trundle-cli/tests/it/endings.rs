@@ -57,6 +57,17 @@ const CTRL_C: (i32, &str) = (130, "Ctrl-C");
 const TERMINATED: (i32, &str) = (143, "SIGTERM");
 
 #[test]
+fn an_operated_run_that_is_stopped_with_open_tasks_is_no_success() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("out");
+    let output = signalled(&["demo", "--live", "127.0.0.1:0", "--out", text(&out)], &out, "-TERM");
+    assert_stopped(&output, &out, TERMINATED);
+    assert_eq!(summary(&out)["success"], false);
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(said.contains("tasks were open at the end, 0 done") && !said.contains("Mission done"), "{said}");
+}
+
+#[test]
 fn a_stopped_drive_is_a_recording_and_stopped_slam_and_map_write_what_they_know() {
     let scratch = tempfile::tempdir().unwrap();
     let [data, slam, map] = ["data", "slam", "map"].map(|name| scratch.path().join(name));

@@ -1,53 +1,139 @@
 //! Maps of a folder that an operator may load.
 
-use std::path::PathBuf;
-use trundle_core::OccupancyGrid;
-use trundle_io::read_map;
+mod bounded_file;
+
+use bounded_file::BoundedFile;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use trundle_core::{MAX_TEXT_CELLS, OccupancyGrid};
+use trundle_io::{MapDescription, picture_size};
 use trundle_runtime::{RobotConfig, require_loadable};
 
 /// Most names that are offered. Source: ours.
 const MAX_NAMES: usize = 200;
+/// Largest YAML file of a map \[bytes\]. Source: ours; those of map_saver have 150.
+const MAX_YAML_BYTES: u64 = 64 * 1024;
+/// Largest picture of a map \[bytes\]: a PGM of 16 bits with the most cells that are recorded, and its header.
+const MAX_PICTURE_BYTES: u64 = 2 * MAX_TEXT_CELLS as u64 + 64 * 1024;
 
 /// A folder of maps for a robot: each `NAME.yaml` with its picture.
 #[derive(Debug, Clone)]
 pub struct MapFolder {
     folder: PathBuf,
     robot: RobotConfig,
+    /// Whether it was logged that there are more names than are offered.
+    is_cut_told: Arc<AtomicBool>,
 }
 
 impl MapFolder {
     /// The maps of `folder` for a robot of this configuration.
-    #[must_use]
-    pub fn new(folder: PathBuf, robot: RobotConfig) -> Self {
-        Self { folder, robot }
+    ///
+    /// # Errors
+    /// As [`MapFolder::check`].
+    pub fn open(folder: PathBuf, robot: RobotConfig) -> Result<Self, String> {
+        Self::check(&folder)?;
+        let maps = Self { folder, robot, is_cut_told: Arc::default() };
+        // More names than are offered are told at the start, not when a page asks.
+        drop(maps.names());
+        Ok(maps)
     }
 
-    /// The names of the maps, sorted; none where the folder cannot be read.
+    /// Refuses a path that is no folder that can be read.
+    ///
+    /// # Errors
+    /// Why not, and what is expected.
+    pub fn check(folder: &Path) -> Result<(), String> {
+        let problem = match std::fs::read_dir(folder) {
+            Ok(_) => return Ok(()),
+            Err(error) => match error.kind() {
+                ErrorKind::NotFound => "there is no such folder".to_owned(),
+                ErrorKind::NotADirectory => "this is no folder".to_owned(),
+                ErrorKind::PermissionDenied => "no permission to read it".to_owned(),
+                _ => error.to_string(),
+            },
+        };
+        Err(format!(
+            "{}: {problem}, expected a folder of maps, each NAME.yaml with its picture",
+            folder.display()
+        ))
+    }
+
+    /// The names of the maps that are offered, sorted; none where the folder can no longer be read. The first names beyond those are
+    /// logged once, with their number.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
+        let mut names = self.all_names();
+        if let Some(warning) = self.cut_warning(names.len()) {
+            tracing::warn!("{warning}");
+        }
+        names.truncate(MAX_NAMES);
+        names
+    }
+
+    /// The first time that there are more names than are offered: how many.
+    fn cut_warning(&self, count: usize) -> Option<String> {
+        let is_new = count > MAX_NAMES && !self.is_cut_told.swap(true, Ordering::Relaxed);
+        let folder = self.folder.display();
+        is_new
+            .then(|| format!("{folder} has {count} maps: the live page offers the first {MAX_NAMES} by name"))
+    }
+
+    fn all_names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(&self.folder).into_iter().flatten().flatten();
         let files = entries.map(|entry| PathBuf::from(entry.file_name()));
         let yaml = files.filter(|file| file.extension().is_some_and(|extension| extension == "yaml"));
         let mut names: Vec<String> =
             yaml.filter_map(|file| Some(file.file_stem()?.to_str()?.to_owned())).collect();
         names.sort();
-        names.truncate(MAX_NAMES);
         names
     }
 
-    /// The map of a name.
+    /// The map of a name. Reads files of the folder alone: no link leads out of it, and nothing but regular files is opened. This may
+    /// take seconds.
     ///
     /// # Errors
-    /// In a sentence, when there is none of this name, its files are broken, or the robot cannot take it.
+    /// In a sentence without content of the files, when there is none of this name, its files are broken, too large or outside the
+    /// folder, or the robot cannot take it. What is broken goes to the log: whoever asks need not be allowed to read the files.
     pub fn read(&self, name: &str) -> Result<OccupancyGrid, String> {
         // Only names of the list: none leads out of the folder.
-        if !self.names().iter().any(|known| known == name) {
+        if !self.all_names().iter().any(|known| known == name) {
             return Err(format!("There is no map '{name}' in the folder of maps."));
         }
-        let grid = read_map(&self.folder.join(format!("{name}.yaml"))).map_err(|error| error.to_string())?;
-        require_loadable(grid.geometry(), &self.robot)
-            .map_err(|invalid| format!("Map '{name}': {invalid}"))?;
+        self.read_files(name).map_err(|problem| format!("Map '{name}': {problem}."))
+    }
+
+    fn read_files(&self, name: &str) -> Result<OccupancyGrid, String> {
+        let path = self.folder.join(format!("{name}.yaml"));
+        let yaml = self.read_file("its YAML file", &path, MAX_YAML_BYTES)?;
+        let yaml = String::from_utf8(yaml).map_err(|_| "its YAML file is not UTF-8 text".to_owned())?;
+        let broken = |error| {
+            tracing::warn!("the map '{name}' cannot be loaded: {error}");
+            "its files are broken; the log of the program says where".to_owned()
+        };
+        let description = MapDescription::parse(&path, yaml).map_err(broken)?;
+        let picture = self.read_file("its picture", description.picture_path(), MAX_PICTURE_BYTES)?;
+        // A packed picture of few bytes may claim any size.
+        if let Some((width, height)) = picture_size(&picture)
+            && width.saturating_mul(height) > MAX_TEXT_CELLS
+        {
+            return Err(format!(
+                "its picture has {width} x {height} cells, expected at most {MAX_TEXT_CELLS} in all"
+            ));
+        }
+        let grid = description.map(&picture).map_err(broken)?.grid;
+        require_loadable(grid.geometry(), &self.robot).map_err(|invalid| invalid.to_string())?;
         Ok(grid)
+    }
+
+    /// The bytes of a file of the folder; `what` it is, for the refusal.
+    fn read_file(&self, what: &str, path: &Path, max_bytes: u64) -> Result<Vec<u8>, String> {
+        let read = BoundedFile { path, folder: &self.folder, max_bytes }.read();
+        read.map_err(|problem| {
+            tracing::warn!("{}: {problem}", path.display());
+            format!("{what} {problem}")
+        })
     }
 }
 
@@ -56,28 +142,134 @@ mod tests {
     use super::*;
     use trundle_io::{map_pgm, map_yaml};
 
+    fn write(place: &Path, name: &str, resolution: f64) -> OccupancyGrid {
+        let grid = OccupancyGrid::from_ascii(resolution, "#.\n..").unwrap();
+        let yaml = map_yaml(&grid, &format!("{name}.pgm"));
+        std::fs::write(place.join(format!("{name}.yaml")), yaml).unwrap();
+        std::fs::write(place.join(format!("{name}.pgm")), map_pgm(&grid)).unwrap();
+        grid
+    }
+
+    fn maps(place: &Path) -> MapFolder {
+        MapFolder::open(place.to_owned(), RobotConfig::default()).unwrap()
+    }
+
     #[test]
     fn maps_of_the_folder_are_read_and_nothing_else() {
         let place = tempfile::tempdir().unwrap();
-        let write = |name: &str, resolution: f64| {
-            let grid = OccupancyGrid::from_ascii(resolution, "#.\n..").unwrap();
-            std::fs::write(
-                place.path().join(format!("{name}.yaml")),
-                map_yaml(&grid, &format!("{name}.pgm")),
-            )
-            .unwrap();
-            std::fs::write(place.path().join(format!("{name}.pgm")), map_pgm(&grid)).unwrap();
-            grid
-        };
-        let (ground, _) = (write("ground floor", 0.05), write("coarse", 0.3));
+        let (ground, _) = (write(place.path(), "ground floor", 0.05), write(place.path(), "coarse", 0.3));
         std::fs::create_dir(place.path().join("inner")).unwrap();
         std::fs::write(place.path().join("broken.yaml"), "image: none.pgm").unwrap();
-        let maps = MapFolder::new(place.path().to_owned(), RobotConfig::default());
+        let maps = maps(place.path());
         assert_eq!(maps.names(), ["broken", "coarse", "ground floor"]);
         assert_eq!(maps.read("ground floor").unwrap(), ground);
         for wrong in ["../ground floor", "inner/x", "", "broken", "coarse"] {
             assert!(maps.read(wrong).is_err(), "{wrong}");
         }
-        assert!(MapFolder::new("/nowhere".into(), RobotConfig::default()).names().is_empty());
+    }
+
+    #[test]
+    fn what_is_no_folder_is_refused() {
+        let place = tempfile::tempdir().unwrap();
+        let file = place.path().join("a.yaml");
+        std::fs::write(&file, "").unwrap();
+        let refusal = |path: &Path| MapFolder::open(path.to_owned(), RobotConfig::default()).unwrap_err();
+        let expected = "expected a folder of maps, each NAME.yaml with its picture";
+        let nowhere = refusal(Path::new("/nowhere"));
+        assert_eq!(nowhere, format!("/nowhere: there is no such folder, {expected}"));
+        assert_eq!(refusal(&file), format!("{}: this is no folder, {expected}", file.display()));
+    }
+
+    #[test]
+    fn names_beyond_the_limit_are_logged_once_and_load_all_the_same() {
+        let place = tempfile::tempdir().unwrap();
+        let last = write(place.path(), "zz", 0.05);
+        for i in 0..MAX_NAMES {
+            std::fs::write(place.path().join(format!("{i:03}.yaml")), "").unwrap();
+        }
+        let maps = maps(place.path());
+        assert!(maps.is_cut_told.load(Ordering::Relaxed), "at the start");
+        assert_eq!(maps.clone().cut_warning(MAX_NAMES + 1), None, "once for the page and its copies");
+        let names = maps.names();
+        assert_eq!((names.len(), names.last().map(String::as_str)), (MAX_NAMES, Some("199")));
+        assert_eq!(maps.read("zz").unwrap(), last);
+        let new = MapFolder { is_cut_told: Arc::default(), ..maps };
+        assert_eq!(new.cut_warning(MAX_NAMES), None);
+        let warning = new.cut_warning(MAX_NAMES + 1).unwrap();
+        assert!(warning.ends_with("has 201 maps: the live page offers the first 200 by name"), "{warning}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_or_picture_outside_the_folder_is_refused_and_no_content_is_told() {
+        use std::os::unix::fs::symlink;
+        let (place, outside) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        write(outside.path(), "secret", 0.05);
+        std::fs::write(outside.path().join("key"), "hunter2: [\n").unwrap();
+        std::fs::write(place.path().join("own.yaml"), "hunter2: [\n").unwrap();
+        let inside = write(place.path(), "a", 0.05);
+        symlink(outside.path().join("key"), place.path().join("key.yaml")).unwrap();
+        symlink(outside.path().join("secret.yaml"), place.path().join("link.yaml")).unwrap();
+        symlink(outside.path().join("secret.pgm"), place.path().join("linked.pgm")).unwrap();
+        symlink("a.yaml", place.path().join("alias.yaml")).unwrap();
+        let picture = |name: &str, image: &str| {
+            std::fs::write(place.path().join(format!("{name}.yaml")), map_yaml(&inside, image)).unwrap();
+        };
+        picture("absolute", &outside.path().join("secret.pgm").display().to_string());
+        picture("missing outside", &outside.path().join("none.pgm").display().to_string());
+        picture("linked", "linked.pgm");
+        picture("text", "own.yaml");
+        let maps = maps(place.path());
+        assert_eq!(maps.read("alias").unwrap(), inside, "a link within the folder");
+        let refusal = |name: &str| maps.read(name).unwrap_err();
+        let outside = "is missing or outside the folder of maps.";
+        for name in ["key", "link"] {
+            assert_eq!(refusal(name), format!("Map '{name}': its YAML file {outside}"));
+        }
+        for name in ["absolute", "missing outside", "linked"] {
+            assert_eq!(refusal(name), format!("Map '{name}': its picture {outside}"));
+        }
+        for name in ["own", "text"] {
+            let expected = format!("Map '{name}': its files are broken; the log of the program says where.");
+            assert_eq!(refusal(name), expected);
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_pipe_a_folder_and_what_is_too_large_are_refused_at_once() {
+        let place = tempfile::tempdir().unwrap();
+        let grid = write(place.path(), "a", 0.05);
+        let file = |name: &str| place.path().join(name);
+        let pipes = [file("pipe.yaml"), file("pipe.pgm")];
+        assert!(std::process::Command::new("mkfifo").args(&pipes).status().unwrap().success());
+        std::fs::create_dir(file("folder.yaml")).unwrap();
+        for (name, image) in [("piped", "pipe.pgm"), ("large", "large.pgm"), ("wide", "wide.pgm")] {
+            std::fs::write(file(&format!("{name}.yaml")), map_yaml(&grid, image)).unwrap();
+        }
+        std::fs::write(file("wide.pgm"), "P5 30000 20000 255\n").unwrap();
+        // A file with a hole takes no place on the disk.
+        for name in ["large.pgm", "long.yaml"] {
+            std::fs::File::create(file(name)).unwrap().set_len(256 << 20).unwrap();
+        }
+        let folder = maps(place.path());
+        let (send, answers) = std::sync::mpsc::channel();
+        // In a thread: a pipe that is opened as a file is would wait for ever.
+        std::thread::spawn(move || {
+            for name in ["pipe", "piped", "folder", "large", "long", "wide"] {
+                send.send((name, folder.read(name).unwrap_err())).unwrap();
+            }
+        });
+        for expected in [
+            "its YAML file is no regular file",
+            "its picture is no regular file",
+            "its YAML file is no regular file",
+            "its picture has 268435456 bytes, expected at most 100065536",
+            "its YAML file has 268435456 bytes, expected at most 65536",
+            "its picture has 30000 x 20000 cells, expected at most 50000000 in all",
+        ] {
+            let (name, refusal) = answers.recv_timeout(std::time::Duration::from_secs(10)).unwrap();
+            assert_eq!(refusal, format!("Map '{name}': {expected}."));
+        }
     }
 }

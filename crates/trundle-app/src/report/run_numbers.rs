@@ -38,6 +38,10 @@ pub struct RunNumbers {
     pub images_dropped: Vec<f64>,
     /// Report of turns and straight moves for the last goal with such a request; `None` without a request.
     pub docking: Option<GoalApproachReport>,
+    /// Number of tasks that the robot reported as done, with and without a goal.
+    pub tasks_done: usize,
+    /// Number of tasks that were left when the run ended.
+    pub tasks_left: usize,
     /// How it ended.
     pub end: RunEnd,
 }
@@ -107,6 +111,8 @@ impl RunNumbers {
             keyframes: run.robot.slam().map_or(0, |slam| slam.keyframes().count()),
             images_dropped: log.seconds_of(run.robot.dropped_images()),
             docking: run.robot.docking().filter(|docking| docking.plans > 0).cloned(),
+            tasks_done: run.tasks().filter(|record| record.end == TaskEnd::Done).count(),
+            tasks_left: run.robot.tasks_left().map_or(0, |left| left.len()),
             end: RunEnd::of(setup, log),
         }
     }
@@ -129,7 +135,8 @@ impl RunNumbers {
     /// Whether every goal was reached without a contact, in truth if it is known.
     pub fn is_success(&self) -> bool {
         if self.end.is_operated {
-            return self.goals_missed() == 0 && self.contacts == 0;
+            let is_done = self.tasks_done > 0 && self.tasks_left == 0;
+            return is_done && self.goals_missed() == 0 && self.contacts == 0;
         }
         let all = self.goals_missed() == 0 && self.goals_asked.is_some();
         self.end.state == DriveState::Arrived
@@ -181,11 +188,19 @@ impl RunNumbers {
 
     /// A run with an operator ends when the operator ends it.
     fn operated_verdict(&self) -> String {
-        format!(
-            "Failed: {} goals were missed in truth, {} contacts with obstacles.",
-            self.goals_missed(),
-            self.contacts
-        )
+        let mut faults = Vec::new();
+        if self.tasks_left > 0 {
+            faults.push(format!("{} tasks were open at the end, {} done", self.tasks_left, self.tasks_done));
+        } else if self.tasks_done == 0 {
+            faults.push("no task was done".to_owned());
+        }
+        if self.goals_missed() > 0 {
+            faults.push(format!("{} goals were missed in truth", self.goals_missed()));
+        }
+        if self.contacts > 0 {
+            faults.push(format!("{} contacts with obstacles", self.contacts));
+        }
+        format!("Failed: {}.", faults.join("; "))
     }
 
     /// The table without the wall clock's part.

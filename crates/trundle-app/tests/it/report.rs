@@ -41,6 +41,8 @@ fn good() -> RunNumbers {
         keyframes: 30,
         images_dropped: vec![1.0, 2.0],
         docking: None,
+        tasks_done: 1,
+        tasks_left: 0,
         end: RunEnd { state: DriveState::Arrived, is_operated: false, out_of_time: None },
     }
 }
@@ -56,6 +58,31 @@ fn a_run_is_a_success_when_the_goal_is_reached_in_truth_and_nothing_is_touched()
     let idle = RunNumbers { goals_asked: None, ..good() };
     assert!(!idle.is_success());
     assert_eq!(idle.verdict(), "Failed: the goal is the start, so the robot had nothing to do.");
+}
+
+#[test]
+fn an_operated_run_is_a_success_only_when_something_was_done_and_nothing_is_open() {
+    let interrupted = DriveState::Stopped { reason: Reason::Interrupted };
+    let operated = |tasks_done, tasks_left| RunNumbers {
+        goals: Vec::new(),
+        tasks_done,
+        tasks_left,
+        end: RunEnd { state: interrupted.clone(), is_operated: true, out_of_time: None },
+        ..good()
+    };
+    let done = operated(2, 0);
+    assert!(done.is_success(), "an operator ends a run by Ctrl-C");
+    assert_eq!(done.verdict(), "Mission done, nothing touched.");
+    for (done, left, verdict) in [
+        (0, 3, "Failed: 3 tasks were open at the end, 0 done."),
+        (1, 2, "Failed: 2 tasks were open at the end, 1 done."),
+        (0, 0, "Failed: no task was done."),
+    ] {
+        let numbers = operated(done, left);
+        assert_eq!((numbers.is_success(), numbers.verdict().as_str()), (false, verdict));
+    }
+    let touched = RunNumbers { contacts: 2, ..operated(1, 0) };
+    assert_eq!(touched.verdict(), "Failed: 2 contacts with obstacles.");
 }
 
 #[test]

@@ -46,6 +46,20 @@ impl Picture {
     }
 }
 
+/// Width and height of a map's picture by its first bytes, as far as they tell \[px\]: what it claims, before it is decoded.
+#[must_use]
+pub fn picture_size(bytes: &[u8]) -> Option<(usize, usize)> {
+    match image::guess_format(bytes).ok()? {
+        ImageFormat::Pnm => Pgm::size(bytes).ok(),
+        format @ (ImageFormat::Png | ImageFormat::Bmp) => {
+            let (width, height) =
+                ImageReader::with_format(Cursor::new(bytes), format).into_dimensions().ok()?;
+            Some((width as usize, height as usize))
+        }
+        _ => None,
+    }
+}
+
 /// The problem of a picture of another format.
 fn other_picture(bytes: &[u8]) -> String {
     let found = FileKind::of_bytes(bytes, bytes.len() as u64);
@@ -234,6 +248,16 @@ mod tests {
                 .unwrap_err()
                 .contains("more than a file of 1000 bytes can hold")
         );
+    }
+
+    #[test]
+    fn the_size_of_a_picture_is_known_before_it_is_decoded() {
+        let grey = DynamicImage::ImageLuma8(GrayImage::from_raw(3, 2, GREYS.to_vec()).unwrap());
+        for format in [ImageFormat::Png, ImageFormat::Bmp] {
+            assert_eq!(picture_size(&bytes(&grey, format)), Some((3, 2)), "{format:?}");
+        }
+        assert_eq!(picture_size(b"P5 # size\n30000 20000 255\n"), Some((30_000, 20_000)));
+        assert_eq!([picture_size(b"P5 x"), picture_size(b""), picture_size(b"image: a.pgm")], [None; 3]);
     }
 
     proptest! {

@@ -1,5 +1,6 @@
 //! The two files of a map or mask: its YAML and the picture that this names.
 
+use super::MapFile;
 use super::picture::Picture;
 use super::yaml::MapYaml;
 use crate::files::{read_bytes, read_text};
@@ -21,15 +22,14 @@ impl MapSource {
     /// Reads the YAML and the picture that it names.
     pub(super) fn read(yaml_path: &Path) -> Result<Self, IoError> {
         Expected::Map.check(yaml_path)?;
-        let yaml_text = read_text(yaml_path)?;
-        let yaml = MapYaml::parse(yaml_path, &yaml_text)?;
-        let picture_path = yaml_path.parent().unwrap_or(Path::new("")).join(&yaml.image);
+        let description = MapDescription::parse(yaml_path, read_text(yaml_path)?)?;
+        let picture_path = description.picture_path();
         if !picture_path.exists() {
             let problem = format!("image is '{}', but there is no such file", picture_path.display());
             return Err(IoError::malformed(yaml_path, problem));
         }
-        let picture = Picture::parse(&picture_path, &read_bytes(&picture_path)?)?;
-        Ok(Self { yaml_path: yaml_path.to_owned(), yaml_text, yaml, picture_path, picture })
+        let bytes = read_bytes(picture_path)?;
+        description.with_picture(&bytes)
     }
 
     /// The YAML, for further keys.
@@ -42,5 +42,46 @@ impl MapSource {
         let (yaml, picture) = (&self.yaml, &self.picture);
         GridGeometry::new(yaml.resolution, yaml.origin, picture.width, picture.height)
             .map_err(IoError::field(&self.yaml_path))
+    }
+}
+
+/// The YAML file of a map, before its picture is read: for a reader that decides which files it opens.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapDescription {
+    yaml_path: PathBuf,
+    yaml_text: String,
+    yaml: MapYaml,
+    picture_path: PathBuf,
+}
+
+impl MapDescription {
+    /// The content of the YAML file at `yaml_path`.
+    ///
+    /// # Errors
+    /// When a field is missing or not accepted.
+    pub fn parse(yaml_path: &Path, yaml_text: String) -> Result<Self, IoError> {
+        let yaml = MapYaml::parse(yaml_path, &yaml_text)?;
+        let picture_path = yaml_path.parent().unwrap_or(Path::new("")).join(&yaml.image);
+        Ok(Self { yaml_path: yaml_path.to_owned(), yaml_text, yaml, picture_path })
+    }
+
+    /// The picture that it names; it may be anywhere.
+    #[must_use]
+    pub fn picture_path(&self) -> &Path {
+        &self.picture_path
+    }
+
+    /// The map with this picture, as [`super::read_map_file`] reads it.
+    ///
+    /// # Errors
+    /// When the picture is truncated, of another format or larger than 2^28 cells.
+    pub fn map(self, picture: &[u8]) -> Result<MapFile, IoError> {
+        super::map_of(&self.with_picture(picture)?)
+    }
+
+    fn with_picture(self, picture: &[u8]) -> Result<MapSource, IoError> {
+        let Self { yaml_path, yaml_text, yaml, picture_path } = self;
+        let picture = Picture::parse(&picture_path, picture)?;
+        Ok(MapSource { yaml_path, yaml_text, yaml, picture_path, picture })
     }
 }

@@ -5,6 +5,7 @@ use axum::extract::{Path, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use std::sync::Arc;
+use tokio::task::spawn_blocking;
 use trundle_app::operator::map_file;
 
 /// A file of the newest map; for every valid token.
@@ -30,7 +31,11 @@ pub async fn maps(State(state): State<Arc<PageState>>, headers: HeaderMap) -> Re
     if !may_look(&state, &headers) {
         return (StatusCode::FORBIDDEN, "this link may not look").into_response();
     }
-    let names = serde_json::Value::from(state.steering.map_names());
+    // The folder may be slow, as one of another machine.
+    let Ok(names) = spawn_blocking(move || state.steering.map_names()).await else {
+        return (StatusCode::INTERNAL_SERVER_ERROR, "the folder of maps cannot be read").into_response();
+    };
+    let names = serde_json::Value::from(names);
     ([(header::CONTENT_TYPE, "application/json")], names.to_string()).into_response()
 }
 

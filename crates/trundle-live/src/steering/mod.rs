@@ -8,9 +8,11 @@ pub use refusal::CommandRefusal;
 use crate::run_facts::{RunFacts, RunKind};
 use crate::wire::{Goal, Request, SettingText};
 use goal_check::require_free;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use trundle_app::operator::{AnnotationEdit, MapFolder, Operator};
-use trundle_core::{DriveLimits, Pose2, Twist2, Zone, require_in};
+use trundle_core::{DriveLimits, OccupancyGrid, Pose2, Twist2, Zone, require_in};
 use trundle_planning::{FootprintCheck, require_on_map};
 use trundle_runtime::{Mission, OperatorCommand, PoseGuess, RunSetting, Task};
 
@@ -31,6 +33,8 @@ pub struct RunSteering {
     check: FootprintCheck,
     limits: DriveLimits,
     maps: Option<MapFolder>,
+    /// Claimed while a map is read.
+    reading: Arc<Semaphore>,
     /// Whether a stop or a drive by hand of this page paused the robot: the next task of the page ends that pause.
     is_paused_here: AtomicBool,
 }
@@ -40,19 +44,18 @@ impl RunSteering {
     pub fn new(operator: Operator, facts: &RunFacts, maps: Option<MapFolder>) -> Self {
         let check = FootprintCheck::new(&facts.footprint);
         let (kind, limits) = (facts.kind, facts.limits);
-        Self { operator, kind, check, limits, maps, is_paused_here: AtomicBool::new(false) }
+        let reading = Arc::new(Semaphore::new(1));
+        Self { operator, kind, check, limits, maps, reading, is_paused_here: AtomicBool::new(false) }
     }
 
-    /// Carries out a request; requests that are not for the robot do nothing.
+    /// Carries out a request; requests that are not for the robot do nothing, nor do those for a map, which is read first.
     ///
     /// # Errors
     /// When the robot cannot carry the request out: a goal in a wall, a number out of range, a run that is over.
     pub fn obey(&self, request: &Request) -> Result<(), CommandRefusal> {
         let is_for_hand = matches!(request, Request::Drive { .. } | Request::Stop { .. });
-        if self.kind != RunKind::Robot && !is_for_hand {
-            return Err(CommandRefusal::of(
-                "Nothing here has missions, poses or zones: drive by hand, or stop.",
-            ));
+        if !is_for_hand {
+            self.require_robot()?;
         }
         match request {
             Request::Go { goals, append, .. } => self.go(goals, *append),
@@ -79,9 +82,19 @@ impl RunSteering {
             Request::SetPlace { place, .. } => self.edit(&AnnotationEdit::SetPlace(place.clone())),
             Request::RemovePlace { number, .. } => self.edit(&AnnotationEdit::RemovePlace(*number)),
             Request::Change { key, value, .. } => self.change(key, *value),
-            Request::LoadMap { name, .. } => self.load_map(name),
             _ => Ok(()),
         }
+    }
+
+    /// Refuses where no robot runs.
+    ///
+    /// # Errors
+    /// When the run has no missions and maps.
+    pub fn require_robot(&self) -> Result<(), CommandRefusal> {
+        if self.kind == RunKind::Robot {
+            return Ok(());
+        }
+        Err(CommandRefusal::of("Nothing here has missions, poses or zones: drive by hand, or stop."))
     }
 
     /// The robot stops at once, and the mission is dropped.
@@ -147,12 +160,30 @@ impl RunSteering {
         self.maps.as_ref().map_or_else(Vec::new, MapFolder::names)
     }
 
-    fn load_map(&self, name: &str) -> Result<(), CommandRefusal> {
-        let maps = self
-            .maps
-            .as_ref()
-            .ok_or_else(|| CommandRefusal::of("No folder of maps was given: --maps DIR"))?;
-        let grid = maps.read(name).map_err(CommandRefusal::of)?;
+    /// The right to read a map, one at a time.
+    ///
+    /// # Errors
+    /// When another map is being read.
+    pub fn claim_reading(&self) -> Result<OwnedSemaphorePermit, CommandRefusal> {
+        let claimed = Arc::clone(&self.reading).try_acquire_owned();
+        claimed.map_err(|_| CommandRefusal::of("Another map is being loaded: wait until it is there."))
+    }
+
+    /// The map of a name. This may take seconds, so the page's thread leaves it to another.
+    ///
+    /// # Errors
+    /// When no folder of maps was given, or it has no such map for this robot.
+    pub fn read_map(&self, name: &str) -> Result<OccupancyGrid, CommandRefusal> {
+        let maps = self.maps.as_ref();
+        let maps = maps.ok_or_else(|| CommandRefusal::of("No folder of maps was given: --maps DIR"))?;
+        maps.read(name).map_err(CommandRefusal::of)
+    }
+
+    /// Gives the robot a map.
+    ///
+    /// # Errors
+    /// When it cannot take it, or the run is over.
+    pub fn load_map(&self, grid: OccupancyGrid) -> Result<(), CommandRefusal> {
         self.send(OperatorCommand::LoadMap(Box::new(grid)))
     }
 

@@ -10,9 +10,12 @@ use crate::wire::{Reply, Request};
 use axum::extract::ws::{Message, WebSocket};
 use futures_util::StreamExt;
 use futures_util::stream::SplitStream;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
+use tokio::sync::OwnedSemaphorePermit;
 use tokio::sync::mpsc::Sender;
+use tokio::task::spawn_blocking;
 
 /// Longest silence of a viewer: it answers ten views per second. Source: ours; a tab in the background answers once per second at least.
 const SILENCE_TIMEOUT: Duration = Duration::from_secs(60);
@@ -20,7 +23,7 @@ const SILENCE_TIMEOUT: Duration = Duration::from_secs(60);
 /// A viewer that asks.
 pub struct Viewer<'a> {
     /// Shared state.
-    pub state: &'a PageState,
+    pub state: &'a Arc<PageState>,
     /// Its number.
     pub id: ViewerId,
     /// Its permissions.
@@ -75,23 +78,56 @@ impl Viewer<'_> {
                 self.progress.wants_visual_map.store(*on, Ordering::Relaxed);
                 return None;
             }
+            Request::LoadMap { id, name } => {
+                return match self.may_load() {
+                    Ok(claim) => {
+                        self.begin_loading(*id, name.clone(), claim);
+                        None
+                    }
+                    Err(refusal) => answer(Some(*id), Err(refusal)),
+                };
+            }
             _ => {}
         }
-        let result = self.obey(request);
-        let (refusal, goal) = match result {
-            Ok(()) => (None, None),
-            Err(refusal) => (Some(refusal.text), refusal.goal),
-        };
-        match (request.id(), refusal) {
-            (Some(id), refusal) => Some(Reply::Answer { id, refusal, goal }),
-            (None, Some(refusal)) => Some(Reply::Refused { refusal }),
-            (None, None) => None,
-        }
+        answer(request.id(), self.obey(request))
     }
 
-    fn obey(&self, request: &Request) -> Result<(), CommandRefusal> {
-        let state = self.state;
-        if !state.is_steered {
+    fn may_load(&self) -> Result<OwnedSemaphorePermit, CommandRefusal> {
+        self.require_drive()?;
+        self.state.steering.require_robot()?;
+        require_wheel(self.state, self.id)?;
+        self.state.steering.claim_reading()
+    }
+
+    /// Loads a map beside the page's thread, which goes on: it serves every viewer and the stop. The answer comes when the map is read.
+    fn begin_loading(&self, id: u64, name: String, claim: OwnedSemaphorePermit) {
+        let (state, viewer, answers) = (Arc::clone(self.state), self.id, self.answers.clone());
+        tokio::spawn(async move {
+            let reader = Arc::clone(&state);
+            let read = spawn_blocking(move || {
+                let _claim = claim;
+                reader.steering.read_map(&name)
+            });
+            let read = read.await;
+            // Who asked may be gone, or without the wheel, by now: the map of a moment ago is then no longer wanted.
+            if answers.is_closed() {
+                return;
+            }
+            let read = read.unwrap_or_else(|_| Err(CommandRefusal::of("The map cannot be read.")));
+            let loaded = read.and_then(|grid| {
+                require_wheel(&state, viewer)?;
+                state.steering.load_map(grid)
+            });
+            if let Some(reply) = answer(Some(id), loaded)
+                && answers.send(reply).await.is_err()
+            {
+                tracing::debug!("live page: viewer {viewer} went before its map was loaded");
+            }
+        });
+    }
+
+    fn require_drive(&self) -> Result<(), CommandRefusal> {
+        if !self.state.is_steered {
             return Err(CommandRefusal::of("This run takes no commands."));
         }
         if self.access != Access::Drive {
@@ -99,6 +135,12 @@ impl Viewer<'_> {
                 "This link only looks. The program prints another link that drives.",
             ));
         }
+        Ok(())
+    }
+
+    fn obey(&self, request: &Request) -> Result<(), CommandRefusal> {
+        let state = self.state;
+        self.require_drive()?;
         match request {
             // Whoever may drive may stop.
             Request::Stop { .. } => {}
@@ -112,13 +154,27 @@ impl Viewer<'_> {
                 }
                 return Ok(());
             }
-            _ => {
-                let free = state.roster().require(self.id);
-                free.map_err(|holder| {
-                    CommandRefusal::of(format!("{holder} holds the wheel. Take it over first."))
-                })?;
-            }
+            _ => require_wheel(state, self.id)?,
         }
         state.steering.obey(request)
+    }
+}
+
+/// Gives a viewer the free wheel, or refuses where another holds it.
+fn require_wheel(state: &PageState, id: ViewerId) -> Result<(), CommandRefusal> {
+    let free = state.roster().require(id);
+    free.map_err(|holder| CommandRefusal::of(format!("{holder} holds the wheel. Take it over first.")))
+}
+
+/// The answer to a request, if there is one: without a number only a refusal is told.
+fn answer(id: Option<u64>, result: Result<(), CommandRefusal>) -> Option<Reply> {
+    let (refusal, goal) = match result {
+        Ok(()) => (None, None),
+        Err(refusal) => (Some(refusal.text), refusal.goal),
+    };
+    match (id, refusal) {
+        (Some(id), refusal) => Some(Reply::Answer { id, refusal, goal }),
+        (None, Some(refusal)) => Some(Reply::Refused { refusal }),
+        (None, None) => None,
     }
 }

@@ -58,7 +58,7 @@ impl LiveRun {
         let (operator, link) = operator_link();
         let tokens = Tokens::random().unwrap();
         let address = "127.0.0.1:0".parse().unwrap();
-        let maps = Some(MapFolder::new(place.path().to_owned(), setup.robot.clone()));
+        let maps = Some(MapFolder::open(place.path().to_owned(), setup.robot.clone()).unwrap());
         let options = LiveOptions { address, tokens: tokens.clone(), is_steered, maps };
         let page = LivePage::start(options, operator.clone(), RunFacts::of(&setup).unwrap()).unwrap();
         let is_over = Arc::<AtomicBool>::default();

@@ -3,6 +3,10 @@
 use crate::browser::{Browser, fetch};
 use crate::live_run::LiveRun;
 use serde_json::json;
+use std::fs::File;
+use std::io::Write;
+use std::process::Command;
+use std::time::{Duration, Instant};
 use trundle_core::{OccupancyGrid, ZoneKind};
 use trundle_io::{map_pgm, map_yaml};
 use trundle_live::Access;
@@ -100,4 +104,72 @@ fn a_map_of_the_folder_is_loaded_and_another_name_is_refused() {
     assert!(refusal.contains("no map '../attic'"), "{refusal}");
     assert_eq!(page.ask(json!({"type": "load_map", "name": "attic"})), None);
     run.wait_for("the map", |view| view.map.as_ref().is_some_and(|map| map.number == 1));
+}
+
+#[test]
+fn while_a_large_map_is_read_the_robot_stops_and_other_viewers_go_on() {
+    let run = LiveRun::start();
+    run.wait_for("a step", |view| view.odometry.is_some());
+    // 96 MB of zeros that take no place on the disk, turned, so that every cell is computed; no robot here has such cells.
+    let mut picture = File::create(run.place.path().join("large.pgm")).unwrap();
+    picture.write_all(b"P5 6000 8000 65535\n").unwrap();
+    picture.set_len(19 + 2 * 6000 * 8000).unwrap();
+    let yaml = "image: large.pgm\nresolution: 0.3\norigin: [0, 0, 0.5]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    std::fs::write(run.place.path().join("large.yaml"), yaml).unwrap();
+    let mut page = Browser::enter(&run, Access::Drive, "page");
+    let mut other = Browser::enter(&run, Access::Drive, "other");
+    let start = Instant::now();
+    page.send(&json!({"type": "load_map", "id": 71, "name": "large"}));
+    page.send(&json!({"type": "load_map", "id": 72, "name": "large"}));
+    let second = page.wait_for("answer");
+    assert_eq!(second["id"], 72, "{second}");
+    assert!(second["refusal"].as_str().unwrap().contains("Another map is being loaded"), "{second}");
+    let address = run.page.address();
+    let (host, origin) = (address.to_string(), format!("http://{address}"));
+    let bearer = format!("Bearer {}", run.token(Access::Drive));
+    let headers = [("Host", host.as_str()), ("Origin", &origin), ("Authorization", &bearer)];
+    let (head, body) = fetch(address, "POST /stop", &headers);
+    assert!(head.starts_with("HTTP/1.1 200"), "{head} {body}");
+    assert_eq!(other.ask(json!({"type": "stop"})), None);
+    let stopped = start.elapsed();
+    // The answer comes last, to the one who asked.
+    let first = page.wait_for("answer");
+    let read = start.elapsed();
+    assert_eq!(first["id"], 71, "{first}");
+    assert!(first["refusal"].as_str().unwrap().contains("Map 'large': "), "{first}");
+    assert!(stopped < read / 2, "stopped after {stopped:?}, read after {read:?}");
+    // One after the other is read.
+    assert!(page.ask(json!({"type": "load_map", "name": "attic"})).unwrap().contains("no map 'attic'"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_among_the_maps_is_refused_and_the_page_ends_with_the_run() {
+    let run = LiveRun::start();
+    run.wait_for("a step", |view| view.odometry.is_some());
+    let pipe = run.place.path().join("pipe.yaml");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let mut page = Browser::enter(&run, Access::Drive, "page");
+    let refusal = page.ask(json!({"type": "load_map", "name": "pipe"})).unwrap();
+    assert_eq!(refusal, "Map 'pipe': its YAML file is no regular file.");
+    assert_eq!(page.ask(json!({"type": "stop"})), None);
+    let (send, ended) = std::sync::mpsc::channel();
+    std::thread::spawn(move || {
+        drop(run);
+        send.send(()).unwrap();
+    });
+    ended.recv_timeout(Duration::from_secs(10)).expect("the page does not end");
+}
+
+#[test]
+fn a_map_is_not_loaded_for_a_viewer_without_the_wheel() {
+    let run = LiveRun::start();
+    let mut holder = Browser::enter(&run, Access::Drive, "Anna");
+    let mut other = Browser::enter(&run, Access::Drive, "Bert");
+    assert_eq!(holder.ask(json!({"type": "take_wheel"})), None);
+    let refusal = other.ask(json!({"type": "load_map", "name": "attic"})).unwrap();
+    assert!(refusal.contains("Anna holds the wheel"), "{refusal}");
+    let unsteered = LiveRun::with_steering(false);
+    let mut page = Browser::enter(&unsteered, Access::Drive, "page");
+    assert!(page.ask(json!({"type": "load_map", "name": "attic"})).unwrap().contains("takes no commands"));
 }
