@@ -17,6 +17,7 @@ if (!CHROMIUM) {
 }
 mkdirSync(pictures, { recursive: true });
 const place = mkdtempSync(join(tmpdir(), "live-run-"));
+mkdirSync(join(place, "maps"));
 const browser = await chromium.launch({ executablePath: CHROMIUM, args: ["--no-sandbox", "--enable-unsafe-swiftshader"] });
 const problems = [];
 
@@ -297,7 +298,6 @@ await check("the map is saved as files", async () => {
 
 await check("a map of the folder is loaded by two presses, and the robot gets its pose", async () => {
   const maps = join(place, "maps");
-  mkdirSync(maps, { recursive: true });
   const headers = { Authorization: `Bearer ${new URL(program.drive).hash.slice(1)}` };
   for (const [from, to] of [["map.pgm", "map.pgm"], ["map.yaml", "home.yaml"]]) {
     const response = await fetch(new URL(`/files/${from}`, program.drive), { headers });
