@@ -11,5 +11,5 @@ pub use crate::setup::mission_text;
 pub use camera_picture::{camera_view, landmarks_in_map};
 pub use goal_outcome::GoalOutcome;
 pub use run_folder::{RunOutput, write_run};
-pub use run_numbers::{RunEnd, RunNumbers, stage_rows, wall_clock};
+pub use run_numbers::{RunEnd, RunNumbers, TaskCounts, stage_rows, wall_clock};
 pub use zone_files::write_zones;

@@ -255,7 +255,7 @@ pub(crate) mod fixtures {
 
     use super::*;
     use trundle_app::TrackCounts;
-    use trundle_app::report::RunEnd;
+    use trundle_app::report::{RunEnd, TaskCounts};
     use trundle_eval::goal_error;
     use trundle_runtime::DriveState;
 
@@ -277,7 +277,12 @@ pub(crate) mod fixtures {
             keyframes: 0,
             images_dropped: Vec::new(),
             docking: None,
-            end: RunEnd { state: DriveState::Arrived, is_operated: false, out_of_time: None },
+            end: RunEnd {
+                state: DriveState::Arrived,
+                is_operated: false,
+                out_of_time: None,
+                tasks: TaskCounts::default(),
+            },
         };
         let line = vec![Vector2::zeros(), Vector2::new(1.0, 0.0)];
         Trial {

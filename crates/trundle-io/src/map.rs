@@ -61,6 +61,16 @@ pub fn read_map_file(yaml_path: &Path) -> Result<MapFile, IoError> {
     map_of(&MapSource::read(yaml_path)?)
 }
 
+impl MapDescription {
+    /// The map with this picture, as [`read_map_file`] reads it.
+    ///
+    /// # Errors
+    /// When the picture is truncated, of another format or larger than 2^28 cells.
+    pub fn map(self, picture: &[u8]) -> Result<MapFile, IoError> {
+        map_of(&self.with_picture(picture)?)
+    }
+}
+
 /// The map of its files.
 fn map_of(source: &MapSource) -> Result<MapFile, IoError> {
     let cells = source.picture.indices().map(|i| cell(source, i)).collect();

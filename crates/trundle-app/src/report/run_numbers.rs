@@ -2,7 +2,7 @@
 
 use super::GoalOutcome;
 use crate::real_time::RealTimeReport;
-use crate::{FinishedRun, RunLog, RunSetup, TrackCounts};
+use crate::{FinishedRun, RunSetup, TrackCounts};
 use serde_json::{Map, Value, json};
 use trundle_eval::{GoalError, goal_error};
 use trundle_io::Summary;
@@ -38,10 +38,6 @@ pub struct RunNumbers {
     pub images_dropped: Vec<f64>,
     /// Report of turns and straight moves for the last goal with such a request; `None` without a request.
     pub docking: Option<GoalApproachReport>,
-    /// Number of tasks that the robot reported as done, with and without a goal.
-    pub tasks_done: usize,
-    /// Number of tasks that were left when the run ended.
-    pub tasks_left: usize,
     /// How it ended.
     pub end: RunEnd,
 }
@@ -55,11 +51,28 @@ pub struct RunEnd {
     pub is_operated: bool,
     /// The time limit that ended the run \[s\], if one did.
     pub out_of_time: Option<f64>,
+    /// The tasks at its end, with and without a goal.
+    pub tasks: TaskCounts,
+}
+
+/// Numbers of tasks at the end of a run.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct TaskCounts {
+    /// Those that the robot reported as done.
+    pub done: usize,
+    /// Those that were left.
+    pub left: usize,
 }
 
 impl RunEnd {
-    fn of(setup: &RunSetup, log: &RunLog) -> Self {
+    fn of(setup: &RunSetup, run: &FinishedRun) -> Self {
+        let log = &run.log;
+        let tasks = TaskCounts {
+            done: run.tasks().filter(|record| record.end == TaskEnd::Done).count(),
+            left: run.robot.tasks_left().map_or(0, |left| left.len()),
+        };
         Self {
+            tasks,
             state: log.state.clone(),
             is_operated: setup.is_operated,
             out_of_time: (log.elapsed() > setup.time_limit).then_some(setup.time_limit),
@@ -111,9 +124,7 @@ impl RunNumbers {
             keyframes: run.robot.slam().map_or(0, |slam| slam.keyframes().count()),
             images_dropped: log.seconds_of(run.robot.dropped_images()),
             docking: run.robot.docking().filter(|docking| docking.plans > 0).cloned(),
-            tasks_done: run.tasks().filter(|record| record.end == TaskEnd::Done).count(),
-            tasks_left: run.robot.tasks_left().map_or(0, |left| left.len()),
-            end: RunEnd::of(setup, log),
+            end: RunEnd::of(setup, run),
         }
     }
 
@@ -135,7 +146,7 @@ impl RunNumbers {
     /// Whether every goal was reached without a contact, in truth if it is known.
     pub fn is_success(&self) -> bool {
         if self.end.is_operated {
-            let is_done = self.tasks_done > 0 && self.tasks_left == 0;
+            let is_done = self.end.tasks.done > 0 && self.end.tasks.left == 0;
             return is_done && self.goals_missed() == 0 && self.contacts == 0;
         }
         let all = self.goals_missed() == 0 && self.goals_asked.is_some();
@@ -189,9 +200,12 @@ impl RunNumbers {
     /// A run with an operator ends when the operator ends it.
     fn operated_verdict(&self) -> String {
         let mut faults = Vec::new();
-        if self.tasks_left > 0 {
-            faults.push(format!("{} tasks were open at the end, {} done", self.tasks_left, self.tasks_done));
-        } else if self.tasks_done == 0 {
+        if self.end.tasks.left > 0 {
+            faults.push(format!(
+                "{} tasks were open at the end, {} done",
+                self.end.tasks.left, self.end.tasks.done
+            ));
+        } else if self.end.tasks.done == 0 {
             faults.push("no task was done".to_owned());
         }
         if self.goals_missed() > 0 {

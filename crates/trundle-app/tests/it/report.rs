@@ -2,7 +2,7 @@
 
 use crate::body::{GOAL, StillBody, run_into, setup};
 use trundle_app::TrackCounts;
-use trundle_app::report::{GoalOutcome, RunEnd, RunNumbers, mission_text, write_run};
+use trundle_app::report::{GoalOutcome, RunEnd, RunNumbers, TaskCounts, mission_text, write_run};
 use trundle_core::Pose2;
 use trundle_eval::{GoalError, goal_error};
 use trundle_io::OutputFolder;
@@ -41,9 +41,12 @@ fn good() -> RunNumbers {
         keyframes: 30,
         images_dropped: vec![1.0, 2.0],
         docking: None,
-        tasks_done: 1,
-        tasks_left: 0,
-        end: RunEnd { state: DriveState::Arrived, is_operated: false, out_of_time: None },
+        end: RunEnd {
+            state: DriveState::Arrived,
+            is_operated: false,
+            out_of_time: None,
+            tasks: TaskCounts { done: 1, left: 0 },
+        },
     }
 }
 
@@ -63,11 +66,14 @@ fn a_run_is_a_success_when_the_goal_is_reached_in_truth_and_nothing_is_touched()
 #[test]
 fn an_operated_run_is_a_success_only_when_something_was_done_and_nothing_is_open() {
     let interrupted = DriveState::Stopped { reason: Reason::Interrupted };
-    let operated = |tasks_done, tasks_left| RunNumbers {
+    let operated = |done, left| RunNumbers {
         goals: Vec::new(),
-        tasks_done,
-        tasks_left,
-        end: RunEnd { state: interrupted.clone(), is_operated: true, out_of_time: None },
+        end: RunEnd {
+            state: interrupted.clone(),
+            is_operated: true,
+            out_of_time: None,
+            tasks: TaskCounts { done, left },
+        },
         ..good()
     };
     let done = operated(2, 0);

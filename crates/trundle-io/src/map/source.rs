@@ -1,6 +1,5 @@
 //! The two files of a map or mask: its YAML and the picture that this names.
 
-use super::MapFile;
 use super::picture::Picture;
 use super::yaml::MapYaml;
 use crate::files::{read_bytes, read_text};
@@ -71,15 +70,7 @@ impl MapDescription {
         &self.picture_path
     }
 
-    /// The map with this picture, as [`super::read_map_file`] reads it.
-    ///
-    /// # Errors
-    /// When the picture is truncated, of another format or larger than 2^28 cells.
-    pub fn map(self, picture: &[u8]) -> Result<MapFile, IoError> {
-        super::map_of(&self.with_picture(picture)?)
-    }
-
-    fn with_picture(self, picture: &[u8]) -> Result<MapSource, IoError> {
+    pub(super) fn with_picture(self, picture: &[u8]) -> Result<MapSource, IoError> {
         let Self { yaml_path, yaml_text, yaml, picture_path } = self;
         let picture = Picture::parse(&picture_path, picture)?;
         Ok(MapSource { yaml_path, yaml_text, yaml, picture_path, picture })
