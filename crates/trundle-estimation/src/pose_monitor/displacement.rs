@@ -242,7 +242,8 @@ mod tests {
 
     #[test]
     fn images_with_features_now_and_then_do_not_begin_one_search_after_the_other() {
-        let now_and_then = |i: u32| if i % 2 == 0 { ImageEvidence::Unlocated } else { ImageEvidence::Blind };
+        let now_and_then =
+            |i: u32| if i.is_multiple_of(2) { ImageEvidence::Unlocated } else { ImageEvidence::Blind };
         assert!(elsewhere(&mut displaced(), now_and_then).len() <= 4);
     }
 

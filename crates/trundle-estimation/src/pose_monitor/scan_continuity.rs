@@ -149,7 +149,7 @@ fn beams_near(scan: &Scan, point: Vector2) -> Option<(f64, &[Beam])> {
     let way = point - scan.origin();
     let beam = (way.y.atan2(way.x) - scan.angle_min()).rem_euclid(TAU) / scan.angle_increment();
     let last = scan.beams().len().checked_sub(1)?;
-    if !(beam <= last as f64) {
+    if beam > last as f64 {
         return None;
     }
     let middle = beam.round() as usize;
