@@ -26,7 +26,7 @@ pub fn run_on_body(
         let now = session.log().now;
         let is_over =
             is_finished && !setup.is_operated && now - *finished.get_or_insert(now) >= AFTER_ARRIVAL_S;
-        let is_out_of_time = session.log().elapsed() > setup.time_limit;
+        let is_out_of_time = setup.is_out_of_time(session.log());
         if is_out_of_time {
             tracing::info!("the time limit of {:.1} s ends the run", setup.time_limit);
         }

@@ -1,6 +1,6 @@
 //! The setup of a run: all that a replay needs besides the events.
 
-use crate::{AppError, RecordingContent};
+use crate::{AppError, RecordingContent, RunLog};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -114,6 +114,11 @@ impl RunSetup {
     #[must_use]
     pub fn with_time_limit(self, time_limit: f64) -> Self {
         Self { time_limit, ..self }
+    }
+
+    /// Whether the time limit has ended the run of a log.
+    pub(crate) fn is_out_of_time(&self, log: &RunLog) -> bool {
+        log.elapsed() > self.time_limit
     }
 
     /// The same run, which goes on after its mission for the requests of an operator.

@@ -35,7 +35,7 @@ impl MapFolder {
     pub fn open(folder: PathBuf, robot: RobotConfig) -> Result<Self, String> {
         Self::check(&folder)?;
         let maps = Self { folder, robot, is_cut_told: Arc::default() };
-        // More names than are offered are told at the start, not when a page asks.
+        // The warning of more names than are offered comes at the start, not when a page asks.
         drop(maps.names());
         Ok(maps)
     }

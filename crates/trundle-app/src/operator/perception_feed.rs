@@ -1,6 +1,7 @@
 //! Features of the last image and closed loops, for views.
 
-use super::run_view::{ClosedLoop, FeatureSpot, FeatureView};
+use super::run_view::{ClosedLoop, FeatureSpot, FeatureView, PerceptionView};
+use super::{ImageFeed, VisualMapFeed};
 use std::sync::Arc;
 use trundle_core::{Pose2, Stamp};
 use trundle_slam::{RgbdSlam, TrackReport};
@@ -39,13 +40,15 @@ impl PerceptionFeed {
         self.features = Some((track.stamp, Arc::new(FeatureView { size_px, features: spots.collect() })));
     }
 
-    /// The newest features.
-    pub(crate) fn features(&self) -> Option<Arc<FeatureView>> {
-        Some(Arc::clone(&self.features.as_ref()?.1))
-    }
-
-    /// The last closed loops.
-    pub(crate) fn loops(&self) -> &[ClosedLoop] {
-        &self.loops
+    /// The newest features and loops, with the image, depth and visual map of their feeds; no dynamic obstacles and no station.
+    pub(crate) fn view(&self, images: &ImageFeed, visual_map: &VisualMapFeed) -> PerceptionView {
+        PerceptionView {
+            image: images.image(),
+            depth: images.depth(),
+            visual_map: visual_map.newest(),
+            features: self.features.as_ref().map(|(_, features)| Arc::clone(features)),
+            loops: self.loops.clone(),
+            ..PerceptionView::default()
+        }
     }
 }

@@ -87,13 +87,9 @@ impl ViewFeed {
             plan: self.plan.clone(),
             map: self.map.clone(),
             perception: PerceptionView {
-                image: self.images.image(),
-                depth: self.images.depth(),
-                visual_map: self.visual_map.newest(),
-                features: self.perception.features(),
-                loops: self.perception.loops().to_vec(),
                 movers: robot.moving_obstacles().to_vec(),
                 station: robot.station().map(|station| station.pose),
+                ..self.perception.view(&self.images, &self.visual_map)
             },
             counts: counts(robot),
             settings: Some(robot.run_settings()),

@@ -75,7 +75,7 @@ impl RunEnd {
             tasks,
             state: log.state.clone(),
             is_operated: setup.is_operated,
-            out_of_time: (log.elapsed() > setup.time_limit).then_some(setup.time_limit),
+            out_of_time: setup.is_out_of_time(log).then_some(setup.time_limit),
         }
     }
 

@@ -1,8 +1,8 @@
 //! Views of a tracked sequence for a front end that watches.
 
 use crate::operator::{
-    Activity, ImageFeed, MapView, OperatorLink, PerceptionFeed, PerceptionView, RunCounts, RunView,
-    SeriesView, VisualMapFeed, on_floor,
+    Activity, ImageFeed, MapView, OperatorLink, PerceptionFeed, RunCounts, RunView, SeriesView,
+    VisualMapFeed, on_floor,
 };
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -94,14 +94,7 @@ impl SequenceFeed {
             scan_pose: self.scan.as_ref().map(|(base, _)| *base),
             scan: self.scan.as_ref().map(|(_, scan)| Arc::clone(scan)),
             map: self.map.view.clone(),
-            perception: PerceptionView {
-                image: self.images.image(),
-                depth: self.images.depth(),
-                visual_map: self.visual_map.newest(),
-                features: self.perception.features(),
-                loops: self.perception.loops().to_vec(),
-                ..PerceptionView::default()
-            },
+            perception: self.perception.view(&self.images, &self.visual_map),
             counts: RunCounts {
                 slam: self.tracked,
                 mapping: tracker.map.scan_count() as u64,

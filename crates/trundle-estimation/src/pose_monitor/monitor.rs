@@ -77,11 +77,14 @@ impl PoseMonitor {
 
     /// The use of a visual pose.
     pub fn judge(&mut self, evidence: &VisualEvidence<'_>) -> VisualVerdict {
-        let visual_use = self.displacement.visual_use(evidence.visual.recognised);
-        if visual_use != VisualUse::Checked {
+        let unchecked = match self.displacement.visual_use(evidence.visual.recognised) {
+            VisualUse::Checked => None,
+            VisualUse::Anywhere => Some(VisualVerdict::Accepted),
+            VisualUse::Nothing => Some(VisualVerdict::Ignored),
+        };
+        if let Some(verdict) = unchecked {
             self.motion.restart();
-            let is_used = visual_use == VisualUse::Anywhere;
-            return if is_used { VisualVerdict::Accepted } else { VisualVerdict::Ignored };
+            return verdict;
         }
         match self.motion_of(evidence) {
             VisualMotion::Own => {}

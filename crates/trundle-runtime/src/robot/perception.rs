@@ -37,8 +37,8 @@ impl Robot {
         if let Some(scan) = &scan {
             self.latest.pose_monitor.add_scan(odom_from_base, scan);
         }
-        let visual = visual_pose(&track, corrected_trajectory.is_some());
         let is_corrected = corrected_trajectory.is_some();
+        let visual = visual_pose(&track, is_corrected);
         let judge = |visual| self.judge_visual_pose(visual, is_corrected, odom_from_base, scan.as_ref());
         let verdict = visual.as_ref().map(judge);
         self.add_image_evidence(&track, verdict);
@@ -51,7 +51,7 @@ impl Robot {
             // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
             self.mapping.scan_poses = ScanPoseLog::default();
         }
-        let goes_on = track.tracking == Tracking::Ok && corrected_trajectory.is_none() && !track.relocalised;
+        let goes_on = track.tracking == Tracking::Ok && !is_corrected && !track.relocalised;
         let goes_on = goes_on && matches!(correction, Some(Correction::Applied { .. }));
         let base = track.visual_from_camera * self.base_from_camera.inverse();
         if goes_on {

@@ -63,13 +63,18 @@ impl Robot {
         let Ok(pose) = self.localizer.pose_at(now) else { return true };
         let fit = watch.judge(self.mapping.grid(), pose, scan);
         if fit == Fit::Elsewhere && self.latest.pose_monitor.is_displaced() {
-            self.lose_pose();
-            self.perception.iter_mut().for_each(|perception| perception.kidnapped());
+            self.carried_away();
         }
         fit == Fit::Fits
     }
 
-    /// It was carried away.
+    /// It was carried away: the pose is unknown, and the visual maps are searched too.
+    pub(super) fn carried_away(&mut self) {
+        self.lose_pose();
+        self.perception.iter_mut().for_each(|perception| perception.kidnapped());
+    }
+
+    /// The pose is unknown from now on.
     pub(super) fn lose_pose(&mut self) {
         self.localizer.set_pose_unknown();
         self.latest.scan_map_consistency.forget();

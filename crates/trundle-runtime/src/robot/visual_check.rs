@@ -71,8 +71,7 @@ impl Robot {
             self.latest.located = self.latest.located.max(Some(track.stamp));
         }
         if self.latest.pose_monitor.add_image(track.stamp, evidence) {
-            self.lose_pose();
-            self.perception.iter_mut().for_each(|perception| perception.kidnapped());
+            self.carried_away();
         }
     }
 }
