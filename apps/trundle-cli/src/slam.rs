@@ -9,7 +9,7 @@ use crate::logging;
 use crate::outcome::Outcome;
 use trundle::app::AppError;
 use trundle::app::report::stage_rows;
-use trundle::app::sequence::{SequenceRequest, track_sequence, write_sequence};
+use trundle::app::sequence::{SequenceRequest, TrajectorySource, track_sequence, write_sequence};
 use trundle::live::RunFacts;
 
 /// `trundle slam DIR`.
@@ -48,6 +48,7 @@ impl SlamArgs {
             vocabulary: self.vocabulary.clone(),
             seed: self.seed,
             map_image: self.map_image,
+            poses: if self.visual_only { TrajectorySource::Visual } else { TrajectorySource::Fused },
         }
     }
 }

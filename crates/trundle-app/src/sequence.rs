@@ -9,8 +9,10 @@ mod recorder;
 mod report;
 mod request;
 mod run;
+mod trajectory;
 
 pub use numbers::sequence_rows;
 pub use output::{SequenceOutput, write_sequence};
 pub use request::SequenceRequest;
 pub use run::{SequenceRun, track_sequence};
+pub use trajectory::{SequenceTrajectory, TrajectorySource};

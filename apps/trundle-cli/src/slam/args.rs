@@ -37,6 +37,9 @@ pub struct SlamArgs {
     /// Only locate the camera in the map given: it stays as it is
     #[arg(long, requires = "map")]
     pub localise: bool,
+    /// Write the poses of the images' last map alone [default: all frames, by images and odometry, where the input has odometry]
+    #[arg(long)]
+    pub visual_only: bool,
     /// Format of the map's picture.
     #[arg(long, value_name = "FORMAT", default_value = "pgm", value_parser = choice(&MapImage::CHOICES))]
     pub map_image: MapImage,

@@ -1,5 +1,6 @@
 //! Request to track a sequence: camera, first pose, map, seed.
 
+use super::trajectory::TrajectorySource;
 use crate::AppError;
 use crate::sequence_input::{SequenceInput, SequenceOptions};
 use crate::vocabulary_file::vocabulary_or_builtin;
@@ -40,6 +41,8 @@ pub struct SequenceRequest {
     pub seed: u64,
     /// Format of the picture of the map that is written.
     pub map_image: MapImage,
+    /// Which poses are written.
+    pub poses: TrajectorySource,
 }
 
 /// Default height of a first camera \[m\]. Source: ours, a hand-held camera.
@@ -61,7 +64,7 @@ impl SequenceRequest {
     }
 
     /// The pose of the first camera above the floor: by the request, else by the robot of a recording.
-    fn level_from_first_camera(&self, input: &SequenceInput) -> Result<Pose3, Invalid> {
+    pub(super) fn level_from_first_camera(&self, input: &SequenceInput) -> Result<Pose3, Invalid> {
         let is_asked = self.height.or(self.tilt_deg).or(self.roll_deg).is_some();
         match input.level_from_first_camera().filter(|_| !is_asked) {
             Some(mount) => Ok(mount),

@@ -4,11 +4,12 @@ use super::live_view::{SequenceFeed, Tracker};
 use super::odometry_prior::OdometryPrior;
 use super::recorder::SequenceRecorder;
 use super::request::SequenceRequest;
+use super::trajectory::{SequenceTrajectory, TrajectorySource};
 use crate::operator::OperatorLink;
 use crate::sequence_input::SequenceInput;
 use crate::{AppError, StepProgress, TrackCounts, stop};
 use std::time::Instant;
-use trundle_core::{RgbdImage, Stamp};
+use trundle_core::{CameraMotion, Pose3, RgbdImage, Stamp};
 use trundle_io::{DepthStatistics, FrameError, OutputFolder, Warnings};
 use trundle_runtime::{LevelMap, Stage, StageTimes};
 use trundle_slam::{RgbdSlam, TrackReport};
@@ -29,6 +30,12 @@ pub struct SequenceRun {
     pub unreadable: Vec<String>,
     /// Images for which the odometry gave the motion since the image before.
     pub odometry_priors: usize,
+    /// Motion to each tracked image from the one before, by odometry.
+    motions: Vec<Option<CameraMotion>>,
+    /// Pose of the first camera above the floor, where the camera is on a robot with odometry.
+    level_mount: Option<Pose3>,
+    /// The poses of the frames.
+    pub trajectory: SequenceTrajectory,
     /// Wall-clock time of the stages.
     pub times: StageTimes,
     /// Wall-clock time of the whole, s.
@@ -129,6 +136,7 @@ pub fn track_sequence(
         let [source, _] = input.pose_sources();
         tracing::warn!("{source}: {}", odometry.why_no_motion(images));
     }
+    run.trajectory = run.final_trajectory(request);
     run.seconds = start.elapsed().as_secs_f64();
     Ok(run)
 }
@@ -136,6 +144,8 @@ pub fn track_sequence(
 impl SequenceRun {
     fn new(request: &SequenceRequest, input: &SequenceInput) -> Result<Self, AppError> {
         let robot = &input.robot;
+        let has_odometry = input.odometry().is_some();
+        let level_mount = has_odometry.then(|| request.level_from_first_camera(input)).transpose()?;
         Ok(Self {
             slam: request.slam(input)?,
             map: LevelMap::new(input.camera.model.camera, robot.scan.clone(), robot.schedule.map_hz)?,
@@ -144,6 +154,9 @@ impl SequenceRun {
             stamps: None,
             unreadable: Vec::new(),
             odometry_priors: 0,
+            motions: Vec::new(),
+            level_mount,
+            trajectory: SequenceTrajectory::default(),
             times: StageTimes::default(),
             seconds: 0.0,
             is_interrupted: false,
@@ -153,6 +166,14 @@ impl SequenceRun {
             frame_problems: Warnings::default(),
             left_out: LeftOut::of(request, input),
         })
+    }
+
+    /// The trajectory that was asked for.
+    fn final_trajectory(&self, request: &SequenceRequest) -> SequenceTrajectory {
+        match (request.poses, self.level_mount) {
+            (TrajectorySource::Fused, Some(start)) => SequenceTrajectory::fused(&self.slam, &self.motions, start),
+            _ => SequenceTrajectory::visual(&self.slam),
+        }
     }
 
     /// Why the run missed its aim, with the likely cause; `None` if it did not.
@@ -166,7 +187,7 @@ impl SequenceRun {
         if self.tracked() == 1 && self.left_out.asked > 1 && !self.is_interrupted {
             return Some(self.left_out.failure(self.unreadable.first()));
         }
-        depth
+        depth.or_else(|| self.trajectory.failure())
     }
 
     /// Number of images that were tracked.
@@ -203,9 +224,12 @@ impl SequenceRun {
         self.odometry_priors += usize::from(prior.is_some());
         let report = self.times.measure(Stage::Slam, || self.slam.step(&image, prior));
         self.counts.count(report.tracking);
-        if report.tracking.is_located() {
+        self.motions.push(prior);
+        // A camera on a robot is level by its mount, whatever the images show.
+        let located = report.tracking.is_located().then_some(report.visual_from_camera);
+        if let Some(level_from_camera) = self.level_mount.or(located) {
             let map = &mut self.map;
-            self.times.measure(Stage::Scan, || map.note(&image, report.visual_from_camera));
+            self.times.measure(Stage::Scan, || map.note(&image, level_from_camera));
         }
         self.last_image = Some(image);
         report

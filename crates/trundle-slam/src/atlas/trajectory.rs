@@ -1,8 +1,10 @@
 //! The poses of past frames, which move along with the map.
 
+use crate::atlas::map_collection::Atlas;
 use crate::atlas::sub_map::{IdMap, SubMap};
 use crate::ids::MapId;
 use crate::map::anchored_pose::AnchoredPose;
+use crate::report::FramePose;
 use crate::tracking::tracking_status::Tracking;
 use std::collections::VecDeque;
 use trundle_core::{Pose3, Stamp};
@@ -57,6 +59,21 @@ impl Trajectory {
         let pose =
             |record: &FrameRecord| (record.anchored.stamp, record.anchored.visual_from_camera(&active.map));
         self.records.iter().filter(is_in_map).map(pose).collect()
+    }
+
+    /// Every frame by the present maps.
+    pub fn frames(&self, atlas: &Atlas) -> Vec<FramePose> {
+        let maps = atlas.maps();
+        let pose = |record: &FrameRecord| {
+            let located = record.tracking.is_located();
+            let map = maps.iter().find(|sub_map| located && sub_map.id == record.map);
+            FramePose {
+                stamp: record.anchored.stamp,
+                map: record.map,
+                visual_from_camera: map.map(|sub_map| record.anchored.visual_from_camera(&sub_map.map)),
+            }
+        };
+        self.records.iter().map(pose).collect()
     }
 
     /// Drops all records but the last one and those `wanted`.
