@@ -17,3 +17,5 @@ pub(crate) mod fuse;
 mod gap;
 mod map_layout;
 mod odometry_path;
+#[cfg(test)]
+mod tests;
