@@ -14,7 +14,7 @@ use trundle::live::RunFacts;
 
 /// `trundle slam DIR`.
 pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
-    let request = args.request();
+    let request = args.request()?;
     let input = request.open()?;
     let folder = logging::output_folder(&args.out)?;
     let display = console::StepDisplay::new(args.common.quiet);
@@ -32,8 +32,8 @@ pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
 }
 
 impl SlamArgs {
-    fn request(&self) -> SequenceRequest {
-        SequenceRequest {
+    fn request(&self) -> Result<SequenceRequest, AppError> {
+        Ok(SequenceRequest {
             path: self.input.clone(),
             topics: self.topics.options(),
             camera: self.camera.camera.clone(),
@@ -49,6 +49,8 @@ impl SlamArgs {
             seed: self.seed,
             map_image: self.map_image,
             poses: if self.visual_only { TrajectorySource::Visual } else { TrajectorySource::Fused },
-        }
+            record: self.record,
+            robot: self.robot.robot_if_given()?.map(Box::new),
+        })
     }
 }

@@ -9,6 +9,7 @@ mod recorder;
 mod report;
 mod request;
 mod run;
+mod scan_motion;
 mod trajectory;
 
 pub use numbers::sequence_rows;

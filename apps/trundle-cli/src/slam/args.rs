@@ -1,10 +1,11 @@
 //! The command line of `trundle slam`.
 
-use crate::common_args::{BagTopicsArgs, Common, NumberArg, choice};
+use crate::common_args::{BagTopicsArgs, Common, NumberArg, RobotArgs, choice};
 use crate::live::ViewArgs;
 use crate::output_args::OutputDirArg;
 use clap::Args;
 use std::path::PathBuf;
+use trundle::app::RecordingContent;
 use trundle::io::MapImage;
 
 /// `trundle slam`
@@ -46,6 +47,12 @@ pub struct SlamArgs {
     /// Recognise places by this vocabulary, in trundle's form [default: the built-in one]
     #[arg(long, value_name = "FILE")]
     pub vocabulary: Option<PathBuf>,
+    /// Content of recording.mcap; none leaves it out, events leaves out the images.
+    #[arg(long, value_name = "WHAT", default_value = "all", value_parser = choice(&RecordingContent::CHOICES))]
+    pub record: RecordingContent,
+    /// The settings of tracking, odometry, mount and map.
+    #[command(flatten)]
+    pub robot: RobotArgs,
     /// Seed of the random sampling.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,

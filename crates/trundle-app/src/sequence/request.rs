@@ -1,13 +1,13 @@
 //! Request to track a sequence: camera, first pose, map, seed.
 
 use super::trajectory::TrajectorySource;
-use crate::AppError;
 use crate::sequence_input::{SequenceInput, SequenceOptions};
 use crate::vocabulary_file::vocabulary_or_builtin;
+use crate::{AppError, RecordingContent};
 use std::path::PathBuf;
 use trundle_core::{Invalid, Pose3};
 use trundle_io::{Expected, MapImage, RosSequenceOptions};
-use trundle_runtime::level_from_first_camera;
+use trundle_runtime::{RobotConfig, level_from_first_camera};
 use trundle_slam::{Mode, RgbdSlam, SlamConfig};
 
 /// A recorded sequence and how to track it.
@@ -41,6 +41,10 @@ pub struct SequenceRequest {
     pub seed: u64,
     /// Format of the picture of the map that is written.
     pub map_image: MapImage,
+    /// Content of `recording.mcap`; `Events` is tracking without images.
+    pub record: RecordingContent,
+    /// Settings of tracking, odometry, mount, scans and map; `None` for the input's own, else the default ones.
+    pub robot: Option<Box<RobotConfig>>,
     /// Which poses are written.
     pub poses: TrajectorySource,
 }
@@ -54,32 +58,52 @@ impl SequenceRequest {
     /// # Errors
     /// When they cannot be read, or there is no such camera.
     pub fn open(&self) -> Result<SequenceInput, AppError> {
-        SequenceInput::open(&SequenceOptions {
+        let mut input = SequenceInput::open(&SequenceOptions {
             path: &self.path,
             camera: self.camera.as_deref(),
             depth_scale: self.depth_scale,
             recover: self.recover,
             topics: self.topics.clone(),
-        })
+        })?;
+        if let Some(robot) = &self.robot {
+            input.robot = RobotConfig::clone(robot);
+            input.robot.camera = input.camera.model.camera;
+        }
+        if self.is_mount_asked() {
+            let mount = &mut input.robot.mount;
+            (mount.z, mount.pitch_deg, mount.roll_deg) = self.asked_mount();
+        }
+        Ok(input)
     }
 
-    /// The pose of the first camera above the floor: by the request, else by the robot of a recording.
+    /// Whether part of the first camera's pose is asked for: then all of it is.
+    fn is_mount_asked(&self) -> bool {
+        self.height.or(self.tilt_deg).or(self.roll_deg).is_some()
+    }
+
+    /// Height (m), tilt and roll (deg) of the first camera that are asked for.
+    fn asked_mount(&self) -> (f64, f64, f64) {
+        let height = self.height.unwrap_or(DEFAULT_CAMERA_HEIGHT_M);
+        (height, self.tilt_deg.unwrap_or_default(), self.roll_deg.unwrap_or_default())
+    }
+
+    /// The pose of the first camera above the floor: by the request, else by the robot file or the robot of a recording.
     pub(super) fn level_from_first_camera(&self, input: &SequenceInput) -> Result<Pose3, Invalid> {
-        let is_asked = self.height.or(self.tilt_deg).or(self.roll_deg).is_some();
-        match input.level_from_first_camera().filter(|_| !is_asked) {
+        let by_file = self.robot.as_ref().map(|robot| robot.mount.base_from_camera());
+        let known = by_file.or_else(|| input.level_from_first_camera());
+        match known.filter(|_| !self.is_mount_asked()) {
             Some(mount) => Ok(mount),
-            None => level_from_first_camera(
-                self.height.unwrap_or(DEFAULT_CAMERA_HEIGHT_M),
-                self.tilt_deg.unwrap_or_default(),
-                self.roll_deg.unwrap_or_default(),
-            ),
+            None => {
+                let (height, tilt_deg, roll_deg) = self.asked_mount();
+                level_from_first_camera(height, tilt_deg, roll_deg)
+            }
         }
     }
 
     /// A tracker with an empty map, or with the requested one.
     pub(super) fn slam(&self, input: &SequenceInput) -> Result<RgbdSlam, AppError> {
         // The error of a recording is taken over all of its frames.
-        let config = SlamConfig { seed: self.seed, kept_frames: usize::MAX, ..SlamConfig::default() };
+        let config = SlamConfig { seed: self.seed, kept_frames: usize::MAX, ..input.robot.slam.clone() };
         let camera = input.camera.model.camera;
         let vocabulary = vocabulary_or_builtin(self.vocabulary.as_deref())?;
         let Some(file) = &self.map else {

@@ -4,14 +4,16 @@ use super::live_view::{SequenceFeed, Tracker};
 use super::odometry_prior::OdometryPrior;
 use super::recorder::SequenceRecorder;
 use super::request::SequenceRequest;
+use super::scan_motion::ScanMotion;
 use super::trajectory::{SequenceTrajectory, TrajectorySource};
+use crate::laser_map::DepthLog;
 use crate::operator::OperatorLink;
 use crate::sequence_input::SequenceInput;
 use crate::{AppError, StepProgress, TrackCounts, stop};
 use std::time::Instant;
-use trundle_core::{CameraMotion, Pose3, RgbdImage, Stamp};
+use trundle_core::{CameraMotion, Invalid, Pose3, RgbdImage, Stamp};
 use trundle_io::{DepthStatistics, FrameError, OutputFolder, Warnings};
-use trundle_runtime::{LevelMap, Stage, StageTimes};
+use trundle_runtime::{LevelMap, Stage, StageTimes, base_below};
 use trundle_slam::{RgbdSlam, TrackReport};
 
 /// The result of tracking a sequence.
@@ -94,7 +96,7 @@ pub fn track_sequence(
     watch: Option<OperatorLink>,
 ) -> Result<SequenceRun, AppError> {
     let mut run = SequenceRun::new(request, input)?;
-    let mut recorder = SequenceRecorder::new(folder.recorder("recording.mcap")?, input.camera.model.camera);
+    let mut recorder = SequenceRecorder::begin(request.record, folder, input.camera.model.camera)?;
     let mut feed = watch.map(|link| SequenceFeed::new(link, input.robot.mapping.clone()));
     let odometry = OdometryPrior::new(input);
     let frames = request.frames.map_or(input.len(), |frames| input.len().min(frames));
@@ -104,13 +106,17 @@ pub fn track_sequence(
         let frame = frame?;
         match frame.decode() {
             Ok(image) => {
-                let encoded = frame.encoded(&image).map_err(AppError::input)?;
+                let is_needed = recorder.is_some() || feed.is_some();
+                let encoded =
+                    is_needed.then(|| frame.encoded(&image)).transpose().map_err(AppError::input)?;
                 let report = run.step(image, &odometry);
-                if let (Some(feed), Some(image)) = (&mut feed, &run.last_image) {
+                if let (Some(feed), Some(image), Some(encoded)) = (&mut feed, &run.last_image, &encoded) {
                     let tracker = Tracker { slam: &run.slam, map: &run.map, times: &run.times };
                     feed.note(image, &encoded.color_jpeg, &report, &tracker, (i + 1, frames));
                 }
-                recorder.record(encoded, &report, &run.slam);
+                if let (Some(recorder), Some(encoded)) = (&mut recorder, encoded) {
+                    recorder.record(encoded, &report, &run.slam);
+                }
                 run.warn_of_calibration(progress);
             }
             Err(error) => run.skip(&error),
@@ -124,7 +130,9 @@ pub fn track_sequence(
     progress.end();
     run.frame_problems.iter().for_each(|warning| tracing::warn!("frames skipped: {warning}"));
     run.slam.finish_refining();
-    recorder.finish(&run.slam, folder);
+    if let Some(recorder) = recorder {
+        recorder.finish(&run.slam, folder);
+    }
     if let (None, Some(first)) = (&run.last_image, run.unreadable.first()) {
         let (path, camera) = (input.path.display(), &input.camera.name);
         let problem = format!("{path}: no frame can be read as one of camera {camera} (--camera); {first}");
@@ -136,7 +144,7 @@ pub fn track_sequence(
         let [source, _] = input.pose_sources();
         tracing::warn!("{source}: {}", odometry.why_no_motion(images));
     }
-    run.trajectory = run.final_trajectory(request);
+    run.trajectory = run.final_trajectory(request, input)?;
     run.seconds = start.elapsed().as_secs_f64();
     Ok(run)
 }
@@ -169,11 +177,25 @@ impl SequenceRun {
     }
 
     /// The trajectory that was asked for.
-    fn final_trajectory(&self, request: &SequenceRequest) -> SequenceTrajectory {
-        match (request.poses, self.level_mount) {
-            (TrajectorySource::Fused, Some(start)) => SequenceTrajectory::fused(&self.slam, &self.motions, start),
-            _ => SequenceTrajectory::visual(&self.slam),
-        }
+    fn final_trajectory(
+        &self,
+        request: &SequenceRequest,
+        input: &SequenceInput,
+    ) -> Result<SequenceTrajectory, Invalid> {
+        let (TrajectorySource::Fused, Some(mount)) = (request.poses, self.level_mount) else {
+            return Ok(SequenceTrajectory::visual(&self.slam));
+        };
+        let robot = &input.robot;
+        let (scan, blind_range) = (robot.scan.clone(), self.map.blind_range());
+        let depth = DepthLog { scan, blind_range, by_wheels: true };
+        let scans = base_below(&mount).map(|base| ScanMotion {
+            map: &self.map,
+            depth: &depth,
+            base_from_camera: Pose3::from_pose2(base).inverse() * mount,
+            noise: &robot.odometry,
+            seed: request.seed,
+        });
+        SequenceTrajectory::fused(&self.slam, &self.motions, mount, scans.as_ref())
     }
 
     /// Why the run missed its aim, with the likely cause; `None` if it did not.

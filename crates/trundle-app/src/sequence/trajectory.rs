@@ -1,6 +1,7 @@
 //! The trajectory of a tracked sequence: of all frames by images and odometry, or of the images' active map alone.
 
-use trundle_core::{CameraMotion, Pose3, Stamp};
+use super::scan_motion::ScanMotion;
+use trundle_core::{CameraMotion, Invalid, Pose3, Stamp};
 use trundle_estimation::{MapPose, SequenceFrame, fuse_frames};
 use trundle_slam::{FramePose, RgbdSlam};
 
@@ -44,12 +45,26 @@ impl SequenceTrajectory {
     }
 
     /// All frames that images or odometry place. `motions`: to each frame from the one before; `start`: pose of the first camera.
-    pub(super) fn fused(slam: &RgbdSlam, motions: &[Option<CameraMotion>], start: Pose3) -> Self {
+    ///
+    /// # Errors
+    /// When the settings of the scan matching are not valid.
+    pub(super) fn fused(
+        slam: &RgbdSlam,
+        motions: &[Option<CameraMotion>],
+        start: Pose3,
+        scans: Option<&ScanMotion<'_>>,
+    ) -> Result<Self, Invalid> {
         let frames = slam.frames();
-        let sequence = sequence_frames(&frames, motions, start);
-        let placed = sequence.iter().zip(fuse_frames(&sequence));
-        let poses = placed.filter_map(|(frame, pose)| Some((frame.stamp, pose?))).collect();
-        Self { poses, frames: frames.len(), located: count_located(&frames), is_fused: true }
+        let mut sequence = sequence_frames(&frames, motions, start);
+        let mut poses = fuse_frames(&sequence);
+        if let Some(scans) = scans
+            && scans.replace_motions(&mut sequence, &poses)?
+        {
+            poses = fuse_frames(&sequence);
+        }
+        let poses =
+            sequence.iter().zip(poses).filter_map(|(frame, pose)| Some((frame.stamp, pose?))).collect();
+        Ok(Self { poses, frames: frames.len(), located: count_located(&frames), is_fused: true })
     }
 
     /// Number of frames without a pose.
@@ -83,7 +98,11 @@ fn count_located(frames: &[FramePose]) -> usize {
 }
 
 /// The tracker's frames with their odometry. Where no frame is in the level map, the first camera stands in it at `start`.
-fn sequence_frames(frames: &[FramePose], motions: &[Option<CameraMotion>], start: Pose3) -> Vec<SequenceFrame> {
+fn sequence_frames(
+    frames: &[FramePose],
+    motions: &[Option<CameraMotion>],
+    start: Pose3,
+) -> Vec<SequenceFrame> {
     let visual = |frame: &FramePose| {
         let map_from_camera = frame.visual_from_camera?;
         Some(MapPose { map: frame.map.number(), map_from_camera })

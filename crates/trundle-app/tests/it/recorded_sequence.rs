@@ -2,8 +2,9 @@
 
 use crate::body::{run_into, setup, stamp};
 use std::path::{Path, PathBuf};
+use trundle_app::RecordingContent;
 use trundle_app::laser_map::{LaserMapRequest, map_log, read_log};
-use trundle_app::sequence::{SequenceRequest, track_sequence};
+use trundle_app::sequence::{SequenceRequest, TrajectorySource, track_sequence};
 use trundle_app::sequence_input::{RecordedRun, SequenceInput, SequenceOptions};
 use trundle_core::{Beam, GyroRate, Pose2, RgbdImage, Scan, Stamp, Vector2, WheelTicks};
 use trundle_io::{EncodedEvent, LaserLogOptions, MapImage, OutputFolder, RosSequenceOptions};
@@ -38,6 +39,9 @@ fn request(path: &Path) -> SequenceRequest {
         vocabulary: None,
         seed: 1,
         map_image: MapImage::Pgm,
+        poses: TrajectorySource::Fused,
+        record: RecordingContent::All,
+        robot: None,
     }
 }
 

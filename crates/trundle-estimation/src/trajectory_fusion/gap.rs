@@ -52,9 +52,15 @@ impl Gap<'_> {
         let poses: Vec<Pose3> = [vec![before], inner?, vec![after]].concat();
         let constraint = |(i, step): (usize, &Option<CameraMotion>)| {
             let path = OdometryPath::over([*step])?;
-            Some(PoseConstraint { from: i, to: i + 1, from_to: path.motion, information: path.information()? })
+            Some(PoseConstraint {
+                from: i,
+                to: i + 1,
+                from_to: path.motion,
+                information: path.information()?,
+            })
         };
-        let constraints: Option<Vec<PoseConstraint>> = self.steps.iter().enumerate().map(constraint).collect();
+        let constraints: Option<Vec<PoseConstraint>> =
+            self.steps.iter().enumerate().map(constraint).collect();
         let mut fixed = vec![false; poses.len()];
         (fixed[0], fixed[poses.len() - 1]) = (true, true);
         let graph = PoseGraph::new(poses, &fixed, constraints?).ok()?;

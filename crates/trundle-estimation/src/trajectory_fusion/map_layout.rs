@@ -33,7 +33,8 @@ pub(super) fn lay_out(frames: &[usize], links: &[MapLink]) -> Vec<Option<Pose3>>
     let mut best: (usize, Vec<Option<Pose3>>) = (0, vec![None; frames.len()]);
     for first in 0..frames.len() {
         let chained = chained_from(first, frames.len(), links);
-        let located = chained.iter().zip(frames).filter(|(pose, _)| pose.is_some()).map(|(_, count)| count).sum();
+        let located =
+            chained.iter().zip(frames).filter(|(pose, _)| pose.is_some()).map(|(_, count)| count).sum();
         // Of maps that are linked with each other the first is met first.
         if located > best.0 {
             best = (located, chained);

@@ -36,7 +36,8 @@ fn world_from(map: u32) -> Pose3 {
 
 /// The drive; `map_of` names the map in which a frame is located.
 fn drive(odometry_error: f64, map_of: impl Fn(usize) -> Option<u32>) -> Vec<SequenceFrame> {
-    let in_map = |i: usize, map: u32| MapPose { map, map_from_camera: world_from(map).inverse() * camera_at(i) };
+    let in_map =
+        |i: usize, map: u32| MapPose { map, map_from_camera: world_from(map).inverse() * camera_at(i) };
     let frame = |i: usize| SequenceFrame {
         stamp: Stamp::from_nanos(i as i64 * 66_000_000),
         visual: map_of(i).map(|map| in_map(i, map)),
@@ -102,7 +103,10 @@ fn frames_beyond_a_gap_of_the_odometry_stay_without_a_pose() {
     assert_eq!(placed, (0..25).collect::<Vec<_>>(), "the first of two maps of equal size, and its path");
     frames[10].visual = None;
     let poses = fuse_frames(&frames);
-    assert!(poses[..25].iter().all(Option::is_none) && poses[25..].iter().all(Option::is_some), "the larger map");
+    assert!(
+        poses[..25].iter().all(Option::is_none) && poses[25..].iter().all(Option::is_some),
+        "the larger map"
+    );
     frames.iter_mut().for_each(|frame| frame.visual = None);
     assert!(fuse_frames(&frames).iter().all(Option::is_none) && fuse_frames(&[]).is_empty());
 }
