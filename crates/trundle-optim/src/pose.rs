@@ -5,6 +5,7 @@ use crate::observation::{PointObservation, camera_point_by_pose, robust_cost};
 use crate::pose_prior::PosePrior;
 use nalgebra::{Matrix3x6, Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 use trundle_core::{Invalid, PinholeCamera, Pose3, Vector3, require_positive};
 
 /// How [`PoseProblem`] iterates.
@@ -45,6 +46,15 @@ impl PoseConfig {
 /// where the pose is compared with a prior; [`PoseSolution`] itself assumes independent errors. Source: docs/algorithms/slam.md.
 pub const CORRELATED_POINTS: f64 = 8.0;
 
+/// Number of points that agree with a prior, below which they do not determine a pose against others: 20, as `tracking.min_inliers` of
+/// SLAM. Source: ours.
+const MIN_STATIC_POINTS: usize = 20;
+/// Residual at the prior's pose up to which a point may agree with it, as a multiple of the bound of 95 %: 2. The prior is off by some
+/// pixels itself. Source: ours.
+const STATIC_BOUND_FACTOR: f64 = 2.0;
+/// Number of cells in the width of an image in which the spread of points is counted: 12. Source: ours.
+const SPREAD_CELLS: f64 = 12.0;
+
 /// One camera pose against points that are taken as known: motion-only bundle adjustment \[MurArtal17\].
 ///
 /// Levenberg-Marquardt on the Huber loss. After each round every observation is classified by its chi-square, and the
@@ -72,6 +82,8 @@ pub struct PoseSolution {
     pub inlier_count: usize,
     /// Whether there was a prior that contradicts them.
     pub contradicts_prior: bool,
+    /// Number of observations that agree with each other on another pose, which contradicts the prior: those of a thing that moves.
+    pub moving: usize,
     /// Covariance of the pose as a right perturbation (m, rad), scaled up where residuals are larger than their sigmas promise; `None`
     /// when the inliers do not determine the pose.
     pub covariance: Option<Matrix6<f64>>,
@@ -91,13 +103,53 @@ impl PoseProblem<'_> {
             Some((fused, covariance)) => {
                 PoseSolution { world_from_camera: fused, covariance: Some(covariance), ..by_image }
             }
-            None => PoseSolution { contradicts_prior: true, ..by_image },
+            None => self
+                .by_static_points(&by_image, &prior, config)
+                .unwrap_or(PoseSolution { contradicts_prior: true, ..by_image }),
         }
+    }
+
+    /// The pose by the points that agree with the prior, where `against` is by points that contradict it; `None` if these points do not
+    /// determine the pose, contradict the prior too, or are spread over less of the image. A thing that moves shows many points in a
+    /// small part of the image; when wheels slip, all of the image contradicts them.
+    fn by_static_points(
+        &self,
+        against: &PoseSolution,
+        prior: &PosePrior,
+        config: &PoseConfig,
+    ) -> Option<PoseSolution> {
+        let mut inliers = vec![true; self.observations.len()];
+        self.classify_within(prior.world_from_camera, STATIC_BOUND_FACTOR, &mut inliers);
+        let found = self.rounds(prior.world_from_camera, inliers, config);
+        let (fused, covariance) =
+            prior.fused_with(found.world_from_camera, &found.covariance?, CORRELATED_POINTS)?;
+        let moving = |i: usize| against.inliers[i] && !found.inliers[i];
+        let (still, moved) = (self.spread(|i| found.inliers[i]), self.spread(moving));
+        let moving = (0..self.observations.len()).filter(|i| moving(*i)).count();
+        (found.inlier_count >= MIN_STATIC_POINTS && still >= moved).then_some(PoseSolution {
+            world_from_camera: fused,
+            covariance: Some(covariance),
+            moving,
+            ..found
+        })
+    }
+
+    /// Number of cells of the image, [`SPREAD_CELLS`] in its width, that hold some of these observations.
+    fn spread(&self, holds: impl Fn(usize) -> bool) -> usize {
+        let size = self.camera.width() as f64 / SPREAD_CELLS;
+        let cell = |seen: &PointObservation| (seen.pixel / size).map(|at| at.floor() as i32);
+        let seen = self.observations.iter().enumerate().filter(|(i, _)| holds(*i));
+        let cells: BTreeSet<[i32; 2]> = seen.map(|(_, (_, seen))| cell(seen).into()).collect();
+        cells.len()
     }
 
     /// Rounds of optimising and re-classifying.
     fn by_image(&self, start: Pose3, config: &PoseConfig) -> PoseSolution {
-        let mut inliers = vec![true; self.observations.len()];
+        self.rounds(start, vec![true; self.observations.len()], config)
+    }
+
+    /// Rounds that begin with these inliers.
+    fn rounds(&self, start: Pose3, mut inliers: Vec<bool>, config: &PoseConfig) -> PoseSolution {
         let mut pose = start;
         for _ in 0..config.rounds {
             let weights = self.weights(pose, &inliers);
@@ -158,10 +210,15 @@ impl PoseProblem<'_> {
 
     /// Classifies every observation. Returns whether any class changed.
     fn classify(&self, pose: Pose3, inliers: &mut [bool]) -> bool {
+        self.classify_within(pose, 1.0, inliers)
+    }
+
+    /// As [`Self::classify`] with another bound of the residual: `factor` times that of 95 %.
+    fn classify_within(&self, pose: Pose3, factor: f64, inliers: &mut [bool]) -> bool {
         let camera_from_world = pose.inverse();
         let mut changed = false;
         for ((point, seen), inlier) in self.observations.iter().zip(inliers) {
-            let agrees = seen.chi2(self.camera, camera_from_world.transform(*point)) <= seen.chi2_bound();
+            let agrees = seen.chi2(self.camera, camera_from_world.transform(*point)) <= factor * factor * seen.chi2_bound();
             changed |= agrees != *inlier;
             *inlier = agrees;
         }
@@ -213,6 +270,7 @@ impl PoseProblem<'_> {
             inlier_count: inliers.iter().filter(|inlier| **inlier).count(),
             inliers,
             contradicts_prior: false,
+            moving: 0,
             covariance: inverse(information).map(|inverse| inverse * variance_factor.max(1.0)),
         }
     }
