@@ -49,9 +49,6 @@ pub const CORRELATED_POINTS: f64 = 8.0;
 /// Number of points that agree with a prior, below which they do not determine a pose against others: 20, as `tracking.min_inliers` of
 /// SLAM. Source: ours.
 const MIN_STATIC_POINTS: usize = 20;
-/// Residual at the prior's pose up to which a point may agree with it, as a multiple of the bound of 95 %: 2. The prior is off by some
-/// pixels itself. Source: ours.
-const STATIC_BOUND_FACTOR: f64 = 2.0;
 /// Number of cells in the width of an image in which the spread of points is counted: 12. Source: ours.
 const SPREAD_CELLS: f64 = 12.0;
 
@@ -69,6 +66,25 @@ pub struct PoseProblem<'a> {
     pub prior: Option<PosePrior>,
     /// Whether no point may decide by itself, for matches that nothing predicted: see [`PoseProblem::solve`].
     pub bounded: bool,
+}
+
+/// A pose that counts as a measurement.
+struct Hold {
+    pose: Pose3,
+    /// Inverse covariance of a right perturbation of it (m, rad).
+    information: Matrix6<f64>,
+}
+
+impl Hold {
+    /// Right perturbation that leads from here to `pose` (m, rad).
+    fn offset(&self, pose: Pose3) -> Vector6<f64> {
+        (self.pose.inverse() * pose).log()
+    }
+
+    fn cost(&self, pose: Pose3) -> f64 {
+        let offset = self.offset(pose);
+        offset.dot(&(self.information * offset))
+    }
 }
 
 /// Result of [`PoseProblem::solve`].
@@ -118,9 +134,14 @@ impl PoseProblem<'_> {
         prior: &PosePrior,
         config: &PoseConfig,
     ) -> Option<PoseSolution> {
+        // The prior holds the pose while the points are classified.
         let mut inliers = vec![true; self.observations.len()];
-        self.classify_within(prior.world_from_camera, STATIC_BOUND_FACTOR, &mut inliers);
-        let found = self.rounds(prior.world_from_camera, inliers, config);
+        self.classify(prior.world_from_camera, &mut inliers);
+        let held =
+            Hold { pose: prior.world_from_camera, information: prior.covariance.cholesky()?.inverse() };
+        let pose = self.rounds(held.pose, &mut inliers, Some(&held), config);
+        let weights = self.weights(pose, &inliers);
+        let found = self.summarise(self.optimise(pose, &weights, None, config), inliers);
         let (fused, covariance) =
             prior.fused_with(found.world_from_camera, &found.covariance?, CORRELATED_POINTS)?;
         let moving = |i: usize| against.inliers[i] && !found.inliers[i];
@@ -145,20 +166,22 @@ impl PoseProblem<'_> {
 
     /// Rounds of optimising and re-classifying.
     fn by_image(&self, start: Pose3, config: &PoseConfig) -> PoseSolution {
-        self.rounds(start, vec![true; self.observations.len()], config)
+        let mut inliers = vec![true; self.observations.len()];
+        let pose = self.rounds(start, &mut inliers, None, config);
+        self.summarise(pose, inliers)
     }
 
-    /// Rounds that begin with these inliers.
-    fn rounds(&self, start: Pose3, mut inliers: Vec<bool>, config: &PoseConfig) -> PoseSolution {
+    /// The pose after rounds that begin with these inliers; `held` counts as a measurement.
+    fn rounds(&self, start: Pose3, inliers: &mut [bool], held: Option<&Hold>, config: &PoseConfig) -> Pose3 {
         let mut pose = start;
         for _ in 0..config.rounds {
-            let weights = self.weights(pose, &inliers);
-            pose = self.optimise(pose, &weights, config);
-            if !self.classify(pose, &mut inliers) {
+            let weights = self.weights(pose, inliers);
+            pose = self.optimise(pose, &weights, held, config);
+            if !self.classify(pose, inliers) {
                 break;
             }
         }
-        self.summarise(pose, inliers)
+        pose
     }
 
     /// Weight of each observation: 0 for an outlier.
@@ -184,17 +207,22 @@ impl PoseProblem<'_> {
     }
 
     /// Levenberg-Marquardt over what counts.
-    fn optimise(&self, start: Pose3, weights: &[f64], config: &PoseConfig) -> Pose3 {
+    fn optimise(&self, start: Pose3, weights: &[f64], held: Option<&Hold>, config: &PoseConfig) -> Pose3 {
         let mut pose = start;
-        let mut cost = self.cost(pose, weights);
+        let full_cost = |pose| self.cost(pose, weights) + held.map_or(0.0, |held| held.cost(pose));
+        let mut cost = full_cost(pose);
         let mut damping = 1e-6;
         for _ in 0..config.steps {
-            let (hessian, gradient) = self.normal_equations(pose, weights);
+            let (mut hessian, mut gradient) = self.normal_equations(pose, weights);
+            if let Some(held) = held {
+                hessian += held.information;
+                gradient += held.information * held.offset(pose);
+            }
             let damped = hessian + Matrix6::from_diagonal(&(hessian.diagonal().add_scalar(1e-9) * damping));
             let Some(cholesky) = damped.cholesky() else { break };
             let step = -cholesky.solve(&gradient);
             let candidate = (pose * Pose3::exp(step)).renormalized();
-            let candidate_cost = self.cost(candidate, weights);
+            let candidate_cost = full_cost(candidate);
             if candidate_cost < cost {
                 (pose, cost) = (candidate, candidate_cost);
                 damping = (damping * 0.1).max(1e-9);
@@ -210,15 +238,10 @@ impl PoseProblem<'_> {
 
     /// Classifies every observation. Returns whether any class changed.
     fn classify(&self, pose: Pose3, inliers: &mut [bool]) -> bool {
-        self.classify_within(pose, 1.0, inliers)
-    }
-
-    /// As [`Self::classify`] with another bound of the residual: `factor` times that of 95 %.
-    fn classify_within(&self, pose: Pose3, factor: f64, inliers: &mut [bool]) -> bool {
         let camera_from_world = pose.inverse();
         let mut changed = false;
         for ((point, seen), inlier) in self.observations.iter().zip(inliers) {
-            let agrees = seen.chi2(self.camera, camera_from_world.transform(*point)) <= factor * factor * seen.chi2_bound();
+            let agrees = seen.chi2(self.camera, camera_from_world.transform(*point)) <= seen.chi2_bound();
             changed |= agrees != *inlier;
             *inlier = agrees;
         }

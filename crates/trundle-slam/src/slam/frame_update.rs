@@ -39,7 +39,8 @@ impl RgbdSlam {
             self.loops.drop_pending();
             self.leave_keyframe();
         }
-        if localized.contradicts_odometry() {
+        self.odometry.set_doubted(localized.contradicts_odometry());
+        if localized.recognized.is_some() || self.tracking.odometry_conflict.persists(frame.stamp) {
             // The wheels slipped, or the robot was carried.
             self.odometry.interrupt();
         }
