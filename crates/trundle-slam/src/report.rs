@@ -77,7 +77,7 @@ pub struct FramePose {
     pub stamp: Stamp,
     /// The map that the camera was in.
     pub map: MapId,
-    /// The camera's pose in the frame of that map; `None` if the image did not locate the camera, or the map was dropped.
+    /// The camera's pose in the frame of that map; `None` if the image did not locate the camera.
     pub visual_from_camera: Option<Pose3>,
 }
 

@@ -66,14 +66,20 @@ impl Trajectory {
         let maps = atlas.maps();
         let pose = |record: &FrameRecord| {
             let located = record.tracking.is_located();
-            let map = maps.iter().find(|sub_map| located && sub_map.id == record.map);
-            FramePose {
-                stamp: record.anchored.stamp,
-                map: record.map,
-                visual_from_camera: map.map(|sub_map| record.anchored.visual_from_camera(&sub_map.map)),
-            }
+            let map = maps.iter().find(|sub_map| sub_map.id == record.map);
+            let in_map = map.map(|sub_map| record.anchored.visual_from_camera(&sub_map.map));
+            let visual_from_camera = in_map.or(record.anchored.fixed_pose()).filter(|_| located);
+            FramePose { stamp: record.anchored.stamp, map: record.map, visual_from_camera }
         };
         self.records.iter().map(pose).collect()
+    }
+
+    /// Keeps the poses of a map that is dropped, as they are.
+    pub fn fix_poses(&mut self, dropped: &SubMap) {
+        for record in self.records.iter_mut().filter(|record| record.map == dropped.id) {
+            let reference_from_camera = record.anchored.visual_from_camera(&dropped.map);
+            record.anchored = AnchoredPose { reference: None, reference_from_camera, ..record.anchored };
+        }
     }
 
     /// Drops all records but the last one and those `wanted`.
