@@ -28,6 +28,8 @@ pub struct SequenceTrajectory {
     pub frames: usize,
     /// Number of frames whose pose an image gives.
     pub located: usize,
+    /// Pose of the tracker's active map in the frame of the poses.
+    pub level_from_visual: Pose3,
     /// Whether odometry places the frames that no image located.
     pub is_fused: bool,
 }
@@ -40,6 +42,7 @@ impl SequenceTrajectory {
             poses: slam.trajectory(),
             frames: frames.len(),
             located: count_located(&frames),
+            level_from_visual: Pose3::identity(),
             is_fused: false,
         }
     }
@@ -62,9 +65,11 @@ impl SequenceTrajectory {
         {
             poses = fuse_frames(&sequence);
         }
+        let level_from_visual = map_pose(&frames, &poses);
         let poses =
             sequence.iter().zip(poses).filter_map(|(frame, pose)| Some((frame.stamp, pose?))).collect();
-        Ok(Self { poses, frames: frames.len(), located: count_located(&frames), is_fused: true })
+        let (frames, located) = (frames.len(), count_located(&frames));
+        Ok(Self { poses, frames, located, level_from_visual, is_fused: true })
     }
 
     /// Number of frames without a pose.
@@ -91,6 +96,16 @@ impl SequenceTrajectory {
             format!("{missing} of {frames} frames have no pose, expected at most a tenth: {cause}")
         })
     }
+}
+
+/// `level_from_visual` of the map of the last frame; the identity where no frame of that map is located and has a pose.
+fn map_pose(frames: &[FramePose], poses: &[Option<Pose3>]) -> Pose3 {
+    let active = frames.last().map(|frame| frame.map);
+    let in_active = |(frame, pose): (&FramePose, &Option<Pose3>)| {
+        let visual_from_camera = frame.visual_from_camera.filter(|_| Some(frame.map) == active)?;
+        Some(((*pose)? * visual_from_camera.inverse()).renormalized())
+    };
+    frames.iter().zip(poses).rev().find_map(in_active).unwrap_or_default()
 }
 
 fn count_located(frames: &[FramePose]) -> usize {
