@@ -9,7 +9,9 @@ use crate::logging;
 use crate::outcome::Outcome;
 use trundle::app::AppError;
 use trundle::app::report::stage_rows;
-use trundle::app::sequence::{SequenceRequest, TrajectorySource, track_sequence, write_sequence};
+use trundle::app::sequence::{
+    FirstCamera, SequenceRequest, TrajectorySource, track_sequence, write_sequence,
+};
 use trundle::live::RunFacts;
 
 /// `trundle slam DIR`.
@@ -40,9 +42,11 @@ impl SlamArgs {
             depth_scale: self.camera.depth_scale,
             recover: self.recover,
             frames: self.frames.map(|frames| frames as usize),
-            height: self.first_camera.height,
-            tilt_deg: self.first_camera.tilt,
-            roll_deg: self.first_camera.roll,
+            first_camera: FirstCamera {
+                height: self.first_camera.height,
+                tilt_deg: self.first_camera.tilt,
+                roll_deg: self.first_camera.roll,
+            },
             map: self.map.clone(),
             localize_only: self.localise,
             vocabulary: self.vocabulary.clone(),

@@ -14,6 +14,6 @@ mod trajectory;
 
 pub use numbers::sequence_rows;
 pub use output::{SequenceOutput, write_sequence};
-pub use request::SequenceRequest;
+pub use request::{FirstCamera, SequenceRequest};
 pub use run::{SequenceRun, track_sequence};
 pub use trajectory::{SequenceTrajectory, TrajectorySource};

@@ -1,11 +1,8 @@
 //! One camera pose against known points.
 
-mod static_points;
-
-use self::static_points::Hold;
 use crate::leverage::bounded;
 use crate::observation::{PointObservation, camera_point_by_pose, robust_cost};
-use crate::pose_prior::PosePrior;
+use crate::pose_prior::{Hold, PosePrior};
 use nalgebra::{Matrix3x6, Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, PinholeCamera, Pose3, Vector3, require_positive};
@@ -83,34 +80,21 @@ pub struct PoseSolution {
 }
 
 impl PoseProblem<'_> {
-    /// Refines `world_from_camera`. With nothing to go by the pose comes back as it was.
-    ///
-    /// With `bounded`, a point determines at most a quarter of a part of the pose (three times the mean where points are few). The Huber
-    /// loss bounds points that disagree with others, but not a point that no other contradicts: a wrong point 0.1 m before the camera
-    /// outweighs hundreds at 8 m. Where the matches were searched around a prediction, the prediction has excluded such a point, and right
-    /// points are better counted in full.
-    pub fn solve(&self, world_from_camera: Pose3, config: &PoseConfig) -> PoseSolution {
-        let by_image = self.by_image(world_from_camera, config);
-        let (Some(prior), Some(covariance)) = (self.prior, by_image.covariance) else { return by_image };
-        match prior.fused_with(by_image.world_from_camera, &covariance, CORRELATED_POINTS) {
-            Some((fused, covariance)) => {
-                PoseSolution { world_from_camera: fused, covariance: Some(covariance), ..by_image }
-            }
-            None => self
-                .by_static_points(&by_image, &prior, config)
-                .unwrap_or(PoseSolution { contradicts_prior: true, ..by_image }),
-        }
-    }
-
     /// Rounds of optimising and re-classifying.
-    fn by_image(&self, start: Pose3, config: &PoseConfig) -> PoseSolution {
+    pub(crate) fn by_image(&self, start: Pose3, config: &PoseConfig) -> PoseSolution {
         let mut inliers = vec![true; self.observations.len()];
         let pose = self.rounds(start, &mut inliers, None, config);
         self.summarise(pose, inliers)
     }
 
     /// The pose after rounds that begin with these inliers; `held` counts as a measurement.
-    fn rounds(&self, start: Pose3, inliers: &mut [bool], held: Option<&Hold>, config: &PoseConfig) -> Pose3 {
+    pub(crate) fn rounds(
+        &self,
+        start: Pose3,
+        inliers: &mut [bool],
+        held: Option<&Hold>,
+        config: &PoseConfig,
+    ) -> Pose3 {
         let mut pose = start;
         for _ in 0..config.rounds {
             let weights = self.weights(pose, inliers);
@@ -123,7 +107,7 @@ impl PoseProblem<'_> {
     }
 
     /// Weight of each observation: 0 for an outlier.
-    fn weights(&self, pose: Pose3, inliers: &[bool]) -> Vec<f64> {
+    pub(crate) fn weights(&self, pose: Pose3, inliers: &[bool]) -> Vec<f64> {
         let mut weights: Vec<f64> = inliers.iter().map(|inlier| f64::from(u8::from(*inlier))).collect();
         if self.bounded {
             let shares = bounded(&self.rows(pose, &weights));
@@ -145,7 +129,13 @@ impl PoseProblem<'_> {
     }
 
     /// Levenberg-Marquardt over what counts.
-    fn optimise(&self, start: Pose3, weights: &[f64], held: Option<&Hold>, config: &PoseConfig) -> Pose3 {
+    pub(crate) fn optimise(
+        &self,
+        start: Pose3,
+        weights: &[f64],
+        held: Option<&Hold>,
+        config: &PoseConfig,
+    ) -> Pose3 {
         let mut pose = start;
         let full_cost = |pose| self.cost(pose, weights) + held.map_or(0.0, |held| held.cost(pose));
         let mut cost = full_cost(pose);
@@ -175,7 +165,7 @@ impl PoseProblem<'_> {
     }
 
     /// Classifies every observation. Returns whether any class changed.
-    fn classify(&self, pose: Pose3, inliers: &mut [bool]) -> bool {
+    pub(crate) fn classify(&self, pose: Pose3, inliers: &mut [bool]) -> bool {
         let camera_from_world = pose.inverse();
         let mut changed = false;
         for ((point, seen), inlier) in self.observations.iter().zip(inliers) {
@@ -216,7 +206,7 @@ impl PoseProblem<'_> {
         (hessian, gradient)
     }
 
-    fn summarise(&self, pose: Pose3, inliers: Vec<bool>) -> PoseSolution {
+    pub(crate) fn summarise(&self, pose: Pose3, inliers: Vec<bool>) -> PoseSolution {
         let weights = self.weights(pose, &inliers);
         let (information, _) = self.normal_equations(pose, &weights);
         let camera_from_world = pose.inverse();

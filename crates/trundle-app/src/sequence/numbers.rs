@@ -24,7 +24,7 @@ pub fn sequence_rows(
             format!("{} / {} / {} / {}", c.ok, c.weak, c.dead_reckoned, c.lost),
         ),
         row("frames with a pose, missing", placed(run)),
-        row("motions by odometry", run.odometry_priors.to_string()),
+        row("motions by odometry", run.odometry_priors().to_string()),
         row("keyframes", run.slam.keyframes().count().to_string()),
         row("landmarks", run.slam.landmarks().count().to_string()),
         row("loops closed", run.slam.loops().len().to_string()),

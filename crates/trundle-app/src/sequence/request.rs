@@ -25,12 +25,8 @@ pub struct SequenceRequest {
     pub frames: Option<usize>,
     /// Whether a recording may be cut: it is tracked up to the cut.
     pub recover: bool,
-    /// Height of the first camera above the floor, m; `None` for the input's own, else 1 m.
-    pub height: Option<f64>,
-    /// Downward tilt of the first camera, deg; `None` for the input's own, else 0.
-    pub tilt_deg: Option<f64>,
-    /// Roll of the first camera to its right, deg; `None` for the input's own, else 0.
-    pub roll_deg: Option<f64>,
+    /// Pose of the first camera above the floor.
+    pub first_camera: FirstCamera,
     /// The visual map of an earlier run, in which the camera is localized first.
     pub map: Option<PathBuf>,
     /// Whether that map is fixed.
@@ -47,6 +43,30 @@ pub struct SequenceRequest {
     pub robot: Option<Box<RobotConfig>>,
     /// Which poses are written.
     pub poses: TrajectorySource,
+}
+
+/// Pose of the first camera above the floor; `None` everywhere for the input's own.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FirstCamera {
+    /// Height above the floor, m; default 1 m.
+    pub height: Option<f64>,
+    /// Downward tilt, deg; default 0.
+    pub tilt_deg: Option<f64>,
+    /// Roll to its right, deg; default 0.
+    pub roll_deg: Option<f64>,
+}
+
+impl FirstCamera {
+    /// Whether part of the pose is asked for: then all of it is.
+    fn is_asked(&self) -> bool {
+        self.height.or(self.tilt_deg).or(self.roll_deg).is_some()
+    }
+
+    /// Height (m), tilt and roll (deg) that are asked for.
+    fn asked(&self) -> (f64, f64, f64) {
+        let height = self.height.unwrap_or(DEFAULT_CAMERA_HEIGHT_M);
+        (height, self.tilt_deg.unwrap_or_default(), self.roll_deg.unwrap_or_default())
+    }
 }
 
 /// Default height of a first camera \[m\]. Source: ours, a hand-held camera.
@@ -69,32 +89,21 @@ impl SequenceRequest {
             input.robot = RobotConfig::clone(robot);
             input.robot.camera = input.camera.model.camera;
         }
-        if self.is_mount_asked() {
+        if self.first_camera.is_asked() {
             let mount = &mut input.robot.mount;
-            (mount.z, mount.pitch_deg, mount.roll_deg) = self.asked_mount();
+            (mount.z, mount.pitch_deg, mount.roll_deg) = self.first_camera.asked();
         }
         Ok(input)
-    }
-
-    /// Whether part of the first camera's pose is asked for: then all of it is.
-    fn is_mount_asked(&self) -> bool {
-        self.height.or(self.tilt_deg).or(self.roll_deg).is_some()
-    }
-
-    /// Height (m), tilt and roll (deg) of the first camera that are asked for.
-    fn asked_mount(&self) -> (f64, f64, f64) {
-        let height = self.height.unwrap_or(DEFAULT_CAMERA_HEIGHT_M);
-        (height, self.tilt_deg.unwrap_or_default(), self.roll_deg.unwrap_or_default())
     }
 
     /// The pose of the first camera above the floor: by the request, else by the robot file or the robot of a recording.
     pub(super) fn level_from_first_camera(&self, input: &SequenceInput) -> Result<Pose3, Invalid> {
         let by_file = self.robot.as_ref().map(|robot| robot.mount.base_from_camera());
         let known = by_file.or_else(|| input.level_from_first_camera());
-        match known.filter(|_| !self.is_mount_asked()) {
+        match known.filter(|_| !self.first_camera.is_asked()) {
             Some(mount) => Ok(mount),
             None => {
-                let (height, tilt_deg, roll_deg) = self.asked_mount();
+                let (height, tilt_deg, roll_deg) = self.first_camera.asked();
                 level_from_first_camera(height, tilt_deg, roll_deg)
             }
         }

@@ -30,12 +30,7 @@ pub struct SequenceRun {
     stamps: Option<(Stamp, Stamp)>,
     /// Frames that could not be read, in words.
     pub unreadable: Vec<String>,
-    /// Images for which the odometry gave the motion since the image before.
-    pub odometry_priors: usize,
-    /// Motion to each tracked image from the one before, by odometry.
-    motions: Vec<Option<CameraMotion>>,
-    /// Pose of the first camera above the floor, where the camera is on a robot with odometry.
-    level_mount: Option<Pose3>,
+    odometry: OdometryLog,
     /// The poses of the frames.
     pub trajectory: SequenceTrajectory,
     /// Wall-clock time of the stages.
@@ -44,16 +39,22 @@ pub struct SequenceRun {
     pub seconds: f64,
     /// Whether the user ended it before the last frame.
     pub is_interrupted: bool,
-    /// The depth of all images read.
-    depth: DepthStatistics,
-    /// Depth units per metre.
-    depth_scale: f64,
+    /// The depth of all images read, and depth units per metre.
+    depth: (DepthStatistics, f64),
     /// Calibration issues that were logged.
     logged_issues: usize,
     /// Why frames could not be read.
     frame_problems: Warnings,
     /// The images asked for that no pass of tracking saw.
     left_out: LeftOut,
+}
+
+/// The odometry of a sequence.
+struct OdometryLog {
+    /// Motion to each tracked image from the one before.
+    motions: Vec<Option<CameraMotion>>,
+    /// Pose of the first camera above the floor, where the camera is on a robot with odometry.
+    level_mount: Option<Pose3>,
 }
 
 /// Images of an input, and why some are left out before tracking.
@@ -139,7 +140,7 @@ pub fn track_sequence(
         return Err(AppError::Input(problem));
     }
     if let (true, 0, Some(images)) =
-        (input.odometry().is_some() && frames > 1, run.odometry_priors, run.stamps)
+        (input.odometry().is_some() && frames > 1, run.odometry_priors(), run.stamps)
     {
         let [source, _] = input.pose_sources();
         tracing::warn!("{source}: {}", odometry.why_no_motion(images));
@@ -161,15 +162,12 @@ impl SequenceRun {
             last_image: None,
             stamps: None,
             unreadable: Vec::new(),
-            odometry_priors: 0,
-            motions: Vec::new(),
-            level_mount,
+            odometry: OdometryLog { motions: Vec::new(), level_mount },
             trajectory: SequenceTrajectory::default(),
             times: StageTimes::default(),
             seconds: 0.0,
             is_interrupted: false,
-            depth: DepthStatistics::default(),
-            depth_scale: input.depth_scale(),
+            depth: (DepthStatistics::default(), input.depth_scale()),
             logged_issues: 0,
             frame_problems: Warnings::default(),
             left_out: LeftOut::of(request, input),
@@ -182,7 +180,7 @@ impl SequenceRun {
         request: &SequenceRequest,
         input: &SequenceInput,
     ) -> Result<SequenceTrajectory, Invalid> {
-        let (TrajectorySource::Fused, Some(mount)) = (request.poses, self.level_mount) else {
+        let (TrajectorySource::Fused, Some(mount)) = (request.poses, self.odometry.level_mount) else {
             return Ok(SequenceTrajectory::visual(&self.slam));
         };
         let robot = &input.robot;
@@ -195,13 +193,13 @@ impl SequenceRun {
             noise: &robot.odometry,
             seed: request.seed,
         });
-        SequenceTrajectory::fused(&self.slam, &self.motions, mount, scans.as_ref())
+        SequenceTrajectory::fused(&self.slam, &self.odometry.motions, mount, scans.as_ref())
     }
 
     /// Why the run missed its aim, with the likely cause; `None` if it did not.
     #[must_use]
     pub fn failure(&self) -> Option<String> {
-        let depth = self.depth.problem(self.depth_scale);
+        let depth = self.depth.0.problem(self.depth.1);
         if !self.is_located() {
             let cause = depth.unwrap_or_else(|| "too few features of the images match".to_owned());
             return Some(format!("no frame after the first was located: {cause}"));
@@ -210,6 +208,12 @@ impl SequenceRun {
             return Some(self.left_out.failure(self.unreadable.first()));
         }
         depth.or_else(|| self.trajectory.failure())
+    }
+
+    /// Number of images for which the odometry gave the motion since the image before.
+    #[must_use]
+    pub fn odometry_priors(&self) -> usize {
+        self.odometry.motions.iter().flatten().count()
     }
 
     /// Number of images that were tracked.
@@ -239,17 +243,16 @@ impl SequenceRun {
     }
 
     fn step(&mut self, image: RgbdImage, odometry: &OdometryPrior<'_>) -> TrackReport {
-        self.depth.count(image.depth());
+        self.depth.0.count(image.depth());
         self.stamps = Some((self.stamps.map_or(image.stamp(), |(first, _)| first), image.stamp()));
         let since = self.last_image.as_ref().map(RgbdImage::stamp);
         let prior = since.and_then(|since| odometry.motion(since, image.stamp()));
-        self.odometry_priors += usize::from(prior.is_some());
         let report = self.times.measure(Stage::Slam, || self.slam.step(&image, prior));
         self.counts.count(report.tracking);
-        self.motions.push(prior);
+        self.odometry.motions.push(prior);
         // A camera on a robot is level by its mount, whatever the images show.
         let located = report.tracking.is_located().then_some(report.visual_from_camera);
-        if let Some(level_from_camera) = self.level_mount.or(located) {
+        if let Some(level_from_camera) = self.odometry.level_mount.or(located) {
             let map = &mut self.map;
             self.times.measure(Stage::Scan, || map.note(&image, level_from_camera));
         }

@@ -4,7 +4,7 @@ use crate::body::{run_into, setup, stamp};
 use std::path::{Path, PathBuf};
 use trundle_app::RecordingContent;
 use trundle_app::laser_map::{LaserMapRequest, map_log, read_log};
-use trundle_app::sequence::{SequenceRequest, TrajectorySource, track_sequence};
+use trundle_app::sequence::{FirstCamera, SequenceRequest, TrajectorySource, track_sequence};
 use trundle_app::sequence_input::{RecordedRun, SequenceInput, SequenceOptions};
 use trundle_core::{Beam, GyroRate, Pose2, RgbdImage, Scan, Stamp, Vector2, WheelTicks};
 use trundle_io::{EncodedEvent, LaserLogOptions, MapImage, OutputFolder, RosSequenceOptions};
@@ -31,9 +31,7 @@ fn request(path: &Path) -> SequenceRequest {
         depth_scale: None,
         frames: None,
         recover: false,
-        height: None,
-        tilt_deg: None,
-        roll_deg: None,
+        first_camera: FirstCamera::default(),
         map: None,
         localize_only: false,
         vocabulary: None,

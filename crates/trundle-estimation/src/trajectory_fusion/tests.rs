@@ -5,8 +5,8 @@ use super::fuse::fuse_frames;
 use nalgebra::{Matrix3, Vector6};
 use trundle_core::{CameraMotion, Pose2, Pose3, Stamp};
 
-/// Frames of the drive.
-const FRAMES: usize = 60;
+/// Number of frames of the drive.
+const FRAME_COUNT: usize = 60;
 
 /// Pose of the base at frame `i`: 2 cm and 0.5 deg a frame.
 fn base_at(i: usize) -> Pose2 {
@@ -43,7 +43,7 @@ fn drive(odometry_error: f64, map_of: impl Fn(usize) -> Option<u32>) -> Vec<Sequ
         visual: map_of(i).map(|map| in_map(i, map)),
         motion: (i > 0).then(|| step_to(i, odometry_error)),
     };
-    (0..FRAMES).map(frame).collect()
+    (0..FRAME_COUNT).map(frame).collect()
 }
 
 /// Largest distance of the poses from the true ones, m; all frames must have one.
@@ -99,7 +99,7 @@ fn frames_beyond_a_gap_of_the_odometry_stay_without_a_pose() {
     });
     frames[25].motion = None;
     let poses = fuse_frames(&frames);
-    let placed: Vec<usize> = (0..FRAMES).filter(|i| poses[*i].is_some()).collect();
+    let placed: Vec<usize> = (0..FRAME_COUNT).filter(|i| poses[*i].is_some()).collect();
     assert_eq!(placed, (0..25).collect::<Vec<_>>(), "the first of two maps of equal size, and its path");
     frames[10].visual = None;
     let poses = fuse_frames(&frames);
