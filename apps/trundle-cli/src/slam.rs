@@ -2,6 +2,7 @@
 
 mod args;
 
+use args::FirstCameraArgs;
 pub use args::{CameraArgs, SlamArgs};
 
 use crate::console;
@@ -9,16 +10,14 @@ use crate::logging;
 use crate::outcome::Outcome;
 use trundle::app::AppError;
 use trundle::app::report::stage_rows;
-use trundle::app::sequence::{
-    FirstCamera, SequenceRequest, TrajectorySource, track_sequence, write_sequence,
-};
+use trundle::app::sequence::{FirstCamera, SequenceRequest, track_sequence, write_sequence};
 use trundle::live::RunFacts;
 
 /// `trundle slam DIR`.
 pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
     let request = args.request()?;
     let input = request.open()?;
-    let folder = logging::output_folder(&args.out)?;
+    let folder = logging::output_folder(&args.result.out)?;
     let display = console::StepDisplay::new(args.common.quiet);
     let (page, link) = args.live.start(|| Ok(RunFacts::of_sequence(&args.input)), false)?.unzip();
     let run = track_sequence(&request, &input, &folder, &display, link)?;
@@ -35,6 +34,7 @@ pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
 
 impl SlamArgs {
     fn request(&self) -> Result<SequenceRequest, AppError> {
+        let FirstCameraArgs { height, tilt: tilt_deg, roll: roll_deg } = self.first_camera;
         Ok(SequenceRequest {
             path: self.input.clone(),
             topics: self.topics.options(),
@@ -42,18 +42,14 @@ impl SlamArgs {
             depth_scale: self.camera.depth_scale,
             recover: self.recover,
             frames: self.frames.map(|frames| frames as usize),
-            first_camera: FirstCamera {
-                height: self.first_camera.height,
-                tilt_deg: self.first_camera.tilt,
-                roll_deg: self.first_camera.roll,
-            },
+            first_camera: FirstCamera { height, tilt_deg, roll_deg },
             map: self.map.clone(),
             localize_only: self.localise,
             vocabulary: self.vocabulary.clone(),
             seed: self.seed,
-            map_image: self.map_image,
-            poses: if self.visual_only { TrajectorySource::Visual } else { TrajectorySource::Fused },
-            record: self.record,
+            map_image: self.result.map_image,
+            visual_only: self.result.visual_only,
+            record: self.result.record,
             robot: self.robot.robot_if_given()?.map(Box::new),
         })
     }

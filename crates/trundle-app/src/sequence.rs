@@ -16,4 +16,4 @@ pub use numbers::sequence_rows;
 pub use output::{SequenceOutput, write_sequence};
 pub use request::{FirstCamera, SequenceRequest};
 pub use run::{SequenceRun, track_sequence};
-pub use trajectory::{SequenceTrajectory, TrajectorySource};
+pub use trajectory::SequenceTrajectory;

@@ -1,6 +1,5 @@
 //! Request to track a sequence: camera, first pose, map, seed.
 
-use super::trajectory::TrajectorySource;
 use crate::sequence_input::{SequenceInput, SequenceOptions};
 use crate::vocabulary_file::vocabulary_or_builtin;
 use crate::{AppError, RecordingContent};
@@ -41,8 +40,8 @@ pub struct SequenceRequest {
     pub record: RecordingContent,
     /// Settings of tracking, odometry, mount, scans and map; `None` for the input's own, else the default ones.
     pub robot: Option<Box<RobotConfig>>,
-    /// Which poses are written.
-    pub poses: TrajectorySource,
+    /// Whether only the frames of the last visual map are written; else all frames that odometry places as well, if there is odometry.
+    pub visual_only: bool,
 }
 
 /// Pose of the first camera above the floor; `None` everywhere for the input's own.

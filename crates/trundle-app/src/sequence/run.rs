@@ -5,7 +5,7 @@ use super::odometry_prior::OdometryPrior;
 use super::recorder::SequenceRecorder;
 use super::request::SequenceRequest;
 use super::scan_motion::ScanMotion;
-use super::trajectory::{SequenceTrajectory, TrajectorySource};
+use super::trajectory::SequenceTrajectory;
 use crate::laser_map::DepthLog;
 use crate::operator::OperatorLink;
 use crate::sequence_input::SequenceInput;
@@ -180,7 +180,7 @@ impl SequenceRun {
         request: &SequenceRequest,
         input: &SequenceInput,
     ) -> Result<SequenceTrajectory, Invalid> {
-        let (TrajectorySource::Fused, Some(mount)) = (request.poses, self.odometry.level_mount) else {
+        let (false, Some(mount)) = (request.visual_only, self.odometry.level_mount) else {
             return Ok(SequenceTrajectory::visual(&self.slam));
         };
         let robot = &input.robot;

@@ -10,15 +10,6 @@ const MAX_MISSING_SHARE: f64 = 0.1;
 /// Number of the map whose frame is level, with the first camera at its given pose: the first map of a tracker.
 const LEVEL_MAP: u32 = 0;
 
-/// Which poses are written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TrajectorySource {
-    /// Images and odometry, if the input has odometry; else as `Visual`.
-    Fused,
-    /// Images alone: the frames of the active map, with dead reckoning where tracking went on by it.
-    Visual,
-}
-
 /// Poses of the frames of a sequence, `level_from_camera`.
 #[derive(Debug, Clone, Default)]
 pub struct SequenceTrajectory {

@@ -4,7 +4,7 @@ use crate::body::{run_into, setup, stamp};
 use std::path::{Path, PathBuf};
 use trundle_app::RecordingContent;
 use trundle_app::laser_map::{LaserMapRequest, map_log, read_log};
-use trundle_app::sequence::{FirstCamera, SequenceRequest, TrajectorySource, track_sequence};
+use trundle_app::sequence::{FirstCamera, SequenceRequest, track_sequence};
 use trundle_app::sequence_input::{RecordedRun, SequenceInput, SequenceOptions};
 use trundle_core::{Beam, GyroRate, Pose2, RgbdImage, Scan, Stamp, Vector2, WheelTicks};
 use trundle_io::{EncodedEvent, LaserLogOptions, MapImage, OutputFolder, RosSequenceOptions};
@@ -37,7 +37,7 @@ fn request(path: &Path) -> SequenceRequest {
         vocabulary: None,
         seed: 1,
         map_image: MapImage::Pgm,
-        poses: TrajectorySource::Fused,
+        visual_only: false,
         record: RecordingContent::All,
         robot: None,
     }
@@ -72,7 +72,7 @@ fn slam_tracks_the_images_of_a_recording_with_its_wheels_and_its_camera() {
     let folder = OutputFolder::create(&scratch.path().join("slam")).unwrap();
     let run = track_sequence(&request, &input, &folder, &(), None).unwrap();
     assert_eq!(run.failure(), None);
-    assert_eq!((run.counts.ok, run.odometry_priors), (input.len(), input.len() - 1));
+    assert_eq!((run.counts.ok, run.odometry_priors()), (input.len(), input.len() - 1));
     let (_, first) = run.slam.trajectory()[0];
     let mount = input.robot.mount.base_from_camera();
     assert!((first.translation - mount.translation).norm() < 1e-9, "the robot's mount is the first pose");
