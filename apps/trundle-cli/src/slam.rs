@@ -9,7 +9,6 @@ use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
 use trundle::app::AppError;
-use trundle::app::report::stage_rows;
 use trundle::app::sequence::{FirstCamera, SequenceRequest, track_sequence, write_sequence};
 use trundle::live::RunFacts;
 
@@ -25,8 +24,7 @@ pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
     let output = write_sequence(&request, &input, &run, folder)?;
     if !args.common.quiet {
         console::print_table(&output.rows);
-        console::print_table(&[vec!["wall clock".to_owned(), format!("{:.1} s", run.seconds)]]);
-        console::print_table(&stage_rows(&run.times));
+        run.clock_tables().iter().for_each(|table| console::print_table(table));
         console::print(&format!("See {}", output.folder.join("report.html").display()));
     }
     Ok(Outcome::unless(run.failure().map(|failure| format!("{}: {failure}", args.input.display()))))

@@ -8,6 +8,7 @@ use super::scan_motion::ScanMotion;
 use super::trajectory::SequenceTrajectory;
 use crate::laser_map::DepthLog;
 use crate::operator::OperatorLink;
+use crate::report::stage_rows;
 use crate::sequence_input::SequenceInput;
 use crate::{AppError, StepProgress, TrackCounts, stop};
 use std::time::Instant;
@@ -214,6 +215,13 @@ impl SequenceRun {
     #[must_use]
     pub fn odometry_priors(&self) -> usize {
         self.odometry.motions.iter().flatten().count()
+    }
+
+    /// Wall-clock time of the whole, and of the stages.
+    #[must_use]
+    pub fn clock_tables(&self) -> [Vec<Vec<String>>; 2] {
+        let whole = vec!["wall clock".to_owned(), format!("{:.1} s", self.seconds)];
+        [vec![whole], stage_rows(&self.times)]
     }
 
     /// Number of images that were tracked.
