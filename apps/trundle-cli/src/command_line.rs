@@ -9,7 +9,6 @@ use crate::dock::DockArgs;
 use crate::eval::EvalArgs;
 use crate::experiment::ExperimentArgs;
 use crate::map::MapArgs;
-use crate::outcome::EXIT_CODES;
 use crate::plan::PlanArgs;
 use crate::replay::ReplayArgs;
 use crate::robot_file::ConfigArgs;
@@ -21,6 +20,7 @@ use crate::sim::SimArgs;
 use crate::slam::SlamArgs;
 use crate::vocabulary::VocabularyArgs;
 use clap::{Parser, Subcommand};
+use trundle::app::exit_codes::EXIT_CODES;
 
 /// Version of the package, and the commit if it was built from a checkout.
 const LONG_VERSION: &str = env!("TRUNDLE_LONG_VERSION");

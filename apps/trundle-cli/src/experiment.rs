@@ -127,12 +127,6 @@ fn in_folder<R: ExperimentReport>(
         console::print(&format!("{gap}{}\nSee {}", report.verdict(), place.join("report.html").display()));
     }
     let dead = context.runs.dead();
-    if !dead.is_empty() {
-        let names = dead.join("', '");
-        console::print_error(&AppError::Environment(format!(
-            "{} runs have died and are left out: '{names}'",
-            dead.len()
-        )));
-    }
-    Ok(if report.is_success() && dead.is_empty() { Outcome::Reached } else { Outcome::Missed })
+    dead.iter().for_each(console::print_error);
+    Ok(if report.is_success() && dead.is_none() { Outcome::Reached } else { Outcome::Missed })
 }

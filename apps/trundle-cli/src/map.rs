@@ -9,10 +9,11 @@ use crate::outcome::Outcome;
 use crate::output_args::OutputDirArg;
 use clap::Args;
 use laser_args::LaserArgs;
+use std::fmt::Display;
 use std::path::PathBuf;
 use trundle::app::AppError;
 use trundle::app::laser_map::{LaserMapRequest, map_log, map_rows, read_log};
-use trundle::io::{LaserLog, LaserLogOptions, MapImage};
+use trundle::io::{LaserLogOptions, MapImage};
 
 /// `trundle map`
 #[derive(Debug, Args)]
@@ -76,22 +77,15 @@ pub fn run(args: &MapArgs) -> Result<Outcome, AppError> {
     let folder = logging::output_folder(&args.out)?;
     let run = map_log(&request, args.localise, &input, &folder, &display)?;
     let place = folder.commit()?;
-    warn_of_log(args, &input.log);
-    if let Some(hint) = &run.mount_hint {
-        console::warn(&format!("{}: {hint}", args.log.display()));
-    }
+    // Entries that were skipped, ranges that cannot be, a laser mounted otherwise.
+    let warn = |problem: &dyn Display| console::warn(&format!("{}: {problem}", args.log.display()));
+    input.log.warnings().iter().for_each(|warning| warn(&warning));
+    run.mount_hint.iter().for_each(|hint| warn(hint));
     if !args.common.quiet {
         console::print_table(&map_rows(&input.log, &run));
         console::print(&format!("See {}", place.join("overview.png").display()));
     }
     Ok(Outcome::unless(run.failure.map(|failure| format!("{}: {failure}", args.log.display()))))
-}
-
-/// Logs entries that were skipped and ranges that cannot be.
-fn warn_of_log(args: &MapArgs, log: &LaserLog) {
-    for warning in log.warnings().iter() {
-        console::warn(&format!("{}: {warning}", args.log.display()));
-    }
 }
 
 impl MapArgs {

@@ -2,6 +2,7 @@
 
 use crate::console;
 use std::path::PathBuf;
+use trundle::app::exit_codes::{CODE_BAD_INPUT, CODE_INCOMPLETE, CODE_MISSED};
 use trundle::app::{AppError, stop};
 use trundle::io::IoError;
 
@@ -26,22 +27,6 @@ impl Outcome {
         }
     }
 }
-
-/// The run missed its aim.
-const CODE_MISSED: u8 = 1;
-/// The input or the place to write to has to change first; nothing was written.
-const CODE_BAD_INPUT: u8 = 2;
-/// The run worked, but its results could not all be written.
-const CODE_INCOMPLETE: u8 = 3;
-
-/// The exit codes, for the help.
-pub const EXIT_CODES: &str = "Exit codes:\n  \
-    0  done\n  \
-    1  the run missed its aim\n  \
-    2  bad input, nothing is written\n  \
-    3  the run worked, but its results could not all be written\n  \
-    130, 143  stopped by Ctrl-C or SIGTERM; what was done until then is written\n\n\
-    A folder of results is replaced only where trundle made it, and the last run is kept as NAME.1.";
 
 /// The exit code of a command that writes into `folders`; says on the terminal why it is not 0.
 pub fn end(result: Result<Outcome, AppError>, folders: &[PathBuf]) -> u8 {

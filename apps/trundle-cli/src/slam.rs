@@ -2,21 +2,21 @@
 
 mod args;
 
+use args::FirstCameraArgs;
 pub use args::{CameraArgs, SlamArgs};
 
 use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
 use trundle::app::AppError;
-use trundle::app::report::stage_rows;
-use trundle::app::sequence::{SequenceRequest, track_sequence, write_sequence};
+use trundle::app::sequence::{FirstCamera, SequenceRequest, track_sequence, write_sequence};
 use trundle::live::RunFacts;
 
 /// `trundle slam DIR`.
 pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
-    let request = args.request();
+    let request = args.request()?;
     let input = request.open()?;
-    let folder = logging::output_folder(&args.out)?;
+    let folder = logging::output_folder(&args.result.out)?;
     let display = console::StepDisplay::new(args.common.quiet);
     let (page, link) = args.live.start(|| Ok(RunFacts::of_sequence(&args.input)), false)?.unzip();
     let run = track_sequence(&request, &input, &folder, &display, link)?;
@@ -24,30 +24,31 @@ pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
     let output = write_sequence(&request, &input, &run, folder)?;
     if !args.common.quiet {
         console::print_table(&output.rows);
-        console::print_table(&[vec!["wall clock".to_owned(), format!("{:.1} s", run.seconds)]]);
-        console::print_table(&stage_rows(&run.times));
+        run.clock_tables().iter().for_each(|table| console::print_table(table));
         console::print(&format!("See {}", output.folder.join("report.html").display()));
     }
     Ok(Outcome::unless(run.failure().map(|failure| format!("{}: {failure}", args.input.display()))))
 }
 
 impl SlamArgs {
-    fn request(&self) -> SequenceRequest {
-        SequenceRequest {
+    fn request(&self) -> Result<SequenceRequest, AppError> {
+        let FirstCameraArgs { height, tilt: tilt_deg, roll: roll_deg } = self.first_camera;
+        Ok(SequenceRequest {
             path: self.input.clone(),
             topics: self.topics.options(),
             camera: self.camera.camera.clone(),
             depth_scale: self.camera.depth_scale,
             recover: self.recover,
             frames: self.frames.map(|frames| frames as usize),
-            height: self.first_camera.height,
-            tilt_deg: self.first_camera.tilt,
-            roll_deg: self.first_camera.roll,
+            first_camera: FirstCamera { height, tilt_deg, roll_deg },
             map: self.map.clone(),
             localize_only: self.localise,
             vocabulary: self.vocabulary.clone(),
             seed: self.seed,
-            map_image: self.map_image,
-        }
+            map_image: self.result.map_image,
+            visual_only: self.result.visual_only,
+            record: self.result.record,
+            robot: self.robot.robot_if_given()?.map(Box::new),
+        })
     }
 }

@@ -16,5 +16,6 @@ pub use input::read_log;
 pub use log_input::{DepthLog, LogInput};
 pub use numbers::{map_rows, trajectory_lines};
 pub use request::LaserMapRequest;
+pub(crate) use request::depth_filter;
 pub use run::map_log;
 pub use run_result::LaserMapRun;

@@ -34,6 +34,7 @@ pub mod dock;
 mod encoded_body;
 mod error;
 pub mod evaluation;
+pub mod exit_codes;
 mod finished_run;
 mod free_space;
 pub mod hardware;

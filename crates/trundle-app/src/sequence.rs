@@ -9,8 +9,11 @@ mod recorder;
 mod report;
 mod request;
 mod run;
+mod scan_motion;
+mod trajectory;
 
 pub use numbers::sequence_rows;
 pub use output::{SequenceOutput, write_sequence};
-pub use request::SequenceRequest;
+pub use request::{FirstCamera, SequenceRequest};
 pub use run::{SequenceRun, track_sequence};
+pub use trajectory::SequenceTrajectory;

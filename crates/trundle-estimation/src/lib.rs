@@ -4,6 +4,7 @@
 //! - [`Localizer`]: an extended Kalman filter on SE(2). It corrects that odometry by visual poses and scan matches at the stamps
 //!   of their measurement, and yields the one [`trundle_core::PoseEstimate`] that planning and control use.
 //! - [`Smoother`]: poses of the last seconds and calibration by one least-squares problem; it runs beside the localizer.
+//! - [`fuse_frames`]: one trajectory of a recorded sequence from several visual maps and the odometry between them.
 //! - [`StationEstimator`]: the pose of a charging station from its infrared light.
 //! - [`OdometryState`]: pose and covariance of the odometry at a stamp. With [`trundle_core::CameraMotion::of_base`] it is the
 //!   motion prior of visual tracking.
@@ -37,6 +38,7 @@ mod odometry_noise;
 mod planar;
 mod pose_monitor;
 mod smoother;
+mod trajectory_fusion;
 
 pub use calibration::batch::error::CalibrationError;
 pub use calibration::batch::estimate::Estimate;
@@ -66,3 +68,5 @@ pub use smoother::config::{SmootherConfig, SmootherLimits, SmootherNoise, Window
 pub use smoother::fixed_lag::Smoother;
 pub use smoother::innovation::Innovation;
 pub use smoother::measurement::{MeasurementUse, PlanarMeasurement};
+pub use trajectory_fusion::frame::{MapPose, SequenceFrame};
+pub use trajectory_fusion::fuse::fuse_frames;

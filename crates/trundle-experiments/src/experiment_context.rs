@@ -74,13 +74,14 @@ impl RunSource {
         }
     }
 
-    /// The runs of a shard that have died.
+    /// The runs of a shard that have died, in a sentence; `None` if all are alive.
     #[must_use]
-    pub fn dead(&self) -> Vec<String> {
-        match self {
-            Self::Shard(writer) => writer.dead(),
-            Self::Made | Self::Kept(_) => Vec::new(),
-        }
+    pub fn dead(&self) -> Option<AppError> {
+        let Self::Shard(writer) = self else { return None };
+        let dead = writer.dead();
+        let (count, names) = (dead.len(), dead.join("', '"));
+        let problem = format!("{count} runs have died and are left out: '{names}'");
+        (count > 0).then_some(AppError::Environment(problem))
     }
 
     /// Keeps the result of a run that was made for a shard.

@@ -42,6 +42,7 @@ mod observation;
 mod pose;
 mod pose_graph;
 mod pose_prior;
+mod static_points;
 
 pub use arrow::{ArrowCovariance, ArrowMarginal, ArrowSystem};
 pub use block_cholesky::BlockMatrix;

@@ -1,7 +1,7 @@
 //! A pose known from another sensor, and its fusion with that of the image.
 
 use crate::observation::{CHI2_95_6, CHI2_999_6};
-use nalgebra::Matrix6;
+use nalgebra::{Matrix6, Vector6};
 use trundle_core::Pose3;
 
 /// A prior of the pose from another source than the image, such as the wheels.
@@ -37,10 +37,28 @@ impl PosePrior {
     }
 }
 
+/// A pose that counts as a measurement.
+pub(crate) struct Hold {
+    pub(crate) pose: Pose3,
+    /// Inverse covariance of a right perturbation of it (m, rad).
+    pub(crate) information: Matrix6<f64>,
+}
+
+impl Hold {
+    /// Right perturbation that leads from here to `pose` (m, rad).
+    pub(crate) fn offset(&self, pose: Pose3) -> Vector6<f64> {
+        (self.pose.inverse() * pose).log()
+    }
+
+    pub(crate) fn cost(&self, pose: Pose3) -> f64 {
+        let offset = self.offset(pose);
+        offset.dot(&(self.information * offset))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Vector6;
 
     #[test]
     fn the_more_certain_pose_counts_more_axis_by_axis() {

@@ -69,6 +69,18 @@ impl LevelMap {
         Some((base_below(level_from_camera)?, self.scans.get(&stamp)?))
     }
 
+    /// The scan of an image, where it is kept; the base's frame lies under the camera.
+    #[must_use]
+    pub fn scan(&self, stamp: Stamp) -> Option<&Scan> {
+        self.scans.get(&stamp)
+    }
+
+    /// Distance up to which the camera at its last pose does not see the floor, m.
+    #[must_use]
+    pub fn blind_range(&self) -> f64 {
+        self.scanner.blind_range()
+    }
+
     /// Number of scans.
     #[must_use]
     pub fn scan_count(&self) -> usize {
@@ -86,12 +98,17 @@ pub fn level_from_first_camera(height: f64, tilt_deg: f64, roll_deg: f64) -> Res
     Ok(mount.validated()?.base_from_camera())
 }
 
-/// A base under the camera with the heading of the optical axis; none within 20 degrees of vertical.
-fn base_below(level_from_camera: &Pose3) -> Option<Pose2> {
+/// Angle between the optical axis and the vertical \[deg\]. Below it the camera has no heading. Source: ours.
+const MIN_AXIS_TILT_DEG: f64 = 20.0;
+
+/// `level_from_base` of a base under the camera at `level_from_camera`, its heading that of the optical axis; `None` if the axis is
+/// nearly vertical.
+#[must_use]
+pub fn base_below(level_from_camera: &Pose3) -> Option<Pose2> {
     let axis = level_from_camera.rotate(Vector3::z());
     let flat = axis.x.hypot(axis.y);
     let at = level_from_camera.translation;
-    (flat > 20_f64.to_radians().sin()).then(|| Pose2::new(at.x, at.y, axis.y.atan2(axis.x)))
+    (flat > MIN_AXIS_TILT_DEG.to_radians().sin()).then(|| Pose2::new(at.x, at.y, axis.y.atan2(axis.x)))
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@ pub use config::RobotConfig;
 pub use goal_approach::{ApproachEnd, ApproachFailure, GoalApproachConfig, GoalApproachReport};
 pub use histogram::Histogram;
 pub use lazy_image::LazyImage;
-pub use level_map::{LevelMap, level_from_first_camera};
+pub use level_map::{LevelMap, base_below, level_from_first_camera};
 pub use mission::executor_config::MissionExecutorConfig;
 pub use mission::{DockFailure, Mission, MissionState, Task, TaskEnd, TaskRecord};
 pub use operator::{OperatorCommand, PoseGuess, RunSetting, TELEOP_SILENCE_S, require_loadable};

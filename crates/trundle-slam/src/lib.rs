@@ -87,7 +87,7 @@ pub use loop_closing::config::LoopConfig;
 pub use loop_closing::loop_closure::LoopClosure;
 pub use motion::motion_model::MotionModelConfig;
 pub use persist::error::MapFileError;
-pub use report::{MapMerge, Mode, SeenFeature, TrackReport};
+pub use report::{FramePose, MapMerge, Mode, SeenFeature, TrackReport};
 pub use slam::RgbdSlam;
 pub use tracking::config::TrackingConfig;
 pub use tracking::tracking_status::Tracking;

@@ -70,6 +70,17 @@ pub struct TrackReport {
     pub landmarks: usize,
 }
 
+/// A past frame by the present maps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FramePose {
+    /// Of the image.
+    pub stamp: Stamp,
+    /// The map that the camera was in.
+    pub map: MapId,
+    /// The camera's pose in the frame of that map; `None` if the image did not locate the camera.
+    pub visual_from_camera: Option<Pose3>,
+}
+
 /// A feature of the last frame, for pictures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeenFeature {

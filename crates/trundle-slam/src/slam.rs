@@ -18,7 +18,7 @@ use crate::map::odometry_track::OdometryTrack;
 use crate::motion::motion_limits::MotionLimits;
 use crate::persist::error::MapFileError;
 use crate::persist::map_file;
-use crate::report::{Mode, SeenFeature, TrackReport};
+use crate::report::{FramePose, Mode, SeenFeature, TrackReport};
 use crate::tracking::tracking_state::TrackingState;
 use localizer::Localizer;
 use std::sync::Arc;
@@ -230,6 +230,12 @@ impl RgbdSlam {
     /// `step`: `visual_from_camera` by the present map. Only frames of the active map; other maps have frames of their own.
     pub fn trajectory(&self) -> Vec<(Stamp, Pose3)> {
         self.trajectory.poses(&self.atlas.active)
+    }
+
+    /// Every frame of the newest [`SlamConfig::kept_frames`] that were not dropped, in the order of `step`, by the present maps: also
+    /// those of inactive maps, each in the frame of its own map, and those that no image located.
+    pub fn frames(&self) -> Vec<FramePose> {
+        self.trajectory.frames(&self.atlas)
     }
 
     /// Drops the poses of all frames but the last one and those `wanted`: an hour has a hundred thousand frames.

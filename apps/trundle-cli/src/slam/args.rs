@@ -1,10 +1,11 @@
 //! The command line of `trundle slam`.
 
-use crate::common_args::{BagTopicsArgs, Common, NumberArg, choice};
+use crate::common_args::{BagTopicsArgs, Common, NumberArg, RobotArgs, choice};
 use crate::live::ViewArgs;
 use crate::output_args::OutputDirArg;
 use clap::Args;
 use std::path::PathBuf;
+use trundle::app::RecordingContent;
 use trundle::io::MapImage;
 
 /// `trundle slam`
@@ -37,24 +38,41 @@ pub struct SlamArgs {
     /// Only locate the camera in the map given: it stays as it is
     #[arg(long, requires = "map")]
     pub localise: bool,
-    /// Format of the map's picture.
-    #[arg(long, value_name = "FORMAT", default_value = "pgm", value_parser = choice(&MapImage::CHOICES))]
-    pub map_image: MapImage,
     /// Recognise places by this vocabulary, in trundle's form [default: the built-in one]
     #[arg(long, value_name = "FILE")]
     pub vocabulary: Option<PathBuf>,
+    /// The settings of tracking, odometry, mount and map.
+    #[command(flatten)]
+    pub robot: RobotArgs,
     /// Seed of the random sampling.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Folder for the results; the last run in it is kept as DIR.1
-    #[arg(long, value_name = "DIR", default_value = "out/slam")]
-    pub out: OutputDirArg,
+    /// What is written.
+    #[command(flatten)]
+    pub result: SlamResultArgs,
     /// The live page: it shows the tracking, and takes no commands.
     #[command(flatten)]
     pub live: ViewArgs,
     /// Options of every command.
     #[command(flatten)]
     pub common: Common,
+}
+
+/// What `trundle slam` writes.
+#[derive(Debug, Args)]
+pub struct SlamResultArgs {
+    /// Write the poses of the images' last map alone [default: all frames, by images and odometry, where the input has odometry]
+    #[arg(long)]
+    pub visual_only: bool,
+    /// Format of the map's picture.
+    #[arg(long, value_name = "FORMAT", default_value = "pgm", value_parser = choice(&MapImage::CHOICES))]
+    pub map_image: MapImage,
+    /// Content of recording.mcap; none leaves it out, events leaves out the images.
+    #[arg(long, value_name = "WHAT", default_value = "all", value_parser = choice(&RecordingContent::CHOICES))]
+    pub record: RecordingContent,
+    /// Folder for the results; the last run in it is kept as DIR.1
+    #[arg(long, value_name = "DIR", default_value = "out/slam")]
+    pub out: OutputDirArg,
 }
 
 /// The pose of the first camera.

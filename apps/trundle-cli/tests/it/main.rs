@@ -29,4 +29,5 @@ mod sim;
 mod sim_files;
 mod slam;
 mod slam_degraded_input;
+mod slam_in_the_dark;
 mod vocabulary;

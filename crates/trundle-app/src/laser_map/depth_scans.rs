@@ -4,10 +4,10 @@ use super::log_input::{DepthLog, LogInput};
 use crate::sequence_input::{PendingFrame, RecordedRun, SequenceInput};
 use crate::{AppError, StepProgress, read_trajectory, stop};
 use std::path::Path;
-use trundle_core::{Pose2, Pose3, Stamp, Vector3};
+use trundle_core::{Pose2, Pose3, Stamp};
 use trundle_io::{DepthStatistics, LaserLog, LaserLogScan, LaserLogSkip};
 use trundle_mapping::DepthScanner;
-use trundle_runtime::RobotConfig;
+use trundle_runtime::{RobotConfig, base_below};
 
 /// Time between two scans \[s\]; images that come sooner make no scan. A little under 1 / 5 Hz. Source: ours.
 const MIN_SCAN_PERIOD_S: f64 = 0.19;
@@ -17,8 +17,6 @@ const MAX_POSE_GAP_S: f64 = 1.0;
 const MAX_POSE_AGE_S: f64 = 0.1;
 /// Distance of a camera pose from the first \[m\]. Beyond it the file is refused. Source: ours.
 const MAX_POSE_DISTANCE_M: f64 = 1e6;
-/// Angle between the optical axis and the vertical \[deg\]. Below it the camera has no heading. Source: ours.
-const MIN_AXIS_TILT_DEG: f64 = 20.0;
 
 /// The scans of RGB-D images at 5 Hz.
 ///
@@ -190,12 +188,4 @@ fn about<T: Copy>(poses: &[(Stamp, T)], stamp: Stamp) -> Option<(T, T, f64)> {
         Some((t1, b)) if *t1 - t0 <= MAX_POSE_GAP_S => Some((a, *b, (stamp - t0) / (*t1 - t0))),
         _ => (stamp - t0 < MAX_POSE_AGE_S).then_some((a, a, 0.0)),
     }
-}
-
-/// A base under the camera, its heading that of the optical axis; `None` if the axis is nearly vertical.
-fn base_below(level_from_camera: &Pose3) -> Option<Pose2> {
-    let axis = level_from_camera.rotate(Vector3::z());
-    let at = level_from_camera.translation;
-    (axis.x.hypot(axis.y) > MIN_AXIS_TILT_DEG.to_radians().sin())
-        .then(|| Pose2::new(at.x, at.y, axis.y.atan2(axis.x)))
 }

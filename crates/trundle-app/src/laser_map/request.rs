@@ -75,15 +75,22 @@ impl LaserMapRequest {
 
     /// The filter's settings for a depth camera: its range, noise and blind range, and the errors of its motion.
     fn depth_config(&self, depth: &DepthLog, config: ParticleConfig) -> ParticleConfig {
-        let DepthLog { scan, blind_range, by_wheels } = depth;
-        ParticleConfig {
-            map: MapperConfig { max_range: scan.max_range, blind_range: *blind_range, ..config.map },
-            motion: if *by_wheels { MotionConfig::default() } else { tracked_camera_motion() },
-            pose_prior: (!*by_wheels && !self.poses_drift).then(PosePriorConfig::default),
-            range_noise: DEPTH_RANGE_NOISE_M,
-            range_noise_growth: scan.noise_growth,
-            ..config
-        }
+        let by_wheels = depth.by_wheels;
+        let motion = if by_wheels { MotionConfig::default() } else { tracked_camera_motion() };
+        let pose_prior = (!by_wheels && !self.poses_drift).then(PosePriorConfig::default);
+        ParticleConfig { pose_prior, ..depth_filter(depth, motion, config) }
+    }
+}
+
+/// The settings of a filter for the scans of a depth camera, whose motion has these errors; the others are those of `config`.
+pub(crate) fn depth_filter(depth: &DepthLog, motion: MotionConfig, config: ParticleConfig) -> ParticleConfig {
+    let DepthLog { scan, blind_range, .. } = depth;
+    ParticleConfig {
+        map: MapperConfig { max_range: scan.max_range, blind_range: *blind_range, ..config.map },
+        motion,
+        range_noise: DEPTH_RANGE_NOISE_M,
+        range_noise_growth: scan.noise_growth,
+        ..config
     }
 }
 

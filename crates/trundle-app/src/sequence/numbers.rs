@@ -23,7 +23,8 @@ pub fn sequence_rows(
             "ok / weak / dead reckoned / lost",
             format!("{} / {} / {} / {}", c.ok, c.weak, c.dead_reckoned, c.lost),
         ),
-        row("motions by odometry", run.odometry_priors.to_string()),
+        row("frames with a pose, missing", placed(run)),
+        row("motions by odometry", run.odometry_priors().to_string()),
         row("keyframes", run.slam.keyframes().count().to_string()),
         row("landmarks", run.slam.landmarks().count().to_string()),
         row("loops closed", run.slam.loops().len().to_string()),
@@ -32,12 +33,25 @@ pub fn sequence_rows(
         let s = &absolute.statistics;
         rows.push(row(
             "ATE rmse (median, max)",
-            format!("{:.2} cm ({:.2}, {:.2})", s.rmse * 1e2, s.median * 1e2, s.max * 1e2),
+            format!(
+                "{:.2} cm ({:.2}, {:.2}); {:.1} % of the frames missing",
+                s.rmse * 1e2,
+                s.median * 1e2,
+                s.max * 1e2,
+                run.trajectory.missing_share() * 1e2
+            ),
         ));
         rows.push(row("RPE rmse, frame to frame", format!("{:.2} cm", relative.translation.rmse * 1e2)));
         rows.push(row("RPE rmse, rotation", format!("{:.3} deg", relative.rotation.rmse.to_degrees())));
     }
     rows
+}
+
+/// Frames with a pose, and the share without one.
+fn placed(run: &SequenceRun) -> String {
+    let trajectory = &run.trajectory;
+    let (posed, frames) = (trajectory.poses.len(), trajectory.frames);
+    format!("{posed} of {frames}, {:.1} %", trajectory.missing_share() * 1e2)
 }
 
 /// `summary.json`.
@@ -64,6 +78,10 @@ pub fn summary(
         .set("frames_weak", c.weak)
         .set("frames_dead_reckoned", c.dead_reckoned)
         .set("frames_lost", c.lost)
+        .set("frames_posed", run.trajectory.poses.len())
+        .set("frames_without_pose", run.trajectory.missing())
+        .set("missing_share", run.trajectory.missing_share())
+        .set("trajectory", if run.trajectory.is_fused { "fused" } else { "visual" })
         .set("keyframes", run.slam.keyframes().count())
         .set("landmarks", run.slam.landmarks().count())
         .set("loops_closed", run.slam.loops().len())

@@ -28,18 +28,18 @@ pub fn write_sequence(
     run: &SequenceRun,
     folder: OutputFolder,
 ) -> Result<SequenceOutput, AppError> {
-    let trajectory = run.slam.trajectory();
-    let comparison = input.ground_truth().and_then(|truth| against_truth(&input.path, truth, &trajectory));
+    let trajectory = &run.trajectory.poses;
+    let comparison = input.ground_truth().and_then(|truth| against_truth(&input.path, truth, trajectory));
     let comparison = comparison.as_ref();
-    let grid = run.map.draw(&trajectory, input.robot.mapping.clone())?;
+    let grid = run.map.draw(trajectory, input.robot.mapping.clone())?;
     write_map_as(&folder, "map", &grid, request.map_image)?;
-    folder.write("trajectory.txt", trajectory_text(&trajectory).as_bytes())?;
+    folder.write("trajectory.txt", trajectory_text(trajectory).as_bytes())?;
     folder.write("visual.map", &run.slam.save())?;
     if let Some(truth) = input.ground_truth() {
         folder.write("groundtruth.txt", trajectory_text(truth).as_bytes())?;
     }
     let rows = sequence_rows(input, run, comparison);
-    let page = page(input, run, grid, &trajectory, comparison, &rows);
+    let page = page(input, run, grid, trajectory, comparison, &rows);
     folder.write("report.html", page.to_html().as_bytes())?;
     folder.write("summary.json", summary(request, input, run, comparison).to_json().as_bytes())?;
     Ok(SequenceOutput { folder: folder.commit()?, rows })

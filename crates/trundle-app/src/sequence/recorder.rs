@@ -1,5 +1,6 @@
 //! The recording of a tracked sequence, and the links between keyframes that it shows.
 
+use crate::RecordingContent;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufWriter;
@@ -20,15 +21,30 @@ const FRAME: &str = "visual";
 /// A disk that is full ends the recording.
 pub struct SequenceRecorder {
     recorder: Recorder<BufWriter<File>>,
+    /// Whether images are recorded.
+    has_images: bool,
     failure: Option<IoError>,
     now: Stamp,
 }
 
 impl SequenceRecorder {
-    /// Records images of `camera` into `recorder`.
-    pub fn new(mut recorder: Recorder<BufWriter<File>>, camera: PinholeCamera) -> Self {
+    /// Records tracking, and with `content` all the images of `camera`, into `recording.mcap` of `folder`; `None` if nothing is to be
+    /// recorded.
+    ///
+    /// # Errors
+    /// When the file cannot be made.
+    pub fn begin(
+        content: RecordingContent,
+        folder: &OutputFolder,
+        camera: PinholeCamera,
+    ) -> Result<Option<Self>, IoError> {
+        if content == RecordingContent::None {
+            return Ok(None);
+        }
+        let mut recorder = folder.recorder("recording.mcap")?;
         recorder.set_camera(camera);
-        Self { recorder, failure: None, now: Stamp::default() }
+        let has_images = content == RecordingContent::All;
+        Ok(Some(Self { recorder, has_images, failure: None, now: Stamp::default() }))
     }
 
     /// Records an image and its tracking.
@@ -49,7 +65,9 @@ impl SequenceRecorder {
         slam: &RgbdSlam,
     ) -> Result<(), IoError> {
         self.now = report.stamp;
-        self.recorder.record_event(&EncodedEvent::Rgbd(image))?;
+        if self.has_images {
+            self.recorder.record_event(&EncodedEvent::Rgbd(image))?;
+        }
         let mark = |feature: &trundle_slam::SeenFeature| {
             let keypoint = feature.keypoint;
             (Vector2::new(f64::from(keypoint.x), f64::from(keypoint.y)), feature.tracked)

@@ -22,7 +22,9 @@ pub fn page(
 ) -> RunReport {
     let c = run.counts;
     let posed = c.ok + c.weak;
-    let verdict = format!("{posed} of {} frames located by sight.", posed + c.dead_reckoned + c.lost);
+    let frames = posed + c.dead_reckoned + c.lost;
+    let placed = run.trajectory.poses.len();
+    let verdict = format!("{posed} of {frames} frames located by sight, {placed} with a pose.");
     let mut charts =
         vec![Figure::png("Trajectory of the camera", &path_picture(trajectory, comparison)).wide()];
     charts.extend(comparison.map(error_chart));
@@ -41,24 +43,28 @@ pub fn page(
         cards: cards(run, comparison),
         map: RunMap {
             grid: Some(grid),
-            landmarks: run.slam.landmarks().collect(),
+            landmarks: run
+                .slam
+                .landmarks()
+                .map(|point| run.trajectory.level_from_visual.transform(point))
+                .collect(),
             estimated_path: trajectory.iter().map(|(_, pose)| pose.to_pose2()).collect(),
             ..RunMap::default()
         },
         camera: run.last_image.as_ref().map(|image| camera_view(image, run.slam.last_features())),
         depth: run.last_image.as_ref().map(|image| image.depth().clone()),
-        figures: vec![visual_map(run, trajectory)],
+        figures: vec![visual_map(run)],
         charts,
         tables: vec![rows.iter().cloned().fold(Table::new("The sequence", ["what", "value"]), Table::row)],
     }
 }
 
 /// Landmarks, keyframes and the links between keyframes.
-fn visual_map(run: &SequenceRun, trajectory: &[(Stamp, Pose3)]) -> Figure {
+fn visual_map(run: &SequenceRun) -> Figure {
     let KeyframeLinks { covisible, loops } = KeyframeLinks::of(&run.slam);
     let landmarks: Vec<Vector3> = run.slam.landmarks().collect();
     let keyframes: Vec<Vector3> = run.slam.keyframes().map(|(_, _, pose)| pose.translation).collect();
-    let way: Vec<Vector3> = trajectory.iter().map(|(_, pose)| pose.translation).collect();
+    let way: Vec<Vector3> = run.slam.trajectory().iter().map(|(_, pose)| pose.translation).collect();
     let (png, legend) = visual_map_picture(&VisualMapScene {
         landmarks: &landmarks,
         way: &way,

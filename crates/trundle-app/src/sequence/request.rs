@@ -1,12 +1,12 @@
 //! Request to track a sequence: camera, first pose, map, seed.
 
-use crate::AppError;
 use crate::sequence_input::{SequenceInput, SequenceOptions};
 use crate::vocabulary_file::vocabulary_or_builtin;
+use crate::{AppError, RecordingContent};
 use std::path::PathBuf;
 use trundle_core::{Invalid, Pose3};
 use trundle_io::{Expected, MapImage, RosSequenceOptions};
-use trundle_runtime::level_from_first_camera;
+use trundle_runtime::{RobotConfig, level_from_first_camera};
 use trundle_slam::{Mode, RgbdSlam, SlamConfig};
 
 /// A recorded sequence and how to track it.
@@ -24,12 +24,8 @@ pub struct SequenceRequest {
     pub frames: Option<usize>,
     /// Whether a recording may be cut: it is tracked up to the cut.
     pub recover: bool,
-    /// Height of the first camera above the floor, m; `None` for the input's own, else 1 m.
-    pub height: Option<f64>,
-    /// Downward tilt of the first camera, deg; `None` for the input's own, else 0.
-    pub tilt_deg: Option<f64>,
-    /// Roll of the first camera to its right, deg; `None` for the input's own, else 0.
-    pub roll_deg: Option<f64>,
+    /// Pose of the first camera above the floor.
+    pub first_camera: FirstCamera,
     /// The visual map of an earlier run, in which the camera is localized first.
     pub map: Option<PathBuf>,
     /// Whether that map is fixed.
@@ -40,6 +36,36 @@ pub struct SequenceRequest {
     pub seed: u64,
     /// Format of the picture of the map that is written.
     pub map_image: MapImage,
+    /// Content of `recording.mcap`; `Events` is tracking without images.
+    pub record: RecordingContent,
+    /// Settings of tracking, odometry, mount, scans and map; `None` for the input's own, else the default ones.
+    pub robot: Option<Box<RobotConfig>>,
+    /// Whether only the frames of the last visual map are written; else all frames that odometry places as well, if there is odometry.
+    pub visual_only: bool,
+}
+
+/// Pose of the first camera above the floor; `None` everywhere for the input's own.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct FirstCamera {
+    /// Height above the floor, m; default 1 m.
+    pub height: Option<f64>,
+    /// Downward tilt, deg; default 0.
+    pub tilt_deg: Option<f64>,
+    /// Roll to its right, deg; default 0.
+    pub roll_deg: Option<f64>,
+}
+
+impl FirstCamera {
+    /// Whether part of the pose is asked for: then all of it is.
+    fn is_asked(&self) -> bool {
+        self.height.or(self.tilt_deg).or(self.roll_deg).is_some()
+    }
+
+    /// Height (m), tilt and roll (deg) that are asked for.
+    fn asked(&self) -> (f64, f64, f64) {
+        let height = self.height.unwrap_or(DEFAULT_CAMERA_HEIGHT_M);
+        (height, self.tilt_deg.unwrap_or_default(), self.roll_deg.unwrap_or_default())
+    }
 }
 
 /// Default height of a first camera \[m\]. Source: ours, a hand-held camera.
@@ -51,32 +77,41 @@ impl SequenceRequest {
     /// # Errors
     /// When they cannot be read, or there is no such camera.
     pub fn open(&self) -> Result<SequenceInput, AppError> {
-        SequenceInput::open(&SequenceOptions {
+        let mut input = SequenceInput::open(&SequenceOptions {
             path: &self.path,
             camera: self.camera.as_deref(),
             depth_scale: self.depth_scale,
             recover: self.recover,
             topics: self.topics.clone(),
-        })
+        })?;
+        if let Some(robot) = &self.robot {
+            input.robot = RobotConfig::clone(robot);
+            input.robot.camera = input.camera.model.camera;
+        }
+        if self.first_camera.is_asked() {
+            let mount = &mut input.robot.mount;
+            (mount.z, mount.pitch_deg, mount.roll_deg) = self.first_camera.asked();
+        }
+        Ok(input)
     }
 
-    /// The pose of the first camera above the floor: by the request, else by the robot of a recording.
-    fn level_from_first_camera(&self, input: &SequenceInput) -> Result<Pose3, Invalid> {
-        let is_asked = self.height.or(self.tilt_deg).or(self.roll_deg).is_some();
-        match input.level_from_first_camera().filter(|_| !is_asked) {
+    /// The pose of the first camera above the floor: by the request, else by the robot file or the robot of a recording.
+    pub(super) fn level_from_first_camera(&self, input: &SequenceInput) -> Result<Pose3, Invalid> {
+        let by_file = self.robot.as_ref().map(|robot| robot.mount.base_from_camera());
+        let known = by_file.or_else(|| input.level_from_first_camera());
+        match known.filter(|_| !self.first_camera.is_asked()) {
             Some(mount) => Ok(mount),
-            None => level_from_first_camera(
-                self.height.unwrap_or(DEFAULT_CAMERA_HEIGHT_M),
-                self.tilt_deg.unwrap_or_default(),
-                self.roll_deg.unwrap_or_default(),
-            ),
+            None => {
+                let (height, tilt_deg, roll_deg) = self.first_camera.asked();
+                level_from_first_camera(height, tilt_deg, roll_deg)
+            }
         }
     }
 
     /// A tracker with an empty map, or with the requested one.
     pub(super) fn slam(&self, input: &SequenceInput) -> Result<RgbdSlam, AppError> {
         // The error of a recording is taken over all of its frames.
-        let config = SlamConfig { seed: self.seed, kept_frames: usize::MAX, ..SlamConfig::default() };
+        let config = SlamConfig { seed: self.seed, kept_frames: usize::MAX, ..input.robot.slam.clone() };
         let camera = input.camera.model.camera;
         let vocabulary = vocabulary_or_builtin(self.vocabulary.as_deref())?;
         let Some(file) = &self.map else {

@@ -4,13 +4,17 @@ use super::live_view::{SequenceFeed, Tracker};
 use super::odometry_prior::OdometryPrior;
 use super::recorder::SequenceRecorder;
 use super::request::SequenceRequest;
+use super::scan_motion::ScanMotion;
+use super::trajectory::SequenceTrajectory;
+use crate::laser_map::DepthLog;
 use crate::operator::OperatorLink;
+use crate::report::stage_rows;
 use crate::sequence_input::SequenceInput;
 use crate::{AppError, StepProgress, TrackCounts, stop};
 use std::time::Instant;
-use trundle_core::{RgbdImage, Stamp};
+use trundle_core::{CameraMotion, Invalid, Pose3, RgbdImage, Stamp};
 use trundle_io::{DepthStatistics, FrameError, OutputFolder, Warnings};
-use trundle_runtime::{LevelMap, Stage, StageTimes};
+use trundle_runtime::{LevelMap, Stage, StageTimes, base_below};
 use trundle_slam::{RgbdSlam, TrackReport};
 
 /// The result of tracking a sequence.
@@ -27,24 +31,31 @@ pub struct SequenceRun {
     stamps: Option<(Stamp, Stamp)>,
     /// Frames that could not be read, in words.
     pub unreadable: Vec<String>,
-    /// Images for which the odometry gave the motion since the image before.
-    pub odometry_priors: usize,
+    odometry: OdometryLog,
+    /// The poses of the frames.
+    pub trajectory: SequenceTrajectory,
     /// Wall-clock time of the stages.
     pub times: StageTimes,
     /// Wall-clock time of the whole, s.
     pub seconds: f64,
     /// Whether the user ended it before the last frame.
     pub is_interrupted: bool,
-    /// The depth of all images read.
-    depth: DepthStatistics,
-    /// Depth units per metre.
-    depth_scale: f64,
+    /// The depth of all images read, and depth units per metre.
+    depth: (DepthStatistics, f64),
     /// Calibration issues that were logged.
     logged_issues: usize,
     /// Why frames could not be read.
     frame_problems: Warnings,
     /// The images asked for that no pass of tracking saw.
     left_out: LeftOut,
+}
+
+/// The odometry of a sequence.
+struct OdometryLog {
+    /// Motion to each tracked image from the one before.
+    motions: Vec<Option<CameraMotion>>,
+    /// Pose of the first camera above the floor, where the camera is on a robot with odometry.
+    level_mount: Option<Pose3>,
 }
 
 /// Images of an input, and why some are left out before tracking.
@@ -87,7 +98,7 @@ pub fn track_sequence(
     watch: Option<OperatorLink>,
 ) -> Result<SequenceRun, AppError> {
     let mut run = SequenceRun::new(request, input)?;
-    let mut recorder = SequenceRecorder::new(folder.recorder("recording.mcap")?, input.camera.model.camera);
+    let mut recorder = SequenceRecorder::begin(request.record, folder, input.camera.model.camera)?;
     let mut feed = watch.map(|link| SequenceFeed::new(link, input.robot.mapping.clone()));
     let odometry = OdometryPrior::new(input);
     let frames = request.frames.map_or(input.len(), |frames| input.len().min(frames));
@@ -97,13 +108,17 @@ pub fn track_sequence(
         let frame = frame?;
         match frame.decode() {
             Ok(image) => {
-                let encoded = frame.encoded(&image).map_err(AppError::input)?;
+                let is_needed = recorder.is_some() || feed.is_some();
+                let encoded =
+                    is_needed.then(|| frame.encoded(&image)).transpose().map_err(AppError::input)?;
                 let report = run.step(image, &odometry);
-                if let (Some(feed), Some(image)) = (&mut feed, &run.last_image) {
+                if let (Some(feed), Some(image), Some(encoded)) = (&mut feed, &run.last_image, &encoded) {
                     let tracker = Tracker { slam: &run.slam, map: &run.map, times: &run.times };
                     feed.note(image, &encoded.color_jpeg, &report, &tracker, (i + 1, frames));
                 }
-                recorder.record(encoded, &report, &run.slam);
+                if let (Some(recorder), Some(encoded)) = (&mut recorder, encoded) {
+                    recorder.record(encoded, &report, &run.slam);
+                }
                 run.warn_of_calibration(progress);
             }
             Err(error) => run.skip(&error),
@@ -117,18 +132,21 @@ pub fn track_sequence(
     progress.end();
     run.frame_problems.iter().for_each(|warning| tracing::warn!("frames skipped: {warning}"));
     run.slam.finish_refining();
-    recorder.finish(&run.slam, folder);
+    if let Some(recorder) = recorder {
+        recorder.finish(&run.slam, folder);
+    }
     if let (None, Some(first)) = (&run.last_image, run.unreadable.first()) {
         let (path, camera) = (input.path.display(), &input.camera.name);
         let problem = format!("{path}: no frame can be read as one of camera {camera} (--camera); {first}");
         return Err(AppError::Input(problem));
     }
     if let (true, 0, Some(images)) =
-        (input.odometry().is_some() && frames > 1, run.odometry_priors, run.stamps)
+        (input.odometry().is_some() && frames > 1, run.odometry_priors(), run.stamps)
     {
         let [source, _] = input.pose_sources();
         tracing::warn!("{source}: {}", odometry.why_no_motion(images));
     }
+    run.trajectory = run.final_trajectory(request, input)?;
     run.seconds = start.elapsed().as_secs_f64();
     Ok(run)
 }
@@ -136,6 +154,8 @@ pub fn track_sequence(
 impl SequenceRun {
     fn new(request: &SequenceRequest, input: &SequenceInput) -> Result<Self, AppError> {
         let robot = &input.robot;
+        let has_odometry = input.odometry().is_some();
+        let level_mount = has_odometry.then(|| request.level_from_first_camera(input)).transpose()?;
         Ok(Self {
             slam: request.slam(input)?,
             map: LevelMap::new(input.camera.model.camera, robot.scan.clone(), robot.schedule.map_hz)?,
@@ -143,22 +163,44 @@ impl SequenceRun {
             last_image: None,
             stamps: None,
             unreadable: Vec::new(),
-            odometry_priors: 0,
+            odometry: OdometryLog { motions: Vec::new(), level_mount },
+            trajectory: SequenceTrajectory::default(),
             times: StageTimes::default(),
             seconds: 0.0,
             is_interrupted: false,
-            depth: DepthStatistics::default(),
-            depth_scale: input.depth_scale(),
+            depth: (DepthStatistics::default(), input.depth_scale()),
             logged_issues: 0,
             frame_problems: Warnings::default(),
             left_out: LeftOut::of(request, input),
         })
     }
 
+    /// The trajectory that was asked for.
+    fn final_trajectory(
+        &self,
+        request: &SequenceRequest,
+        input: &SequenceInput,
+    ) -> Result<SequenceTrajectory, Invalid> {
+        let (false, Some(mount)) = (request.visual_only, self.odometry.level_mount) else {
+            return Ok(SequenceTrajectory::visual(&self.slam));
+        };
+        let robot = &input.robot;
+        let (scan, blind_range) = (robot.scan.clone(), self.map.blind_range());
+        let depth = DepthLog { scan, blind_range, by_wheels: true };
+        let scans = base_below(&mount).map(|base| ScanMotion {
+            map: &self.map,
+            depth: &depth,
+            base_from_camera: Pose3::from_pose2(base).inverse() * mount,
+            noise: &robot.odometry,
+            seed: request.seed,
+        });
+        SequenceTrajectory::fused(&self.slam, &self.odometry.motions, mount, scans.as_ref())
+    }
+
     /// Why the run missed its aim, with the likely cause; `None` if it did not.
     #[must_use]
     pub fn failure(&self) -> Option<String> {
-        let depth = self.depth.problem(self.depth_scale);
+        let depth = self.depth.0.problem(self.depth.1);
         if !self.is_located() {
             let cause = depth.unwrap_or_else(|| "too few features of the images match".to_owned());
             return Some(format!("no frame after the first was located: {cause}"));
@@ -166,7 +208,20 @@ impl SequenceRun {
         if self.tracked() == 1 && self.left_out.asked > 1 && !self.is_interrupted {
             return Some(self.left_out.failure(self.unreadable.first()));
         }
-        depth
+        depth.or_else(|| self.trajectory.failure())
+    }
+
+    /// Number of images for which the odometry gave the motion since the image before.
+    #[must_use]
+    pub fn odometry_priors(&self) -> usize {
+        self.odometry.motions.iter().flatten().count()
+    }
+
+    /// Wall-clock time of the whole, and of the stages.
+    #[must_use]
+    pub fn clock_tables(&self) -> [Vec<Vec<String>>; 2] {
+        let whole = vec!["wall clock".to_owned(), format!("{:.1} s", self.seconds)];
+        [vec![whole], stage_rows(&self.times)]
     }
 
     /// Number of images that were tracked.
@@ -196,16 +251,18 @@ impl SequenceRun {
     }
 
     fn step(&mut self, image: RgbdImage, odometry: &OdometryPrior<'_>) -> TrackReport {
-        self.depth.count(image.depth());
+        self.depth.0.count(image.depth());
         self.stamps = Some((self.stamps.map_or(image.stamp(), |(first, _)| first), image.stamp()));
         let since = self.last_image.as_ref().map(RgbdImage::stamp);
         let prior = since.and_then(|since| odometry.motion(since, image.stamp()));
-        self.odometry_priors += usize::from(prior.is_some());
         let report = self.times.measure(Stage::Slam, || self.slam.step(&image, prior));
         self.counts.count(report.tracking);
-        if report.tracking.is_located() {
+        self.odometry.motions.push(prior);
+        // A camera on a robot is level by its mount, whatever the images show.
+        let located = report.tracking.is_located().then_some(report.visual_from_camera);
+        if let Some(level_from_camera) = self.odometry.level_mount.or(located) {
             let map = &mut self.map;
-            self.times.measure(Stage::Scan, || map.note(&image, report.visual_from_camera));
+            self.times.measure(Stage::Scan, || map.note(&image, level_from_camera));
         }
         self.last_image = Some(image);
         report

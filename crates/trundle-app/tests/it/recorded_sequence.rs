@@ -2,8 +2,9 @@
 
 use crate::body::{run_into, setup, stamp};
 use std::path::{Path, PathBuf};
+use trundle_app::RecordingContent;
 use trundle_app::laser_map::{LaserMapRequest, map_log, read_log};
-use trundle_app::sequence::{SequenceRequest, track_sequence};
+use trundle_app::sequence::{FirstCamera, SequenceRequest, track_sequence};
 use trundle_app::sequence_input::{RecordedRun, SequenceInput, SequenceOptions};
 use trundle_core::{Beam, GyroRate, Pose2, RgbdImage, Scan, Stamp, Vector2, WheelTicks};
 use trundle_io::{EncodedEvent, LaserLogOptions, MapImage, OutputFolder, RosSequenceOptions};
@@ -30,14 +31,15 @@ fn request(path: &Path) -> SequenceRequest {
         depth_scale: None,
         frames: None,
         recover: false,
-        height: None,
-        tilt_deg: None,
-        roll_deg: None,
+        first_camera: FirstCamera::default(),
         map: None,
         localize_only: false,
         vocabulary: None,
         seed: 1,
         map_image: MapImage::Pgm,
+        visual_only: false,
+        record: RecordingContent::All,
+        robot: None,
     }
 }
 
@@ -70,7 +72,7 @@ fn slam_tracks_the_images_of_a_recording_with_its_wheels_and_its_camera() {
     let folder = OutputFolder::create(&scratch.path().join("slam")).unwrap();
     let run = track_sequence(&request, &input, &folder, &(), None).unwrap();
     assert_eq!(run.failure(), None);
-    assert_eq!((run.counts.ok, run.odometry_priors), (input.len(), input.len() - 1));
+    assert_eq!((run.counts.ok, run.odometry_priors()), (input.len(), input.len() - 1));
     let (_, first) = run.slam.trajectory()[0];
     let mount = input.robot.mount.base_from_camera();
     assert!((first.translation - mount.translation).norm() < 1e-9, "the robot's mount is the first pose");

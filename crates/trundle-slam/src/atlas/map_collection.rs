@@ -74,14 +74,16 @@ impl Atlas {
     }
 
     /// Leaves the active map for an empty one; `before_from_map` is where the camera is in the active map, if odometry measured it.
-    pub fn start_new_map(&mut self, before_from_map: Option<UncertainPose>) {
+    /// Returns the map that was left, if it is too small to be kept.
+    pub fn start_new_map(&mut self, before_from_map: Option<UncertainPose>) -> Option<SubMap> {
         let before = self.active.id;
         let id = self.next_id();
         let empty = SubMap::new(id, LandmarkMap::default(), self.active.place_index.vocabulary());
         let left = std::mem::replace(&mut self.active, empty);
         let is_kept = left.map.keyframe_count() >= MIN_KEPT_KEYFRAMES;
+        let mut dropped = Some(left);
         if is_kept {
-            self.inactive.push(left);
+            self.inactive.extend(dropped.take());
             self.inactive.sort_by_key(|map| map.id);
         }
         self.pending_merge = None;
@@ -89,6 +91,7 @@ impl Atlas {
         // Where the map before is dropped, the link leads on from the one before that.
         let joined = || self.submap_link.zip(link).and_then(|(first, second)| first.then(second));
         self.submap_link = if is_kept { link } else { joined() };
+        dropped
     }
 
     /// An id that no map had: a caller identifies a map's poses by its id.
@@ -119,9 +122,9 @@ mod tests {
     fn ids_are_never_used_twice_and_small_maps_are_dropped() {
         let mut atlas = Atlas::new(&Vocabulary::builtin());
         with_keyframes(&mut atlas, MIN_KEPT_KEYFRAMES);
-        atlas.start_new_map(None);
+        assert!(atlas.start_new_map(None).is_none());
         with_keyframes(&mut atlas, MIN_KEPT_KEYFRAMES - 1);
-        atlas.start_new_map(None);
+        assert_eq!(atlas.start_new_map(None).map(|map| map.id), Some(MapId(1)));
         let ids: Vec<u32> = atlas.maps().iter().map(|map| map.id.number()).collect();
         assert_eq!(ids, [0, 2]);
         assert!(atlas.enter(MapId(0)) && !atlas.enter(MapId(0)) && !atlas.enter(MapId(1)));

@@ -1,8 +1,10 @@
 //! The poses of past frames, which move along with the map.
 
+use crate::atlas::map_collection::Atlas;
 use crate::atlas::sub_map::{IdMap, SubMap};
 use crate::ids::MapId;
 use crate::map::anchored_pose::AnchoredPose;
+use crate::report::FramePose;
 use crate::tracking::tracking_status::Tracking;
 use std::collections::VecDeque;
 use trundle_core::{Pose3, Stamp};
@@ -57,6 +59,27 @@ impl Trajectory {
         let pose =
             |record: &FrameRecord| (record.anchored.stamp, record.anchored.visual_from_camera(&active.map));
         self.records.iter().filter(is_in_map).map(pose).collect()
+    }
+
+    /// Every frame by the present maps.
+    pub fn frames(&self, atlas: &Atlas) -> Vec<FramePose> {
+        let maps = atlas.maps();
+        let pose = |record: &FrameRecord| {
+            let located = record.tracking.is_located();
+            let map = maps.iter().find(|sub_map| sub_map.id == record.map);
+            let in_map = map.map(|sub_map| record.anchored.visual_from_camera(&sub_map.map));
+            let visual_from_camera = in_map.or(record.anchored.fixed_pose()).filter(|_| located);
+            FramePose { stamp: record.anchored.stamp, map: record.map, visual_from_camera }
+        };
+        self.records.iter().map(pose).collect()
+    }
+
+    /// Keeps the poses of a map that is dropped, as they are.
+    pub fn fix_poses(&mut self, dropped: &SubMap) {
+        for record in self.records.iter_mut().filter(|record| record.map == dropped.id) {
+            let reference_from_camera = record.anchored.visual_from_camera(&dropped.map);
+            record.anchored = AnchoredPose { reference: None, reference_from_camera, ..record.anchored };
+        }
     }
 
     /// Drops all records but the last one and those `wanted`.

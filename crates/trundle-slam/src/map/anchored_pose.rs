@@ -26,6 +26,11 @@ impl AnchoredPose {
         Self { stamp, reference, reference_from_camera }
     }
 
+    /// `visual_from_camera` where it depends on no keyframe.
+    pub fn fixed_pose(&self) -> Option<Pose3> {
+        self.reference.is_none().then_some(self.reference_from_camera)
+    }
+
     /// The pose by the present map. A removed reference is replaced by its successor.
     pub fn visual_from_camera(&self, map: &LandmarkMap) -> Pose3 {
         let visual_from_reference = self.reference.map(|id| map.visual_from_keyframe(id));

@@ -12,6 +12,8 @@ use trundle_core::CameraMotion;
 pub(crate) struct OdometryTrack {
     /// The motion since the newest keyframe, while all of it was measured.
     pub since_keyframe: Option<OdometryFactor>,
+    /// Whether the newest frame contradicts that motion: a keyframe does not take it over.
+    is_doubted: bool,
     floor: FloorAxis,
 }
 
@@ -31,9 +33,14 @@ impl OdometryTrack {
         self.since_keyframe = None;
     }
 
+    /// Notes whether the newest frame contradicts the odometry.
+    pub fn set_doubted(&mut self, is_doubted: bool) {
+        self.is_doubted = is_doubted;
+    }
+
     /// The factor for a new keyframe, if the keyframe before is still in the map.
     pub fn factor_in(&self, map: &LandmarkMap) -> Option<OdometryFactor> {
-        self.since_keyframe.filter(|factor| map.live_keyframe(factor.from).is_some())
+        self.since_keyframe.filter(|factor| !self.is_doubted && map.live_keyframe(factor.from).is_some())
     }
 
     /// Brings the map's axis of the floor up to date.

@@ -72,9 +72,10 @@ impl MatchedPose {
         self.solution.inlier_count >= min_inliers && self.solution.covariance.is_some()
     }
 
-    /// Whether a majority of the matches agrees. With a wrong prediction, windows are full of wrong matches that agree by chance.
+    /// Whether a majority of the matches agrees, without those of a thing that moves. With a wrong prediction, windows are full of wrong
+    /// matches that agree by chance.
     pub fn has_majority(&self) -> bool {
-        2 * self.solution.inlier_count >= self.matches.len()
+        2 * self.solution.inlier_count + self.solution.moving >= self.matches.len()
     }
 }
 

@@ -39,7 +39,8 @@ impl RgbdSlam {
             self.loops.drop_pending();
             self.leave_keyframe();
         }
-        if localized.contradicts_odometry() {
+        self.odometry.set_doubted(localized.contradicts_odometry());
+        if localized.recognized.is_some() || self.tracking.odometry_conflict.persists(frame.stamp) {
             // The wheels slipped, or the robot was carried.
             self.odometry.interrupt();
         }
@@ -215,7 +216,9 @@ impl RgbdSlam {
     fn start_new_map(&mut self) {
         let belief = &self.tracking.belief;
         let measured = UncertainPose { pose: belief.visual_from_camera, covariance: belief.covariance };
-        self.atlas.start_new_map((!self.tracking.is_lost()).then_some(measured));
+        if let Some(dropped) = self.atlas.start_new_map((!self.tracking.is_lost()).then_some(measured)) {
+            self.trajectory.fix_poses(&dropped);
+        }
         self.tracking.restart_at(Pose3::identity());
         self.loops.drop_pending();
         self.leave_keyframe();

@@ -24,7 +24,13 @@ impl OdometryConflict {
             self.since = None;
             return true;
         };
-        points >= MIN_CONVINCING_POINTS || now - *self.since.get_or_insert(now) >= MIN_CONFLICT_S
+        self.since.get_or_insert(now);
+        points >= MIN_CONVINCING_POINTS || self.persists(now)
+    }
+
+    /// Whether tracked poses have contradicted the wheels for so long that the wheels are wrong.
+    pub fn persists(&self, now: Stamp) -> bool {
+        self.since.is_some_and(|since| now - since >= MIN_CONFLICT_S)
     }
 
     /// Whether the newest tracked pose contradicts the wheels.
@@ -44,9 +50,11 @@ mod tests {
         assert!(conflict.believes(at(0.0), None) && !conflict.is_active());
         assert!(!conflict.believes(at(1.0), Some(99)) && conflict.is_active());
         assert!(conflict.believes(at(1.1), Some(100)), "many are accepted at once");
+        assert!(!conflict.persists(at(1.2)) && conflict.persists(at(1.3)));
         assert!(!conflict.believes(at(1.2), Some(30)));
         assert!(conflict.believes(at(1.3), Some(30)), "after 0.3 s");
         assert!(conflict.believes(at(1.4), None), "points and wheels agree again");
         assert!(!conflict.believes(at(9.0), Some(30)), "a new conflict");
+        assert!(conflict.believes(at(9.1), None) && !conflict.persists(at(9.9)));
     }
 }
