@@ -80,6 +80,9 @@ pub fn run(args: &MapArgs) -> Result<Outcome, AppError> {
     if let Some(hint) = &run.mount_hint {
         console::warn(&format!("{}: {hint}", args.log.display()));
     }
+    if let Some(warning) = run.pause_warning().filter(|_| run.failure.is_none()) {
+        console::warn(&format!("{}: {warning}", args.log.display()));
+    }
     if !args.common.quiet {
         console::print_table(&map_rows(&input.log, &run));
         console::print(&format!("See {}", place.join("overview.png").display()));

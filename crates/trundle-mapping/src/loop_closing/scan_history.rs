@@ -75,6 +75,14 @@ impl ScanHistory {
         keep(trajectory, |k| !goes(k));
     }
 
+    /// Drops all scans but the first `count`, with their steps and loops.
+    pub(crate) fn truncate(&mut self, count: usize) {
+        self.scans.truncate(count);
+        self.steps.truncate(count);
+        self.measured.truncate(count);
+        self.loops.retain(|constraint| constraint.poses().0.max(constraint.poses().1) < count);
+    }
+
     /// Bytes that it holds.
     pub(crate) fn bytes(&self) -> usize {
         self.scans.iter().map(StoredScan::bytes).sum::<usize>()

@@ -6,7 +6,9 @@ use crate::loop_closing::scan_history::ScanHistory;
 use crate::rbpf::map_redraw::MapRedraw;
 use crate::rbpf::particle_set::ParticleSet;
 use crate::units::{in_cells, in_metres};
+use crate::scan_match::scan_points::ScanPoints;
 use trundle_core::Pose2;
+use trundle_grid::tiles::{RayUpdateScratch, TileMap};
 
 /// Cells redrawn with one scan: about ten times the cells that thirty particles update. A smaller number leaves the robot
 /// longer in the uncorrected map. Source: ours.
@@ -98,6 +100,20 @@ impl LoopCorrector {
         }
     }
 
+    /// Drops all stored scans but the first `count`, loops not yet accepted, and a redraw in progress.
+    pub(crate) fn truncate(&mut self, count: usize) {
+        self.redraw = None;
+        self.history.truncate(count);
+        self.loop_closer.pending.clear();
+    }
+
+    /// Draws stored scan `k` at `pose` (cells) into `map`.
+    pub(crate) fn draw_scan(&self, models: &FilterModels, map: &mut TileMap, k: usize, pose: Pose2) {
+        let (mut points, mut scratch) = (ScanPoints::default(), RayUpdateScratch::default());
+        self.history.scans[k].unpack_into(&models.config, &mut points);
+        models.ray_update.apply(map, &mut scratch, pose, &points.rays);
+    }
+
     /// Draws the next stored scan at `pose` (m). Returns its cost, cells.
     fn redraw_scan(&self, models: &FilterModels, redraw: &mut MapRedraw, pose: Pose2) -> usize {
         self.history.scans[redraw.drawn].unpack_into(&models.config, &mut redraw.points);
@@ -131,10 +147,8 @@ mod tests {
     use super::*;
     use crate::loop_closing::stored_scan::StoredScan;
     use crate::particle_config::ParticleConfig;
-    use crate::scan_match::scan_points::ScanPoints;
     use nalgebra::Matrix3;
     use trundle_core::{Beam, Scan, Stamp, Vector2};
-    use trundle_grid::tiles::TileMap;
 
     /// Three particles after `scans` along a straight path, with a redraw along a turned one.
     fn corrected(models: &FilterModels, scans: usize) -> (LoopCorrector, ParticleSet) {
