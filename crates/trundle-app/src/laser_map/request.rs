@@ -52,7 +52,7 @@ impl LaserMapRequest {
             let grid = read_map(file)?;
             let resolution = grid.geometry().resolution;
             let config = self.config(depth);
-            let config = ParticleConfig { map: MapperConfig { resolution, ..config.map }, ..config };
+            let config = ParticleConfig { map: config.map.with_resolution(resolution), ..config };
             return Ok(MapLocalizer::from_grid(&grid, config, self.seed)?);
         }
         Expected::LocalizationMap.check(file)?;
@@ -64,7 +64,7 @@ impl LaserMapRequest {
         let default = ParticleConfig::default();
         let config = ParticleConfig {
             particles: self.particles,
-            map: MapperConfig { resolution: self.resolution, ..default.map },
+            map: default.map.with_resolution(self.resolution),
             ..default
         };
         match depth {

@@ -104,6 +104,7 @@ fn keep<T>(all: &mut Vec<T>, stays: impl Fn(usize) -> bool) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::particle_config::ParticleConfig;
     use crate::scan_match::scan_points::ScanPoints;
 
     #[test]
@@ -112,7 +113,7 @@ mod tests {
         let mut history = ScanHistory::default();
         let mut way = vec![(Stamp::default(), Pose2::IDENTITY)];
         for k in 0..41 {
-            history.push(StoredScan::new(&ScanPoints::default()), Matrix3::identity() * 1e-4);
+            history.push(StoredScan::new(&ParticleConfig::default(), &ScanPoints::default()), Matrix3::identity() * 1e-4);
             if k > 0 {
                 way.push((Stamp::from_nanos(k), way.last().unwrap().1 * step));
             }

@@ -160,7 +160,7 @@ mod tests {
         let path: Vec<_> = (0..scans)
             .map(|k| (Stamp::from_nanos(k as i64), Pose2::new(0.05 * k as f64, 0.0, 0.0)))
             .collect();
-        path.iter().for_each(|_| loops.history.push(StoredScan::new(&points), Matrix3::identity() * 1e-4));
+        path.iter().for_each(|_| loops.history.push(StoredScan::new(&models.config, &points), Matrix3::identity() * 1e-4));
         let turn = |pose: Pose2| Pose2::new(0.0, 0.0, 0.1) * pose;
         let poses = path[..scans - 5].iter().map(|(_, pose)| turn(*pose)).collect();
         set.ancestry.replace(path);

@@ -129,7 +129,7 @@ impl ParticleMapper {
             self.odometry.learn(step, proposal.as_ref(), resolution);
         }
         let covariance = step_covariance(proposal.as_ref(), resolution);
-        self.loops.history.push(StoredScan::new(&self.points), covariance);
+        self.loops.history.push(StoredScan::new(&self.models.config, &self.points), covariance);
         if resampled {
             // One past the particles' own streams.
             let mut rng = ParticleRng::new(self.seed, self.updates, self.set.len());

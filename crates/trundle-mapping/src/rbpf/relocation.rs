@@ -57,7 +57,7 @@ impl ParticleMapper {
         // The map constrains the two runs to each other.
         let variances = Vector3::new(NEXT_RUN_VARIANCE_M2, NEXT_RUN_VARIANCE_M2, NEXT_RUN_VARIANCE_RAD2);
         let covariance = Matrix3::from_diagonal(&variances);
-        history.push(StoredScan::new(&self.points), covariance);
+        history.push(StoredScan::new(&self.models.config, &self.points), covariance);
         trajectory.push((stamp, pose));
         self.set.collapse(trajectory, found.pose, &map);
         self.set.particles.iter_mut().for_each(|particle| particle.proposal = None);
