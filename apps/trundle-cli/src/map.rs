@@ -53,6 +53,9 @@ pub struct MapArgs {
     /// The topics of a bag.
     #[command(flatten)]
     pub topics: BagTopicsArgs,
+    /// Take all beams of a scan as measured at its stamp, also where the log says the time of each.
+    #[arg(long)]
+    pub no_deskew: bool,
     /// Go on with the map of an earlier run, its filter.map: the robot is looked for in it first.
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
@@ -110,6 +113,7 @@ impl MapArgs {
             resolution: self.resolution,
             laser: LaserLogOptions { odometry_topic: self.topics.odom_topic.clone(), ..self.laser.options() },
             map: self.map.clone(),
+            deskew: !self.no_deskew,
             map_image: self.map_image,
         }
     }

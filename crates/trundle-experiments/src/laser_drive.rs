@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 use trundle_app::AppError;
 use trundle_core::{
-    Beam, Cell, Footprint, OccupancyGrid, Pose2, RobotBody, Scan, SensorEvent, Stamp, Twist2,
+    Beam, Cell, Footprint, OccupancyGrid, Pose2, RobotBody, Scan, SensorEvent, Stamp, Twist2, deskewed,
 };
 use trundle_estimation::{OdometryConfig, WheelOdometry};
 use trundle_sim::import::{RaisedMap, raise_map};
@@ -44,6 +44,17 @@ pub struct LaserDrive {
     pub scans: Vec<DriveScan>,
     /// odom_from_base at each wheel reading.
     pub odometry: Vec<(Stamp, Pose2)>,
+}
+
+impl LaserDrive {
+    /// The scans with each beam where the base was by the odometry when it was measured.
+    #[must_use]
+    pub fn deskewed(mut self) -> Self {
+        for entry in &mut self.scans {
+            entry.scan = deskewed(entry.scan.clone(), |stamp| pose_at(&self.odometry, stamp));
+        }
+        self
+    }
 }
 
 /// The walls of a map as a world.
@@ -126,9 +137,14 @@ pub fn drive(
 /// The scan with beams that brought nothing back unseen.
 fn as_in_a_log(scan: Scan) -> Scan {
     let (stamp, origin, angles) = (scan.stamp(), scan.origin(), (scan.angle_min(), scan.angle_increment()));
+    let times = scan.beam_times();
     let mut parts = scan.into_parts();
     parts.beams.iter_mut().filter(|beam| matches!(beam, Beam::Free { .. })).for_each(|beam| *beam = Beam::Unseen);
-    Scan::from_parts(stamp, origin, angles, parts).expect("invariant: an unseen beam is valid")
+    let scan = Scan::from_parts(stamp, origin, angles, parts).expect("invariant: an unseen beam is valid");
+    match times {
+        Some(times) => scan.with_beam_times(times).expect("invariant: the times were accepted before"),
+        None => scan,
+    }
 }
 
 /// A driver without a goal.

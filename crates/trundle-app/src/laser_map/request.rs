@@ -31,6 +31,8 @@ pub struct LaserMapRequest {
     pub laser: LaserLogOptions,
     /// The map of an earlier run, in which the robot is localized first.
     pub map: Option<PathBuf>,
+    /// Whether each beam is put to where the base was when it was measured, where the log says the times of the beams.
+    pub deskew: bool,
     /// Format of the picture of the map that is written.
     pub map_image: MapImage,
 }

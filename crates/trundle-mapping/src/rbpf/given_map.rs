@@ -58,7 +58,6 @@ impl GivenMap {
     ) -> Option<Streak> {
         let matcher = CloudMatcher { config: &models.config, likelihood: &models.likelihood, cloud: points };
         let (explained, contradicted) = matcher.fit(&self.map, map_from_base);
-        if std::env::var("DBG").is_ok() { eprintln!("given {stamp} {explained:.2} {contradicted:.2}"); }
         match verdict(explained, contradicted) {
             Verdict::Agrees => self.streak = None,
             Verdict::Elsewhere => {}

@@ -13,6 +13,7 @@ use crate::rbpf::proposal::{Proposal, Proposer};
 use crate::rbpf::rng::ParticleRng;
 use crate::rbpf::scan_update::{Processed, ScanUpdate};
 use crate::rbpf::update_gate::{OdometryStep, UpdateGate};
+use crate::scan_match::branch_and_bound::Pyramid;
 use crate::scan_match::coarse_search::CoarseSearch;
 use crate::scan_match::global_search::GlobalSearch;
 use crate::scan_match::scan_points::ScanPoints;
@@ -47,6 +48,8 @@ pub struct ParticleMapper {
     pub(crate) odometry: OdometryModel,
     /// Search for the robot in a loaded map, until it is found.
     pub(super) global_search: Option<GlobalSearch>,
+    /// The pyramid of the map that is searched, which does not change meanwhile.
+    pub(super) search_pyramid: Option<Pyramid>,
     /// The loaded map, once the robot is found in it.
     pub(crate) given: Option<GivenMap>,
     /// Running mean of ln p(z | m, x) of a point over the last scans, nats.
@@ -83,6 +86,7 @@ impl ParticleMapper {
             gate: UpdateGate::default(),
             odometry: OdometryModel::default(),
             global_search: None,
+            search_pyramid: None,
             given: None,
             expected_log_likelihood: EXPECTED_LOG_LIKELIHOOD,
             models,
@@ -99,7 +103,7 @@ impl ParticleMapper {
         };
         self.points.set(&self.models.config, scan);
         if let Some(search) = &mut self.global_search {
-            search.push(&self.points, in_cells(&self.models.config, odom_from_base));
+            search.push(&self.points, in_cells(&self.models.config, odom_from_base), scan.stamp());
             return self.relocalize(scan.stamp());
         }
         let first = step.first && self.updates == 0;

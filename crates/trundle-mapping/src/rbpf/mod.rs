@@ -17,6 +17,7 @@ pub(crate) mod proposal;
 mod relocation;
 pub(crate) mod resampling;
 pub(crate) mod rng;
+mod scan_difference;
 pub(crate) mod scan_update;
 pub(crate) mod update_gate;
 

@@ -30,7 +30,7 @@ impl ParticleMapper {
 
     /// The next scans are searched for in the map.
     fn search_anew(&mut self) {
-        self.global_search = Some(GlobalSearch::default());
+        (self.global_search, self.search_pyramid) = (Some(GlobalSearch::default()), None);
         self.gate = UpdateGate::default();
         self.odometry.map_from_odom = None;
     }
@@ -38,9 +38,12 @@ impl ParticleMapper {
     /// Searches the best particle's map for the robot; all particles continue from where it is found.
     pub(super) fn relocalize(&mut self, stamp: Stamp) -> ScanUpdate {
         let map = self.set.best().map.clone();
-        let Some(pyramid) = Pyramid::new(&map) else { return ScanUpdate::Lost(Lost::NothingToSee) };
-        let Some(search) = &self.global_search else { return ScanUpdate::Still };
-        match search.search((&self.models.config, &self.models.likelihood), &map, &pyramid) {
+        if self.search_pyramid.is_none() {
+            self.search_pyramid = Pyramid::new(&map);
+        }
+        let Some(search) = &mut self.global_search else { return ScanUpdate::Still };
+        let Some(pyramid) = &self.search_pyramid else { return ScanUpdate::Lost(Lost::NothingToSee) };
+        match search.search((&self.models.config, &self.models.likelihood), &map, pyramid) {
             Ok(found) => self.continue_at(stamp, &found, map),
             Err(lost) => ScanUpdate::Lost(lost),
         }
@@ -48,7 +51,7 @@ impl ParticleMapper {
 
     /// Puts all particles to the place that was found in `map`, the best one's.
     fn continue_at(&mut self, stamp: Stamp, found: &CloudMatch, map: TileMap) -> ScanUpdate {
-        self.global_search = None;
+        (self.global_search, self.search_pyramid) = (None, None);
         let mut trajectory = self.set.trajectory();
         let pose = in_metres(&self.models.config, found.pose);
         let history = &mut self.loops.history;

@@ -1,13 +1,13 @@
 //! Search of the newest scans in a whole map.
 
 use crate::particle_config::ParticleConfig;
-use crate::scan_match::branch_and_bound::Pyramid;
+use crate::scan_match::branch_and_bound::{LookupBudget, Pyramid};
 use crate::scan_match::cloud_match::{CloudMatch, CloudMatcher, MIN_PROOF_NATS};
 use crate::scan_match::likelihood::Likelihood;
 use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeSet;
-use trundle_core::Pose2;
+use trundle_core::{Pose2, Stamp};
 use trundle_grid::tiles::TileMap;
 
 /// Why the pose is unknown.
@@ -19,13 +19,37 @@ pub enum Lost {
     NothingFits,
     /// Several places fit alike: the robot must see more.
     SeveralPlaces,
+    /// The search ended at its budget before all places were compared.
+    Unfinished,
 }
 
 /// Search of the combined last scans in the whole map.
-#[derive(Debug, Clone, Default)]
+///
+/// Searches have a budget of lookups by the scans' stamps, not by the clock: what is found is the same on every machine. A robot in a
+/// map of another place then costs a bounded share of a core.
+#[derive(Debug, Clone)]
 pub(crate) struct GlobalSearch {
     /// Scans with their poses by the odometry (cells).
     scans: Vec<(ScanPoints, Pose2)>,
+    /// Stamp of the last scan.
+    now: Stamp,
+    /// Lookups that may be made; negative after a search.
+    credit: i64,
+    /// Result of the last search.
+    last: Lost,
+}
+
+/// Lookups that accrue in a second of the scans' time [1/s]: about a tenth of a core. Source: ours.
+const LOOKUPS_PER_SECOND: f64 = 1e8;
+/// Largest credit, and that of the first scan: about ten seconds of a core. Source: ours.
+const MAX_CREDIT_LOOKUPS: i64 = 10_000_000_000;
+/// Lookups of one search at most. Source: ours.
+const MAX_SEARCH_LOOKUPS: u64 = 4_000_000_000;
+
+impl Default for GlobalSearch {
+    fn default() -> Self {
+        Self { scans: Vec::new(), now: Stamp::default(), credit: MAX_CREDIT_LOOKUPS, last: Lost::NothingToSee }
+    }
 }
 
 /// Maximum number of scans that are matched together. The oldest scan is dropped beyond it. Source: ours.
@@ -44,19 +68,37 @@ const UNKNOWN_HEADING_SIGMA_RAD: f64 = 100.0;
 
 impl GlobalSearch {
     /// Adds a scan taken with the base at `odom_from_base` (cells).
-    pub(crate) fn push(&mut self, shape: &ScanPoints, odom_from_base: Pose2) {
+    pub(crate) fn push(&mut self, shape: &ScanPoints, odom_from_base: Pose2, stamp: Stamp) {
+        let accrued = (stamp - self.now).max(0.0) * LOOKUPS_PER_SECOND;
+        self.credit = self.credit.saturating_add(accrued as i64).min(MAX_CREDIT_LOOKUPS);
+        self.now = stamp;
         if self.scans.len() == MAX_SCANS {
             self.scans.remove(0);
         }
         self.scans.push((shape.clone(), odom_from_base));
     }
 
-    /// Where in the map the base was at the last scan.
+    /// Where in the map the base was at the last scan. Without credit: the last result.
     pub(crate) fn search(
-        &self,
-        (config, likelihood): (&ParticleConfig, &Likelihood),
+        &mut self,
+        models: (&ParticleConfig, &Likelihood),
         map: &TileMap,
         pyramid: &Pyramid,
+    ) -> Result<CloudMatch, Lost> {
+        if self.credit <= 0 {
+            return Err(self.last);
+        }
+        let budget = LookupBudget::new(MAX_SEARCH_LOOKUPS);
+        let found = self.search_within(models, (pyramid, map), &budget);
+        self.credit -= budget.used() as i64;
+        found.inspect_err(|lost| self.last = *lost)
+    }
+
+    fn search_within(
+        &self,
+        (config, likelihood): (&ParticleConfig, &Likelihood),
+        (pyramid, map): (&Pyramid, &TileMap),
+        budget: &LookupBudget,
     ) -> Result<CloudMatch, Lost> {
         let Some((_, last)) = self.scans.last() else { return Err(Lost::NothingToSee) };
         let (mut cloud, mut taken) = (ScanPoints::default(), BTreeSet::new());
@@ -75,13 +117,15 @@ impl GlobalSearch {
         );
         let covariance = Matrix3::from_diagonal(&sigma.component_mul(&sigma));
         let found = finder.find_in(
-            pyramid,
-            map,
+            (pyramid, map),
             Pose2::new(middle.0, middle.1, 0.0),
             &covariance,
             (half, std::f64::consts::PI),
-            3,
+            (MAX_PLACES, budget),
         );
+        if budget.is_spent() {
+            return Err(Lost::Unfinished);
+        }
         let unseen = 0.5 * config.outliers.ln() * cloud.points.len() as f64 / config.correlation;
         let is_proved =
             |best: &&CloudMatch| best.log_likelihood - unseen > MIN_PROOF_NATS && best.degenerate == 0;
@@ -92,6 +136,8 @@ impl GlobalSearch {
     }
 }
 
+/// Number of places that are compared. Source: ours.
+const MAX_PLACES: usize = 3;
 /// Minimum log-likelihood ratio of the best to the second-best place [nats], 1 in 3000. Below it the places are
 /// ambiguous. Source: ours.
 const MIN_MARGIN_NATS: f64 = 8.0;
