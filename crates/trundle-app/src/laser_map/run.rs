@@ -40,7 +40,7 @@ pub fn map_log(
             let mut mapper = request.mapper(depth.as_ref())?;
             let (counts, known) = map(log, &mut mapper, progress);
             write_map_as(folder, "map", mapper.grid(), request.map_image)?;
-            let poses = mapper.trajectory();
+            let poses = mapper.whole_trajectory();
             folder.write("overview.png", &map_picture(mapper.grid(), &poses))?;
             folder.write("filter.map", &mapper.save())?;
             let failure =

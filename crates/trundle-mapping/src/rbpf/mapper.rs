@@ -210,9 +210,14 @@ impl ParticleMapper {
         in_metres(&self.models.config, self.set.best().pose)
     }
 
-    /// The best particle's poses at the processed scans of this run.
+    /// The best particle's poses at the stored scans of this run.
     pub fn trajectory(&self) -> Vec<(Stamp, Pose2)> {
         self.set.trajectory().split_off(self.set.first_pose_of_run)
+    }
+
+    /// The best particle's poses at all scans of this run that were processed, also at those that are not stored any more.
+    pub fn whole_trajectory(&self) -> Vec<(Stamp, Pose2)> {
+        self.loops.history.with_left_out(&self.set.trajectory(), self.set.first_pose_of_run)
     }
 
     /// Map of the best particle. Only tiles written since the last call are updated.
