@@ -359,9 +359,8 @@ mod tests {
     #[test]
     fn beam_times_far_from_the_stamp_are_refused() {
         let scan = two_beams(ScanParts::default()).unwrap();
-        let refused = |first_s, step_s| {
-            scan.clone().with_beam_times(BeamTimes { first_s, step_s }).unwrap_err().field
-        };
+        let refused =
+            |first_s, step_s| scan.clone().with_beam_times(BeamTimes { first_s, step_s }).unwrap_err().field;
         assert_eq!(refused(-11.0, 0.0), "time of the first beam");
         assert_eq!(refused(0.0, f64::NAN), "time of the last beam");
         let bearings = two_beams(ScanParts { bearings: vec![0.0, f32::NAN], ..ScanParts::default() });

@@ -139,7 +139,11 @@ fn as_in_a_log(scan: Scan) -> Scan {
     let (stamp, origin, angles) = (scan.stamp(), scan.origin(), (scan.angle_min(), scan.angle_increment()));
     let times = scan.beam_times();
     let mut parts = scan.into_parts();
-    parts.beams.iter_mut().filter(|beam| matches!(beam, Beam::Free { .. })).for_each(|beam| *beam = Beam::Unseen);
+    parts
+        .beams
+        .iter_mut()
+        .filter(|beam| matches!(beam, Beam::Free { .. }))
+        .for_each(|beam| *beam = Beam::Unseen);
     let scan = Scan::from_parts(stamp, origin, angles, parts).expect("invariant: an unseen beam is valid");
     match times {
         Some(times) => scan.with_beam_times(times).expect("invariant: the times were accepted before"),

@@ -35,7 +35,8 @@ impl KnownStretches {
         let (mut rest, mut odometry) = (processed, odometry);
         for (since, until) in &self.gaps {
             let (known, after) = rest.split_at(rest.partition_point(|(stamp, _)| stamp < since));
-            let end = known.last().map_or(0, |(last, _)| odometry.partition_point(|(stamp, _)| stamp <= last));
+            let end =
+                known.last().map_or(0, |(last, _)| odometry.partition_point(|(stamp, _)| stamp <= last));
             trajectory.extend(propagate_trajectory(known, &odometry[..end]));
             rest = after;
             let next = until.map_or(odometry.len(), |until| odometry.partition_point(|(s, _)| *s < until));

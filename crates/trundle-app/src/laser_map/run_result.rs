@@ -76,7 +76,8 @@ impl LaserMapRun {
 /// The failure of a run whose pauses left out much.
 fn left_out(counts: &ScanCounts) -> Option<String> {
     let (out, all) = (counts.left_out, counts.left_out + counts.processed);
-    (out as f64 > MAX_SHARE_LEFT_OUT * all as f64).then(|| format!("{out} of {all} scans are left out: {}", pause_note(counts)))
+    (out as f64 > MAX_SHARE_LEFT_OUT * all as f64)
+        .then(|| format!("{out} of {all} scans are left out: {}", pause_note(counts)))
 }
 
 /// A sentence about the pauses of mapping.

@@ -1,7 +1,7 @@
 //! Maps of simulated drives by lasers of 5, 5.5, 10 and 40 Hz, with and without deskewing.
 //!
 //! `cargo run --release -p trundle-experiments --example deskew -- ../shared/data/nav [SEEDS]` prints, for each laser and map, the error of
-//! the trajectory after the best rigid alignment, and of the heading, over all seeds.
+//! the trajectory after alignment by mean place and mean heading, and of the heading, over all seeds.
 
 use std::path::PathBuf;
 use trundle_app::AppError;
@@ -72,17 +72,13 @@ fn error(drive: &LaserDrive, grid: &OccupancyGrid, seed: u64) -> Result<Error, A
     Ok(aligned_error(&pairs))
 }
 
-/// Error after the rigid motion that fits the positions best.
+/// Error after the rigid motion with the mean turn and the mean place.
 fn aligned_error(pairs: &[(Pose2, Pose2)]) -> Error {
     let count = pairs.len().max(1) as f64;
     let mean = |pick: fn(&(Pose2, Pose2)) -> Vector2| pairs.iter().map(pick).sum::<Vector2>() / count;
     let (from, to) = (mean(|pair| pair.0.position()), mean(|pair| pair.1.position()));
-    let (mut sin, mut cos) = (0.0, 0.0);
-    for (map, world) in pairs {
-        let (a, b) = (map.position() - from, world.position() - to);
-        cos += a.dot(&b);
-        sin += a.perp(&b);
-    }
+    let turns = pairs.iter().map(|(map, world)| (world.theta - map.theta).sin_cos());
+    let (sin, cos) = turns.fold((0.0, 0.0), |sum, turn| (sum.0 + turn.0, sum.1 + turn.1));
     let turn = Pose2::new(0.0, 0.0, sin.atan2(cos));
     let mut error = [0.0_f64; 4];
     for (map, world) in pairs {

@@ -81,7 +81,10 @@ fn tell(name: &Path, grid: &OccupancyGrid, laser: LaserConfig, seed: u64) -> Res
             told.first_s = Some(scan.scan.stamp().as_secs());
             told.is_first_wrong = wrong;
             if wrong {
-                eprintln!("seed {seed}: {map_from_base:?} for {:?} at {:?}", scan.world_from_base, told.first_s);
+                eprintln!(
+                    "seed {seed}: {map_from_base:?} for {:?} at {:?}",
+                    scan.world_from_base, told.first_s
+                );
             }
         }
         told.known += 1;

@@ -6,7 +6,9 @@ use super::mount::{mount, scan_of};
 use super::ranges::{is_range, limit, no_return_from};
 use super::text::TextLines;
 use crate::IoError;
-use crate::laser_log::{LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, LaserMount, Motion, insert_in_order};
+use crate::laser_log::{
+    LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, LaserMount, Motion, insert_in_order,
+};
 use std::path::Path;
 
 /// A CARMEN log, plain or compressed with gzip: lines of a laser (`FLASER`, `ROBOTLASER1`, `RAWLASER1` to `RAWLASER4` and those of

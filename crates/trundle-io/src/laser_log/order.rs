@@ -17,7 +17,9 @@ pub(crate) fn insert_in_order<T>(
 ) -> Result<(), String> {
     let stamp = stamp_of(&entry);
     match entries.last().map(&stamp_of) {
-        Some(last) if last - stamp > MAX_DISORDER_S => Err(format!("time goes back from {last} s to {stamp} s")),
+        Some(last) if last - stamp > MAX_DISORDER_S => {
+            Err(format!("time goes back from {last} s to {stamp} s"))
+        }
         Some(last) if stamp < last => {
             let later = entries.iter().rev().take_while(|other| stamp_of(other) > stamp).count();
             entries.insert(entries.len() - later, entry);

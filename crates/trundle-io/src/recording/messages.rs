@@ -9,8 +9,8 @@ use base64::engine::general_purpose::STANDARD;
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use trundle_core::{
-    Beam, BeamTimes, BodyEvent, BodyEventKind, Cliff, GyroRate, Invalid, Odometry, Pose2, Scan, Stamp, Touch, Twist2,
-    Vector2, WheelTicks,
+    Beam, BeamTimes, BodyEvent, BodyEventKind, Cliff, GyroRate, Invalid, Odometry, Pose2, Scan, Stamp, Touch,
+    Twist2, Vector2, WheelTicks,
 };
 
 #[derive(Serialize, Deserialize)]

@@ -5,7 +5,9 @@ use super::frames::NoTransform;
 use super::laser_scan::convert;
 use super::messages::LaserScan;
 use crate::carmen::read_carmen;
-use crate::laser_log::{LaserLog, LaserLogOptions, LaserLogScan, LaserLogSources, LaserMount, Motion, insert_in_order};
+use crate::laser_log::{
+    LaserLog, LaserLogOptions, LaserLogScan, LaserLogSources, LaserMount, Motion, insert_in_order,
+};
 use crate::{Expected, IoError};
 use std::path::Path;
 use trundle_core::{Pose3, Vector3};

@@ -37,7 +37,8 @@ mod tests {
 
     #[test]
     fn of_many_laps_the_newest_scans_of_each_place_stay() {
-        let lap = |k: usize| Pose2::new(3.0 * (0.1 * k as f64).cos(), 3.0 * (0.1 * k as f64).sin(), 0.1 * k as f64);
+        let lap =
+            |k: usize| Pose2::new(3.0 * (0.1 * k as f64).cos(), 3.0 * (0.1 * k as f64).sin(), 0.1 * k as f64);
         let poses: Vec<Pose2> = (0..6000).map(lap).collect();
         let goes = crowded(&poses, 10);
         let stay = goes.iter().filter(|goes| !**goes).count();

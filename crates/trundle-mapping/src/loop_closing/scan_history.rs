@@ -186,7 +186,10 @@ mod tests {
         let mut history = ScanHistory::default();
         let mut way = vec![(Stamp::default(), Pose2::IDENTITY)];
         for k in 0..41 {
-            history.push(StoredScan::new(&ParticleConfig::default(), &ScanPoints::default()), Matrix3::identity() * 1e-4);
+            history.push(
+                StoredScan::new(&ParticleConfig::default(), &ScanPoints::default()),
+                Matrix3::identity() * 1e-4,
+            );
             if k > 0 {
                 way.push((Stamp::from_nanos(k), way.last().unwrap().1 * step));
             }

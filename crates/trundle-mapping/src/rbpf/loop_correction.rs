@@ -1,13 +1,13 @@
 //! Loop closing of the filter: loop searches, the redraw of the corrected map, and thinning of the history.
 
 use crate::filter_models::FilterModels;
-use crate::loop_closing::loop_closer::LoopCloser;
 use crate::loop_closing::crowded_places::crowded;
+use crate::loop_closing::loop_closer::LoopCloser;
 use crate::loop_closing::scan_history::{ScanHistory, every_second, number_after};
 use crate::rbpf::map_redraw::MapRedraw;
 use crate::rbpf::particle_set::ParticleSet;
-use crate::units::{in_cells, in_metres};
 use crate::scan_match::scan_points::ScanPoints;
+use crate::units::{in_cells, in_metres};
 use trundle_core::Pose2;
 use trundle_grid::tiles::{RayUpdateScratch, TileMap};
 
@@ -184,7 +184,9 @@ mod tests {
         let path: Vec<_> = (0..scans)
             .map(|k| (Stamp::from_nanos(k as i64), Pose2::new(0.05 * k as f64, 0.0, 0.0)))
             .collect();
-        path.iter().for_each(|_| loops.history.push(StoredScan::new(&models.config, &points), Matrix3::identity() * 1e-4));
+        path.iter().for_each(|_| {
+            loops.history.push(StoredScan::new(&models.config, &points), Matrix3::identity() * 1e-4)
+        });
         let turn = |pose: Pose2| Pose2::new(0.0, 0.0, 0.1) * pose;
         let poses = path[..scans - 5].iter().map(|(_, pose)| turn(*pose)).collect();
         set.ancestry.replace(path);

@@ -21,6 +21,8 @@ pub enum Lost {
     SeveralPlaces,
     /// The search ended at its budget before all places were compared.
     Unfinished,
+    /// One place fits, but it was not seen from elsewhere yet: the robot must move on.
+    Unconfirmed,
 }
 
 /// Search of the combined last scans in the whole map.
@@ -37,7 +39,40 @@ pub(crate) struct GlobalSearch {
     credit: i64,
     /// Result of the last search.
     last: Lost,
+    /// Distance and turn between the scans so far: cells, rad.
+    moved: Moved,
+    candidate: Option<Candidate>,
 }
+
+/// Sums of a motion, cells and rad.
+#[derive(Debug, Clone, Copy, Default)]
+struct Moved {
+    way: f64,
+    turn: f64,
+}
+
+/// A place that the last searches found.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    /// Cells, rad.
+    map_from_odom: Pose2,
+    /// Motion at the first of these searches.
+    first: Moved,
+    /// Number of these searches.
+    times: usize,
+}
+
+/// Number of searches that must find one place, none in between another. Noise and the shape of the map favour a wrong place in one view, not in several.
+/// Source: ours.
+const MIN_TIMES: usize = 3;
+/// Distance over which they must find it \[m\]. A turn over [`MIN_TURN_RAD`] does instead. Source: ours.
+const MIN_WAY_M: f64 = 1.0;
+/// Turn over which they must find it \[rad\]. Source: ours, a quarter.
+const MIN_TURN_RAD: f64 = std::f64::consts::FRAC_PI_2;
+/// Distance of two places that are one \[m\]: the odometry errs by less between two searches. Source: ours.
+const MAX_PLACE_DISTANCE_M: f64 = 0.5;
+/// Turn between two places that are one \[rad\]. Source: ours.
+const MAX_PLACE_TURN_RAD: f64 = 0.2;
 
 /// Lookups that accrue in a second of the scans' time [1/s]: about a tenth of a core. Source: ours.
 const LOOKUPS_PER_SECOND: f64 = 1e8;
@@ -48,7 +83,14 @@ const MAX_SEARCH_LOOKUPS: u64 = 4_000_000_000;
 
 impl Default for GlobalSearch {
     fn default() -> Self {
-        Self { scans: Vec::new(), now: Stamp::default(), credit: MAX_CREDIT_LOOKUPS, last: Lost::NothingToSee }
+        Self {
+            scans: Vec::new(),
+            now: Stamp::default(),
+            credit: MAX_CREDIT_LOOKUPS,
+            last: Lost::NothingToSee,
+            moved: Moved::default(),
+            candidate: None,
+        }
     }
 }
 
@@ -72,6 +114,11 @@ impl GlobalSearch {
         let accrued = (stamp - self.now).max(0.0) * LOOKUPS_PER_SECOND;
         self.credit = self.credit.saturating_add(accrued as i64).min(MAX_CREDIT_LOOKUPS);
         self.now = stamp;
+        if let Some((_, last)) = self.scans.last() {
+            let step = last.inverse() * odom_from_base;
+            self.moved.way += step.position().norm();
+            self.moved.turn += step.theta.abs();
+        }
         if self.scans.len() == MAX_SCANS {
             self.scans.remove(0);
         }
@@ -89,24 +136,57 @@ impl GlobalSearch {
             return Err(self.last);
         }
         let budget = LookupBudget::new(MAX_SEARCH_LOOKUPS);
-        let found = self.search_within(models, (pyramid, map), &budget);
+        let (best, lost) = match self.search_within(models, (pyramid, map), &budget) {
+            Ok(best) => (Some(best), None),
+            Err((best, lost)) => (best, Some(lost)),
+        };
         self.credit -= budget.used() as i64;
-        found.inspect_err(|lost| self.last = *lost)
+        let confirmed = self.confirm(models.0, best, lost);
+        confirmed.inspect_err(|lost| self.last = *lost)
     }
 
+    /// Passes a place that the searches have found from far enough apart, none in between a better one elsewhere. `lost`: why the best place
+    /// of the last search is not proved.
+    fn confirm(
+        &mut self,
+        config: &ParticleConfig,
+        best: Option<CloudMatch>,
+        lost: Option<Lost>,
+    ) -> Result<CloudMatch, Lost> {
+        let (Some((_, odom_from_base)), Some(best)) = (self.scans.last(), best) else {
+            return Err(lost.unwrap_or(Lost::NothingToSee));
+        };
+        let cells = 1.0 / config.map.resolution;
+        let is_same = |known: &Candidate| {
+            let off = (known.map_from_odom * *odom_from_base).inverse() * best.pose;
+            off.position().norm() < MAX_PLACE_DISTANCE_M * cells && off.theta.abs() < MAX_PLACE_TURN_RAD
+        };
+        self.candidate = self.candidate.filter(is_same);
+        if let Some(lost) = lost {
+            return Err(lost);
+        }
+        let map_from_odom = best.pose * odom_from_base.inverse();
+        let (first, times) = self.candidate.map_or((self.moved, 1), |known| (known.first, known.times + 1));
+        self.candidate = Some(Candidate { map_from_odom, first, times });
+        let is_seen_anew =
+            self.moved.way - first.way >= MIN_WAY_M * cells || self.moved.turn - first.turn >= MIN_TURN_RAD;
+        if times >= MIN_TIMES && is_seen_anew { Ok(best) } else { Err(Lost::Unconfirmed) }
+    }
+
+    /// The best place, proved; or the best place, if any, and why it is not.
     fn search_within(
         &self,
         (config, likelihood): (&ParticleConfig, &Likelihood),
         (pyramid, map): (&Pyramid, &TileMap),
         budget: &LookupBudget,
-    ) -> Result<CloudMatch, Lost> {
-        let Some((_, last)) = self.scans.last() else { return Err(Lost::NothingToSee) };
+    ) -> Result<CloudMatch, (Option<CloudMatch>, Lost)> {
+        let Some((_, last)) = self.scans.last() else { return Err((None, Lost::NothingToSee)) };
         let (mut cloud, mut taken) = (ScanPoints::default(), BTreeSet::new());
         let parts = self.scans.iter().rev().map(|(shape, odom)| (shape, last.inverse() * *odom));
         cloud.gather(parts, POINT_SPACING_CELLS, &mut taken);
         cloud.finish();
         if cloud.points.len() < MIN_POINTS {
-            return Err(Lost::NothingToSee);
+            return Err((None, Lost::NothingToSee));
         }
         let (middle, half) = pyramid.bounds();
         let finder = CloudMatcher { config, likelihood, cloud: &cloud };
@@ -124,16 +204,21 @@ impl GlobalSearch {
             (MAX_PLACES, budget),
         );
         if budget.is_spent() {
-            return Err(Lost::Unfinished);
+            return Err((None, Lost::Unfinished));
         }
         let unseen = 0.5 * config.outliers.ln() * cloud.points.len() as f64 / config.correlation;
         let is_proved =
             |best: &&CloudMatch| best.log_likelihood - unseen > MIN_PROOF_NATS && best.degenerate == 0;
-        if std::env::var("DBG").is_ok() { for f in &found { eprint!("[{:.0} {:.1} {:.2} ll {:.0} ex {:.3} deg {}] ", f.pose.x, f.pose.y, f.pose.theta, f.log_likelihood, f.explained, f.degenerate); } eprintln!("points {} unseen {unseen:.0} scans {}", cloud.points.len(), self.scans.len()); }
-        let best = found.first().filter(is_proved).filter(|best| best.explained >= MIN_EXPLAINED);
-        let best = best.ok_or(Lost::NothingFits)?;
+        let Some(best) = found.first() else { return Err((None, Lost::NothingFits)) };
+        if !is_proved(&best) || best.explained < MIN_EXPLAINED {
+            return Err((Some(*best), Lost::NothingFits));
+        }
         let rival = found.get(1).map_or(f64::NEG_INFINITY, |rival| rival.log_likelihood);
-        if best.log_likelihood - rival > MIN_MARGIN_NATS { Ok(*best) } else { Err(Lost::SeveralPlaces) }
+        if best.log_likelihood - rival > MIN_MARGIN_NATS {
+            Ok(*best)
+        } else {
+            Err((Some(*best), Lost::SeveralPlaces))
+        }
     }
 }
 

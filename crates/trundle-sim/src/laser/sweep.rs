@@ -42,11 +42,7 @@ impl Laser {
         let beams = (0..c.beams).into_par_iter().with_min_len(MIN_BEAMS_PER_THREAD).map(beam).collect();
         let scan = Scan::new(stamp, Vector2::new(c.x, c.y), c.angle_min(), c.increment(), beams)?;
         let step_s = self.age(0) - self.age(1);
-        if c.sweeps {
-            scan.with_beam_times(BeamTimes { first_s: -self.age(0), step_s })
-        } else {
-            Ok(scan)
-        }
+        if c.sweeps { scan.with_beam_times(BeamTimes { first_s: -self.age(0), step_s }) } else { Ok(scan) }
     }
 
     /// How long before the scan's stamp beam `i` is measured, s.
