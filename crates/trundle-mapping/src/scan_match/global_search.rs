@@ -64,7 +64,7 @@ struct Candidate {
 
 /// Number of searches that must find one place, none in between another. Noise and the shape of the map favour a wrong place in one view, not in several.
 /// Source: ours.
-const MIN_TIMES: usize = 3;
+const MIN_TIMES: usize = 4;
 /// Distance over which they must find it \[m\]. A turn over [`MIN_TURN_RAD`] does instead. Source: ours.
 const MIN_WAY_M: f64 = 1.0;
 /// Turn over which they must find it \[rad\]. Source: ours, a quarter.
@@ -103,6 +103,8 @@ const MIN_POINTS: usize = 30;
 /// Minimum fraction of points that the map explains \[1\]. A lower fraction is another or a changed building: some place of
 /// a large map always explains half of the points. Source: ours.
 const MIN_EXPLAINED: f64 = 0.75;
+/// That fraction for a place that an earlier search proved: scans over a longer way and in turns agree less with each other. Source: ours.
+const MIN_EXPLAINED_CONFIRMED: f64 = 0.6;
 /// Sigma of the position of a robot that may be anywhere \[cells\]. Source: ours.
 const UNKNOWN_POSITION_SIGMA_CELLS: f64 = 1e5;
 /// Sigma of the heading of a robot that may be anywhere \[rad\]. Source: ours.
@@ -136,57 +138,61 @@ impl GlobalSearch {
             return Err(self.last);
         }
         let budget = LookupBudget::new(MAX_SEARCH_LOOKUPS);
-        let (best, lost) = match self.search_within(models, (pyramid, map), &budget) {
-            Ok(best) => (Some(best), None),
-            Err((best, lost)) => (best, Some(lost)),
-        };
+        let found = self.search_within(models, (pyramid, map), &budget);
         self.credit -= budget.used() as i64;
-        let confirmed = self.confirm(models.0, best, lost);
+        let confirmed = found.and_then(|best| self.confirm(models.0, &best));
         confirmed.inspect_err(|lost| self.last = *lost)
     }
 
-    /// Passes a place that the searches have found from far enough apart, none in between a better one elsewhere. `lost`: why the best place
-    /// of the last search is not proved.
-    fn confirm(
-        &mut self,
-        config: &ParticleConfig,
-        best: Option<CloudMatch>,
-        lost: Option<Lost>,
-    ) -> Result<CloudMatch, Lost> {
-        let (Some((_, odom_from_base)), Some(best)) = (self.scans.last(), best) else {
-            return Err(lost.unwrap_or(Lost::NothingToSee));
-        };
+    /// Passes a place that a search proved and that stayed the best one in the whole map as the robot moved on.
+    fn confirm(&mut self, config: &ParticleConfig, best: &BestPlace) -> Result<CloudMatch, Lost> {
+        let Some((_, odom_from_base)) = self.scans.last() else { return Err(Lost::NothingToSee) };
         let cells = 1.0 / config.map.resolution;
+        let pose = best.place.pose;
         let is_same = |known: &Candidate| {
-            let off = (known.map_from_odom * *odom_from_base).inverse() * best.pose;
+            let off = (known.map_from_odom * *odom_from_base).inverse() * pose;
             off.position().norm() < MAX_PLACE_DISTANCE_M * cells && off.theta.abs() < MAX_PLACE_TURN_RAD
         };
-        self.candidate = self.candidate.filter(is_same);
-        if let Some(lost) = lost {
-            return Err(lost);
+        let known = self.candidate.filter(is_same);
+        self.candidate = match (known, best.doubt) {
+            (None, Some(doubt)) => {
+                self.candidate = None;
+                return Err(doubt);
+            }
+            (known, _) => {
+                let (first, times) = known.map_or((self.moved, 1), |known| (known.first, known.times + 1));
+                Some(Candidate { map_from_odom: pose * odom_from_base.inverse(), first, times })
+            }
+        };
+        if self.is_seen_from_elsewhere(cells) && best.is_told() {
+            return Ok(best.place);
         }
-        let map_from_odom = best.pose * odom_from_base.inverse();
-        let (first, times) = self.candidate.map_or((self.moved, 1), |known| (known.first, known.times + 1));
-        self.candidate = Some(Candidate { map_from_odom, first, times });
-        let is_seen_anew =
-            self.moved.way - first.way >= MIN_WAY_M * cells || self.moved.turn - first.turn >= MIN_TURN_RAD;
-        if times >= MIN_TIMES && is_seen_anew { Ok(best) } else { Err(Lost::Unconfirmed) }
+        Err(best.doubt.unwrap_or(Lost::Unconfirmed))
     }
 
-    /// The best place, proved; or the best place, if any, and why it is not.
+    /// Whether enough searches found the candidate, over enough way or turn. `cells`: in a metre.
+    fn is_seen_from_elsewhere(&self, cells: f64) -> bool {
+        let is_seen = |Candidate { first, times, .. }: &Candidate| {
+            let (way, turn) = (self.moved.way - first.way, self.moved.turn - first.turn);
+            *times >= MIN_TIMES && (way >= MIN_WAY_M * cells || turn >= MIN_TURN_RAD)
+        };
+        self.candidate.as_ref().is_some_and(is_seen)
+    }
+
+    /// The best place in the whole map.
     fn search_within(
         &self,
         (config, likelihood): (&ParticleConfig, &Likelihood),
         (pyramid, map): (&Pyramid, &TileMap),
         budget: &LookupBudget,
-    ) -> Result<CloudMatch, (Option<CloudMatch>, Lost)> {
-        let Some((_, last)) = self.scans.last() else { return Err((None, Lost::NothingToSee)) };
+    ) -> Result<BestPlace, Lost> {
+        let Some((_, last)) = self.scans.last() else { return Err(Lost::NothingToSee) };
         let (mut cloud, mut taken) = (ScanPoints::default(), BTreeSet::new());
         let parts = self.scans.iter().rev().map(|(shape, odom)| (shape, last.inverse() * *odom));
         cloud.gather(parts, POINT_SPACING_CELLS, &mut taken);
         cloud.finish();
         if cloud.points.len() < MIN_POINTS {
-            return Err((None, Lost::NothingToSee));
+            return Err(Lost::NothingToSee);
         }
         let (middle, half) = pyramid.bounds();
         let finder = CloudMatcher { config, likelihood, cloud: &cloud };
@@ -204,21 +210,37 @@ impl GlobalSearch {
             (MAX_PLACES, budget),
         );
         if budget.is_spent() {
-            return Err((None, Lost::Unfinished));
+            return Err(Lost::Unfinished);
         }
         let unseen = 0.5 * config.outliers.ln() * cloud.points.len() as f64 / config.correlation;
         let is_proved =
-            |best: &&CloudMatch| best.log_likelihood - unseen > MIN_PROOF_NATS && best.degenerate == 0;
-        let Some(best) = found.first() else { return Err((None, Lost::NothingFits)) };
-        if !is_proved(&best) || best.explained < MIN_EXPLAINED {
-            return Err((Some(*best), Lost::NothingFits));
-        }
+            |best: &CloudMatch| best.log_likelihood - unseen > MIN_PROOF_NATS && best.degenerate == 0;
+        let best = *found.first().ok_or(Lost::NothingFits)?;
         let rival = found.get(1).map_or(f64::NEG_INFINITY, |rival| rival.log_likelihood);
-        if best.log_likelihood - rival > MIN_MARGIN_NATS {
-            Ok(*best)
+        let has_rival = best.log_likelihood - rival <= MIN_MARGIN_NATS;
+        let doubt = if !is_proved(&best) || best.explained < MIN_EXPLAINED {
+            Some(Lost::NothingFits)
         } else {
-            Err((Some(*best), Lost::SeveralPlaces))
-        }
+            has_rival.then_some(Lost::SeveralPlaces)
+        };
+        Ok(BestPlace { place: best, has_rival, doubt })
+    }
+}
+
+/// The best place of a search.
+#[derive(Debug, Clone, Copy)]
+struct BestPlace {
+    place: CloudMatch,
+    /// Whether another one fits nearly as well.
+    has_rival: bool,
+    /// Why it is not proved; `None` if it is.
+    doubt: Option<Lost>,
+}
+
+impl BestPlace {
+    /// Whether it may be told once it is confirmed.
+    fn is_told(&self) -> bool {
+        !self.has_rival && self.place.explained >= MIN_EXPLAINED_CONFIRMED
     }
 }
 
