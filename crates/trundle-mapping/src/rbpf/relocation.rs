@@ -28,9 +28,9 @@ impl ParticleMapper {
         self.set.first_pose_of_run = self.loops.history.scans.len();
     }
 
-    /// The next scans are searched for in the map.
+    /// The next scans are searched for in the map. A wrong place would contradict the given map, and mapping pause again.
     fn search_anew(&mut self) {
-        (self.global_search, self.search_pyramid) = (Some(GlobalSearch::default()), None);
+        (self.global_search, self.search_pyramid) = (Some(GlobalSearch::of_first_proof()), None);
         self.gate = UpdateGate::default();
         self.odometry.map_from_odom = None;
     }

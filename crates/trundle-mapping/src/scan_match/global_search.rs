@@ -42,6 +42,8 @@ pub(crate) struct GlobalSearch {
     /// Distance and turn between the scans so far: cells, rad.
     moved: Moved,
     candidate: Option<Candidate>,
+    /// Whether a proved place is passed before it is seen from elsewhere.
+    is_first_proof_enough: bool,
 }
 
 /// Sums of a motion, cells and rad.
@@ -76,10 +78,10 @@ const MAX_PLACE_TURN_RAD: f64 = 0.2;
 
 /// Lookups that accrue in a second of the scans' time [1/s]: about a tenth of a core. Source: ours.
 const LOOKUPS_PER_SECOND: f64 = 1e8;
-/// Largest credit, and that of the first scan: about ten seconds of a core. Source: ours.
-const MAX_CREDIT_LOOKUPS: i64 = 10_000_000_000;
+/// Largest credit, and that of the first scan: about forty seconds of a core. Source: ours.
+const MAX_CREDIT_LOOKUPS: i64 = 40_000_000_000;
 /// Lookups of one search at most. Source: ours.
-const MAX_SEARCH_LOOKUPS: u64 = 4_000_000_000;
+const MAX_SEARCH_LOOKUPS: u64 = 20_000_000_000;
 
 impl Default for GlobalSearch {
     fn default() -> Self {
@@ -90,6 +92,7 @@ impl Default for GlobalSearch {
             last: Lost::NothingToSee,
             moved: Moved::default(),
             candidate: None,
+            is_first_proof_enough: false,
         }
     }
 }
@@ -111,6 +114,11 @@ const UNKNOWN_POSITION_SIGMA_CELLS: f64 = 1e5;
 const UNKNOWN_HEADING_SIGMA_RAD: f64 = 100.0;
 
 impl GlobalSearch {
+    /// A search that passes a place at its first proof: for a caller that notices a wrong one.
+    pub(crate) fn of_first_proof() -> Self {
+        Self { is_first_proof_enough: true, ..Self::default() }
+    }
+
     /// Adds a scan taken with the base at `odom_from_base` (cells).
     pub(crate) fn push(&mut self, shape: &ScanPoints, odom_from_base: Pose2, stamp: Stamp) {
         let accrued = (stamp - self.now).max(0.0) * LOOKUPS_PER_SECOND;
@@ -140,7 +148,10 @@ impl GlobalSearch {
         let budget = LookupBudget::new(MAX_SEARCH_LOOKUPS);
         let found = self.search_within(models, (pyramid, map), &budget);
         self.credit -= budget.used() as i64;
-        let confirmed = found.and_then(|best| self.confirm(models.0, &best));
+        let confirmed = found.and_then(|best| match best.doubt {
+            None if self.is_first_proof_enough => Ok(best.place),
+            _ => self.confirm(models.0, &best),
+        });
         confirmed.inspect_err(|lost| self.last = *lost)
     }
 

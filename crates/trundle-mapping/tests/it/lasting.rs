@@ -196,6 +196,7 @@ fn another_run_goes_on_with_an_old_map() {
             }
             ScanUpdate::Processed(_) | ScanUpdate::Still => {}
             ScanUpdate::Lost(_) => assert_eq!(found, 0),
+            ScanUpdate::Paused(pause) => panic!("{pause:?}"),
             ScanUpdate::Refused(refusal) => panic!("{refusal:?}"),
         }
     }
