@@ -54,6 +54,9 @@ pub struct MapArgs {
     /// The topics of a bag.
     #[command(flatten)]
     pub topics: BagTopicsArgs,
+    /// Take all beams of a scan as measured at its stamp, also where the log says the time of each.
+    #[arg(long)]
+    pub no_deskew: bool,
     /// Go on with the map of an earlier run, its filter.map: the robot is looked for in it first.
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
@@ -81,6 +84,7 @@ pub fn run(args: &MapArgs) -> Result<Outcome, AppError> {
     let warn = |problem: &dyn Display| console::warn(&format!("{}: {problem}", args.log.display()));
     input.log.warnings().iter().for_each(|warning| warn(&warning));
     run.mount_hint.iter().for_each(|hint| warn(hint));
+    run.pause_warning().filter(|_| run.failure.is_none()).iter().for_each(|warning| warn(warning));
     if !args.common.quiet {
         console::print_table(&map_rows(&input.log, &run));
         console::print(&format!("See {}", place.join("overview.png").display()));
@@ -101,6 +105,7 @@ impl MapArgs {
             resolution: self.resolution,
             laser: LaserLogOptions { odometry_topic: self.topics.odom_topic.clone(), ..self.laser.options() },
             map: self.map.clone(),
+            deskew: !self.no_deskew,
             map_image: self.map_image,
         }
     }

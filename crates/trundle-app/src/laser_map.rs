@@ -3,6 +3,7 @@
 mod counts;
 mod depth_scans;
 mod input;
+mod known_stretches;
 mod log_input;
 mod mount_check;
 mod numbers;

@@ -1,6 +1,6 @@
 //! A planar range scan: beams, free spans and kinds of obstacles, all in the base frame.
 
-use crate::{Invalid, Stamp, Vector2};
+use crate::{Invalid, Pose2, Stamp, Vector2};
 
 /// Measurement of one bearing of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,12 +53,35 @@ pub struct ScanParts {
     pub sigmas: Vec<f32>,
     /// The kind of each beam's obstacle; empty if all stand.
     pub obstacles: Vec<ObstacleKind>,
+    /// The bearing of each beam, rad, base frame; empty if they are evenly spaced.
+    pub bearings: Vec<f32>,
 }
+
+/// The times of a scan's beams: beam i is measured at the scan's stamp plus `first_s + i * step_s`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BeamTimes {
+    /// Time of the first beam after the stamp, s.
+    pub first_s: f64,
+    /// Time between neighbouring beams, s; negative if the last one is measured first.
+    pub step_s: f64,
+}
+
+impl BeamTimes {
+    /// Time of beam `i` after the stamp, s.
+    pub fn of(&self, i: usize) -> f64 {
+        self.first_s + i as f64 * self.step_s
+    }
+}
+
+/// Time between a scan's stamp and one of its beams \[s\]. Beyond it the times are refused. Source: ours, ten turns of the slowest
+/// laser.
+const MAX_BEAM_TIME_S: f64 = 10.0;
 
 /// No sensor of a robot is farther from its base, m.
 const MAX_SENSOR_OFFSET_M: f64 = 20.0;
 
-/// A laser-like scan in a horizontal plane: beam i points along `angle_min + i * angle_increment` from the sensor.
+/// A laser-like scan in a horizontal plane: beam i points along `angle_min + i * angle_increment` from the sensor, or along its own
+/// bearing.
 ///
 /// Its frame is the base frame's plane with the origin at `origin`: bearings are about `origin`, angles from x.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,6 +91,7 @@ pub struct Scan {
     angle_min: f64,
     angle_increment: f64,
     parts: ScanParts,
+    beam_times: Option<BeamTimes>,
 }
 
 impl Scan {
@@ -108,7 +132,51 @@ impl Scan {
         crate::require_finite("angle_min", angle_min, "rad")?;
         crate::require_positive("angle_increment", angle_increment, "rad")?;
         parts.check()?;
-        Ok(Self { stamp, origin, angle_min, angle_increment, parts })
+        Ok(Self { stamp, origin, angle_min, angle_increment, parts, beam_times: None })
+    }
+
+    /// The same scan with the times of its beams.
+    ///
+    /// # Errors
+    /// When a beam is measured more than 10 s from the stamp, or a number is not finite.
+    pub fn with_beam_times(self, times: BeamTimes) -> Result<Self, Invalid> {
+        let last = times.of(self.parts.beams.len().saturating_sub(1));
+        for (field, time) in [("time of the first beam", times.first_s), ("time of the last beam", last)] {
+            crate::require_in(field, time, "s", -MAX_BEAM_TIME_S, MAX_BEAM_TIME_S)?;
+        }
+        Ok(Self { beam_times: Some(times), ..self })
+    }
+
+    /// The times of the beams; `None` if all are measured at the stamp, or nothing is known of them.
+    pub fn beam_times(&self) -> Option<BeamTimes> {
+        self.beam_times
+    }
+
+    /// The scan as if all beams were measured at the stamp, by the motion of the base.
+    ///
+    /// `base_from_base_at(t)` is the base's pose `t` s after the stamp in the base frame at the stamp. Each end of a beam stays where it
+    /// was measured; beams then begin at the common origin, at bearings of their own. A scan without beam times is returned as it is.
+    #[must_use]
+    pub fn deskewed(self, base_from_base_at: impl Fn(f64) -> Pose2) -> Self {
+        let Some(times) = self.beam_times else { return self };
+        let (mut beams, mut bearings) = (Vec::new(), Vec::new());
+        for (i, beam) in self.parts.beams.iter().enumerate() {
+            let moved = base_from_base_at(times.of(i));
+            let range = match *beam {
+                Beam::Hit { range } | Beam::Free { range } => range,
+                Beam::Unseen => 1.0,
+            };
+            let arm = moved.transform(self.point(i, range)) - self.origin;
+            let range = arm.norm();
+            bearings.push(arm.y.atan2(arm.x) as f32);
+            beams.push(match beam {
+                Beam::Hit { .. } => Beam::Hit { range },
+                Beam::Free { .. } => Beam::Free { range },
+                Beam::Unseen => Beam::Unseen,
+            });
+        }
+        let parts = ScanParts { beams, bearings, ..self.parts };
+        Self { parts, beam_times: None, ..self }
     }
 
     /// The measurements of its beams, for a new scan without an allocation.
@@ -133,10 +201,19 @@ impl Scan {
 
     /// The bearing of beam `i`, rad, base frame.
     pub fn angle(&self, i: usize) -> f64 {
+        self.parts.bearings.get(i).map_or_else(|| self.even_angle(i), |bearing| f64::from(*bearing))
+    }
+
+    fn even_angle(&self, i: usize) -> f64 {
         self.angle_min + i as f64 * self.angle_increment
     }
 
-    /// The bearing of the first beam, rad, base frame.
+    /// The bearings of the beams, rad, base frame; empty if they are evenly spaced.
+    pub fn bearings(&self) -> &[f32] {
+        &self.parts.bearings
+    }
+
+    /// The bearing of the first of evenly spaced beams, rad, base frame.
     pub fn angle_min(&self) -> f64 {
         self.angle_min
     }
@@ -205,7 +282,16 @@ impl ScanParts {
             return Err(Invalid::new(field, self.sigmas[i], "m", "a finite number, 0 or more"));
         }
         let beams = self.beams.len();
-        for (field, count) in [("sigmas", self.sigmas.len()), ("obstacles", self.obstacles.len())] {
+        if let Some(i) = self.bearings.iter().position(|bearing| !bearing.is_finite()) {
+            let field = format!("bearing of beam {i}");
+            return Err(Invalid::new(field, self.bearings[i], "rad", "a finite number"));
+        }
+        let counts = [
+            ("sigmas", self.sigmas.len()),
+            ("obstacles", self.obstacles.len()),
+            ("bearings", self.bearings.len()),
+        ];
+        for (field, count) in counts {
             if count != 0 && count != beams {
                 return Err(Invalid::new(format!("number of {field}"), count, "", format!("0 or {beams}")));
             }
@@ -241,6 +327,44 @@ mod tests {
         let beams = vec![Beam::Hit { range: f64::NAN }];
         let error = Scan::new(Stamp::default(), Vector2::zeros(), 0.0, 0.5, beams).unwrap_err();
         assert_eq!(error.field, "range of beam 0");
+    }
+
+    #[test]
+    fn deskewing_puts_each_end_where_it_was_when_its_beam_was_measured() {
+        // A robot drives 1 m/s ahead and turns by 0.5 rad/s past two posts; the last beam is measured at the stamp.
+        let world_from_base = |t: f64| Pose2::new(3.0 + t, -1.0, 0.4 + 0.5 * t);
+        let (stamp_pose, origin) = (world_from_base(0.0), Vector2::new(0.1, 0.05));
+        let posts = [Vector2::new(5.0, 0.0), Vector2::new(4.0, 1.5)];
+        let times = BeamTimes { first_s: -0.2, step_s: 0.2 };
+        let beam = |i: usize| {
+            let arm = world_from_base(times.of(i)).inverse().transform(posts[i]) - origin;
+            (arm.y.atan2(arm.x), arm.norm())
+        };
+        let ((first, near), (second, far)) = (beam(0), beam(1));
+        let beams = vec![Beam::Hit { range: near }, Beam::Hit { range: far }];
+        let scan = Scan::new(Stamp::default(), origin, first, second - first, beams).unwrap();
+        let off = |scan: &Scan| {
+            let ends = scan.hits().zip(posts);
+            ends.map(|(hit, post)| (stamp_pose.transform(hit) - post).norm()).fold(0.0, f64::max)
+        };
+        assert!(off(&scan) > 0.2, "{}", off(&scan));
+        let even = scan.clone().deskewed(|_| panic!("all beams were measured at once"));
+        assert_eq!(even, scan);
+        let swept = scan.with_beam_times(times).unwrap();
+        let still = swept.deskewed(|t| stamp_pose.inverse() * world_from_base(t));
+        assert!(off(&still) < 1e-6, "{}", off(&still));
+        assert_eq!((still.beam_times(), still.bearings().len()), (None, 2));
+    }
+
+    #[test]
+    fn beam_times_far_from_the_stamp_are_refused() {
+        let scan = two_beams(ScanParts::default()).unwrap();
+        let refused =
+            |first_s, step_s| scan.clone().with_beam_times(BeamTimes { first_s, step_s }).unwrap_err().field;
+        assert_eq!(refused(-11.0, 0.0), "time of the first beam");
+        assert_eq!(refused(0.0, f64::NAN), "time of the last beam");
+        let bearings = two_beams(ScanParts { bearings: vec![0.0, f32::NAN], ..ScanParts::default() });
+        assert_eq!(bearings.unwrap_err().field, "bearing of beam 1");
     }
 
     fn two_beams(parts: ScanParts) -> Result<Scan, Invalid> {

@@ -23,6 +23,7 @@ mod experiment_display;
 mod experiment_report;
 pub mod fault_scenarios;
 mod index_range;
+pub mod laser_drive;
 mod laser_run;
 pub mod look_alikes;
 pub mod missions;

@@ -55,6 +55,13 @@ impl Default for MapperConfig {
 }
 
 impl MapperConfig {
+    /// The same map with cells of another side, m, and the extent that such cells allow.
+    #[must_use]
+    pub fn with_resolution(self, resolution: f64) -> Self {
+        let half_extent = self.half_extent.min(MAX_CELLS_ACROSS / 2.0 * resolution);
+        Self { resolution, half_extent, ..self }
+    }
+
     /// Passes a valid configuration through.
     ///
     /// # Errors
@@ -90,6 +97,13 @@ mod tests {
         let high = MapperConfig { clamp_high: 0.5, ..MapperConfig::default() };
         assert_eq!(high.validated().unwrap_err().field, "occupied_above");
         assert!(MapperConfig::default().validated().is_ok());
+    }
+
+    #[test]
+    fn fine_cells_are_accepted_with_the_extent_that_they_allow() {
+        let fine = MapperConfig::default().with_resolution(0.01).validated().unwrap();
+        assert_eq!((fine.resolution, fine.half_extent), (0.01, 230.0));
+        assert_eq!(MapperConfig::default().with_resolution(0.05), MapperConfig::default());
     }
 
     #[test]

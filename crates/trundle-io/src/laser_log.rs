@@ -3,12 +3,14 @@
 mod empty_map;
 mod motion;
 mod options;
+mod order;
 mod sources;
 mod sweep;
 
 pub use empty_map::{empty_map_cause, no_overlap_cause, no_return_cause, range_unit_hint};
 pub(crate) use motion::Motion;
 pub use options::LaserLogOptions;
+pub(crate) use order::insert_in_order;
 pub use sources::LaserLogSources;
 pub(crate) use sources::{chosen, is_named};
 pub(crate) use sweep::{MAX_BEAMS, check_sweep};

@@ -27,6 +27,9 @@ pub struct RobotConfig {
     pub footprint: Option<Vec<[f64; 2]>>,
     /// Sensor from which the map is drawn and by which safety stops. Default the depth camera.
     pub sight: RangeSource,
+    /// Whether each beam of a laser's scan is put to where the base was by the odometry when it was measured, where the laser says the
+    /// times of its beams. Default true.
+    pub deskew: bool,
     /// Geometry of the base. Default: the Kobuki.
     pub drive: DifferentialDrive,
     /// Limits of commands for the base. Default: the Kobuki.
@@ -97,6 +100,7 @@ impl Default for RobotConfig {
             footprint_radius: Footprint::KOBUKI.circumscribed_radius(),
             footprint: None,
             sight: RangeSource::DepthCamera,
+            deskew: true,
             drive: DifferentialDrive::KOBUKI,
             limits: DriveLimits::KOBUKI,
             camera: PinholeCamera::kinect_v2(),

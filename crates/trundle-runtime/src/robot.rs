@@ -62,6 +62,8 @@ use trundle_mapping::MapperConfig;
 #[derive(Debug)]
 pub struct Robot {
     range_source: RangeSource,
+    /// Whether scans of a laser are deskewed.
+    deskews_laser: bool,
     base_from_camera: Pose3,
     /// Standard deviation of the position above which the pose is lost \[m\].
     lost_sigma: f64,
@@ -122,6 +124,7 @@ impl Robot {
         let mapping = MapperConfig { blind_range, ..config.mapping.clone() };
         Ok(Self {
             range_source: config.sight,
+            deskews_laser: config.deskew,
             base_from_camera,
             lost_sigma: config.mission_executor.lost_sigma,
             odometry: WheelOdometry::new(config.drive, config.odometry.clone())?,

@@ -1,6 +1,7 @@
 //! Counts of a log's scans by their result.
 
-use trundle_mapping::{Localized, Processed, ScanUpdate};
+use trundle_core::Stamp;
+use trundle_mapping::{Localized, MappingPause, Processed, ScanUpdate};
 
 /// The scans of a log, by what the filter made of them.
 #[derive(Debug, Default)]
@@ -23,6 +24,14 @@ pub struct ScanCounts {
     pub corrections: usize,
     /// Scans while the pose was not known.
     pub lost: usize,
+    /// Pauses of mapping, where scans contradicted the map that the run went on with.
+    pub pauses: usize,
+    /// Scans left out by these pauses: those taken out again, and those until the robot was found.
+    pub left_out: usize,
+    /// Stamp of the first scan that was left out.
+    pub first_pause: Option<Stamp>,
+    /// Whether mapping is paused.
+    is_paused: bool,
 }
 
 impl ScanCounts {
@@ -31,8 +40,15 @@ impl ScanCounts {
         match update {
             ScanUpdate::Processed(done) => self.count_processed(done),
             ScanUpdate::Refused(_) => self.refused += 1,
-            ScanUpdate::Lost(_) => self.lost += 1,
-            ScanUpdate::Found(_) => self.processed += 1,
+            ScanUpdate::Lost(_) => {
+                self.lost += 1;
+                self.left_out += usize::from(self.is_paused);
+            }
+            ScanUpdate::Paused(pause) => self.count_pause(*pause),
+            ScanUpdate::Found(_) => {
+                self.processed += 1;
+                self.is_paused = false;
+            }
             ScanUpdate::Still => {}
         }
     }
@@ -49,6 +65,16 @@ impl ScanCounts {
             Localized::Lost(_) => self.lost += 1,
             Localized::Still => {}
         }
+    }
+
+    /// The scan at which the pause begins is left out too.
+    fn count_pause(&mut self, pause: MappingPause) {
+        self.pauses += 1;
+        self.processed = self.processed.saturating_sub(pause.removed_scans);
+        self.left_out += pause.removed_scans + 1;
+        self.lost += pause.removed_scans + 1;
+        self.first_pause.get_or_insert(pause.since);
+        self.is_paused = true;
     }
 
     fn count_processed(&mut self, done: &Processed) {

@@ -181,7 +181,7 @@ fn base_poses(file: &Path, robot: &RobotConfig) -> Result<Vec<(Stamp, Pose2)>, A
 }
 
 /// The poses before and after a time, and its share of the time between them.
-fn about<T: Copy>(poses: &[(Stamp, T)], stamp: Stamp) -> Option<(T, T, f64)> {
+pub(super) fn about<T: Copy>(poses: &[(Stamp, T)], stamp: Stamp) -> Option<(T, T, f64)> {
     let after = poses.partition_point(|(at, _)| *at <= stamp);
     let (t0, a) = *poses.get(after.checked_sub(1)?)?;
     match poses.get(after) {

@@ -1,17 +1,31 @@
 //! The scans of a CARMEN log, a bag, a recording of trundle, or an RGB-D folder whose depth images become scans.
 
-use super::depth_scans;
+use super::depth_scans::{self, about};
 use super::log_input::LogInput;
 use super::request::LaserMapRequest;
 use crate::sequence_input::{RecordedRun, SequenceInput, SequenceOptions};
 use crate::{AppError, StepProgress};
-use trundle_io::{FileKind, read_laser_log};
+use trundle_core::deskewed;
+use trundle_io::{FileKind, LaserLog, read_laser_log};
 
-/// Reads the log: RGB-D images of a folder or a recording, the scans of a recording's laser, a bag or a CARMEN log.
+/// Reads the log, its scans deskewed where they can be and the request asks for it.
 ///
 /// # Errors
 /// Names the file, and the line or frame that cannot be accepted.
 pub fn read_log(request: &LaserMapRequest, progress: &dyn StepProgress) -> Result<LogInput, AppError> {
+    let mut input = read_raw_log(request, progress)?;
+    if request.deskew {
+        let LaserLog { scans, odometry, .. } = &mut input.log;
+        for entry in scans.iter_mut().filter(|entry| entry.scan.beam_times().is_some()) {
+            let pose = |stamp| about(odometry, stamp).map(|(a, b, part)| a.interpolate(&b, part));
+            entry.scan = deskewed(entry.scan.clone(), pose);
+        }
+    }
+    Ok(input)
+}
+
+/// Reads the log: RGB-D images of a folder or a recording, the scans of a recording's laser, a bag or a CARMEN log.
+fn read_raw_log(request: &LaserMapRequest, progress: &dyn StepProgress) -> Result<LogInput, AppError> {
     let options = SequenceOptions {
         recover: request.recover,
         topics: request.topics.clone(),

@@ -53,6 +53,8 @@ pub fn map_rows(log: &LaserLog, run: &LaserMapRun) -> Vec<Vec<String>> {
         row("scans without overlap with the map", counts.without_overlap.to_string()),
         row("scans with a direction left to the odometry", counts.degenerate.to_string()),
         row("scans while the pose was not known", counts.lost.to_string()),
+        row("pauses where scans contradict the given map", counts.pauses.to_string()),
+        row("scans left out by pauses", counts.left_out.to_string()),
         row("resamplings", counts.resamplings.to_string()),
         row("loop closures that corrected the trajectory", counts.corrections.to_string()),
         row("memory of maps, scans and trajectories", format!("{:.1} MB", run.megabytes)),
@@ -101,6 +103,9 @@ pub fn summary(request: &LaserMapRequest, input: &LogInput, run: &LaserMapRun) -
         .set("scans_without_overlap", counts.without_overlap)
         .set("degenerate_scans", counts.degenerate)
         .set("lost_scans", counts.lost)
+        .set("pauses", counts.pauses)
+        .set("left_out_scans", counts.left_out)
+        .set("first_pause_s", counts.first_pause.map(|stamp| stamp.as_secs()))
         .set("resamplings", counts.resamplings)
         .set("loop_corrections", counts.corrections)
         .set("memory_mb", run.megabytes)

@@ -31,6 +31,8 @@ pub struct LaserMapRequest {
     pub laser: LaserLogOptions,
     /// The map of an earlier run, in which the robot is localized first.
     pub map: Option<PathBuf>,
+    /// Whether each beam is put to where the base was when it was measured, where the log says the times of the beams.
+    pub deskew: bool,
     /// Format of the picture of the map that is written.
     pub map_image: MapImage,
 }
@@ -52,7 +54,7 @@ impl LaserMapRequest {
             let grid = read_map(file)?;
             let resolution = grid.geometry().resolution;
             let config = self.config(depth);
-            let config = ParticleConfig { map: MapperConfig { resolution, ..config.map }, ..config };
+            let config = ParticleConfig { map: config.map.with_resolution(resolution), ..config };
             return Ok(MapLocalizer::from_grid(&grid, config, self.seed)?);
         }
         Expected::LocalizationMap.check(file)?;
@@ -64,7 +66,7 @@ impl LaserMapRequest {
         let default = ParticleConfig::default();
         let config = ParticleConfig {
             particles: self.particles,
-            map: MapperConfig { resolution: self.resolution, ..default.map },
+            map: default.map.with_resolution(self.resolution),
             ..default
         };
         match depth {

@@ -1,6 +1,7 @@
 //! Mapping of a log, or localization of it in a map that does not change.
 
 use super::counts::ScanCounts;
+use super::known_stretches::KnownStretches;
 use super::log_input::LogInput;
 use super::mount_check::mount_hint;
 use super::numbers::{map_picture, summary, trajectory_lines};
@@ -10,7 +11,7 @@ use crate::{AppError, StepProgress, stop};
 use std::time::Instant;
 use trundle_core::{Pose2, Stamp};
 use trundle_io::{LaserLog, OutputFolder, write_map_as};
-use trundle_mapping::{Localized, MapLocalizer, ParticleMapper, propagate_trajectory};
+use trundle_mapping::{Localized, MapLocalizer, ParticleMapper, ScanUpdate};
 
 /// Maps a log, or with `localize_only` follows the robot in the map asked for; writes trajectory, map, picture and summary.
 ///
@@ -27,28 +28,28 @@ pub fn map_log(
     let odometry: Vec<(Stamp, Pose2)> =
         log.scans.iter().map(|s| (s.scan.stamp(), s.odom_from_base)).collect();
     let start = Instant::now();
-    let (counts, poses, megabytes, failure) = match &request.map {
+    let (counts, known, poses, megabytes, failure) = match &request.map {
         Some(file) if localize_only => {
             let mut localizer = request.localizer(file, depth.as_ref())?;
-            let (counts, poses) = localize(log, &mut localizer, progress);
+            let (counts, known, poses) = localize(log, &mut localizer, progress);
             folder.write("overview.png", &map_picture(&localizer.grid(), &poses))?;
             let failure = LaserMapRun::failure_of(log, &counts, None, stop::stopped().is_some());
-            (counts, poses, 0.0, failure)
+            (counts, known, poses, 0.0, failure)
         }
         _ => {
             let mut mapper = request.mapper(depth.as_ref())?;
-            let counts = map(log, &mut mapper, progress);
+            let (counts, known) = map(log, &mut mapper, progress);
             write_map_as(folder, "map", mapper.grid(), request.map_image)?;
-            let poses = mapper.trajectory();
+            let poses = mapper.whole_trajectory();
             folder.write("overview.png", &map_picture(mapper.grid(), &poses))?;
             folder.write("filter.map", &mapper.save())?;
             let failure =
                 LaserMapRun::failure_of(log, &counts, Some(mapper.grid()), stop::stopped().is_some());
-            (counts, poses, mapper.bytes() as f64 / 1e6, failure)
+            (counts, known, poses, mapper.bytes() as f64 / 1e6, failure)
         }
     };
     let seconds = start.elapsed().as_secs_f64();
-    let trajectory = propagate_trajectory(&poses, &odometry);
+    let trajectory = known.trajectory(&poses, &odometry);
     folder.write("trajectory.txt", trajectory_lines(&trajectory).as_bytes())?;
     let is_interrupted = stop::stopped().is_some();
     let mount_hint = if depth.is_some() { None } else { mount_hint(log, &counts) };
@@ -62,19 +63,30 @@ fn is_stopped(done: usize, log: &LaserLog) -> bool {
     stop::is_requested(|| format!("{done} of {} scans", log.scans.len()))
 }
 
-fn map(log: &LaserLog, mapper: &mut ParticleMapper, progress: &dyn StepProgress) -> ScanCounts {
-    let mut counts = ScanCounts::default();
+/// Maps the scans of the log.
+fn map(
+    log: &LaserLog,
+    mapper: &mut ParticleMapper,
+    progress: &dyn StepProgress,
+) -> (ScanCounts, KnownStretches) {
+    let (mut counts, mut known) = (ScanCounts::default(), KnownStretches::default());
     progress.begin(Some(log.scans.len()));
     for (done, entry) in log.scans.iter().enumerate() {
         if is_stopped(done, log) {
             break;
         }
-        counts.count(&mapper.update(entry.odom_from_base, &entry.scan));
+        let update = mapper.update(entry.odom_from_base, &entry.scan);
+        counts.count(&update);
+        match update {
+            ScanUpdate::Paused(pause) => known.lose(pause.since),
+            ScanUpdate::Found(_) => known.find(entry.scan.stamp()),
+            _ => {}
+        }
         progress.advance();
     }
     mapper.finish();
     progress.end();
-    counts
+    (counts, known)
 }
 
 /// The trajectory of the log in a map that does not change.
@@ -82,8 +94,8 @@ fn localize(
     log: &LaserLog,
     localizer: &mut MapLocalizer,
     progress: &dyn StepProgress,
-) -> (ScanCounts, Vec<(Stamp, Pose2)>) {
-    let (mut counts, mut known) = (ScanCounts::default(), Vec::new());
+) -> (ScanCounts, KnownStretches, Vec<(Stamp, Pose2)>) {
+    let (mut counts, mut known, mut poses) = (ScanCounts::default(), KnownStretches::default(), Vec::new());
     progress.begin(Some(log.scans.len()));
     for (done, entry) in log.scans.iter().enumerate() {
         if is_stopped(done, log) {
@@ -91,11 +103,17 @@ fn localize(
         }
         let localized = localizer.update(entry.odom_from_base, &entry.scan);
         counts.count_localized(&localized);
-        if let Localized::Known { map_from_base, .. } = localized {
-            known.push((entry.scan.stamp(), map_from_base));
+        let stamp = entry.scan.stamp();
+        match localized {
+            Localized::Known { map_from_base, .. } => {
+                known.find(stamp);
+                poses.push((stamp, map_from_base));
+            }
+            Localized::Lost(_) => known.lose(stamp),
+            Localized::Still | Localized::Refused(_) => {}
         }
         progress.advance();
     }
     progress.end();
-    (counts, known)
+    (counts, known, poses)
 }

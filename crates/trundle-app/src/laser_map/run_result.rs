@@ -8,6 +8,9 @@ use trundle_io::{LaserLog, empty_map_cause, no_overlap_cause, range_unit_hint};
 /// share above 0.01.
 const MAX_SHARE_WITHOUT_OVERLAP: f64 = 0.5;
 
+/// Share of the scans that pauses left out \[1\]. Above it the run missed its aim. Source: ours.
+const MAX_SHARE_LEFT_OUT: f64 = 0.1;
+
 /// The result of a log.
 #[derive(Debug)]
 pub struct LaserMapRun {
@@ -38,6 +41,9 @@ impl LaserMapRun {
         if counts.processed == 0 {
             return Some(nothing_processed(log, counts, is_stopped));
         }
+        if let Some(failure) = left_out(counts) {
+            return Some(failure);
+        }
         if counts.without_overlap as f64 > MAX_SHARE_WITHOUT_OVERLAP * counts.processed as f64 {
             let (without, all) = (counts.without_overlap, counts.processed);
             let cause = no_overlap_cause(log);
@@ -53,11 +59,34 @@ impl LaserMapRun {
         Some(format!("{failure}: {}", empty_map_cause(log)))
     }
 
+    /// A warning about scans that pauses of mapping left out; `None` without a pause.
+    #[must_use]
+    pub fn pause_warning(&self) -> Option<String> {
+        let counts = &self.counts;
+        (counts.pauses > 0).then(|| format!("{} scans are left out: {}", counts.left_out, pause_note(counts)))
+    }
+
     /// Wall-clock time of a processed scan, ms.
     #[must_use]
     pub fn scan_ms(&self) -> f64 {
         self.seconds * 1e3 / (self.counts.processed + self.counts.lost).max(1) as f64
     }
+}
+
+/// The failure of a run whose pauses left out much.
+fn left_out(counts: &ScanCounts) -> Option<String> {
+    let (out, all) = (counts.left_out, counts.left_out + counts.processed);
+    (out as f64 > MAX_SHARE_LEFT_OUT * all as f64)
+        .then(|| format!("{out} of {all} scans are left out: {}", pause_note(counts)))
+}
+
+/// A sentence about the pauses of mapping.
+fn pause_note(counts: &ScanCounts) -> String {
+    let since = counts.first_pause.map_or_else(String::new, |stamp| format!(", from {stamp} s on"));
+    format!(
+        "scans contradict the map that was to go on{since}, and mapping paused until a place was recognised ({} pauses): was the robot carried, or is it the map of another place?",
+        counts.pauses
+    )
 }
 
 /// Why no scan was put into the map or found in it.

@@ -55,6 +55,7 @@ fn map_request(log: &Path, recover: bool) -> LaserMapRequest {
         resolution: 0.05,
         laser: LaserLogOptions::default(),
         map: None,
+        deskew: true,
         map_image: MapImage::Pgm,
     }
 }

@@ -3,7 +3,7 @@
 use super::line::{LaserLine, Line, laser_name, parse};
 use super::text::TextLines;
 use crate::IoError;
-use crate::laser_log::{LaserLogSkip, LaserLogSources, chosen};
+use crate::laser_log::{LaserLogSkip, LaserLogSources, chosen, insert_in_order};
 use std::collections::BTreeMap;
 use trundle_core::{Pose2, Stamp};
 
@@ -65,11 +65,7 @@ impl LogLines {
     }
 
     fn take_odometry(&mut self, stamp: Stamp, pose: Pose2) -> Result<(), String> {
-        if let Some((before, _)) = self.odometry.last().filter(|(before, _)| stamp < *before) {
-            return Err(format!("time goes back from {before} s to {stamp} s"));
-        }
-        self.odometry.push((stamp, pose));
-        Ok(())
+        insert_in_order(&mut self.odometry, (stamp, pose), |(stamp, _)| *stamp)
     }
 
     fn take_parameter(&mut self, line: &Line) {

@@ -6,15 +6,17 @@ use super::mount::{mount, scan_of};
 use super::ranges::{is_range, limit, no_return_from};
 use super::text::TextLines;
 use crate::IoError;
-use crate::laser_log::{LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, LaserMount, Motion};
+use crate::laser_log::{
+    LaserLog, LaserLogOptions, LaserLogScan, LaserLogSkip, LaserMount, Motion, insert_in_order,
+};
 use std::path::Path;
 
 /// A CARMEN log, plain or compressed with gzip: lines of a laser (`FLASER`, `ROBOTLASER1`, `RAWLASER1` to `RAWLASER4` and those of
 /// the rear), `ODOM` and three of `PARAM`; others are ignored.
 ///
 /// The scans are those of the front laser, else the lines that are most; [`LaserLogOptions::scan_topic`] names others. A `RAWLASER`
-/// line has no pose: its odometry is interpolated between `ODOM` lines. A broken line, or one whose time goes back, is skipped and
-/// named in [`LaserLog::skipped`]; so is the rest of a compressed file that breaks off.
+/// line has no pose: its odometry is interpolated between `ODOM` lines. Lines up to 0.05 s out of order are sorted. A broken line, or
+/// one whose time goes back farther, is skipped and named in [`LaserLog::skipped`]; so is the rest of a compressed file that breaks off.
 ///
 /// # Errors
 /// When the file cannot be read, an option is out of range, or no line holds a scan: then the first problem is named.
@@ -39,19 +41,15 @@ fn parse_carmen(path: &Path, text: TextLines, options: &LaserLogOptions) -> Resu
     }
 }
 
-/// The lines whose times do not go back.
+/// The lines by rising stamps, without those whose times go back.
 fn in_order<'a>(
     lines: impl Iterator<Item = (usize, &'a LaserLine)>,
     skipped: &mut Vec<LaserLogSkip>,
 ) -> Vec<(usize, &'a LaserLine)> {
     let mut taken: Vec<(usize, &LaserLine)> = Vec::new();
-    for (number, laser) in lines {
-        match taken.last().filter(|(_, before)| laser.stamp < before.stamp) {
-            Some((_, before)) => {
-                let problem = format!("time goes back from {} s to {} s", before.stamp, laser.stamp);
-                skipped.push(LaserLogSkip { line: number, problem });
-            }
-            None => taken.push((number, laser)),
+    for (line, laser) in lines {
+        if let Err(problem) = insert_in_order(&mut taken, (line, laser), |(_, laser)| laser.stamp) {
+            skipped.push(LaserLogSkip { line, problem });
         }
     }
     taken

@@ -1,5 +1,6 @@
 //! Interpolation of the odometry of a log over time.
 
+use super::order::insert_in_order;
 use trundle_core::{Pose2, Stamp};
 
 /// Where the base was by odometry, over time.
@@ -14,7 +15,7 @@ const LONGEST_GAP: f64 = 1.0;
 const POSE_HOLD_S: f64 = 0.1;
 
 impl Motion {
-    /// Adds a pose.
+    /// Adds a pose, at its place where its time is a little before the last one's. Of poses of one time the first counts.
     ///
     /// # Errors
     /// When it is not finite or its time goes back.
@@ -22,16 +23,10 @@ impl Motion {
         if !pose.is_finite() {
             return Err("the pose is not finite, or its quaternion is none".to_owned());
         }
-        match self.poses.last() {
-            Some((before, _)) if stamp < *before => {
-                Err(format!("time goes back from {before} s to {stamp} s"))
-            }
-            Some((before, _)) if stamp == *before => Ok(()),
-            _ => {
-                self.poses.push((stamp, pose));
-                Ok(())
-            }
+        if self.poses.binary_search_by_key(&stamp, |(at, _)| *at).is_ok() {
+            return Ok(());
         }
+        insert_in_order(&mut self.poses, (stamp, pose), |(stamp, _)| *stamp)
     }
 
     /// The poses, by rising stamps.

@@ -9,8 +9,8 @@ use base64::engine::general_purpose::STANDARD;
 use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use trundle_core::{
-    Beam, BodyEvent, BodyEventKind, Cliff, GyroRate, Invalid, Odometry, Pose2, Scan, Stamp, Touch, Twist2,
-    Vector2, WheelTicks,
+    Beam, BeamTimes, BodyEvent, BodyEventKind, Cliff, GyroRate, Invalid, Odometry, Pose2, Scan, Stamp, Touch,
+    Twist2, Vector2, WheelTicks,
 };
 
 #[derive(Serialize, Deserialize)]
@@ -69,6 +69,9 @@ pub(super) struct ScanMessage {
     ranges_m: Vec<Option<f64>>,
     /// Whether an obstacle is at the range; else the beam is free up to it.
     hits: Vec<bool>,
+    /// When the first beam was measured, after the stamp, and the time between beams; none if all were measured at the stamp.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    beam_times_s: Option<[f64; 2]>,
 }
 
 /// The place of an image among the events.
@@ -152,6 +155,7 @@ impl ScanMessage {
             angle_increment_rad: scan.angle_increment(),
             ranges_m: scan.beams().iter().map(range).collect(),
             hits: scan.beams().iter().map(|beam| matches!(beam, Beam::Hit { .. })).collect(),
+            beam_times_s: scan.beam_times().map(|times| [times.first_s, times.step_s]),
         }
     }
 
@@ -244,6 +248,10 @@ impl TryFrom<ScanMessage> for EncodedEvent {
 
     fn try_from(m: ScanMessage) -> Result<Self, Invalid> {
         let (beams, origin) = (m.beams()?, Vector2::from(m.origin_m));
-        Ok(Self::Scan(Scan::new(m.stamp.try_into()?, origin, m.angle_min_rad, m.angle_increment_rad, beams)?))
+        let scan = Scan::new(m.stamp.try_into()?, origin, m.angle_min_rad, m.angle_increment_rad, beams)?;
+        Ok(Self::Scan(match m.beam_times_s {
+            Some([first_s, step_s]) => scan.with_beam_times(BeamTimes { first_s, step_s })?,
+            None => scan,
+        }))
     }
 }

@@ -5,7 +5,9 @@ use super::frames::NoTransform;
 use super::laser_scan::convert;
 use super::messages::LaserScan;
 use crate::carmen::read_carmen;
-use crate::laser_log::{LaserLog, LaserLogOptions, LaserLogScan, LaserLogSources, LaserMount, Motion};
+use crate::laser_log::{
+    LaserLog, LaserLogOptions, LaserLogScan, LaserLogSources, LaserMount, Motion, insert_in_order,
+};
 use crate::{Expected, IoError};
 use std::path::Path;
 use trundle_core::{Pose3, Vector3};
@@ -24,7 +26,8 @@ pub fn read_laser_log(path: &Path, options: &LaserLogOptions) -> Result<LaserLog
 /// The scans of a ROS 2 bag (MCAP or SQLite) or a ROS 1 bag, each with the odometry at its stamp, interpolated. The static transforms
 /// give the mount of the laser. Times are those in the messages' headers.
 ///
-/// A message that is broken, whose time goes back, or that no odometry is known for is skipped and named in
+/// Messages up to 0.05 s out of order are sorted. One that is broken, whose time goes back farther, or that no odometry is known for is
+/// skipped and named in
 /// [`LaserLog::skipped`], by its number in the bag.
 ///
 /// # Errors
@@ -109,13 +112,11 @@ fn take(
     motion: &Motion,
     max_range: Option<f64>,
 ) -> Result<(), String> {
-    if let Some(before) = log.scans.last().filter(|before| message.stamp < before.scan.stamp()) {
-        return Err(format!("time goes back from {} s to {} s", before.scan.stamp(), message.stamp));
-    }
     let odom_from_base = motion.at(message.stamp)?;
     let converted = convert(message, mount, max_range)?;
+    let scan = LaserLogScan { odom_from_base, scan: converted.scan };
+    insert_in_order(&mut log.scans, scan, |scan| scan.scan.stamp())?;
     log.bad_ranges += converted.bad_ranges;
     log.max_range = Some(max_range.unwrap_or(message.range_max));
-    log.scans.push(LaserLogScan { odom_from_base, scan: converted.scan });
     Ok(())
 }

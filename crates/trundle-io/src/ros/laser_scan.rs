@@ -2,7 +2,7 @@
 
 use super::messages::LaserScan;
 use crate::laser_log::check_sweep;
-use trundle_core::{Beam, Pose3, Scan, Vector3};
+use trundle_core::{Beam, BeamTimes, Pose3, Scan, Vector3};
 
 /// A scan of ours made of a message.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,7 +57,20 @@ pub(super) fn convert(
     let first = bearing(if falls { ranges.len() - 1 } else { 0 });
     let origin = base_from_laser.translation.xy();
     let scan = Scan::new(message.stamp, origin, first, angle_increment.abs(), beams);
-    Ok(ConvertedScan { scan: scan.map_err(|invalid| invalid.to_string())?, bad_ranges })
+    let scan = timed(scan.map_err(|invalid| invalid.to_string())?, message.time_increment, falls);
+    Ok(ConvertedScan { scan, bad_ranges })
+}
+
+/// The scan with the times of its beams where the message gives them, within 10 s of its stamp. `falls`: whether the last beam was measured
+/// first.
+fn timed(scan: Scan, time_increment: f64, falls: bool) -> Scan {
+    if time_increment == 0.0 {
+        return scan;
+    }
+    let last = scan.beams().len().saturating_sub(1) as f64;
+    let (first_s, step_s) =
+        if falls { (last * time_increment, -time_increment) } else { (0.0, time_increment) };
+    scan.clone().with_beam_times(BeamTimes { first_s, step_s }).unwrap_or(scan)
 }
 
 fn check(message: &LaserScan) -> Result<(), String> {
@@ -87,6 +100,7 @@ mod tests {
             frame: "laser".into(),
             angle_min: -0.5,
             angle_increment: 0.25,
+            time_increment: 0.0,
             range_min: 0.1,
             range_max: 10.0,
             ranges: ranges.to_vec(),
@@ -140,6 +154,19 @@ mod tests {
         assert_eq!(found.scan.beams().iter().filter(|b| **b == Beam::Unseen).count(), 6);
         let limited = convert(&message(&[1.0, 2.0]), &Pose3::identity(), Some(1.5)).unwrap();
         assert_eq!(limited.scan.beams(), [Beam::Hit { range: 1.0 }, Beam::Unseen]);
+    }
+
+    #[test]
+    fn the_times_of_the_beams_follow_their_order() {
+        let flat = Pose3::identity();
+        let times = |message: &LaserScan| convert(message, &flat, None).unwrap().scan.beam_times();
+        assert_eq!(times(&message(&[1.0, 2.0, 3.0])), None);
+        let swept = LaserScan { time_increment: 0.01, ..message(&[1.0, 2.0, 3.0]) };
+        assert_eq!(times(&swept), Some(BeamTimes { first_s: 0.0, step_s: 0.01 }));
+        let clockwise = LaserScan { angle_min: 0.5, angle_increment: -0.25, ..swept };
+        assert_eq!(times(&clockwise), Some(BeamTimes { first_s: 0.02, step_s: -0.01 }));
+        let hours = LaserScan { time_increment: 3600.0, ..clockwise };
+        assert_eq!(times(&hours), None);
     }
 
     #[test]

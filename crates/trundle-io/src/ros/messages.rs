@@ -37,6 +37,8 @@ pub(in crate::ros) struct LaserScan {
     /// Of the first beam and between beams, about the laser's z, rad.
     pub angle_min: f64,
     pub angle_increment: f64,
+    /// Time between two beams, the first of which is measured at the stamp, s; 0 if all are.
+    pub time_increment: f64,
     /// m.
     pub range_min: f64,
     pub range_max: f64,
@@ -72,13 +74,14 @@ impl LaserScan {
         let angle_min = r.f32("angle_min")?;
         r.f32("angle_max")?;
         let angle_increment = r.f32("angle_increment")?;
-        r.f32("time_increment")?;
+        let time_increment = r.f32("time_increment")?;
         r.f32("scan_time")?;
         Ok(Self {
             stamp,
             frame,
             angle_min: f64::from(angle_min),
             angle_increment: f64::from(angle_increment),
+            time_increment: f64::from(time_increment),
             range_min: f64::from(r.f32("range_min")?),
             range_max: f64::from(r.f32("range_max")?),
             ranges: r.f32_list("ranges")?,

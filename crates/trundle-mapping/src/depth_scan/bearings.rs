@@ -106,12 +106,13 @@ impl Bearings {
 
     /// Writes hits, free spans and sigmas of all bearings into the lists of a scan.
     pub(super) fn write_parts(&self, mount: &Mount, model: &PixelModel, parts: &mut ScanParts) {
-        let ScanParts { beams, free, sigmas, obstacles } = parts;
+        let ScanParts { beams, free, sigmas, obstacles, bearings } = parts;
         let free = free.get_or_insert_default();
         beams.clear();
         free.clear();
         sigmas.clear();
         obstacles.clear();
+        bearings.clear();
         let bin_length = 1.0 / f64::from(model.bins_per_metre);
         for (i, view) in mount.views.iter().enumerate() {
             let hit = self.hit(i, model);

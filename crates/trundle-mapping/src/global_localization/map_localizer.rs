@@ -5,12 +5,12 @@ use crate::particle_config::ParticleConfig;
 use crate::persist::FilterFileError;
 use crate::rbpf::map_publisher::MapPublisher;
 use crate::rbpf::mapper::{EXPECTED_LOG_LIKELIHOOD, EXPECTED_LOG_LIKELIHOOD_RATE, ParticleMapper};
-use crate::rbpf::motion_model::{motion_covariance, unknown_motion_covariance};
+use crate::rbpf::motion_model::unknown_motion_covariance;
 use crate::rbpf::proposal::{Proposal, Proposer};
 use crate::rbpf::resampling::{effective, low_variance};
 use crate::rbpf::rng::ParticleRng;
 use crate::rbpf::scan_update::Refusal;
-use crate::rbpf::update_gate::UpdateGate;
+use crate::rbpf::update_gate::{OdometryStep, UpdateGate};
 use crate::scan_match::branch_and_bound::Pyramid;
 use crate::scan_match::coarse_search::CoarseSearch;
 use crate::scan_match::global_search::{GlobalSearch, Lost};
@@ -18,7 +18,7 @@ use crate::scan_match::likelihood::Likelihood;
 use crate::scan_match::scan_points::ScanPoints;
 use crate::units::{in_cells, in_metres, scaled};
 use nalgebra::{Matrix3, Vector3};
-use trundle_core::{Invalid, OccupancyGrid, Pose2, Scan, wrap_angle};
+use trundle_core::{Invalid, OccupancyGrid, Pose2, Scan, Stamp, wrap_angle};
 use trundle_grid::tiles::TileMap;
 
 /// Where the robot is in a map that never changes: found anywhere in it by search, then followed by a particle filter with the
@@ -154,18 +154,18 @@ impl MapLocalizer {
         self.points.set(&self.config, scan);
         self.updates += 1;
         match &mut self.state {
-            State::Lost(_) => self.search(odom_from_base),
+            State::Lost(_) => self.search(odom_from_base, scan.stamp()),
             State::Known { .. } if step.jumped => {
                 self.kidnapped();
-                self.search(odom_from_base)
+                self.search(odom_from_base, scan.stamp())
             }
-            State::Known { .. } => self.follow(step.motion),
+            State::Known { .. } => self.follow(&step),
         }
     }
 
-    fn search(&mut self, odom_from_base: Pose2) -> Localized {
+    fn search(&mut self, odom_from_base: Pose2, stamp: Stamp) -> Localized {
         let State::Lost(search) = &mut self.state else { return Localized::Still };
-        search.push(&self.points, in_cells(&self.config, odom_from_base));
+        search.push(&self.points, in_cells(&self.config, odom_from_base), stamp);
         let Some(pyramid) = &self.pyramid else { return Localized::Lost(Lost::NothingToSee) };
         let found = match search.search((&self.config, &self.likelihood), &self.map, pyramid) {
             Ok(found) => found,
@@ -181,19 +181,18 @@ impl MapLocalizer {
         }
     }
 
-    fn follow(&mut self, motion: Pose2) -> Localized {
+    fn follow(&mut self, step: &OdometryStep) -> Localized {
         let State::Known { particles, strange } = &mut self.state else { return Localized::Still };
         let per_metre = 1.0 / self.config.map.resolution;
-        let covariance = motion_covariance(&self.config.motion, motion);
         let proposer = Proposer {
             config: &self.config,
             likelihood: &self.likelihood,
             points: &self.points,
-            motion_covariance: scaled(covariance, per_metre),
+            motion_covariance: scaled(step.covariance, per_metre),
             anchor: None,
             expected_log_likelihood: self.expected_log_likelihood,
         };
-        let motion = in_cells(&self.config, motion);
+        let motion = in_cells(&self.config, step.motion);
         let lead =
             particles.iter().fold(particles[0], |best, next| if next.1 > best.1 { *next } else { best }).0;
         let far = proposer.far(&self.map, &mut self.coarse, (lead, lead * motion));

@@ -1,6 +1,7 @@
 //! Loop closing: candidates along the trajectory, their verification by scan matching, and the scans to do it with.
 
 mod candidates;
+pub(crate) mod crowded_places;
 pub(crate) mod loop_closer;
 pub(crate) mod scan_history;
 pub(crate) mod stored_scan;

@@ -3,6 +3,7 @@
 use crate::loop_closing::stored_scan::StoredScan;
 use crate::pose_graph::Constraint;
 use nalgebra::Matrix3;
+use std::collections::BTreeSet;
 use trundle_core::{Pose2, Stamp};
 
 /// History of a run: every processed scan, the covariance of each step, and the closed loops.
@@ -14,6 +15,50 @@ pub(crate) struct ScanHistory {
     /// The steps as they were measured, up to the last correction: a correction must not count as measured.
     pub(crate) measured: Vec<Pose2>,
     pub(crate) loops: Vec<Constraint>,
+    /// Where the base was at scans that are not stored any more.
+    left_out: Vec<LeftOutPose>,
+}
+
+/// Where the base was at a scan that is not stored any more, relative to a stored one.
+#[derive(Debug, Clone, Copy)]
+struct LeftOutPose {
+    stamp: Stamp,
+    /// Number of the stored scan.
+    scan: u32,
+    scan_from_base: Pose2,
+}
+
+/// The stored scan that stands for a scan after others were dropped.
+#[derive(Debug, Clone, Copy)]
+struct Heir {
+    /// Its number afterwards.
+    number: usize,
+    /// Its number before.
+    old: usize,
+}
+
+/// For each scan itself, or the kept one before it.
+fn heirs(goes: &[bool]) -> Vec<Heir> {
+    let mut heir = Heir { number: 0, old: 0 };
+    let mut kept = 0;
+    let mut next = |k: usize| {
+        if !goes[k] {
+            heir = Heir { number: kept, old: k };
+            kept += 1;
+        }
+        heir
+    };
+    (0..goes.len()).map(&mut next).collect()
+}
+
+/// Every second of the first `count` of `all` scans, not the first.
+pub(crate) fn every_second(all: usize, count: usize) -> Vec<bool> {
+    (0..all).map(|k| k % 2 == 1 && k + 1 < count).collect()
+}
+
+/// The number of scan `k` after others went, or of the kept one before it.
+pub(crate) fn number_after(goes: &[bool], k: usize) -> usize {
+    if k < goes.len() { heirs(goes)[k].number } else { goes.iter().filter(|goes| !**goes).count() }
 }
 
 impl ScanHistory {
@@ -43,36 +88,71 @@ impl ScanHistory {
         (1..poses.len()).map(step).chain(self.loops.iter().copied()).collect()
     }
 
-    /// Drops every second of the first `count` scans (not the first), with the poses of the trajectory that belong to them. Their steps
-    /// are composed. A loop that ends at a dropped scan then ends at the scan before, moved by the trajectory's step.
-    pub(crate) fn thin(&mut self, trajectory: &mut Vec<(Stamp, Pose2)>, count: usize) {
+    /// Drops the scans for which `goes` is true, with the poses of the trajectory that belong to them; not the first and not the last. Their
+    /// steps are composed. A loop that ends at a dropped scan then ends at the kept one before, moved by the trajectory's step. Of loops
+    /// between the same two scans the newest is kept.
+    pub(crate) fn thin(&mut self, trajectory: &mut Vec<(Stamp, Pose2)>, goes: &[bool]) {
         let poses: Vec<Pose2> = trajectory.iter().map(|(_, pose)| *pose).collect();
         self.measure(&poses);
-        let goes = |k: usize| k % 2 == 1 && k + 1 < count;
-        let number = |k: usize| if k < count { k.div_ceil(2) } else { k - (count.max(1) - 1) / 2 };
-        let renamed = |k: u32| {
-            let k = k as usize;
-            if goes(k) {
-                (number(k - 1) as u32, poses[k - 1].inverse() * poses[k])
-            } else {
-                (number(k) as u32, Pose2::IDENTITY)
-            }
+        let heirs = heirs(goes);
+        let renamed = |k: usize| {
+            let Heir { number, old } = heirs[k];
+            (number as u32, if old == k { Pose2::IDENTITY } else { poses[old].inverse() * poses[k] })
         };
+        for left in &mut self.left_out {
+            let (number, step) = renamed(left.scan as usize);
+            (left.scan, left.scan_from_base) = (number, step * left.scan_from_base);
+        }
+        for k in (0..goes.len()).filter(|&k| goes[k]) {
+            let (scan, scan_from_base) = renamed(k);
+            self.left_out.push(LeftOutPose { stamp: trajectory[k].0, scan, scan_from_base });
+        }
         for constraint in &mut self.loops {
-            let ((from, to_old_from), (to, to_old_to)) = (renamed(constraint.from), renamed(constraint.to));
+            let (from, to_old_from) = renamed(constraint.from as usize);
+            let (to, to_old_to) = renamed(constraint.to as usize);
             let from_to = to_old_from * constraint.from_to * to_old_to.inverse();
             *constraint = Constraint { from, to, from_to, covariance: constraint.covariance };
         }
-        self.loops.retain(|constraint| constraint.from != constraint.to);
-        for k in (1..self.steps.len().min(count)).filter(|&k| goes(k)) {
+        self.keep_newest_loops();
+        for k in (1..self.steps.len()).filter(|&k| goes[k]) {
             self.measured[k + 1] = self.measured[k] * self.measured[k + 1];
             let step = self.steps[k];
             self.steps[k + 1] += step;
         }
-        keep(&mut self.scans, |k| !goes(k));
-        keep(&mut self.steps, |k| !goes(k));
-        keep(&mut self.measured, |k| !goes(k));
-        keep(trajectory, |k| !goes(k));
+        keep(&mut self.scans, goes);
+        keep(&mut self.steps, goes);
+        keep(&mut self.measured, goes);
+        keep(trajectory, goes);
+    }
+
+    /// Drops loops of a scan with itself, and all but the newest between two scans.
+    fn keep_newest_loops(&mut self) {
+        let mut seen = BTreeSet::new();
+        let mut newest: Vec<Constraint> = std::mem::take(&mut self.loops)
+            .into_iter()
+            .rev()
+            .filter(|constraint| constraint.from != constraint.to && seen.insert(constraint.poses()))
+            .collect();
+        newest.reverse();
+        self.loops = newest;
+    }
+
+    /// A trajectory of the stored scans with the poses of the dropped ones, from the stored scan `first` on, by rising stamps.
+    pub(crate) fn with_left_out(&self, trajectory: &[(Stamp, Pose2)], first: usize) -> Vec<(Stamp, Pose2)> {
+        let left = self.left_out.iter().filter(|left| left.scan as usize >= first);
+        let poses = left.map(|left| (left.stamp, trajectory[left.scan as usize].1 * left.scan_from_base));
+        let mut all: Vec<_> = trajectory[first..].iter().copied().chain(poses).collect();
+        all.sort_by_key(|(stamp, _)| *stamp);
+        all
+    }
+
+    /// Drops all scans but the first `count`, with their steps and loops.
+    pub(crate) fn truncate(&mut self, count: usize) {
+        self.scans.truncate(count);
+        self.steps.truncate(count);
+        self.measured.truncate(count);
+        self.left_out.retain(|left| (left.scan as usize) < count);
+        self.loops.retain(|constraint| constraint.poses().0.max(constraint.poses().1) < count);
     }
 
     /// Bytes that it holds.
@@ -81,21 +161,23 @@ impl ScanHistory {
             + self.steps.capacity() * size_of::<Matrix3<f64>>()
             + self.measured.capacity() * size_of::<Pose2>()
             + self.loops.capacity() * size_of::<Constraint>()
+            + self.left_out.capacity() * size_of::<LeftOutPose>()
     }
 }
 
-/// Keeps the elements for whose index `stays` is true.
-fn keep<T>(all: &mut Vec<T>, stays: impl Fn(usize) -> bool) {
+/// Keeps the elements that do not go.
+pub(crate) fn keep<T>(all: &mut Vec<T>, goes: &[bool]) {
     let mut k = 0;
     all.retain(|_| {
         k += 1;
-        stays(k - 1)
+        !goes[k - 1]
     });
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::particle_config::ParticleConfig;
     use crate::scan_match::scan_points::ScanPoints;
 
     #[test]
@@ -104,7 +186,10 @@ mod tests {
         let mut history = ScanHistory::default();
         let mut way = vec![(Stamp::default(), Pose2::IDENTITY)];
         for k in 0..41 {
-            history.push(StoredScan::new(&ScanPoints::default()), Matrix3::identity() * 1e-4);
+            history.push(
+                StoredScan::new(&ParticleConfig::default(), &ScanPoints::default()),
+                Matrix3::identity() * 1e-4,
+            );
             if k > 0 {
                 way.push((Stamp::from_nanos(k), way.last().unwrap().1 * step));
             }
@@ -117,9 +202,12 @@ mod tests {
         };
         history.loops = vec![constraint(3, 37), constraint(4, 15), constraint(8, 40)];
         let mut thinned = way.clone();
-        history.thin(&mut thinned, 20);
+        history.thin(&mut thinned, &every_second(41, 20));
         assert_eq!((history.scans.len(), thinned.len(), history.measured.len()), (32, 32, 32));
         assert_eq!(thinned[0], way[0]);
+        let all = history.with_left_out(&thinned, 0);
+        assert!(all.iter().zip(&way).all(|(a, b)| a.0 == b.0 && a.1.distance(&b.1) < 1e-9));
+        assert_eq!(all.len(), way.len());
         assert_eq!(thinned.last(), way.last());
         let poses: Vec<Pose2> = thinned.iter().map(|(_, pose)| *pose).collect();
         for constraint in history.constraints(&poses) {

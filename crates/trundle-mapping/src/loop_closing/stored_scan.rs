@@ -16,7 +16,7 @@ pub(crate) struct StoredScan {
     pub(crate) spans: Box<[PackedSpan]>,
 }
 
-/// The end of a beam in 1/16 cells, and how it relates to the ray before.
+/// The end of a beam in units of at most 1/16 cell at 5 cm, and how it relates to the ray before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C, packed)]
 pub(crate) struct PackedRay {
@@ -42,8 +42,10 @@ pub(crate) struct StoredRay {
     pub(crate) sigma: f32,
 }
 
-/// Units of a stored coordinate per cell.
-const UNITS_PER_CELL: f32 = 16.0;
+/// Units of a stored coordinate per cell, at most.
+const MAX_UNITS_PER_CELL: f64 = 16.0;
+/// Smallest unit of a stored coordinate \[m\]. With it 16 bits reach 102 m, the range of the longest indoor lasers. Source: ours.
+const MIN_UNIT_M: f64 = 0.05 / 16.0;
 /// Bit of a ray that ends at an obstacle.
 const HIT_BIT: u8 = 1;
 /// Bit of a ray whose end lies on one surface with the ray before.
@@ -57,11 +59,17 @@ const MAX_SKIPPED_BEAMS: usize = 31;
 /// Unit of a stored sigma \[m\].
 const SIGMA_UNIT_M: f32 = 0.001;
 
+/// Units of a stored coordinate per cell.
+fn units_per_cell(config: &ParticleConfig) -> f32 {
+    MAX_UNITS_PER_CELL.min(config.map.resolution / MIN_UNIT_M) as f32
+}
+
 impl StoredScan {
-    /// Packs a scan. Ends farther than 2047 cells are left out: a ray of a laser at 5 cm reaches 102 m.
-    pub(crate) fn new(shape: &ScanPoints) -> Self {
+    /// Packs a scan. Ends farther than 102 m, or 2047 cells if that is more, are left out.
+    pub(crate) fn new(config: &ParticleConfig, shape: &ScanPoints) -> Self {
+        let units = units_per_cell(config);
         let pack = |v: f32| {
-            let scaled = (v * UNITS_PER_CELL).round();
+            let scaled = (v * units).round();
             (scaled.abs() <= f32::from(i16::MAX)).then_some(scaled as i16)
         };
         let (mut rays, mut sigmas, mut spans) = (Vec::new(), Vec::new(), Vec::new());
@@ -92,18 +100,18 @@ impl StoredScan {
 
     /// Unpacks the scan into `points`.
     pub(crate) fn unpack_into(&self, config: &ParticleConfig, points: &mut ScanPoints) {
-        let rays = self.rays().map(|StoredRay { ray, beam, sigma }| (ray, beam, sigma));
+        let rays = self.rays(config).map(|StoredRay { ray, beam, sigma }| (ray, beam, sigma));
         points.set_rays(config, self.origin, rays, self.spans());
     }
 
     /// The rays, in order.
-    pub(crate) fn rays(&self) -> impl Iterator<Item = StoredRay> {
-        let mut beam = 0;
+    fn rays(&self, config: &ParticleConfig) -> impl Iterator<Item = StoredRay> {
+        let (mut beam, units) = (0, units_per_cell(config));
         self.rays.iter().enumerate().map(move |(k, packed)| {
             beam += usize::from(packed.what >> SKIPPED_SHIFT);
             let ray = ScanRay {
-                x: f32::from(packed.x) / UNITS_PER_CELL,
-                y: f32::from(packed.y) / UNITS_PER_CELL,
+                x: f32::from(packed.x) / units,
+                y: f32::from(packed.y) / units,
                 hit: packed.what & HIT_BIT != 0,
                 joined: packed.what & JOINED_BIT != 0,
                 whole: packed.what & WHOLE_BIT != 0,
@@ -142,7 +150,7 @@ mod tests {
         let (config, mut shape, mut again) =
             (ParticleConfig::default(), ScanPoints::default(), ScanPoints::default());
         shape.set(&config, &scan);
-        StoredScan::new(&shape).unpack_into(&config, &mut again);
+        StoredScan::new(&config, &shape).unpack_into(&config, &mut again);
         let whole = |shape: &ScanPoints| shape.rays.rays.iter().map(|ray| ray.whole).collect::<Vec<_>>();
         assert_eq!(whole(&shape), [true, false, false]);
         assert_eq!(whole(&again), whole(&shape));

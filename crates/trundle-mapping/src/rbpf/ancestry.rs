@@ -49,14 +49,13 @@ impl Ancestry {
         self.columns.clear();
     }
 
-    /// Lets every second of the first `count` poses go (not the first), of all particles.
-    pub(crate) fn thin(&mut self, count: usize) {
-        let goes = |k: usize| k % 2 == 1 && k + 1 < count;
+    /// Lets the poses go for whose number `goes` is true (not the last), of all particles.
+    pub(crate) fn thin(&mut self, goes: &[bool]) {
         let first = self.shared.len();
         let mut k = 0;
         self.shared.retain(|_| {
             k += 1;
-            !goes(k - 1)
+            !goes[k - 1]
         });
         let mut gone: Option<Vec<u16>> = None;
         let columns = std::mem::take(&mut self.columns).into_iter().enumerate();
@@ -65,7 +64,7 @@ impl Ancestry {
             if let Some(parents) = gone.take() {
                 column.parents.iter_mut().for_each(|parent| *parent = parents[usize::from(*parent)]);
             }
-            if goes(first + k) {
+            if goes[first + k] {
                 gone = Some(column.parents);
             } else {
                 self.columns.push(column);
@@ -122,6 +121,7 @@ impl Ancestry {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::loop_closing::scan_history::every_second;
 
     #[test]
     fn thinning_leaves_every_particle_its_way() {
@@ -136,7 +136,7 @@ mod tests {
             ancestry.push_column(Stamp::from_nanos(k as i64), (0..3).map(|i| at(k, i)).collect(), parents);
         }
         let before: Vec<_> = (0..3).map(|i| ancestry.trajectory(i)).collect();
-        ancestry.thin(12);
+        ancestry.thin(&every_second(20, 12));
         assert_eq!(ancestry.len(), 20 - 5);
         for (i, before) in before.iter().enumerate() {
             let kept: Vec<_> =

@@ -1,12 +1,15 @@
 //! Loop closing of the filter: loop searches, the redraw of the corrected map, and thinning of the history.
 
 use crate::filter_models::FilterModels;
+use crate::loop_closing::crowded_places::crowded;
 use crate::loop_closing::loop_closer::LoopCloser;
-use crate::loop_closing::scan_history::ScanHistory;
+use crate::loop_closing::scan_history::{ScanHistory, every_second, number_after};
 use crate::rbpf::map_redraw::MapRedraw;
 use crate::rbpf::particle_set::ParticleSet;
+use crate::scan_match::scan_points::ScanPoints;
 use crate::units::{in_cells, in_metres};
 use trundle_core::Pose2;
+use trundle_grid::tiles::{RayUpdateScratch, TileMap};
 
 /// Cells redrawn with one scan: about ten times the cells that thirty particles update. A smaller number leaves the robot
 /// longer in the uncorrected map. Source: ours.
@@ -17,12 +20,28 @@ const MIN_SCAN_COST_CELLS: usize = 500;
 const LOOP_SEARCH_INTERVAL_M: f64 = 2.0;
 
 /// Stored scans of the run, the search for loops in them, and the redraw of a corrected map.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct LoopCorrector {
     pub(crate) history: ScanHistory,
     pub(crate) loop_closer: LoopCloser,
     /// Map along a corrected trajectory, in progress.
     pub(crate) redraw: Option<MapRedraw>,
+    /// Number of stored scans above which those of crowded places are dropped.
+    crowded_at: usize,
+}
+
+/// Number of stored scans up to which all are kept: a drive of a kilometre. Source: ours.
+const MIN_CROWDED_SCANS: usize = 4000;
+
+impl Default for LoopCorrector {
+    fn default() -> Self {
+        Self {
+            history: ScanHistory::default(),
+            loop_closer: LoopCloser::default(),
+            redraw: None,
+            crowded_at: MIN_CROWDED_SCANS,
+        }
+    }
 }
 
 impl LoopCorrector {
@@ -78,24 +97,45 @@ impl LoopCorrector {
         (cells, Some(self.apply_redraw(models, set, redraw)))
     }
 
-    /// Bounds the number of stored scans.
+    /// Bounds the number of stored scans: by the area that they show, and at last by `max_scans`.
     pub(crate) fn thin_history(&mut self, models: &FilterModels, set: &mut ParticleSet) {
-        let max_scans = models.config.max_scans;
-        if self.history.scans.len() > max_scans {
-            // A redraw refers to scans by number.
-            self.finish(models, set);
-            let (count, before) = (max_scans / 2, self.history.scans.len());
-            let mut trajectory = set.trajectory();
-            self.history.thin(&mut trajectory, count);
-            set.ancestry.thin(count);
-            let removed = before - self.history.scans.len();
-            set.first_pose_of_run = if set.first_pose_of_run < count {
-                set.first_pose_of_run.div_ceil(2)
-            } else {
-                set.first_pose_of_run - removed
-            };
-            self.loop_closer.pending.clear();
+        let (max_scans, stored) = (models.config.max_scans, self.history.scans.len());
+        if stored > self.crowded_at {
+            let poses: Vec<Pose2> = set.trajectory().into_iter().map(|(_, pose)| pose).collect();
+            self.drop_scans(models, set, &crowded(&poses, set.first_pose_of_run));
+            self.crowded_at = MIN_CROWDED_SCANS.max(2 * self.history.scans.len());
         }
+        if self.history.scans.len() > max_scans {
+            self.drop_scans(models, set, &every_second(self.history.scans.len(), max_scans / 2));
+        }
+    }
+
+    /// Drops the stored scans for which `goes` is true.
+    fn drop_scans(&mut self, models: &FilterModels, set: &mut ParticleSet, goes: &[bool]) {
+        if !goes.contains(&true) {
+            return;
+        }
+        // A redraw refers to scans by number.
+        self.finish(models, set);
+        let mut trajectory = set.trajectory();
+        self.history.thin(&mut trajectory, goes);
+        set.ancestry.thin(goes);
+        set.first_pose_of_run = number_after(goes, set.first_pose_of_run);
+        self.loop_closer.pending.clear();
+    }
+
+    /// Drops all stored scans but the first `count`, loops not yet accepted, and a redraw in progress.
+    pub(crate) fn truncate(&mut self, count: usize) {
+        self.redraw = None;
+        self.history.truncate(count);
+        self.loop_closer.pending.clear();
+    }
+
+    /// Draws stored scan `k` at `pose` (cells) into `map`.
+    pub(crate) fn draw_scan(&self, models: &FilterModels, map: &mut TileMap, k: usize, pose: Pose2) {
+        let (mut points, mut scratch) = (ScanPoints::default(), RayUpdateScratch::default());
+        self.history.scans[k].unpack_into(&models.config, &mut points);
+        models.ray_update.apply(map, &mut scratch, pose, &points.rays);
     }
 
     /// Draws the next stored scan at `pose` (m). Returns its cost, cells.
@@ -131,10 +171,8 @@ mod tests {
     use super::*;
     use crate::loop_closing::stored_scan::StoredScan;
     use crate::particle_config::ParticleConfig;
-    use crate::scan_match::scan_points::ScanPoints;
     use nalgebra::Matrix3;
     use trundle_core::{Beam, Scan, Stamp, Vector2};
-    use trundle_grid::tiles::TileMap;
 
     /// Three particles after `scans` along a straight path, with a redraw along a turned one.
     fn corrected(models: &FilterModels, scans: usize) -> (LoopCorrector, ParticleSet) {
@@ -146,7 +184,9 @@ mod tests {
         let path: Vec<_> = (0..scans)
             .map(|k| (Stamp::from_nanos(k as i64), Pose2::new(0.05 * k as f64, 0.0, 0.0)))
             .collect();
-        path.iter().for_each(|_| loops.history.push(StoredScan::new(&points), Matrix3::identity() * 1e-4));
+        path.iter().for_each(|_| {
+            loops.history.push(StoredScan::new(&models.config, &points), Matrix3::identity() * 1e-4)
+        });
         let turn = |pose: Pose2| Pose2::new(0.0, 0.0, 0.1) * pose;
         let poses = path[..scans - 5].iter().map(|(_, pose)| turn(*pose)).collect();
         set.ancestry.replace(path);

@@ -4,6 +4,7 @@ use crate::filter_models::FilterModels;
 use crate::loop_closing::stored_scan::StoredScan;
 use crate::particle_config::ParticleConfig;
 use crate::rbpf::absolute_pose::AbsolutePose;
+use crate::rbpf::given_map::GivenMap;
 use crate::rbpf::loop_correction::LoopCorrector;
 use crate::rbpf::map_publisher::MapPublisher;
 use crate::rbpf::odometry_model::OdometryModel;
@@ -14,7 +15,7 @@ use crate::rbpf::scan_update::{Processed, ScanUpdate};
 use crate::rbpf::update_gate::{OdometryStep, UpdateGate};
 use crate::scan_match::branch_and_bound::Pyramid;
 use crate::scan_match::coarse_search::CoarseSearch;
-use crate::scan_match::global_search::{GlobalSearch, Lost};
+use crate::scan_match::global_search::GlobalSearch;
 use crate::scan_match::scan_points::ScanPoints;
 use crate::units::{in_cells, in_metres, scaled};
 use nalgebra::{Matrix3, Vector3};
@@ -38,7 +39,7 @@ pub struct ParticleMapper {
     pub(crate) seed: u64,
     /// Number of processed scans.
     pub(crate) updates: u64,
-    points: ScanPoints,
+    pub(super) points: ScanPoints,
     pub(crate) set: ParticleSet,
     scratch: Vec<Scratch>,
     publisher: MapPublisher,
@@ -46,7 +47,11 @@ pub struct ParticleMapper {
     pub(crate) gate: UpdateGate,
     pub(crate) odometry: OdometryModel,
     /// Search for the robot in a loaded map, until it is found.
-    global_search: Option<GlobalSearch>,
+    pub(super) global_search: Option<GlobalSearch>,
+    /// The pyramid of the map that is searched, which does not change meanwhile.
+    pub(super) search_pyramid: Option<Pyramid>,
+    /// The loaded map, once the robot is found in it.
+    pub(crate) given: Option<GivenMap>,
     /// Running mean of ln p(z | m, x) of a point over the last scans, nats.
     pub(crate) expected_log_likelihood: f64,
 }
@@ -63,11 +68,6 @@ pub(crate) const EXPECTED_LOG_LIKELIHOOD: f64 = -1.0;
 /// Weight of a new scan in the running mean log-likelihood \[1\]. The mean covers about the last twenty scans. Source:
 /// ours.
 pub(crate) const EXPECTED_LOG_LIKELIHOOD_RATE: f64 = 0.05;
-/// Variance of the constraint between the last pose of a loaded run and the first of the next, along x and y \[m^2\]. Source: ours.
-const NEXT_RUN_VARIANCE_M2: f64 = 0.01;
-/// Variance of the heading of that constraint [rad^2]. Source: ours.
-const NEXT_RUN_VARIANCE_RAD2: f64 = 4e-4;
-
 impl ParticleMapper {
     /// Filter without a scan. The base pose of the first scan is the map's origin.
     ///
@@ -86,6 +86,8 @@ impl ParticleMapper {
             gate: UpdateGate::default(),
             odometry: OdometryModel::default(),
             global_search: None,
+            search_pyramid: None,
+            given: None,
             expected_log_likelihood: EXPECTED_LOG_LIKELIHOOD,
             models,
         })
@@ -101,7 +103,7 @@ impl ParticleMapper {
         };
         self.points.set(&self.models.config, scan);
         if let Some(search) = &mut self.global_search {
-            search.push(&self.points, in_cells(&self.models.config, odom_from_base));
+            search.push(&self.points, in_cells(&self.models.config, odom_from_base), scan.stamp());
             return self.relocalize(scan.stamp());
         }
         let first = step.first && self.updates == 0;
@@ -110,6 +112,9 @@ impl ParticleMapper {
         }
         let absolute = self.odometry.absolute_pose(&self.models.config, odom_from_base);
         self.move_and_draw(&step, absolute, first);
+        if let Some(streak) = self.contradiction(scan.stamp()) {
+            return self.pause(streak);
+        }
         ScanUpdate::Processed(self.finish_update(scan.stamp(), &step, absolute.is_none()))
     }
 
@@ -128,7 +133,7 @@ impl ParticleMapper {
             self.odometry.learn(step, proposal.as_ref(), resolution);
         }
         let covariance = step_covariance(proposal.as_ref(), resolution);
-        self.loops.history.push(StoredScan::new(&self.points), covariance);
+        self.loops.history.push(StoredScan::new(&self.models.config, &self.points), covariance);
         if resampled {
             // One past the particles' own streams.
             let mut rng = ParticleRng::new(self.seed, self.updates, self.set.len());
@@ -137,7 +142,11 @@ impl ParticleMapper {
         let driven = step.motion.position().norm();
         let loop_correction_m =
             if dead_reckoning { self.loops.close_loops(&self.models, &mut self.set, driven) } else { None };
+        let stored = self.loops.history.scans.len();
         self.loops.thin_history(&self.models, &mut self.set);
+        if loop_correction_m.is_some() || self.loops.history.scans.len() < stored {
+            self.renew_given();
+        }
         self.updates += 1;
         Processed {
             explained: proposal.map_or(0.0, |p| p.explained),
@@ -191,42 +200,6 @@ impl ParticleMapper {
         });
     }
 
-    /// Declares the pose in the map unknown, as after loading the map for another run. The robot is searched for, and the map does
-    /// not change until it is found. The trajectory of a new run begins.
-    pub fn kidnapped(&mut self) {
-        self.finish();
-        self.global_search = Some(GlobalSearch::default());
-        self.gate = UpdateGate::default();
-        self.odometry.map_from_odom = None;
-        self.set.first_pose_of_run = self.loops.history.scans.len();
-    }
-
-    /// Searches the best particle's map for the robot; all particles continue from where it is found.
-    fn relocalize(&mut self, stamp: Stamp) -> ScanUpdate {
-        let map = self.set.best().map.clone();
-        let Some(pyramid) = Pyramid::new(&map) else { return ScanUpdate::Lost(Lost::NothingToSee) };
-        let Some(search) = &self.global_search else { return ScanUpdate::Still };
-        let found = match search.search((&self.models.config, &self.models.likelihood), &map, &pyramid) {
-            Ok(found) => found,
-            Err(lost) => return ScanUpdate::Lost(lost),
-        };
-        self.global_search = None;
-        let mut trajectory = self.set.trajectory();
-        let pose = in_metres(&self.models.config, found.pose);
-        let history = &mut self.loops.history;
-        history.measure(&trajectory.iter().map(|(_, pose)| *pose).collect::<Vec<_>>());
-        // The map constrains the two runs to each other.
-        let variances = Vector3::new(NEXT_RUN_VARIANCE_M2, NEXT_RUN_VARIANCE_M2, NEXT_RUN_VARIANCE_RAD2);
-        let covariance = Matrix3::from_diagonal(&variances);
-        history.push(StoredScan::new(&self.points), covariance);
-        self.set.first_pose_of_run = trajectory.len();
-        trajectory.push((stamp, pose));
-        self.set.collapse(trajectory, found.pose, &map);
-        self.set.particles.iter_mut().for_each(|particle| particle.proposal = None);
-        self.updates += 1;
-        ScanUpdate::Found(pose)
-    }
-
     /// Completes work in progress, as after the last scan of a log: the redraw of a corrected map.
     pub fn finish(&mut self) {
         self.loops.finish(&self.models, &mut self.set);
@@ -237,9 +210,14 @@ impl ParticleMapper {
         in_metres(&self.models.config, self.set.best().pose)
     }
 
-    /// The best particle's poses at the processed scans of this run.
+    /// The best particle's poses at the stored scans of this run.
     pub fn trajectory(&self) -> Vec<(Stamp, Pose2)> {
         self.set.trajectory().split_off(self.set.first_pose_of_run)
+    }
+
+    /// The best particle's poses at all scans of this run that were processed, also at those that are not stored any more.
+    pub fn whole_trajectory(&self) -> Vec<(Stamp, Pose2)> {
+        self.loops.history.with_left_out(&self.set.trajectory(), self.set.first_pose_of_run)
     }
 
     /// Map of the best particle. Only tiles written since the last call are updated.

@@ -2,6 +2,7 @@
 
 pub(crate) mod absolute_pose;
 pub(crate) mod ancestry;
+pub(crate) mod given_map;
 pub(crate) mod loop_correction;
 pub(crate) mod map_publisher;
 pub(crate) mod map_redraw;
@@ -13,14 +14,16 @@ pub(crate) mod odometry_noise;
 pub(crate) mod particle_set;
 mod propagate;
 pub(crate) mod proposal;
+mod relocation;
 pub(crate) mod resampling;
 pub(crate) mod rng;
+mod scan_difference;
 pub(crate) mod scan_update;
 pub(crate) mod update_gate;
 
 pub use mapper::ParticleMapper;
 pub use propagate::propagate_trajectory;
-pub use scan_update::{Processed, Refusal, ScanUpdate};
+pub use scan_update::{MappingPause, Processed, Refusal, ScanUpdate};
 
 #[cfg(test)]
 mod tests;

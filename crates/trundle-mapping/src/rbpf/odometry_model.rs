@@ -33,7 +33,7 @@ impl OdometryModel {
 
     /// Corrected motion of a step (m, rad) with its covariance.
     pub(crate) fn motion(&self, step: &OdometryStep) -> (Pose2, Matrix3<f64>) {
-        if step.jumped {
+        if step.jumped || step.silent {
             (step.motion, step.covariance)
         } else {
             (self.bias.corrected(step.motion), self.noise.scaled(&step.covariance))
@@ -42,7 +42,7 @@ impl OdometryModel {
 
     /// Updates noise and bias by the match of a step. `resolution`: side of a cell, m.
     pub(crate) fn learn(&mut self, step: &OdometryStep, proposal: Option<&Proposal>, resolution: f64) {
-        let Some(proposal) = proposal.filter(|_| !step.jumped) else { return };
+        let Some(proposal) = proposal.filter(|_| !step.jumped && !step.silent) else { return };
         if proposal.slipped {
             self.noise.doubt();
         } else if let Some(innovation) = proposal.innovation {

@@ -4,7 +4,7 @@ use crate::particle_config::ParticleConfig;
 use crate::rbpf::absolute_pose::AbsolutePose;
 use crate::rbpf::odometry_noise::Innovation;
 use crate::rbpf::rng::ParticleRng;
-use crate::scan_match::branch_and_bound::{Pyramid, Query};
+use crate::scan_match::branch_and_bound::{LookupBudget, Pyramid, Query};
 use crate::scan_match::coarse_search::{CoarseSearch, SearchPrior};
 use crate::scan_match::likelihood::Likelihood;
 use crate::scan_match::motion_prior::MotionPrior;
@@ -174,9 +174,9 @@ impl Proposer<'_> {
         let unseen =
             0.5 * self.config.outliers.ln() * self.points.points.len() as f64 / self.config.correlation;
         let least = (needed - unseen).max(0.0);
-        let mut places = Vec::new();
+        let (mut places, apart) = (Vec::new(), (2.0 * MIN_START_DISTANCE_CELLS, 0.2));
         while places.len() < 2
-            && let Some(place) = pyramid.search(&query, &places, (2.0 * MIN_START_DISTANCE_CELLS, 0.2), least)
+            && let Some(place) = pyramid.search(&query, &places, (apart, least), &LookupBudget::unlimited())
         {
             places.push(place);
         }

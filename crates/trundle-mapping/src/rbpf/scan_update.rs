@@ -2,7 +2,7 @@
 
 use crate::scan_match::global_search::Lost;
 use nalgebra::Matrix3;
-use trundle_core::Pose2;
+use trundle_core::{Pose2, Stamp};
 
 /// Result of a scan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,10 +13,21 @@ pub enum ScanUpdate {
     Refused(Refusal),
     /// The scan moved the particles and is in their maps.
     Processed(Processed),
-    /// Where the robot is in the map is not known yet, after [`crate::ParticleMapper::kidnapped`]: the map does not change.
+    /// Where the robot is in the map is not known, after [`crate::ParticleMapper::kidnapped`] or a pause: the map does not change.
     Lost(Lost),
+    /// The last scans contradict the map that the run began with. They are taken out of the map again, and the robot is searched for.
+    Paused(MappingPause),
     /// It is known from now on.
     Found(Pose2),
+}
+
+/// Scans that contradict the map that the run began with: the robot was carried away, or the map is another one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MappingPause {
+    /// Stamp of the first of them.
+    pub since: Stamp,
+    /// Number of scans that were processed before and are taken out of the map again.
+    pub removed_scans: usize,
 }
 
 /// Why a scan was not used.

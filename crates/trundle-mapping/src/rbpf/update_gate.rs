@@ -1,7 +1,8 @@
 //! Choice of the scans to process, and checks of the odometry.
 
 use crate::particle_config::ParticleConfig;
-use crate::rbpf::motion_model::{motion_covariance, unknown_motion_covariance};
+use crate::rbpf::motion_model::{motion_covariance, silent_motion_covariance, unknown_motion_covariance};
+use crate::rbpf::scan_difference::ScanRanges;
 use crate::rbpf::scan_update::Refusal;
 use nalgebra::Matrix3;
 use trundle_core::{Pose2, Scan, Stamp};
@@ -9,11 +10,13 @@ use trundle_core::{Pose2, Scan, Stamp};
 /// Maximum distance of the odometry from its origin \[m\]. A farther pose is refused. Source: ours.
 const MAX_ODOMETRY_DISTANCE_M: f64 = 1e6;
 
-/// Selects the scans to process: those after some motion or time.
+/// Selects the scans to process: those after some motion or time, and, where the odometry stands still, those that differ.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct UpdateGate {
     /// The last scan that was processed.
     pub(crate) last: Option<LastScan>,
+    /// The ranges of that scan.
+    ranges: ScanRanges,
     /// A refused pose that was too far off, and the number of poses in a row that agree with it.
     doubted: Option<(LastScan, usize)>,
 }
@@ -46,6 +49,8 @@ pub(crate) struct OdometryStep {
     pub(crate) covariance: Matrix3<f64>,
     /// Whether the odometry jumped: its step is then unknown.
     pub(crate) jumped: bool,
+    /// Whether the odometry stood still while the scans differ: the robot has none, or is pushed.
+    pub(crate) silent: bool,
 }
 
 impl UpdateGate {
@@ -66,13 +71,14 @@ impl UpdateGate {
         }
         let now = LastScan { stamp: scan.stamp(), odom_from_base };
         let Some(last) = self.last else {
-            self.last = Some(now);
+            self.take(now, scan);
             let covariance = motion_covariance(&config.motion, Pose2::IDENTITY);
             return Ok(Some(OdometryStep {
                 first: true,
                 motion: Pose2::IDENTITY,
                 covariance,
                 jumped: false,
+                silent: false,
             }));
         };
         if scan.stamp() < last.stamp {
@@ -85,15 +91,26 @@ impl UpdateGate {
         let still = scan.stamp() - last.stamp < config.wait_gate
             && motion.position().norm() < config.move_gate
             && motion.theta.abs() < config.turn_gate_deg.to_radians();
-        if still {
+        let silent = now.odom_from_base == last.odom_from_base
+            && !poses_count
+            && self.ranges.differ_from(config, scan);
+        if still && !silent {
             return Ok(None);
         }
         let jumped = motion.position().norm() > config.jump;
-        self.last = Some(now);
-        let covariance =
-            if jumped { unknown_motion_covariance() } else { motion_covariance(&config.motion, motion) };
+        self.take(now, scan);
+        let covariance = match (jumped, silent) {
+            (true, _) => unknown_motion_covariance(),
+            (false, true) => silent_motion_covariance(),
+            (false, false) => motion_covariance(&config.motion, motion),
+        };
         let motion = if jumped && !poses_count { Pose2::IDENTITY } else { motion };
-        Ok(Some(OdometryStep { first: false, motion, covariance, jumped }))
+        Ok(Some(OdometryStep { first: false, motion, covariance, jumped, silent }))
+    }
+
+    fn take(&mut self, now: LastScan, scan: &Scan) {
+        self.last = Some(now);
+        self.ranges = ScanRanges::of(scan);
     }
 
     /// Whether a pose is farther off than the robot can have moved, and too few others in a row agree with it.

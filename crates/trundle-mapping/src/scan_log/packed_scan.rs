@@ -14,6 +14,8 @@ pub(crate) struct PackedScan {
     /// Of each beam, m: a free one's has the sign bit, an unseen one's is not a number.
     ranges: Box<[f32]>,
     free: Option<Box<[PackedSpan]>>,
+    /// Of each beam, rad; empty if they are evenly spaced.
+    bearings: Box<[f32]>,
 }
 
 /// A [`FreeSpan`].
@@ -32,6 +34,7 @@ impl From<&Scan> for PackedScan {
             angles: (scan.angle_min(), scan.angle_increment()),
             ranges: scan.beams().iter().map(packed).collect(),
             free: scan.all_free_spans().map(|spans| spans.iter().map(PackedSpan::from).collect()),
+            bearings: scan.bearings().into(),
         }
     }
 }
@@ -41,7 +44,7 @@ impl PackedScan {
     pub(crate) fn unpack(&self) -> Scan {
         let beams = self.ranges.iter().map(|range| unpacked(*range)).collect();
         let free = self.free.as_ref().map(|spans| spans.iter().map(|span| span.unpack()).collect());
-        let parts = ScanParts { beams, free, ..ScanParts::default() };
+        let parts = ScanParts { beams, free, bearings: self.bearings.to_vec(), ..ScanParts::default() };
         Scan::from_parts(self.stamp, self.origin, self.angles, parts)
             .expect("invariant: it was a scan, and rounding keeps the order of ranges")
     }

@@ -1,7 +1,7 @@
 //! Match of a cloud of points with a map within a search region.
 
 use crate::particle_config::ParticleConfig;
-use crate::scan_match::branch_and_bound::{Place, Pyramid, Query};
+use crate::scan_match::branch_and_bound::{LookupBudget, Place, Pyramid, Query};
 use crate::scan_match::likelihood::Likelihood;
 use crate::scan_match::motion_prior::MotionPrior;
 use crate::scan_match::pose_optimizer::PoseOptimizer;
@@ -54,18 +54,18 @@ impl CloudMatcher<'_> {
         most: usize,
     ) -> Vec<CloudMatch> {
         let Some(pyramid) = Pyramid::new(map) else { return Vec::new() };
-        self.find_in(&pyramid, map, guess, covariance, (reach, turn_reach), most)
+        let all = LookupBudget::unlimited();
+        self.find_in((&pyramid, map), guess, covariance, (reach, turn_reach), (most, &all))
     }
 
-    /// Matches of the cloud in a pyramid that exists already.
+    /// At most `most` matches of the cloud in a map with its pyramid, within a budget.
     pub(crate) fn find_in(
         &self,
-        pyramid: &Pyramid,
-        map: &TileMap,
+        (pyramid, map): (&Pyramid, &TileMap),
         guess: Pose2,
         covariance: &Matrix3<f64>,
         (reach, turn_reach): ((f64, f64), f64),
-        most: usize,
+        (most, budget): (usize, &LookupBudget),
     ) -> Vec<CloudMatch> {
         let every = self.cloud.points.len().div_ceil(MAX_SEARCH_POINTS).max(1);
         let points: Vec<_> = self.cloud.points.iter().step_by(every).map(|p| (p.x, p.y)).collect();
@@ -85,9 +85,8 @@ impl CloudMatcher<'_> {
         while places.len() < most {
             // A place with half of the best one's score is not a competitor.
             let least = places.first().map_or(0.0, |best| 0.5 * best.score);
-            let Some(place) =
-                pyramid.search(&query, &places, (MIN_PLACE_DISTANCE_CELLS, MIN_PLACE_TURN_RAD), least)
-            else {
+            let apart = (MIN_PLACE_DISTANCE_CELLS, MIN_PLACE_TURN_RAD);
+            let Some(place) = pyramid.search(&query, &places, (apart, least), budget) else {
                 break;
             };
             places.push(place);

@@ -8,7 +8,7 @@ use trundle_mapping::{
 };
 
 /// A room of 20 x 20 m with walls and boxes that differ.
-fn hall() -> FlatRoom {
+pub fn hall() -> FlatRoom {
     FlatRoom::new(&[
         &[(-10.0, -10.0), (10.0, -10.0), (10.0, 10.0), (-10.0, 10.0)],
         &[(-6.0, -7.0), (-4.5, -7.0), (-4.5, -5.0), (-6.0, -5.0)],
@@ -29,7 +29,7 @@ fn twins() -> FlatRoom {
 }
 
 /// A mapped room, its map's origin at `poses[0]`.
-fn mapped(room: &FlatRoom, poses: &[Pose2]) -> ParticleMapper {
+pub fn mapped(room: &FlatRoom, poses: &[Pose2]) -> ParticleMapper {
     let mut mapper = ParticleMapper::new(config(5), 1).unwrap();
     for (i, pose) in poses.iter().enumerate() {
         mapper.update(poses[0].inverse() * *pose, &laser(room, *pose, i));
@@ -38,7 +38,7 @@ fn mapped(room: &FlatRoom, poses: &[Pose2]) -> ParticleMapper {
 }
 
 /// Around in the room with looks to all sides.
-fn round() -> Vec<Pose2> {
+pub fn round() -> Vec<Pose2> {
     let corners = [
         (-8.0, -8.5),
         (0.5, -8.5),
@@ -196,6 +196,7 @@ fn another_run_goes_on_with_an_old_map() {
             }
             ScanUpdate::Processed(_) | ScanUpdate::Still => {}
             ScanUpdate::Lost(_) => assert_eq!(found, 0),
+            ScanUpdate::Paused(pause) => panic!("{pause:?}"),
             ScanUpdate::Refused(refusal) => panic!("{refusal:?}"),
         }
     }

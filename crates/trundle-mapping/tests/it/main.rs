@@ -5,6 +5,7 @@
 mod boxes;
 #[allow(dead_code, reason = "the bench drives through the others")]
 mod building;
+mod contradiction;
 mod depth_scan;
 mod filter;
 mod flat_room;

@@ -2,7 +2,7 @@
 
 use super::stamp;
 use crate::generated::sensor_msgs::LaserScan;
-use trundle_core::{Beam, Invalid, Pose2, Scan, Stamp, require_finite, require_in};
+use trundle_core::{Beam, BeamTimes, Invalid, Pose2, Scan, Stamp, require_finite, require_in};
 
 /// Largest number of beams of a sweep. Source: ours; a sweep of 0.01 deg has 36,000.
 const MAX_BEAMS: usize = 100_000;
@@ -28,11 +28,16 @@ pub fn from_ros(message: &LaserScan, stamp: Stamp, base_from_laser: &Pose2) -> R
     };
     let mut beams: Vec<Beam> = message.ranges.iter().map(beam).collect();
     let mut first = f64::from(message.angle_min);
+    let mut times = BeamTimes { first_s: 0.0, step_s: f64::from(message.time_increment) };
     if increment < 0.0 {
         beams.reverse();
         first += increment * (count - 1) as f64;
+        times = BeamTimes { first_s: times.of(count - 1), step_s: -times.step_s };
     }
-    Scan::new(stamp, base_from_laser.position(), first + base_from_laser.theta, increment.abs(), beams)
+    let origin = base_from_laser.position();
+    let scan = Scan::new(stamp, origin, first + base_from_laser.theta, increment.abs(), beams)?;
+    // Times that cannot be are ignored.
+    Ok(if times.step_s == 0.0 { scan } else { scan.clone().with_beam_times(times).unwrap_or(scan) })
 }
 
 /// The scan as a message in the frame `frame`, which stands at the scan's origin with the axes of the base. `far` is the range of beams

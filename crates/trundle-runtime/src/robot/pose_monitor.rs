@@ -11,6 +11,7 @@ use trundle_estimation::{Correction, Localizer};
 impl Robot {
     /// A scan of a laser that is the range source.
     pub(super) fn on_laser(&mut self, scan: &Scan, report: &mut StepReport) {
+        let scan = &self.deskewed(scan);
         let odometer = self.odometry_at(scan.stamp());
         if let Some(odometer) = odometer {
             self.latest.pose_monitor.add_scan(odometer.pose, scan);
@@ -20,6 +21,12 @@ impl Robot {
             self.apply_global_localization(place);
         }
         self.on_scan(scan.clone(), report);
+    }
+
+    /// The scan with each beam where the base was by the odometry when it was measured.
+    fn deskewed(&self, scan: &Scan) -> Scan {
+        let odom_from_base = |stamp| self.localizer.odometry_at(stamp).ok().map(|odometer| odometer.pose);
+        if self.deskews_laser { trundle_core::deskewed(scan.clone(), odom_from_base) } else { scan.clone() }
     }
 
     /// While the pose is unknown, applies the pose that global localization found, or begins the search.

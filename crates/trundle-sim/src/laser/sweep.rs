@@ -4,7 +4,7 @@ use super::LaserConfig;
 use crate::rng::{GOLDEN_RATIO_STEP, hash, mix, normal, unit};
 use crate::world::SceneSnapshot;
 use rayon::prelude::*;
-use trundle_core::{Beam, Invalid, Pose2, Scan, Stamp, Vector2, Vector3};
+use trundle_core::{Beam, BeamTimes, Invalid, Pose2, Scan, Stamp, Vector2, Vector3};
 
 /// Fewest beams that one thread takes.
 const MIN_BEAMS_PER_THREAD: usize = 64;
@@ -40,13 +40,15 @@ impl Laser {
             self.beam(snapshot, &world_from_base(self.age(i)), i, bits)
         };
         let beams = (0..c.beams).into_par_iter().with_min_len(MIN_BEAMS_PER_THREAD).map(beam).collect();
-        Scan::new(stamp, Vector2::new(c.x, c.y), c.angle_min(), c.increment(), beams)
+        let scan = Scan::new(stamp, Vector2::new(c.x, c.y), c.angle_min(), c.increment(), beams)?;
+        let step_s = self.age(0) - self.age(1);
+        if c.sweeps { scan.with_beam_times(BeamTimes { first_s: -self.age(0), step_s }) } else { Ok(scan) }
     }
 
     /// How long before the scan's stamp beam `i` is measured, s.
     fn age(&self, i: usize) -> f64 {
         let c = &self.config;
-        let turn = (c.beams - 1 - i) as f64 * c.increment() / std::f64::consts::TAU;
+        let turn = (c.beams as f64 - 1.0 - i as f64) * c.increment() / std::f64::consts::TAU;
         if c.sweeps { turn / c.rate_hz } else { 0.0 }
     }
 

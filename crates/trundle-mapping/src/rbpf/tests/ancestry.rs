@@ -50,7 +50,7 @@ proptest! {
     ) {
         let (mut ancestry, plain) = run(&steps);
         let count = (part * steps.len() as f64) as usize;
-        ancestry.thin(count);
+        ancestry.thin(&crate::loop_closing::scan_history::every_second(ancestry.len(), count));
         for (i, trajectory) in plain.iter().enumerate() {
             let stays = |(k, _): &(usize, &(Stamp, Pose2))| k % 2 == 0 || k + 1 >= count;
             let expected: Trajectory =

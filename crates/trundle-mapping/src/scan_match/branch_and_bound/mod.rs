@@ -1,7 +1,9 @@
 //! Where in a map, or in a part of it, a scan fits best: correlative search by branch and bound (\[Hess16\], \[Olson09\]).
 
+mod lookup_budget;
 mod pyramid;
 mod search;
 
+pub(crate) use lookup_budget::LookupBudget;
 pub(crate) use pyramid::Pyramid;
 pub(crate) use search::{Place, Query};

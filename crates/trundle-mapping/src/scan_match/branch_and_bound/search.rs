@@ -1,5 +1,6 @@
 //! Branch-and-bound search for the best pose in a pyramid.
 
+use super::lookup_budget::LookupBudget;
 use super::pyramid::{PYRAMID_LEVELS, Pyramid};
 use trundle_core::{Pose2, wrap_angle};
 
@@ -57,18 +58,18 @@ struct Turned {
 
 impl Pyramid {
     /// The best pose for a query that is apart (cells, rad) from all of `known`, by branch and bound: no pose of the lattice
-    /// is better. `None` if all score less than `least`.
+    /// is better. `None` if all score less than `least`. A search that spends `budget` ends with the best pose so far.
     pub(crate) fn search(
         &self,
         query: &Query<'_>,
         known: &[Place],
-        apart: (f64, f64),
-        least: f64,
+        (apart, least): ((f64, f64), f64),
+        budget: &LookupBudget,
     ) -> Option<Place> {
         let reach = ((query.reach.0 / 2.0).ceil() as i32, (query.reach.1 / 2.0).ceil() as i32);
         let turns = ((query.turn_reach / query.turn_step).ceil() as i32).max(0);
         let all: Vec<Turned> = (-turns..=turns).map(|turn| self.turned(query, turn, reach)).collect();
-        let search = Search { pyramid: self, query, known, apart, reach, all };
+        let search = Search { pyramid: self, query, known, apart, reach, all, budget };
         let side = 1 << PYRAMID_LEVELS;
         let mut squares = Vec::new();
         for turn in 0..search.all.len() as i32 {
@@ -108,6 +109,7 @@ struct Search<'a> {
     apart: (f64, f64),
     reach: (i32, i32),
     all: Vec<Turned>,
+    budget: &'a LookupBudget,
 }
 
 impl Search<'_> {
@@ -128,6 +130,7 @@ impl Search<'_> {
 
     fn sum(&self, level: usize, turned: &Turned, x: i32, y: i32) -> u32 {
         let (pyramid, field) = (self.pyramid, &self.pyramid.levels[level]);
+        self.budget.take(turned.points.len());
         let mut sum = 0;
         for &(px, py) in &turned.points {
             let (col, row) = ((px + x) as u32 as usize, (py + y) as u32 as usize);
@@ -139,7 +142,7 @@ impl Search<'_> {
     }
 
     fn descend(&self, level: usize, square: Square, best: &mut (f64, Option<Place>)) {
-        if square.bound <= best.0 {
+        if square.bound <= best.0 || self.budget.is_spent() {
             return;
         }
         if level == 0 {
@@ -206,7 +209,8 @@ mod tests {
             sigma: (60.0, 60.0, 1.0),
             gain: 1.0,
         };
-        let found = pyramid.search(&query, &[], (0.0, 0.0), 0.0).unwrap();
+        let budget = LookupBudget::unlimited();
+        let found = pyramid.search(&query, &[], ((0.0, 0.0), 0.0), &budget).unwrap();
         assert!((found.pose.position() - truth.position()).norm() < 2.5, "{found:?}");
         assert!((found.pose.theta - truth.theta).abs() < 0.03 && found.fit > 0.7, "{found:?}");
         // Every pose of the lattice, one by one.
@@ -216,6 +220,7 @@ mod tests {
             known: &[],
             apart: (0.0, 0.0),
             reach: (20, 20),
+            budget: &budget,
             all: (-20..=20).map(|turn| pyramid.turned(&query, turn, (20, 20))).collect(),
         };
         let best = |accept: &dyn Fn(&Place) -> bool| {
@@ -231,8 +236,13 @@ mod tests {
             best
         };
         assert_eq!(found.score, best(&|_| true));
-        let second = pyramid.search(&query, &[found], (10.0, 0.2), 0.0).unwrap();
+        let second = pyramid.search(&query, &[found], ((10.0, 0.2), 0.0), &budget).unwrap();
         assert_eq!(second.score, best(&|p| found.is_apart(p.pose, 10.0, 0.2)));
         assert!(second.score < found.score);
+        let enough = LookupBudget::unlimited();
+        pyramid.search(&query, &[], ((0.0, 0.0), 0.0), &enough);
+        let few = LookupBudget::new(enough.used() / 4);
+        pyramid.search(&query, &[], ((0.0, 0.0), 0.0), &few);
+        assert!(few.is_spent() && few.used() == enough.used() / 4);
     }
 }

@@ -1,0 +1,99 @@
+//! First places in known maps: three small lasers, random starts on each map.
+//!
+//! `cargo run --release -p trundle-experiments --example first_place -- ../shared/data/nav [STARTS] [MAP]`
+//! prints, for each map and laser, the number of starts at which the first place told as known was right and wrong, and the time to it.
+
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+use trundle_app::AppError;
+use trundle_core::{OccupancyGrid, Pose2};
+use trundle_experiments::laser_drive::{drive, random_start, world_of};
+use trundle_io::read_map;
+use trundle_mapping::{Localized, MapLocalizer, MapperConfig, ParticleConfig};
+use trundle_sim::LaserConfig;
+
+/// Maps of the folder.
+const MAPS: [&str; 6] = [
+    "nav2/tb3_sandbox.yaml",
+    "nav2/depot.yaml",
+    "mrpb/maps/office01add/map.yaml",
+    "mrpb/maps/office02_partially_unknown/map.yaml",
+    "mrpb/maps/room02/map.yaml",
+    "mrpb/maps/track/map.yaml",
+];
+/// Duration of a drive \[s\].
+const DRIVE_S: f64 = 60.0;
+/// Distance and turn from the truth beyond which a place is wrong \[m, rad\].
+const MAX_ERROR: (f64, f64) = (0.5, 0.26);
+
+/// What was told of one drive.
+#[derive(Debug, Clone, Copy, Default)]
+struct Told {
+    /// Time of the first known place, s.
+    first_s: Option<f64>,
+    is_first_wrong: bool,
+    known: usize,
+    wrong: usize,
+}
+
+fn main() -> Result<(), AppError> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let folder = PathBuf::from(arguments.first().map_or("../shared/data/nav", String::as_str));
+    let starts = arguments.get(1).and_then(|count| count.parse().ok()).unwrap_or(50_u64);
+    let only = arguments.get(2).map_or("", String::as_str);
+    let mut sums = (0, 0, 0);
+    for map in MAPS.iter().filter(|map| map.contains(only)) {
+        let grid = read_map(&folder.join(map))?;
+        for (name, _, laser) in LaserConfig::PRESETS.iter().filter(|(name, ..)| *name != "ust-10lx") {
+            let told: Result<Vec<Told>, AppError> =
+                (0..starts).into_par_iter().map(|seed| tell(Path::new(map), &grid, laser(), seed)).collect();
+            let told = told?;
+            let mut times: Vec<f64> = told.iter().filter_map(|told| told.first_s).collect();
+            times.sort_by(f64::total_cmp);
+            let first_wrong = told.iter().filter(|told| told.is_first_wrong).count();
+            let (known, wrong) = told.iter().fold((0, 0), |sum, t| (sum.0 + t.known, sum.1 + t.wrong));
+            let median = times.get(times.len() / 2).copied().unwrap_or(f64::NAN);
+            println!(
+                "{map} {name}: found {} of {starts}, first place wrong {first_wrong}, scans wrong {wrong} of {known}, median {median:.1} s",
+                times.len()
+            );
+            sums = (sums.0 + times.len(), sums.1 + first_wrong, sums.2 + wrong);
+        }
+    }
+    println!("all: found {}, first place wrong {}, scans wrong {}", sums.0, sums.1, sums.2);
+    Ok(())
+}
+
+/// Localizes one drive in the map of its walls.
+fn tell(name: &Path, grid: &OccupancyGrid, laser: LaserConfig, seed: u64) -> Result<Told, AppError> {
+    let world = world_of(&name.display().to_string(), grid)?;
+    let start = random_start(grid, &world, seed)?;
+    let drive = drive(world, (laser, start), DRIVE_S, seed)?;
+    let default = ParticleConfig::default();
+    let map = MapperConfig { ..default.map.with_resolution(grid.geometry().resolution) };
+    let mut localizer = MapLocalizer::from_grid(grid, ParticleConfig { map, ..default }, seed)?;
+    let mut told = Told::default();
+    for scan in &drive.scans {
+        let said = localizer.update(scan.odom_from_base, &scan.scan);
+        let Localized::Known { map_from_base, .. } = said else { continue };
+        let wrong = is_wrong(map_from_base, scan.world_from_base);
+        if told.first_s.is_none() {
+            told.first_s = Some(scan.scan.stamp().as_secs());
+            told.is_first_wrong = wrong;
+            if wrong {
+                eprintln!(
+                    "seed {seed}: {map_from_base:?} for {:?} at {:?}",
+                    scan.world_from_base, told.first_s
+                );
+            }
+        }
+        told.known += 1;
+        told.wrong += usize::from(wrong);
+    }
+    Ok(told)
+}
+
+fn is_wrong(told: Pose2, truth: Pose2) -> bool {
+    let off = truth.inverse() * told;
+    off.position().norm() > MAX_ERROR.0 || off.theta.abs() > MAX_ERROR.1
+}
