@@ -1,0 +1,146 @@
+//! The command line of `trundle`, for the program and for the Python package.
+
+mod calibrate;
+mod command_line;
+mod common_args;
+mod console;
+mod convert;
+mod data;
+mod demo;
+mod devices;
+mod dock;
+mod eval;
+mod experiment;
+mod live;
+mod logging;
+mod map;
+#[cfg(feature = "mqtt")]
+mod mqtt;
+mod outcome;
+mod output_args;
+mod plan;
+mod replay;
+mod robot_file;
+#[cfg(feature = "ros2")]
+mod ros2;
+#[cfg(feature = "ros2")]
+mod ros_node;
+mod run;
+mod run_output;
+mod shell_files;
+mod sim;
+mod slam;
+mod vocabulary;
+
+use clap::{ArgMatches, CommandFactory, FromArgMatches};
+use command_line::{Cli, Command};
+use common_args::Common;
+use outcome::Outcome;
+use std::ffi::OsString;
+use trundle::app::{AppError, stop};
+use trundle::io::{abandon_outputs, abandon_unfinished, wait_for_abandonment};
+
+/// Runs the command line of these arguments, the program's name first. The result is the exit code of the process, which does nothing else:
+/// a command takes over Ctrl-C and SIGTERM, and starts the log.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let (matches, cli) = match parse(arguments) {
+        Ok(parsed) => parsed,
+        Err(message) => return print_usage(&message),
+    };
+    let folders = logging::start(cli.verbose).and_then(|()| output_args::check(&matches));
+    match folders {
+        Ok(folders) => {
+            let result = listen(&cli.command).and_then(|()| run_command(cli));
+            wait_for_abandonment();
+            outcome::end(result, &folders)
+        }
+        Err(error) => outcome::end(Err(error), &[]),
+    }
+}
+
+fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<(ArgMatches, Cli), clap::Error> {
+    let matches = with_negative_numbers(Cli::command()).try_get_matches_from(arguments)?;
+    let cli = Cli::from_arg_matches(&matches)?;
+    Ok((matches, cli))
+}
+
+/// Prints help, version or what is wrong with the arguments. A terminal without a reader is no error here.
+fn print_usage(message: &clap::Error) -> u8 {
+    let _ = message.print();
+    u8::try_from(message.exit_code()).unwrap_or(u8::MAX)
+}
+
+/// Takes Ctrl-C as a request if the command has long loops, which read it; else it ends the program.
+fn listen(command: &Command) -> Result<(), AppError> {
+    use Command::{Calibrate, Convert, Demo, Experiment, GuardBase, Map, Replay, Run, Sim, Slam};
+    match command {
+        Calibrate(_) | Convert(_) | Demo(_) | Run(_) | Replay(_) | Slam(_) | Map(_) | Sim(_)
+        | Experiment(_) => stop::listen(end_unfinished),
+        // A guard outlives the program that it guards.
+        GuardBase => stop::ignore(),
+        #[cfg(feature = "ros2")]
+        Command::Ros2(_) => stop::listen(end_unfinished),
+        _ => stop::end_at_once(|signal| {
+            let is_ending = abandon_outputs();
+            if is_ending {
+                console::print_stopped(signal.name(), "; nothing was written");
+            }
+            is_ending
+        }),
+    }
+}
+
+/// At a second signal: results that are being moved to their place are complete after this, others are removed.
+fn end_unfinished(signal: stop::StopSignal) {
+    abandon_unfinished();
+    console::print_stopped(signal.name(), ", the second signal; unfinished results are removed");
+}
+
+/// A negative number is the value of the option before it, not an option.
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    let takes_numbers = |arg: clap::Arg| {
+        if arg.get_action().takes_values() { arg.allow_negative_numbers(true) } else { arg }
+    };
+    command.mut_args(takes_numbers).mut_subcommands(with_negative_numbers)
+}
+
+fn run_command(cli: Cli) -> Result<Outcome, AppError> {
+    match cli.command {
+        Command::Demo(args) => with_threads(&args.common, || demo::run(&args)),
+        Command::Run(args) => with_threads(&args.options.common, || run::run(&args)),
+        #[cfg(feature = "ros2")]
+        Command::Ros2(args) => with_threads(&args.options.common, || ros2::run(&args)),
+        Command::Replay(args) => with_threads(&args.common, || replay::run(&args)),
+        Command::Slam(args) => with_threads(&args.common, || slam::run(&args)),
+        Command::Convert(args) => with_threads(&args.common, || convert::run(&args)),
+        Command::Map(args) => with_threads(&args.common, || map::run(&args)),
+        Command::Calibrate(args) => with_threads(args.common(), || calibrate::run(&args)),
+        Command::Eval(args) => with_threads(args.common(), || eval::run(&args)),
+        Command::Plan(args) => with_threads(&args.common, || plan::run(&args)),
+        Command::Sim(args) => with_threads(&args.common, || sim::run(&args)),
+        Command::Dock(args) => with_threads(&args.common, || dock::run(&args)),
+        Command::Experiment(args) => with_threads(args.common(), || experiment::run(&args)),
+        Command::Vocabulary(args) => match args.common() {
+            Some(common) => with_threads(common, || vocabulary::run(&args)),
+            None => vocabulary::run(&args),
+        },
+        Command::Config(args) => robot_file::print(&args),
+        Command::Devices(args) => Ok(devices::run(&args)),
+        Command::ServeCamera(args) => devices::serve(&args),
+        Command::GuardBase => devices::guard(),
+        Command::Data(args) => data::run(&args),
+        Command::Completions(args) => shell_files::print_completions(&args, Cli::command()),
+        Command::Man(args) => shell_files::write_man_pages(&args, Cli::command()),
+    }
+}
+
+/// Runs `work` on a pool of the asked number of threads.
+fn with_threads<T: Send>(
+    common: &Common,
+    work: impl FnOnce() -> Result<T, AppError> + Send,
+) -> Result<T, AppError> {
+    let Some(threads) = common.threads else { return work() };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
+    pool.map_err(|error| AppError::Environment(format!("cannot start {threads} threads: {error}")))?
+        .install(work)
+}

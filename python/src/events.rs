@@ -1,0 +1,129 @@
+//! Readings of wheels, gyro, bumper and cliff sensors.
+
+use crate::numbers::{seconds, stamp};
+use pyo3::prelude::*;
+use trundle::core::{Cliff as CoreCliff, GyroRate, Touch as CoreTouch, WheelTicks};
+
+/// Counters of both wheels, which wrap at 65536.
+#[pyclass(frozen, module = "trundle")]
+pub struct Wheels {
+    /// The reading.
+    pub reading: WheelTicks,
+}
+
+#[pymethods]
+impl Wheels {
+    #[new]
+    fn new(stamp: f64, left: u16, right: u16) -> PyResult<Self> {
+        Ok(Self { reading: WheelTicks { stamp: self::stamp(stamp)?, left, right } })
+    }
+
+    #[getter]
+    fn stamp(&self) -> f64 {
+        seconds(self.reading.stamp)
+    }
+
+    #[getter]
+    fn left(&self) -> u16 {
+        self.reading.left
+    }
+
+    #[getter]
+    fn right(&self) -> u16 {
+        self.reading.right
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Wheels(stamp={}, left={}, right={})", self.stamp(), self.left(), self.right())
+    }
+}
+
+/// Turn rate about the vertical axis, counter-clockwise positive.
+#[pyclass(frozen, module = "trundle")]
+pub struct Gyro {
+    /// The reading.
+    pub reading: GyroRate,
+}
+
+#[pymethods]
+impl Gyro {
+    #[new]
+    fn new(stamp: f64, omega: f64) -> PyResult<Self> {
+        let omega =
+            trundle::core::require_finite("omega", omega, "rad/s").map_err(crate::errors::value_error)?;
+        Ok(Self { reading: GyroRate { stamp: self::stamp(stamp)?, omega } })
+    }
+
+    #[getter]
+    fn stamp(&self) -> f64 {
+        seconds(self.reading.stamp)
+    }
+
+    #[getter]
+    fn omega(&self) -> f64 {
+        self.reading.omega
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Gyro(stamp={}, omega={})", self.stamp(), self.omega())
+    }
+}
+
+/// The bumper: pressed or released.
+#[pyclass(frozen, module = "trundle")]
+pub struct Touch {
+    /// The reading.
+    pub reading: CoreTouch,
+}
+
+#[pymethods]
+impl Touch {
+    #[new]
+    fn new(stamp: f64, pressed: bool) -> PyResult<Self> {
+        Ok(Self { reading: CoreTouch { stamp: self::stamp(stamp)?, pressed } })
+    }
+
+    #[getter]
+    fn stamp(&self) -> f64 {
+        seconds(self.reading.stamp)
+    }
+
+    #[getter]
+    fn pressed(&self) -> bool {
+        self.reading.pressed
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Touch(stamp={}, pressed={})", self.stamp(), if self.pressed() { "True" } else { "False" })
+    }
+}
+
+/// The cliff sensors: the floor ends below one of them, or does so no longer.
+#[pyclass(frozen, module = "trundle")]
+pub struct Cliff {
+    /// The reading.
+    pub reading: CoreCliff,
+}
+
+#[pymethods]
+impl Cliff {
+    #[new]
+    fn new(stamp: f64, over_edge: bool) -> PyResult<Self> {
+        Ok(Self { reading: CoreCliff { stamp: self::stamp(stamp)?, over_edge } })
+    }
+
+    #[getter]
+    fn stamp(&self) -> f64 {
+        seconds(self.reading.stamp)
+    }
+
+    #[getter]
+    fn over_edge(&self) -> bool {
+        self.reading.over_edge
+    }
+
+    fn __repr__(&self) -> String {
+        let over_edge = if self.over_edge() { "True" } else { "False" };
+        format!("Cliff(stamp={}, over_edge={over_edge})", self.stamp())
+    }
+}

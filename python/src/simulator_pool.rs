@@ -1,0 +1,130 @@
+//! Several simulators with a laser, stepped by all cores: the vectorised environment's world.
+
+use crate::arrays::{array, from_list, from_rows, slice};
+use crate::errors::value_error;
+use crate::scan::range_of;
+use crate::sim_drive::drive;
+use crate::simulator::{sim_config, simulator};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+use trundle::core::{Invalid, Pose2, SensorEvent, Twist2};
+use trundle::sim::{SimConfig, Simulator as Sim};
+
+/// Several simulated robots with a laser.
+#[pyclass(module = "trundle")]
+pub struct SimulatorPool {
+    scene: String,
+    config: SimConfig,
+    worlds: Vec<World>,
+}
+
+/// A simulator and its newest ranges.
+struct World {
+    simulator: Sim,
+    ranges: Vec<f32>,
+}
+
+#[pymethods]
+impl SimulatorPool {
+    #[new]
+    #[pyo3(signature = (scene, seeds, laser, *, noise=true))]
+    fn new(py: Python<'_>, scene: String, seeds: Vec<u64>, laser: &str, noise: bool) -> PyResult<Self> {
+        let config = sim_config(None, Some(laser), noise)?;
+        let worlds = py.detach(|| {
+            seeds.par_iter().map(|seed| World::new(&scene, *seed, &config)).collect::<PyResult<Vec<World>>>()
+        })?;
+        Ok(Self { scene, config, worlds })
+    }
+
+    /// Starts some of the worlds anew, each with its seed.
+    fn reset(&mut self, py: Python<'_>, indices: Vec<usize>, seeds: Vec<u64>) -> PyResult<()> {
+        let count = self.worlds.len();
+        if indices.len() != seeds.len() || indices.iter().any(|index| *index >= count) {
+            let problem = format!("{} indices and {} seeds", indices.len(), seeds.len());
+            let expected = format!("as many of each, indices below {count}");
+            return Err(value_error(Invalid::new("reset", problem, "", expected)));
+        }
+        let fresh = py.detach(|| {
+            let make = |seed: &u64| World::new(&self.scene, *seed, &self.config);
+            seeds.par_iter().map(make).collect::<PyResult<Vec<World>>>()
+        })?;
+        for (index, world) in indices.into_iter().zip(fresh) {
+            self.worlds[index] = world;
+        }
+        Ok(())
+    }
+
+    /// Drives every robot with its twist for a duration; a robot whose twist is NaN is left out.
+    fn step(&mut self, py: Python<'_>, twists: &Bound<'_, PyAny>, duration: f64) -> PyResult<()> {
+        let shape = format!("({}, 2)", self.worlds.len());
+        let array = array::<f64, numpy::Ix2>(twists, "twists", &shape)?;
+        if array.shape() != [self.worlds.len(), 2] {
+            let found = array.shape();
+            return Err(value_error(format!(
+                "twists has shape {found:?}, expected a numpy array of dtype float64 and shape {shape}"
+            )));
+        }
+        let twists = slice(&array, "twists")?.as_chunks::<2>().0.to_vec();
+        py.detach(|| {
+            let pairs = self.worlds.par_iter_mut().zip(twists).filter(|(_, [v, _])| !v.is_nan());
+            pairs.map(|(world, [v, omega])| world.step(Twist2::new(v, omega), duration)).collect()
+        })
+    }
+
+    /// Newest ranges of all robots, m, shape (N, beams): infinity where a beam met nothing, NaN where nothing is known.
+    fn ranges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let beams = self.worlds.first().map_or(0, |world| world.ranges.len());
+        let all: Vec<f32> = self.worlds.iter().flat_map(|world| world.ranges.iter().copied()).collect();
+        PyArray1::from_vec(py, all).reshape([self.worlds.len(), beams])
+    }
+
+    /// `world_from_base` of all robots, shape (N, 3).
+    fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        from_rows(py, self.worlds.iter().map(|world| row(world.simulator.true_pose())).collect())
+    }
+
+    /// Goals of the scenes, shape (N, 3).
+    fn goals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        from_rows(py, self.worlds.iter().map(|world| row(world.simulator.scene().goal)).collect())
+    }
+
+    /// Separate contacts of each robot so far, shape (N,).
+    fn contacts<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        from_list(py, self.worlds.iter().map(|world| world.simulator.contacts()).collect())
+    }
+
+    /// Farthest range that the laser measures, m.
+    #[getter]
+    fn range_max(&self) -> f64 {
+        self.config.laser.as_ref().map_or(0.0, |laser| laser.range_max)
+    }
+
+    fn __len__(&self) -> usize {
+        self.worlds.len()
+    }
+}
+
+impl World {
+    fn new(scene: &str, seed: u64, config: &SimConfig) -> PyResult<Self> {
+        let beams = config.laser.as_ref().map_or(0, |laser| laser.beams);
+        let simulator = simulator(scene, seed, None, config.clone())?;
+        Ok(Self { simulator, ranges: vec![f32::NAN; beams] })
+    }
+
+    fn step(&mut self, twist: Twist2, duration: f64) -> PyResult<()> {
+        let events = drive(&mut self.simulator, twist, duration).map_err(value_error)?;
+        let scans = events.iter().filter_map(|event| match event {
+            SensorEvent::Scan(scan) => Some(scan),
+            _ => None,
+        });
+        if let Some(scan) = scans.last() {
+            self.ranges = scan.beams().iter().map(|beam| range_of(beam) as f32).collect();
+        }
+        Ok(())
+    }
+}
+
+fn row(pose: Pose2) -> [f64; 3] {
+    [pose.x, pose.y, pose.theta]
+}

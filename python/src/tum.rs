@@ -1,0 +1,101 @@
+//! Recorded sequences: folders of the TUM RGB-D benchmark, trajectories and laser logs.
+
+use crate::arrays::rows;
+use crate::errors::io_error;
+use crate::geometry::{planar_array, pose2_array, trajectory, trajectory_array};
+use crate::numbers::seconds;
+use crate::rgbd::Rgbd;
+use crate::scan::Scan;
+use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+use trundle::io::{
+    LaserLogOptions, TUM_DEPTH_SCALE, TumSequence as Sequence, read_laser_log as read_log,
+    read_trajectory as read_poses, replace_file, trajectory_text,
+};
+
+/// A folder of the TUM RGB-D benchmark, its images still on disk.
+#[pyclass(frozen, module = "trundle")]
+pub struct TumSequence {
+    sequence: Sequence,
+}
+
+#[pymethods]
+impl TumSequence {
+    #[new]
+    #[pyo3(signature = (folder, depth_scale=TUM_DEPTH_SCALE, max_difference=Sequence::MAX_DIFFERENCE))]
+    fn new(py: Python<'_>, folder: PathBuf, depth_scale: f64, max_difference: f64) -> PyResult<Self> {
+        let sequence = py.detach(|| Sequence::open(&folder, depth_scale, max_difference)).map_err(io_error)?;
+        Ok(Self { sequence })
+    }
+
+    fn __len__(&self) -> usize {
+        self.sequence.len()
+    }
+
+    /// Reads and decodes an image.
+    fn __getitem__(&self, py: Python<'_>, index: isize) -> PyResult<Rgbd> {
+        let i = self.index(index)?;
+        let image = py.detach(|| self.sequence.load(i)).map_err(|error| io_error(error.source))?;
+        Ok(Rgbd { image })
+    }
+
+    /// Stamps of the images, s.
+    fn stamps<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let stamps = (0..self.sequence.len()).map(|i| seconds(self.sequence.stamp(i))).collect();
+        crate::arrays::from_list(py, stamps)
+    }
+
+    /// `world_from_camera`, rows of a TUM trajectory; None where the folder has none.
+    #[getter]
+    fn ground_truth<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.sequence.ground_truth().map(|poses| trajectory_array(py, poses)).transpose()
+    }
+
+    /// `odom_from_base`, rows of stamp s, x m, y m, theta rad; None where the folder has none.
+    #[getter]
+    fn odometry<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        self.sequence.odometry().map(|poses| planar_array(py, poses)).transpose()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("TumSequence({} images)", self.sequence.len())
+    }
+}
+
+impl TumSequence {
+    fn index(&self, index: isize) -> PyResult<usize> {
+        let count = self.sequence.len();
+        let from_start = if index < 0 { index.checked_add_unsigned(count) } else { Some(index) };
+        let found = from_start.and_then(|i| usize::try_from(i).ok()).filter(|i| *i < count);
+        found.ok_or_else(|| PyIndexError::new_err(format!("image {index}, expected one of {count}")))
+    }
+}
+
+/// Rows of a trajectory file: TUM, KITTI or EuRoC.
+#[pyfunction]
+pub fn read_trajectory(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let poses = py.detach(|| read_poses(&path)).map_err(io_error)?;
+    trajectory_array(py, &poses)
+}
+
+/// Writes rows of a trajectory as a TUM file, atomically.
+#[pyfunction]
+pub fn write_trajectory(py: Python<'_>, path: PathBuf, trajectory_rows: &Bound<'_, PyAny>) -> PyResult<()> {
+    let poses = trajectory(&rows(trajectory_rows, "trajectory")?, "trajectory")?;
+    py.detach(|| replace_file(&path, trajectory_text(&poses).as_bytes())).map_err(io_error)
+}
+
+/// A scan of a log, with the odometry of its moment.
+type LoggedScan<'py> = (Bound<'py, PyArray1<f64>>, Scan);
+
+/// Scans of a laser log with their odometry: a CARMEN log or a ROS 2 bag.
+#[pyfunction]
+pub fn read_laser_log(py: Python<'_>, path: PathBuf) -> PyResult<Vec<LoggedScan<'_>>> {
+    let log = py.detach(|| read_log(&path, &LaserLogOptions::default())).map_err(io_error)?;
+    let entry = |entry: trundle::io::LaserLogScan| {
+        (pose2_array(py, entry.odom_from_base), Scan { scan: entry.scan })
+    };
+    Ok(log.scans.into_iter().map(entry).collect())
+}
