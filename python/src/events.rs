@@ -1,8 +1,9 @@
 //! Readings of wheels, gyro, bumper and cliff sensors.
 
+use crate::errors::value_error;
 use crate::numbers::{seconds, stamp};
 use pyo3::prelude::*;
-use trundle::core::{Cliff as CoreCliff, GyroRate, Touch as CoreTouch, WheelTicks};
+use trundle::core::{Cliff as CoreCliff, GyroRate, Invalid, Touch as CoreTouch, WheelTicks, require_finite};
 
 /// Counters of both wheels, which wrap at 65536.
 #[pyclass(frozen, module = "trundle")]
@@ -14,7 +15,8 @@ pub struct Wheels {
 #[pymethods]
 impl Wheels {
     #[new]
-    fn new(stamp: f64, left: u16, right: u16) -> PyResult<Self> {
+    fn new(stamp: f64, left: i64, right: i64) -> PyResult<Self> {
+        let (left, right) = (counter("left", left)?, counter("right", right)?);
         Ok(Self { reading: WheelTicks { stamp: self::stamp(stamp)?, left, right } })
     }
 
@@ -38,6 +40,14 @@ impl Wheels {
     }
 }
 
+/// A counter of 16 bits.
+fn counter(field: &str, value: i64) -> PyResult<u16> {
+    u16::try_from(value).map_err(|_| {
+        let expected = "0 to 65535: counters wrap there";
+        value_error(Invalid::new(field, value, "ticks", expected))
+    })
+}
+
 /// Turn rate about the vertical axis, counter-clockwise positive.
 #[pyclass(frozen, module = "trundle")]
 pub struct Gyro {
@@ -49,8 +59,7 @@ pub struct Gyro {
 impl Gyro {
     #[new]
     fn new(stamp: f64, omega: f64) -> PyResult<Self> {
-        let omega =
-            trundle::core::require_finite("omega", omega, "rad/s").map_err(crate::errors::value_error)?;
+        let omega = require_finite("omega", omega, "rad/s").map_err(value_error)?;
         Ok(Self { reading: GyroRate { stamp: self::stamp(stamp)?, omega } })
     }
 

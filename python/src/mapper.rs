@@ -3,7 +3,7 @@
 use crate::errors::value_error;
 use crate::geometry::{planar_array, pose2_array};
 use crate::grid::OccupancyGrid;
-use crate::numbers::{point, pose2};
+use crate::numbers::pose2;
 use crate::scan::Scan;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -57,8 +57,8 @@ impl GridMapper {
     }
 
     /// Probability of occupancy at a point of the map frame.
-    fn probability_at(&self, point_m: &Bound<'_, PyAny>) -> PyResult<f64> {
-        Ok(self.mapper.probability_at(point(point_m, "point")?))
+    fn probability_at(&self, point: &Bound<'_, PyAny>) -> PyResult<f64> {
+        Ok(self.mapper.probability_at(crate::numbers::point(point, "point")?))
     }
 
     fn __repr__(&self) -> String {

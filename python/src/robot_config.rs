@@ -43,6 +43,18 @@ impl RobotConfig {
         }
     }
 
+    /// Highest forward speed, m/s.
+    #[getter]
+    fn max_speed(&self) -> f64 {
+        self.config.limits.v
+    }
+
+    /// Highest turn rate, rad/s.
+    #[getter]
+    fn max_turn_rate(&self) -> f64 {
+        self.config.limits.omega
+    }
+
     fn __repr__(&self) -> String {
         let (v, omega) = (self.config.limits.v, self.config.limits.omega);
         format!("RobotConfig({v} m/s, {omega} rad/s)")

@@ -94,6 +94,11 @@ impl SimulatorPool {
         from_list(py, self.worlds.iter().map(|world| world.simulator.contacts()).collect())
     }
 
+    /// Distance of each robot to the nearest thing that it could touch, m, shape (N,).
+    fn clearances<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        from_list(py, self.worlds.iter().map(|world| world.simulator.clearance()).collect())
+    }
+
     /// Farthest range that the laser measures, m.
     #[getter]
     fn range_max(&self) -> f64 {

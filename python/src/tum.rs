@@ -2,7 +2,7 @@
 
 use crate::arrays::rows;
 use crate::errors::io_error;
-use crate::geometry::{planar_array, pose2_array, trajectory, trajectory_array};
+use crate::geometry::{planar_array, pose2_array, trajectory_array};
 use crate::numbers::seconds;
 use crate::rgbd::Rgbd;
 use crate::scan::Scan;
@@ -82,8 +82,8 @@ pub fn read_trajectory(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyAr
 
 /// Writes rows of a trajectory as a TUM file, atomically.
 #[pyfunction]
-pub fn write_trajectory(py: Python<'_>, path: PathBuf, trajectory_rows: &Bound<'_, PyAny>) -> PyResult<()> {
-    let poses = trajectory(&rows(trajectory_rows, "trajectory")?, "trajectory")?;
+pub fn write_trajectory(py: Python<'_>, path: PathBuf, trajectory: &Bound<'_, PyAny>) -> PyResult<()> {
+    let poses = crate::geometry::trajectory(&rows(trajectory, "trajectory")?, "trajectory")?;
     py.detach(|| replace_file(&path, trajectory_text(&poses).as_bytes())).map_err(io_error)
 }
 
