@@ -11,7 +11,14 @@ use trundle::core::{
     BodyEvent, BodyEventKind, Device, Invalid, Link, Odometry as CoreOdometry, PerWheel, Pose2, Stamp,
 };
 
-/// Odometry that the body computed itself: a body yields it in place of wheels and gyro.
+/// Odometry that the body computed itself, in place of wheels and gyro.
+///
+/// `pose` `odom_from_base` (x m, y m, theta rad); `twist` (v m/s, omega rad/s); `covariance` float64 (3, 3) of the pose as a right
+/// perturbation (m, m, rad).
+///
+/// >>> import numpy as np
+/// >>> trundle.Odometry(1.5, (1, 2, 0.5), (0.1, 0), np.eye(3) * 1e-4).pose
+/// array([1. , 2. , 0.5])
 #[pyclass(frozen, module = "trundle")]
 pub struct Odometry {
     /// The reading.
@@ -40,21 +47,25 @@ impl Odometry {
         Ok(Self { reading: reading.checked().map_err(value_error)? })
     }
 
+    /// When it was, s.
     #[getter]
     fn stamp(&self) -> f64 {
         seconds(self.reading.stamp)
     }
 
+    /// `odom_from_base`, (3,): x m, y m, theta rad.
     #[getter]
     fn pose<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         pose2_array(py, self.reading.pose)
     }
 
+    /// v m/s, omega rad/s, (2,).
     #[getter]
     fn twist<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         twist_array(py, self.reading.twist)
     }
 
+    /// Covariance of the pose as a right perturbation (m, m, rad), (3, 3).
     #[getter]
     fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         matrix(py, &self.reading.covariance)
@@ -66,7 +77,10 @@ impl Odometry {
     }
 }
 
-/// A condition of the body: silence, a link, a wheel that hangs, and what a simulated or real base reports besides.
+/// A condition of the body that stops the robot or lets it go on.
+///
+/// >>> trundle.BodyCondition.link(1.5, "camera", False).stamp
+/// 1.5
 #[pyclass(frozen, module = "trundle")]
 pub struct BodyCondition {
     /// The event.
@@ -75,13 +89,13 @@ pub struct BodyCondition {
 
 #[pymethods]
 impl BodyCondition {
-    /// No sensor has reported: time goes on.
+    /// No sensor has reported for a while: time goes on.
     #[staticmethod]
     fn silence(stamp: f64) -> PyResult<Self> {
         Self::of(stamp, BodyEventKind::Silence)
     }
 
-    /// The connection to `base`, `camera` or `laser` is up or down.
+    /// The connection to "base", "camera" or "laser" is up or down.
     #[staticmethod]
     fn link(stamp: f64, device: &str, is_up: bool) -> PyResult<Self> {
         let device = match device {
@@ -99,6 +113,7 @@ impl BodyCondition {
         Self::of(stamp, BodyEventKind::WheelDrop(PerWheel { left, right }))
     }
 
+    /// When it was, s.
     #[getter]
     fn stamp(&self) -> f64 {
         seconds(self.event.stamp)
@@ -117,6 +132,10 @@ impl BodyCondition {
 }
 
 /// The true pose of a simulated robot; robots ignore it.
+///
+/// >>> events = trundle.Simulator("room", 1, camera=None).step((0, 0), duration=0.05)
+/// >>> next(event for event in events if isinstance(event, trundle.Truth)).pose.shape
+/// (3,)
 #[pyclass(frozen, module = "trundle")]
 pub struct Truth {
     /// Time of the pose.
@@ -127,11 +146,13 @@ pub struct Truth {
 
 #[pymethods]
 impl Truth {
+    /// When it was, s.
     #[getter]
     fn stamp(&self) -> f64 {
         seconds(self.at)
     }
 
+    /// `world_from_base`, (3,): x m, y m, theta rad.
     #[getter]
     fn pose<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         pose2_array(py, self.world_from_base)

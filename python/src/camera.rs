@@ -8,6 +8,15 @@ use trundle::core::{Distortion, PinholeCamera, require_positive};
 use trundle::io::{CameraModel, KINECT_V2_DEPTH_SCALE};
 
 /// A pinhole camera with lens distortion, and the unit of its depth images.
+///
+/// `width`, `height`, `fx`, `fy`, `cx`, `cy` in px; `distortion` k1, k2, p1, p2, k3 in the order of OpenCV; `readout` s, the time between
+/// first and last row of a rolling shutter; `depth_scale`, the units of uint16 depth images in a metre.
+///
+/// >>> camera = trundle.Camera(640, 480, 525.0, 525.0, 319.5, 239.5, depth_scale=5000)
+/// >>> camera.width, camera.fx, camera.depth_scale
+/// (640, 525.0, 5000.0)
+/// >>> trundle.Camera.named("freiburg1").cx
+/// 318.6
 #[pyclass(frozen, module = "trundle")]
 pub struct Camera {
     /// The camera and its depth scale.
@@ -43,62 +52,70 @@ impl Camera {
         Ok(Self { model: CameraModel { camera, depth_scale } })
     }
 
-    /// The camera of a preset (freiburg1, freiburg2, freiburg3, kinect_v2) or of a file (TOML of trundle, YAML of ORB-SLAM or ROS,
-    /// JSON of Open3D).
+    /// The camera of a preset (freiburg1, freiburg2, freiburg3, kinect_v2) or of a file: TOML of trundle, YAML of ORB-SLAM or ROS, JSON of
+    /// Open3D. A file without a depth scale means millimetres.
     #[staticmethod]
     fn named(name: PathBuf) -> PyResult<Self> {
         let model = CameraModel::named(&name.to_string_lossy()).map_err(io_error)?;
         Ok(Self { model })
     }
 
+    /// Columns, px.
     #[getter]
     fn width(&self) -> usize {
         self.model.camera.width()
     }
 
+    /// Rows, px.
     #[getter]
     fn height(&self) -> usize {
         self.model.camera.height()
     }
 
+    /// Focal length along x, px.
     #[getter]
     fn fx(&self) -> f64 {
         self.model.camera.fx()
     }
 
+    /// Focal length along y, px.
     #[getter]
     fn fy(&self) -> f64 {
         self.model.camera.fy()
     }
 
+    /// Principal point along x, px.
     #[getter]
     fn cx(&self) -> f64 {
         self.model.camera.cx()
     }
 
+    /// Principal point along y, px.
     #[getter]
     fn cy(&self) -> f64 {
         self.model.camera.cy()
     }
 
-    /// k1, k2, p1, p2, k3 in the order of OpenCV.
+    /// Lens: k1, k2, p1, p2, k3 in the order of OpenCV.
     #[getter]
     fn distortion(&self) -> (f64, f64, f64, f64, f64) {
         let Distortion { k1, k2, p1, p2, k3 } = self.model.camera.distortion();
         (k1, k2, p1, p2, k3)
     }
 
+    /// Time between first and last row of a rolling shutter, s.
     #[getter]
     fn readout(&self) -> f64 {
         self.model.camera.readout()
     }
 
+    /// Units of uint16 depth images in a metre.
     #[getter]
     fn depth_scale(&self) -> f64 {
         self.model.depth_scale
     }
 
-    /// The text of a camera file.
+    /// The text of a camera file, for `Camera.named`.
     fn to_toml(&self) -> String {
         self.model.to_toml()
     }

@@ -12,7 +12,22 @@ use trundle::app::dock::{DockingResult, DockingTask};
 use trundle::core::{Footprint, Pose2, Vector2};
 use trundle::docking::{DockingConfig, DockingPlan, Motion, Obstacle, ObstacleScene, Solution};
 
-/// Plans turns in place and straight moves from `start` to `goal`.
+/// Plans turns in place and straight moves from `start` to `goal`, both (3,): x m, y m, theta rad, exact for the footprint.
+///
+/// `obstacles` is an `OccupancyGrid`, or a list of float64 arrays (corners, 2) m: one row is a point, two a wall, more a convex polygon.
+/// `footprint` is a radius in m, or the corners (N, 2) m of a convex polygon, else that of `config`; `margin` m to every obstacle;
+/// `unknown_is_free` whether unknown cells are no obstacles; `config` a `RobotConfig`, else a Kobuki.
+///
+/// Returns a dictionary with the same keys for every outcome: `found`; `outcome` ("found", "impossible", "refused"); `message`, a sentence;
+/// `kinds`, a list of "turn" and "drive"; `amounts` (N,) rad or m; `starts` and `durations` (N,) s; `poses` (N + 1, 3); `duration` s; `bound` s,
+/// below which no manoeuvre with this margin takes; `margin` m kept.
+///
+/// >>> import numpy as np
+/// >>> walls = [np.array([[-2.0, y], [2.0, y]]) for y in (-0.45, 0.45)]
+/// >>> box = [(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)]
+/// >>> found = trundle.dock(walls, start=(0, -0.1, 0), goal=(0, 0.1, 0), footprint=box)
+/// >>> found["found"], found["bound"] <= found["duration"] + 1e-9
+/// (True, True)
 #[pyfunction]
 #[pyo3(signature = (obstacles, start, goal, footprint=None, *, margin=None, unknown_is_free=false, config=None))]
 #[expect(clippy::too_many_arguments, reason = "options by name in Python")]
@@ -68,7 +83,8 @@ fn task(
 
 /// Obstacles of arrays (corners, 2): one row is a point, two are a wall, more are a convex polygon.
 fn list_of(object: &Bound<'_, PyAny>) -> PyResult<Vec<Obstacle>> {
-    const EXPECTED: &str = "an OccupancyGrid, or a list of arrays of shape (corners, 2): point, wall or convex polygon";
+    const EXPECTED: &str =
+        "an OccupancyGrid, or a list of arrays of shape (corners, 2): point, wall or convex polygon";
     let list: Vec<Bound<'_, PyAny>> =
         object.extract().map_err(|_| wrong_type(object, "obstacles", EXPECTED))?;
     list.iter().enumerate().map(|(i, item)| obstacle(item, &format!("obstacles[{i}]"))).collect()
@@ -119,7 +135,8 @@ fn docking_dict<'py>(py: Python<'py>, result: &DockingResult, start: Pose2) -> P
 fn set_steps(dict: &Bound<'_, PyDict>, found: Option<&Solution>, start: Pose2) -> PyResult<()> {
     let py = dict.py();
     let steps = found.map_or(&[][..], |found| found.manoeuvre.steps());
-    let kinds = steps.iter().map(|step| if matches!(step.motion, Motion::Turn(_)) { "turn" } else { "drive" });
+    let kinds =
+        steps.iter().map(|step| if matches!(step.motion, Motion::Turn(_)) { "turn" } else { "drive" });
     dict.set_item("kinds", kinds.collect::<Vec<_>>())?;
     dict.set_item("amounts", from_list(py, steps.iter().map(|step| step.motion.amount()).collect()))?;
     dict.set_item("starts", from_list(py, steps.iter().map(|step| step.starts).collect()))?;

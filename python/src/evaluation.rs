@@ -11,7 +11,12 @@ use trundle::eval::{
     relative_pose_error,
 };
 
-/// The absolute trajectory error of an estimate against a reference.
+/// The absolute trajectory error of `estimate` against `reference`, both float64 (N, 8): stamp s, x y z m, qx qy qz qw. evo's numbers.
+///
+/// `align` is "se3" (rotation and translation), "sim3" (and scale) or "none"; `max_difference` s between associated stamps.
+///
+/// Returns a dictionary: `count`, `rmse`, `mean`, `median`, `std`, `min`, `max` of the distances, m; `rotation`, the same of the angles, rad; `errors`
+/// (K,) m; `pairs` (K, 2), indices in reference and estimate; `reference_from_estimate` (4, 4) and `scale`.
 #[pyfunction]
 #[pyo3(signature = (reference, estimate, *, align="se3", max_difference=0.01))]
 pub fn ate<'py>(
@@ -37,7 +42,12 @@ pub fn ate<'py>(
     Ok(dict)
 }
 
-/// The relative pose error of an estimate against a reference.
+/// The relative pose error of `estimate` against `reference`, both float64 (N, 8): stamp s, x y z m, qx qy qz qw. evo's numbers.
+///
+/// `delta` is the distance of two poses in `unit`: "frames", "s" or "m" along the estimate; `all_pairs` whether a pair starts at every pose.
+///
+/// Returns a dictionary: `count`, `rmse`, `mean`, `median`, `std`, `min`, `max` of the translation's errors, m; `rotation`, the same of the angles, rad;
+/// `errors` (K, 2) m and rad; `pairs` (K, 2), indices in the estimate.
 #[pyfunction]
 #[pyo3(signature = (reference, estimate, *, delta=1.0, unit="frames", all_pairs=false, max_difference=0.01))]
 pub fn rpe<'py>(

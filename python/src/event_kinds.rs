@@ -62,9 +62,7 @@ pub fn event_of(object: &Bound<'_, PyAny>) -> PyResult<SensorEvent> {
         return Ok(SensorEvent::Body(event.get().event));
     }
     match object.cast::<Truth>() {
-        Ok(event) => {
-            Ok(SensorEvent::Truth { stamp: event.get().at, pose: event.get().world_from_base })
-        }
+        Ok(event) => Ok(SensorEvent::Truth { stamp: event.get().at, pose: event.get().world_from_base }),
         Err(_) => Err(wrong_type(object, "event", EXPECTED)),
     }
 }

@@ -5,7 +5,10 @@ use crate::numbers::{seconds, stamp};
 use pyo3::prelude::*;
 use trundle::core::{Cliff as CoreCliff, GyroRate, Invalid, Touch as CoreTouch, WheelTicks, require_finite};
 
-/// Counters of both wheels, which wrap at 65536.
+/// Counters of both wheels, 0 to 65535, which wrap.
+///
+/// >>> trundle.Wheels(1.5, left=10, right=65535)
+/// Wheels(stamp=1.5, left=10, right=65535)
 #[pyclass(frozen, module = "trundle")]
 pub struct Wheels {
     /// The reading.
@@ -20,16 +23,19 @@ impl Wheels {
         Ok(Self { reading: WheelTicks { stamp: self::stamp(stamp)?, left, right } })
     }
 
+    /// When it was read, s.
     #[getter]
     fn stamp(&self) -> f64 {
         seconds(self.reading.stamp)
     }
 
+    /// Ticks of the left wheel, 0 to 65535.
     #[getter]
     fn left(&self) -> u16 {
         self.reading.left
     }
 
+    /// Ticks of the right wheel, 0 to 65535.
     #[getter]
     fn right(&self) -> u16 {
         self.reading.right
@@ -48,7 +54,10 @@ fn counter(field: &str, value: i64) -> PyResult<u16> {
     })
 }
 
-/// Turn rate about the vertical axis, counter-clockwise positive.
+/// Turn rate about the vertical axis, rad/s, counter-clockwise positive.
+///
+/// >>> trundle.Gyro(1.5, omega=0.25)
+/// Gyro(stamp=1.5, omega=0.25)
 #[pyclass(frozen, module = "trundle")]
 pub struct Gyro {
     /// The reading.
@@ -63,11 +72,13 @@ impl Gyro {
         Ok(Self { reading: GyroRate { stamp: self::stamp(stamp)?, omega } })
     }
 
+    /// When it was read, s.
     #[getter]
     fn stamp(&self) -> f64 {
         seconds(self.reading.stamp)
     }
 
+    /// Turn rate, rad/s.
     #[getter]
     fn omega(&self) -> f64 {
         self.reading.omega
@@ -79,6 +90,9 @@ impl Gyro {
 }
 
 /// The bumper: pressed or released.
+///
+/// >>> trundle.Touch(1.5, pressed=True)
+/// Touch(stamp=1.5, pressed=True)
 #[pyclass(frozen, module = "trundle")]
 pub struct Touch {
     /// The reading.
@@ -92,11 +106,13 @@ impl Touch {
         Ok(Self { reading: CoreTouch { stamp: self::stamp(stamp)?, pressed } })
     }
 
+    /// When it was read, s.
     #[getter]
     fn stamp(&self) -> f64 {
         seconds(self.reading.stamp)
     }
 
+    /// Whether the bumper is pressed.
     #[getter]
     fn pressed(&self) -> bool {
         self.reading.pressed
@@ -108,6 +124,9 @@ impl Touch {
 }
 
 /// The cliff sensors: the floor ends below one of them, or does so no longer.
+///
+/// >>> trundle.Cliff(1.5, over_edge=False)
+/// Cliff(stamp=1.5, over_edge=False)
 #[pyclass(frozen, module = "trundle")]
 pub struct Cliff {
     /// The reading.
@@ -121,11 +140,13 @@ impl Cliff {
         Ok(Self { reading: CoreCliff { stamp: self::stamp(stamp)?, over_edge } })
     }
 
+    /// When it was read, s.
     #[getter]
     fn stamp(&self) -> f64 {
         seconds(self.reading.stamp)
     }
 
+    /// Whether the floor ends below a sensor.
     #[getter]
     fn over_edge(&self) -> bool {
         self.reading.over_edge

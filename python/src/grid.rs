@@ -10,6 +10,17 @@ use trundle::core::{Cell, GridGeometry, Invalid, OccupancyGrid as Grid, Vector2}
 use trundle::io::{MapImage, map_files, replace_file};
 
 /// A map of cells that are free, occupied or unknown.
+///
+/// `cells` int8 (rows, columns) as in ROS: -1 unknown, 0 free, 100 occupied, row 0 at the lowest y; `resolution` m, the side of a cell;
+/// `origin` (x m, y m), the lower left corner of cell (0, 0) in the map frame.
+///
+/// >>> import numpy as np
+/// >>> grid = trundle.OccupancyGrid(np.array([[0, 100], [-1, 0]], np.int8), resolution=0.5, origin=(-1, 0))
+/// >>> grid.at((-0.25, 0.25)), grid.at((-0.75, 0.75)), grid.shape
+/// (100, -1, (2, 2))
+/// >>> grid.save("map.yaml")
+/// >>> trundle.OccupancyGrid.load("map.yaml") == grid
+/// True
 #[pyclass(frozen, module = "trundle")]
 pub struct OccupancyGrid {
     /// The grid.
@@ -20,11 +31,7 @@ pub struct OccupancyGrid {
 impl OccupancyGrid {
     #[new]
     #[pyo3(signature = (cells, resolution, origin=None))]
-    fn new(
-        cells: &Bound<'_, PyAny>,
-        resolution: f64,
-        origin: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
+    fn new(cells: &Bound<'_, PyAny>, resolution: f64, origin: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let array = array::<i8, numpy::Ix2>(cells, "cells", "(rows, columns), row 0 at the lowest y")?;
         let origin = origin.map_or(Ok(Vector2::zeros()), |origin| point(origin, "origin"))?;
         let (rows, columns) = (array.shape()[0], array.shape()[1]);
@@ -33,14 +40,14 @@ impl OccupancyGrid {
         Ok(Self { grid: Grid::new(geometry, cells?).map_err(value_error)? })
     }
 
-    /// The map of a map_server YAML file and its picture.
+    /// The map of a map_server YAML file and the picture that it names.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let grid = py.detach(|| trundle::app::read_map(&path)).map_err(app_error)?;
         Ok(Self { grid })
     }
 
-    /// Writes a YAML file and its picture beside it, PGM or PNG, as Nav2's map_saver does.
+    /// Writes a YAML file and its picture beside it, `image` "pgm" or "png", as Nav2's map_saver does. The name of the file ends in .yaml.
     #[pyo3(signature = (path, image="pgm"))]
     fn save(&self, py: Python<'_>, path: PathBuf, image: &str) -> PyResult<()> {
         let choice = MapImage::CHOICES.iter().find(|(name, ..)| *name == image);
@@ -53,13 +60,13 @@ impl OccupancyGrid {
         .map_err(io_error)
     }
 
-    /// A map of text, the highest y first: `#` occupied, `.` free, `?` unknown.
+    /// A map of lines of text, the highest y first: `#` occupied, `.` free, `?` unknown; `resolution` m.
     #[staticmethod]
     fn from_ascii(resolution: f64, art: &str) -> PyResult<Self> {
         Ok(Self { grid: Grid::from_ascii(resolution, art).map_err(value_error)? })
     }
 
-    /// Cells: -1 unknown, 0 free, 100 occupied. Row 0 is at the lowest y.
+    /// Cells, int8 (rows, columns): -1 unknown, 0 free, 100 occupied. Row 0 is at the lowest y.
     #[getter]
     fn cells<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i8>>> {
         let values = self.grid.cells().iter().map(|cell| match cell {
@@ -71,23 +78,26 @@ impl OccupancyGrid {
         PyArray1::from_vec(py, values.collect()).reshape([geometry.height, geometry.width])
     }
 
+    /// Side of a cell, m.
     #[getter]
     fn resolution(&self) -> f64 {
         self.grid.geometry().resolution
     }
 
+    /// Lower left corner of cell (0, 0), map frame: x m, y m.
     #[getter]
     fn origin(&self) -> (f64, f64) {
         let origin = self.grid.geometry().origin;
         (origin.x, origin.y)
     }
 
+    /// Rows and columns.
     #[getter]
     fn shape(&self) -> (usize, usize) {
         (self.grid.geometry().height, self.grid.geometry().width)
     }
 
-    /// The cell at a point of the map frame; unknown off the map.
+    /// The cell at a point (x m, y m) of the map frame: -1, 0 or 100; -1 off the map.
     fn at(&self, point: &Bound<'_, PyAny>) -> PyResult<i8> {
         let [x, y] = numbers(point, "point", "2 numbers: x m, y m")?;
         Ok(match self.grid.at(Vector2::new(x, y)) {

@@ -12,6 +12,18 @@ use trundle::mapping::{
 };
 
 /// An occupancy grid from scans at known poses.
+///
+/// `resolution` m, the side of a cell; `max_range` m, beyond which ranges are not used; `half_extent` m, the largest distance of the map's
+/// edge from its origin.
+///
+/// >>> import numpy as np
+/// >>> mapper = trundle.GridMapper(resolution=0.05)
+/// >>> scan = trundle.Scan(0.0, np.full(10, 2.0), 0.0, 0.002, range_max=10.0)
+/// >>> for _ in range(4):
+/// ...     hits, free, ignored = mapper.insert((0, 0, 0), scan)
+/// >>> grid = mapper.grid()
+/// >>> grid.at((2.01, 0.01)), grid.at((1.51, 0.01)), grid.at((2.51, 0.01))
+/// (100, 0, -1)
 #[pyclass(module = "trundle")]
 pub struct GridMapper {
     mapper: Grid,
@@ -32,7 +44,9 @@ impl GridMapper {
         Ok(Self { mapper: Grid::new(config).map_err(value_error)? })
     }
 
-    /// Inserts a scan that was taken with the base at `pose`: cells hit, cells passed, beams that end off the map.
+    /// Inserts a scan that was taken with the base at `pose` (x m, y m, theta rad, map frame).
+    ///
+    /// Returns the number of cells hit, of cells that beams passed, and of beams that end off the map.
     fn insert(
         &mut self,
         py: Python<'_>,
@@ -44,19 +58,19 @@ impl GridMapper {
         Ok((done.hits, done.free, done.ignored_beams))
     }
 
-    /// The map.
+    /// The map: a copy.
     fn grid(&self) -> OccupancyGrid {
         OccupancyGrid { grid: self.mapper.grid().clone() }
     }
 
-    /// Probabilities of occupancy of the map's cells, 0.5 where nothing is known.
+    /// Probabilities of occupancy of the map's cells, float32 (rows, columns), 0.5 where nothing is known.
     fn probabilities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let geometry = self.mapper.grid().geometry();
         let cells = PyArray1::from_vec(py, self.mapper.probabilities());
         cells.reshape([geometry.height, geometry.width])
     }
 
-    /// Probability of occupancy at a point of the map frame.
+    /// Probability of occupancy at a point (x m, y m) of the map frame, 0.5 where nothing is known.
     fn probability_at(&self, point: &Bound<'_, PyAny>) -> PyResult<f64> {
         Ok(self.mapper.probability_at(crate::numbers::point(point, "point")?))
     }
@@ -67,7 +81,18 @@ impl GridMapper {
     }
 }
 
-/// A map from scans and raw odometry, by a Rao-Blackwellised particle filter.
+/// A map from scans and raw odometry, by a Rao-Blackwellised particle filter with loop closure. The map starts at the first scan's base.
+///
+/// `seed` of its random numbers; `particles` their number; `resolution` m, the side of a cell.
+///
+/// >>> simulator = trundle.Simulator("room", 1, camera=None, laser="urg-04lx")
+/// >>> mapper = trundle.ParticleMapper(seed=1)
+/// >>> events = simulator.step((0.2, 0.1), duration=1.0)
+/// >>> scans = [event for event in events if isinstance(event, trundle.Scan)]
+/// >>> mapper.update((0, 0, 0), scans[0])
+/// 'processed'
+/// >>> mapper.grid().resolution, mapper.trajectory().shape
+/// (0.05, (1, 4))
 #[pyclass(module = "trundle")]
 pub struct ParticleMapper {
     mapper: Particles,
@@ -84,7 +109,10 @@ impl ParticleMapper {
         Ok(Self { mapper: Particles::new(config, seed).map_err(value_error)? })
     }
 
-    /// Processes a scan that was taken with the base at `odometry`: what became of it.
+    /// Processes a scan that was taken with the base at `odometry` (x m, y m, theta rad, the wheels' frame).
+    ///
+    /// Returns `processed`; `still`: the robot has hardly moved and the scan is not used; `refused`: odometry or stamp cannot be; after a map was
+    /// loaded, `lost` and `found`.
     fn update(
         &mut self,
         py: Python<'_>,
@@ -106,18 +134,18 @@ impl ParticleMapper {
         py.detach(|| self.mapper.finish());
     }
 
-    /// `map_from_base` of the best particle at the last processed scan.
+    /// Pose of the best particle at the last processed scan, map frame, (3,): x m, y m, theta rad.
     #[getter]
     fn pose<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         pose2_array(py, self.mapper.pose())
     }
 
-    /// Poses of the processed scans: rows of stamp s, x m, y m, theta rad.
+    /// Poses of the processed scans, map frame, (N, 4): stamp s, x m, y m, theta rad.
     fn trajectory<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         planar_array(py, &self.mapper.trajectory())
     }
 
-    /// The map of the best particle.
+    /// The map of the best particle: a copy.
     fn grid(&mut self, py: Python<'_>) -> OccupancyGrid {
         py.detach(|| OccupancyGrid { grid: self.mapper.grid().clone() })
     }

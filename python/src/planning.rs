@@ -10,7 +10,22 @@ use pyo3::types::PyDict;
 use trundle::core::{Path, Trajectory, Twist2, Vector2};
 use trundle::planning::{Plan, PlanResult, Planner};
 
-/// Plans a path with timing from `start` to rest at `goal`.
+/// Plans a path with timing from `start` to rest at `goal`, both (3,): x m, y m, theta rad, map frame.
+///
+/// `footprint` is a radius in m, or the corners (N, 2) m of a convex polygon, else that of `config`; `start_twist` (v m/s, omega rad/s);
+/// `config` a `RobotConfig`, else a Kobuki.
+///
+/// Returns a dictionary with the same keys for every outcome: `found`; `outcome` ("found", "blocked", "start_in_obstacle",
+/// "goal_in_obstacle", "start_outside", "goal_outside"); `message`, a sentence; `nearest` (2,) m, the reachable point nearest to a goal that
+/// no path leads to, else None; `waypoints` (N, 2) m; `cells` (M, 2) m, the path of the search; and the trajectory: `time` (K,) s, `poses`
+/// (K, 3), `twists` (K, 2), `duration` s, `length` m, `min_clearance` m.
+///
+/// >>> room = trundle.OccupancyGrid.from_ascii(0.25, "............\n" * 4 + "............")
+/// >>> plan = trundle.plan(room, start=(0.5, 0.6, 0), goal=(2.4, 0.6, 0), footprint=0.17)
+/// >>> plan["found"], plan["poses"].shape[1], round(plan["length"], 2)
+/// (True, 3, 1.9)
+/// >>> trundle.plan(room, (0.5, 0.6, 0), (0.0, 0.6, 0), 0.17)["outcome"]
+/// 'goal_in_obstacle'
 #[pyfunction]
 #[pyo3(signature = (grid, start, goal, footprint=None, *, start_twist=None, config=None))]
 pub fn plan<'py>(

@@ -9,7 +9,15 @@ use pyo3::prelude::*;
 use trundle::core::{RgbdImage, require_positive};
 use trundle::io::KINECT_V2_DEPTH_SCALE;
 
-/// A colour image and the depth image registered to it.
+/// A colour image and the depth image registered to it, pixel for pixel.
+///
+/// `stamp` s; `rgb` uint8 (height, width, 3); `depth` uint16 (height, width) in units of 1 / `depth_scale` m, or float32 in metres. A depth
+/// of 0, NaN or below 0 is none. The arrays `rgb` and `depth` show the image's own pixels and cannot be written.
+///
+/// >>> import numpy as np
+/// >>> image = trundle.Rgbd(0.5, np.zeros((4, 6, 3), np.uint8), np.full((4, 6), 1500, np.uint16))
+/// >>> image.rgb.shape, image.depth.dtype, float(image.depth[0, 0])
+/// ((4, 6, 3), dtype('float32'), 1.5)
 #[pyclass(frozen, module = "trundle")]
 pub struct Rgbd {
     /// The image.
@@ -20,21 +28,18 @@ pub struct Rgbd {
 impl Rgbd {
     #[new]
     #[pyo3(signature = (stamp, rgb, depth, depth_scale=KINECT_V2_DEPTH_SCALE))]
-    fn new(
-        stamp: f64,
-        rgb: &Bound<'_, PyAny>,
-        depth: &Bound<'_, PyAny>,
-        depth_scale: f64,
-    ) -> PyResult<Self> {
+    fn new(stamp: f64, rgb: &Bound<'_, PyAny>, depth: &Bound<'_, PyAny>, depth_scale: f64) -> PyResult<Self> {
         require_positive("depth_scale", depth_scale, "units/m").map_err(value_error)?;
         Ok(Self { image: rgbd_image(stamp, rgb, depth, depth_scale)? })
     }
 
+    /// When it was taken, s.
     #[getter]
     fn stamp(&self) -> f64 {
         seconds(self.image.stamp())
     }
 
+    /// Colours, uint8 (height, width, 3), read-only: the pixels of the image itself.
     #[getter]
     fn rgb<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray3<u8>>> {
         let color = slf.get().image.color();
@@ -46,10 +51,12 @@ impl Rgbd {
         Ok(array)
     }
 
+    /// Depth along the optical axis, m, float32 (height, width), 0 where there is none, read-only: the pixels of the image itself.
     #[getter]
     fn depth<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let depth = slf.get().image.depth();
-        let view = ArrayView2::from_shape((depth.height(), depth.width()), depth.data()).map_err(value_error)?;
+        let view =
+            ArrayView2::from_shape((depth.height(), depth.width()), depth.data()).map_err(value_error)?;
         // SAFETY: as for the colours.
         let array = unsafe { PyArray2::borrow_from_array(&view, slf.clone().into_any()) };
         array.try_readwrite().map_err(value_error)?.make_nonwriteable();

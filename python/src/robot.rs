@@ -10,12 +10,26 @@ use crate::scan::Scan;
 use crate::track::Track;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use std::sync::{Mutex, PoisonError};
 use trundle::runtime::{Mission, Robot as Whole, StepReport, Task};
 
-/// The whole robot on any body.
+/// The whole robot on any body: sensor events in, twists and poses out. Its map starts at the base's first pose.
+///
+/// `config` is a `RobotConfig`, else a Kobuki with a Kinect V2.
+///
+/// >>> body = trundle.Simulator("demo", seed=1)
+/// >>> robot = trundle.Robot()
+/// >>> robot.drive_to((0.5, 0, 0))
+/// >>> while body.stamp < 0.5:
+/// ...     step = robot.step(body.next_event())
+/// ...     if step.twist is not None:
+/// ...         body.command(step.twist)
+/// >>> step.state, robot.pose.shape
+/// ('driving', (3,))
 #[pyclass(module = "trundle")]
 pub struct Robot {
-    robot: Whole,
+    /// The lock is for the type alone, which is not for several threads: pyo3 gives one of them the object at a time.
+    robot: Mutex<Whole>,
 }
 
 #[pymethods]
@@ -24,73 +38,86 @@ impl Robot {
     #[pyo3(signature = (config=None))]
     fn new(config: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let config = robot_config(config)?;
-        Ok(Self { robot: Whole::new(config).map_err(value_error)? })
+        Ok(Self { robot: Mutex::new(Whole::new(config).map_err(value_error)?) })
     }
 
-    /// One sensor event through the whole robot.
+    /// One sensor event through the whole robot: `Wheels`, `Gyro`, `Rgbd`, `Scan`, `Touch`, `Cliff`, `Odometry`, `BodyCondition` or `Truth`, by rising stamp.
+    ///
+    /// Images cost a few milliseconds, plans some tens. Give the base the twist of the result.
     fn step(&mut self, py: Python<'_>, event: &Bound<'_, PyAny>) -> PyResult<Step> {
         let event = event_of(event)?;
-        let report = py.detach(|| self.robot.step(&event));
+        let robot = self.robot();
+        let report = py.detach(|| robot.step(&event));
         Ok(Step { stamp_s: seconds(event.stamp()), report })
     }
 
-    /// Gives the robot one goal pose, map frame.
+    /// Gives the robot one goal pose, map frame: x m, y m, theta rad.
     fn drive_to(&mut self, goal: &Bound<'_, PyAny>) -> PyResult<()> {
-        self.robot.drive_to(pose2(goal, "goal")?).map_err(value_error)
+        self.robot().drive_to(pose2(goal, "goal")?).map_err(value_error)
     }
 
-    /// Lets the robot explore until its map is complete, then return to its start if asked to.
+    /// Lets the robot explore until its map is complete; `and_return`: then back to its start.
     #[pyo3(signature = (and_return=false))]
     fn explore(&mut self, and_return: bool) -> PyResult<()> {
         let mut tasks = vec![Task::Explore];
         tasks.extend(and_return.then_some(Task::Return));
-        self.robot.begin(&Mission::new(tasks).map_err(value_error)?);
+        self.robot().begin(&Mission::new(tasks).map_err(value_error)?);
         Ok(())
     }
 
     /// Drops what is left of the mission: the robot brakes to rest.
     fn stop(&mut self) {
-        self.robot.begin(&Mission::default());
+        self.robot().begin(&Mission::default());
     }
 
-    /// `map_from_base`.
+    /// `map_from_base`, (3,): x m, y m, theta rad.
     #[getter]
-    fn pose<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        pose2_array(py, self.robot.estimate().pose)
+    fn pose<'py>(&mut self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        pose2_array(py, self.robot().estimate().pose)
     }
 
-    /// Covariance of the pose as a right perturbation.
+    /// Covariance of the pose as a right perturbation (m, m, rad), (3, 3).
     #[getter]
-    fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        matrix(py, &self.robot.estimate().covariance)
+    fn covariance<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        matrix(py, &mut self.robot().estimate().covariance)
     }
 
-    /// The map.
-    fn grid(&self) -> OccupancyGrid {
-        OccupancyGrid { grid: self.robot.grid().clone() }
+    /// The map: a copy.
+    fn grid(&mut self) -> OccupancyGrid {
+        OccupancyGrid { grid: self.robot().grid().clone() }
     }
 
     /// The newest scan; None before the first.
-    fn scan(&self) -> Option<Scan> {
-        self.robot.scan().map(|scan| Scan { scan: scan.clone() })
+    fn scan(&mut self) -> Option<Scan> {
+        self.robot().scan().map(|scan| Scan { scan: scan.clone() })
     }
 
-    /// Way-points of the newest plan, m, map frame; None where there is none.
-    fn waypoints<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+    /// Way-points of the newest plan, map frame, m, (N, 2); None where there is none.
+    fn waypoints<'py>(&mut self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         let points = |plan: &trundle::planning::PlanResult| {
             let points = plan.waypoints.points().iter().map(|p| [p.x, p.y]);
             crate::arrays::from_rows(py, points.collect::<Vec<[f64; 2]>>())
         };
-        self.robot.plan().map(points).transpose()
+        self.robot().plan().map(points).transpose()
     }
 
-    fn __repr__(&self) -> String {
-        let pose = self.robot.estimate().pose;
+    fn __repr__(&mut self) -> String {
+        let pose = self.robot().estimate().pose;
         format!("Robot(at ({:.3}, {:.3}) m, {:.1} deg)", pose.x, pose.y, pose.theta.to_degrees())
     }
 }
 
-/// The report of a step.
+impl Robot {
+    fn robot(&mut self) -> &mut Whole {
+        self.robot.get_mut().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// What a sensor event brought.
+///
+/// >>> step = trundle.Robot().step(trundle.Wheels(0.0, 0, 0))
+/// >>> step.state, step.twist, step.is_finished
+/// ('idle', None, False)
 #[pyclass(frozen, module = "trundle")]
 pub struct Step {
     stamp_s: f64,
@@ -105,25 +132,25 @@ impl Step {
         self.stamp_s
     }
 
-    /// v m/s, omega rad/s for the base; None where the step commands nothing.
+    /// Command for the base, (2,): v m/s, omega rad/s; None where the step commands nothing.
     #[getter]
     fn twist<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         self.report.twist.map(|twist| twist_array(py, twist))
     }
 
-    /// `map_from_base` after the step: x m, y m, theta rad.
+    /// `map_from_base` after the step, (3,): x m, y m, theta rad.
     #[getter]
     fn pose<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         self.report.estimate.map(|estimate| pose2_array(py, estimate.pose))
     }
 
-    /// Covariance of the pose as a right perturbation.
+    /// Covariance of the pose as a right perturbation (m, m, rad), (3, 3).
     #[getter]
     fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         self.report.estimate.map(|estimate| matrix(py, &estimate.covariance)).transpose()
     }
 
-    /// Name of the state, as `driving`.
+    /// State of the robot: "idle", "initializing", "planning", "driving", "final approach", "maneuvering", "waiting", "recovering", "lost", "arrived", "stopped".
     #[getter]
     fn state(&self) -> &'static str {
         self.report.state.name()
@@ -135,18 +162,19 @@ impl Step {
         self.report.state.reason().map(ToString::to_string)
     }
 
-    /// The visual tracker's result; None but on images.
+    /// Result of the visual tracker; None but on images.
     #[getter]
     fn track(&self) -> Option<Track> {
         self.report.track.clone().map(|report| Track { report })
     }
 
+    /// Whether the step made a new plan.
     #[getter]
     fn is_replanned(&self) -> bool {
         self.report.replanned
     }
 
-    /// Whether the mission is over.
+    /// Whether the mission is over; `state` holds its outcome.
     #[getter]
     fn is_finished(&self) -> bool {
         self.report.finished

@@ -8,7 +8,13 @@ use trundle::core::Footprint;
 use trundle::runtime::RobotConfig as Config;
 use trundle::runtime::settings::to_commented_toml;
 
-/// The settings of a robot.
+/// The settings of a robot: a robot file (TOML), or a Kobuki with a Kinect V2, with `overrides` on top, each "key=value" in TOML.
+///
+/// `seed` is that of the robot's random sampling.
+///
+/// >>> config = trundle.RobotConfig(overrides=["footprint_radius_m=0.25"])
+/// >>> config.footprint, config.max_speed > 0
+/// (0.25, True)
 #[pyclass(frozen, module = "trundle")]
 pub struct RobotConfig {
     /// The settings.
@@ -25,12 +31,12 @@ impl RobotConfig {
         Ok(Self { config: seed.map_or(config.clone(), |seed| config.with_seed(seed)) })
     }
 
-    /// The whole robot file, each key with its meaning and unit.
+    /// The whole robot file, each key with its meaning, unit, range and default.
     fn to_toml(&self) -> String {
         to_commented_toml(&self.config)
     }
 
-    /// The outline: a radius in m, or corners.
+    /// The outline: a radius in m, or the corners of a convex polygon, base frame, (N, 2) m.
     #[getter]
     fn footprint(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         match self.config.footprint().map_err(value_error)? {

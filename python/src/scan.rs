@@ -7,7 +7,15 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use trundle::core::{Beam, Invalid, Scan as CoreScan, Vector2, require_positive};
 
-/// A sweep of a 2-D laser, or a scan from a depth image.
+/// A sweep of a 2-D laser in the base's plane, as ROS's LaserScan.
+///
+/// `stamp` s; `ranges` float64 (beams,) m: infinity where a beam met nothing within `range_max`, NaN where nothing is known; `angle_min` rad
+/// of the first beam from the base's x, `angle_increment` rad; `origin` (x m, y m) of the laser on the base.
+///
+/// >>> import numpy as np
+/// >>> scan = trundle.Scan(0.0, np.array([1.0, np.inf, np.nan]), -0.1, 0.1, range_max=10.0)
+/// >>> scan.ranges, len(scan), scan.points().shape
+/// (array([ 1., inf, nan]), 3, (1, 2))
 #[pyclass(frozen, module = "trundle")]
 pub struct Scan {
     /// The scan.
@@ -37,39 +45,43 @@ impl Scan {
         Ok(Self { scan })
     }
 
+    /// When it was taken, s.
     #[getter]
     fn stamp(&self) -> f64 {
         seconds(self.scan.stamp())
     }
 
-    /// Ranges, m: infinity where a beam met nothing, NaN where nothing is known.
+    /// Ranges, m, (beams,): infinity where a beam met nothing, NaN where nothing is known.
     #[getter]
     fn ranges<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         from_list(py, self.scan.beams().iter().map(range_of).collect())
     }
 
-    /// Bearings of the beams, rad, base frame.
+    /// Bearings of the beams from the base's x, rad, (beams,).
     #[getter]
     fn angles<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         from_list(py, (0..self.scan.beams().len()).map(|i| self.scan.angle(i)).collect())
     }
 
+    /// Bearing of the first beam, rad.
     #[getter]
     fn angle_min(&self) -> f64 {
         self.scan.angle_min()
     }
 
+    /// Angle between neighbouring beams, rad.
     #[getter]
     fn angle_increment(&self) -> f64 {
         self.scan.angle_increment()
     }
 
+    /// Where the beams start on the base: x m, y m.
     #[getter]
     fn origin(&self) -> (f64, f64) {
         (self.scan.origin().x, self.scan.origin().y)
     }
 
-    /// Points where beams met something, m, base frame.
+    /// Points where beams met something, base frame, m: (N, 2).
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         from_rows(py, self.scan.hits().map(Into::into).collect::<Vec<[f64; 2]>>())
     }

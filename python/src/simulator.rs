@@ -17,7 +17,16 @@ use trundle::experiments::simulated::{MeshOptions, SceneOptions, load_scene};
 use trundle::io::{CameraModel, KINECT_V2_DEPTH_SCALE};
 use trundle::sim::{LaserConfig, Preset, Scene, SimConfig, Simulator as Sim};
 
-/// A simulated robot in a scene.
+/// A simulated Kobuki with camera and laser in a scene.
+///
+/// `scene` is one of `Simulator.scenes()`, or a file: a scene (TOML), a mesh (glTF), a map (YAML). `seed` is that of scene and noise.
+/// `camera` is "kinect-v2", "kinect-v1" or None; `laser` "rplidar-a1", "urg-04lx", "ust-10lx", "lds-01" or None; `noise` of all sensors;
+/// `start` (x m, y m, theta rad, world frame) in place of the scene's.
+///
+/// >>> simulator = trundle.Simulator("room", seed=1)
+/// >>> events = simulator.step((0.2, 0.0), duration=0.2)
+/// >>> simulator.stamp, simulator.rgbd().rgb.shape, simulator.truth()["contacts"]
+/// (0.2, (424, 512, 3), 0)
 #[pyclass(module = "trundle")]
 pub struct Simulator {
     simulator: Sim,
@@ -50,7 +59,7 @@ impl Simulator {
         Scene::NAMES.to_vec()
     }
 
-    /// Drives with a twist for a duration: the sensor events of that time.
+    /// Drives with `twist` (v m/s, omega rad/s) for `duration` s, in whole milliseconds: the list of sensor events of that time, by rising stamp.
     #[pyo3(signature = (twist, duration=0.1))]
     fn step<'py>(
         &mut self,
@@ -63,7 +72,7 @@ impl Simulator {
         events.into_iter().map(|event| self.noted(py, event)).collect()
     }
 
-    /// The next sensor event, for a loop of events and commands.
+    /// The next sensor event, for a loop of `next_event`, `Robot.step` and `command`.
     fn next_event<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let event = py.detach(|| self.simulator.next_event()).map_err(value_error)?;
         match event {
@@ -72,7 +81,7 @@ impl Simulator {
         }
     }
 
-    /// Commands the base until the next command.
+    /// Commands the base to drive with `twist` (v m/s, omega rad/s) until the next command.
     fn command(&mut self, twist: &Bound<'_, PyAny>) -> PyResult<()> {
         let twist = self::twist(twist, "twist")?;
         self.simulator.command(twist).map_err(value_error)
@@ -88,7 +97,7 @@ impl Simulator {
         self.scan.as_ref().map(|scan| scan.clone_ref(py))
     }
 
-    /// The truth now: pose, contacts, clearance, distance driven.
+    /// The truth now: a dictionary of `stamp` s, `pose` (3,) `world_from_base`, `contacts` so far, `clearance` m to the nearest thing, `path_length` m driven.
     fn truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let simulator = &self.simulator;
         let dict = PyDict::new(py);
@@ -100,37 +109,38 @@ impl Simulator {
         Ok(dict)
     }
 
+    /// The moment that the simulation has reached, s.
     #[getter]
     fn stamp(&self) -> f64 {
         seconds(self.simulator.stamp())
     }
 
-    /// `world_from_base` at the start.
+    /// Start of the robot, `world_from_base`, (3,): x m, y m, theta rad.
     #[getter]
     fn start<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         pose2_array(py, self.simulator.scene().start)
     }
 
-    /// The scene's goal, `world_from_goal`.
+    /// The scene's goal, `world_from_goal`, (3,): x m, y m, theta rad.
     #[getter]
     fn goal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         pose2_array(py, self.simulator.scene().goal)
     }
 
-    /// The scene's goal in the frame of the start: that of a robot's map.
+    /// The scene's goal in the frame of the start, which is that of a robot's map, (3,): x m, y m, theta rad.
     #[getter]
     fn start_from_goal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         pose2_array(py, self.simulator.scene().start_from_goal())
     }
 
-    /// The camera.
+    /// The camera; its images have float32 depth in metres.
     #[getter]
     fn camera(&self) -> Camera {
         let camera = *self.simulator.camera();
         Camera { model: CameraModel { camera, depth_scale: KINECT_V2_DEPTH_SCALE } }
     }
 
-    /// The camera's mount, `base_from_camera`, m.
+    /// Mount of the camera, (4, 4), m.
     #[getter]
     fn base_from_camera<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         pose3_array(py, self.simulator.config().base_from_camera)

@@ -11,7 +11,15 @@ use rayon::prelude::*;
 use trundle::core::{Invalid, Pose2, SensorEvent, Twist2};
 use trundle::sim::{SimConfig, Simulator as Sim};
 
-/// Several simulated robots with a laser.
+/// Simulated robots with a laser, one for each seed, stepped by all cores.
+///
+/// `scene`, `laser` and `noise` as for `Simulator`.
+///
+/// >>> import numpy as np
+/// >>> pool = trundle.SimulatorPool("corridor-a", [1, 2, 3], "lds-01")
+/// >>> pool.step(np.tile([0.1, 0.0], (3, 1)), duration=0.2)
+/// >>> len(pool), pool.ranges().shape, pool.poses().shape
+/// (3, (3, 360), (3, 3))
 #[pyclass(module = "trundle")]
 pub struct SimulatorPool {
     scene: String,
@@ -37,7 +45,7 @@ impl SimulatorPool {
         Ok(Self { scene, config, worlds })
     }
 
-    /// Starts some of the worlds anew, each with its seed.
+    /// Starts the worlds of these indices anew, each with its seed.
     fn reset(&mut self, py: Python<'_>, indices: Vec<usize>, seeds: Vec<u64>) -> PyResult<()> {
         let count = self.worlds.len();
         if indices.len() != seeds.len() || indices.iter().any(|index| *index >= count) {
@@ -55,7 +63,7 @@ impl SimulatorPool {
         Ok(())
     }
 
-    /// Drives every robot with its twist for a duration; a robot whose twist is NaN is left out.
+    /// Drives each robot with its row of `twists`, float64 (N, 2): v m/s, omega rad/s, for `duration` s. A robot whose v is NaN is left out.
     fn step(&mut self, py: Python<'_>, twists: &Bound<'_, PyAny>, duration: f64) -> PyResult<()> {
         let shape = format!("({}, 2)", self.worlds.len());
         let array = array::<f64, numpy::Ix2>(twists, "twists", &shape)?;
@@ -72,29 +80,29 @@ impl SimulatorPool {
         })
     }
 
-    /// Newest ranges of all robots, m, shape (N, beams): infinity where a beam met nothing, NaN where nothing is known.
+    /// Newest ranges, m, float32 (N, beams): infinity where a beam met nothing, NaN where nothing is known.
     fn ranges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let beams = self.worlds.first().map_or(0, |world| world.ranges.len());
         let all: Vec<f32> = self.worlds.iter().flat_map(|world| world.ranges.iter().copied()).collect();
         PyArray1::from_vec(py, all).reshape([self.worlds.len(), beams])
     }
 
-    /// `world_from_base` of all robots, shape (N, 3).
+    /// `world_from_base`, (N, 3): x m, y m, theta rad.
     fn poses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         from_rows(py, self.worlds.iter().map(|world| row(world.simulator.true_pose())).collect())
     }
 
-    /// Goals of the scenes, shape (N, 3).
+    /// Goals of the scenes, world frame, (N, 3): x m, y m, theta rad.
     fn goals<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         from_rows(py, self.worlds.iter().map(|world| row(world.simulator.scene().goal)).collect())
     }
 
-    /// Separate contacts of each robot so far, shape (N,).
+    /// Separate contacts of each robot so far, uint32 (N,).
     fn contacts<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
         from_list(py, self.worlds.iter().map(|world| world.simulator.contacts()).collect())
     }
 
-    /// Distance of each robot to the nearest thing that it could touch, m, shape (N,).
+    /// Distance of each robot to the nearest thing that it could touch, m, (N,).
     fn clearances<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         from_list(py, self.worlds.iter().map(|world| world.simulator.clearance()).collect())
     }

@@ -16,6 +16,20 @@ use trundle::io::{CameraModel, IoError, TumSequence, replace_file};
 use trundle::slam::{Mode, RgbdSlam as Slam, SlamConfig};
 
 /// RGB-D SLAM with a landmark map, loop closure and relocalisation.
+///
+/// `camera` a `Camera`, or the name of a preset or file; `depth_scale` units of uint16 depth in a metre, else the camera's; `seed` of its
+/// random sampling; `base_from_camera` (4, 4) m, the camera's mount, for odometry of the base. The first camera is at the identity.
+///
+/// >>> import numpy as np
+/// >>> simulator = trundle.Simulator("room", seed=1)
+/// >>> slam = trundle.RgbdSlam(simulator.camera)
+/// >>> for event in simulator.step((0.2, 0.1), duration=0.2):
+/// ...     if isinstance(event, trundle.Rgbd):
+/// ...         pose, state, covariance = slam.track(event.rgb, event.depth, event.stamp)
+/// >>> state, pose.shape, covariance.shape, slam.trajectory().shape
+/// ('ok', (4, 4), (6, 6), (4, 8))
+/// >>> slam.points().shape[0] > 100
+/// True
 #[pyclass(module = "trundle")]
 pub struct RgbdSlam {
     slam: Slam,
@@ -40,7 +54,8 @@ impl RgbdSlam {
         Self::with(slam, model, base_from_camera)
     }
 
-    /// Continues with the maps of a file; the camera's pose in them is unknown until a place is recognised.
+    /// Continues with the maps of a file that `save` wrote. The camera's pose in them is unknown until a place is recognised: until then the
+    /// state is `lost`.
     #[staticmethod]
     #[pyo3(signature = (path, camera, depth_scale=None, seed=0, *, base_from_camera=None))]
     fn load(
@@ -60,7 +75,10 @@ impl RgbdSlam {
         Self::with(slam, model, base_from_camera)
     }
 
-    /// Tracks an image of two arrays.
+    /// Tracks an image: `pose, state, covariance = slam.track(...)`, or a `Track` with more.
+    ///
+    /// `rgb` uint8 (height, width, 3); `depth` uint16 (height, width) in units of 1 / `depth_scale` m, or float32 in metres; `stamp` s.
+    /// `odometry` is the pose of the base by its wheels, (3,): x m, y m, theta rad; or the camera's motion since the last image, (4, 4), m.
     #[pyo3(signature = (rgb, depth, stamp, odometry=None))]
     fn track(
         &mut self,
@@ -74,7 +92,7 @@ impl RgbdSlam {
         self.step(py, &image, odometry)
     }
 
-    /// Tracks an image of the simulator, a sequence or [`Rgbd`].
+    /// Tracks an `Rgbd`, without a copy of its pixels; else as `track`.
     #[pyo3(signature = (image, odometry=None))]
     fn track_rgbd(
         &mut self,
@@ -85,33 +103,34 @@ impl RgbdSlam {
         self.step(py, &image.get().image, odometry)
     }
 
-    /// Poses of all located images by the present map, as rows of a TUM trajectory.
+    /// Poses of all located images by the present map, `visual_from_camera`: (N, 8), stamp s, x y z m, qx qy qz qw.
     fn trajectory<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         trajectory_array(py, &self.slam.trajectory())
     }
 
-    /// Poses of the keyframes, as rows of a TUM trajectory.
+    /// Poses of the keyframes, `visual_from_camera`: (N, 8), stamp s, x y z m, qx qy qz qw.
     fn keyframes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let poses: Vec<_> = self.slam.keyframes().map(|(_, stamp, pose)| (stamp, pose)).collect();
         trajectory_array(py, &poses)
     }
 
-    /// Landmarks, m.
+    /// Landmarks in the frame of the first camera, m: (N, 3).
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         from_rows(py, self.slam.landmarks().map(Into::into).collect::<Vec<[f64; 3]>>())
     }
 
-    /// Completes the refinement of the map.
+    /// Completes the refinement of the map, which `track` does in parts between images.
     fn finish(&mut self, py: Python<'_>) {
         py.detach(|| self.slam.finish_refining());
     }
 
-    /// Declares the pose unknown: the camera was carried away.
+    /// Declares the pose unknown: the camera was carried away, and counts as lost until a place is recognised.
     fn kidnapped(&mut self) {
         self.slam.kidnapped();
         self.last_odometry = None;
     }
 
+    /// Whether the maps change; set it to False to localize only.
     #[getter]
     fn mapping(&self) -> bool {
         self.slam.mode() == Mode::Mapping
@@ -122,7 +141,7 @@ impl RgbdSlam {
         self.slam.set_mode(if mapping { Mode::Mapping } else { Mode::Localisation });
     }
 
-    /// Settings that the images contradict, a sentence each.
+    /// Settings of the camera that the images contradict, a sentence each.
     fn calibration_issues(&self) -> Vec<String> {
         self.slam.calibration_issues().iter().map(ToString::to_string).collect()
     }
@@ -198,7 +217,9 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, IoError> {
     std::fs::read(path).map_err(|source| IoError::System { path: path.to_owned(), action: "read", source })
 }
 
-/// SLAM on a folder of the TUM RGB-D benchmark, without Python between the images: rows of the trajectory.
+/// SLAM on a folder of the TUM RGB-D benchmark, without Python between the images: rows of the trajectory, (N, 8).
+///
+/// The same as `RgbdSlam.track` on each image of a `TumSequence`, to the bit.
 #[pyfunction]
 #[pyo3(signature = (folder, camera, depth_scale=None, seed=0))]
 pub fn slam_folder<'py>(
@@ -215,7 +236,7 @@ pub fn slam_folder<'py>(
             .with_size(model.camera.width(), model.camera.height());
         let mut slam = Slam::new(model.camera, config(seed)).map_err(value_error)?;
         for image in sequence.frames() {
-            slam.step(&image.map_err(value_error)?, None);
+            slam.step(&image.map_err(|error| io_error(error.source))?, None);
         }
         PyResult::Ok(slam.trajectory())
     })?;

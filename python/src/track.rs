@@ -7,7 +7,13 @@ use pyo3::prelude::*;
 use pyo3::types::{PyIterator, PyTuple};
 use trundle::slam::{TrackReport, Tracking};
 
-/// Pose, state and covariance of an image, in this order when unpacked.
+/// Where an image was taken; pose, state and covariance, in this order, when unpacked.
+///
+/// >>> simulator = trundle.Simulator("room", seed=1)
+/// >>> image = next(event for event in simulator.step((0, 0)) if isinstance(event, trundle.Rgbd))
+/// >>> track = trundle.RgbdSlam(simulator.camera).track_rgbd(image)
+/// >>> track.state, track.is_located, track.is_keyframe, track.inliers <= track.matches <= track.features
+/// ('ok', True, True, True)
 #[pyclass(frozen, module = "trundle")]
 pub struct Track {
     /// The report of the frame.
@@ -16,16 +22,19 @@ pub struct Track {
 
 #[pymethods]
 impl Track {
+    /// Stamp of the image, s.
     #[getter]
     fn stamp(&self) -> f64 {
         seconds(self.report.stamp)
     }
 
+    /// `visual_from_camera`, homogeneous matrix (4, 4), m: the camera in the frame of the first camera.
     #[getter]
     fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         pose3_array(py, self.report.visual_from_camera)
     }
 
+    /// `ok`; `weak`: located by few landmarks; `dead_reckoning`: not located, the last pose moved by the odometry; `lost`: not located.
     #[getter]
     fn state(&self) -> &'static str {
         match self.report.tracking {
@@ -36,51 +45,61 @@ impl Track {
         }
     }
 
+    /// Covariance of the pose as a right perturbation (m, m, m, rad, rad, rad), (6, 6).
     #[getter]
     fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         matrix(py, &self.report.covariance)
     }
 
+    /// Whether the pose comes from the image.
     #[getter]
     fn is_located(&self) -> bool {
         self.report.tracking.is_located()
     }
 
+    /// Features found in the image.
     #[getter]
     fn features(&self) -> usize {
         self.report.features
     }
 
+    /// Features matched with landmarks.
     #[getter]
     fn matches(&self) -> usize {
         self.report.matches
     }
 
+    /// Matches that agree with the pose at 95 %.
     #[getter]
     fn inliers(&self) -> usize {
         self.report.inliers
     }
 
+    /// Keyframes in the map after the image.
     #[getter]
     fn keyframes(&self) -> usize {
         self.report.keyframes
     }
 
+    /// Landmarks in the map after the image.
     #[getter]
     fn landmarks(&self) -> usize {
         self.report.landmarks
     }
 
+    /// Whether the image became a keyframe.
     #[getter]
     fn is_keyframe(&self) -> bool {
         self.report.new_keyframe
     }
 
+    /// Whether the pose was found by a similar keyframe, without the motion.
     #[getter]
     fn is_relocalised(&self) -> bool {
         self.report.relocalised
     }
 
+    /// Whether a loop was closed since the last image.
     #[getter]
     fn closed_loop(&self) -> bool {
         self.report.closed_loop.is_some()

@@ -15,7 +15,14 @@ use trundle::io::{
     read_trajectory as read_poses, replace_file, trajectory_text,
 };
 
-/// A folder of the TUM RGB-D benchmark, its images still on disk.
+/// A folder of the TUM RGB-D benchmark: a list of `Rgbd` whose images are read when they are asked for.
+///
+/// `depth_scale` units of the depth images in a metre; `max_difference` s between the stamps of a colour and a depth image of one frame.
+///
+/// >>> trundle.TumSequence("/no/such/folder")
+/// Traceback (most recent call last):
+/// ...
+/// FileNotFoundError: cannot read /no/such/folder...
 #[pyclass(frozen, module = "trundle")]
 pub struct TumSequence {
     sequence: Sequence,
@@ -26,7 +33,8 @@ impl TumSequence {
     #[new]
     #[pyo3(signature = (folder, depth_scale=TUM_DEPTH_SCALE, max_difference=Sequence::MAX_DIFFERENCE))]
     fn new(py: Python<'_>, folder: PathBuf, depth_scale: f64, max_difference: f64) -> PyResult<Self> {
-        let sequence = py.detach(|| Sequence::open(&folder, depth_scale, max_difference)).map_err(io_error)?;
+        let sequence =
+            py.detach(|| Sequence::open(&folder, depth_scale, max_difference)).map_err(io_error)?;
         Ok(Self { sequence })
     }
 
@@ -41,19 +49,19 @@ impl TumSequence {
         Ok(Rgbd { image })
     }
 
-    /// Stamps of the images, s.
+    /// Stamps of the images, s, (N,).
     fn stamps<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         let stamps = (0..self.sequence.len()).map(|i| seconds(self.sequence.stamp(i))).collect();
         crate::arrays::from_list(py, stamps)
     }
 
-    /// `world_from_camera`, rows of a TUM trajectory; None where the folder has none.
+    /// `world_from_camera`: (N, 8), stamp s, x y z m, qx qy qz qw; None where the folder has none.
     #[getter]
     fn ground_truth<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         self.sequence.ground_truth().map(|poses| trajectory_array(py, poses)).transpose()
     }
 
-    /// `odom_from_base`, rows of stamp s, x m, y m, theta rad; None where the folder has none.
+    /// `odom_from_base`: (N, 4), stamp s, x m, y m, theta rad; None where the folder has none.
     #[getter]
     fn odometry<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         self.sequence.odometry().map(|poses| planar_array(py, poses)).transpose()
@@ -73,14 +81,19 @@ impl TumSequence {
     }
 }
 
-/// Rows of a trajectory file: TUM, KITTI or EuRoC.
+/// Rows of a trajectory file (TUM, KITTI, EuRoC): (N, 8), stamp s, x y z m, qx qy qz qw.
 #[pyfunction]
 pub fn read_trajectory(py: Python<'_>, path: PathBuf) -> PyResult<Bound<'_, PyArray2<f64>>> {
     let poses = py.detach(|| read_poses(&path)).map_err(io_error)?;
     trajectory_array(py, &poses)
 }
 
-/// Writes rows of a trajectory as a TUM file, atomically.
+/// Writes rows of a trajectory, float64 (N, 8), as a TUM file, atomically.
+///
+/// >>> import numpy as np
+/// >>> trundle.write_trajectory("poses.txt", np.array([[1.5, 0, 0, 0, 0, 0, 0, 1]]))
+/// >>> trundle.read_trajectory("poses.txt")
+/// array([[1.5, 0. , 0. , 0. , 0. , 0. , 0. , 1. ]])
 #[pyfunction]
 pub fn write_trajectory(py: Python<'_>, path: PathBuf, trajectory: &Bound<'_, PyAny>) -> PyResult<()> {
     let poses = crate::geometry::trajectory(&rows(trajectory, "trajectory")?, "trajectory")?;
@@ -90,12 +103,11 @@ pub fn write_trajectory(py: Python<'_>, path: PathBuf, trajectory: &Bound<'_, Py
 /// A scan of a log, with the odometry of its moment.
 type LoggedScan<'py> = (Bound<'py, PyArray1<f64>>, Scan);
 
-/// Scans of a laser log with their odometry: a CARMEN log or a ROS 2 bag.
+/// Scans of a laser log, a CARMEN log or a ROS bag: a list of (odometry, `Scan`), the odometry (3,): x m, y m, theta rad.
 #[pyfunction]
 pub fn read_laser_log(py: Python<'_>, path: PathBuf) -> PyResult<Vec<LoggedScan<'_>>> {
     let log = py.detach(|| read_log(&path, &LaserLogOptions::default())).map_err(io_error)?;
-    let entry = |entry: trundle::io::LaserLogScan| {
-        (pose2_array(py, entry.odom_from_base), Scan { scan: entry.scan })
-    };
+    let entry =
+        |entry: trundle::io::LaserLogScan| (pose2_array(py, entry.odom_from_base), Scan { scan: entry.scan });
     Ok(log.scans.into_iter().map(entry).collect())
 }

@@ -1,6 +1,6 @@
 """Errors of a trajectory against the truth: the numbers of evo.
 
->>> import numpy as np, trundle
+>>> import numpy as np
 >>> t = np.linspace(0, 6, 61)
 >>> zero, one = np.zeros_like(t), np.ones_like(t)
 >>> truth = np.column_stack([t, np.cos(t), np.sin(t), zero, zero, zero, zero, one])
