@@ -27,7 +27,7 @@ trap 'rm -r "$scratch"' EXIT
 (cd "$scratch" && "$venv/bin/python" -m pytest -q -p no:cacheprovider "$root/python/tests")
 echo "ok   tests and the examples of the docstrings"
 
-(cd "$scratch" && "$venv/bin/python" -m mypy.stubtest trundle._native --concise && "$venv/bin/python" -m mypy --strict "$root"/python/examples/0[35]*.py)
+(cd "$scratch" && "$venv/bin/python" -m mypy.stubtest trundle._native --concise && "$venv/bin/python" -m mypy --strict "$root"/python/trundle/*.py "$root"/python/examples/*.py)
 echo "ok   stubs"
 
 for example in python/examples/*.py; do

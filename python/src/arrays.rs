@@ -33,7 +33,8 @@ pub fn array<'py, T: Element, D: Dimension>(
         array.try_readonly().map_err(|_| value_error(format!("{name} is being written by another call")))
     };
     let whole = readable(typed)?;
-    if whole.as_slice().is_ok() {
+    // A slice of an array in Fortran's order would be transposed.
+    if whole.is_c_contiguous() && whole.as_slice().is_ok() {
         return Ok(whole);
     }
     let copy = typed.call_method0("copy")?.cast_into::<PyArray<T, D>>().map_err(|_| misfit())?;

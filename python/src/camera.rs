@@ -10,7 +10,7 @@ use trundle::io::{CameraModel, KINECT_V2_DEPTH_SCALE};
 /// A pinhole camera with lens distortion, and the unit of its depth images.
 ///
 /// `width`, `height`, `fx`, `fy`, `cx`, `cy` in px; `distortion` k1, k2, p1, p2, k3 in the order of OpenCV; `readout` s, the time between
-/// first and last row of a rolling shutter; `depth_scale`, the units of uint16 depth images in a metre.
+/// first and last row of a rolling shutter; `depth_scale`, the units of uint16 depth images in a metre, else 1000: millimetres.
 ///
 /// >>> camera = trundle.Camera(640, 480, 525.0, 525.0, 319.5, 239.5, depth_scale=5000)
 /// >>> camera.width, camera.fx, camera.depth_scale
@@ -26,7 +26,7 @@ pub struct Camera {
 #[pymethods]
 impl Camera {
     #[new]
-    #[pyo3(signature = (width, height, fx, fy, cx, cy, *, distortion=None, readout=0.0, depth_scale=KINECT_V2_DEPTH_SCALE))]
+    #[pyo3(signature = (width, height, fx, fy, cx, cy, *, distortion=None, readout=0.0, depth_scale=None))]
     #[expect(clippy::too_many_arguments, reason = "the parameters of a camera, by name in Python")]
     fn new(
         width: usize,
@@ -37,8 +37,9 @@ impl Camera {
         cy: f64,
         distortion: Option<&Bound<'_, PyAny>>,
         readout: f64,
-        depth_scale: f64,
+        depth_scale: Option<f64>,
     ) -> PyResult<Self> {
+        let depth_scale = depth_scale.unwrap_or(KINECT_V2_DEPTH_SCALE);
         let lens = match distortion {
             Some(object) => numbers(object, "distortion", "5 numbers: k1, k2, p1, p2, k3")?,
             None => [0.0; 5],

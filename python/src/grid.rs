@@ -60,7 +60,7 @@ impl OccupancyGrid {
         .map_err(io_error)
     }
 
-    /// A map of lines of text, the highest y first: `#` occupied, `.` free, `?` unknown; `resolution` m.
+    /// A map of lines of text, the highest y first: `#` occupied, `.` free, any other unknown; `resolution` m.
     #[staticmethod]
     fn from_ascii(resolution: f64, art: &str) -> PyResult<Self> {
         Ok(Self { grid: Grid::from_ascii(resolution, art).map_err(value_error)? })
@@ -70,9 +70,9 @@ impl OccupancyGrid {
     #[getter]
     fn cells<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i8>>> {
         let values = self.grid.cells().iter().map(|cell| match cell {
-            Cell::Unknown => UNKNOWN,
-            Cell::Free => FREE,
-            Cell::Occupied => OCCUPIED,
+            Cell::Unknown => UNKNOWN_VALUE,
+            Cell::Free => FREE_VALUE,
+            Cell::Occupied => OCCUPIED_VALUE,
         });
         let geometry = self.grid.geometry();
         PyArray1::from_vec(py, values.collect()).reshape([geometry.height, geometry.width])
@@ -101,9 +101,9 @@ impl OccupancyGrid {
     fn at(&self, point: &Bound<'_, PyAny>) -> PyResult<i8> {
         let [x, y] = numbers(point, "point", "2 numbers: x m, y m")?;
         Ok(match self.grid.at(Vector2::new(x, y)) {
-            Cell::Unknown => UNKNOWN,
-            Cell::Free => FREE,
-            Cell::Occupied => OCCUPIED,
+            Cell::Unknown => UNKNOWN_VALUE,
+            Cell::Free => FREE_VALUE,
+            Cell::Occupied => OCCUPIED_VALUE,
         })
     }
 
@@ -118,16 +118,18 @@ impl OccupancyGrid {
     }
 }
 
-/// Values of cells as in ROS's nav_msgs/OccupancyGrid.
-const UNKNOWN: i8 = -1;
-const FREE: i8 = 0;
-const OCCUPIED: i8 = 100;
+/// Value of an unknown cell, as in ROS's nav_msgs/OccupancyGrid.
+const UNKNOWN_VALUE: i8 = -1;
+/// Value of a free cell.
+const FREE_VALUE: i8 = 0;
+/// Value of an occupied cell.
+const OCCUPIED_VALUE: i8 = 100;
 
 fn cell(value: i8) -> PyResult<Cell> {
     match value {
-        UNKNOWN => Ok(Cell::Unknown),
-        FREE => Ok(Cell::Free),
-        OCCUPIED => Ok(Cell::Occupied),
+        UNKNOWN_VALUE => Ok(Cell::Unknown),
+        FREE_VALUE => Ok(Cell::Free),
+        OCCUPIED_VALUE => Ok(Cell::Occupied),
         other => {
             let expected = "-1 unknown, 0 free or 100 occupied: apply your thresholds first";
             Err(value_error(Invalid::new("value of a cell", other, "", expected)))

@@ -24,7 +24,8 @@ use trundle::planning::{Plan, PlanResult, Planner};
 /// >>> plan = trundle.plan(room, start=(0.5, 0.6, 0), goal=(2.4, 0.6, 0), footprint=0.17)
 /// >>> plan["found"], plan["poses"].shape[1], round(plan["length"], 2)
 /// (True, 3, 1.9)
-/// >>> trundle.plan(room, (0.5, 0.6, 0), (0.0, 0.6, 0), 0.17)["outcome"]
+/// >>> wall = trundle.OccupancyGrid.from_ascii(0.25, "............\n......#.....\n............")
+/// >>> trundle.plan(wall, (0.5, 0.3, 0), (1.6, 0.3, 0), 0.17)["outcome"]
 /// 'goal_in_obstacle'
 #[pyfunction]
 #[pyo3(signature = (grid, start, goal, footprint=None, *, start_twist=None, config=None))]

@@ -11,8 +11,8 @@ use trundle::io::KINECT_V2_DEPTH_SCALE;
 
 /// A colour image and the depth image registered to it, pixel for pixel.
 ///
-/// `stamp` s; `rgb` uint8 (height, width, 3); `depth` uint16 (height, width) in units of 1 / `depth_scale` m, or float32 in metres. A depth
-/// of 0, NaN or below 0 is none. The arrays `rgb` and `depth` show the image's own pixels and cannot be written.
+/// `stamp` s; `rgb` uint8 (height, width, 3); `depth` uint16 (height, width) in units of 1 / `depth_scale` m, else mm, or float32 in
+/// metres. A depth of 0, NaN or below 0 is none. The arrays `rgb` and `depth` show the image's own pixels and cannot be written.
 ///
 /// >>> import numpy as np
 /// >>> image = trundle.Rgbd(0.5, np.zeros((4, 6, 3), np.uint8), np.full((4, 6), 1500, np.uint16))
@@ -27,8 +27,14 @@ pub struct Rgbd {
 #[pymethods]
 impl Rgbd {
     #[new]
-    #[pyo3(signature = (stamp, rgb, depth, depth_scale=KINECT_V2_DEPTH_SCALE))]
-    fn new(stamp: f64, rgb: &Bound<'_, PyAny>, depth: &Bound<'_, PyAny>, depth_scale: f64) -> PyResult<Self> {
+    #[pyo3(signature = (stamp, rgb, depth, depth_scale=None))]
+    fn new(
+        stamp: f64,
+        rgb: &Bound<'_, PyAny>,
+        depth: &Bound<'_, PyAny>,
+        depth_scale: Option<f64>,
+    ) -> PyResult<Self> {
+        let depth_scale = depth_scale.unwrap_or(KINECT_V2_DEPTH_SCALE);
         require_positive("depth_scale", depth_scale, "units/m").map_err(value_error)?;
         Ok(Self { image: rgbd_image(stamp, rgb, depth, depth_scale)? })
     }

@@ -25,7 +25,7 @@ use trundle::runtime::{Mission, Robot as Whole, StepReport, Task};
 /// ...     if step.twist is not None:
 /// ...         body.command(step.twist)
 /// >>> step.state, robot.pose.shape
-/// ('driving', (3,))
+/// ('initializing', (3,))
 #[pyclass(module = "trundle")]
 pub struct Robot {
     /// The lock is for the type alone, which is not for several threads: pyo3 gives one of them the object at a time.
@@ -116,8 +116,8 @@ impl Robot {
 /// What a sensor event brought.
 ///
 /// >>> step = trundle.Robot().step(trundle.Wheels(0.0, 0, 0))
-/// >>> step.state, step.twist, step.is_finished
-/// ('idle', None, False)
+/// >>> step.state, step.twist.tolist(), step.is_finished
+/// ('idle', [0.0, 0.0], False)
 #[pyclass(frozen, module = "trundle")]
 pub struct Step {
     stamp_s: f64,

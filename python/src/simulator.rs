@@ -37,7 +37,7 @@ pub struct Simulator {
 #[pymethods]
 impl Simulator {
     #[new]
-    #[pyo3(signature = (scene="demo", seed=0, *, camera=Some("kinect-v2"), laser=None, noise=true, start=None))]
+    #[pyo3(signature = (scene="demo", seed=0, *, camera="kinect-v2", laser=None, noise=true, start=None))]
     fn new(
         py: Python<'_>,
         scene: &str,

@@ -17,7 +17,8 @@ use trundle::io::{
 
 /// A folder of the TUM RGB-D benchmark: a list of `Rgbd` whose images are read when they are asked for.
 ///
-/// `depth_scale` units of the depth images in a metre; `max_difference` s between the stamps of a colour and a depth image of one frame.
+/// `depth_scale` units of the depth images in a metre, else 5000; `max_difference` s between the stamps of a colour and a depth image of one
+/// frame, else 0.02.
 ///
 /// >>> trundle.TumSequence("/no/such/folder")
 /// Traceback (most recent call last):
@@ -31,8 +32,15 @@ pub struct TumSequence {
 #[pymethods]
 impl TumSequence {
     #[new]
-    #[pyo3(signature = (folder, depth_scale=TUM_DEPTH_SCALE, max_difference=Sequence::MAX_DIFFERENCE))]
-    fn new(py: Python<'_>, folder: PathBuf, depth_scale: f64, max_difference: f64) -> PyResult<Self> {
+    #[pyo3(signature = (folder, depth_scale=None, max_difference=None))]
+    fn new(
+        py: Python<'_>,
+        folder: PathBuf,
+        depth_scale: Option<f64>,
+        max_difference: Option<f64>,
+    ) -> PyResult<Self> {
+        let depth_scale = depth_scale.unwrap_or(TUM_DEPTH_SCALE);
+        let max_difference = max_difference.unwrap_or(Sequence::MAX_DIFFERENCE);
         let sequence =
             py.detach(|| Sequence::open(&folder, depth_scale, max_difference)).map_err(io_error)?;
         Ok(Self { sequence })
@@ -44,9 +52,11 @@ impl TumSequence {
 
     /// Reads and decodes an image.
     fn __getitem__(&self, py: Python<'_>, index: isize) -> PyResult<Rgbd> {
-        let i = self.index(index)?;
-        let image = py.detach(|| self.sequence.load(i)).map_err(|error| io_error(error.source))?;
-        Ok(Rgbd { image })
+        self.load(py, self.index(index)?)
+    }
+
+    fn __iter__(slf: Bound<'_, Self>) -> TumImages {
+        TumImages { sequence: slf.unbind(), next: 0 }
     }
 
     /// Stamps of the images, s, (N,).
@@ -72,7 +82,35 @@ impl TumSequence {
     }
 }
 
+/// The images of a sequence, one after the other.
+#[pyclass]
+struct TumImages {
+    sequence: Py<TumSequence>,
+    next: usize,
+}
+
+#[pymethods]
+impl TumImages {
+    fn __iter__(slf: Bound<'_, Self>) -> Bound<'_, Self> {
+        slf
+    }
+
+    fn __next__(&mut self, py: Python<'_>) -> PyResult<Option<Rgbd>> {
+        let sequence = self.sequence.get();
+        if self.next >= sequence.sequence.len() {
+            return Ok(None);
+        }
+        self.next += 1;
+        sequence.load(py, self.next - 1).map(Some)
+    }
+}
+
 impl TumSequence {
+    fn load(&self, py: Python<'_>, index: usize) -> PyResult<Rgbd> {
+        let image = py.detach(|| self.sequence.load(index)).map_err(|error| io_error(error.source))?;
+        Ok(Rgbd { image })
+    }
+
     fn index(&self, index: isize) -> PyResult<usize> {
         let count = self.sequence.len();
         let from_start = if index < 0 { index.checked_add_unsigned(count) } else { Some(index) };

@@ -56,7 +56,7 @@ def test_images(slam, rgb, depth, kind, text):
         (lambda: trundle.OccupancyGrid(np.zeros((2, 2), np.int8), 0), ValueError, "resolution"),
         (lambda: trundle.OccupancyGrid(np.zeros((2, 2), np.int8), np.nan), ValueError, "resolution"),
         (lambda: trundle.OccupancyGrid(np.zeros((2, 2), np.int8), 1, origin=(np.inf, 0)), ValueError, "origin"),
-        (lambda: trundle.OccupancyGrid.from_ascii(0.1, "x"), ValueError, ""),
+        (lambda: trundle.OccupancyGrid.from_ascii(0.1, ""), ValueError, ""),
         (lambda: trundle.GridMapper(-1), ValueError, "resolution"),
         (lambda: trundle.ParticleMapper(particles=0), ValueError, "particles"),
         (lambda: trundle.Scan(0, np.zeros(3, np.float32), 0, 0.1, range_max=1), TypeError, "dtype float64"),
@@ -117,12 +117,13 @@ def makers():
     yield "rpe", evaluate.rpe
 
 
-@pytest.mark.parametrize("name,call", makers(), ids=lambda value: value if isinstance(value, str) else "")
+@pytest.mark.parametrize("name,call", list(makers()), ids=lambda value: value if isinstance(value, str) else "")
 def test_junk_of_every_kind_is_refused_without_panic(name, call):
     chance = np.random.default_rng(len(name))
-    tries = [(junk,) * count for junk in JUNK for count in range(4)]
+    tries = [()] + [(junk,) * count for junk in JUNK for count in range(1, 4)]
     tries += [tuple(JUNK[i] for i in chance.integers(len(JUNK), size=chance.integers(1, 7))) for _ in range(150)]
-    for arguments in tries:
+    # A simulator of a room takes a while.
+    for arguments in tries[:: 4 if call is trundle.Simulator else 1]:
         try:
             call(*arguments)
         except ALLOWED:

@@ -27,7 +27,7 @@ def documented():
         yield name, getattr(trundle.evaluate, name)
 
 
-@pytest.mark.parametrize("name,member", documented(), ids=lambda value: value if isinstance(value, str) else "")
+@pytest.mark.parametrize("name,member", list(documented()), ids=lambda value: value if isinstance(value, str) else "")
 def test_docstrings_and_their_examples(name, member, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     text = inspect.getdoc(member)

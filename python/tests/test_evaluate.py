@@ -77,7 +77,7 @@ def test_ate_is_that_of_evo(case, align):
 def test_rpe_is_that_of_evo(case, delta, unit, all_pairs):
     reference, estimate = pairs()[case]
     truth, found = associated(reference, estimate)
-    rpe = metrics.RPE(metrics.PoseRelation.translation_part, delta, metrics.Unit(unit if unit == "m" else "f"), all_pairs=all_pairs)
+    rpe = metrics.RPE(metrics.PoseRelation.translation_part, delta, metrics.Unit.meters if unit == "m" else metrics.Unit.frames, all_pairs=all_pairs)
     rpe.process_data((truth, found))
     ours = evaluate.rpe(reference, estimate, delta=delta, unit=unit, all_pairs=all_pairs)
     agree(ours, rpe.get_all_statistics())

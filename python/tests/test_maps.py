@@ -31,7 +31,7 @@ def test_a_map_of_nav2_is_read():
             grids.append(trundle.OccupancyGrid.load(file))
         except ValueError:
             continue  # no map but another kind of file
-    assert grids and all((grid.cells == 100).any() for grid in grids)
+    assert len(grids) > 2 and sum((grid.cells == 100).any() for grid in grids) > 2
 
 
 def test_scans_make_a_map(wall_scan):
@@ -95,8 +95,8 @@ def test_what_cannot_be_planned_is_a_value(room):
     in_wall = trundle.plan(room, (0.5, 0.4, 0), (1.6, 0.4, 0), 0.17)
     assert not in_wall["found"] and in_wall["outcome"] == "goal_in_obstacle"
     assert in_wall["poses"].shape == (0, 3) and in_wall.keys() == keys
-    closed = trundle.OccupancyGrid.from_ascii(0.25, "\n".join([".....#......"] * 6))
-    blocked = trundle.plan(closed, (0.5, 0.7, 0), (2.5, 0.7, 0), 0.17)
+    closed = trundle.OccupancyGrid.from_ascii(0.25, "\n".join(["#" * 14] + ["#.....#......#"] * 6 + ["#" * 14]))
+    blocked = trundle.plan(closed, (0.8, 0.9, 0), (2.5, 0.9, 0), 0.17)
     assert blocked["outcome"] == "blocked" and blocked["nearest"].shape == (2,)
     assert "no path" in blocked["message"]
 

@@ -1,74 +1,46 @@
 """Types of the native module; `help(trundle.RgbdSlam)` and the like print what they do, with shapes and units."""
 
 from collections.abc import Iterator, Sequence
-from os import PathLike
-from typing import Any, Literal, TypeAlias, TypedDict, final
+from typing import Any, Literal, final
 
 import numpy as np
 from numpy.typing import NDArray
 from typing_extensions import Self
 
-Floats: TypeAlias = NDArray[np.float64]
-Numbers: TypeAlias = Sequence[float] | NDArray[Any]
-File: TypeAlias = str | PathLike[str]
-Outline: TypeAlias = float | Sequence[Numbers] | NDArray[Any]
-Event: TypeAlias = Wheels | Gyro | Rgbd | Scan | Touch | Cliff | Odometry | BodyCondition | Truth
-TrackingState: TypeAlias = Literal["ok", "weak", "dead_reckoning", "lost"]
+from .types import AteDict, DockDict, Event, File, Floats, Numbers, Outline, PlanDict, RpeDict, TrackingState, TruthDict
 
-class PlanDict(TypedDict):
-    found: bool
-    outcome: Literal["found", "blocked", "start_in_obstacle", "goal_in_obstacle", "start_outside", "goal_outside"]
-    message: str
-    nearest: Floats | None
-    waypoints: Floats
-    cells: Floats
-    time: Floats
-    poses: Floats
-    twists: Floats
-    duration: float
-    length: float
-    min_clearance: float
-
-class DockDict(TypedDict):
-    found: bool
-    outcome: Literal["found", "impossible", "refused"]
-    message: str
-    kinds: list[Literal["turn", "drive"]]
-    amounts: Floats
-    starts: Floats
-    durations: Floats
-    poses: Floats
-    duration: float
-    bound: float
-    margin: float
-
-class TruthDict(TypedDict):
-    stamp: float
-    pose: Floats
-    contacts: int
-    clearance: float
-    path_length: float
-
-class Statistics(TypedDict):
-    count: int
-    rmse: float
-    mean: float
-    median: float
-    std: float
-    min: float
-    max: float
-
-class AteDict(Statistics):
-    rotation: Statistics
-    errors: Floats
-    pairs: NDArray[np.int64]
-    reference_from_estimate: Floats
-    scale: float
-
-class RpeDict(Statistics):
-    rotation: Statistics
-    errors: Floats
-    pairs: NDArray[np.int64]
+__all__ = [
+    "BodyCondition",
+    "Camera",
+    "Cliff",
+    "GridMapper",
+    "Gyro",
+    "OccupancyGrid",
+    "Odometry",
+    "ParticleMapper",
+    "Rgbd",
+    "RgbdSlam",
+    "Robot",
+    "RobotConfig",
+    "Scan",
+    "Simulator",
+    "SimulatorPool",
+    "Step",
+    "Touch",
+    "Track",
+    "Truth",
+    "TumSequence",
+    "Wheels",
+    "ate",
+    "dock",
+    "plan",
+    "read_laser_log",
+    "read_trajectory",
+    "rpe",
+    "run_command",
+    "slam_folder",
+    "write_trajectory",
+]
 
 @final
 class Camera:
@@ -83,7 +55,7 @@ class Camera:
         *,
         distortion: Numbers | None = None,
         readout: float = 0.0,
-        depth_scale: float = 1000.0,
+        depth_scale: float | None = None,
     ) -> Self: ...
     @staticmethod
     def named(name: File) -> Camera: ...
@@ -109,7 +81,7 @@ class Camera:
 
 @final
 class Rgbd:
-    def __new__(cls, stamp: float, rgb: NDArray[np.uint8], depth: NDArray[Any], depth_scale: float = 1000.0) -> Self: ...
+    def __new__(cls, stamp: float, rgb: NDArray[np.uint8], depth: NDArray[Any], depth_scale: float | None = None) -> Self: ...
     @property
     def stamp(self) -> float: ...
     @property
@@ -181,7 +153,7 @@ class RgbdSlam:
 
 @final
 class TumSequence:
-    def __new__(cls, folder: File, depth_scale: float = 5000.0, max_difference: float = 0.02) -> Self: ...
+    def __new__(cls, folder: File, depth_scale: float | None = None, max_difference: float | None = None) -> Self: ...
     def __len__(self) -> int: ...
     def __getitem__(self, index: int, /) -> Rgbd: ...
     def __iter__(self) -> Iterator[Rgbd]: ...

@@ -15,7 +15,7 @@ endings for the same seeds and actions. Importing this module registers both as 
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import gymnasium
 import numpy as np
@@ -64,7 +64,7 @@ class DriveToGoal(gymnasium.Env[Observation, NDArray[np.float32]]):
             raise ValueError(f"render_mode is {render_mode!r}, expected None")
         self.render_mode = None
         self._worlds = _Worlds(1, scene, laser, noise, period, time_limit)
-        self.observation_space = self._worlds.observation_space
+        self.observation_space = cast(Any, self._worlds.observation_space)
         self.action_space = self._worlds.action_space
 
     def reset(
@@ -120,9 +120,11 @@ class DriveToGoalVector(VectorEnv[Observation, NDArray[np.float32], NDArray[Any]
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
         """Starts all anew; environment i takes `seed + i`, or `seed[i]`."""
-        seeds = [seed] * self.num_envs if seed is None else seed
-        if isinstance(seeds, int):
-            seeds = [seeds + i for i in range(self.num_envs)]
+        seeds: list[int | None] = [None] * self.num_envs
+        if isinstance(seed, int):
+            seeds = [seed + i for i in range(self.num_envs)]
+        elif seed is not None:
+            seeds = list(seed)
         if len(seeds) != self.num_envs:
             raise ValueError(f"{len(seeds)} seeds, expected {self.num_envs}")
         for i, own in enumerate(seeds):
@@ -203,7 +205,7 @@ class _Worlds:
 
     def observations(self) -> Observation:
         """Of all, stacked."""
-        ranges = np.nan_to_num(self.pool.ranges(), nan=0.0, posinf=self.range_max).clip(0, self.range_max)
+        ranges = np.nan_to_num(self.pool.ranges(), nan=0.0, posinf=float(self.range_max)).clip(0, self.range_max)
         poses, goals = self.pool.poses(), self.pool.goals()
         ahead, left = (goals[:, :2] - poses[:, :2]).T
         cos, sin = np.cos(poses[:, 2]), np.sin(poses[:, 2])

@@ -32,7 +32,7 @@ mod sim;
 mod slam;
 mod vocabulary;
 
-use clap::{ArgMatches, CommandFactory, FromArgMatches};
+use clap::{CommandFactory, FromArgMatches};
 use command_line::{Cli, Command};
 use common_args::Common;
 use outcome::Outcome;
@@ -43,12 +43,17 @@ use trundle::io::{abandon_outputs, abandon_unfinished, wait_for_abandonment};
 /// Runs the command line of these arguments, the program's name first. The result is the exit code of the process, which does nothing else:
 /// a command takes over Ctrl-C and SIGTERM, and starts the log.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
-    let (matches, cli) = match parse(arguments) {
+    let matches = with_negative_numbers(Cli::command()).try_get_matches_from(arguments);
+    let parsed = matches.and_then(|matches| Ok((Cli::from_arg_matches(&matches)?, matches)));
+    let (cli, matches) = match parsed {
         Ok(parsed) => parsed,
-        Err(message) => return print_usage(&message),
+        Err(usage) => {
+            // Help and version too. A terminal without a reader is no error here.
+            let _ = usage.print();
+            return usage.exit_code() as u8;
+        }
     };
-    let folders = logging::start(cli.verbose).and_then(|()| output_args::check(&matches));
-    match folders {
+    match logging::start(cli.verbose).and_then(|()| output_args::check(&matches)) {
         Ok(folders) => {
             let result = listen(&cli.command).and_then(|()| run_command(cli));
             wait_for_abandonment();
@@ -56,18 +61,6 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         }
         Err(error) => outcome::end(Err(error), &[]),
     }
-}
-
-fn parse(arguments: impl IntoIterator<Item = OsString>) -> Result<(ArgMatches, Cli), clap::Error> {
-    let matches = with_negative_numbers(Cli::command()).try_get_matches_from(arguments)?;
-    let cli = Cli::from_arg_matches(&matches)?;
-    Ok((matches, cli))
-}
-
-/// Prints help, version or what is wrong with the arguments. A terminal without a reader is no error here.
-fn print_usage(message: &clap::Error) -> u8 {
-    let _ = message.print();
-    u8::try_from(message.exit_code()).unwrap_or(u8::MAX)
 }
 
 /// Takes Ctrl-C as a request if the command has long loops, which read it; else it ends the program.
