@@ -65,11 +65,11 @@ pub fn slice<'a, T: Element, D: Dimension>(
     array.as_slice().map_err(|_| value_error(format!("{name} is not one block of memory")))
 }
 
-/// A colour image from uint8 of shape (height, width, 3).
+/// A colour image from uint8 of shape (height, width, 3), in `memory`.
 ///
 /// # Errors
 /// As [`array`]; and for other than 3 channels, or a side of 0.
-pub fn color_image(object: &Bound<'_, PyAny>) -> PyResult<ColorImage> {
+pub fn color_image(object: &Bound<'_, PyAny>, mut memory: Vec<[u8; 3]>) -> PyResult<ColorImage> {
     const SHAPE: &str = "(height, width, 3)";
     let array = array::<u8, numpy::Ix3>(object, "rgb", SHAPE)?;
     let &[height, width, 3] = array.shape() else {
@@ -78,29 +78,38 @@ pub fn color_image(object: &Bound<'_, PyAny>) -> PyResult<ColorImage> {
             "rgb has shape {found:?}, expected a numpy array of dtype uint8 and shape {SHAPE}"
         )));
     };
-    let pixels = slice(&array, "rgb")?.as_chunks::<3>().0.to_vec();
-    ColorImage::new(width, height, pixels).map_err(value_error)
+    memory.clear();
+    memory.extend_from_slice(slice(&array, "rgb")?.as_chunks::<3>().0);
+    ColorImage::new(width, height, memory).map_err(value_error)
 }
 
 /// A depth image from uint16 in units of 1 / `depth_scale` m, or from float32 in m; what is not a positive number is no depth.
+/// In `memory`.
 ///
 /// # Errors
 /// As [`array`], and for a side of 0.
-pub fn depth_image(object: &Bound<'_, PyAny>, depth_scale: f64) -> PyResult<DepthImage> {
+pub fn depth_image(
+    object: &Bound<'_, PyAny>,
+    depth_scale: f64,
+    mut memory: Vec<f32>,
+) -> PyResult<DepthImage> {
     const SHAPE: &str = "(height, width)";
     let is_metres = object
         .cast::<PyUntypedArray>()
         .is_ok_and(|array| array.dtype().is_equiv_to(&dtype::<f32>(object.py())));
-    let (size, metres) = if is_metres {
+    memory.clear();
+    let size = if is_metres {
         let array = array::<f32, numpy::Ix2>(object, "depth", SHAPE)?;
         let valid = |depth: &f32| if depth.is_finite() && *depth > 0.0 { *depth } else { 0.0 };
-        (size_of(&array), slice(&array, "depth")?.iter().map(valid).collect())
+        memory.extend(slice(&array, "depth")?.iter().map(valid));
+        size_of(&array)
     } else {
         let array = array::<u16, numpy::Ix2>(object, "depth", "(height, width), or float32 in metres")?;
         let valid = |units: &u16| (f64::from(*units) / depth_scale) as f32;
-        (size_of(&array), slice(&array, "depth")?.iter().map(valid).collect())
+        memory.extend(slice(&array, "depth")?.iter().map(valid));
+        size_of(&array)
     };
-    DepthImage::new(size.0, size.1, metres).map_err(value_error)
+    DepthImage::new(size.0, size.1, memory).map_err(value_error)
 }
 
 /// Width and height.

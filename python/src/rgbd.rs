@@ -36,7 +36,7 @@ impl Rgbd {
     ) -> PyResult<Self> {
         let depth_scale = depth_scale.unwrap_or(KINECT_V2_DEPTH_SCALE);
         require_positive("depth_scale", depth_scale, "units/m").map_err(value_error)?;
-        Ok(Self { image: rgbd_image(stamp, rgb, depth, depth_scale)? })
+        Ok(Self { image: rgbd_image(stamp, rgb, depth, depth_scale, PixelMemory::default())? })
     }
 
     /// When it was taken, s.
@@ -75,13 +75,17 @@ impl Rgbd {
     }
 }
 
-/// An image of two arrays.
+/// Memory of the pixels of an image.
+pub type PixelMemory = (Vec<[u8; 3]>, Vec<f32>);
+
+/// An image of two arrays, in memory that may be that of an earlier image.
 pub fn rgbd_image(
     seconds: f64,
     rgb: &Bound<'_, PyAny>,
     depth: &Bound<'_, PyAny>,
     depth_scale: f64,
+    memory: PixelMemory,
 ) -> PyResult<RgbdImage> {
-    let (color, depth) = (color_image(rgb)?, depth_image(depth, depth_scale)?);
+    let (color, depth) = (color_image(rgb, memory.0)?, depth_image(depth, depth_scale, memory.1)?);
     RgbdImage::new(stamp(seconds)?, color, depth).map_err(value_error)
 }

@@ -79,7 +79,7 @@ impl Robot {
     /// Covariance of the pose as a right perturbation (m, m, rad), (3, 3).
     #[getter]
     fn covariance<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        matrix(py, &mut self.robot().estimate().covariance)
+        matrix(py, &self.robot().estimate().covariance)
     }
 
     /// The map: a copy.

@@ -127,11 +127,11 @@ impl World {
 
     fn step(&mut self, twist: Twist2, duration: f64) -> PyResult<()> {
         let events = drive(&mut self.simulator, twist, duration).map_err(value_error)?;
-        let scans = events.iter().filter_map(|event| match event {
+        let scan = events.iter().rev().find_map(|event| match event {
             SensorEvent::Scan(scan) => Some(scan),
             _ => None,
         });
-        if let Some(scan) = scans.last() {
+        if let Some(scan) = scan {
             self.ranges = scan.beams().iter().map(|beam| range_of(beam) as f32).collect();
         }
         Ok(())

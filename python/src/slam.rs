@@ -5,7 +5,7 @@ use crate::camera::camera_model;
 use crate::errors::{io_error, value_error};
 use crate::geometry::{pose3, trajectory_array};
 use crate::numbers::pose2;
-use crate::rgbd::{Rgbd, rgbd_image};
+use crate::rgbd::{PixelMemory, Rgbd, rgbd_image};
 use crate::track::Track;
 use numpy::{PyArray2, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -37,6 +37,8 @@ pub struct RgbdSlam {
     base_from_camera: Option<Pose3>,
     /// `odom_from_base` at the last image.
     last_odometry: Option<Pose2>,
+    /// Memory of the last image of arrays, for the next one.
+    memory: PixelMemory,
 }
 
 #[pymethods]
@@ -88,8 +90,12 @@ impl RgbdSlam {
         stamp: f64,
         odometry: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Track> {
-        let image = rgbd_image(stamp, rgb, depth, self.model.depth_scale)?;
-        self.step(py, &image, odometry)
+        let memory = std::mem::take(&mut self.memory);
+        let image = rgbd_image(stamp, rgb, depth, self.model.depth_scale, memory)?;
+        let track = self.step(py, &image, odometry);
+        let (color, depth) = image.into_images();
+        self.memory = (color.into_data(), depth.into_data());
+        track
     }
 
     /// Tracks an `Rgbd`, without a copy of its pixels; else as `track`.
@@ -160,7 +166,7 @@ impl RgbdSlam {
 impl RgbdSlam {
     fn with(slam: Slam, model: CameraModel, mount: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let base_from_camera = mount.map(|mount| pose3(mount, "base_from_camera")).transpose()?;
-        Ok(Self { slam, model, base_from_camera, last_odometry: None })
+        Ok(Self { slam, model, base_from_camera, last_odometry: None, memory: PixelMemory::default() })
     }
 
     fn step(
