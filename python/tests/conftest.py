@@ -11,10 +11,8 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 def shared(name):
     """A file or folder of the shared data; the test is skipped by name where it is absent."""
-    for top in [ROOT.parent / "shared", pathlib.Path("/work/shared")]:
-        if (top / "data" / name).exists():
-            return top / "data" / name
-    pytest.skip(f"{name} is absent")
+    found = ROOT.parent / "shared/data" / name
+    return found if found.exists() else pytest.skip(f"{name} is absent")
 
 
 @pytest.fixture(scope="session")
