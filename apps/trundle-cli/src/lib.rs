@@ -43,8 +43,7 @@ use trundle::io::{abandon_outputs, abandon_unfinished, wait_for_abandonment};
 /// a command takes over Ctrl-C and SIGTERM, and starts the log.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let matches = with_negative_numbers(Cli::command()).try_get_matches_from(arguments);
-    let parsed = matches.and_then(|matches| Ok((Cli::from_arg_matches(&matches)?, matches)));
-    let (cli, matches) = match parsed {
+    let (cli, matches) = match matches.and_then(|found| Ok((Cli::from_arg_matches(&found)?, found))) {
         Ok(parsed) => parsed,
         Err(usage) => {
             // Help and version too. A terminal without a reader is no error here.
