@@ -55,6 +55,11 @@ impl<T> Image<T> {
         &self.data
     }
 
+    /// All pixels, row by row: their memory, for another image.
+    pub fn into_data(self) -> Vec<T> {
+        self.data
+    }
+
     /// All pixels, row by row.
     pub fn data_mut(&mut self) -> &mut [T] {
         &mut self.data

@@ -29,6 +29,11 @@ impl RgbdImage {
         self.stamp
     }
 
+    /// The colour and the depth image, whose memory may serve the next frame.
+    pub fn into_images(self) -> (ColorImage, DepthImage) {
+        (self.color, self.depth)
+    }
+
     /// The colour image.
     pub fn color(&self) -> &ColorImage {
         &self.color

@@ -20,7 +20,7 @@ impl DockingResult {
     ///
     /// # Errors
     /// When a setting is outside its range or a number is not finite.
-    pub(super) fn of(task: &DockingTask, config: DockingConfig) -> Result<Self, Invalid> {
+    pub fn of(task: &DockingTask, config: DockingConfig) -> Result<Self, Invalid> {
         let planner = DockingPlanner::new(config)?;
         if let Some(refusal) = &task.refusal {
             return Ok(Self::Refused(refusal.clone()));

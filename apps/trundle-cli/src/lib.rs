@@ -1,0 +1,126 @@
+//! The command line of `trundle`, for the program and for the Python package.
+
+mod calibrate;
+mod command_line;
+mod common_args;
+mod console;
+mod convert;
+mod data;
+mod demo;
+mod devices;
+mod dock;
+mod eval;
+mod experiment;
+mod live;
+mod logging;
+mod map;
+#[cfg(feature = "mqtt")]
+mod mqtt;
+mod outcome;
+mod output_args;
+mod plan;
+mod replay;
+mod robot_file;
+#[cfg(feature = "ros2")]
+mod ros2;
+#[cfg(feature = "ros2")]
+mod ros_node;
+mod run;
+mod run_output;
+mod shell_files;
+mod sim;
+mod slam;
+mod vocabulary;
+
+use clap::{CommandFactory, FromArgMatches};
+use command_line::{Cli, Command};
+use outcome::Outcome;
+use std::ffi::OsString;
+use trundle::app::{AppError, on_threads, stop};
+use trundle::io::{abandon_outputs, abandon_unfinished, wait_for_abandonment};
+
+/// Runs the command line of these arguments, the program's name first. The result is the exit code of the process, which does nothing else:
+/// a command takes over Ctrl-C and SIGTERM, and starts the log.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let matches = with_negative_numbers(Cli::command()).try_get_matches_from(arguments);
+    let (cli, matches) = match matches.and_then(|found| Ok((Cli::from_arg_matches(&found)?, found))) {
+        Ok(parsed) => parsed,
+        Err(usage) => {
+            // Help and version too. A terminal without a reader is no error here.
+            let _ = usage.print();
+            return usage.exit_code() as u8;
+        }
+    };
+    match trundle::app::start_log(cli.verbose).and_then(|()| output_args::check(&matches)) {
+        Ok(folders) => {
+            let result = listen(&cli.command).and_then(|()| run_command(cli));
+            wait_for_abandonment();
+            outcome::end(result, &folders)
+        }
+        Err(error) => outcome::end(Err(error), &[]),
+    }
+}
+
+/// Takes Ctrl-C as a request if the command has long loops, which read it; else it ends the program.
+fn listen(command: &Command) -> Result<(), AppError> {
+    use Command::{Calibrate, Convert, Demo, Experiment, GuardBase, Map, Replay, Run, Sim, Slam};
+    match command {
+        Calibrate(_) | Convert(_) | Demo(_) | Run(_) | Replay(_) | Slam(_) | Map(_) | Sim(_)
+        | Experiment(_) => stop::listen(end_unfinished),
+        // A guard outlives the program that it guards.
+        GuardBase => stop::ignore(),
+        #[cfg(feature = "ros2")]
+        Command::Ros2(_) => stop::listen(end_unfinished),
+        _ => stop::end_at_once(|signal| {
+            let is_ending = abandon_outputs();
+            if is_ending {
+                console::print_stopped(signal.name(), "; nothing was written");
+            }
+            is_ending
+        }),
+    }
+}
+
+/// At a second signal: results that are being moved to their place are complete after this, others are removed.
+fn end_unfinished(signal: stop::StopSignal) {
+    abandon_unfinished();
+    console::print_stopped(signal.name(), ", the second signal; unfinished results are removed");
+}
+
+/// A negative number is the value of the option before it, not an option.
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    let takes_numbers = |arg: clap::Arg| {
+        if arg.get_action().takes_values() { arg.allow_negative_numbers(true) } else { arg }
+    };
+    command.mut_args(takes_numbers).mut_subcommands(with_negative_numbers)
+}
+
+fn run_command(cli: Cli) -> Result<Outcome, AppError> {
+    match cli.command {
+        Command::Demo(args) => on_threads(args.common.threads, || demo::run(&args)),
+        Command::Run(args) => on_threads(args.options.common.threads, || run::run(&args)),
+        #[cfg(feature = "ros2")]
+        Command::Ros2(args) => on_threads(args.options.common.threads, || ros2::run(&args)),
+        Command::Replay(args) => on_threads(args.common.threads, || replay::run(&args)),
+        Command::Slam(args) => on_threads(args.common.threads, || slam::run(&args)),
+        Command::Convert(args) => on_threads(args.common.threads, || convert::run(&args)),
+        Command::Map(args) => on_threads(args.common.threads, || map::run(&args)),
+        Command::Calibrate(args) => on_threads(args.common().threads, || calibrate::run(&args)),
+        Command::Eval(args) => on_threads(args.common().threads, || eval::run(&args)),
+        Command::Plan(args) => on_threads(args.common.threads, || plan::run(&args)),
+        Command::Sim(args) => on_threads(args.common.threads, || sim::run(&args)),
+        Command::Dock(args) => on_threads(args.common.threads, || dock::run(&args)),
+        Command::Experiment(args) => on_threads(args.common().threads, || experiment::run(&args)),
+        Command::Vocabulary(args) => match args.common() {
+            Some(common) => on_threads(common.threads, || vocabulary::run(&args)),
+            None => vocabulary::run(&args),
+        },
+        Command::Config(args) => robot_file::print(&args),
+        Command::Devices(args) => Ok(devices::run(&args)),
+        Command::ServeCamera(args) => devices::serve(&args),
+        Command::GuardBase => devices::guard(),
+        Command::Data(args) => data::run(&args),
+        Command::Completions(args) => shell_files::print_completions(&args, Cli::command()),
+        Command::Man(args) => shell_files::write_man_pages(&args, Cli::command()),
+    }
+}

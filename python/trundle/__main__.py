@@ -1,0 +1,5 @@
+"""`python -m trundle`: the command `trundle`."""
+
+from ._command import main
+
+main()
