@@ -8,7 +8,7 @@ use trundle_runtime::{Answer, Job, Worker};
 /// Input of a run.
 #[non_exhaustive]
 pub enum RunInput {
-    /// A sensor event, encoded as it is recorded.
+    /// A sensor event in the encoding of the recording.
     Event(EncodedEvent),
     /// The result of a background job.
     Answer(Answer),
@@ -18,7 +18,7 @@ pub enum RunInput {
     Interrupted,
 }
 
-/// A body whose events arrive encoded, as they are recorded. Background jobs of the robot run beside it.
+/// A body whose events arrive in the encoding of the recording. Background jobs of the robot run at the same time.
 pub trait EncodedBody {
     /// The next input; `None` at the end.
     ///
@@ -41,7 +41,7 @@ pub trait EncodedBody {
     /// Separate contacts so far, in truth; `None` if only the bumper reports contacts.
     fn true_contacts(&self) -> Option<u32>;
 
-    /// How much of its events has been read, 0 to 1; `None` if their end is not known.
+    /// Share of the events that was read, 0 to 1; `None` if their number is unknown.
     fn fraction_read(&self) -> Option<f64> {
         None
     }

@@ -1,4 +1,4 @@
-//! Marks that a recording holds between the events, so that a replay feeds the robot in the same order.
+//! Marks in a recording between the events, by which a replay feeds the robot in the same order.
 
 use crate::operator::OperatorRequest;
 use serde::{Deserialize, Serialize};
@@ -25,7 +25,7 @@ pub enum RunMark {
 impl RunMark {
     /// The topic of marks.
     pub const TOPIC: &str = "/mark";
-    /// The name of their schema.
+    /// Name of the schema of marks.
     pub const SCHEMA: &str = "trundle.Mark";
 }
 

@@ -96,7 +96,7 @@ impl<'s> RunSession<'s> {
         self.operator.as_ref()?.next_request()
     }
 
-    /// Feeds the robot one input. Returns whether its mission is over.
+    /// Feeds one input to the robot; returns whether the mission is over.
     ///
     /// # Errors
     /// When an event cannot be decoded or the body refuses the command.
@@ -193,7 +193,7 @@ impl<'s> RunSession<'s> {
             self.recorder.write(move |file| file.record_event(&recorded));
         }
         if let EncodedEvent::Rgbd(mut image) = event {
-            // The recording holds the stamp of the driver, so that a replay corrects the stamp once as well.
+            // The recording contains the driver's stamp: a replay applies the same correction once.
             image.stamp = image.stamp.after(-self.setup.robot.image_delay);
             self.view.on_image(&image);
             if let Some(link) = &mut self.operator {

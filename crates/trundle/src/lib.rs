@@ -1,5 +1,5 @@
-//! Autonomy for a two-wheeled indoor robot with one RGB-D camera: it finds out where it is, draws the map, plans a
-//! smooth path, drives it, and settles on its goal pose. No ROS needed.
+//! Autonomy for a two-wheeled indoor robot with one RGB-D camera: localization, mapping, path planning, control, and an exact final
+//! approach. The library needs no ROS.
 //!
 //! The whole robot is [`runtime::Robot`]: sensor events in, pose, map, plan and twist out.
 //!

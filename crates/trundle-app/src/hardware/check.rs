@@ -45,7 +45,7 @@ pub struct CheckRequest<'a> {
 pub struct HardwareReport {
     /// The table: what, value.
     pub rows: Vec<Vec<String>>,
-    /// Faults to fix before a drive, each with the remedy; empty if there are none.
+    /// Faults to mend before a drive, each with the remedy; empty if none was found.
     pub problems: Vec<String>,
     /// Parts that were not checked, and how to check them.
     pub notes: Vec<String>,
@@ -53,7 +53,7 @@ pub struct HardwareReport {
     pub values: Calibration,
 }
 
-/// Starts base and camera, which stand still, and listens to them; a person may push the robot meanwhile.
+/// Starts base and camera without driving and measures their data; a person may push the robot during the check.
 ///
 /// # Errors
 /// When base or camera cannot be started.

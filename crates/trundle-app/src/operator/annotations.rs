@@ -8,7 +8,7 @@ use trundle_io::{annotations_text, replace_file};
 use trundle_runtime::OperatorCommand;
 
 impl Operator {
-    /// Zones and named places of the map. Those that are the same are the same allocation.
+    /// Zones and named places of the map. Equal annotations share one allocation.
     #[must_use]
     pub fn annotations(&self) -> Arc<MapAnnotations> {
         Arc::clone(&self.annotation_store().newest)
@@ -37,7 +37,7 @@ impl Operator {
     /// The goal pose of the place of this name, map frame.
     ///
     /// # Errors
-    /// When there is no such place; names those that there are.
+    /// When the place does not exist; the error lists the known places.
     pub fn goal_of_place(&self, name: &str) -> Result<Pose2, OperatorError> {
         let annotations = self.annotations();
         annotations.pose_of(name).ok_or_else(|| {

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-/// Lag beyond which a simulation does not catch up: its time goes on from there \[s\]. Source: ours.
+/// Lag above which a simulation does not catch up and its time continues from there \[s\]. Source: ours.
 const MAX_CATCH_UP_S: f64 = 0.25;
 
 /// Holds simulated time back to the wall clock.

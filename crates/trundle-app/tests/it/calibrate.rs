@@ -14,7 +14,7 @@ use trundle_runtime::settings::RobotFile;
 use trundle_runtime::{CameraMount, Mission, RobotConfig, Task};
 use trundle_sim::{CommandScript, KobukiConfig, Scene, SimConfig, Simulator};
 
-/// Where the camera truly sits.
+/// True pose of the camera's mount.
 const MOUNT: CameraMount =
     CameraMount { x: 0.09, y: -0.025, z: 0.48, yaw_deg: 2.5, pitch_deg: 14.0, roll_deg: -1.5 };
 /// True delay of the images' stamps, s.
@@ -115,7 +115,7 @@ fn drive_on_time() -> CalibrationInput {
     CalibrationInput::open(file, false).unwrap()
 }
 
-/// The found value is within `limit` of the truth, and its standard deviation is no more than `limit`.
+/// Asserts that the error of the calibrated value is within `limit`, and its standard deviation too.
 #[track_caller]
 fn assert_found(calibration: &Calibration, name: &str, truth: f64, limit: f64) {
     let found = calibration.value(name).unwrap_or_else(|| panic!("{name}: {calibration:?}"));
