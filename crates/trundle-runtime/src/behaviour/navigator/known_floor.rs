@@ -2,7 +2,7 @@
 
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Vector2};
 
-/// The cells whose centres lie within `radius` of a point, m; none around a point off the map.
+/// The cells whose centres are within `radius` of a point, m; empty around a point outside the map.
 pub(super) fn cells_about(
     grid: &OccupancyGrid,
     at: Vector2,
