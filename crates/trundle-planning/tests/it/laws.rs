@@ -59,7 +59,7 @@ proptest! {
         let (from, to) = (geometry.cell(from), geometry.cell(to));
         let pose = |cell, heading| { let p: Vector2 = geometry.center(cell); Pose2::new(p.x, p.y, heading) };
         let (start, goal) = (pose(from, a), pose(to, b));
-        // A move between two centres dips by this much below them where a corner stands between.
+        // A move between two centres loses this much clearance at a corner between them.
         let sure = (RADIUS * RADIUS + 0.0025_f64).sqrt();
         let connected = flood(&grid, start.position(), sure)[geometry.linear(to)];
         let plan = planner(at_home(), RADIUS).plan(&grid, start, Twist2::ZERO, goal);
