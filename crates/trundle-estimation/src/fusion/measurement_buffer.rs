@@ -12,8 +12,8 @@ use trundle_core::{Odometry, Pose2, Stamp};
 
 /// The last seconds of odometry and measurements, ordered by stamp, with the belief after each entry.
 ///
-/// A late measurement is inserted at its stamp, and the beliefs of all later entries are computed again. The newest belief is
-/// therefore that of all measurements in the order of their stamps, for any order of arrival.
+/// A late measurement is inserted at its stamp, and all later beliefs are computed again. The newest belief therefore uses all measurements
+/// in the order of their stamps, for any order of arrival.
 #[derive(Debug, Clone)]
 pub(crate) struct MeasurementBuffer {
     nodes: VecDeque<Node>,
