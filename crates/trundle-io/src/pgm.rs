@@ -93,7 +93,7 @@ impl<'a> Scanner<'a> {
         })
     }
 
-    /// The bytes behind the blank that ends the header. `\r\n` is one blank where the `needed` bytes of pixels come behind both.
+    /// The bytes after the blank that ends the header. `\r\n` counts as one blank if `needed` bytes of pixels follow.
     fn behind_header(&self, needed: usize) -> &'a [u8] {
         let rest = self.bytes.get(self.at..).unwrap_or_default();
         match rest.strip_prefix(b"\r\n") {
@@ -120,7 +120,7 @@ impl<'a> Scanner<'a> {
     }
 }
 
-/// Refuses what stands behind the last pixel.
+/// Refuses content after the last pixel.
 fn require_blank(rest: &[u8]) -> Result<(), String> {
     if rest.iter().all(u8::is_ascii_whitespace) {
         return Ok(());
