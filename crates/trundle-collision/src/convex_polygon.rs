@@ -38,7 +38,7 @@ pub fn centre_of(points: &[Vector2]) -> Vector2 {
     points.iter().sum::<Vector2>() / points.len() as f64
 }
 
-/// The polygon with its sides `by` m further in; `None` if nothing remains, or a side vanishes.
+/// The polygon with its sides moved inwards by `by` m; `None` if no area remains, or a side vanishes.
 pub fn inset(corners: &[Vector2], by: f64) -> Option<Vec<Vector2>> {
     let count = corners.len();
     let side = |i: usize| (corners[(i + 1) % count] - corners[i % count]).try_normalize(1e-12);

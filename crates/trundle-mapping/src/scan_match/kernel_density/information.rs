@@ -14,7 +14,7 @@ use nalgebra::{Matrix3, SymmetricEigen, U3, Vector3};
 pub(crate) struct Information {
     /// B of displacement of the base = B * displacement of the centroid, turns in metres.
     base_from_centroid: Matrix3<f64>,
-    /// Inverse of the above.
+    /// Inverse of `base_from_centroid`.
     centroid_from_base: Matrix3<f64>,
     eigen: SymmetricEigen<f64, U3>,
     least: f64,
