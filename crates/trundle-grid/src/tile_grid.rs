@@ -65,7 +65,7 @@ impl<T: TileData> TileGrid<T> {
         self.chunk(tile)?.tiles[Chunk::<T>::index(tile)].as_deref()
     }
 
-    /// Tile to write to. Allocates the tile if there is none, and copies it if a clone shares it.
+    /// Tile to write to. Allocates a missing tile, and copies a tile shared with a clone.
     pub fn tile_mut(&mut self, tile: TileIndex) -> &mut T {
         let slot = self.chunks.slot_mut(chunk_of(tile));
         let chunk = Arc::make_mut(slot.get_or_insert_with(|| Arc::new(Chunk::EMPTY)));
