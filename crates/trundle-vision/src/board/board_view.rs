@@ -19,7 +19,7 @@ pub struct BoardView {
     pub points: Vec<BoardPoint>,
 }
 
-/// Why an image does not show a board.
+/// Reason why an image does not show a board.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BoardProblem {
@@ -86,7 +86,7 @@ pub enum BoardProblem {
         /// Id of the marker.
         id: usize,
     },
-    /// Too small a part of the board.
+    /// The visible part of the board is too small.
     #[error("{found} tags of the board found, expected {minimum} or more; show more of the board, in focus")]
     TooFewTags {
         /// Markers found.
