@@ -21,8 +21,8 @@ const SIDEWAYS_COST: f64 = 8.0;
 const HEADING_INSET_RAD: f64 = 0.05;
 
 impl<'s, 'a> TimeEstimate<'s, 'a> {
-    /// Searches from the goal over cells of `side` (m) within a square, at `speed` (m/s). It covers the start and `beyond` (s) more,
-    /// plus as many sixths of the time to the start as that is half seconds; it ends when [`ContactSpace::work`] reaches `limit`.
+    /// Searches from the goal over cells of `side` (m) within a square, at `speed` (m/s). The search covers the start and `beyond` (s)
+    /// more, plus as many sixths of the time to the start as that is half seconds. It ends when [`ContactSpace::work`] reaches `limit`.
     pub async fn new(
         space: &'s mut ContactSpace<'a>,
         goal: &Pose2,
@@ -114,7 +114,7 @@ impl<'s, 'a> TimeEstimate<'s, 'a> {
     }
 }
 
-/// The heading nearest to `heading` inside both gaps, away from their ends where there is space.
+/// The heading nearest to `heading` inside both gaps, away from their ends if space allows.
 fn shared(a: HeadingArc, b: HeadingArc, heading: f64) -> f64 {
     let mut best = (f64::INFINITY, heading);
     let offset = (b.start - a.start).rem_euclid(TAU);
