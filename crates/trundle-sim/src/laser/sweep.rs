@@ -22,7 +22,7 @@ impl Laser {
         Self { config, seed: hash(seed, 0x1A5E) }
     }
 
-    /// Scan number `scan`, ended at `stamp`; `world_from_base(age)` is where the base was `age` s before.
+    /// Scan number `scan`, ended at `stamp`; `world_from_base(age)` is the base's pose `age` s before.
     ///
     /// # Errors
     /// Never for a valid configuration; the type is that of a scan's constructor.
@@ -43,7 +43,7 @@ impl Laser {
         Scan::new(stamp, Vector2::new(c.x, c.y), c.angle_min(), c.increment(), beams)
     }
 
-    /// How long before the scan's stamp beam `i` is measured, s.
+    /// Time between the measurement of beam `i` and the scan's stamp, s.
     fn age(&self, i: usize) -> f64 {
         let c = &self.config;
         let turn = (c.beams - 1 - i) as f64 * c.increment() / std::f64::consts::TAU;
