@@ -1,4 +1,4 @@
-//! Runs of an experiment side by side, until all are done or the user asks to stop.
+//! Parallel runs of an experiment, until all are done or the user interrupts.
 
 use crate::experiment_display::{ExperimentDisplay, RunResult};
 use rayon::prelude::*;
@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use trundle_app::operator::OperatorLink;
 use trundle_app::{AppError, stop};
 
-/// Makes the runs, as many at once as there are threads; the results are in the order of the plans. Where the user asks to
-/// stop, those of the runs that are done. `unit`: what a run is called, as "worlds"; `name_of`: its name on the display.
+/// Executes the runs in parallel, one per thread; the results are in the order of the plans. After an interrupt, the results are those of
+/// the finished runs. `unit`: the plural name of a run, as "worlds"; `name_of`: its name on the display.
 ///
 /// # Errors
 /// The first plan that cannot be carried out; [`AppError::Stopped`] if no run is done.
