@@ -20,5 +20,5 @@ pub use unwrap::MillisUnwrapper;
 use std::sync::Arc;
 use trundle_core::Stamp;
 
-/// The host's clock as drivers are given it: the stamp of now, which never runs backwards.
+/// The host's clock for drivers: the present stamp, which never decreases.
 pub type HostClock = Arc<dyn Fn() -> Stamp + Send + Sync>;

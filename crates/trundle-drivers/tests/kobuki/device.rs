@@ -1,4 +1,4 @@
-//! An emulated base that runs on a thread of its own, with faults.
+//! An emulated base on a separate thread, with faults.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -17,7 +17,7 @@ pub enum Sends {
     Nothing,
     /// Sound packets in pieces of seven bytes, with garbage between.
     PiecesAndGarbage,
-    /// Packets of two bases in turn.
+    /// Packets of two bases alternately.
     TwoBases,
     /// Packets of which every second one lacks a byte.
     LostBytes,
@@ -27,7 +27,7 @@ pub enum Sends {
     OtherDevice,
 }
 
-/// The device as a test sees it.
+/// State of the device for tests.
 pub struct State {
     pub base: EmulatedKobuki,
     pub sensors: KobukiState,

@@ -82,7 +82,8 @@ pub struct Led {
     pub green: bool,
 }
 
-/// All outputs of the base. One command sets them together. By default the four supplies are on, as the base starts, and the rest is off.
+/// All outputs of the base. One command sets all of them. By default the four supplies are on, as at the base's start, and all others are
+/// off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Outputs {
     /// Digital outputs 0 to 3 of the expansion port.

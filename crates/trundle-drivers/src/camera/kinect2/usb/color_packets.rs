@@ -34,7 +34,7 @@ pub struct ColorPacket {
     pub jpeg: Vec<u8>,
 }
 
-/// Finds colour images in bulk transfers. It holds at most one packet.
+/// Finds colour images in bulk transfers. It stores at most one packet.
 #[derive(Debug, Clone, Default)]
 pub struct ColorPackets {
     bytes: Vec<u8>,
@@ -65,7 +65,7 @@ impl ColorPackets {
         Some(ColorPacket { stamp, sequence: footer.sequence, jpeg })
     }
 
-    /// A transfer was lost: the packet that it belongs to is skipped.
+    /// Reports a lost transfer: its packet is skipped.
     pub fn lose(&mut self) {
         self.skip();
     }

@@ -11,11 +11,11 @@
 //! | depth: packed images of 298,496 bytes, each with a footer of 152 bytes; an empty packet between images | [`depth_packets`] | isochronous 0x84, in |
 //! | size of isochronous packets | [`descriptor`] | control |
 //!
-//! With the feature `kinect2-usb`, `camera` drives a device through libusb, which is loaded at run time: `functions` declares its functions,
-//! `libusb` calls them, `device` speaks the protocol, `stream_thread` collects packets, `camera` makes frames.
+//! With the feature `kinect2-usb`, `camera` drives a device through libusb, which is loaded at run time. `functions` declares its
+//! functions, `libusb` calls them, `device` implements the protocol, `stream_thread` collects packets, and `camera` makes frames.
 //!
-//! No maker's document describes the protocol. Source of all of its numbers, unless another is named: \[Freenect2\], read for facts.
-//! Images come mirrored left to right; `camera` turns them. What is assumed: both time counters start together and step by 0.125 ms.
+//! The protocol is not documented by the manufacturer. Unless stated otherwise, its numbers are facts read in \[Freenect2\]. Images come
+//! mirrored left to right; `camera` turns them. Assumption: both time counters start together and count in steps of 0.125 ms.
 
 pub mod answers;
 pub mod calibration;

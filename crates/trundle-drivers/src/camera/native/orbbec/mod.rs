@@ -1,6 +1,6 @@
 //! Orbbec cameras (Gemini 330, Femto, Astra 2) through OrbbecSDK 2.
 //!
-//! Never met a device: loading, version, the empty device list and the errors are tested with version 2.9.3 of the library; streams,
+//! Not tested with a device. Loading, version, the empty device list and the errors are tested with version 2.9.3 of the library; streams,
 //! intrinsics and stamps follow its documentation.
 //!
 //! | module | content |
