@@ -1,10 +1,10 @@
-//! Why a robot cannot join a broker.
+//! Reason why a robot cannot join a broker.
 
 use std::path::PathBuf;
 use thiserror::Error;
 use trundle_app::AppError;
 
-/// Why a robot cannot join a broker. A broker that does not answer is not an error: the robot tries again.
+/// Reason why a robot cannot join a broker. A silent broker is not an error: the robot tries again.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum FleetError {

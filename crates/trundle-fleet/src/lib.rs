@@ -1,7 +1,7 @@
 //! trundle by MQTT: a robot at home and in a fleet, by one connection to a broker.
 //!
-//! [`FleetLink::start`] joins a broker from a thread of its own. It reads views of the run and sends commands by `trundle_app::operator`;
-//! the robot never waits for it, and goes on when the broker is gone.
+//! [`FleetLink::start`] joins a broker on a separate thread. It reads views of the run and sends commands by `trundle_app::operator`; the
+//! robot never waits for it, and continues if the broker is lost.
 //!
 //! | part | what it does |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! Home Assistant's discovery: one message that describes the robot and what it offers.
+//! Home Assistant's discovery: one message with a description of the robot and its entities.
 //!
 //! Source: Home Assistant, "MQTT": discovery of a device; "MQTT vacuum", "MQTT sensor", "MQTT button", "MQTT image", "MQTT select".
 
@@ -86,7 +86,7 @@ fn components(id: &str, topics: &DiscoveryTopics, places: &[String]) -> Map<Stri
             json!({ "platform": "button", "name": title, "command_topic": topics.command, "payload_press": key }),
         );
     }
-    // A component without all but its platform takes an earlier one away.
+    // A component with only its platform removes an earlier one.
     let place = if places.is_empty() { json!({ "platform": "select" }) } else { select(topics, places) };
     if places.is_empty() {
         all.insert("place".to_owned(), place);

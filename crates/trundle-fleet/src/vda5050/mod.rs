@@ -1,8 +1,8 @@
 //! VDA 5050, version 2.1: a robot under a master control.
 //!
-//! [`Vehicle`] takes orders and instant actions and gives commands to the robot, one node at a time. It knows no network and no clock, so
-//! that its tests and the fuzzer need none. Source: VDA 5050, version 2.1, "Interface for the communication between automated guided
-//! vehicles (AGV) and a master control".
+//! [`Vehicle`] accepts orders and instant actions and gives commands to the robot, one node at a time. It uses no network and no clock, so
+//! its tests and the fuzzer need none. Source: VDA 5050, version 2.1, "Interface for the communication between automated guided vehicles
+//! (AGV) and a master control".
 //!
 //! | part | what it does |
 //! |---|---|
