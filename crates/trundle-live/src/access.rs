@@ -37,7 +37,7 @@ impl Tokens {
         Ok(Self { drive: random_token()?, view: random_token()? })
     }
 
-    /// The tokens of a file, which is written with new ones where it does not exist. Links stay valid over restarts.
+    /// The tokens of a file; a missing file is created with new ones. Links are therefore valid after restarts.
     ///
     /// # Errors
     /// When the file cannot be read or written, or holds no tokens.
@@ -87,7 +87,7 @@ impl Tokens {
         }
     }
 
-    /// Permission of a token; `None` for a wrong one. The time does not depend on where it differs.
+    /// Permission of a token; `None` for a wrong one. The computing time is independent of the position of a difference.
     #[must_use]
     pub fn access(&self, token: &str) -> Option<Access> {
         let is = |known: &str| -> Choice { known.as_bytes().ct_eq(token.as_bytes()) };
@@ -121,7 +121,7 @@ fn random_token() -> Result<String, LiveError> {
     Ok(text)
 }
 
-/// A new file that only its owner reads.
+/// A new file that only its owner can read.
 fn create_private(file: &Path) -> std::io::Result<std::fs::File> {
     let mut options = OpenOptions::new();
     options.write(true).create_new(true);

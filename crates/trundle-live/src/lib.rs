@@ -1,7 +1,7 @@
-//! The live page: shows a run in a browser while it goes, and steers it.
+//! The live page: displays a run in a browser, and steers it.
 //!
-//! [`LivePage::start`] serves the page from a thread of its own. The page reads views of the run and sends commands by
-//! `trundle_app::operator`; the robot never waits for it. Without viewers nothing is computed but a short history.
+//! [`LivePage::start`] serves the page on a separate thread. The page reads views of the run and sends commands by `trundle_app::operator`;
+//! the robot never waits for it. Without viewers only a short history is computed.
 //!
 //! | part | what it does |
 //! |---|---|

@@ -1,12 +1,12 @@
-//! How the live page is served.
+//! Options of the live page.
 
 use crate::{LiveAddress, Tokens};
 use trundle_app::operator::MapFolder;
 
-/// How the live page is served.
+/// Options of the live page.
 #[derive(Debug, Clone)]
 pub struct LiveOptions {
-    /// Where.
+    /// Address of the page.
     pub address: LiveAddress,
     /// Permissions to drive and to look.
     pub tokens: Tokens,

@@ -15,7 +15,7 @@ const MAX_CONNECTIONS: usize = 48;
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(5);
 /// Longest head of a request \[bytes\].
 const MAX_HEAD_BYTES: usize = 16 * 1024;
-/// Wait after a refused accept, as where no file descriptor is left.
+/// Pause after a refused accept, for example without free file descriptors.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 
 /// Serves the routes until the task is dropped.
