@@ -1,4 +1,4 @@
-//! Sequences as CDR holds them: bytes in one piece, and fixed arrays of any length.
+//! Sequences in CDR: bytes as one block, and fixed arrays of any length.
 
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeTuple;
