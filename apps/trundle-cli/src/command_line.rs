@@ -79,7 +79,7 @@ pub enum Command {
     /// Stop the base at the end of standard input; for `run`.
     #[command(hide = true)]
     GuardBase,
-    /// The data sets of the experiments: what each is, where it comes from, its licence.
+    /// The data sets of the experiments: description, source, licence.
     Data(DataArgs),
     /// Print the completions of a shell: bash, zsh, fish, elvish, powershell.
     Completions(CompletionsArgs),

@@ -1,4 +1,4 @@
-//! The log: on standard error as far as `-v`, `-vv` or `TRUNDLE_LOG` ask for, and as `log.txt` in an output folder.
+//! The log: on standard error at the level of `-v`, `-vv` or `TRUNDLE_LOG`, and as `log.txt` in an output folder.
 
 use crate::output_args;
 use std::fmt;
@@ -39,7 +39,7 @@ pub fn start(verbosity: u8) -> Result<(), AppError> {
         )),
     };
     let lines = Arc::clone(LINES.get_or_init(Arc::default));
-    // A standard error without a reader is not an error of the run. The default prints it there, and panics.
+    // A standard error without a reader is not an error of the run. By default, tracing would print such an error there, and panic.
     let terminal = tracing_subscriber::fmt::layer()
         .event_format(PlainLine("trundle: "))
         .with_writer(io::stderr)

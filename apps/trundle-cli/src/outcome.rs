@@ -1,11 +1,11 @@
-//! The ending of a command: its exit code, and a sentence if it is not as asked for.
+//! The end of a command: its exit code, and a sentence if the command missed its aim.
 
 use crate::console;
 use std::path::PathBuf;
 use trundle::app::{AppError, stop};
 use trundle::io::IoError;
 
-/// Whether a command that ran to its end reached its aim.
+/// Whether a completed command reached its aim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
     /// Exit code 0.
@@ -29,7 +29,7 @@ impl Outcome {
 
 /// The run missed its aim.
 const CODE_MISSED: u8 = 1;
-/// The input or the place to write to has to change first; nothing was written.
+/// The input or the output path must change; no file was written.
 const CODE_BAD_INPUT: u8 = 2;
 /// The run worked, but its results could not all be written.
 const CODE_INCOMPLETE: u8 = 3;
@@ -43,7 +43,7 @@ pub const EXIT_CODES: &str = "Exit codes:\n  \
     130, 143  stopped by Ctrl-C or SIGTERM; what was done until then is written\n\n\
     A folder of results is replaced only where trundle made it, and the last run is kept as NAME.1.";
 
-/// The exit code of a command that writes into `folders`; says on the terminal why it is not 0.
+/// The exit code of a command that writes into `folders`; prints the reason if it is not 0.
 pub fn end(result: Result<Outcome, AppError>, folders: &[PathBuf]) -> u8 {
     let result = match console::print_failure() {
         Some(error) if result.is_ok() => Err(AppError::Io(IoError::unprinted(error))),
