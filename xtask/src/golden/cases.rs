@@ -2,7 +2,7 @@
 
 use super::digest::Quantity;
 
-/// One case: commands of `trundle` in order, and what of their outputs is compared.
+/// A case: commands of `trundle` in order, and the compared parts of their outputs.
 pub struct Case {
     /// The case's name, first part of each of its keys in the golden file.
     pub name: &'static str,
