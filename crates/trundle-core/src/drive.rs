@@ -57,7 +57,7 @@ impl DifferentialDrive {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DriveLimits {
-    /// Maximum speed of either wheel, m/s: |v| + wheelbase / 2 |omega| is limited to it.
+    /// Highest speed of either wheel's rim, m/s: |v| + wheelbase / 2 |omega| stays below it.
     pub wheel_speed: f64,
     /// Highest forward speed, m/s.
     pub v: f64,
