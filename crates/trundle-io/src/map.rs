@@ -50,8 +50,8 @@ pub fn read_map(yaml_path: &Path) -> Result<OccupancyGrid, IoError> {
 /// Reads a map from its YAML file and the picture named in it: a PGM, PNG or BMP; colours are averaged to grey.
 ///
 /// A pixel's occupancy is `(maxval - v) / maxval`, or `v / maxval` with `negate`. A pixel above `occupied_thresh` is occupied, below
-/// `free_thresh` free, otherwise unknown. A pixel that is not opaque is unknown. In mode `raw` the occupancy is `v / 100`, unknown above
-/// 100. A picture with a yaw is resampled along the map's axes: a cell that touches an occupied one is occupied, so walls may become a cell
+/// `free_thresh` free, otherwise unknown. A pixel that is not opaque is unknown. In mode `raw` the occupancy is `v / 100`; values above 100
+/// are unknown. A picture with a yaw is resampled along the map's axes: a cell that touches an occupied one is occupied, so walls may become a cell
 /// thicker. A `free_thresh` above `map_saver`'s grey of unknown cells gives a warning, because these cells become free.
 ///
 /// # Errors

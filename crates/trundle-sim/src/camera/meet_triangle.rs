@@ -10,8 +10,8 @@ use crate::world::{BLOCK, Block};
 /// numbers. `floor` is the smallest inverse depth in the tile. Returns whether any pixel may have changed.
 ///
 /// Triangle scan conversion in homogeneous coordinates (Olano and Greer 1997), with corners a, b, c relative to the camera. The ray d is on
-/// the inner side of edge ab if d . (a x b) has the sign of the volume a . (b x c). The inverse depth is d . n / volume, n = a x b + b x c
-/// + c x a. All are affine functions of the pixel, without division or clipping. The two triangles at an edge have exactly opposite
+/// the inner side of edge ab if d . (a x b) has the sign of the volume a . (b x c). The inverse depth is d . n / volume, where
+/// n = a x b + b x c + c x a. All are affine functions of the pixel, without division or clipping. The two triangles at an edge have exactly opposite
 /// functions of the edge: no pixel between them is lost.
 #[inline(always)]
 pub(super) fn meet_block(
