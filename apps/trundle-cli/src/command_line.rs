@@ -71,7 +71,7 @@ pub enum Command {
     Vocabulary(VocabularyArgs),
     /// Print the whole robot file with its defaults, or check one.
     Config(ConfigArgs),
-    /// List the devices that are plugged in, and what is missing.
+    /// List the connected devices, and the missing ones.
     Devices(DevicesArgs),
     /// Write the frames of a camera to standard output; `run` starts it for cameras whose library may crash.
     #[command(hide = true)]

@@ -69,7 +69,7 @@ pub struct StepDisplay {
 }
 
 impl StepDisplay {
-    /// A display that appears when the work begins. Nothing appears if `quiet`.
+    /// A display that appears when the work begins. With `quiet` it never appears.
     pub fn new(quiet: bool) -> Self {
         Self { bar: hidden_if(quiet, ProgressBar::new_spinner()) }
     }

@@ -58,7 +58,7 @@ pub struct RunsArgs {
     /// Seeds of noise and room: 1 to N.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub seeds: u32,
-    /// Only runs whose name and seed ("lights out, seed 2") hold this.
+    /// Only runs whose name and seed ("lights out, seed 2") contain this text.
     #[arg(long, value_name = "WORD")]
     pub only: Option<String>,
     /// The robot's settings.

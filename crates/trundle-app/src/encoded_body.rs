@@ -1,4 +1,4 @@
-//! A body whose events arrive encoded, as a recording holds them: any [`RobotBody`], a recording, or live hardware.
+//! A body whose events arrive in the encoding of a recording: any [`RobotBody`], a recording, or live hardware.
 
 use crate::{AppError, operator::OperatorRequest};
 use trundle_core::{RobotBody, Twist2};
@@ -26,7 +26,7 @@ pub trait EncodedBody {
     /// When a sensor, the connection or the recording failed for good.
     fn next_input(&mut self) -> Result<Option<RunInput>, AppError>;
 
-    /// Asks the base to move with `twist` until the next command.
+    /// Commands the base to move with `twist` until the next command.
     ///
     /// # Errors
     /// When the base cannot be reached or refuses the command.

@@ -35,8 +35,8 @@ pub fn guard_base() -> Result<(), AppError> {
     ))
 }
 
-/// Starts base and camera as the body of a run; `output` is the camera that the robot works with. Events go to `events`, their stamps count
-/// from `origin`. `observer` is called with each of them.
+/// Starts base and camera as the body of a run; `output` is the camera model used by the robot. Events go to `events`, their stamps count
+/// from `origin`. `observer` is called with each event.
 ///
 /// # Errors
 /// When the base does not answer, or the system refuses a thread.

@@ -32,7 +32,7 @@ use trundle_runtime::real_time::{InboxSender, LoopTimerConfig, ThreadPlacement, 
 
 /// Image rate of a run in real time \[Hz\]. Source: ours, the rate of a Kinect.
 pub const CAMERA_HZ: f64 = 30.0;
-/// Time without a command after which the base stops by itself \[s\]. Source: ours.
+/// Time without a command after which the base stops automatically \[s\]. Source: ours.
 pub const COMMAND_TIMEOUT_S: f64 = 0.2;
 /// Niceness of the worker threads above that of control. Source: ours.
 const WORKER_NICENESS: i32 = 5;

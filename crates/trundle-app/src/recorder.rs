@@ -82,7 +82,7 @@ impl RunRecorder {
         Ok(Self::of(Sink::Inline(Box::new(file))))
     }
 
-    /// A recording into `folder`, written by a thread of its own at `place`. Nothing is recorded if `content` is [`RecordingContent::None`].
+    /// A recording into `folder`, written by its own thread at `place`. With [`RecordingContent::None`] no data is recorded.
     ///
     /// # Errors
     /// When the file cannot be created or the thread cannot be started.

@@ -8,7 +8,7 @@ use trundle_core::PinholeCamera;
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum RecordingContent {
-    /// Nothing is recorded.
+    /// No recording.
     None,
     /// Everything but images: wheels, gyro, bumper, scans, truth, twists, poses and trajectories. A replay is impossible.
     Events,

@@ -29,7 +29,7 @@ impl RunMark {
     pub const SCHEMA: &str = "trundle.Mark";
 }
 
-/// A mark as it is recorded.
+/// A mark in the format of the recording.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct RunMarkMessage {
     /// The mark.

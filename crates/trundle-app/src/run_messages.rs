@@ -24,7 +24,7 @@ pub(crate) struct RunMessages {
 }
 
 impl RunMessages {
-    /// Records what the step at `stamp` changed.
+    /// Records the changes of the step at `stamp`.
     pub(crate) fn record(
         &mut self,
         stamp: Stamp,

@@ -75,7 +75,7 @@ impl SequenceInput {
     /// Opens a folder, a bag or a recording. Warnings are logged.
     ///
     /// # Errors
-    /// When the path is none of these, cannot be read, holds no images, or its camera is unknown.
+    /// When the path is none of these, cannot be read, contains no images, or its camera is unknown.
     pub fn open(options: &SequenceOptions<'_>) -> Result<Self, AppError> {
         match FileKind::of(options.path)? {
             FileKind::TrundleRecording => {
@@ -235,7 +235,7 @@ impl SequenceInput {
         }
     }
 
-    /// Mount of the camera on the robot, if the input holds it: the pose of a level first camera.
+    /// Mount of the camera on the robot, the pose of a level first camera; `None` if the input does not contain it.
     #[must_use]
     pub fn level_from_first_camera(&self) -> Option<Pose3> {
         match &self.source {

@@ -154,7 +154,7 @@ impl<'s> RunSession<'s> {
     /// Applies the results of running jobs in a fixed order, and closes the recording.
     ///
     /// # Errors
-    /// None today; a body that fails at the end may be reported here.
+    /// None at present; a body that fails at the end may be reported here.
     pub fn finish(mut self, body: &mut dyn EncodedBody) -> Result<FinishedRun, AppError> {
         if self.setup.real_time {
             self.record_mark(RunMark::End);

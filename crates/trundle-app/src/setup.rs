@@ -48,10 +48,10 @@ pub struct RunSetup {
     /// Content of the recording.
     #[serde(default, skip_serializing_if = "RecordingContent::is_all")]
     pub recording: RecordingContent,
-    /// The checkpoint that the robot resumes from, as base64 of its bytes. None: the robot starts with an empty map.
+    /// The checkpoint of a resumed robot, as base64 of its bytes; `None` starts with an empty map.
     #[serde(default, rename = "woken", alias = "checkpoint", skip_serializing_if = "Option::is_none")]
     pub checkpoint: Option<String>,
-    /// The vocabulary by which places are recognised, as base64 of its bytes. None: the built-in one.
+    /// The vocabulary for place recognition, as base64 of its bytes; `None` is the built-in one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub vocabulary: Option<String>,
     /// Zones and named places of the map; `None` uses those of the checkpoint.

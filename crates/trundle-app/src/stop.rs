@@ -174,7 +174,7 @@ fn refused(error: std::io::Error) -> AppError {
     AppError::Environment(format!("cannot listen for Ctrl-C: {error}"))
 }
 
-/// Elsewhere Ctrl-C ends the program at once.
+/// On other systems Ctrl-C ends the program immediately.
 #[cfg(not(unix))]
 pub fn listen(_abandon: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppError> {
     Ok(())
@@ -186,7 +186,7 @@ pub fn ignore() -> Result<(), AppError> {
     Ok(())
 }
 
-/// Elsewhere Ctrl-C ends the program at once.
+/// On other systems Ctrl-C ends the program immediately.
 #[cfg(not(unix))]
 pub fn end_at_once(_prepare: impl Fn(StopSignal) -> bool + Send + 'static) -> Result<(), AppError> {
     Ok(())

@@ -13,7 +13,7 @@ pub fn depth_within(corners: &[Vector2], point: Vector2) -> f64 {
     sides(corners).map(to_side).fold(f64::INFINITY, f64::min)
 }
 
-/// Centre and radius of the largest disc in a convex polygon. The depth is concave: a grid search about the maximum, refined, finds it.
+/// Centre and radius of the largest disc in a convex polygon. The depth is concave: a grid search around the maximum, refined, finds it.
 pub fn inscribed_disc(corners: &[Vector2]) -> (Vector2, f64) {
     const ROUNDS: usize = 12;
     const SAMPLES: i32 = 4;

@@ -41,7 +41,7 @@ pub(crate) struct Edge {
     /// Unit, outward.
     pub normal: Vector2,
     pub normal_bearing: f64,
-    /// The core lies where `normal . x <= offset`.
+    /// The core is the set `normal . x <= offset`.
     pub offset: f64,
     /// Length, m.
     pub length: f64,

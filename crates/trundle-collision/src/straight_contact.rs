@@ -69,7 +69,7 @@ fn parallel_y(hull: &RoundedHull, segment: &Segment, sign: f64) -> Option<f64> {
     foremost.map(|corner| corner.at.y + hull.radius * normal.y)
 }
 
-/// The x of a segment at `y`; of its first end when it runs along x.
+/// The x of a segment at `y`; for a segment along x, that of its first end.
 fn x_at(segment: &Segment, y: f64) -> f64 {
     let rise = segment.b.y - segment.a.y;
     if rise == 0.0 {

@@ -80,7 +80,7 @@ pub trait RobotBody {
     /// When a sensor or the connection to it failed permanently.
     fn next_event(&mut self) -> Result<Option<SensorEvent>, Self::Error>;
 
-    /// Asks the base to move with `twist` from now on, until the next command.
+    /// Commands the base to move with `twist` until the next command.
     ///
     /// # Errors
     /// When the base cannot be reached.

@@ -73,7 +73,7 @@ impl TryFrom<Unchecked> for PinholeCamera {
 /// Largest number of columns or rows. Larger numbers are refused as typing errors, for which memory would not suffice.
 const MOST_PIXELS: usize = 16_384;
 
-/// Longest readout time of a camera: 0.05 s. A longer one is refused, since no colour camera of a robot takes longer. Source: ours.
+/// Longest readout time of a camera: 0.05 s. A longer one is refused: no colour camera of a robot takes longer. Source: ours.
 const MAX_READOUT_S: f64 = 0.05;
 
 impl PinholeCamera {
@@ -147,7 +147,7 @@ impl PinholeCamera {
             .expect("invariant: the preset is valid")
     }
 
-    /// Time from the first to the last row of an image, s: a rolling shutter; 0 if all rows are taken at once.
+    /// Time from the first to the last row of an image, s: a rolling shutter; 0 if all rows are taken simultaneously.
     pub fn readout(&self) -> f64 {
         self.readout
     }

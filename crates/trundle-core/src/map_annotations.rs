@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 /// Largest number of zones and places of a map. Source: ours; a floor of a hotel has 100 rooms.
 const MAX_ANNOTATIONS: usize = 400;
-/// Largest number of corners of all zones together. A recording holds each edition whole. Source: ours; 100 kB.
+/// Largest number of corners of all zones together. Each change is recorded as a whole list. Source: ours; 100 kB.
 const MAX_CORNERS_OF_MAP: usize = 4000;
 
 /// Zones and named places of a map, map frame.

@@ -70,7 +70,7 @@ const KINDS: [(&str, &str); 15] = [
     ("sequence", "a list"),
 ];
 
-/// The problem that a parser of TOML, or serde behind it, found in `text` at the byte `at`.
+/// The problem found in `text` at the byte `at` by a TOML parser, or by serde after it.
 #[must_use]
 pub fn toml_problem(text: &str, at: Option<usize>, message: &str) -> TomlProblem {
     let before = at.and_then(|at| text.get(..at)).unwrap_or_default();
@@ -120,7 +120,7 @@ fn of_key(message: &str) -> Option<String> {
     name.map(|name| format!("the key {name} is missing"))
 }
 
-/// Messages of the parser about the form of a line.
+/// Messages of the parser about the syntax of a line.
 fn of_form(content: &str, message: &str) -> Option<String> {
     let (_, words) = FORM_FAULTS.iter().find(|(mark, _)| message.contains(mark))?;
     Some(format!("'{}': {words}", excerpt(content)))

@@ -60,7 +60,7 @@ impl<'a> MarginSelection<'a> {
             quick = self.one_or_two(self.least).await;
         }
         let Some(quick) = quick else {
-            // A proof for the smallest margin holds for all.
+            // A proof for the smallest margin is valid for all.
             let never = min_time::never(&self.query, &self.space(self.least), self.effort).await;
             return match never {
                 Some(LegOutcome::Disconnected(certificate, by)) => {

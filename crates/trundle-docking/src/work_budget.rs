@@ -1,7 +1,7 @@
 //! Counted work, done in parts.
 //!
 //! Problem: a search of some tens of milliseconds does not fit into a control step of twenty. Idea: the search is a future that yields when
-//! it has used its grant, and continues with the next grant. Counted work alone decides the places of yields: the answer and the number of
+//! its grant is used up, and continues with the next grant. Counted work alone decides the places of yields: the answer and the number of
 //! grants are equal on every machine.
 
 use std::fmt;
@@ -25,7 +25,7 @@ impl WorkBudget {
         Arc::new(Self { work: AtomicU64::new(0), granted: AtomicU64::new(u64::MAX), most })
     }
 
-    /// A budget that yields at once, until work is granted.
+    /// A budget that yields immediately, until work is granted.
     pub fn rationed(most: u64) -> Arc<Self> {
         Arc::new(Self { work: AtomicU64::new(0), granted: AtomicU64::new(0), most })
     }

@@ -22,7 +22,7 @@ pub(crate) fn small_adjoint(tangent: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -theta, y, theta, 0.0, -x, 0.0, 0.0, 0.0)
 }
 
-/// Angle below which series replace the closed forms, rad. Source: ours; their error there is below 1e-12.
+/// Angle below which series replace the closed forms, rad. Source: ours; their error below it is less than 1e-12.
 const MAX_SERIES_ANGLE_RAD: f64 = 1e-3;
 
 /// Right Jacobian of SE(2): `exp(a + b) = exp(a) exp(J b)` to first order in b. Closed form by ad^3 = -theta^2 ad.

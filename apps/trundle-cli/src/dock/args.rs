@@ -46,7 +46,7 @@ pub struct DockArgs {
     /// Treat unknown cells of the map, and the space outside it, as free instead of blocked. With a map only.
     #[arg(long)]
     pub through_unknown: bool,
-    /// Kept from every obstacle, m [default: the robot file's docking.planner.margin, which is 0.05; without a robot file 0.01]
+    /// Margin from every obstacle, m [default: the robot file's docking.planner.margin, which is 0.05; without a robot file 0.01]
     #[arg(long, value_name = "M", value_parser = NumberArg::from_zero("m"), allow_negative_numbers = true)]
     pub margin: Option<f64>,
     /// The robot: its footprint, and the settings of [docking.planner], with which the robot itself plans.

@@ -45,7 +45,7 @@ pub struct Ros2Args {
     /// The tasks of a mission file.
     #[arg(long, value_name = "FILE")]
     pub mission: Option<PathBuf>,
-    /// Go on after the mission and wait for goals.
+    /// Continue after the mission and wait for goals.
     #[arg(long)]
     pub stay: bool,
     /// Longest wait for the robot's topics, s

@@ -148,7 +148,7 @@ fn a_command_that_has_nothing_yet_ends_at_once() {
     assert_eq!(fs::read_dir(scratch.path()).unwrap().count(), 0);
 }
 
-/// A terminal that is closed, or a pipe whose reader has ended, takes no message of a program that a signal ends.
+/// A closed terminal, or a pipe without a reader, receives no message of a program ended by a signal.
 #[test]
 fn a_signal_ends_a_command_whose_standard_error_has_no_reader() {
     let scratch = tempfile::tempdir().unwrap();

@@ -159,7 +159,7 @@ impl Browser {
         panic!("no such {kind} before the end")
     }
 
-    /// Asks; the refusal.
+    /// Sends a request; returns the refusal.
     fn refusal(&mut self, mut request: Value) -> String {
         self.last_id += 1;
         request["id"] = self.last_id.into();
@@ -175,7 +175,7 @@ impl Browser {
     }
 }
 
-/// Files of a folder that hold no time of the wall clock, with their bytes.
+/// Files of a folder without wall-clock times, with their bytes.
 fn files(folder: &Path, names: &[&str]) -> Vec<(PathBuf, Vec<u8>)> {
     names.iter().map(|name| (PathBuf::from(name), std::fs::read(folder.join(name)).unwrap())).collect()
 }

@@ -65,7 +65,7 @@ pub fn check_hardware(request: CheckRequest<'_>) -> Result<HardwareReport, AppEr
     let sink = Arc::clone(&log);
     let on_event = move |event| sink.lock().unwrap_or_else(PoisonError::into_inner).on_event(&event);
     let drivers = Drivers::start(base, camera, output, origin, on_event)?;
-    // The probe of the base takes a part of the time since the origin.
+    // The probe of the base uses a part of the time since the origin.
     let start = Instant::now();
     let is_over = || stop::is_requested(|| format!("{:.1} s", start.elapsed().as_secs_f64()));
     while start.elapsed().as_secs_f64() < seconds && !is_over() {

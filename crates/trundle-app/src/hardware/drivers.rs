@@ -91,7 +91,7 @@ impl OpenCamera {
         }
     }
 
-    /// Description of the camera by itself.
+    /// The camera's own description.
     #[must_use]
     pub fn info(&self) -> &CameraInfo {
         self.camera.info()

@@ -94,7 +94,7 @@ pub(super) fn better_mount(log: &LaserLog) -> Option<LaserMount> {
     (error < MAX_ERROR_SHARE * taken).then(|| best.applied_to(log.mount))
 }
 
-/// Another reading of a scan's angles: about the laser, mirrored at the base's x axis first, then turned to the left.
+/// Another interpretation of a scan's angles: mirrored at the base's x axis, then rotated to the left, around the laser.
 #[derive(Debug, Clone, Copy)]
 struct Reading {
     is_mirrored: bool,

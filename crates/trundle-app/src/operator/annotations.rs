@@ -17,8 +17,8 @@ impl Operator {
     /// Changes zones or places: sends them to the robot, and writes the file that keeps them.
     ///
     /// # Errors
-    /// When the change cannot be accepted, the run takes no command, or the file cannot be written. In the last case the change counts
-    /// until the run ends.
+    /// When the change is invalid, the run accepts no command, or the file cannot be written. In the last case the change is valid until
+    /// the run ends.
     pub fn edit_annotations(&self, edit: &AnnotationEdit) -> Result<(), OperatorError> {
         // The file is written without the lock of the store, for which the run may wait.
         let _one_at_a_time = self.editing();

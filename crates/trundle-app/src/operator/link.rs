@@ -134,7 +134,7 @@ impl Operator {
 }
 
 impl Operator {
-    /// The end of this link for another run that is shown and takes no commands.
+    /// The end of this link for another displayed run without commands.
     #[must_use]
     pub fn link_of_shown_run(&self) -> OperatorLink {
         OperatorLink::new(sync_channel(0).1, Arc::clone(&self.shared))
@@ -231,7 +231,7 @@ impl OperatorLink {
         }
     }
 
-    /// Records what the request `id` replaced. Zones and places belong to the map: a robot on another map has none, and the file of the old
+    /// Records the effect of the request `id`. Zones and places belong to the map: a robot on another map has none, and the file of the old
     /// ones does not change.
     pub(crate) fn note_obeyed(&mut self, id: u64, report: &StepReport) {
         if report.mission_replaced {

@@ -248,7 +248,7 @@ mod tests {
             std::fs::write(file(&format!("{name}.yaml")), map_yaml(&grid, image)).unwrap();
         }
         std::fs::write(file("wide.pgm"), "P5 30000 20000 255\n").unwrap();
-        // A file with a hole takes no place on the disk.
+        // A sparse file uses no space on the disk.
         for name in ["large.pgm", "long.yaml"] {
             std::fs::File::create(file(name)).unwrap().set_len(256 << 20).unwrap();
         }

@@ -1,4 +1,4 @@
-//! The plan in pictures, and the page that holds them.
+//! The plan in pictures, and their page.
 
 use super::goal_refusal::{GoalRefusal, MovedGoal};
 use super::numbers::{PlanTimes, curves, plan_rows, points};
@@ -10,7 +10,7 @@ use trundle_viz::{
     speed_charts,
 };
 
-/// `plan.png`, `field.png`, `corridors.png` and the page that holds them and the speeds.
+/// `plan.png`, `field.png`, `corridors.png` and the page with them and the speeds.
 pub struct Pictures {
     pub plan: Vec<u8>,
     pub field: Vec<u8>,

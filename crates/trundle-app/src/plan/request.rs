@@ -19,7 +19,7 @@ pub struct PlanFiles {
     pub keep_out: Option<PathBuf>,
     /// A speed mask, as Nav2's.
     pub speed_mask: Option<PathBuf>,
-    /// A way-point graph, GeoJSON as Nav2's route server has it.
+    /// A way-point graph, GeoJSON in the format of Nav2's route server.
     pub graph: Option<PathBuf>,
 }
 
@@ -154,7 +154,7 @@ impl PlanRequest {
     /// The plan through all goals.
     ///
     /// # Errors
-    /// Which goal has none.
+    /// The first goal without a plan, and the reason.
     pub fn plan(&mut self) -> Result<MultiGoalPlan, GoalRefusal> {
         let goals: Vec<Pose2> = self.goals.iter().map(|goal| goal.pose).collect();
         self.plan_through(&goals).map_err(|(goal, why)| {

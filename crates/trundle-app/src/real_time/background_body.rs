@@ -1,4 +1,4 @@
-//! A body that runs in threads of its own and sends its events into the run's inbox.
+//! A body that runs in its own threads and sends its events into the run's inbox.
 
 use super::MemoryUsage;
 use crate::AppError;
@@ -18,7 +18,7 @@ pub struct TimedEvent {
     pub at: Instant,
 }
 
-/// A body that runs in threads of its own and sends its events into the inbox given at its start.
+/// A body that runs in its own threads and sends its events into the inbox given at its start.
 pub trait BackgroundBody {
     /// Sender for commands to the body.
     fn commands(&self) -> Sender<Twist2>;

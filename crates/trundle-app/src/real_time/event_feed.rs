@@ -1,4 +1,4 @@
-//! The way of events from drivers into a run.
+//! The path of events from drivers into a run.
 
 use super::{BodyTiming, MemoryUsage, TimedEvent};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -78,13 +78,13 @@ impl RecordedRun {
         self.images
     }
 
-    /// `odom_from_base` by wheels and gyro; `None` if the recording holds no wheels.
+    /// `odom_from_base` by wheels and gyro; `None` for a recording without wheels.
     #[must_use]
     pub fn odometry(&self) -> Option<&[(Stamp, Pose2)]> {
         (!self.odometry.is_empty()).then_some(&self.odometry)
     }
 
-    /// `world_from_camera`; `None` if the recording holds no truth.
+    /// `world_from_camera`; `None` for a recording without truth.
     #[must_use]
     pub fn ground_truth(&self) -> Option<&[(Stamp, Pose3)]> {
         (!self.camera_truth.is_empty()).then_some(&self.camera_truth)

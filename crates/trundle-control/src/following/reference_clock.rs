@@ -22,7 +22,7 @@ impl ReferenceClock {
         Self { trajectory, time: 0.0, rate: 1.0, arrival_time }
     }
 
-    /// Advances the reference by `dt` seconds, or by fewer when the robot is behind it.
+    /// Advances the reference by `dt` seconds, or by less if the robot is behind the reference.
     pub(super) fn advance(&mut self, dt: f64, pose: Pose2, config: &FollowerConfig) {
         let error = TrackingError::between(pose, self.trajectory.at(self.time).pose);
         self.rate = clock_rate(error, self.trajectory.at(self.time).twist, config);
@@ -45,7 +45,7 @@ impl ReferenceClock {
         TrajectoryPoint { twist: scaled(point.twist, self.rate), ..point }
     }
 
-    /// The reference for the tracking law: the present pose with the twist `lead` s later, when the command takes effect.
+    /// The reference for the tracking law: the present pose with the twist `lead` s later, at which the command takes effect.
     pub(super) fn reference_ahead(&self, lead: f64) -> TrajectoryPoint {
         let point = self.trajectory.at(self.time);
         let then = self.trajectory.at(self.time + lead * self.rate);

@@ -61,7 +61,7 @@ pub enum MotionSense {
     Wheels,
     /// The wheels are commanded while the encoders count nothing; images or scans measure the motion, with a delay.
     Sight,
-    /// Nothing does.
+    /// No sensor measures the motion.
     Nothing,
 }
 

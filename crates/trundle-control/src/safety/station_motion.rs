@@ -4,7 +4,7 @@ use trundle_core::{Pose2, Twist2, Vector2};
 
 /// Highest speed of a permitted motion \[m/s\]. Source: ours.
 const MAX_SPEED_M_S: f64 = 0.1;
-/// Highest turn rate of a permitted motion \[rad/s\]: it holds the heading and does not turn. Source: ours.
+/// Highest turn rate of a permitted motion \[rad/s\]: enough to keep the heading, too little for a turn. Source: ours.
 const MAX_TURN_RATE_RAD_S: f64 = 0.12;
 /// Outline of a station: depth and half of the width \[m\]. Source: ours, the size of the Kobuki's station.
 const STATION_DEPTH_M: f64 = 0.1;

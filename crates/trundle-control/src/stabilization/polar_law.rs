@@ -1,4 +1,4 @@
-//! The law in polar coordinates about the goal.
+//! The law in polar coordinates around the goal.
 
 use crate::stabilization::stabilizer_config::StabilizerConfig;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -14,7 +14,7 @@ pub(super) enum Gear {
 /// Angle beyond abeam at which the gear changes, rad. Larger: fewer gear changes, longer detours. Source: ours.
 const GEAR_HYSTERESIS_RAD: f64 = 0.3;
 
-/// A pose in polar coordinates about the goal; for driving backward both headings are turned by pi.
+/// A pose in polar coordinates around the goal; for driving backward both headings are rotated by pi.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Polar {
     /// rho, m.

@@ -28,7 +28,7 @@ pub enum StabilizerPhase {
     Approaching,
     /// Turns on the spot to the heading.
     Turning,
-    /// Stands within the tolerances.
+    /// The robot is at rest within the tolerances.
     Settled,
 }
 

@@ -108,7 +108,7 @@ impl Flood {
     }
 }
 
-/// Marks a node; returns whether it was marked already.
+/// Marks a node; returns whether it was already marked.
 fn mark(seen: &mut Vec<u8>, node: Node, by: u8) -> bool {
     if seen.len() <= node.gap as usize {
         seen.resize(node.gap as usize + 1, 0);

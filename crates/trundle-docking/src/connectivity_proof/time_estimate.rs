@@ -63,7 +63,7 @@ impl<'s, 'a> TimeEstimate<'s, 'a> {
         estimate
     }
 
-    /// Estimated time from a pose, s; infinite when it is not known to be connected with the goal.
+    /// Estimated time from a pose, s; infinite without a known connection to the goal.
     pub fn seconds(&mut self, pose: &Pose2) -> f64 {
         let node = self.headings.node_near(pose);
         node.and_then(|n| self.seconds.get(n.gap as usize)).map_or(f64::INFINITY, |&s| f64::from(s))

@@ -13,9 +13,9 @@ pub enum Decision {
     Settled,
     /// Carry out these motions.
     Move(Vec<Motion>),
-    /// Nothing was found: move away, and start again.
+    /// No motion was found: move away, and start again.
     Recover(Motion),
-    /// Nothing was found, and no recovery move is free.
+    /// No motion was found, and no recovery move is free.
     Stuck,
 }
 

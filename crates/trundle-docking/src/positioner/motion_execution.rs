@@ -60,7 +60,7 @@ impl MotionExecution {
             }
         };
         let whole = self.motion.amount();
-        // The rest of the motion when the command takes effect.
+        // The remaining motion at the time when the command takes effect.
         let left = (whole - done) * whole.signum() - self.rate.abs() * config.delay;
         if left <= 0.0 {
             return Command::Done;

@@ -91,7 +91,7 @@ impl MotionPlanner {
         asked.min(self.config.max_margin).max(self.planner.config().margin)
     }
 
-    /// The first motion of an accepted manoeuvre. An empty manoeuvre gives an empty motion: it ends at once, and the pose is measured
+    /// The first motion of an accepted manoeuvre. An empty manoeuvre gives an empty motion: it ends immediately, and the pose is measured
     /// again.
     pub(super) fn taken(&mut self, manoeuvre: Manoeuvre) -> Motion {
         let first = manoeuvre.steps().first().map(|step| step.motion);
@@ -99,8 +99,8 @@ impl MotionPlanner {
         first.unwrap_or(Motion::Turn(0.0))
     }
 
-    /// One or two motions that end close enough, with the margin; near the goal, where the noise of the pose is as large as the error,
-    /// without a margin.
+    /// One or two motions that end close enough, with the margin; without a margin near the goal, because the noise of the pose is as large
+    /// as the error there.
     fn nearly_there(&self, input: &PositionerInput<'_>, pose: &Pose2) -> Option<Manoeuvre> {
         let limits = self.planner.config().limits;
         let (tolerance, part) = (self.tolerance(), self.config.aim);

@@ -25,7 +25,7 @@ pub enum LegOutcome {
     Found(Timed),
     /// No motion of any kind exists, or none at the requested resolution; with the blocking obstacle.
     Disconnected(Certificate, Option<Blocker>),
-    /// Nothing was found before this limit, though start and goal are connected as far as the cells show.
+    /// No manoeuvre was found before this limit, although the cells connect start and goal.
     Nothing(SearchLimit),
 }
 

@@ -88,7 +88,7 @@ fn a_corridor_too_narrow_to_turn_is_certified() {
     );
 }
 
-/// A wall with ends: no way round within the first reach, one in the wider look.
+/// A wall with ends: no path around it within the first reach, but one in the extended search.
 #[test]
 fn a_path_around_a_wall_is_found_farther_off() {
     let wall = ObstacleScene::new(&[Obstacle::Polygon(

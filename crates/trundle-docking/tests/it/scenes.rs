@@ -14,7 +14,7 @@ fn obstacles(rng: &mut ChaCha8Rng) -> Vec<Obstacle> {
     (0..rng.random_range(1..6)).map(|_| obstacle(rng)).collect()
 }
 
-/// Whether a polygon among the obstacles holds a point.
+/// Whether a polygon among the obstacles contains a point.
 fn holds(obstacles: &[Obstacle], p: Vector2) -> bool {
     obstacles.iter().any(|obstacle| match obstacle {
         Obstacle::Polygon(corners) => (0..corners.len()).all(|i| {

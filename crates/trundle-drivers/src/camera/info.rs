@@ -1,11 +1,11 @@
-//! Description of a camera by itself.
+//! A camera's own description.
 
 use super::PixelFormat;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use trundle_core::{PinholeCamera, Pose3};
 
-/// Description of a camera by itself.
+/// A camera's own description.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraInfo {
     /// Name of the model.

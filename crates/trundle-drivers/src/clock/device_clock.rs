@@ -24,8 +24,8 @@ use trundle_core::Stamp;
 const BIN_S: f64 = 1.0;
 /// Span of packets below which the drift counts as zero: 10 s. Source: ours; 100 ppm over 10 s are 1 ms.
 const MIN_DRIFT_SPAN_S: f64 = 10.0;
-/// Time of arrival over which packets are beyond the largest delay when the device's clock jumped: 0.3 s. Source: ours; the backlog of a
-/// stalled host arrives at once.
+/// Time of arrival over which packets exceed the largest delay after a jump of the device's clock: 0.3 s. Source: ours; the backlog of a
+/// stalled host arrives in one burst.
 const MIN_LATE_SPAN_S: f64 = 0.3;
 /// Largest spread of the offsets of these packets: 0.1 s. Source: ours; the offsets of a backlog shrink from packet to packet.
 const MAX_JUMP_SPREAD_S: f64 = 0.1;

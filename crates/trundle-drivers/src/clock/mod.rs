@@ -6,7 +6,7 @@
 //! | [`device_clock`] | device stamps on the host's clock |
 //! | [`reorder_buffer`] | events in the order of their stamps |
 //!
-//! Nothing here reads a clock: the time of arrival is an argument. [`HostClock`] is how a driver's threads are given one.
+//! No function reads a clock: the time of arrival is an argument. [`HostClock`] is the clock of a driver's threads.
 
 pub mod device_clock;
 mod lower_hull;

@@ -21,10 +21,10 @@ use trundle_core::{Invalid, SensorEvent, Twist2, require_in};
 
 /// Maximum number of events that wait for the sink: 1024, five seconds of a base. Source: ours.
 const MAX_WAITING_EVENTS: usize = 1024;
-/// Largest gain that the protocol's 32 bits hold in thousandths: 4294967. Source: the protocol's "Set Controller Gain".
+/// Largest gain that fits the protocol's 32 bits in thousandths: 4294967. Source: the protocol's "Set Controller Gain".
 const MAX_GAIN: f64 = 4_294_967.0;
 
-/// Oldest firmware that knows the commands of gains: 1.2.0. Source: the vendor's driver, issue 289 of yujinrobot/kobuki.
+/// Oldest firmware with commands for gains: 1.2.0. Source: the vendor's driver, issue 289 of yujinrobot/kobuki.
 const GAINS_FIRMWARE: Version = Version::new(1, 2, 0);
 
 /// Receiver of the events of a base, called on the base's thread.
@@ -107,7 +107,7 @@ impl KobukiBase {
         Ok(())
     }
 
-    /// Asks for the gains; [`KobukiBase::gains`] has them after the answer. Firmware 1.2.0 or later.
+    /// Requests the gains; [`KobukiBase::gains`] returns them after the answer. Firmware 1.2.0 or later.
     pub fn request_gains(&self) {
         self.warn_of_old_firmware();
         self.send(KobukiCommand::GetGains);

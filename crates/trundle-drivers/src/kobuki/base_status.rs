@@ -61,7 +61,7 @@ pub struct BaseCounters {
     pub reconnects: u64,
     /// Jumps of the base's clock, its restarts among them.
     pub clock_jumps: u64,
-    /// Times that the stream began to look as if the port had two users.
+    /// Number of times that the stream began to look like that of a port with two users.
     pub stream_faults: u64,
 }
 

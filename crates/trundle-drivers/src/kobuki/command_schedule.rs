@@ -26,12 +26,12 @@ impl CommandSchedule {
         Self { timeout_s, wanted: None, sent: None }
     }
 
-    /// Takes a command that came at `now`.
+    /// Stores a command with its arrival time `now`.
     pub(super) fn set(&mut self, twist: Twist2, now: Stamp) {
         self.wanted = Some((BaseControl::from_twist(twist), now));
     }
 
-    /// Discards all commands: the next one sent is zero speed, at once.
+    /// Discards all commands: zero speed is sent next, immediately.
     pub(super) fn restart(&mut self) {
         (self.wanted, self.sent) = (None, None);
     }

@@ -191,7 +191,7 @@ impl CommandDecoder {
     }
 }
 
-/// A fuzz target: reads any bytes at once and one by one.
+/// A fuzz target: reads any bytes in one call and byte by byte.
 ///
 /// # Panics
 /// When the two readings differ, or when a byte is neither skipped, nor part of a packet, nor buffered.

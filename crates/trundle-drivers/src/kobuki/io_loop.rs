@@ -102,7 +102,7 @@ impl IoLoop {
         }
     }
 
-    /// Reads packets, takes commands, writes.
+    /// Reads packets, stores commands, writes.
     fn exchange(&mut self, link: &mut dyn ByteLink) -> io::Result<()> {
         let before = (self.clock)();
         self.read(link)?;

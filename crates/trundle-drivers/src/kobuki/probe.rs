@@ -16,7 +16,7 @@ const MIN_PACKETS: u64 = 12;
 const REQUEST_PERIOD_S: f64 = 0.5;
 /// Number of bytes shown of another device's data: 16. Source: ours.
 const MAX_SHOWN_BYTES: usize = 16;
-/// Longest wait for bytes at once: 10 ms. Source: ours, half a packet's period.
+/// Longest wait per read: 10 ms. Source: ours, half a packet's period.
 const READ_WAIT: Duration = Duration::from_millis(10);
 /// Major version of the firmware with this protocol: 1. Source: the vendor's driver, compatible major version.
 const FIRMWARE_MAJOR: u8 = 1;

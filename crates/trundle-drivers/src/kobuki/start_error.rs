@@ -24,7 +24,7 @@ pub enum StartError {
         /// The system's reason.
         source: std::io::Error,
     },
-    /// Nothing comes.
+    /// No byte arrives.
     #[error(
         "port {port}: no byte came within {waited_s} s, expected 50 packets per second: switch the base on, or check the cable"
     )]

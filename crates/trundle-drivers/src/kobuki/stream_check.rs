@@ -91,7 +91,7 @@ pub(super) struct StreamCheck {
 }
 
 impl StreamCheck {
-    /// Takes the stamp of a sound packet.
+    /// Records the stamp of a valid packet.
     pub(super) fn on_packet(&mut self, stamp_ms: u16) {
         let step = self.last_ms.map(|last| stamp_ms.wrapping_sub(last).cast_signed());
         self.last_ms = Some(stamp_ms);
@@ -103,7 +103,7 @@ impl StreamCheck {
         });
     }
 
-    /// Takes the number of headers refused since the last call.
+    /// Records the number of headers refused since the last call.
     pub(super) fn on_refused(&mut self, headers: u64) {
         (0..headers.min(WINDOW_PACKETS as u64)).for_each(|_| self.push(Entry::Refused));
     }

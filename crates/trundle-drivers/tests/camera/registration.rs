@@ -1,4 +1,4 @@
-//! Registration against a ray caster that renders each camera by itself.
+//! Registration compared with a ray caster that renders each camera separately.
 
 use crate::fixtures::best_ms;
 use trundle_core::{ColorImage, DepthImage, Distortion, PinholeCamera, Pose3, Stamp, Vector2, Vector3};

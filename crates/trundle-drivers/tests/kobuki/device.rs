@@ -13,7 +13,7 @@ use trundle_drivers::kobuki::{ByteLink, EmulatedKobuki, KobukiState, PseudoTermi
 pub enum Sends {
     /// Sound packets.
     Packets,
-    /// Nothing.
+    /// No data.
     Nothing,
     /// Sound packets in pieces of seven bytes, with garbage between.
     PiecesAndGarbage,
@@ -21,7 +21,7 @@ pub enum Sends {
     TwoBases,
     /// Packets of which every second one lacks a byte.
     LostBytes,
-    /// Ten packets at once.
+    /// Ten packets in one burst.
     Bursts,
     /// Message of a satellite receiver.
     OtherDevice,
@@ -98,7 +98,7 @@ fn run(state: &Mutex<State>, port: &Path, mut terminal: Option<PseudoTerminal>) 
     }
 }
 
-/// Takes the commands that have come, and sends.
+/// Handles the received commands, and sends.
 fn cycle(terminal: &mut PseudoTerminal, state: &mut State, second: &mut EmulatedKobuki) {
     let mut buffer = [0; 4096];
     let bytes = terminal.read(&mut buffer, Duration::ZERO).unwrap();

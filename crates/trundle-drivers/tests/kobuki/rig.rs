@@ -11,7 +11,7 @@ use trundle_drivers::kobuki::{KobukiBase, KobukiBaseConfig, SerialConnector, Sta
 /// Longer than a loaded machine needs.
 const LIMIT: Duration = Duration::from_secs(30);
 
-/// A configuration for a machine that may stand still for seconds.
+/// A configuration for a machine that may stall for seconds.
 pub fn patient() -> KobukiBaseConfig {
     KobukiBaseConfig {
         silence_limit_s: 5.0,

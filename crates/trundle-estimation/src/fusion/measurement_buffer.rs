@@ -73,7 +73,7 @@ impl MeasurementBuffer {
         }
     }
 
-    /// Looks a stamp up: interpolated between two readings, extrapolated at most `max_ahead` s after the last.
+    /// Looks up a stamp: interpolated between two readings, extrapolated at most `max_ahead` s after the last one.
     pub(crate) fn find(&self, stamp: Stamp, max_ahead: f64) -> Result<Moment, Correction> {
         let oldest = self.nodes[0].stamp;
         if stamp < oldest {

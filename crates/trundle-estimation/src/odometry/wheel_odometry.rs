@@ -118,7 +118,7 @@ impl WheelOdometry {
         self.wheel_fault.set_command(twist);
     }
 
-    /// Whether the wheels are commanded to roll and count nothing: encoders are stuck, or wheels are blocked.
+    /// Whether the wheels are commanded to roll without counts: encoders are stuck, or wheels are blocked.
     pub fn wheels_are_unresponsive(&self) -> bool {
         self.wheel_fault.is_unresponsive()
     }

@@ -62,7 +62,7 @@ impl Grabber {
 
     pub(super) fn run(mut self) {
         while !self.mailbox.is_stopped() {
-            // A driver of a maker may panic; the robot has to know that the camera is lost.
+            // A manufacturer's driver may panic; the robot must learn of the lost camera.
             let outcome = catch_unwind(AssertUnwindSafe(|| self.open_and_read()));
             match outcome.unwrap_or_else(|_| Outcome::Lost("the driver of the camera panicked".into())) {
                 Outcome::Finished => break,

@@ -46,7 +46,8 @@ pub struct SubPacketParser {
 }
 
 impl SubPacketParser {
-    /// Takes the bytes of one USB transfer; a sub-packet when this transfer ends with its footer. A sub-packet of wrong length is skipped.
+    /// Adds the bytes of one USB transfer; returns the sub-packet if this transfer ends with its footer. A sub-packet of wrong length is
+    /// skipped.
     pub fn push(&mut self, transfer: &[u8]) -> Option<SubPacket> {
         if self.bytes.len() + transfer.len() > IMAGE_BYTES + FOOTER_BYTES {
             self.skip();
@@ -95,8 +96,8 @@ pub struct FrameAssembler {
 }
 
 impl FrameAssembler {
-    /// Takes a sub-packet; the whole frame when it was the last one missing. A new sequence drops an incomplete frame. Sub-packets of the
-    /// frame that was whole last came twice, and are passed over.
+    /// Adds a sub-packet; returns the frame if the sub-packet completes it. A new sequence drops an incomplete frame. Repeated sub-packets
+    /// of the last complete frame are skipped.
     pub fn push(&mut self, packet: SubPacket) -> Option<PackedFrame> {
         if self.finished == Some(packet.sequence) {
             self.repeated += 1;

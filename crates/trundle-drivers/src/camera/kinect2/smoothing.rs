@@ -7,7 +7,7 @@
 use super::layout::{COLUMNS, ROWS};
 use super::phasors::{PLANE_COUNT, PhasorImage};
 
-/// Pixels computed at once: the compiler turns loops over this number into vector instructions.
+/// Number of pixels computed together: the compiler turns loops over this number into vector instructions.
 const LANES: usize = 8;
 /// Smallest power of a phasor used as a divisor \[1\]. It keeps pixels without a measurement finite.
 const MIN_POWER: f32 = 1e-6;

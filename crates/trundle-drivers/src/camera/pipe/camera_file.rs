@@ -115,11 +115,11 @@ pub fn parse_header(bytes: &[u8]) -> Result<CameraInfo, String> {
 pub(super) enum HeaderSearch {
     /// A whole header, with its end of line.
     Found(std::ops::Range<usize>),
-    /// More bytes are needed; those before this place hold no header.
+    /// More bytes are needed; no header begins before this position.
     From(usize),
 }
 
-/// Looks for a header, which begins a stream and may be repeated between frames.
+/// Searches for a header, which begins a stream and may be repeated between frames.
 ///
 /// # Errors
 /// When no line ends within the longest header.

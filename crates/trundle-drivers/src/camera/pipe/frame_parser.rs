@@ -86,7 +86,7 @@ pub struct FrameParser {
 enum Front {
     /// A frame with lengths of colour and depth.
     Frame(Stamp, usize, usize),
-    /// Too few bytes to decide.
+    /// Too few bytes for a decision.
     Incomplete,
     /// A frame's header with lengths that the stream cannot have.
     WrongLengths(usize, usize),

@@ -17,7 +17,7 @@ pub(super) struct Source {
     pub is_file: bool,
 }
 
-/// Opens a file or FIFO; `-` is standard input. A FIFO is opened at once, also without a writer.
+/// Opens a file or FIFO; `-` is standard input. A FIFO is opened immediately, also without a writer.
 ///
 /// # Errors
 /// When the path does not exist or is not readable.

@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use trundle_core::Invalid;
 
-/// Bytes read at once. Source: ours; the largest pipe buffer of Linux without privileges.
+/// Maximum number of bytes per read. Source: ours; the largest pipe buffer of Linux without privileges.
 const READ_BYTES: usize = 1 << 20;
 /// Bytes that are searched for a header: 2^30. Source: ours; a header comes every 30 frames, and 30 frames of 1920 x 1080 px have 0.4 GB.
 const MAX_BYTES_BEFORE_HEADER: usize = 1 << 30;

@@ -10,7 +10,7 @@ pub(super) struct ColorMap {
     output: PinholeCamera,
     /// Position of each output pixel in the colour image \[px\]; `None` outside. Empty if both cameras are the same.
     places: Vec<Option<[f32; 2]>>,
-    /// Samples across and down for one output pixel. 1 takes four pixels by bilinear weights.
+    /// Numbers of samples in columns and rows for one output pixel. For 1, bilinear interpolation uses four pixels.
     samples: [usize; 2],
 }
 

@@ -52,7 +52,7 @@ impl Feedback {
         Ok((feedback, unknown))
     }
 
-    /// Takes a sub-payload in; false for an unknown one.
+    /// Stores a sub-payload; returns false for an unknown one.
     fn take(&mut self, part: SubPayload<'_>) -> bool {
         let data = Fields(part.data);
         match part.id {

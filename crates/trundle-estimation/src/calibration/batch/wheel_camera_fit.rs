@@ -51,8 +51,8 @@ pub struct WheelCameraFit {
 const MIN_SEGMENTS: usize = 8;
 /// Standard deviation of the wheels and the wheelbase in use, ratio. Source: ours; a value is off by a third at most.
 const DRIVE_PRIOR_RATIO: f64 = 0.3;
-/// Standard deviation of the difference of both radii, ratio: 0.01. It decides if the robot only turns on the spot. Source: ours, three
-/// times the unequal diameters of \[Borenstein96\].
+/// Standard deviation of the difference of both radii, ratio: 0.01. It determines the result if the robot only turns on the spot. Source:
+/// ours, three times the unequal diameters of \[Borenstein96\].
 const RADIUS_DIFFERENCE_RATIO: f64 = 0.01;
 /// Standard deviation of the camera's offset in use: 1 m. Source: ours, half of the range of a mount.
 const OFFSET_PRIOR_M: f64 = 1.0;

@@ -2,7 +2,7 @@
 //!
 //! The device's images are mirrored left to right; [`turned_back`] is the camera of the image turned back.
 //!
-//! The map from depth to colour is a polynomial of third order, which holds rotation and both lenses:
+//! The map from depth to colour is a polynomial of third order, which includes rotation and both lenses:
 //!
 //! u = (P(x, y) / q_c) + f (m / z - m / s) + c_x, v = Q(x, y) / q_c + c_y, with (x, y) = q_d (pixel - principal point)
 //!
@@ -27,7 +27,7 @@ const PIXEL_MIDDLE: f64 = 0.5;
 const MILLIMETRE_M: f64 = 1e-3;
 /// Longest baseline \[m\]. Source: ours; the cameras are 0.05 m apart.
 const MAX_BASELINE_M: f64 = 0.2;
-/// Largest angle between the cameras as a tangent \[1\]. Source: ours; they look in the same direction.
+/// Largest angle between the cameras as a tangent \[1\]. Source: ours; both cameras face the same direction.
 const MAX_TILT: f64 = 0.2;
 /// Terms of a polynomial.
 const TERM_COUNT: usize = 10;

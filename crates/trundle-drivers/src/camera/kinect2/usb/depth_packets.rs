@@ -16,7 +16,7 @@ pub struct DepthPackets {
 }
 
 impl DepthPackets {
-    /// Takes one isochronous packet; the frame when this packet ends the last of its ten images.
+    /// Adds one isochronous packet; returns the frame if this packet ends the last of its ten images.
     pub fn push(&mut self, packet: &[u8]) -> Option<PackedFrame> {
         if packet.is_empty() {
             self.parser.skip();

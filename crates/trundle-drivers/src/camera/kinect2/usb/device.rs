@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_core::{Invalid, PinholeCamera, Pose3};
 
-/// Longest wait for the sensor to become ready \[s\]. Source: ours; it takes less than 1 s by reports of users.
+/// Longest wait for the sensor to become ready \[s\]. Source: ours; less than 1 s by reports of users.
 const READY_TIMEOUT_S: u64 = 5;
 /// Period of queries of the ready state \[ms\].
 const READY_POLL_MS: u64 = 100;
@@ -36,7 +36,7 @@ const COLOR_TRANSFERS: (usize, usize) = (20, 0x4000);
 /// Depth transfers that wait at the same time, and their packets: 60 ms of packets of 0.125 ms.
 const DEPTH_TRANSFERS: (usize, usize) = (60, 8);
 
-/// Description of the device by itself.
+/// The device's own description.
 #[derive(Debug)]
 pub(super) struct Identity {
     pub(super) serial: String,

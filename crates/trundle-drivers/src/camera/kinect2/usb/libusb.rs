@@ -218,7 +218,7 @@ impl UsbConnection {
         Ok(())
     }
 
-    /// Takes an interface for this program alone.
+    /// Claims an interface exclusively.
     pub(super) fn claim(&self, interface: u8) -> Result<(), CameraError> {
         // SAFETY: the device is open.
         let code =
@@ -372,7 +372,7 @@ impl<'a> Transfers<'a> {
         Ok(())
     }
 
-    /// Lets the callbacks run, for at most `timeout`.
+    /// Runs the callbacks for at most `timeout`.
     ///
     /// # Errors
     /// When the device is unplugged or a transfer failed.

@@ -64,7 +64,7 @@ impl ReplyReader {
         Self { sequence, limit: limit as usize, data: None }
     }
 
-    /// Takes one transfer; the data when the reply is whole. Empty transfers and completions of earlier requests are passed over.
+    /// Adds one transfer; returns the data of a complete reply. Empty transfers and completions of earlier requests are skipped.
     ///
     /// # Errors
     /// When the reply cannot be used.

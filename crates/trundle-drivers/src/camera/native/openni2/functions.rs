@@ -147,7 +147,7 @@ impl OpenNiApi {
         self.library.path_of(self.oniInitialize as *const ())
     }
 
-    /// The error of a status; `device` is the camera in it.
+    /// The error of a status of the camera `device`.
     pub(super) fn check(&self, function: &str, status: c_int, device: &str) -> Result<(), CameraError> {
         match status {
             STATUS_OK => Ok(()),

@@ -102,7 +102,7 @@ impl OpenDevice {
         Ok(())
     }
 
-    /// Asks for depth registered to colour; `false` if the device does not offer it.
+    /// Requests depth registered to colour; `false` if the device does not offer it.
     pub(super) fn register_depth(&self) -> bool {
         let mode = REGISTRATION_DEPTH_TO_COLOR;
         // SAFETY: the device is valid, and the value has the size of its type.
@@ -117,7 +117,7 @@ impl OpenDevice {
         }
     }
 
-    /// Description of the device by itself.
+    /// The device's own description.
     pub(super) fn about(&self) -> Result<DeviceEntry, CameraError> {
         // SAFETY: all fields of the structure may be zero.
         let mut info: DeviceInfo = unsafe { std::mem::zeroed() };

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 const LOG_SEVERITY_OFF: c_int = 5;
 const EXCEPTION_CAMERA_DISCONNECTED: c_int = 2;
-/// How to get the permission to open an Orbbec camera.
+/// Remedy for a missing permission to open an Orbbec camera.
 const PERMISSION_REMEDY: &str = "install the udev rules of OrbbecSDK: run 'sudo scripts/env_setup/install_udev_rules.sh' of \
     https://github.com/orbbec/OrbbecSDK_v2 and plug the camera in again";
 /// Remedy for other errors.

@@ -44,7 +44,7 @@ fn connected(
         .collect()
 }
 
-/// Description of a device by itself.
+/// A device's own description.
 pub(super) fn entry(api: &RealSenseApi, device: &Handle<Device>) -> Result<DeviceEntry, RealSenseError> {
     Ok(DeviceEntry {
         name: info(api, device, CAMERA_INFO_NAME)?,

@@ -47,7 +47,7 @@ impl Running {
         Ok((Self { pipeline, device, hub, _config: config, _context: context, api }, started))
     }
 
-    /// Description of the camera by itself.
+    /// The camera's own description.
     pub(super) fn info(
         &self,
         about: DeviceEntry,
