@@ -75,7 +75,7 @@ enum Chore {
     },
     /// Feed broken files to every reader: none may panic, hang or take unbounded memory.
     Fuzz(fuzz::Options),
-    /// Broken sensors, slipping wheels, people in the way: each run must end as its scenario expects.
+    /// Broken sensors, slipping wheels, people in the robot's path: each run must end as its scenario expects.
     FaultScenarios,
     /// Kernels and short runs on aarch64, under qemu: the same bytes as here. Skipped if tools are missing.
     Aarch64,

@@ -44,7 +44,7 @@ const UNITS: [(&str, &str); 27] = [
     ("rad/s/sqrt(s)", "_rad_s_per_sqrt_s"),
     ("ticks", "_ticks"),
 ];
-/// Words of a doc comment that stand for a number without unit.
+/// Words of a doc comment for a number without unit.
 const UNITLESS: [&str; 30] = [
     "ratio",
     "count",

@@ -33,7 +33,7 @@ pub enum Which {
     Obstacles(RunsArgs),
     /// Ten goals in six rooms of a furnished house, from an empty map.
     House(HouseArgs),
-    /// Broken sensors, slipping wheels, people in the way: no contact, and continuation when possible.
+    /// Broken sensors, slipping wheels, people in the path: no contact, and continuation when possible.
     Faults(RunsArgs),
     /// A person steps into the robot's path one metre ahead, one per run.
     People(RunsArgs),

@@ -56,7 +56,7 @@ pub struct LaserRun {
     pub cycles_ms: Vec<f64>,
 }
 
-/// A Hokuyo-like laser, as in the BARN challenge: 270 deg, 720 beams, 30 m; all beams at once, as in Gazebo.
+/// A Hokuyo-like laser, as in the BARN challenge: 270 deg, 720 beams, 30 m; all beams simultaneous, as in Gazebo.
 pub fn hokuyo(forward: f64) -> LaserConfig {
     LaserConfig {
         x: forward,

@@ -37,7 +37,7 @@ impl FleetLink {
     /// The link for a run of a setup, with the options of a command line.
     ///
     /// # Errors
-    /// As [`FleetLink::start`]; when the password file or the robot's outline cannot be used, or the run takes no commands.
+    /// As [`FleetLink::start`]; when the password file or the robot's outline cannot be used, or the run accepts no commands.
     pub fn beside(
         setup: &RunSetup,
         link: &OperatorLink,

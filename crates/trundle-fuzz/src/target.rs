@@ -35,7 +35,7 @@ impl FuzzTarget {
         TARGETS.iter().find(|target| target.name == name)
     }
 
-    /// The memory that an input of `length` bytes may take at once \[bytes\].
+    /// The memory that may be in use for an input of `length` bytes \[bytes\].
     #[must_use]
     pub fn memory_limit(&self, length: usize) -> usize {
         let factor = if self.compressed { BYTES_PER_COMPRESSED_BYTE } else { BYTES_PER_BYTE };

@@ -194,7 +194,7 @@ mod tests {
             for (at, value) in &first {
                 prop_assert_eq!(before.tile(*at).log_odds[0], *value, "the original is unchanged");
             }
-            // In the other direction, tiles that only the later map holds are visited as `None`.
+            // In the other direction, tiles that exist only in the later map are visited as `None`.
             let mut gone = Vec::new();
             before.changed_tiles(&after, |at, tile| gone.extend(tile.is_none().then_some(at)));
             gone.sort_unstable();

@@ -16,8 +16,8 @@ pub(crate) struct Pgm {
 }
 
 impl Pgm {
-    /// A PGM of Netpbm: `P5` (binary, 8 or 16 bits) or `P2` (text), comments from `#` to the end of their line. Behind the pixels
-    /// only blanks may stand.
+    /// A PGM of Netpbm: `P5` (binary, 8 or 16 bits) or `P2` (text), comments from `#` to the end of their line. Only blanks may follow the
+    /// pixels.
     pub fn parse(bytes: &[u8]) -> Result<Self, String> {
         let mut scan = Scanner { bytes, at: 2 };
         let binary = match bytes.get(..2) {

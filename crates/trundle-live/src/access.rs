@@ -1,4 +1,4 @@
-//! Permissions to drive and to look: two random tokens.
+//! Permissions to drive and to view: two random tokens.
 
 use crate::LiveError;
 use std::fmt::Write as _;
@@ -21,7 +21,7 @@ const TOKEN_BYTES: usize = 16;
 /// Largest token file that is read \[bytes\].
 const MAX_TOKEN_FILE_BYTES: u64 = 1024;
 
-/// The token that drives and the token that only looks, as hexadecimal text.
+/// The token for driving and the token for viewing, as hexadecimal text.
 #[derive(Clone)]
 pub struct Tokens {
     drive: String,

@@ -8,7 +8,7 @@ use trundle_app::operator::MapFolder;
 pub struct LiveOptions {
     /// Address of the page.
     pub address: LiveAddress,
-    /// Permissions to drive and to look.
+    /// Permissions to drive and to view.
     pub tokens: Tokens,
     /// Whether the run takes commands; a replay and an experiment take none.
     pub is_steered: bool,

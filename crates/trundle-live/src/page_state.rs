@@ -14,7 +14,7 @@ use trundle_app::operator::Operator;
 pub struct PageState {
     /// The run.
     pub operator: Operator,
-    /// Permissions to drive and to look.
+    /// Permissions to drive and to view.
     pub tokens: Tokens,
     /// Whether the run takes commands.
     pub is_steered: bool,

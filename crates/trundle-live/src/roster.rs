@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-/// Most viewers at once. Source: ours; ten are measured not to disturb the robot.
+/// Maximum number of simultaneous viewers. Source: ours; measured: ten viewers do not disturb the robot.
 const MAX_VIEWERS: usize = 24;
 /// Longest name of a viewer \[characters\].
 const MAX_NAME_CHARS: usize = 24;

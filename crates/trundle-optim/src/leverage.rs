@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3x6, Matrix6};
 
 /// Largest share of a point in one of the six components of a pose, with enough points: 0.25. A point with a larger share, a near one among
-/// many far ones, would determine the pose by itself, right or wrong. Source: ours, after \[Hampel86\].
+/// many far ones, would alone determine the pose, right or wrong. Source: ours, after \[Hampel86\].
 const MAX_LEVERAGE: f64 = 0.25;
 /// Largest share in multiples of the mean share, with few points: 3. Source: ours.
 const MAX_LEVERAGE_OF_MEAN: f64 = 3.0;

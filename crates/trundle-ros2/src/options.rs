@@ -17,7 +17,7 @@ pub struct Ros2Options {
     pub stamped_commands: bool,
 }
 
-/// Parameters that may stand after `--ros-args`.
+/// Parameters allowed after `--ros-args`.
 const KNOWN: &str = "use_sim_time, enable_stamped_cmd_vel, map_frame, odom_frame, base_frame, camera_frame";
 
 impl Ros2Options {

@@ -41,7 +41,7 @@ impl<'de> Visitor<'de> for BytesVisitor {
     }
 }
 
-/// An array of `N` values: serde and `Default` know arrays up to 32 only.
+/// An array of `N` values: serde and `Default` support arrays up to 32 only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FixedArray<T, const N: usize>(pub [T; N]);
 

@@ -20,7 +20,7 @@ pub enum OperatorCommand {
     Pause,
     /// Go on after a pause.
     Continue,
-    /// The pose of the robot, as the operator knows it.
+    /// The pose of the robot, given by the operator.
     SetPose(PoseGuess),
     /// Change a setting, until the run ends.
     Change(RunSetting),

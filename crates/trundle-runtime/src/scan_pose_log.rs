@@ -15,7 +15,7 @@ pub(crate) struct ScanPoseLog {
 const MIN_KEPT_POSES: usize = 2048;
 
 impl ScanPoseLog {
-    /// Records a scan drawn with the camera at `visual_from_camera`. At intervals it drops scans that are not `kept`, and then returns
+    /// Records a scan drawn with the camera at `visual_from_camera`. At intervals the log drops scans that are not `kept`, and then returns
     /// true. The log therefore grows only with the kept scans.
     pub(crate) fn note<I: Iterator<Item = Stamp>>(
         &mut self,

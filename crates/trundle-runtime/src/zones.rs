@@ -154,7 +154,7 @@ impl RobotZones {
         overlap > if is_leaving { 0.0 } else { self.escape }
     }
 
-    /// A grid with the no-go zones occupied that the robot does not stand in.
+    /// A grid with all no-go zones occupied except those that contain the robot.
     fn over(&self, grid: &OccupancyGrid) -> OccupancyGrid {
         let mut over = grid.clone();
         self.no_go().filter(|zone| !self.left.contains(&zone.id)).for_each(|zone| forbid(&mut over, zone));

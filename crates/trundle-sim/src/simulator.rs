@@ -34,8 +34,7 @@ const PERSON_HEIGHT_BAND_M: (f64, f64) = (0.05, 1.75);
 ///
 /// Events are in the order of their stamps; at equal stamps wheels, gyro, touch, cliff, station, truth, scan, image. Only an image delayed
 /// by a fault comes after later events. The first set has stamp 0. Truth comes with every wheel reading, scan and image, also with dropped
-/// ones. The simulation never ends by itself. The same scene, configuration, seed and commands give the same bytes on any number of
-/// threads.
+/// ones. The simulation has no end. The same scene, configuration, seed and commands give the same bytes on any number of threads.
 #[derive(Debug)]
 pub struct Simulator {
     scene: Arc<Scene>,

@@ -42,7 +42,7 @@
 //! | join a home or a fleet by MQTT | `fleet`, with the feature `mqtt` |
 //! | speak ROS 2 | `ros2`, with the feature `ros2` |
 //!
-//! Eight numbered examples stand in `crates/trundle/examples`.
+//! `crates/trundle/examples` contains eight numbered examples.
 
 pub use trundle_app as app;
 pub use trundle_collision as collision;

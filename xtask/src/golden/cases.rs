@@ -25,7 +25,7 @@ const RUN: &[(&str, Quantity, &str)] = &[
     ("grid", File, "run/map.pgm"),
 ];
 
-/// All cases; the slowest come first, so that two threads end at about the same time.
+/// All cases; the slowest come first, which lets two threads end at about the same time.
 pub const CASES: &[Case] = &[
     Case { name: "demo-direct", needs: None, commands: &["demo --direct --out {out}/run"], outputs: RUN },
     Case {

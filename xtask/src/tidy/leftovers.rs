@@ -1,4 +1,4 @@
-//! Nothing unfinished is merged.
+//! Unfinished code is not merged.
 
 use super::finding::Finding;
 use super::tree::Tree;

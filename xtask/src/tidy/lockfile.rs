@@ -3,7 +3,7 @@
 use super::finding::Finding;
 use super::tree::Tree;
 
-/// Packages that compile or look for foreign code.
+/// Packages that compile or search for foreign code.
 const FOREIGN: [&str; 7] = ["cc", "cmake", "bindgen", "pkg-config", "vcpkg", "nasm-rs", "cxx"];
 /// Packages of unsupported systems: their exclusive dependencies are never built.
 const OTHER_SYSTEMS: [&str; 1] = ["iana-time-zone-haiku"];

@@ -4,7 +4,7 @@ use super::finding::{Finding, Rule};
 use super::tree::{Package, Tree};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Maximum number of fields of a struct; beyond it, fields that belong together get a struct of their own.
+/// Maximum number of fields of a struct; beyond it, fields that belong together form a separate struct.
 const MAX_FIELDS: usize = 15;
 /// Methods of one type's inherent impls.
 const MAX_METHODS: usize = 30;

@@ -89,7 +89,7 @@ fn branches(group: &str) -> Vec<&str> {
     found.into_iter().filter(|branch| !branch.trim().is_empty()).collect()
 }
 
-/// Paths of two and more segments that stand in code.
+/// Paths of two and more segments in code.
 fn written_paths(code: &str) -> Vec<NamedPath> {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! The drivers of base and camera, in threads of their own.
+//! The drivers of base and camera, in their own threads.
 
 use crate::{AppError, stop};
 use std::path::PathBuf;

@@ -11,7 +11,7 @@
 //! | [`frame_monitor`] | faults found in the frames themselves |
 //! | [`pipe`] | frames from a pipe, a file or a growing folder |
 //! | [`kinect2`] | depth of the Kinect V2 from its raw packets, which come from a file or by USB |
-//! | [`camera_thread`] | a camera in a thread of its own, reopened after faults |
+//! | [`camera_thread`] | a camera with its own threads, reopened after faults |
 
 pub mod camera_thread;
 pub mod device;

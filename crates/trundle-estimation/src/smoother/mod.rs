@@ -1,4 +1,4 @@
-//! The fixed-lag smoother: the poses of the last seconds and the calibration, from all measurements at once.
+//! The fixed-lag smoother: the poses of the last seconds and the calibration, jointly estimated from all measurements.
 //!
 //! Problem: one pose at the rate of the wheels with a consistent covariance. Odometry drifts; measurements are late, correlated and
 //! sometimes of a wrong place. Idea: the poses of a window, the error of the visual poses along it and the calibration are unknowns of one
@@ -19,7 +19,7 @@
 //! | prior of fixed linearisation \[Huang10\] | `Prior` | |
 //! | normal equations | `trundle_optim::ArrowSystem` | |
 //!
-//! Cost: O(K) for K keyframes and a measurement; 0.35 ms at 100 keyframes. Nothing is allocated once the window is full. The page
+//! Cost: O(K) for K keyframes and a measurement; 0.35 ms at 100 keyframes. No memory is allocated once the window is full. The page
 //! docs/algorithms/smoother.md has the equations.
 
 pub(crate) mod calibration;

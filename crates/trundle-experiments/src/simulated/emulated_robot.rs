@@ -14,7 +14,7 @@ use trundle_drivers::kobuki::protocol::Charger;
 use trundle_drivers::kobuki::pseudo_terminal::PseudoTerminal;
 use trundle_sim::Simulator;
 
-/// Bytes of commands read at once. Source: ours; a command has 10 bytes.
+/// Maximum number of bytes of commands per read. Source: ours; a command has 10 bytes.
 const READ_BYTES: usize = 4096;
 
 /// The simulator behind the wires of a real robot.

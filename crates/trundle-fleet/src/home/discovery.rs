@@ -45,7 +45,7 @@ fn object_id(name: &RobotName) -> String {
     format!("{}_{}", name.manufacturer, name.serial_number)
 }
 
-/// The discovery of a robot that knows `places`.
+/// The discovery of a robot with the named places `places`.
 pub fn discovery(name: &RobotName, facts: &RobotFacts, topics: &DiscoveryTopics, places: &[String]) -> Value {
     let id = object_id(name);
     json!({

@@ -251,7 +251,7 @@ impl Vehicle {
             && !present.into_iter().chain(self.book.next_action()).any(blocks)
     }
 
-    /// Begins the drive to the next node of the base, or reaches it at once.
+    /// Starts the drive to the next node of the base; a node that is already reached ends immediately.
     fn drive_on(&mut self, view: &RobotGlance, robot: &mut dyn RobotCommands) {
         let Some((node, edge)) = self.book.next_stop() else { return };
         if !self.is_under_way(view) && is_within_deviation(node, view.estimate.pose) {

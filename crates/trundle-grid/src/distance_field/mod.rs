@@ -46,7 +46,7 @@ impl UnknownIs {
 
 /// From the first to the last cell of a row that changed between obstacle and no obstacle.
 fn differing(was: &[bool], cells: &[Cell], unknown: UnknownIs) -> Option<Range<usize>> {
-    /// Number of cells that are compared at once, without a branch.
+    /// Number of cells that are compared together, without a branch.
     const CHUNK: usize = 256;
     let unknown_blocks = unknown == UnknownIs::Obstacle;
     let differ = |(was, cell): (&bool, &Cell)| {

@@ -67,7 +67,7 @@ impl OutputPlace {
         foreign.first().map_or(Ok(true), |first| Err(self.foreign(folder, first, foreign.len())))
     }
 
-    /// Refuses the stored last run, which the next run deletes, if a file of it was edited after trundle wrote it.
+    /// Refuses the stored last run, which the next run deletes, if one of its files was edited after trundle wrote it.
     fn require_unchanged(&self, last: &Path) -> Result<(), IoError> {
         let changed = RunMarker::read(last).map(|marker| marker.changed_files(last)).unwrap_or_default();
         let Some(first) = changed.first() else { return Ok(()) };

@@ -44,7 +44,7 @@ pub(super) fn complete<T, E>(complete: impl FnOnce() -> Result<T, E>) -> Result<
 }
 
 /// Removes all unfinished results, for a process that ends: no result is moved to its place afterwards. Returns false without any removal
-/// if results are complete: such a process ends by itself.
+/// if results are complete: such a process is already ending.
 pub fn abandon_outputs() -> bool {
     let unfinished = unfinished();
     if unfinished.is_any_complete {
@@ -73,7 +73,7 @@ fn abandon(folder: &Path) {
     let _ = fs::remove_dir_all(if is_renamed { &abandoned } else { folder });
 }
 
-/// Waits for the end of a process whose results are abandoned; else returns at once. An error of a writer caused by the removal is no
+/// Waits for the end of a process whose results are abandoned; else returns immediately. An error of a writer caused by the removal is no
 /// result of the command.
 pub fn wait_for_abandonment() {
     drop(unfinished());

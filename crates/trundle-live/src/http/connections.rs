@@ -9,7 +9,7 @@ use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Semaphore;
 
-/// Most connections at once that have not become a viewer's link. More are closed at once. Source: ours.
+/// Maximum number of simultaneous connections that are not yet a viewer's link. Further ones are closed immediately. Source: ours.
 const MAX_CONNECTIONS: usize = 48;
 /// Longest wait for the head of a request, also between two requests. Source: ours.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(5);

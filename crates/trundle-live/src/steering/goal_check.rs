@@ -1,4 +1,4 @@
-//! Whether the robot could stand at a goal, by the present map and its zones.
+//! Check of a goal against the present map and its zones.
 
 use super::refusal::CommandRefusal;
 use trundle_core::{MapAnnotations, OccupancyGrid, Pose2, ZoneKind};

@@ -97,7 +97,7 @@ impl RunSteering {
         Err(CommandRefusal::of("Nothing here has missions, poses or zones: drive by hand, or stop."))
     }
 
-    /// The robot stops at once, and the mission is dropped.
+    /// The robot stops immediately, and the mission is dropped.
     ///
     /// # Errors
     /// When the run is over.

@@ -57,7 +57,7 @@ pub enum Request {
         /// Number of the request.
         id: u64,
     },
-    /// Stop at once and drop the mission.
+    /// Stop immediately and drop the mission.
     Stop {
         /// Number of the request.
         id: u64,

@@ -101,7 +101,7 @@ impl ClassifiedRow {
             // Range at which the ray crosses the floor.
             let fall = m.camera_height - height;
             let crossing = range * m.camera_height / fall;
-            // Flying pixels lie between two surfaces, therefore none lies below the floor.
+            // Flying pixels are between two surfaces, therefore none is below the floor.
             let drop = valid & (height < -greater(edge, m.drop_depth)) & (crossing <= m.max_range) & seen;
 
             let mut mark = pick(in_band, pick(hit, kind::OBSTACLE, kind::DOUBTFUL), kind::NOTHING);

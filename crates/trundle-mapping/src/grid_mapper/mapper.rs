@@ -177,7 +177,7 @@ impl GridMapper {
         f64::from(self.evidence.log_odds(cell))
     }
 
-    /// Probability of occupancy at a point of the map frame (m); 0.5 if nothing is known.
+    /// Probability of occupancy at a point of the map frame (m); 0.5 for unknown.
     pub fn probability_at(&self, point: Vector2) -> f64 {
         probability(self.log_odds_at(point))
     }

@@ -197,7 +197,7 @@ fn a_remounted_scanner_is_a_new_one() {
     assert_eq!(scanner.scan(&rgbd(depth.clone())), scan_of(small_camera(), there, depth));
 }
 
-/// The free spans of the beam that looks ahead.
+/// The free spans of the beam straight ahead.
 fn spans_ahead(scan: &Scan) -> Vec<(f64, f64)> {
     scan.free_spans(index_ahead(scan)).collect()
 }

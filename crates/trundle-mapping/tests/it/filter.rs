@@ -319,7 +319,7 @@ fn bad_input_is_refused_by_name() {
         panic!("not processed")
     };
     assert!(done.jumped && mapper.pose().position().norm() < 0.1, "{:?}", mapper.pose());
-    // Nothing seen, and another number of beams.
+    // No returns, and another number of beams.
     let blind = Scan::new(scan(8).stamp(), Vector2::zeros(), 0.0, 0.1, vec![Beam::Unseen; 3]).unwrap();
     let ScanUpdate::Processed(done) = mapper.update(Pose2::new(50.5, 0.0, 0.0), &blind) else {
         panic!("not processed")

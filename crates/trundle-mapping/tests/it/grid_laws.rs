@@ -84,7 +84,7 @@ proptest! {
             let beams = room_scan(&room, *pose).beams().to_vec();
             live.insert(*pose, &Scan::new(Stamp::from_nanos(i as i64), Vector2::zeros(), -3.0, 0.017, beams).unwrap());
         }
-        // Two corrections, so that both maps are redrawn from the log.
+        // Two corrections: both maps are then redrawn from the log.
         let by = Pose2::new(0.2, -0.1, theta);
         let mut cells = Vec::new();
         for _ in 0..2 {

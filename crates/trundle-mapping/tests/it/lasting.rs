@@ -19,7 +19,7 @@ fn hall() -> FlatRoom {
     ])
 }
 
-/// A room that looks alike from two sides: turned by half a turn it looks as before.
+/// A room with rotational symmetry: it looks the same after half a turn.
 fn twins() -> FlatRoom {
     FlatRoom::new(&[
         &[(-10.0, -10.0), (10.0, -10.0), (10.0, 10.0), (-10.0, 10.0)],
@@ -37,7 +37,7 @@ fn mapped(room: &FlatRoom, poses: &[Pose2]) -> ParticleMapper {
     mapper
 }
 
-/// Around in the room with looks to all sides.
+/// A drive around the room with views in all directions.
 fn round() -> Vec<Pose2> {
     let corners = [
         (-8.0, -8.5),

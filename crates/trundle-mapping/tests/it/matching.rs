@@ -21,7 +21,7 @@ fn room_map() -> GridMapper {
     map_of(&FlatRoom::furnished(), circle())
 }
 
-/// A way around the furnished room.
+/// A path around the furnished room.
 fn circle() -> impl Iterator<Item = Pose2> {
     (0..40).map(|i| f64::from(i) / 40.0 * TAU).map(|t| Pose2::new(2.5 * t.cos(), 1.5 * t.sin(), t))
 }

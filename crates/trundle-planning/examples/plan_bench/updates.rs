@@ -12,7 +12,7 @@ pub const REACH: f64 = 1.46;
 /// Side of the changed window, m.
 const WINDOW: f64 = 6.0;
 
-/// A way to change the cells of a window: what cell `i` of `side` x `side` becomes.
+/// A change of the cells of a window: the new state of cell `i` of `side` x `side`.
 type Change = fn(i: usize, side: usize, k: usize, was: Cell) -> Cell;
 
 /// Changes like those of a scan: clutter, and a wall across the map.

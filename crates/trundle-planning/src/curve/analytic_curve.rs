@@ -123,7 +123,7 @@ impl Curve {
         self.pose_and_curvature(s).1
     }
 
-    /// [`Curve::pose`] and [`Curve::curvature`] at once.
+    /// [`Curve::pose`] and [`Curve::curvature`] together.
     pub(crate) fn pose_and_curvature(&self, s: f64) -> (Pose2, f64) {
         let (piece, u) = self.locate(s);
         let jet = piece.jet(u);

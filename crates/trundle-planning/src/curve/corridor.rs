@@ -44,7 +44,7 @@ pub(crate) fn corridor(
 /// the path on the curve. Source: ours.
 const MAX_SPARE_SHARE: f64 = 0.6;
 
-/// The clearance of a side at `distance` m from the segment: `want`, or less if the segment itself has little more.
+/// The clearance of a side at `distance` m from the segment: `want`, or less if the segment itself has only slightly more.
 fn kept(space: &ConfigurationSpace<'_>, distance: f64, want: f64) -> f64 {
     let spare = (distance - space.radius).max(0.0);
     want.min(distance - spare * (1.0 - MAX_SPARE_SHARE))

@@ -25,7 +25,7 @@ pub(super) struct Track {
     walk: Option<(f64, Vector2)>,
 }
 
-/// Time for which an object is kept in the blind zone unless observed to leave, s. Source: ours.
+/// Time for which an object in the blind zone counts as present unless observed to leave, s. Source: ours.
 pub(super) const MAX_HIDDEN_S: f64 = 10.0;
 /// Time for which scans may miss a visible person, s. Source: ours.
 const MAX_MISSED_S: f64 = 0.2;

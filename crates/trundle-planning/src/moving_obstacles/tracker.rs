@@ -1,13 +1,14 @@
 //! Moving obstacles in successive scans.
 //!
-//! Problem: a scan shows where an object is, not that it moves. Idea: a grid around the robot keeps for each cell when it was last seen
-//! free and since when it has been hit. A hit in a recently free cell belongs to an object that arrived. Such hits, near each other, form a
-//! cluster, the near side of a disc. Clusters are associated with tracks by their expected positions. The velocity of a track is a
-//! least-squares line through its last positions. A track moves if it has left the position of its first observation. Cost: O(beams x reach
+//! Problem: a scan shows the position of an object, but not its motion. Idea: a grid around the robot stores for each cell the last time it
+//! was free, and the time since which it is hit. A hit in a recently free cell belongs to an object that arrived. Such hits, near each
+//! other, form a cluster, the near side of a disc. Clusters are associated with tracks by their expected positions. The velocity of a track
+//! is a least-squares line through its last positions. A track moves if it has left the position of its first observation. Cost: O(beams x
+//! reach
 //! / cell) per scan.
 //!
 //! A cell that was never observed free is not new: a wall that comes into view does not move. An object that stops may move on for 10 s. An
-//! object that arrived in the sensor's blind zone is kept there for up to 10 s unless observed to leave.
+//! object that arrived in the sensor's blind zone counts as present for up to 10 s unless observed to leave.
 
 use crate::moving_obstacles::cell_history::{CELL_SIDE_M, CellHistory};
 use crate::moving_obstacles::cluster::{Cluster, clusters};

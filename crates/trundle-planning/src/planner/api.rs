@@ -111,7 +111,7 @@ impl Planner {
     /// Plans from `start`, moving with `start_twist`, to rest at `goal` (map frame).
     ///
     /// A robot that moves forward gets a trajectory that continues its motion. Without such a curve, the robot first brakes on its arc. If
-    /// the arc has no clearance either, the plan starts from rest and says so ([`PlanResult::is_continuous`]).
+    /// the arc has no clearance either, the plan starts from rest, which [`PlanResult::is_continuous`] reports.
     pub fn plan(&mut self, grid: &OccupancyGrid, start: Pose2, start_twist: Twist2, goal: Pose2) -> Plan {
         self.core.plan_on(grid, None, start, start_twist, goal)
     }

@@ -1,7 +1,7 @@
 //! A search over straight moves and turns in place for a polygonal footprint, each motion swept without contact.
 //!
-//! Problem: the circumscribed disc of a long robot does not fit through a gap that the robot passes at the right heading. Idea: search over
-//! cell and heading at once. A motion is a step along the heading or a turn to the next of 16 headings, and is checked exactly. The
+//! Problem: the circumscribed disc of a long robot does not fit through a gap that the robot passes at the right heading. Idea: a joint
+//! search over cell and heading. A motion is a step along the heading or a turn to the next of 16 headings, and is checked exactly. The
 //! heuristic is the [`CoarseHeuristic`] of the inscribed disc. Complete on its lattice. Cost: O(16 cells reached).
 
 use crate::geometry::bearing;

@@ -1,4 +1,4 @@
-//! Whether a robot could stand at a pose, by a map alone.
+//! Check of a pose against a map, without a plan.
 
 use crate::masks::keep_out::cut;
 use crate::masks::zone_cells::forbidden_cells;
@@ -7,8 +7,8 @@ use crate::search::escape::cells_around;
 use trundle_core::{Footprint, GridGeometry, OccupancyGrid, Pose2, Zone};
 use trundle_grid::{DistanceField, UnknownIs};
 
-/// Whether a robot could stand at a pose: the planner's own decision behind [`Plan::GoalInObstacle`](crate::Plan::GoalInObstacle),
-/// without a plan. Costs as much as the cells around the robot.
+/// Check whether the robot fits at a pose: the planner's own decision for [`Plan::GoalInObstacle`](crate::Plan::GoalInObstacle), without a
+/// plan. The cost is proportional to the number of cells around the robot.
 #[derive(Debug, Clone)]
 pub struct FootprintCheck {
     shape: RobotShape,

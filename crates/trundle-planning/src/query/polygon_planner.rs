@@ -22,7 +22,7 @@ struct PolygonPath {
 }
 
 /// Plans straight moves and turns of the polygon, or a curve if one is free. A moving robot continues along a curve, or brakes on its arc
-/// first. If neither is free, the plan starts from rest and says so. `by_disc`: the plan of the circumscribed disc.
+/// first. If neither is free, the plan starts from rest and is not continuous. `by_disc`: the plan of the circumscribed disc.
 pub(crate) fn plan_polygon(
     query: &PlanQuery<'_>,
     memory: &mut SearchBuffers,

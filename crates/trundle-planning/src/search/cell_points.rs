@@ -1,4 +1,4 @@
-//! Points that stand for cells in a search: their centres, their corners, or of nine points of each a chosen one.
+//! Representative points of cells in a search: their centres, their corners, or one of nine points of each.
 
 use trundle_core::Vector2;
 

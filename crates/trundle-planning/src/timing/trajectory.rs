@@ -93,8 +93,8 @@ pub(crate) fn can_follow(phases: &[Phase], v: f64, drive: &DriveModel) -> bool {
     }
 }
 
-/// Appends samples a period apart over the part of the curve that `samples` cover; the last one exactly at its end. Nothing for a
-/// part without length.
+/// Appends samples a period apart over the part of the curve that `samples` cover; the last one exactly at its end. A part without length
+/// adds no samples.
 fn time_curve(
     curve: &Curve,
     samples: &[CurveSample],

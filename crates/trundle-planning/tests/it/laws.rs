@@ -28,7 +28,7 @@ prop_compose! {
     }
 }
 
-/// Cells that a robot on 4-neighbour moves between free centres can reach: an oracle that knows no distance field.
+/// Cells that a robot on 4-neighbour moves between free centres can reach: an oracle without a distance field.
 fn flood(grid: &OccupancyGrid, from: Vector2, radius: f64) -> Vec<bool> {
     let geometry = grid.geometry();
     let free: Vec<bool> =

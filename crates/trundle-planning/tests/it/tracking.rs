@@ -252,7 +252,7 @@ fn whoever_passes_one_who_stopped_goes_behind() {
     }
 }
 
-/// A camera that is blind nearer than `blind` (m) looks on, ten times per second, at those who walk until `stop` (s).
+/// A camera with a blind range of `blind` (m) observes, ten times per second, people who walk until `stop` (s).
 fn dim(
     tracker: &mut MovingObstacleTracker,
     world: &mut World,

@@ -1,4 +1,4 @@
-//! Commands for the base as messages, from a thread of their own.
+//! Commands for the base as messages, from a separate thread.
 
 use super::BodySettings;
 use crate::Ros2Error;

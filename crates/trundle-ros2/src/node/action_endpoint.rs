@@ -19,7 +19,7 @@ use std::io;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// Requests that are taken from a queue at once. Source: ours.
+/// Maximum number of requests handled in one step. Source: ours.
 const MAX_TAKEN_AT_ONCE: usize = 1000;
 
 type Server<A> =

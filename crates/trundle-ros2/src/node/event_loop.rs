@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 /// Longest wait for a message: periodic work is done at least this often. Source: ours.
 const TICK_PERIOD: Duration = Duration::from_millis(20);
-/// Readiness events taken at once. Source: ours.
+/// Maximum number of readiness events per step. Source: ours.
 const EVENT_CAPACITY: usize = 256;
 
 /// An endpoint of a topic or service, with its handler.

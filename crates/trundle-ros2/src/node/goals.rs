@@ -55,7 +55,7 @@ struct Goal<R> {
 /// The answer to a request for a result.
 #[derive(Debug, PartialEq)]
 pub enum ResultAnswer<R> {
-    /// Status and result, at once.
+    /// Status and result, immediately.
     Now(i8, R),
     /// The result follows at the end of the goal.
     Later,

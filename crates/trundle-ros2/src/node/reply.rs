@@ -10,8 +10,8 @@ use ros2_client::dds::rustdds::serialization::to_writer_with_rep_id;
 use serde::Serialize;
 use std::io::{self, Write};
 
-/// Largest reply \[bytes\] that RustDDS sends in one datagram to every peer. It is the smallest MTU of IPv6, 1280 bytes, minus the headers
-/// of IP, UDP and RTPS (48), of a heartbeat (32) and of the submessage (48). Larger replies are not delivered.
+/// Largest reply \[bytes\] that RustDDS sends in one datagram to every peer. The size is the smallest MTU of IPv6, 1280 bytes, minus the
+/// headers of IP, UDP and RTPS (48), of a heartbeat (32) and of the submessage (48). Larger replies are not delivered.
 pub const MAX_REPLY_BYTES: usize = 1152;
 /// Bytes before a message with its encoding \[DDSI-RTPS 10.2\].
 const ENCAPSULATION_BYTES: usize = 4;

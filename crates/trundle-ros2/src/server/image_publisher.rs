@@ -1,4 +1,4 @@
-//! Images of a camera as messages, encoded in a thread of their own.
+//! Images of a camera as messages, encoded on a separate thread.
 
 use super::ServerSettings;
 use crate::Ros2Error;

@@ -59,7 +59,7 @@ fn is_searched_from(grid: &OccupancyGrid, searched: Vector2, at: Vector2) -> boo
     (at - searched).norm() <= SEARCHED_RADIUS_M && is_in_sight(grid, searched, at)
 }
 
-/// Whether no occupied cell lies between two points.
+/// Whether no occupied cell is between two points.
 fn is_in_sight(grid: &OccupancyGrid, from: Vector2, to: Vector2) -> bool {
     let (way, step) = (to - from, grid.geometry().resolution);
     let count = (way.norm() / step).ceil().max(1.0);

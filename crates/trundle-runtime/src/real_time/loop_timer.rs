@@ -73,7 +73,7 @@ pub struct LoopTimerReport {
     pub response_p999_ms: f64,
     /// Time from a wheel reading to its command, maximum.
     pub response_most_ms: f64,
-    /// Times between two commands that were longer than period and deadline: a base with a time-out stops by itself.
+    /// Number of times between two commands that exceeded period and deadline: a base with a time-out stops automatically.
     pub missed_deadlines: u64,
 }
 

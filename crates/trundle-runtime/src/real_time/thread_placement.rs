@@ -15,7 +15,8 @@ pub struct ThreadPlacement {
 }
 
 impl ThreadPlacement {
-    /// Applies the placement to the calling thread. Returns whether the system granted everything. Systems other than Linux grant nothing.
+    /// Applies the placement to the calling thread. Returns whether the system granted everything. On systems other than Linux nothing is
+    /// granted.
     pub fn take(self) -> bool {
         let pinned = self.core.is_none_or(pin);
         let ranked = self.nice == 0 || rank(self.nice);
@@ -51,7 +52,7 @@ fn go_first() -> bool {
     let rank = libc::sched_param { sched_priority: THREAD_PRIORITY };
     // Threads started by such a thread do not inherit its priority.
     let policy = libc::SCHED_FIFO | libc::SCHED_RESET_ON_FORK;
-    // SAFETY: the call reads one valid structure and changes nothing but how the calling thread (0) is scheduled.
+    // SAFETY: the call reads one valid structure and changes only the scheduling of the calling thread (0).
     unsafe { libc::sched_setscheduler(0, policy, &rank) == 0 }
 }
 

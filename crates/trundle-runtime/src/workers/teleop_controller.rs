@@ -8,7 +8,7 @@ use trundle_control::{Limiter, SafetyMonitor};
 use trundle_core::{Footprint, Invalid, Stamp, Twist2};
 
 /// Drives by the twists of an operator, within the limits of the base; the safety monitor checks each twist. Without a new twist for
-/// [`TELEOP_SILENCE_S`] the robot stops at once.
+/// [`TELEOP_SILENCE_S`] the robot stops immediately.
 #[derive(Debug)]
 pub(crate) struct TeleopController {
     limiter: Limiter,

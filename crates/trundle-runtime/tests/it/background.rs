@@ -161,7 +161,7 @@ fn during_a_long_decision_job_the_robot_brakes_for_the_bumper() {
     robot.step(&SensorEvent::Touch(Touch { stamp, pressed: true }));
     let report = robot.step(&SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 }));
     assert_eq!(report.twist, Some(Twist2::ZERO));
-    // After the late answer the robot knows the bumper contact; the decision from half a second earlier is not sent.
+    // After the late answer the robot has the bumper contact; the decision from half a second earlier is not sent.
     let report = robot.apply_answer(lost.remove(0).run());
     assert_eq!(report.twist, None);
     let stamp = stamp.after(0.02);

@@ -23,7 +23,7 @@ pub fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
     SensorEvent::Rgbd(RgbdImage::new(stamp, color, depth).unwrap())
 }
 
-/// A base that follows each command at once.
+/// A base that follows each command immediately.
 #[derive(Debug, Default)]
 pub struct Base {
     command: Twist2,

@@ -73,7 +73,7 @@ impl Meter {
         self.gain
     }
 
-    /// Adapts to the view at `stamp`; the first call sets the gain at once.
+    /// Adapts to the view at `stamp`; the first call sets the gain without delay.
     pub(super) fn look(&mut self, view: &View, stamp: Stamp) {
         if !self.exposure.auto {
             return;

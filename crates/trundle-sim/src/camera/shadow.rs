@@ -1,6 +1,6 @@
 //! Depth shadows: pixels that the projector does not light.
 
-/// Removes the depths of a row that are in the shadow of a projector to the right of the camera; `px_m` is focal length times their
+/// Removes the depths of a row that are in the shadow of a projector to the right of the camera. `px_m` is focal length times their
 /// distance, px m (negative: to the left).
 ///
 /// In the projector's view, column u at depth z is at u - px_m / z. A surface is lit if no surface to its right (in the camera's image) is

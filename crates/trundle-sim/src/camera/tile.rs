@@ -7,7 +7,7 @@ pub(super) const TILE_COLUMNS: usize = 16;
 /// Rows of a tile.
 pub(super) const ROWS: usize = 8;
 
-/// "Nothing" among the ids of a [`Tile`].
+/// Id for "no surface" in a [`Tile`].
 pub(super) const NO_SURFACE_ID: u32 = u32::MAX;
 
 /// A row of numbers, one per pixel: plain loops over it become SIMD.

@@ -20,7 +20,7 @@ pub(super) struct Walker {
     target: usize,
     /// Whether way-points are taken backward.
     is_returning: bool,
-    /// Seconds still to stand.
+    /// Remaining time of the pause, s.
     rest: f64,
     is_done: bool,
 }

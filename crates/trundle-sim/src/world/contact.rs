@@ -31,7 +31,7 @@ impl Obstacles {
         }
     }
 
-    /// Clearance from obstacles that stand at `world_from_obstacles`: a person, a door.
+    /// Clearance from obstacles with the pose `world_from_obstacles`: a person, a door.
     pub fn clearance_at(
         &self,
         world_from_obstacles: Pose2,

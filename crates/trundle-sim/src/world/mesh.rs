@@ -28,7 +28,7 @@ pub struct Triangle {
 pub struct Material {
     /// For messages.
     pub name: String,
-    /// sRGB; multiplies the texture if there is one.
+    /// sRGB; multiplies the texture, if any.
     pub color: [u8; 3],
     /// The texture, sRGB.
     pub texture: Option<ColorImage>,

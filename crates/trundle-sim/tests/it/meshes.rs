@@ -19,7 +19,7 @@ fn kinect() -> Renderer {
     Renderer::new(PinholeCamera::kinect_v2()).unwrap()
 }
 
-/// The ray of pixel `i` of a Kinect at the origin that looks along x: its part along x is 1.
+/// The ray of pixel `i` of a Kinect at the origin facing along x: its component along x is 1.
 fn ray(view: &View, i: usize) -> Vector3 {
     let pixel = Vector2::new((i % view.width) as f64, (i / view.width) as f64);
     camera_mount(0.0, 0.0, 0.0).rotate(PinholeCamera::kinect_v2().unproject(pixel, 1.0))

@@ -1,4 +1,4 @@
-//! Corners of a board in one image. Any part of the corners is a view; the calibration knows no kind of board.
+//! Corners of a board in one image. Any part of the corners is a view; the calibration is independent of the kind of board.
 
 use thiserror::Error;
 use trundle_core::Vector2;
@@ -23,7 +23,7 @@ pub struct BoardView {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BoardProblem {
-    /// Nothing like a board.
+    /// No board is visible.
     #[error("no board found; expected {expected}; show the whole board, in focus and evenly lit")]
     NoBoard {
         /// The board.

@@ -8,7 +8,7 @@ use trundle_core::GrayImage;
 /// smoothed image \[Calonder10, sec. 3.1\].
 const KERNEL: [u32; 4] = [56, 49, 34, 17];
 const KERNEL_RADIUS_PX: usize = KERNEL.len() - 1;
-/// Pixels whose seven slices are found at once: finding them costs as much as smoothing 16 px. Source: ours.
+/// Number of pixels whose seven slices are found together: finding them costs as much as smoothing 16 px. Source: ours.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 const SPAN_PX: usize = 64;
 

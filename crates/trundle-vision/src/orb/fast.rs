@@ -1,6 +1,6 @@
 //! FAST-9 by exact scores. A pixel is a corner if nine contiguous ones of the sixteen on a circle of radius 3 are all brighter, or all
 //! darker, by more than a threshold \[Rosten06\]. The score is the highest threshold with this property. Minima and maxima alone give the
-//! score, so a register of pixels is processed at once. The score serves both thresholds and the suppression of non-maxima.
+//! score, so a register of pixels is processed per step. The score serves both thresholds and the suppression of non-maxima.
 
 use super::OrbConfig;
 use super::corner::Corner;
@@ -107,7 +107,7 @@ impl Detector {
     }
 }
 
-/// Pixels that are searched at once for maxima: 8.
+/// Number of pixels searched together for maxima: 8.
 const WORD_PX: usize = 8;
 
 /// The `$best` over all arcs of nine of `$circle` of the `$worst` of its pixels, for single pixels or vectors. Two neighbouring arcs of

@@ -79,7 +79,7 @@ impl<'a> PlanScene<'a> {
         goals.fold(picture, |picture, (i, goal)| picture.pose(&name(i), *goal, pose(GOAL)))
     }
 
-    /// The way-points between start and goals, which have marks of their own.
+    /// The way-points between start and goals, which have separate marks.
     pub(super) fn between(&self) -> Vec<Vector2> {
         const SAME: f64 = 1e-3;
         let is_end = |p: &Vector2| {

@@ -16,7 +16,7 @@ const INTERFACE_NAME: &str = "uagv";
 pub enum Topic {
     /// From the master: an order.
     Order,
-    /// From the master: actions that are done at once.
+    /// From the master: instant actions.
     InstantActions,
     /// From the robot: its state.
     State,

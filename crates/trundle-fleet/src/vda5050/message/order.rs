@@ -4,7 +4,7 @@ use super::header::MessageHeader;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
-/// An order, or an update of one. Units are m, rad and m/s; poses stand in the map frame.
+/// An order, or an update of one. Units are m, rad and m/s; poses are in the map frame.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Order {
@@ -60,7 +60,7 @@ pub struct NodePosition {
     pub map_id: String,
 }
 
-/// A way between two nodes.
+/// A path between two nodes.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct OrderEdge {
@@ -132,7 +132,7 @@ pub enum BlockingType {
     None,
     /// Other actions, no driving.
     Soft,
-    /// Nothing.
+    /// No other actions, no driving.
     Hard,
 }
 

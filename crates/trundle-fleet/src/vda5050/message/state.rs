@@ -57,7 +57,7 @@ pub struct OrderProgress {
     pub edge_states: Vec<EdgeState>,
     /// Whether the robot approaches the end of the base while a horizon exists.
     pub new_base_request: bool,
-    /// The actions of the order and those done at once.
+    /// States of the order's actions and of instant actions.
     pub action_states: Vec<ActionState>,
 }
 

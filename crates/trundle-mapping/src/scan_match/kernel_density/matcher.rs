@@ -18,7 +18,7 @@ use trundle_grid::{LikelihoodField, SurfacePoints};
 /// scored on a likelihood field, coarse to fine. Then Gauss-Newton on the kernel density of the map's obstacles refines the pose to less
 /// than a cell. An obstacle is the mean of the hits in an occupied cell, which makes the result nearly independent of the cell size. The
 /// information matrix at the optimum gives the covariance. Directions hardly determined by the hits, as along a bare corridor, retain the
-/// guess with its large covariance. Cost: window poses x hits look-ups, then about 80 cells a hit and step.
+/// guess with its large covariance. Cost: window poses x hits look-ups, then about 80 cells per hit and step.
 ///
 /// | symbol | here | unit |
 /// |---|---|---|

@@ -1,4 +1,4 @@
-//! The curve through waypoints: a quadratic program \[Li18\], kept inside a convex free corridor.
+//! The curve through waypoints: a quadratic program \[Li18\] inside a convex free corridor.
 //!
 //! Problem: a smooth curve near the waypoints, with given ends and headings, free of contact. Idea: one Bezier piece for each segment of
 //! the path; least squares to the path plus the squared second and third derivatives. End points, headings and joints are equalities. An

@@ -233,8 +233,8 @@ impl Navigator {
         };
     }
 
-    /// Whether the goal ends without a wait for a path: a viewpoint at once, another goal that does not wait if no path exists over known
-    /// or unknown floor.
+    /// Whether the goal ends without a wait for a path. A viewpoint ends immediately; another goal that does not wait ends if no path
+    /// exists over known or unknown floor.
     fn is_final(&mut self, cause: &NoPath, now: Stamp) -> bool {
         let since = *self.no_path_since.get_or_insert(now);
         let is_at_goal = !matches!(cause, NoPath::StartInObstacle { .. } | NoPath::StartOutside);
@@ -261,7 +261,7 @@ impl Navigator {
         self.state = DriveState::Maneuvering;
     }
 
-    /// The reason for a missing path, with the floor that was kept out of the search.
+    /// The reason for a missing path, with the floor excluded from the search.
     fn no_path(&self, cause: NoPath) -> Reason {
         Reason::NoPath { cause, unseen: self.visibility.keep_out() }
     }

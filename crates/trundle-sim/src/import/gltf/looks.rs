@@ -29,7 +29,7 @@ pub(super) struct Look {
 /// The decoded images, and for each other image the reason.
 type Images = BTreeMap<usize, Result<ColorImage, String>>;
 
-/// The materials of a mesh, in the order of `looks`, and notes about them.
+/// The materials of a mesh, in the order of `looks`, and notes about the materials.
 pub(super) fn materials(
     buffers: &Buffers<'_>,
     looks: &[Look],

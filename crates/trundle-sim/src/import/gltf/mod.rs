@@ -41,7 +41,7 @@ pub struct ImportedScene {
 ///
 /// The floor, the lowest large level, is moved to z = 0 if it is elsewhere.
 ///
-/// The up axis is the standard's, +y, unless `options` sets another: a z-up file without this option lies on its side.
+/// The up axis is the standard's, +y, unless `options` sets another: a z-up file without this option is rotated by 90 deg.
 ///
 /// # Errors
 /// When a file or a buffer is missing, truncated or broken, a number is not finite, an index is out of range, the file requires an

@@ -28,7 +28,7 @@ impl<'g> Flood<'g> {
         Self { grid, reached }
     }
 
-    /// Whether the disc can stand at `place`.
+    /// Whether `place` is a free position of the disc.
     pub fn reaches(&self, place: Vector2) -> bool {
         let geometry = self.grid.geometry();
         geometry.cell_at(place).is_some_and(|cell| self.reached[geometry.linear(cell)])

@@ -62,7 +62,7 @@ fn look_alike_rooms_cannot_be_told_apart() {
             assert!(here.color == there.color, "colour at {heading} deg");
             assert!(here.depth == there.depth, "depth at {heading} deg");
         }
-        // Through the door, and in the pantry, it looks different.
+        // Through the door, and in the pantry, the view differs.
         assert!(at(one, headings[0]).color != at([5.0, 0.0], headings[0]).color);
         assert!(at(one, headings[0] + 180.0).color != at(two, headings[0] + 180.0).color);
     }

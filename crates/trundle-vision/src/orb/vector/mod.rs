@@ -44,7 +44,7 @@ pub(crate) fn block_mut<const N: usize, T>(slice: &mut [T], start: usize) -> &mu
 mod tests {
     use super::*;
 
-    /// Without vectors, the tests of the kernels would compare nothing.
+    /// Without vectors, the tests of the kernels would have no comparison.
     #[test]
     fn the_test_machine_has_vectors() {
         assert!(is_available());

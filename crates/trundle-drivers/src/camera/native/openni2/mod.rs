@@ -8,7 +8,7 @@
 //! | module | content |
 //! |---|---|
 //! | [`camera`] | the camera and its settings |
-//! | [`serve`] | the camera in a process of its own |
+//! | [`serve`] | the camera in a separate process |
 //! | [`functions`] | the functions of the library |
 //! | `session` | open device and streams |
 
