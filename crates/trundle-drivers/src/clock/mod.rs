@@ -2,7 +2,7 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`unwrap`] | counters that wrap, as time since the first one |
+//! | [`unwrap`] | wrapping counters, converted to the time since their first value |
 //! | [`device_clock`] | device stamps on the host's clock |
 //! | [`reorder_buffer`] | events in the order of their stamps |
 //!

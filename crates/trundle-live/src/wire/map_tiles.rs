@@ -5,7 +5,7 @@
 //! | 1 | kind |
 //! | 1 | 0 |
 //! | 2 | number of tiles |
-//! | 4 | generation: at another one the page drops all tiles |
+//! | 4 | generation: if it changes, the page drops all tiles |
 //! | 8, 8, 8 | side of a cell \[m\]; corner of cell (0, 0), map frame: x, y \[m\] |
 //! | 4, 4, 1024 each | column and row of the tile; its cells, 2 bits each, from the lowest row: 0 unknown, 1 free, 2 occupied |
 

@@ -11,7 +11,7 @@ use std::fmt;
 /// | state | leads to |
 /// |---|---|
 /// | idle | initializing, planning |
-/// | initializing | planning; arrived, when the goal is a turn on the spot |
+/// | initializing | planning; arrived, if the goal is a turn on the spot |
 /// | planning | driving, maneuvering, recovering |
 /// | driving | final approach, maneuvering, planning, waiting |
 /// | final approach, maneuvering | arrived, waiting, stopped |

@@ -10,7 +10,7 @@
 //! | T(x) | `Template::values`, zero mean | grey values |
 //! | grad T | `Template::right`, `Template::down`, free of brightness and contrast | grey values per px |
 //! | H | the inverse is `Template::inverse` | |
-//! | p | where the sought patch shows it | px |
+//! | p | position in the searched patch | px |
 
 mod patch;
 mod template;

@@ -29,7 +29,7 @@
 //! those of the phase and its unit agree with \[Freenect2\], whose authors have devices. \[Freenect2\] subtracts p_0 where this decoder
 //! adds it (`usb` changes the sign), and its unit of `p0` is larger by 1.6 %:
 //!
-//! | fact | assumed | where |
+//! | fact | assumption | module |
 //! |---|---|---|
 //! | order of the bits | the first pixel in the lowest bits, 8 pixels in 11 bytes | [`packing`] |
 //! | order of the columns | four interleaved blocks of 128: columns 0, 4, 8, ..., then 1, 5, 9, ... | [`packing`] |

@@ -2,10 +2,10 @@
 //!
 //! **This part has never met a device.** Its state machines were tested with made byte streams, its calls with the real libusb and no device.
 //!
-//! | what | where | endpoint |
+//! | data | module | endpoint |
 //! |---|---|---|
 //! | requests, little endian: magic, sequence, longest reply, command, 0, parameters | [`command`] | bulk 0x02, out |
-//! | replies: data where the command asks for some, then a completion with the same sequence | [`reply`] | bulk 0x81, in |
+//! | replies: the data requested by the command, then a completion with the same sequence | [`reply`] | bulk 0x81, in |
 //! | firmware, serial number, calibration from replies | [`answers`], [`calibration`] | |
 //! | colour: header, JPEG file, filler, footer | [`color_packets`] | bulk 0x83, in |
 //! | depth: packed images of 298,496 bytes, each with a footer of 152 bytes; an empty packet between images | [`depth_packets`] | isochronous 0x84, in |

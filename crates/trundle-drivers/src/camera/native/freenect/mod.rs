@@ -11,7 +11,7 @@
 //! | [`calibration`] | intrinsics and extrinsics |
 //! | [`functions`] | the functions of the library |
 //! | `session` | connection and open device |
-//! | `receiver`, `ticks` | images as they come, and their clock |
+//! | `receiver`, `ticks` | received images, and their clock |
 
 pub mod calibration;
 pub mod camera;

@@ -13,11 +13,11 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`spec`] | what is known of a library before it is loaded |
+//! | [`spec`] | specification of a library before loading |
 //! | [`search`] | the files to try |
 //! | [`native_library`] | a loaded library |
 //! | [`report`] | whether a library is usable, for the user |
-//! | `functions` | a table of its functions |
+//! | `functions` | a table of the library's functions |
 //! | `wheel` | libraries inside Python wheels |
 
 mod candidate;

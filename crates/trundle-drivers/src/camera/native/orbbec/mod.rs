@@ -9,8 +9,8 @@
 //! | [`intrinsics`] | lens models and poses |
 //! | [`functions`] | the functions of the library |
 //! | `api` | loading, calls, objects, errors |
-//! | `device_list` | what is connected |
-//! | `frames` | frames and what they tell of their streams |
+//! | `device_list` | connected cameras |
+//! | `frames` | frames and the stream data in them |
 
 mod api;
 pub mod camera;

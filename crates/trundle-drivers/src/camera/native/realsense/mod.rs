@@ -14,8 +14,8 @@
 //! | [`intrinsics`] | lens models and poses |
 //! | [`functions`] | the functions of the library |
 //! | `api`, `handle`, `error` | loading, calls, objects, errors |
-//! | `device_list`, `request`, `streams` | what is connected, what is asked, what is offered |
-//! | `running`, `frames`, `pairing` | a started pipeline, frames as they come, pairs |
+//! | `device_list`, `request`, `streams` | connected cameras, requested streams, offered streams |
+//! | `running`, `frames`, `pairing` | a started pipeline, received frames, pairs |
 
 mod api;
 pub mod camera;
