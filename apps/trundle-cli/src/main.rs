@@ -43,7 +43,7 @@ use trundle::io::{abandon_outputs, abandon_unfinished, wait_for_abandonment};
 fn main() -> ExitCode {
     let matches = with_negative_numbers(Cli::command()).get_matches();
     let arguments = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
-    let folders = logging::start(arguments.verbose).and_then(|()| output_args::check(&matches));
+    let folders = trundle::app::start_log(arguments.verbose).and_then(|()| output_args::check(&matches));
     ExitCode::from(match folders {
         Ok(folders) => {
             let result = listen(&arguments.command).and_then(|()| run_command(arguments));

@@ -13,11 +13,19 @@ use trundle_runtime::settings::RobotFile;
 /// Names the file, and the line or the value that cannot be accepted.
 pub fn load_robot(file: Option<&Path>, overrides: &[String]) -> Result<RobotConfig, AppError> {
     let text = file.map(read_text).transpose()?.unwrap_or_default();
-    let named = |mark: &str, problem: &dyn Display| match file {
-        Some(file) => format!("{}{mark} {problem}", file.display()),
+    parse_robot(&text, file.map(|file| file.display().to_string()).as_deref(), overrides)
+}
+
+/// The robot of the text of a robot file, with `overrides` (each `key=value`) on top; `name` is that of the file in messages.
+///
+/// # Errors
+/// Names the line or the value that cannot be accepted.
+pub fn parse_robot(text: &str, name: Option<&str>, overrides: &[String]) -> Result<RobotConfig, AppError> {
+    let named = |mark: &str, problem: &dyn Display| match name {
+        Some(name) => format!("{name}{mark} {problem}"),
         None => problem.to_string(),
     };
-    let read = RobotFile::parse(&text, overrides).map_err(|error| {
+    let read = RobotFile::parse(text, overrides).map_err(|error| {
         let mark = if error.line.is_some() { "," } else { ":" };
         AppError::Input(named(mark, &error))
     })?;

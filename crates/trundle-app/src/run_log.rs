@@ -1,6 +1,7 @@
 //! The log of a run for evaluation and pictures: poses, truth, commands, states.
 
 use crate::BodyLog;
+use serde::{Deserialize, Serialize};
 use trundle_core::{Pose2, SensorEvent, Stamp, Twist2};
 use trundle_runtime::{DriveState, Reason, StepReport};
 use trundle_slam::Tracking;
@@ -43,7 +44,7 @@ const BRIEF_LOG_S: f64 = 60.0;
 const MIN_DROPPED_ENTRIES: usize = 1000;
 
 /// A change of the robot's state.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct StateChange {
     /// Seconds since the first event.
     pub at: f64,
@@ -54,7 +55,7 @@ pub struct StateChange {
 }
 
 /// Images by the tracking state.
-#[derive(Debug, Default, Clone, Copy)]
+#[derive(Debug, Default, Clone, Copy, Serialize, Deserialize)]
 pub struct TrackCounts {
     /// Well tracked.
     pub ok: usize,

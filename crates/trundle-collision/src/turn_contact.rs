@@ -1,9 +1,12 @@
 //! Turns in place: the headings at which the hull overlaps a segment, in closed form.
 //!
-//! A footprint that turns sweeps annulus sectors. Contact begins or ends in one of two events only. An end of the segment lies
-//! on the hull's boundary: a circle around the axle meets an offset side or a rounded corner. Or a corner of the core is a radius
-//! away from the segment: the corner's circle meets a line. Between neighbouring events nothing changes, so one overlap test in
-//! the middle of each interval decides it.
+//! The hull is a convex core, grown by a radius. While it turns around the axle's centre, overlap with a segment begins or ends only at
+//! two kinds of headings:
+//!
+//! 1. An end of the segment lies on the hull's boundary. It is where a circle around the axle's centre meets a side or a rounded corner.
+//! 2. A corner of the core is one radius away from the segment. It is where the circle of the corner meets a line parallel to the segment.
+//!
+//! Between neighbouring headings of these kinds the overlap does not change. One overlap test in the middle of each interval decides it.
 
 use crate::rounded_hull::RoundedHull;
 use crate::segment::Segment;
@@ -34,11 +37,12 @@ impl HeadingArc {
     }
 }
 
-/// Slack of the range tests, m: an additional candidate costs one test, a missing one a contact. Source: ours.
+/// Tolerance of the range tests, m. Too large a value costs additional overlap tests, too small a value misses contacts. Source: ours, far
+/// above the rounding error of a length of metres.
 const RANGE_SLACK_M: f64 = 1e-7;
 
 /// Adds the headings at which a segment overlaps the hull. The segment is relative to the base's origin, in the axes in which
-/// headings are measured. `angles` is a buffer.
+/// headings are measured. `angles` is a buffer, to save allocations.
 pub fn blocked_headings(
     hull: &RoundedHull,
     segment: &Segment,
@@ -77,7 +81,7 @@ fn contacts_of_end(hull: &RoundedHull, p: Vector2, angles: &mut Vec<f64>) {
         if cosine.abs() > 1.0 {
             continue;
         }
-        // Along the side, from the foot of the axle: -/+ distance * sine for the two meeting points.
+        // The circle meets the line of the side in two points: distance * sine to both sides of the foot of the axle's centre.
         let (along, sine) = (edge.side.b - edge.side.a, (1.0 - cosine * cosine).sqrt());
         let unit = Vector2::new(-edge.normal.y, edge.normal.x);
         let (low, high) = (unit.dot(&edge.side.a), unit.dot(&edge.side.a) + along.norm());
@@ -110,7 +114,7 @@ fn contacts_of_corners(hull: &RoundedHull, segment: &Segment, angles: &mut Vec<f
     let (p, q) = (unit.dot(&segment.a), unit.dot(&segment.b));
     let (low, high) = (p.min(q) - RANGE_SLACK_M, p.max(q) + RANGE_SLACK_M);
     let normal_bearing = normal.y.atan2(normal.x);
-    // With the axle inside, a side still crosses the segment when a corner is beyond it: no event.
+    // With the axle's centre inside the hull, a corner beyond the segment is no event: a side of the hull still crosses the segment.
     let sides: &[f64] = if hull.inner > 0.0 && offset > hull.radius { &[-1.0] } else { &[-1.0, 1.0] };
     for corner in hull.core.iter().filter(|c| c.distance > 0.0) {
         for side in sides {

@@ -9,7 +9,7 @@ pub use trial::BarnTrial;
 
 use crate::laser_run::{LaserPlan, drive};
 use crate::run_each::run_each;
-use crate::{ExperimentDisplay, ExperimentReport, IndexRange};
+use crate::{ExperimentContext, ExperimentReport, IndexRange};
 use std::path::PathBuf;
 use trial::{TIME_LIMIT_S, is_at_goal};
 use trundle_app::AppError;
@@ -48,7 +48,7 @@ pub struct BarnOutcome {
 ///
 /// # Errors
 /// When the data cannot be read, or a run cannot be created.
-pub fn run(request: &BarnRequest, display: &ExperimentDisplay) -> Result<BarnOutcome, AppError> {
+pub fn run(request: &BarnRequest, context: &ExperimentContext) -> Result<BarnOutcome, AppError> {
     let worlds = worlds::read(&request.data)?;
     let max = (worlds.len() as u64).saturating_sub(1);
     let IndexRange { first, last } = request.worlds.unwrap_or(IndexRange { first: 0, last: max });
@@ -62,7 +62,7 @@ pub fn run(request: &BarnRequest, display: &ExperimentDisplay) -> Result<BarnOut
     let robot = request.robot();
     let name_of = |(world, seed): &(BarnWorld, u64)| format!("world {}, seed {seed}", world.id);
     let one = |(world, seed), watch| one(&robot, world, seed, watch);
-    let trials = run_each(plans, "worlds", display, name_of, one)?;
+    let trials = run_each(plans, "worlds", context, name_of, one)?;
     Ok(BarnOutcome { trials })
 }
 

@@ -7,7 +7,8 @@ mod trial;
 pub use trial::{DockPlan, DockTrial, body_of, dock, docking_alone};
 
 use crate::run_each::run_each;
-use crate::{ExperimentDisplay, ExperimentReport, RunResult, RunsRequest};
+use crate::{ExperimentContext, ExperimentReport, RunResult, RunsRequest};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 use trundle_app::AppError;
 use trundle_core::Pose2;
@@ -34,20 +35,22 @@ pub struct DocksOutcome {
 ///
 /// # Errors
 /// When a number of the robot is outside its range.
-pub fn run(request: &RunsRequest, display: &ExperimentDisplay) -> Result<DocksOutcome, AppError> {
+pub fn run(request: &RunsRequest, context: &ExperimentContext) -> Result<DocksOutcome, AppError> {
     let seeds: Vec<u64> = (1..=u64::from(request.seeds)).collect();
     let dock_from = |seed: u64, watch| {
         let start = start_of(seed);
         let scene = Scene { start, ..Scene::by_name("room", seed)? }.with_station(station())?;
         let (robot, mission) = (request.robot.clone(), docking_alone()?);
         let body = body_of(&robot)?;
-        Ok(DockFrom(start, dock(DockPlan { scene, robot, body, mission, seed }, watch)?))
+        let (trial, _) = dock(DockPlan { scene, robot, body, mission, seed }, watch)?;
+        Ok(DockFrom(start, trial))
     };
-    let docks = run_each(seeds, "docks", display, |seed| format!("seed {seed}"), dock_from)?;
+    let docks = run_each(seeds, "docks", context, |seed| format!("seed {seed}"), dock_from)?;
     Ok(DocksOutcome { trials: docks.into_iter().map(|DockFrom(start, trial)| (start, trial)).collect() })
 }
 
 /// A dock and its start.
+#[derive(Serialize, Deserialize)]
 struct DockFrom(Pose2, DockTrial);
 
 impl RunResult for DockFrom {
@@ -107,7 +110,7 @@ fn row(start: &Pose2, trial: &DockTrial) -> Vec<String> {
         format!("{:.1}", trial.lateral_error() * 1e3),
         format!("{:.2}", trial.heading_error().to_degrees()),
         trial.contacts.to_string(),
-        format!("{:.1}", trial.run.path_length()),
+        format!("{:.1}", trial.path_length),
     ]
 }
 

@@ -2,7 +2,7 @@
 //! stops, reports why, and goes on when the view is back.
 
 use crate::trial::{self, ComputerFault, Trial, TrialPlan};
-use crate::{ExperimentDisplay, ExperimentReport, RunsRequest, missions};
+use crate::{ExperimentContext, ExperimentReport, RunsRequest, missions};
 use trundle_app::AppError;
 use trundle_core::{Pose2, Vector2};
 use trundle_eval::GoalError;
@@ -32,6 +32,8 @@ struct FaultScenario {
     /// Whether the person is given in the frame of the goal, not of the start.
     at_goal: bool,
     computer_fault: Option<ComputerFault>,
+    /// As in [`TrialPlan`].
+    camera_rate_hz: Option<f64>,
     end: End,
 }
 
@@ -47,6 +49,7 @@ fn scenarios() -> Vec<FaultScenario> {
         person: None,
         at_goal: false,
         computer_fault: None,
+        camera_rate_hz: None,
         end,
     };
     let plain = |name, scene, end| FaultScenario {
@@ -80,6 +83,14 @@ fn scenarios() -> Vec<FaultScenario> {
         broken("encoders stuck", 8.0, FOREVER_S, FaultKind::EncodersStuck, End::Arrived),
         broken("odometry jumps 1 m", 10.0, 10.1, jump, End::Arrived),
         broken("kidnapped while driving", 12.0, 12.1, carried, End::Arrived),
+        FaultScenario {
+            camera_rate_hz: Some(30.0),
+            ..broken("kidnapped, camera of 30 Hz", 12.0, 12.1, carried, End::Arrived)
+        },
+        FaultScenario {
+            camera_rate_hz: Some(6.0),
+            ..broken("kidnapped, camera of 6 Hz", 12.0, 12.1, carried, End::Arrived)
+        },
         two(
             "in the dark, encoders stuck",
             [(8.0, FOREVER_S, FaultKind::LightsOut), (8.0, FOREVER_S, FaultKind::EncodersStuck)],
@@ -144,14 +155,14 @@ pub struct FaultsOutcome {
 ///
 /// # Errors
 /// When a run cannot be created, or no run has the name asked for.
-pub fn run(request: &RunsRequest, display: &ExperimentDisplay) -> Result<FaultsOutcome, AppError> {
+pub fn run(request: &RunsRequest, context: &ExperimentContext) -> Result<FaultsOutcome, AppError> {
     let mut plans = Vec::new();
     for scenario in scenarios() {
         for seed in 1..=u64::from(request.seeds) {
             plans.push(scenario.plan(seed, &request.robot)?);
         }
     }
-    Ok(FaultsOutcome { trials: trial::run_all(plans, request, display)? })
+    Ok(FaultsOutcome { trials: trial::run_all(plans, request, context)? })
 }
 
 impl FaultScenario {
@@ -162,8 +173,12 @@ impl FaultScenario {
         let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
         let fault = |&(from_s, to_s, kind)| Fault { from_s, to_s, kind: in_world(kind, &scene) };
         let faults = FaultSchedule { faults: self.faults.iter().map(fault).collect() };
-        let (name, robot) = (self.name.to_owned(), robot.clone());
-        Ok(TrialPlan { name, seed, scene, mission, robot, faults, computer_fault: self.computer_fault })
+        Ok(TrialPlan {
+            faults,
+            computer_fault: self.computer_fault,
+            camera_rate_hz: self.camera_rate_hz,
+            ..TrialPlan::new(self.name, seed, scene, mission, robot)
+        })
     }
 }
 

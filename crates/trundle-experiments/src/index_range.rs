@@ -1,5 +1,6 @@
 //! Numbers from a first to a last one.
 
+use std::fmt;
 use std::str::FromStr;
 
 /// Numbers from a first to a last one, both included.
@@ -9,6 +10,12 @@ pub struct IndexRange {
     pub first: u64,
     /// The last, not below the first.
     pub last: u64,
+}
+
+impl fmt::Display for IndexRange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}-{}", self.first, self.last)
+    }
 }
 
 impl FromStr for IndexRange {

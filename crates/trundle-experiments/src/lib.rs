@@ -18,6 +18,7 @@ mod cpu_clock;
 mod csv_rows;
 pub mod data_sets;
 pub mod docking_station;
+mod experiment_context;
 mod experiment_display;
 mod experiment_report;
 pub mod fault_scenarios;
@@ -30,6 +31,7 @@ pub mod people;
 pub mod poses;
 pub mod real_time;
 mod run_each;
+mod shards;
 pub mod sim_drive;
 pub mod simulated;
 mod trial;
@@ -37,7 +39,9 @@ pub mod vocabulary;
 #[cfg(unix)]
 mod wired_trial;
 
+pub use experiment_context::{ExperimentContext, RunSource};
 pub use experiment_display::{ExperimentDisplay, RunResult, StagedRun};
 pub use experiment_report::{ExperimentReport, RunsRequest};
 pub use index_range::IndexRange;
+pub use shards::{KeptRuns, RunOrigin, Shard, ShardManifest, ShardWriter, shard_arguments};
 pub use trial::{ComputerFault, Trial, TrialPlan, run_all, run_one};

@@ -1,7 +1,7 @@
 //! Plain rooms that look alike from several poses, with people in them: no goal may count as reached that is not.
 
 use crate::trial::{self, Trial, TrialPlan};
-use crate::{ExperimentDisplay, ExperimentReport, RunsRequest};
+use crate::{ExperimentContext, ExperimentReport, RunsRequest};
 use trundle_app::AppError;
 use trundle_app::report::GoalOutcome;
 use trundle_core::Pose2;
@@ -48,14 +48,14 @@ pub struct LookAlikesOutcome {
 ///
 /// # Errors
 /// When a run cannot be created, or no run has the name asked for.
-pub fn run(request: &RunsRequest, display: &ExperimentDisplay) -> Result<LookAlikesOutcome, AppError> {
+pub fn run(request: &RunsRequest, context: &ExperimentContext) -> Result<LookAlikesOutcome, AppError> {
     let mut plans = Vec::new();
     for seed in 1..=u64::from(request.seeds) {
         for variant in VARIANTS {
             plans.push(plan(seed, variant, &request.robot)?);
         }
     }
-    Ok(LookAlikesOutcome { trials: trial::run_all(plans, request, display)? })
+    Ok(LookAlikesOutcome { trials: trial::run_all(plans, request, context)? })
 }
 
 /// Explore, the goal, back to the start, the goal again.
@@ -68,8 +68,7 @@ fn plan(seed: u64, variant: Variant, robot: &RobotConfig) -> Result<TrialPlan, A
     let kind = FaultKind::Kidnapped { x: to.x, y: to.y, heading_deg: -to.theta.to_degrees() };
     let carried = Fault { from_s: CARRIED_AT_S, to_s: CARRIED_AT_S + CARRIED_FOR_S, kind };
     let faults = FaultSchedule { faults: variant.is_carried_away.then_some(carried).into_iter().collect() };
-    let (name, robot) = (variant.name.to_owned(), robot.clone());
-    Ok(TrialPlan { name, seed, scene, mission, robot, faults, computer_fault: None })
+    Ok(TrialPlan { faults, ..TrialPlan::new(variant.name, seed, scene, mission, robot) })
 }
 
 /// Counted quantities of a run.

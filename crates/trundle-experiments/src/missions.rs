@@ -3,15 +3,15 @@
 use crate::data_sets::SMALL_HOUSE;
 use crate::simulated::{MeshOptions, SceneOptions, load_scene, require_free};
 use crate::trial::{self, Trial, TrialPlan};
-use crate::{ExperimentDisplay, ExperimentReport, RunsRequest};
+use crate::{ExperimentContext, ExperimentReport, RunsRequest};
 use std::path::Path;
 use trundle_app::AppError;
 use trundle_app::report::GoalOutcome;
 use trundle_core::{Pose2, Vector2};
 use trundle_io::{OutputFolder, Summary, table_csv, write_map};
 use trundle_runtime::{Mission, Task, TaskEnd};
+use trundle_sim::Scene;
 use trundle_sim::import::UpAxis;
-use trundle_sim::{FaultSchedule, Scene};
 use trundle_viz::{Color, Figure, LineStyle, MapPicture, PoseStyle, Report, Table, Verdict};
 
 /// An experiment of this kind.
@@ -51,9 +51,9 @@ pub struct MissionsOutcome {
 /// When a run cannot be created, or no run has the name asked for.
 pub fn run_obstacles(
     request: &RunsRequest,
-    display: &ExperimentDisplay,
+    context: &ExperimentContext,
 ) -> Result<MissionsOutcome, AppError> {
-    run_story(&OBSTACLES, request, display, |seed| {
+    run_story(&OBSTACLES, request, context, |seed| {
         let scene = Scene::by_name("obstacles", seed)?;
         let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
         Ok((scene, mission))
@@ -83,7 +83,7 @@ const HOUSE_GOALS: [(f64, f64, f64); 10] = [
 pub fn run_house(
     request: &RunsRequest,
     mesh: &Path,
-    display: &ExperimentDisplay,
+    context: &ExperimentContext,
 ) -> Result<MissionsOutcome, AppError> {
     if !mesh.exists() {
         let problem = format!("is not there, --mesh names its file: {}", SMALL_HOUSE.how_to_get());
@@ -91,7 +91,7 @@ pub fn run_house(
     }
     let pose = |(x, y, degrees): (f64, f64, f64)| Pose2::new(x, y, degrees.to_radians());
     let start = pose(HOUSE_START_XY_DEG);
-    run_story(&HOUSE, request, display, |seed| {
+    run_story(&HOUSE, request, context, |seed| {
         let options = SceneOptions {
             seed,
             mesh: MeshOptions { up: UpAxis::Z, ..MeshOptions::default() },
@@ -111,24 +111,15 @@ pub fn run_house(
 fn run_story(
     story: &'static Story,
     request: &RunsRequest,
-    display: &ExperimentDisplay,
+    context: &ExperimentContext,
     story_of: impl Fn(u64) -> Result<(Scene, Mission), AppError>,
 ) -> Result<MissionsOutcome, AppError> {
     let plan = |seed| -> Result<TrialPlan, AppError> {
         let (scene, mission) = story_of(seed)?;
-        let (name, robot) = (format!("seed {seed}"), request.robot.clone());
-        Ok(TrialPlan {
-            name,
-            seed,
-            scene,
-            mission,
-            robot,
-            faults: FaultSchedule::default(),
-            computer_fault: None,
-        })
+        Ok(TrialPlan::new(&format!("seed {seed}"), seed, scene, mission, &request.robot))
     };
     let plans = (1..=u64::from(request.seeds)).map(plan).collect::<Result<Vec<_>, _>>()?;
-    Ok(MissionsOutcome { story, trials: trial::run_all(plans, request, display)? })
+    Ok(MissionsOutcome { story, trials: trial::run_all(plans, request, context)? })
 }
 
 impl ExperimentReport for MissionsOutcome {
@@ -294,7 +285,7 @@ mod tests {
     #[test]
     fn a_house_that_is_not_there_is_named() {
         let request = RunsRequest { seeds: 1, only: None, robot: trundle_runtime::RobotConfig::default() };
-        let refused = run_house(&request, Path::new("no/house.glb"), &ExperimentDisplay::default());
+        let refused = run_house(&request, Path::new("no/house.glb"), &ExperimentContext::default());
         assert!(refused.err().unwrap().to_string().starts_with("no/house.glb is not there"));
     }
 

@@ -11,7 +11,7 @@ pub use trial::MrpbTrial;
 use crate::laser_run::{LaserPlan, drive, hokuyo};
 use crate::run_each::run_each;
 use crate::simulated::simulated_body;
-use crate::{ExperimentDisplay, ExperimentReport};
+use crate::{ExperimentContext, ExperimentReport};
 use course::Course;
 use std::path::{Path, PathBuf};
 use trial::{GOAL_TOLERANCE_M, GOAL_TOLERANCE_RAD};
@@ -66,7 +66,7 @@ pub struct MrpbOutcome {
 ///
 /// # Errors
 /// When the data cannot be read, no course has the requested name, or a run cannot be created.
-pub fn run(request: &MrpbRequest, display: &ExperimentDisplay) -> Result<MrpbOutcome, AppError> {
+pub fn run(request: &MrpbRequest, context: &ExperimentContext) -> Result<MrpbOutcome, AppError> {
     let robot = request.robot();
     let chosen =
         |course: &Course| request.only.as_ref().is_none_or(|only| course.name().contains(only.as_str()));
@@ -83,7 +83,7 @@ pub fn run(request: &MrpbRequest, display: &ExperimentDisplay) -> Result<MrpbOut
         .collect();
     let name_of = |(course, seed): &(Course, u64)| format!("{}, seed {seed}", course.name());
     let one = |(course, seed), watch| one(&request.data, &robot, course, seed, watch);
-    Ok(MrpbOutcome { trials: run_each(plans, "runs", display, name_of, one)? })
+    Ok(MrpbOutcome { trials: run_each(plans, "runs", context, name_of, one)? })
 }
 
 impl ExperimentReport for MrpbOutcome {

@@ -1,12 +1,12 @@
 //! People who step into the robot's path a metre before it: it stops, waits or goes around, without a contact.
 
 use crate::trial::{self, Trial, TrialPlan};
-use crate::{ExperimentDisplay, ExperimentReport, RunsRequest};
+use crate::{ExperimentContext, ExperimentReport, RunsRequest};
 use trundle_app::{AppError, stop};
 use trundle_core::{Pose2, Vector2};
 use trundle_io::{OutputFolder, Summary, table_csv};
 use trundle_runtime::{Mission, RobotConfig, Task};
-use trundle_sim::{FaultSchedule, Person, Scene};
+use trundle_sim::{Person, Scene};
 use trundle_viz::{Report, Table, Verdict};
 
 /// Start of the robot's crossing, world frame, m.
@@ -74,16 +74,11 @@ pub struct PeopleOutcome {
 ///
 /// # Errors
 /// When a run cannot be created, or no run has the name asked for.
-pub fn run(request: &RunsRequest, display: &ExperimentDisplay) -> Result<PeopleOutcome, AppError> {
+pub fn run(request: &RunsRequest, context: &ExperimentContext) -> Result<PeopleOutcome, AppError> {
     let robot = &request.robot;
     let radius = robot.footprint()?.circumscribed_radius();
     let alone = plan("alone", 1, robot)?;
-    let staged = display.enter(alone.label());
-    let alone = trial::run_one(alone, staged.link())?;
-    drop(staged);
-    if stop::stopped().is_some() {
-        return Err(AppError::Stopped);
-    }
+    let alone = run_alone(alone, context)?;
     let timetable: Vec<(f64, Vector2)> = alone.times.iter().copied().zip(alone.driven).collect();
     let mut plans = Vec::new();
     for seed in 1..=u64::from(request.seeds) {
@@ -91,7 +86,18 @@ pub fn run(request: &RunsRequest, display: &ExperimentDisplay) -> Result<PeopleO
         plan.scene.people.push(StepOut::of(seed).person(&timetable, radius));
         plans.push(plan);
     }
-    Ok(PeopleOutcome { trials: trial::run_all(plans, request, display)? })
+    Ok(PeopleOutcome { trials: trial::run_all(plans, request, context)? })
+}
+
+/// The run without a person, by whose timetable the persons step out. Every shard makes it.
+fn run_alone(plan: TrialPlan, context: &ExperimentContext) -> Result<Trial, AppError> {
+    let ExperimentContext { display, runs } = context;
+    let name = plan.label();
+    let staged = display.enter(name.clone());
+    let alone = runs.result(&name, || trial::run_one(plan, staged.link()).map(Some))?;
+    let Some(alone) = alone.filter(|_| stop::stopped().is_none()) else { return Err(AppError::Stopped) };
+    runs.keep(&name, &alone)?;
+    Ok(alone)
 }
 
 impl ExperimentReport for PeopleOutcome {
@@ -122,16 +128,7 @@ fn plan(name: &str, seed: u64, robot: &RobotConfig) -> Result<TrialPlan, AppErro
     scene.start = Pose2::new(START_XY_M.0, START_XY_M.1, 0.0);
     scene.goal = Pose2::new(GOAL_XY_M.0, GOAL_XY_M.1, 0.0);
     let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
-    let (name, robot) = (name.to_owned(), robot.clone());
-    Ok(TrialPlan {
-        name,
-        seed,
-        scene,
-        mission,
-        robot,
-        faults: FaultSchedule::default(),
-        computer_fault: None,
-    })
+    Ok(TrialPlan::new(name, seed, scene, mission, robot))
 }
 
 fn is_good(trial: &Trial) -> bool {

@@ -1,12 +1,12 @@
 //! The point stabilisation of \[Li18\]: eight start poses about one goal, from an empty map, on the robot's own senses.
 
 use crate::trial::{self, Trial, TrialPlan};
-use crate::{ExperimentDisplay, ExperimentReport, RunsRequest};
+use crate::{ExperimentContext, ExperimentReport, RunsRequest};
 use trundle_app::{AppError, Progress};
 use trundle_core::{Footprint, Pose2, Vector2};
 use trundle_io::{OutputFolder, Summary, table_csv};
 use trundle_runtime::{Mission, Task};
-use trundle_sim::{FaultSchedule, Scene};
+use trundle_sim::Scene;
 use trundle_viz::{BarChart, Color, Figure, LineStyle, MapPicture, PoseStyle, Report, Table, Verdict};
 
 /// Their start poses, m; each with heading 0.
@@ -42,15 +42,7 @@ fn plans(request: &RunsRequest) -> Result<Vec<TrialPlan>, AppError> {
             let mut scene = Scene::by_name("room", seed)?;
             scene.start = Pose2::new(x, y, 0.0);
             let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
-            plans.push(TrialPlan {
-                name: format!("{}", i + 1),
-                seed,
-                scene,
-                mission,
-                robot: request.robot.clone(),
-                faults: FaultSchedule::default(),
-                computer_fault: None,
-            });
+            plans.push(TrialPlan::new(&(i + 1).to_string(), seed, scene, mission, &request.robot));
         }
     }
     Ok(plans)
@@ -60,8 +52,8 @@ fn plans(request: &RunsRequest) -> Result<Vec<TrialPlan>, AppError> {
 ///
 /// # Errors
 /// When a run cannot be created, or no run has the name asked for.
-pub fn run(request: &RunsRequest, display: &ExperimentDisplay) -> Result<PosesOutcome, AppError> {
-    Ok(PosesOutcome { trials: trial::run_all(plans(request)?, request, display)? })
+pub fn run(request: &RunsRequest, context: &ExperimentContext) -> Result<PosesOutcome, AppError> {
+    Ok(PosesOutcome { trials: trial::run_all(plans(request)?, request, context)? })
 }
 
 /// The runs over a serial line and a stream of camera frames, one run after the other, by the wall clock.
@@ -69,11 +61,11 @@ pub fn run(request: &RunsRequest, display: &ExperimentDisplay) -> Result<PosesOu
 /// # Errors
 /// As [`run`].
 #[cfg(unix)]
-pub fn run_over_wires(request: &RunsRequest, display: &ExperimentDisplay) -> Result<PosesOutcome, AppError> {
+pub fn run_over_wires(request: &RunsRequest, context: &ExperimentContext) -> Result<PosesOutcome, AppError> {
     let plans = trial::selected(plans(request)?, request)?;
-    display.begin(plans.len(), "runs");
+    context.display.begin(plans.len(), "runs");
     let one = |plan: TrialPlan| {
-        let staged = display.enter(plan.label());
+        let staged = context.display.enter(plan.label());
         let trial = crate::wired_trial::run_over_wires(plan, staged.front_end(Progress::hidden()))?;
         staged.end(&trial);
         Ok(trial)

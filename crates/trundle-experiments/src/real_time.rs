@@ -1,7 +1,7 @@
 //! A run in real time over many minutes: jitter of control, CPU load of a core, and growth of memory.
 
 use crate::simulated::{SimulatedRealTimeBody, simulated_real_time_body};
-use crate::{ExperimentDisplay, ExperimentReport};
+use crate::{ExperimentContext, ExperimentReport};
 use trundle_app::real_time::{RealTimeReport, run_in_real_time};
 use trundle_app::{AppError, FinishedRun, RunLog, RunSetup};
 use trundle_io::{OutputFolder, Summary, table_csv};
@@ -85,7 +85,7 @@ pub struct RealTimeOutcome {
 pub fn run(
     request: &RealTimeRequest,
     folder: &OutputFolder,
-    display: &ExperimentDisplay,
+    context: &ExperimentContext,
 ) -> Result<RealTimeOutcome, AppError> {
     let robot = request.robot.clone().with_seed(request.seed);
     let scene = Scene::by_name("demo", request.seed)?;
@@ -99,9 +99,9 @@ pub fn run(
     setup.real_time = true;
     let config = simulated_real_time_body(&setup.robot, FaultSchedule::default())?;
     let body = Simulator::new(scene, config, request.seed).map_err(AppError::input)?;
-    display.begin(1, "runs");
-    let staged = display.enter(format!("{} min, seed {}", request.minutes, request.seed));
-    let front_end = staged.front_end(display.progress().clone());
+    context.display.begin(1, "runs");
+    let staged = context.display.enter(format!("{} min, seed {}", request.minutes, request.seed));
+    let front_end = staged.front_end(context.display.progress().clone());
     let start = |events, place| SimulatedRealTimeBody::start(body, events, place);
     let (run, timing) = run_in_real_time(&setup, start, folder, None, RunLog::brief(), front_end)?;
     Ok(RealTimeOutcome::of(&run, timing))

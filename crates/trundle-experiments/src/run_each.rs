@@ -1,7 +1,11 @@
 //! Parallel runs of an experiment, until all are done or the user interrupts.
 
-use crate::experiment_display::{ExperimentDisplay, RunResult};
+use crate::experiment_context::{ExperimentContext, RunSource};
+use crate::experiment_display::RunResult;
 use rayon::prelude::*;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use trundle_app::operator::OperatorLink;
 use trundle_app::{AppError, stop};
@@ -11,13 +15,15 @@ use trundle_app::{AppError, stop};
 ///
 /// # Errors
 /// The first plan that cannot be carried out; [`AppError::Stopped`] if no run is done.
-pub fn run_each<P: Send, T: Send + RunResult>(
+pub(crate) fn run_each<P: Send, T: Send + RunResult + Serialize + DeserializeOwned>(
     plans: Vec<P>,
     unit: &'static str,
-    display: &ExperimentDisplay,
+    context: &ExperimentContext,
     name_of: impl Fn(&P) -> String + Sync,
     run: impl Fn(P, Option<OperatorLink>) -> Result<T, AppError> + Sync,
 ) -> Result<Vec<T>, AppError> {
+    let ExperimentContext { display, runs } = context;
+    let plans = runs.selected(plans, &name_of)?;
     let (done, total) = (AtomicUsize::new(0), plans.len());
     display.begin(total, unit);
     let count = || format!("{} of {total} {unit}", done.load(Ordering::Relaxed));
@@ -25,18 +31,34 @@ pub fn run_each<P: Send, T: Send + RunResult>(
         if stop::is_requested(count) {
             return Ok(None);
         }
-        let staged = display.enter(name_of(&plan));
-        let result = run(plan, staged.link());
-        if stop::is_requested(count) {
-            return Ok(None); // the run may have been broken off
-        }
+        let name = name_of(&plan);
+        let staged = display.enter(name.clone());
+        let result = runs.result(&name, || unless_it_dies(runs, &name, || run(plan, staged.link())))?;
+        // A run may have been broken off by the request to stop.
+        let Some(result) = result.filter(|_| !stop::is_requested(count)) else { return Ok(None) };
+        runs.keep(&name, &result)?;
         done.fetch_add(1, Ordering::Relaxed);
-        result.iter().for_each(|result| staged.end(result));
+        staged.end(&result);
         display.progress().show_count(done.load(Ordering::Relaxed), total, unit);
-        result.map(Some)
+        Ok(Some(result))
     });
     let results: Vec<T> = results.collect::<Result<Vec<_>, AppError>>()?.into_iter().flatten().collect();
     if results.is_empty() && total > 0 { Err(AppError::Stopped) } else { Ok(results) }
+}
+
+/// Executes a run. If the run panics, a message names it. The other runs of a shard then continue; any other experiment ends.
+fn unless_it_dies<T>(
+    runs: &RunSource,
+    name: &str,
+    run: impl FnOnce() -> Result<T, AppError>,
+) -> Result<Option<T>, AppError> {
+    catch_unwind(AssertUnwindSafe(run)).map_or_else(
+        |panic| {
+            tracing::error!("the run '{name}' has died: a fault of the program");
+            if runs.goes_on_without(name) { Ok(None) } else { resume_unwind(panic) }
+        },
+        |result| result.map(Some),
+    )
 }
 
 #[cfg(test)]
@@ -46,7 +68,7 @@ mod tests {
     #[test]
     fn results_are_in_the_order_of_the_plans_and_the_first_refusal_is_told() {
         let double = |n: u32, _| if n < 9 { Ok(2 * n) } else { Err(AppError::Input(n.to_string())) };
-        let run = |plans| run_each(plans, "runs", &ExperimentDisplay::default(), u32::to_string, double);
+        let run = |plans| run_each(plans, "runs", &ExperimentContext::default(), u32::to_string, double);
         assert_eq!(run(vec![3, 1, 2]).unwrap(), [6, 2, 4]);
         assert_eq!(run(vec![1, 9]).unwrap_err().to_string(), "9");
     }

@@ -1,9 +1,12 @@
 //! Closed-loop runs of robot and simulator, many at once.
 
 use crate::RunsRequest;
-use crate::experiment_display::{ExperimentDisplay, RunResult};
+use crate::experiment_context::ExperimentContext;
+use crate::experiment_display::RunResult;
 use crate::run_each::run_each;
+use crate::shards::points;
 use crate::simulated::{simulated_body, time_limit};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::time::Instant;
 use trundle_app::operator::{FrontEnd, OperatorLink};
@@ -36,9 +39,26 @@ pub struct TrialPlan {
     pub faults: FaultSchedule,
     /// Fault of the computer.
     pub computer_fault: Option<ComputerFault>,
+    /// Images a second; `None`: the rate of [`SimConfig`].
+    pub camera_rate_hz: Option<f64>,
 }
 
 impl TrialPlan {
+    /// A run without faults.
+    #[must_use]
+    pub fn new(name: &str, seed: u64, scene: Scene, mission: Mission, robot: &RobotConfig) -> Self {
+        Self {
+            name: name.to_owned(),
+            seed,
+            scene,
+            mission,
+            robot: robot.clone(),
+            faults: FaultSchedule::default(),
+            computer_fault: None,
+            camera_rate_hz: None,
+        }
+    }
+
     /// Name and seed: `lights out, seed 2`.
     #[must_use]
     pub fn label(&self) -> String {
@@ -66,6 +86,7 @@ pub enum ComputerFault {
 }
 
 /// Result of a trial.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Trial {
     /// Name in tables.
     pub name: String,
@@ -76,12 +97,14 @@ pub struct Trial {
     /// The numbers.
     pub numbers: RunNumbers,
     /// True path, world frame.
+    #[serde(with = "points")]
     pub driven: Vec<Vector2>,
     /// When it was at each of these points, s since the beginning.
     pub times: Vec<f64>,
     /// At every image: s since the beginning, the estimated pose and the true one, map frame.
     pub pose_pairs: Vec<(f64, Pose2, Pose2)>,
     /// The trajectory planned last, world frame.
+    #[serde(with = "points")]
     pub planned: Vec<Vector2>,
     /// The map, map frame.
     pub grid: OccupancyGrid,
@@ -129,10 +152,10 @@ pub fn selected(mut plans: Vec<TrialPlan>, request: &RunsRequest) -> Result<Vec<
 pub fn run_all(
     plans: Vec<TrialPlan>,
     request: &RunsRequest,
-    display: &ExperimentDisplay,
+    context: &ExperimentContext,
 ) -> Result<Vec<Trial>, AppError> {
     let name_of = |plan: &TrialPlan| plan.label();
-    run_each(selected(plans, request)?, "runs", display, name_of, run_one)
+    run_each(selected(plans, request)?, "runs", context, name_of, run_one)
 }
 
 /// Makes one run, which is shown to those who `watch`.
@@ -140,13 +163,14 @@ pub fn run_all(
 /// # Errors
 /// When the plan cannot be carried out.
 pub fn run_one(plan: TrialPlan, watch: Option<OperatorLink>) -> Result<Trial, AppError> {
-    let TrialPlan { name, seed, scene, mission, robot, faults, computer_fault } = plan;
+    let TrialPlan { name, seed, scene, mission, robot, faults, computer_fault, camera_rate_hz } = plan;
     let world_from_map = scene.start;
     let limit = time_limit(&mission);
     let mut setup = RunSetup::new(&scene.name, mission, robot.with_seed(seed)).with_time_limit(limit);
     setup.seed = seed;
     setup.map_from_world = world_from_map.inverse();
-    let config = simulated_body(&setup.robot, faults)?;
+    let mut config = simulated_body(&setup.robot, faults)?;
+    config.camera_rate_hz = camera_rate_hz.unwrap_or(config.camera_rate_hz);
     let mut body = Simulator::new(scene, config, seed).map_err(|error| AppError::Input(error.to_string()))?;
     let run = match computer_fault {
         None => run_unrecorded(&setup, &mut body, None, watch),
@@ -316,12 +340,11 @@ mod tests {
         let plan = |name: &str| {
             let scene = Scene::by_name("room", 1).unwrap();
             let mission = Mission::new(vec![trundle_runtime::Task::Return]).unwrap();
-            let (robot, faults) = (RobotConfig::default(), FaultSchedule::default());
-            TrialPlan { name: name.to_owned(), seed: 1, scene, mission, robot, faults, computer_fault: None }
+            TrialPlan::new(name, 1, scene, mission, &RobotConfig::default())
         };
         let only = Some("no such run".to_owned());
         let request = RunsRequest { seeds: 1, only, robot: RobotConfig::default() };
-        let refused = run_all(vec![plan("one"), plan("two")], &request, &ExperimentDisplay::default());
+        let refused = run_all(vec![plan("one"), plan("two")], &request, &ExperimentContext::default());
         let text = refused.err().unwrap().to_string();
         assert!(text.contains("no such run") && text.ends_with("there are 'one', 'two'"), "{text}");
     }

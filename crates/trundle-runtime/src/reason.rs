@@ -54,8 +54,6 @@ pub enum Reason {
         /// Standard deviation of the position \[m\].
         sigma: f64,
     },
-    /// Images with enough features do not match the visual map at the estimated pose.
-    ViewContradictsMap,
     /// The bumper was pressed too often on the path to one goal.
     RepeatedContact {
         /// Contacts since the goal was given.
@@ -135,7 +133,6 @@ impl Reason {
             Self::PoseUnknown => ReasonKind::PoseUnknown,
             Self::PoseUncertain { .. } => ReasonKind::PoseUncertain,
             Self::WheelsUnresponsive { .. } => ReasonKind::WheelsUnresponsive,
-            Self::ViewContradictsMap => ReasonKind::ViewContradictsMap,
             Self::RepeatedContact { .. } => ReasonKind::RepeatedContact,
             Self::NoSightOnPath => ReasonKind::NoSightOnPath,
             Self::NoProgress { .. } => ReasonKind::NoProgress,
@@ -171,7 +168,6 @@ impl fmt::Display for Reason {
                 "position uncertain, standard deviation {sigma:.2} m: {}",
                 SlowReason::WheelsCountNothing
             ),
-            Self::ViewContradictsMap => f.write_str("camera images contradict the map"),
             Self::RepeatedContact { contacts } => {
                 write!(f, "{contacts} bumper contacts on the path")
             }

@@ -103,8 +103,6 @@ struct Latest {
     frozen: usize,
 }
 
-/// Time without a located image \[s\] after which images with enough features count as images of another place than the estimate. Source: ours.
-const UNLOCATED_WITH_FEATURES_S: f64 = 0.3;
 /// Largest age of a located image \[s\] that still measures the robot's motion. Source: ours.
 const MAX_VISUAL_MOTION_AGE_S: f64 = 0.8;
 
@@ -266,7 +264,6 @@ impl Robot {
             grid: self.mapping.grid(),
             scan: self.latest.scan_with_odometry(),
             seen: self.latest.camera_health.seen(),
-            unlocated: self.latest.pose_monitor.unlocated_since().map_or(0.0, |since| now - since),
             wheels: self.latest.odometry.as_ref().map(|odometry| odometry.stamp),
             hold: self.latest.body.hold(self.range_source),
             motion: self.motion_sense(now),
@@ -325,9 +322,7 @@ impl Robot {
 
     /// Whether the pose is known well enough for scans to enter the grid.
     fn is_pose_known(&self, now: Stamp) -> bool {
-        let unlocated = self.latest.pose_monitor.unlocated_since();
-        let is_unlocated = unlocated.is_some_and(|since| now - since > UNLOCATED_WITH_FEATURES_S);
-        !is_unlocated
+        !self.latest.pose_monitor.is_doubtful(now)
             && !self.latest.body.is_lifted()
             && position_sigma(&self.localizer.estimate()) < self.lost_sigma
     }

@@ -17,8 +17,6 @@ pub(crate) struct WorldState<'a> {
     pub(crate) scan: Option<SafetyScan<'a>>,
     /// Stamp of the newest scan with content.
     pub(crate) seen: Option<Stamp>,
-    /// For how long images that show enough have not been located, s.
-    pub(crate) unlocated: f64,
     /// Stamp of the newest reading of the wheels. `None` before the first.
     pub(crate) wheels: Option<Stamp>,
     /// A condition of the body under which no wheel may turn.
@@ -75,7 +73,6 @@ pub(crate) struct OwnedWorldState {
     /// With `odom_from_base` when it was taken, and now.
     scan: Option<(Scan, Pose2, Pose2)>,
     seen: Option<Stamp>,
-    unlocated: f64,
     wheels: Option<Stamp>,
     hold: Option<MotionHold>,
     motion: MotionSense,
@@ -96,7 +93,6 @@ impl From<&WorldState<'_>> for OwnedWorldState {
             grid: s.grid.clone(),
             scan: s.scan.map(|seen| (seen.scan.clone(), seen.odom_at_scan, seen.odom_now)),
             seen: s.seen,
-            unlocated: s.unlocated,
             wheels: s.wheels,
             hold: s.hold,
             motion: s.motion,
@@ -127,7 +123,6 @@ impl OwnedWorldState {
                 odom_now: *odom_now,
             }),
             seen: self.seen,
-            unlocated: self.unlocated,
             wheels: self.wheels,
             hold: self.hold,
             motion: self.motion,
@@ -175,7 +170,6 @@ mod tests {
                 odom_now: Pose2::new(0.2, 0.0, 0.0),
             }),
             seen: Some(Stamp::from_nanos(4)),
-            unlocated: 0.4,
             wheels: Some(Stamp::from_nanos(8)),
             hold: Some(MotionHold::Paused),
             motion: MotionSense::Sight,
@@ -191,8 +185,8 @@ mod tests {
         let copy = owned.as_world_state();
         assert_eq!((copy.now, copy.estimate, copy.grid), (original.now, original.estimate, original.grid));
         assert_eq!(
-            (copy.seen, copy.unlocated, copy.motion, copy.wheels, copy.hold),
-            (original.seen, original.unlocated, original.motion, original.wheels, original.hold)
+            (copy.seen, copy.motion, copy.wheels, copy.hold),
+            (original.seen, original.motion, original.wheels, original.hold)
         );
         let (carried, kept) = (copy.scan.unwrap(), original.scan.unwrap());
         assert_eq!(carried.scan, kept.scan);

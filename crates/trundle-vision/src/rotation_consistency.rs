@@ -1,4 +1,4 @@
-//! Keeps pairs of keypoints whose rotations agree.
+//! Keeps matches whose keypoints turn alike.
 
 use crate::{Keypoint, Match};
 use std::f32::consts::TAU;
@@ -6,11 +6,11 @@ use std::f32::consts::TAU;
 /// Bins over the circle: 30, of 12 deg each. Source: \[MurArtal17\].
 const ROTATION_BINS: usize = 30;
 
-/// The matches whose keypoints turn between the images as most others do: those in the three fullest bins of a
-/// histogram of the angle differences, 12 deg each, in their old order. Of equally full bins the lower counts. A camera
-/// turns all keypoints alike as long as it rolls around its own axis and moves little otherwise.
+/// The matches in the three fullest bins of a histogram of angle differences, in their old order.
 ///
-/// `a` and `b` are the keypoints that the matches' indices refer to. Panics when an index is out of range.
+/// A rotation of the camera around its optical axis turns all keypoints by the same angle. A match with another angle is probably wrong.
+/// Of two equally full bins, the one with the smaller angle counts. `a` and `b` are the keypoints to which the indices of the matches
+/// refer. Panics when an index is out of range.
 pub fn rotation_consistent(matches: &[Match], a: &[Keypoint], b: &[Keypoint]) -> Vec<Match> {
     let bin = |m: &Match| {
         let turn = (b[m.b].angle - a[m.a].angle).rem_euclid(TAU) / TAU;
@@ -41,7 +41,7 @@ mod tests {
         let matches: Vec<Match> = (0..50).map(|i| Match { a: i, b: i, distance: 0 }).collect();
         let kept: Vec<usize> = rotation_consistent(&matches, &a, &b).iter().map(|m| m.a).collect();
         assert!((0..50).filter(|i| ![3, 17, 40].contains(i)).all(|i| kept.contains(&i)));
-        assert!(kept.len() <= 49, "at most the two fullest of three odd bins can be kept");
+        assert!(kept.len() <= 49, "at most two of the three wrong matches share a bin that is kept");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use crate::program::{refusal, trundle};
 
 /// Every command and subcommand.
-const COMMANDS: [&[&str]; 36] = [
+const COMMANDS: [&[&str]; 39] = [
     &[],
     &["demo"],
     &["replay"],
@@ -31,6 +31,9 @@ const COMMANDS: [&[&str]; 36] = [
     &["experiment", "mrpb"],
     &["experiment", "real-time"],
     &["experiment", "corridor"],
+    &["experiment", "look-alikes"],
+    &["experiment", "docking-station"],
+    &["experiment", "merge"],
     &["vocabulary"],
     &["vocabulary", "train"],
     &["vocabulary", "export"],

@@ -8,6 +8,7 @@ mod demo;
 mod dock;
 mod endings;
 mod eval_trajectory;
+mod experiment_shards;
 mod experiments;
 mod fault_scenarios;
 mod foreign_files;

@@ -1,4 +1,4 @@
-//! The manoeuvre as picture.
+//! Pictures of a docking manoeuvre: the whole, and each of its motions.
 
 use super::table::amount;
 use trundle_core::{Footprint, OccupancyGrid, Pose2, Vector2};
@@ -6,11 +6,11 @@ use trundle_docking::corridor::Problem;
 use trundle_docking::{Manoeuvre, Motion, Obstacle, Solution, Step};
 use trundle_viz::{Color, DotStyle, LineStyle, MapPicture, PoseStyle};
 
-/// Seconds between two of the outlines that show the floor that is covered.
+/// Time between two outlines of the footprint; together they show the floor that it covers.
 const OUTLINE_PERIOD_S: f64 = 0.1;
-/// Outlines of a long manoeuvre at most.
+/// Largest number of outlines in a picture.
 const MAX_OUTLINES: f64 = 400.0;
-/// Boxes and other solid things.
+/// Colour of obstacles.
 const SOLID: Color = Color::rgb(0x9a_a1_a9);
 
 /// The obstacles of a docking task: a map or a list.
@@ -22,7 +22,8 @@ pub struct DockingObstacles<'a> {
     pub problem: Option<&'a Problem>,
 }
 
-/// Start, goal, what stands around, the robot along the manoeuvre with its motions numbered, and what forbids one.
+/// Picture of a docking task: obstacles, start, goal, and the numbered motions of the manoeuvre. Without a manoeuvre, `in_the_way` marks
+/// the obstacle that prevents it.
 pub fn manoeuvre_picture<'a>(
     around: DockingObstacles<'a>,
     footprint: &Footprint,
@@ -45,7 +46,7 @@ pub fn manoeuvre_picture<'a>(
     }
 }
 
-/// One picture for each motion, with its number, what it is, and how long it takes.
+/// A picture of each motion. Its title has the number, kind, amount and duration of the motion.
 pub fn step_pictures<'a>(
     around: DockingObstacles<'a>,
     footprint: &Footprint,
@@ -90,7 +91,7 @@ fn ground(around: DockingObstacles<'_>) -> MapPicture<'_> {
     }
 }
 
-/// Both are named by the legend: side by side, two names would cover each other.
+/// Adds start and goal. The legend names them, because two names beside each other would overlap.
 fn with_ends<'a>(
     picture: MapPicture<'a>,
     footprint: &Footprint,
@@ -100,7 +101,7 @@ fn with_ends<'a>(
     picture.pose("start", start, pose(Color::GREEN)).pose("goal", goal, pose(Color::VERMILLION))
 }
 
-/// The floor it covers, and the outlines where a motion ends.
+/// Adds the floor that the footprint covers, and its outline at the end of each motion.
 fn with_manoeuvre<'a>(
     picture: MapPicture<'a>,
     manoeuvre: &Manoeuvre,
@@ -116,7 +117,7 @@ fn with_manoeuvre<'a>(
     )
 }
 
-/// Each motion as an arrow with its number.
+/// Adds an arrow with a number for each motion.
 fn with_numbers<'a>(picture: MapPicture<'a>, manoeuvre: &Manoeuvre, footprint: &Footprint) -> MapPicture<'a> {
     let trails: Vec<Vec<Vector2>> = manoeuvre.steps().iter().map(|step| trail(step, footprint)).collect();
     let aside = 0.2 * footprint.circumscribed_radius();
@@ -130,7 +131,7 @@ fn with_numbers<'a>(picture: MapPicture<'a>, manoeuvre: &Manoeuvre, footprint: &
     )
 }
 
-/// The axle's path; for a turn, the path of a point ahead of the axle, half as far out as the robot reaches.
+/// The path of the axle's centre. For a turn on the spot: the path of a point ahead of it, at half the circumscribed radius.
 fn trail(step: &Step, footprint: &Footprint) -> Vec<Vector2> {
     const PIECES: u32 = 24;
     match step.motion {

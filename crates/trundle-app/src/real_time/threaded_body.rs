@@ -1,4 +1,4 @@
-//! A background body as the control thread receives it: events and answers through the inbox, jobs to the worker threads.
+//! The body of a real-time run: it joins the control thread with the threads of the sensors and the workers.
 
 use super::{BodyTiming, QueueLength, RealTimeReport, ThreadLoad, TimedEvent};
 use crate::{AppError, EncodedBody, FinishedRun, RunInput};
@@ -14,30 +14,30 @@ use trundle_runtime::real_time::{
 };
 use trundle_runtime::{Answer, Histogram, Job, Worker};
 
-/// A background body as the control thread receives it: events and answers come through the inbox, jobs go to the worker threads.
+/// The body of a real-time run. The control thread takes events and answers from its inbox, and hands jobs to its worker threads.
 pub struct ThreadedBody {
     inbox: Inbox<TimedEvent>,
     worker_threads: Option<WorkerThreads>,
     loop_timer: LoopTimer,
     commands: Option<Sender<Twist2>>,
-    /// Arrival of the newest reading of the wheels, until its command leaves.
+    /// When the newest wheel reading arrived; `None` once its command was sent.
     reading: Option<Instant>,
-    /// Workers that have a job, and since when.
+    /// The workers that have a job, with its start.
     busy: BTreeMap<Worker, Instant>,
     /// Time from the start of a job to the use of its result \[ms\].
     waits: BTreeMap<Worker, Histogram>,
     costs: Vec<ThreadLoad>,
-    /// Separate contacts, in truth; `None` if they are not known.
+    /// Number of separate contacts of the true robot, counted by the simulator; `None` on a real robot.
     contacts: Option<Arc<AtomicU32>>,
 }
 
-/// Largest number of events that wait for the control thread: some seconds. Later events are refused. Source: ours.
+/// Largest number of events that wait for the control thread: those of some seconds. Further events are refused. Source: ours.
 const INBOX_CAPACITY: usize = 1024;
 /// Time without any event after which the body counts as gone. Source: ours.
 const BODY_TIMEOUT: Duration = Duration::from_secs(5);
 
 impl ThreadedBody {
-    /// Starts the worker threads at `workers`.
+    /// Starts the worker threads on the processor cores of `workers`.
     pub fn start(config: LoopTimerConfig, workers: ThreadPlacement) -> Result<Self, AppError> {
         let inbox = Inbox::new(INBOX_CAPACITY);
         let sender: InboxSender<TimedEvent> = inbox.sender();
@@ -58,12 +58,12 @@ impl ThreadedBody {
         })
     }
 
-    /// Where the body's threads send events.
+    /// Takes the events of the threads that read the sensors.
     pub fn event_sender(&self) -> InboxSender<TimedEvent> {
         self.inbox.sender()
     }
 
-    /// Sends commands to `commands` from now on, and reads the contacts, if they are known, from `contacts`.
+    /// From now on, sends commands to `commands` and reads the number of contacts from `contacts`, if a simulator counts them.
     pub fn connect(&mut self, commands: Sender<Twist2>, contacts: Option<Arc<AtomicU32>>) {
         self.commands = Some(commands);
         self.contacts = contacts;
@@ -91,7 +91,7 @@ impl ThreadedBody {
         }
     }
 
-    /// How the run kept time, when it is over.
+    /// Load, delays and queue lengths of a finished run.
     pub fn report(mut self, run: &FinishedRun, control: Duration, body: BodyTiming) -> RealTimeReport {
         let part = |spent: Duration| spent.as_secs_f64() / run.seconds;
         let mut load = vec![ThreadLoad { thread: "control".to_owned(), part: part(control) }];

@@ -1,13 +1,13 @@
 //! The outcome of each task that has a goal.
 
 use crate::{FinishedRun, RunSetup};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use trundle_core::Pose2;
 use trundle_eval::{GoalError, goal_error};
 use trundle_runtime::{TaskEnd, TaskRecord};
 
 /// Outcome of a task with a goal.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct GoalOutcome {
     /// Index of the task in the mission, from 0.
     pub task: usize,

@@ -3,12 +3,14 @@
 use super::GoalOutcome;
 use crate::real_time::RealTimeReport;
 use crate::{FinishedRun, RunSetup, TrackCounts};
+use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use trundle_eval::{GoalError, goal_error};
 use trundle_io::Summary;
 use trundle_runtime::{DriveState, GoalApproachReport, Reason, Stage, StageTimes, TaskEnd};
 
 /// The numbers of a run, without the wall clock's.
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct RunNumbers {
     /// Outcomes of the mission's goals, in order.
     pub goals: Vec<GoalOutcome>,
@@ -37,13 +39,15 @@ pub struct RunNumbers {
     /// Stamps of the images that a newer one replaced before they were processed, s since the start.
     pub images_dropped: Vec<f64>,
     /// Report of turns and straight moves for the last goal with such a request; `None` without a request.
+    /// Files of numbers do not contain it.
+    #[serde(skip)]
     pub docking: Option<GoalApproachReport>,
     /// End of the run.
     pub end: RunEnd,
 }
 
 /// The end of a run.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunEnd {
     /// The robot's state.
     pub state: DriveState,
@@ -56,7 +60,7 @@ pub struct RunEnd {
 }
 
 /// Numbers of tasks at the end of a run.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TaskCounts {
     /// Number of tasks reported as done.
     pub done: usize,

@@ -84,6 +84,11 @@ impl Correction {
     pub fn is_applied(&self) -> bool {
         matches!(self, Self::Applied { .. } | Self::Recovered { .. })
     }
+
+    /// Whether the measurement was used: it changed the estimate, or where the visual map stands.
+    pub fn is_used(&self) -> bool {
+        self.is_applied() || matches!(self, Self::Anchored | Self::Reanchored)
+    }
 }
 
 /// Use of a reading of the odometry.

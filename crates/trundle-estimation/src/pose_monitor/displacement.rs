@@ -65,8 +65,9 @@ const SEARCH_AGAIN_S: f64 = 1.5;
 /// Time after certain evidence \[s\] after which a robot whose images show too little to be located is elsewhere. Source: ours, a scan
 /// that contradicts the map decides sooner.
 const BLIND_DISPLACED_AFTER_S: f64 = 3.0;
-/// Time without a located image \[s\] after which an image with few features does not restart the time. Source: ours.
-const UNLOCATED_FOR_LONG_S: f64 = 0.7;
+/// Time after the evidence without a located image \[s\] after which the pose is in doubt, and nothing enters the map. Source: ours, longer
+/// than a few blurred images.
+const DOUBTFUL_AFTER_S: f64 = 0.3;
 
 impl DisplacementMonitor {
     /// Takes in a scan, taken at `odom_from_base`. Whether odometry does not explain how it follows from the ones before.
@@ -136,9 +137,10 @@ impl DisplacementMonitor {
         is_time && self.unlocated_since().is_some_and(is_long)
     }
 
-    /// Takes in an image that cannot be located: after certain evidence it begins one search.
+    /// Takes in an image that cannot be located: after certain evidence it begins one search. It ends a time of unlocated images that was
+    /// too short for a search.
     fn add_blind(&mut self, now: Stamp) -> bool {
-        if self.unlocated.is_some_and(|since| now - since <= UNLOCATED_FOR_LONG_S) {
+        if self.unlocated.is_some_and(|since| now - since <= DISPLACED_AFTER_S) {
             self.unlocated = None;
         }
         let is_long =
@@ -157,8 +159,13 @@ impl DisplacementMonitor {
         self.evidence.is_some()
     }
 
+    /// Whether images that show enough have not been located for a short time since the evidence that the robot was carried away.
+    pub(crate) fn is_doubtful(&self, now: Stamp) -> bool {
+        self.unlocated_since().is_some_and(|since| now - since > DOUBTFUL_AFTER_S)
+    }
+
     /// Since when images that show enough have not been located, from the evidence that the robot was carried away on.
-    pub(crate) fn unlocated_since(&self) -> Option<Stamp> {
+    fn unlocated_since(&self) -> Option<Stamp> {
         Some(self.unlocated?.max(self.evidence?.since))
     }
 

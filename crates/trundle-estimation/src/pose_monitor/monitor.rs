@@ -118,9 +118,9 @@ impl PoseMonitor {
         self.displacement.is_displaced()
     }
 
-    /// Since when images that show enough have not been located, while there is evidence that the robot was carried away.
-    pub fn unlocated_since(&self) -> Option<Stamp> {
-        self.displacement.unlocated_since()
+    /// Whether images have shown for a short time that the robot may be elsewhere: nothing enters the map.
+    pub fn is_doubtful(&self, now: Stamp) -> bool {
+        self.displacement.is_doubtful(now)
     }
 
     /// What the images move with. Across a recognition there is no motion.

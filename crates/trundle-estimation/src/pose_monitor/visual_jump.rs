@@ -29,11 +29,11 @@ pub(crate) enum VisualJump {
 const NEAR_M: f64 = 0.25;
 /// The same for the heading \[rad\]: 6 deg. Source: ours.
 const NEAR_RAD: f64 = 0.1;
-/// Distance that an estimate may have drifted without a sign of it \[m\]. Source: ours.
+/// Distance that an estimate may have drifted beyond its standard deviations \[m\]: scans must not object. Source: ours.
 const DRIFT_M: f64 = 1.0;
 /// The same for the heading \[rad\]: 20 deg. Source: ours.
 const DRIFT_RAD: f64 = 0.35;
-/// Standard deviations of an uncertain estimate that count as its drift \[1\]. Source: ours.
+/// Standard deviations within which the drift of an estimate is likely \[1\]: scans must object decisively. Source: ours.
 const DRIFT_SIGMAS: f64 = 3.0;
 /// Log-likelihood ratio of the scans above which they decide between two poses \[nats\]. Source: ours, 400 to 1.
 const DECISIVE_NATS: f64 = 6.0;
@@ -50,15 +50,21 @@ impl VisualJump {
         let is_within =
             |distance: f64, turn: f64| off.position().norm() <= distance && off.theta.abs() <= turn;
         let is_near = is_within(NEAR_M, NEAR_RAD);
-        let drift_m = DRIFT_M.max(DRIFT_SIGMAS * belief.position_sigma);
-        let is_drift = is_within(drift_m, DRIFT_RAD.max(DRIFT_SIGMAS * belief.heading_sigma));
+        let (drift_m, drift_rad) =
+            (DRIFT_SIGMAS * belief.position_sigma, DRIFT_SIGMAS * belief.heading_sigma);
+        let is_likely = is_within(drift_m, drift_rad);
+        let is_drift = is_within(drift_m.max(DRIFT_M), drift_rad.max(DRIFT_RAD));
         if is_near || is_drift && belief.is_lost {
             return Self::Allowed;
         }
         let (recent, grid) = scans;
         let nats_at = |pose: Pose2| recent.log_likelihood(grid, pose, odom_from_base);
         let nats = nats_at(found) - nats_at(belief.pose);
-        let needed = if is_drift { -DECISIVE_NATS } else { DECISIVE_NATS };
+        let needed = match (is_likely, is_drift) {
+            (true, _) => -DECISIVE_NATS,
+            (false, true) => 0.0,
+            (false, false) => DECISIVE_NATS,
+        };
         if nats >= needed { Self::Allowed } else { Self::Refused }
     }
 }

@@ -3,6 +3,8 @@
 use super::worlds::BarnWorld;
 use crate::RunResult;
 use crate::laser_run::{LaserRun, Moment};
+use crate::shards::points;
+use serde::{Deserialize, Serialize};
 use trundle_core::{OccupancyGrid, Vector2};
 use trundle_runtime::DriveState;
 
@@ -16,6 +18,7 @@ pub const CLOCK_START_M: f64 = 0.1;
 const OUT_OF_TIME_MARGIN_S: f64 = 1.0;
 
 /// A run through a world.
+#[derive(Debug, Serialize, Deserialize)]
 pub struct BarnTrial {
     /// The world.
     pub(super) world: BarnWorld,
@@ -42,6 +45,7 @@ pub struct BarnTrial {
     /// The state at the end.
     pub(super) state: DriveState,
     /// Positions driven, world frame.
+    #[serde(with = "points")]
     pub(super) driven: Vec<Vector2>,
     /// The map, map frame.
     pub(super) grid: OccupancyGrid,

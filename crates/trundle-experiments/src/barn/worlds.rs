@@ -2,19 +2,22 @@
 
 use crate::csv_rows::rows;
 use crate::data_sets::BARN;
+use crate::shards::points;
+use serde::{Deserialize, Serialize};
 use std::path::Path;
 use trundle_app::AppError;
 use trundle_core::{Invalid, Pose2, Vector2, Vector3};
 use trundle_sim::{Cuboid, Cylinder, Finish, Lights, Paint, Scene, Shape, Solid, World};
 
 /// A world of the BARN challenge.
-#[derive(Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct BarnWorld {
     /// Number of the world in the challenge.
     pub id: usize,
     /// The shortest path at 2 m/s, s.
     pub optimal_time: f64,
     /// Middles of the cylinders, m.
+    #[serde(with = "points")]
     pub cylinders: Vec<Vector2>,
 }
 

@@ -1,13 +1,27 @@
 //! The robot drives onto its station in closed loop with noise; the laser in place of the camera reduces a run to a few seconds.
 
 use super::*;
+use crate::laser_run::LaserRun;
 use trundle_core::{Vector2, Vector3};
 use trundle_runtime::{Mission, RangeSource, ReasonKind, RobotConfig, Task};
 use trundle_sim::{Cuboid, Finish, Paint, Shape, Solid, World};
 
-/// A dock without a viewer.
-fn dock(plan: DockPlan) -> Result<DockTrial, AppError> {
-    super::dock(plan, None)
+/// A dock without a viewer, with its whole run.
+struct Dock {
+    trial: DockTrial,
+    run: LaserRun,
+}
+
+impl std::ops::Deref for Dock {
+    type Target = DockTrial;
+
+    fn deref(&self) -> &DockTrial {
+        &self.trial
+    }
+}
+
+fn dock(plan: DockPlan) -> Result<Dock, AppError> {
+    super::dock(plan, None).map(|(trial, run)| Dock { trial, run })
 }
 
 fn room(start: Pose2) -> Scene {
@@ -22,7 +36,7 @@ fn plan(scene: Scene, seed: u64) -> DockPlan {
 }
 
 /// Checks that a run ended on the contacts and touched only the station.
-fn assert_docked(trial: &DockTrial) {
+fn assert_docked(trial: &Dock) {
     let (lateral, heading) = (trial.lateral_error(), trial.heading_error().to_degrees());
     eprintln!("{} after {:.0} s, {:.1} mm, {heading:.2} deg", trial.state, trial.time, lateral * 1e3);
     assert!(trial.is_docked(), "{}", trial.state);
@@ -31,7 +45,7 @@ fn assert_docked(trial: &DockTrial) {
 }
 
 /// Checks the place of each contact: an attempt that misses the plates ends at the front of the station.
-fn assert_touched_only_the_station(trial: &DockTrial) {
+fn assert_touched_only_the_station(trial: &Dock) {
     for pair in trial.run.moments.windows(2).filter(|pair| pair[1].contacts > pair[0].contacts) {
         let at = station().inverse() * pair[1].pose;
         assert!(at.x < 0.2 && at.y.abs() < 0.13, "contact away from the station: {at:?}");
@@ -39,7 +53,7 @@ fn assert_touched_only_the_station(trial: &DockTrial) {
 }
 
 /// Kinds of the reason for which a run ended without a dock.
-fn kinds(trial: &DockTrial) -> Vec<ReasonKind> {
+fn kinds(trial: &Dock) -> Vec<ReasonKind> {
     assert!(!trial.is_docked());
     trial.state.reason().unwrap().kinds()
 }
@@ -143,7 +157,7 @@ fn the_verdict_counts_the_docks() {
     let outcome = |charges| {
         let mut plan = plan(room(start).with_station(station()).unwrap(), 6);
         plan.body.station.charges = charges;
-        DocksOutcome { trials: vec![(start, dock(plan).unwrap())] }
+        DocksOutcome { trials: vec![(start, dock(plan).unwrap().trial)] }
     };
     let (good, bad) = (outcome(true), outcome(false));
     assert!(good.is_success() && good.verdict().starts_with("1 of 1 docks"), "{}", good.verdict());

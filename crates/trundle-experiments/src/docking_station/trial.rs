@@ -2,6 +2,7 @@
 
 use crate::laser_run::{LaserPlan, LaserRun, drive, hokuyo};
 use crate::simulated::simulated_body;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use trundle_app::AppError;
 use trundle_app::operator::OperatorLink;
@@ -27,6 +28,7 @@ pub struct DockPlan {
 }
 
 /// Result of a run.
+#[derive(Debug, Serialize, Deserialize)]
 pub struct DockTrial {
     /// True pose of the base in the station's frame at the end; identity without a station.
     pub station_from_base: Pose2,
@@ -36,16 +38,17 @@ pub struct DockTrial {
     pub time: f64,
     /// State at the end.
     pub state: DriveState,
-    /// The run.
-    pub run: LaserRun,
+    /// Whether the battery charges at the end.
+    pub is_charging: bool,
+    /// Distance driven, m.
+    pub path_length: f64,
 }
 
 impl DockTrial {
     /// Whether the robot is docked.
     #[must_use]
     pub fn is_docked(&self) -> bool {
-        self.state == DriveState::Arrived
-            && self.run.robot.battery().is_some_and(|battery| battery.is_charging)
+        self.state == DriveState::Arrived && self.is_charging
     }
 
     /// Lateral distance from the station's axis, m.
@@ -74,11 +77,11 @@ pub fn body_of(robot: &RobotConfig) -> Result<SimConfig, AppError> {
     Ok(body)
 }
 
-/// Makes a run, which is shown to those who `watch`.
+/// Makes a run, which is shown to those who `watch`: its result, and the whole run.
 ///
 /// # Errors
 /// When a number of the plan is outside its range, or the start is not free.
-pub fn dock(plan: DockPlan, watch: Option<OperatorLink>) -> Result<DockTrial, AppError> {
+pub fn dock(plan: DockPlan, watch: Option<OperatorLink>) -> Result<(DockTrial, LaserRun), AppError> {
     let DockPlan { scene, robot, body, mission, seed } = plan;
     let station = scene.station;
     let run = drive(
@@ -87,13 +90,15 @@ pub fn dock(plan: DockPlan, watch: Option<OperatorLink>) -> Result<DockTrial, Ap
         |_| false,
     )?;
     let end = *run.end();
-    Ok(DockTrial {
+    let trial = DockTrial {
         station_from_base: station.map_or(Pose2::IDENTITY, |station| station.inverse() * end.pose),
         contacts: end.contacts,
         time: end.time,
         state: run.state.clone(),
-        run,
-    })
+        is_charging: run.robot.battery().is_some_and(|battery| battery.is_charging),
+        path_length: run.path_length(),
+    };
+    Ok((trial, run))
 }
 
 /// The mission of docking alone.

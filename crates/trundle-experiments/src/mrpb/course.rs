@@ -2,6 +2,7 @@
 
 use crate::csv_rows::rows;
 use crate::data_sets::MRPB;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use trundle_app::AppError;
 use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, Pose2, Vector2, Vector3};
@@ -10,7 +11,7 @@ use trundle_sim::import::{RaisedMap, raise_map};
 use trundle_sim::{Cuboid, Finish, Lights, Paint, Person, Scene, Shape, Solid, World};
 
 /// A start and a goal of the benchmark on one of its maps.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Course {
     /// The benchmark's name of the place.
     pub scenario: String,

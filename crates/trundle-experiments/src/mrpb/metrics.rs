@@ -1,9 +1,10 @@
 //! The MRPB benchmark's metrics of one run: safety, efficiency, smoothness, and computation.
 
 use crate::laser_run::{LaserRun, Moment};
+use serde::{Deserialize, Serialize};
 
 /// The benchmark's metrics of one run (Wen et al., MRPB 1.0, IROS 2021), in four groups.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Metrics {
     /// Safety: minimum clearance, m.
     pub min_clearance: f64,

@@ -4,6 +4,8 @@ use super::course::Course;
 use super::metrics::Metrics;
 use crate::RunResult;
 use crate::laser_run::LaserRun;
+use crate::shards::points;
+use serde::{Deserialize, Serialize};
 use trundle_core::{OccupancyGrid, Vector2, difference_of_angles};
 use trundle_runtime::DriveState;
 
@@ -15,6 +17,7 @@ pub const GOAL_TOLERANCE_RAD: f64 = 0.1;
 pub const MAX_MEAN_CYCLE_MS: f64 = 2.0;
 
 /// A run over a course.
+#[derive(Debug, Serialize, Deserialize)]
 pub struct MrpbTrial {
     /// The course.
     pub(super) course: Course,
@@ -33,6 +36,7 @@ pub struct MrpbTrial {
     /// The state at the end.
     pub(super) state: DriveState,
     /// Positions driven, world frame.
+    #[serde(with = "points")]
     pub(super) driven: Vec<Vector2>,
     /// The map, map frame.
     pub(super) grid: OccupancyGrid,

@@ -1,6 +1,7 @@
 //! The states of the robot.
 
 use crate::reason::Reason;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// State of the robot; states without progress carry a reason.
@@ -19,7 +20,8 @@ use std::fmt;
 /// | recovering | driving, waiting |
 /// | lost | initializing, stopped |
 /// | arrived, stopped | initializing, with the next goal |
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum DriveState {
     /// No goal.

@@ -33,7 +33,6 @@ use crate::{
     reason::Reason,
     schedule::Ticker,
     stage::{Stage, StageTimes},
-    workers::perception_worker::POSE_UNKNOWN_AFTER_S,
 };
 use camera_fov::CameraFov;
 use trundle_control::{FollowPhase, FollowReport, Follower, MotionSense, SafetyMonitor};
@@ -348,7 +347,7 @@ impl Navigator {
                 Reason::PoseUncertain { sigma }
             });
         }
-        (s.unlocated > POSE_UNKNOWN_AFTER_S).then_some(Reason::ViewContradictsMap)
+        None
     }
 
     fn stop_without_progress(&mut self, stood: f64) {

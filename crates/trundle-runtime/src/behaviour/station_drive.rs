@@ -225,7 +225,6 @@ mod tests {
             grid,
             scan: None,
             seen: None,
-            unlocated: 0.0,
             wheels: Some(now),
             hold: None,
             motion: trundle_control::MotionSense::Wheels,

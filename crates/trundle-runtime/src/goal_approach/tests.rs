@@ -24,7 +24,6 @@ fn world(grid: &OccupancyGrid, pose: Pose2, time: f64) -> WorldState<'_> {
         grid,
         scan: None,
         seen: None,
-        unlocated: 0.0,
         wheels: Some(now),
         hold: None,
         motion: trundle_control::MotionSense::Wheels,

@@ -343,7 +343,6 @@ mod tests {
             grid,
             scan: None,
             seen: None,
-            unlocated: 0.0,
             wheels: Some(stamp),
             hold: None,
             motion: trundle_control::MotionSense::Wheels,

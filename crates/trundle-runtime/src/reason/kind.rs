@@ -60,8 +60,6 @@ pub enum ReasonKind {
     PoseUncertain,
     /// The position is too uncertain, and the wheels do not respond.
     WheelsUnresponsive,
-    /// Images contradict the map.
-    ViewContradictsMap,
     /// The bumper was pressed too often.
     RepeatedContact,
     /// The camera is blind on the path to a viewpoint.

@@ -1,11 +1,12 @@
-//! Laws of reasons: each has a text and a kind of its own, and a file keeps both.
+//! Tests of reasons: text and kind of each, and their form in files.
 
 use super::*;
-use crate::mission::TaskEnd;
+use crate::mission::{TaskEnd, dock_failure::DockFailure};
+use trundle_control::MotionHold;
 use trundle_core::{Invalid, Pose2};
 use trundle_docking::PositionerReason;
 
-/// One reason of each variant, with the kind by which a program decides and a part of the text that a person reads.
+/// A reason of each variant of `Reason`, `StopReason` and `NoPath`, with its kind and a part of its text.
 fn samples() -> Vec<(Reason, ReasonKind, &'static str)> {
     let at = Vector2::new(1.0, -2.0);
     let no_path = |cause| Reason::NoPath { cause, unseen: None };
@@ -30,6 +31,8 @@ fn samples() -> Vec<(Reason, ReasonKind, &'static str)> {
         (Reason::Safety(StopReason::NoWheels), ReasonKind::WheelsMissing, "no wheel reading"),
         (Reason::Safety(StopReason::StaleWheels { age: 0.5 }), ReasonKind::WheelsMissing, "0.50 s old"),
         (Reason::Safety(StopReason::NotFinite), ReasonKind::CommandInvalid, "not a number"),
+        (Reason::Safety(StopReason::Held(MotionHold::WheelDrop)), ReasonKind::WheelDrop, "wheel"),
+        (Reason::Safety(StopReason::Held(MotionHold::Paused)), ReasonKind::Paused, "paused"),
         (Reason::StoppingToReplan, ReasonKind::StoppingToReplan, "plan again"),
         (Reason::MovingObstacle, ReasonKind::MovingObstacle, "moving obstacle blocks"),
         (Reason::PathOutOfView, ReasonKind::PathOutOfView, "leaves the camera's view"),
@@ -50,13 +53,17 @@ fn samples() -> Vec<(Reason, ReasonKind, &'static str)> {
             "the footprint overlaps an obstacle by 0.020 m at the start",
         ),
         (no_path(NoPath::GoalInObstacle { missing: 0.02 }), ReasonKind::TooLittleRoom, "at the goal"),
+        (
+            no_path(NoPath::GoalInZone { zone: "zone 'stairs'".to_owned() }),
+            ReasonKind::NoGoZone,
+            "no-go zone 'stairs'",
+        ),
         (no_path(NoPath::StartOutside), ReasonKind::OffTheMap, "the robot is off the map"),
         (no_path(NoPath::GoalOutside), ReasonKind::OffTheMap, "the goal is off the map"),
         (no_path(NoPath::Refused(invalid)), ReasonKind::PlanRefused, "goal.x"),
         (Reason::PoseUnknown, ReasonKind::PoseUnknown, "pose is unknown"),
         (Reason::PoseUncertain { sigma: 0.75 }, ReasonKind::PoseUncertain, "standard deviation 0.75 m"),
         (Reason::WheelsUnresponsive { sigma: 0.75 }, ReasonKind::WheelsUnresponsive, "0.75 m: the encoders"),
-        (Reason::ViewContradictsMap, ReasonKind::ViewContradictsMap, "contradict the map"),
         (Reason::RepeatedContact { contacts: 3 }, ReasonKind::RepeatedContact, "3 bumper contacts"),
         (Reason::NoSightOnPath, ReasonKind::NoSightOnPath, "view is lost"),
         (
@@ -74,6 +81,12 @@ fn samples() -> Vec<(Reason, ReasonKind, &'static str)> {
             Reason::FinalApproach(ApproachFailure::Positioner(PositionerReason::NoWay(None))),
             ReasonKind::FinalApproach,
             "no turns and straight moves",
+        ),
+        (Reason::Docking(DockFailure::NoLight), ReasonKind::NoStationLight, "no light of a charging station"),
+        (
+            Reason::Docking(DockFailure::NoCharging { attempts: 2 }),
+            ReasonKind::NoCharging,
+            "after 2 attempts",
         ),
         (Reason::Interrupted, ReasonKind::Interrupted, "the user"),
     ]

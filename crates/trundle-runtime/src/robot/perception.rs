@@ -41,10 +41,10 @@ impl Robot {
         let visual = visual_pose(&track, is_corrected);
         let judge = |visual| self.judge_visual_pose(visual, is_corrected, odom_from_base, scan.as_ref());
         let verdict = visual.as_ref().map(judge);
-        self.add_image_evidence(&track, verdict);
         let before = self.localizer.estimate().pose;
         let correction =
             visual.as_ref().zip(verdict).map(|(visual, verdict)| self.correct_by_image(visual, verdict));
+        self.add_image_evidence(&track, verdict, correction);
         report.measurements.visual = visual;
         event_log::correction(track.stamp, "the visual pose", before, self.localizer.estimate().pose);
         if correction == Some(Correction::Reanchored) {

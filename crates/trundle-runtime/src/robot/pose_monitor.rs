@@ -12,9 +12,11 @@ impl Robot {
     /// A scan of a laser that is the range source.
     pub(super) fn on_laser(&mut self, scan: &Scan, report: &mut StepReport) {
         let odometer = self.odometry_at(scan.stamp());
-        if let (Some(perception), Some(odometer)) = (&mut self.perception, odometer) {
+        if let Some(odometer) = odometer {
             self.latest.pose_monitor.add_scan(odometer.pose, scan);
-            let place = perception.search_pose(odometer.pose, scan, true, &mut self.times);
+            let (perception, times) = (self.perception.as_mut(), &mut self.times);
+            let place =
+                perception.and_then(|perception| perception.search_pose(odometer.pose, scan, true, times));
             self.apply_global_localization(place);
         }
         self.on_scan(scan.clone(), report);

@@ -60,10 +60,16 @@ impl Robot {
     }
 
     /// What an image shows of the place. Without evidence that the robot was carried away the pose goes on by odometry and scans.
-    pub(super) fn add_image_evidence(&mut self, track: &TrackReport, verdict: Option<VisualVerdict>) {
+    pub(super) fn add_image_evidence(
+        &mut self,
+        track: &TrackReport,
+        verdict: Option<VisualVerdict>,
+        correction: Option<Correction>,
+    ) {
+        let is_used = correction.is_some_and(|correction| correction.is_used());
         let evidence = match verdict {
-            Some(VisualVerdict::Accepted) if track.relocalised => ImageEvidence::Recognised,
-            Some(VisualVerdict::Accepted) => ImageEvidence::Tracked,
+            Some(VisualVerdict::Accepted) if is_used && track.relocalised => ImageEvidence::Recognised,
+            Some(VisualVerdict::Accepted) if is_used => ImageEvidence::Tracked,
             None if track.features < MIN_FEATURES_TO_LOCATE => ImageEvidence::Blind,
             _ => ImageEvidence::Unlocated,
         };

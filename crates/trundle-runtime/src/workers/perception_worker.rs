@@ -54,8 +54,6 @@ pub(crate) struct PerceptionResult {
 const GRID_CORRECTION_THRESHOLD: f64 = 0.02;
 /// Number of features of an image that suffices to locate it. Source: ours.
 pub(crate) const MIN_FEATURES_TO_LOCATE: usize = 200;
-/// Time without a located image \[s\] after which the pose is unknown; images with few features do not change that. Source: ours.
-pub(crate) const POSE_UNKNOWN_AFTER_S: f64 = 0.7;
 
 impl PerceptionWorker {
     pub(crate) fn new(config: &RobotConfig, base_from_camera: Pose3) -> Result<Self, Invalid> {

@@ -7,25 +7,25 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-/// Most rounds of assignment and new medians: 20. Clusters rarely need as many. Source: ours.
+/// Largest number of rounds of assignment and new medians. Source: ours.
 const MAX_ROUNDS: usize = 20;
 
-/// Fewest descriptors that a thread assigns at a time: 4096. Source: ours.
+/// Smallest number of descriptors that a thread assigns at a time. Source: ours.
 const MIN_BATCH: usize = 4096;
 
-/// Descriptors that are alike.
+/// Descriptors at a small Hamming distance from each other.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Cluster {
-    /// Their bitwise majority.
+    /// The bitwise majority of its members.
     pub median: Descriptor,
-    /// In the order in which they came.
+    /// In the order of the input.
     pub members: Vec<Descriptor>,
 }
 
 /// At most `k` clusters of descriptors under the Hamming distance, none of them empty.
 ///
-/// Seeds by k-means++ \[Arthur07\], then Lloyd's rounds with the bitwise majority as the centre, which minimises the sum of
-/// distances. Fewer clusters come out if there are fewer distinct descriptors. The same on any number of threads.
+/// Seeds by k-means++ \[Arthur07\], then Lloyd's rounds. The centre of a cluster is its bitwise majority, which minimises the sum
+/// of distances. Fewer than `k` distinct descriptors give fewer clusters. The result is the same on any number of threads.
 pub(super) fn clusters(descriptors: &[Descriptor], k: usize, rng: &mut ChaCha8Rng) -> Vec<Cluster> {
     let mut centers = seeds(descriptors, k, rng);
     let mut assigned = Vec::new();
@@ -46,7 +46,7 @@ pub(super) fn clusters(descriptors: &[Descriptor], k: usize, rng: &mut ChaCha8Rn
     found
 }
 
-/// k-means++: each seed is drawn with the square of its distance to the seeds before it.
+/// Seeds by k-means++: the probability of a descriptor is proportional to the square of its distance from the nearest earlier seed.
 fn seeds(descriptors: &[Descriptor], k: usize, rng: &mut ChaCha8Rng) -> Vec<Descriptor> {
     let mut seeds = vec![descriptors[rng.random_range(0..descriptors.len())]];
     let mut cost = vec![u64::MAX; descriptors.len()];
@@ -69,13 +69,13 @@ fn seeds(descriptors: &[Descriptor], k: usize, rng: &mut ChaCha8Rng) -> Vec<Desc
     seeds
 }
 
-/// For each descriptor its nearest centre.
+/// Index of the nearest centre of each descriptor.
 fn assign(descriptors: &[Descriptor], centers: &[Descriptor]) -> Vec<usize> {
     let to = |d: &Descriptor| nearest(centers, d).expect("invariant: there is a centre").0;
     descriptors.par_iter().with_min_len(MIN_BATCH).map(to).collect()
 }
 
-/// Moves each centre amid what is assigned to it; one without stays.
+/// Moves each centre to the bitwise majority of the descriptors assigned to it. A centre without descriptors stays.
 fn move_to_medians(centers: &mut [Descriptor], descriptors: &[Descriptor], assigned: &[usize]) {
     let mut counts = vec![BitCounts::new(); centers.len()];
     for (&to, descriptor) in assigned.iter().zip(descriptors) {

@@ -13,7 +13,8 @@ pub(super) fn nearest(candidates: &[Descriptor], descriptor: &Descriptor) -> Opt
     nearest_plainly(candidates, descriptor)
 }
 
-/// The same as [`nearest_plainly`] with the instruction that counts bits: the baseline of x86-64 does not have it.
+/// Calls [`nearest_plainly`], compiled for the POPCNT instruction, which counts the set bits of a word. The baseline of x86-64 lacks
+/// that instruction.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "popcnt")]
 fn nearest_by_popcnt(candidates: &[Descriptor], descriptor: &Descriptor) -> Option<(usize, u32)> {

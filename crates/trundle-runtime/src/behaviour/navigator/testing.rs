@@ -33,7 +33,6 @@ pub(crate) fn at_rest(grid: &OccupancyGrid, now: Stamp, pose: Pose2) -> WorldSta
         grid,
         scan: None,
         seen: None,
-        unlocated: 0.0,
         wheels: Some(now),
         hold: None,
         motion: MotionSense::Wheels,
