@@ -520,7 +520,8 @@ await check("the page comes back after a restart of the program", async () => {
   main.mayFail = true;
   const { host } = new URL(program.drive);
   await program.end();
-  await until("no link", async () => (await page.locator("body").getAttribute("data-link")) === "lost", 10);
+  await until("the end", async () => (await page.locator("body").getAttribute("data-link")) === "ended", 10);
+  assert.match(await page.locator("#reason").textContent(), /The program has ended/);
   await picture("lost");
   program = await start(trundle, ["--live", host, "--live-tokens", tokens, ...quiet], join(place, "run"));
   const before = main.states.length;

@@ -34,10 +34,9 @@ mod vocabulary;
 
 use clap::{CommandFactory, FromArgMatches};
 use command_line::{Cli, Command};
-use common_args::Common;
 use outcome::Outcome;
 use std::process::ExitCode;
-use trundle::app::{AppError, stop};
+use trundle::app::{AppError, on_threads, stop};
 use trundle::io::{abandon_outputs, abandon_unfinished, wait_for_abandonment};
 
 fn main() -> ExitCode {
@@ -90,22 +89,22 @@ fn with_negative_numbers(command: clap::Command) -> clap::Command {
 
 fn run_command(cli: Cli) -> Result<Outcome, AppError> {
     match cli.command {
-        Command::Demo(args) => with_threads(&args.common, || demo::run(&args)),
-        Command::Run(args) => with_threads(&args.options.common, || run::run(&args)),
+        Command::Demo(args) => on_threads(args.common.threads, || demo::run(&args)),
+        Command::Run(args) => on_threads(args.options.common.threads, || run::run(&args)),
         #[cfg(feature = "ros2")]
-        Command::Ros2(args) => with_threads(&args.options.common, || ros2::run(&args)),
-        Command::Replay(args) => with_threads(&args.common, || replay::run(&args)),
-        Command::Slam(args) => with_threads(&args.common, || slam::run(&args)),
-        Command::Convert(args) => with_threads(&args.common, || convert::run(&args)),
-        Command::Map(args) => with_threads(&args.common, || map::run(&args)),
-        Command::Calibrate(args) => with_threads(args.common(), || calibrate::run(&args)),
-        Command::Eval(args) => with_threads(args.common(), || eval::run(&args)),
-        Command::Plan(args) => with_threads(&args.common, || plan::run(&args)),
-        Command::Sim(args) => with_threads(&args.common, || sim::run(&args)),
-        Command::Dock(args) => with_threads(&args.common, || dock::run(&args)),
-        Command::Experiment(args) => with_threads(args.common(), || experiment::run(&args)),
+        Command::Ros2(args) => on_threads(args.options.common.threads, || ros2::run(&args)),
+        Command::Replay(args) => on_threads(args.common.threads, || replay::run(&args)),
+        Command::Slam(args) => on_threads(args.common.threads, || slam::run(&args)),
+        Command::Convert(args) => on_threads(args.common.threads, || convert::run(&args)),
+        Command::Map(args) => on_threads(args.common.threads, || map::run(&args)),
+        Command::Calibrate(args) => on_threads(args.common().threads, || calibrate::run(&args)),
+        Command::Eval(args) => on_threads(args.common().threads, || eval::run(&args)),
+        Command::Plan(args) => on_threads(args.common.threads, || plan::run(&args)),
+        Command::Sim(args) => on_threads(args.common.threads, || sim::run(&args)),
+        Command::Dock(args) => on_threads(args.common.threads, || dock::run(&args)),
+        Command::Experiment(args) => on_threads(args.common().threads, || experiment::run(&args)),
         Command::Vocabulary(args) => match args.common() {
-            Some(common) => with_threads(common, || vocabulary::run(&args)),
+            Some(common) => on_threads(common.threads, || vocabulary::run(&args)),
             None => vocabulary::run(&args),
         },
         Command::Config(args) => robot_file::print(&args),
@@ -116,15 +115,4 @@ fn run_command(cli: Cli) -> Result<Outcome, AppError> {
         Command::Completions(args) => shell_files::print_completions(&args, Cli::command()),
         Command::Man(args) => shell_files::write_man_pages(&args, Cli::command()),
     }
-}
-
-/// Runs `work` on a pool of the asked number of threads.
-fn with_threads<T: Send>(
-    common: &Common,
-    work: impl FnOnce() -> Result<T, AppError> + Send,
-) -> Result<T, AppError> {
-    let Some(threads) = common.threads else { return work() };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build();
-    pool.map_err(|error| AppError::Environment(format!("cannot start {threads} threads: {error}")))?
-        .install(work)
 }

@@ -65,6 +65,7 @@ mod setup;
 mod step_progress;
 pub mod stop;
 mod text_table;
+mod threads;
 pub mod vocabulary_file;
 
 pub use best_view::BestView;
@@ -93,3 +94,4 @@ pub use settings::{read_text, read_toml};
 pub use setup::{RUN_COMMAND, RunSetup};
 pub use step_progress::StepProgress;
 pub use text_table::aligned_table;
+pub use threads::on_threads;

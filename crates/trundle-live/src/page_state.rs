@@ -7,6 +7,7 @@ use crate::steering::RunSteering;
 use crate::wire::MapTiles;
 use crate::{LiveOptions, Tokens};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use tokio::sync::watch;
 use trundle_app::operator::Operator;
 
 /// State that all viewers of a page share. One thread serves them; no lock is held while the thread waits.
@@ -24,6 +25,8 @@ pub struct PageState {
     pub facts: RunFacts,
     /// Sends commands.
     pub steering: RunSteering,
+    /// Whether the program is about to end.
+    end: watch::Sender<bool>,
     roster: Mutex<Roster>,
     tiles: Mutex<MapTiles>,
     history: Mutex<History>,
@@ -39,10 +42,22 @@ impl PageState {
             is_steered: options.is_steered,
             is_shared: options.address.is_shared(),
             facts,
+            end: watch::Sender::new(false),
             roster: Mutex::default(),
             tiles: Mutex::default(),
             history: Mutex::default(),
         }
+    }
+
+    /// Tells all viewers that the program is about to end.
+    pub fn end(&self) {
+        self.end.send_replace(true);
+    }
+
+    /// Waits until the program is about to end.
+    pub async fn ended(&self) {
+        // The sender lives as long as this state.
+        _ = self.end.subscribe().wait_for(|is_over| *is_over).await;
     }
 
     /// The viewers.

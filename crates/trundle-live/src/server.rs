@@ -20,6 +20,9 @@ const PAGE_NICENESS: i32 = 10;
 
 /// Longest wait for the page's thread at the end of a run. Source: ours; it ends within milliseconds unless it hangs.
 const END_TIMEOUT: Duration = Duration::from_secs(2);
+/// Longest wait until the viewers have received the end of the program. Source: ours; a viewer on the same network receives it within
+/// milliseconds.
+const GOODBYE_TIMEOUT: Duration = Duration::from_millis(300);
 /// Period of checks for the end of the thread.
 const END_CHECK_PERIOD: Duration = Duration::from_millis(5);
 
@@ -134,8 +137,19 @@ async fn serve(listener: TcpListener, state: Arc<PageState>, ended: oneshot::Rec
     tokio::select! {
         () = http::serve(listener, router) => {}
         () = keep_history(&state) => {}
-        _ = ended => {}
+        _ = ended => say_goodbye(&state).await,
     }
+}
+
+/// Tells the viewers that the program ends, and waits shortly until they have heard it.
+async fn say_goodbye(state: &PageState) {
+    state.end();
+    let all_gone = async {
+        while state.roster().count() > 0 {
+            tokio::time::sleep(END_CHECK_PERIOD).await;
+        }
+    };
+    _ = tokio::time::timeout(GOODBYE_TIMEOUT, all_gone).await;
 }
 
 /// Looks at the run from time to time, also without viewers.

@@ -2,7 +2,7 @@
 
 import { readBytes, WIRE_VERSION, type ByteMessage, type Reply } from "./wire";
 
-export type LinkState = "connecting" | "open" | "lost" | "refused";
+export type LinkState = "connecting" | "open" | "lost" | "ended" | "refused";
 
 export interface LinkEvents {
   onState(state: LinkState, reason: string): void;
@@ -18,10 +18,15 @@ const LONGEST_WAIT_MS = 5000;
 /** Without any message for this time the link counts as lost [ms]: the server sends something each second while the robot steps. */
 const SILENCE_MS = 8000;
 
+/** Close code of a program that has ended as it should. */
+const PROGRAM_ENDED = 1001;
+
 export class Link {
   private socket: WebSocket | null = null;
   private wait = FIRST_WAIT_MS;
   private nextId = 1;
+  /** Whether the program said that it ends; attempts to connect again do not change that. */
+  private hasEnded = false;
   private heard = 0;
   private readonly waiting = new Map<number, (answer: Answer) => void>();
 
@@ -93,6 +98,7 @@ export class Link {
     const reply = JSON.parse(data) as Reply;
     if (reply.type === "welcome") {
       this.wait = FIRST_WAIT_MS;
+      this.hasEnded = false;
       this.events.onState("open", "");
     } else if (reply.type === "state") {
       this.send({ type: "seen", batch: reply.batch });
@@ -110,7 +116,8 @@ export class Link {
     this.waiting.clear();
     if (event.code === 4401) return this.events.onState("refused", event.reason);
     if (event.code === 4406) return location.reload();
-    this.events.onState("lost", event.reason);
+    this.hasEnded ||= event.code === PROGRAM_ENDED;
+    this.events.onState(this.hasEnded ? "ended" : "lost", event.reason);
     setTimeout(() => this.socket || this.connect(), this.wait);
     this.wait = Math.min(2 * this.wait, LONGEST_WAIT_MS);
   }

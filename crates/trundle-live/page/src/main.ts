@@ -444,16 +444,23 @@ function showKind({ kind, drives, is_steered: isSteered }: Welcome): void {
 function showLink(next: LinkState, reason: string): void {
   document.body.dataset["link"] = next;
   const meter = element("link");
-  const texts = { connecting: "connecting", open: "live", lost: "no link", refused: "refused" };
+  const texts = { connecting: "connecting", open: "live", lost: "no link", ended: "ended", refused: "refused" };
   meter.dataset["tone"] = next === "open" ? "good" : next === "connecting" ? "warn" : "bad";
   meter.querySelector("span")!.textContent = texts[next];
   meter.title = texts[next];
   if (next === "open") return;
+  // A page that has lost its robot keeps on saying why while it tries again.
   if (next === "connecting" && state) return;
-  element("status").dataset["tone"] = next === "connecting" ? "idle" : "bad";
-  element("state").textContent = next === "connecting" ? "Connecting" : next === "refused" ? "Not let in" : "No link";
-  const lost = "The program has ended or the network is gone. Trying again.";
-  element("reason").textContent = next === "refused" ? reason : next === "lost" ? lost : "";
+  element("status").dataset["tone"] = next === "connecting" || next === "ended" ? "idle" : "bad";
+  const titles = { connecting: "Connecting", lost: "No link", ended: "Ended", refused: "Not let in" };
+  const reasons = {
+    connecting: "",
+    lost: "The program is gone without a word, or the network is. Trying again.",
+    ended: "The program has ended. What it last showed stays here; the page connects again when it is started anew.",
+    refused: reason,
+  };
+  element("state").textContent = titles[next];
+  element("reason").textContent = reasons[next];
 }
 
 function showWheel(now: RobotState): void {

@@ -11,7 +11,7 @@ use crate::page_state::PageState;
 use crate::roster::ViewerId;
 use axum::extract::ws::WebSocket;
 use futures_util::StreamExt;
-use outbox::Outbox;
+use outbox::{Close, Outbox};
 use progress::ViewProgress;
 use std::sync::Arc;
 use tokio::sync::mpsc;
@@ -26,12 +26,13 @@ pub async fn serve(mut socket: WebSocket, state: Arc<PageState>, id: ViewerId) {
         let (answers, waiting) = mpsc::channel(MAX_WAITING_ANSWERS);
         let progress = ViewProgress::default();
         let mut outbox = Outbox::new(sink);
-        let reason = tokio::select! {
-            reason = requests::receive(stream, requests::Viewer { state: &state, id, access, progress: &progress, answers }) => reason,
-            reason = updates::send(&mut outbox, &state, id, &progress, waiting) => reason,
+        let close = tokio::select! {
+            reason = requests::receive(stream, requests::Viewer { state: &state, id, access, progress: &progress, answers }) => Close::Rule(reason),
+            reason = updates::send(&mut outbox, &state, id, &progress, waiting) => Close::Rule(reason),
+            () = state.ended() => Close::ProgramEnded,
         };
-        tracing::debug!("live page: viewer {id}: {reason}");
-        outbox.close(reason).await;
+        tracing::debug!("live page: viewer {id}: {}", close.reason());
+        outbox.close(close).await;
     }
     if state.roster().leave(id) {
         state.steering.end_of_hand();

@@ -11,6 +11,35 @@ const SEND_TIMEOUT: Duration = Duration::from_secs(20);
 /// Close code of a viewer that broke a rule. Source: RFC 6455, 7.4.1.
 const POLICY_CLOSE_CODE: u16 = 1008;
 
+/// Close code of a program that ends. Source: RFC 6455, 7.4.1.
+const GOING_AWAY_CLOSE_CODE: u16 = 1001;
+
+/// Why a link is closed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Close {
+    /// The viewer broke a rule, or went.
+    Rule(&'static str),
+    /// The program ends.
+    ProgramEnded,
+}
+
+impl Close {
+    /// The reason in words.
+    pub fn reason(self) -> &'static str {
+        match self {
+            Self::Rule(reason) => reason,
+            Self::ProgramEnded => "the program has ended",
+        }
+    }
+
+    fn code(self) -> u16 {
+        match self {
+            Self::Rule(_) => POLICY_CLOSE_CODE,
+            Self::ProgramEnded => GOING_AWAY_CLOSE_CODE,
+        }
+    }
+}
+
 /// Sends messages to a viewer.
 pub struct Outbox {
     sink: SplitSink<WebSocket, Message>,
@@ -39,8 +68,9 @@ impl Outbox {
     }
 
     /// Closes the link.
-    pub async fn close(&mut self, reason: &'static str) {
-        let close = Message::Close(Some(CloseFrame { code: POLICY_CLOSE_CODE, reason: reason.into() }));
+    pub async fn close(&mut self, close: Close) {
+        let frame = CloseFrame { code: close.code(), reason: close.reason().into() };
+        let close = Message::Close(Some(frame));
         let closing = tokio::time::timeout(Duration::from_secs(1), self.sink.send(close));
         if !matches!(closing.await, Ok(Ok(()))) {
             tracing::debug!("live page: a viewer went without a close");

@@ -71,3 +71,15 @@ fn a_page_that_comes_again_after_a_restart_is_welcome_with_its_token() {
     drop(run);
     assert!(page.wait_for_close().0 < 4400, "the page may try again");
 }
+
+#[test]
+fn viewers_hear_that_the_program_ends() {
+    let run = LiveRun::start();
+    let mut viewer = Browser::enter(&run, Access::View, "viewer");
+    let _silent = Browser::enter(&run, Access::View, "silent");
+    viewer.wait_for("state");
+    let start = Instant::now();
+    drop(run);
+    assert!(start.elapsed() < Duration::from_secs(2), "a viewer that reads nothing does not hold up the end");
+    assert_eq!(viewer.wait_for_close(), (1001, "the program has ended".to_owned()));
+}
