@@ -141,7 +141,7 @@ async fn serve(listener: TcpListener, state: Arc<PageState>, ended: oneshot::Rec
     }
 }
 
-/// Tells the viewers that the program ends, and waits shortly until they have heard it.
+/// Informs the viewers of the end of the program, and waits shortly until they have received the message.
 async fn say_goodbye(state: &PageState) {
     state.end();
     let all_gone = async {

@@ -14,7 +14,7 @@ const POLICY_CLOSE_CODE: u16 = 1008;
 /// Close code of a program that ends. Source: RFC 6455, 7.4.1.
 const GOING_AWAY_CLOSE_CODE: u16 = 1001;
 
-/// Why a link is closed.
+/// The reason for closing a link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Close {
     /// The viewer broke a rule, or went.
