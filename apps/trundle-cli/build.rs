@@ -10,7 +10,7 @@ fn main() {
     println!("cargo::rerun-if-changed=build.rs");
 }
 
-/// The commit of these sources. Sources that lie unpacked in some other repository have none.
+/// The commit of these sources. Sources unpacked inside another repository have none.
 fn commit() -> Option<String> {
     git(&["ls-files", "--error-unmatch", "build.rs"])?;
     let commit = git(&["rev-parse", "--short=10", "HEAD"])?;
@@ -30,7 +30,7 @@ fn watch_head() {
     }
 }
 
-/// Answer of git; empty if there is no git or no repository.
+/// Answer of git; empty without git or a repository.
 fn git(args: &[&str]) -> Option<String> {
     let output = Command::new("git").args(args).current_dir(env!("CARGO_MANIFEST_DIR")).output().ok()?;
     let text = String::from_utf8(output.stdout).ok()?;

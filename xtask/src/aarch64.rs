@@ -1,9 +1,9 @@
-//! The program for small computers: built for aarch64, its kernels tested and a few runs compared with this computer's, under qemu.
+//! The program on small computers: built for aarch64, its kernels tested and a few runs compared with this computer's, under qemu.
 //!
-//! The tests compare the kernels that are written for NEON with plain code. Other kernels are plain code that the compiler turns into
-//! vectors of each family of processors. For those, the runs show that aarch64 and this computer write the same bytes. They do where no
-//! function of the C library takes part whose last bit depends on the processor: `hypot`, `atan2f` and others. Trajectories of visual
-//! SLAM depend on these, and may differ by [`MAX_POSE_DIFFERENCE`].
+//! The tests compare the NEON kernels with plain code. Other kernels are plain code, vectorised by the compiler for each processor family.
+//! For these, the runs verify that aarch64 and this computer write equal bytes. This holds unless a function of the C library is involved
+//! whose last bit depends on the processor: `hypot`, `atan2f` and others. Trajectories of visual SLAM depend on such functions, and may
+//! differ by [`MAX_POSE_DIFFERENCE`].
 
 use crate::workspace::Verdict;
 use crate::{compare::compare_folders, program};
@@ -14,10 +14,10 @@ const TARGET: &str = "aarch64-unknown-linux-gnu";
 const LINKER: &str = "aarch64-linux-gnu-gcc";
 /// Names of the emulator of single programs: Debian's static one, and others'.
 const EMULATORS: [&str; 2] = ["qemu-aarch64-static", "qemu-aarch64"];
-/// Where Debian's and Ubuntu's `libc6-arm64-cross` puts the C library of aarch64.
+/// Folder of the aarch64 C library in Debian's and Ubuntu's `libc6-arm64-cross`.
 const LIBRARIES: &str = "/usr/aarch64-linux-gnu";
 
-/// Crates with kernels, and the tests of these.
+/// Crates with kernels, and their tests.
 const KERNELS: [(&str, &[&str]); 5] = [
     ("trundle-vision", &["orb", "alignment::template", "vocabulary::hamming", "matching"]),
     ("trundle-mapping", &["depth_scan::pixel_row", "scan_match"]),
@@ -39,7 +39,7 @@ enum Equality {
 /// Source: ours.
 const MAX_POSE_DIFFERENCE: f64 = 1e-6;
 
-/// Runs, in a folder of this computer's or the emulator's: the name of the results' folder in it; `{data}` is that of the golden net.
+/// Runs, in a folder of this computer or of the emulator: the name of the results' folder in it; `{data}` is the folder of the golden net.
 const RUNS: [(&str, Equality, &str); 3] = [
     (
         "recorded",
@@ -56,7 +56,7 @@ struct Tools {
 }
 
 impl Tools {
-    /// The tools, or what is missing and how to get it.
+    /// The tools, or the missing ones with their remedy.
     fn find() -> Result<Self, Vec<String>> {
         let mut missing = Vec::new();
         if !has_standard_library() {
@@ -139,7 +139,7 @@ fn compare(root: &Path, tools: &Tools) -> Verdict {
     Ok(same)
 }
 
-/// How two runs' trajectories and maps differ, one sentence a file.
+/// Differences between two runs' trajectories and maps, one sentence per file.
 fn compare_poses(here: &Path, there: &Path) -> Result<Vec<String>, String> {
     let read = |folder: &Path, name: &str| {
         let path = folder.join(name);
@@ -174,8 +174,8 @@ fn largest_difference(a: &str, b: &str) -> Option<f64> {
     largest.filter(|_| a.len() == b.len())
 }
 
-/// Runs a command of `trundle` in a folder. Returns whether it ended as a run does: with 0, or 1 where its aim was missed. The paths of its results
-/// are relative, so that both computers' are the same.
+/// Runs a command of `trundle` in a folder. Returns whether it ended regularly: with 0, or with 1 for a missed aim. The paths of its
+/// results are relative, and therefore equal on both computers.
 fn ends(root: &Path, program: &[PathBuf], command: &str, folder: &Path) -> Verdict {
     std::fs::create_dir_all(folder).map_err(|e| format!("cannot create {}: {e}", folder.display()))?;
     let data = root.join("data/golden").display().to_string();

@@ -5,7 +5,7 @@ use crate::{fault_scenarios, fuzz, golden, program, replay_check, tidy};
 use std::path::Path;
 use std::time::Instant;
 
-/// One thing that must hold.
+/// A check that must pass.
 struct Step {
     name: &'static str,
     check: fn(&Path) -> Verdict,
@@ -45,12 +45,12 @@ const REST: [Step; 10] = [
     Step { name: "cargo xtask fault-scenarios", check: fault_scenarios::run },
 ];
 
-/// Nothing has changed that was not meant to change.
+/// No result has changed unintentionally.
 fn golden_net(root: &Path) -> Verdict {
     golden::run(root, &golden::Options { update: false, only: None, profile: "release".into() })
 }
 
-/// The README's first command: it must end well, and nothing be touched.
+/// The README's first command: it must succeed, without contact.
 fn demo(root: &Path) -> Verdict {
     let out = program::scratch(root, "demo")?;
     let trundle = program::release_trundle(root)?;

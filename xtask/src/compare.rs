@@ -10,7 +10,7 @@ const WALL_CLOCK: &str = "wall_clock";
 /// The files that may differ, for the same reason: the page of times, and the list of results with their checksums.
 const MAY_DIFFER: [&str; 2] = ["timing.html", ".trundle-run"];
 
-/// How the folders differ, one sentence a file; empty when they do not. Of `summary.json` the object `wall_clock` is left out.
+/// Differences between the folders, one sentence per file; empty for equal folders. The object `wall_clock` of `summary.json` is ignored.
 pub fn compare_folders(a: &Path, b: &Path) -> Result<Vec<String>, String> {
     let (in_a, in_b) = (files(a)?, files(b)?);
     if in_a.is_empty() {
@@ -28,7 +28,7 @@ pub fn compare_folders(a: &Path, b: &Path) -> Result<Vec<String>, String> {
     Ok(differences)
 }
 
-/// The files below a folder, as paths relative to it.
+/// The files of a folder, as paths relative to it.
 fn files(folder: &Path) -> Result<BTreeSet<PathBuf>, String> {
     let mut found = BTreeSet::new();
     let mut open = vec![PathBuf::new()];
@@ -72,7 +72,7 @@ fn without_wall_clock(bytes: &[u8]) -> Result<Value, String> {
     Ok(summary)
 }
 
-/// Where two values first differ, and how.
+/// Place of the first difference between two values, and the values.
 fn first_difference(at: &str, a: &Value, b: &Value) -> Option<String> {
     match (a, b) {
         (Value::Object(a), Value::Object(b)) => {

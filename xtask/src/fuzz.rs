@@ -24,7 +24,7 @@ pub struct Options {
     /// Seed of the mutations.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Keep inputs that run through new code. The program is built once more for that.
+    /// Store inputs that reach new code. This needs an additional build of the program.
     #[arg(long)]
     guided: bool,
     /// Read this one input of the target.
@@ -50,7 +50,7 @@ impl Options {
     }
 }
 
-/// Runs every target for some seconds, or one. Returns whether nothing was found.
+/// Runs every target, or one, for some seconds. Returns whether no fault was found.
 pub fn run(root: &Path, options: &Options) -> Verdict {
     let arguments = options.arguments();
     let mut cargo = vec!["run", "--quiet", "--package", "trundle-fuzz", "--"];
@@ -59,7 +59,7 @@ pub fn run(root: &Path, options: &Options) -> Verdict {
     program::cargo(root, &cargo, if options.guided { &environment } else { &[] })
 }
 
-/// Five seconds a target, with the runner that the workspace's tests have built: nothing is compiled.
+/// Five seconds per target, with the runner built by the workspace's tests: no compilation.
 pub fn run_in_ci(root: &Path) -> Verdict {
     if !program::cargo(root, &["test", "--workspace", "--no-run", "--quiet"], &[])? {
         return Ok(false);

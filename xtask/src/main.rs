@@ -38,7 +38,7 @@ enum Chore {
     },
     /// Check the design's invariants in the sources.
     Tidy {
-        /// Lower the allow-list (xtask/tidy-allowed.txt) to what is found.
+        /// Lower the allow-list (xtask/tidy-allowed.txt) to the present findings.
         #[arg(long)]
         shrink: bool,
         /// Take up all findings into the allow-list: for a new rule only.
@@ -59,7 +59,7 @@ enum Chore {
     },
     /// Write docs/results.md from results/*.json.
     Results {
-        /// Repeat this measurement first (its name in results/); may be given again.
+        /// Repeat this measurement first (its name in results/); may be given several times.
         #[arg(long, value_name = "NAME")]
         measure: Vec<String>,
     },
@@ -75,19 +75,19 @@ enum Chore {
     },
     /// Feed broken files to every reader: none may panic, hang or take unbounded memory.
     Fuzz(fuzz::Options),
-    /// Failing sensors, slipping wheels, people in the way: each run must end as its scenario expects.
+    /// Broken sensors, slipping wheels, people in the robot's path: each run must end as its scenario expects.
     FaultScenarios,
     /// Kernels and short runs on aarch64, under qemu: the same bytes as here. Skipped if tools are missing.
     Aarch64,
-    /// Resident memory of `trundle run` while it explores a simulated office, the simulator in another process.
+    /// Resident memory of `trundle run` during the exploration of a simulated office, with the simulator in another process.
     RobotMemory {
-        /// How long it explores.
+        /// Duration of the exploration.
         #[arg(long, default_value_t = 10.0)]
         minutes: f64,
     },
     /// Run the demo on many seeds and print a table of their summaries.
     DemoSeeds {
-        /// How many seeds, from the first on.
+        /// Number of seeds, from the first on.
         #[arg(long, default_value_t = 10)]
         seeds: u64,
         /// The first seed.

@@ -27,14 +27,14 @@ pub fn release_trundle(root: &Path) -> Result<PathBuf, String> {
     trundle(root, "release")
 }
 
-/// Runs the program; its exit code (`None`: killed). What it prints goes through.
+/// Runs the program; returns its exit code (`None`: killed). Its output is not captured.
 pub fn run(program: &Path, args: &[&str]) -> Result<Option<i32>, String> {
     println!("  trundle {}", args.join(" "));
     let status = Command::new(program).args(args).stdin(Stdio::null()).status();
     Ok(status.map_err(|e| format!("cannot start {}: {e}", program.display()))?.code())
 }
 
-/// Runs the program, and prints an exit code other than 0. Returns whether it is 0.
+/// Runs the program, and prints an exit code other than 0. Returns whether the exit code is 0.
 pub fn ends_well(program: &Path, args: &[&str]) -> Result<bool, String> {
     let code = run(program, args)?;
     if code != Some(0) {
@@ -46,7 +46,7 @@ pub fn ends_well(program: &Path, args: &[&str]) -> Result<bool, String> {
 
 /// Lets go the recording of a run that went well: some GB.
 pub fn drop_recording(out: &Path) {
-    // What cannot be removed is overwritten by the next run.
+    // A file that cannot be removed is overwritten by the next run.
     let _ = std::fs::remove_file(out.join("recording.mcap"));
 }
 

@@ -6,13 +6,13 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Scene that is explored: larger than what the robot explores in ten minutes.
+/// Scene of the exploration: larger than the area explored in ten minutes.
 const SCENE: &str = "office";
 /// Time between two samples.
 const SAMPLE_PERIOD: Duration = Duration::from_secs(5);
 /// Longest time until the simulator answers.
 const START_LIMIT: Duration = Duration::from_secs(20);
-/// Largest resident memory at the end \[MB\]. A computer of 1 GB keeps most of its memory for other programs. Source: ours.
+/// Largest resident memory at the end \[MB\]. A computer with 1 GB needs most of its memory for other programs. Source: ours.
 const MAX_RESIDENT_MB: f64 = 300.0;
 
 /// Memory of a process, MB.
@@ -22,7 +22,7 @@ struct Memory {
     peak: f64,
 }
 
-/// Lets the robot explore for some minutes. Returns whether its memory stays below the limit.
+/// Runs an exploration for some minutes. Returns whether its memory stays below the limit.
 pub fn run(root: &Path, minutes: f64) -> Verdict {
     let trundle = program::release_trundle(root)?;
     let scratch = program::scratch(root, "robot-memory")?;

@@ -8,7 +8,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::time::Instant;
 
-/// One run: its exit code, its duration and its summary's numbers and words by key.
+/// A run: its exit code, its duration and its summary's numbers and words by key.
 struct Run {
     seed: u64,
     code: Option<i32>,
@@ -16,8 +16,8 @@ struct Run {
     summary: BTreeMap<String, Value>,
 }
 
-/// Runs the demo on each seed, straight to its goal or as the README does, and prints its summary, one column a
-/// seed. Recordings are kept of runs that did not end well.
+/// Runs the demo on each seed, straight to its goal or as in the README, and prints a table with one column per seed. Recordings of failed
+/// runs are stored.
 pub fn run(root: &Path, seeds: Range<u64>, explores: bool) -> Verdict {
     let trundle = program::release_trundle(root)?;
     let scratch = program::scratch(root, "demo-seeds")?;

@@ -1,5 +1,5 @@
-//! The reference of settings: each key of `robot.toml` with unit, kind and meaning, read from the doc comments of the
-//! configuration structs. `trundle config` and `docs/settings.md` are written from it.
+//! The reference of settings: each key of `robot.toml` with unit, kind and meaning, read from the doc comments of the configuration
+//! structs. `trundle config` and `docs/settings.md` are generated from it.
 
 use crate::workspace::Verdict;
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ const PAGE: &str = "docs/settings.md";
 /// The struct that is the whole robot file.
 const ROOT: &str = "RobotConfig";
 
-/// Units as they stand in doc comments, and the suffix of the key in the file.
+/// Units in doc comments, and the suffix of the key in the file.
 const UNITS: [(&str, &str); 27] = [
     ("m", "_m"),
     ("s", "_s"),
@@ -44,7 +44,7 @@ const UNITS: [(&str, &str); 27] = [
     ("rad/s/sqrt(s)", "_rad_s_per_sqrt_s"),
     ("ticks", "_ticks"),
 ];
-/// Words of a doc comment that stand for a number without unit.
+/// Words of a doc comment for a number without unit.
 const UNITLESS: [&str; 30] = [
     "ratio",
     "count",
@@ -78,12 +78,12 @@ const UNITLESS: [&str; 30] = [
     "longer",
 ];
 
-/// One key.
+/// A key.
 #[derive(Debug, PartialEq)]
 struct Setting {
     /// Dotted path of field names.
     path: String,
-    /// Unit; empty if there is none.
+    /// Unit; empty without a unit.
     unit: String,
     /// `number`, `integer`, `flag`, `list`, or the words of an enum parted by `|`.
     kind: String,
@@ -224,7 +224,7 @@ impl Types {
     }
 }
 
-/// Packages whose types the robot file cannot hold: they are beside or above the runtime.
+/// Packages whose types cannot be part of the robot file: they do not belong to the crates below the runtime.
 const NOT_BELOW: [&str; 5] =
     ["trundle-sim", "trundle-io", "trundle-viz", "trundle-eval", "trundle-experiments"];
 
@@ -307,7 +307,7 @@ fn snake(name: &str) -> String {
     snake
 }
 
-/// The unit that a doc comment names between commas; `?` when it names none and has no word for a number without unit.
+/// The unit between commas in a doc comment; `?` without a unit and without a word for a unitless number.
 fn unit_of(doc: &str) -> String {
     let found = unit_or_none(doc);
     let lower = doc.to_lowercase();
@@ -320,7 +320,7 @@ fn unit_or_none(doc: &str) -> String {
     let meaning = doc.split(" Default").next().unwrap_or(doc).replace(" / ", "/");
     let known =
         |piece: &str| UNITS.iter().find(|(unit, _)| *unit == piece).map(|(unit, _)| (*unit).to_owned());
-    // What stands after the comma: a unit alone, or with `of`, `above` or `from` behind it.
+    // The text after the comma: a unit alone, or followed by `of`, `above` or `from`.
     let pieces = meaning.split([',', ';', ':', '.']).skip(1).map(str::trim);
     let heads = pieces.map(|piece| {
         let head = [" of ", " above ", " from ", " on "].iter().find_map(|word| piece.split_once(word));
@@ -332,7 +332,7 @@ fn unit_or_none(doc: &str) -> String {
         .unwrap_or_default()
 }
 
-/// The suffix that a key gets for its unit. Empty if its name ends in a unit already.
+/// The suffix of a key for its unit. Empty if the name already ends in a unit.
 fn suffix_after(name: &str, unit: &str) -> &'static str {
     let has_one = UNITS.iter().any(|(_, suffix)| name.ends_with(suffix));
     let suffix = UNITS.iter().find(|(name, _)| *name == unit).map_or("", |(_, suffix)| suffix);

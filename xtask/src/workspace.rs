@@ -1,8 +1,8 @@
-//! Where the workspace is, and how a chore answers.
+//! Folder of the workspace, and the result type of a task.
 
 use std::path::{Path, PathBuf};
 
-/// How a chore that ran ended: whether all is well, or why it could not run.
+/// Result of a task: whether it passed, or the reason why it could not run.
 pub type Verdict = Result<bool, String>;
 
 /// The workspace's folder.

@@ -71,7 +71,7 @@ pub enum Command {
     Vocabulary(VocabularyArgs),
     /// Print the whole robot file with its defaults, or check one.
     Config(ConfigArgs),
-    /// List the devices that are plugged in, and what is missing.
+    /// List the connected devices, and the missing ones.
     Devices(DevicesArgs),
     /// Write the frames of a camera to standard output; `run` starts it for cameras whose library may crash.
     #[command(hide = true)]
@@ -79,7 +79,7 @@ pub enum Command {
     /// Stop the base at the end of standard input; for `run`.
     #[command(hide = true)]
     GuardBase,
-    /// The data sets of the experiments: what each is, where it comes from, its licence.
+    /// The data sets of the experiments: description, source, licence.
     Data(DataArgs),
     /// Print the completions of a shell: bash, zsh, fish, elvish, powershell.
     Completions(CompletionsArgs),

@@ -21,7 +21,7 @@ use trundle::sim::import::UpAxis;
 /// Options of every command.
 #[derive(Debug, Clone, Args)]
 pub struct Common {
-    /// Print nothing but warnings and errors: no progress, no table.
+    /// Print only warnings and errors: no progress, no table.
     #[arg(long, short)]
     pub quiet: bool,
     /// Threads to use; the results are the same for any number [default: one per core]
@@ -44,12 +44,12 @@ impl RobotArgs {
     /// The robot: the file's or the default one, with the keys set on top.
     ///
     /// # Errors
-    /// Names the file or the key, and what is wrong with it.
+    /// Names the file or the key, and the fault.
     pub fn robot(&self) -> Result<RobotConfig, AppError> {
         load_robot(self.config.as_deref(), &self.set)
     }
 
-    /// The robot if a file or a key is given, else nothing.
+    /// The robot if a file or a key is given, else `None`.
     ///
     /// # Errors
     /// As [`RobotArgs::robot`].
@@ -58,7 +58,7 @@ impl RobotArgs {
     }
 }
 
-/// How a .glb or .gltf becomes a scene.
+/// Placement of a .glb or .gltf in a scene.
 #[derive(Debug, Clone, Copy, Args)]
 pub struct MeshArgs {
     /// The axis that points up in a .glb or .gltf.
@@ -67,7 +67,7 @@ pub struct MeshArgs {
     /// Metres a unit of a .glb or .gltf, as 0.01 for centimetres [default: 1]
     #[arg(long, value_name = "M", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub scale: Option<f64>,
-    /// Height of the floor in a .glb or .gltf, m: it comes to lie at z = 0 [default: the lowest large level]
+    /// Height of the floor in a .glb or .gltf, m: it is moved to z = 0 [default: the lowest large level]
     #[arg(long, value_name = "Z", hide_short_help = true, value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub floor: Option<f64>,
 }

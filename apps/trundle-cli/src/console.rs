@@ -12,17 +12,17 @@ pub fn print_error(error: &AppError) {
     print_on_stderr(format_args!("trundle: {error}"));
 }
 
-/// Prints on standard error that a signal has ended the command, and what is written.
+/// Prints on standard error that a signal has ended the command, and the written results.
 pub fn print_stopped(signal: &str, what: &str) {
     print_on_stderr(format_args!("trundle: stopped by {signal}{what}"));
 }
 
-/// Prints a line on standard error. A standard error without a reader changes nothing of the run, where `eprintln!` would panic.
+/// Prints a line on standard error. A standard error without a reader does not affect the run; `eprintln!` would panic.
 fn print_on_stderr(line: std::fmt::Arguments) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }
 
-/// Logs a warning, which the terminal shows; the run goes on.
+/// Logs a warning, which the terminal shows; the run continues.
 pub fn warn(message: &str) {
     tracing::warn!("{message}");
 }
@@ -31,7 +31,7 @@ pub fn warn(message: &str) {
 pub fn print(text: &str) {
     let mut out = std::io::stdout();
     match writeln!(out, "{text}").and_then(|()| out.flush()) {
-        // A reader that has gone away is not a failure of the run.
+        // A closed reader is not a failure of the run.
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             PRINT_FAILURE.get_or_init(|| error);
         }
@@ -39,7 +39,7 @@ pub fn print(text: &str) {
     }
 }
 
-/// Why standard output did not take a result; `None` if it took all.
+/// Error of standard output; `None` if all results were written.
 pub fn print_failure() -> Option<&'static std::io::Error> {
     PRINT_FAILURE.get()
 }
@@ -69,7 +69,7 @@ pub struct StepDisplay {
 }
 
 impl StepDisplay {
-    /// A display that appears when the work begins. Nothing appears if `quiet`.
+    /// A display that appears when the work begins. With `quiet` it never appears.
     pub fn new(quiet: bool) -> Self {
         Self { bar: hidden_if(quiet, ProgressBar::new_spinner()) }
     }

@@ -17,7 +17,7 @@ pub struct DataArgs {
 /// Actions on data sets.
 #[derive(Debug, Subcommand)]
 pub enum DataCommand {
-    /// List each data set: what it is, where it comes from, its licence, the command that fetches it.
+    /// List each data set: description, source, licence, and the command that fetches it.
     FetchList,
 }
 

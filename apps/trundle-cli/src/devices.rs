@@ -1,4 +1,4 @@
-//! `trundle devices`: what is plugged in, what is missing and how to get it.
+//! `trundle devices`: connected devices, and missing ones with their remedy.
 
 use crate::console;
 use crate::outcome::Outcome;

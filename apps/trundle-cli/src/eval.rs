@@ -62,7 +62,7 @@ fn map(args: &MapsArgs) -> Result<(), AppError> {
     Ok(())
 }
 
-/// Writes a folder with the summary alone, if one is asked for.
+/// Writes a folder with only the summary, if requested.
 fn write_summary(out: Option<&OutputDirArg>, summary: &Summary) -> Result<(), AppError> {
     let Some(out) = out else { return Ok(()) };
     let folder = logging::output_folder(out)?;

@@ -20,7 +20,7 @@ use trundle::experiments::{
 use trundle::io::OutputFolder;
 use trundle::live::LivePage;
 
-/// Runs the experiment that was asked for, or merges its shards.
+/// Runs the requested experiment, or merges its shards.
 pub fn run(args: &ExperimentArgs) -> Result<Outcome, AppError> {
     match &args.which {
         Which::Merge(merge) => {
@@ -98,7 +98,7 @@ fn run_real_time(args: &RealTimeArgs, origin: &RunOrigin) -> Result<Outcome, App
     })
 }
 
-/// Runs an experiment beside its page, writes its folder and prints its table.
+/// Runs an experiment with its page, writes its folder and prints its table.
 fn in_folder<R: ExperimentReport>(
     out: &Path,
     common: &Common,

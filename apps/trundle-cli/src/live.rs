@@ -1,4 +1,4 @@
-//! Front ends beside a run: --live, a page that shows it and, if the command drives, steers it, and --mqtt.
+//! Front ends of a run: --live, a page that displays the run and steers it if the command drives, and --mqtt.
 
 use crate::console;
 use clap::Args;
@@ -11,15 +11,15 @@ use trundle::runtime::RobotConfig;
 /// The live page of a run.
 #[derive(Debug, Args)]
 pub struct LiveArgs {
-    /// Show the run in a browser and steer it there: prints the link; the run goes on after its mission until Ctrl-C. ADDR is IP:PORT
+    /// Display the run in a browser and steer it there: prints the link; the run continues after its mission until Ctrl-C. ADDR is IP:PORT
     /// [default: 127.0.0.1:8642, or a free port if it is in use]
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = LiveAddress::DEFAULT)]
     pub live: Option<LiveAddress>,
-    /// Zones and named places of the map: a GeoJSON file, which keeps the changes of the live page. Without the file the first change
-    /// makes it.
+    /// Zones and named places of the map: a GeoJSON file, which stores the changes of the live page. A missing file is created by the first
+    /// change.
     #[arg(long, value_name = "FILE")]
     pub zones: Option<PathBuf>,
-    /// Keep the tokens of the links in FILE, so that links stay valid over restarts.
+    /// Store the tokens of the links in FILE, which keeps links valid after restarts.
     #[arg(long, value_name = "FILE", requires = "live")]
     pub live_tokens: Option<PathBuf>,
     /// Maps that the live page may load while the robot runs: each NAME.yaml of DIR.
@@ -31,7 +31,7 @@ pub struct LiveArgs {
     pub mqtt: crate::mqtt::MqttArgs,
 }
 
-/// Front ends beside a run; dropping them ends them.
+/// Front ends of a run; a drop ends them.
 #[derive(Default)]
 pub struct Beside {
     _page: Option<LivePage>,
@@ -40,7 +40,7 @@ pub struct Beside {
 }
 
 impl LiveArgs {
-    /// Whether somebody may give the run commands while it goes.
+    /// Whether a person may give commands to the run.
     pub fn is_operated(&self) -> bool {
         #[cfg(feature = "mqtt")]
         if self.mqtt.mqtt.is_some() {
@@ -49,13 +49,13 @@ impl LiveArgs {
         self.live.is_some()
     }
 
-    /// The run with the zones that are asked for.
+    /// The run with the requested zones.
     pub fn with_zones(&self, setup: RunSetup) -> Result<RunSetup, AppError> {
         self.zones.as_deref().map_or(Ok(setup.clone()), |file| setup.with_annotations_of(file))
     }
 
-    /// The page and the link to a broker beside a run, if they are asked for, and what accompanies the run then. `link`: that of
-    /// another front end. A run that is not steered takes no commands.
+    /// The requested page and broker link of a run, and the run's companions. `link`: the link of another front end. A run that is not
+    /// steered accepts no commands.
     pub fn beside(
         &self,
         setup: &RunSetup,
@@ -94,7 +94,7 @@ impl LiveArgs {
     }
 }
 
-/// A folder of maps, refused before anything is done if it cannot be read.
+/// A folder of maps; refused at the start if unreadable.
 fn map_folder(text: &str) -> Result<PathBuf, String> {
     let folder = PathBuf::from(text);
     MapFolder::check(&folder)?;
@@ -113,19 +113,19 @@ fn start_page(options: LiveOptions, operator: Operator, facts: RunFacts) -> Resu
     Ok(page)
 }
 
-/// A live page beside work that is no robot's run.
+/// A live page for work without a robot's run.
 #[derive(Debug, Args)]
 pub struct ViewArgs {
-    /// Show how it goes in a browser: prints the link. ADDR is IP:PORT [default: 127.0.0.1:8642, or a free port where it is in use]
+    /// Display the progress in a browser: prints the link. ADDR is IP:PORT [default: 127.0.0.1:8642, or a free port if it is in use]
     #[arg(long, value_name = "ADDR", num_args = 0..=1, default_missing_value = LiveAddress::DEFAULT)]
     pub live: Option<LiveAddress>,
-    /// Keep the tokens of the links in FILE, so that links stay valid over restarts.
+    /// Store the tokens of the links in FILE, which keeps links valid after restarts.
     #[arg(long, value_name = "FILE", requires = "live")]
     pub live_tokens: Option<PathBuf>,
 }
 
 impl ViewArgs {
-    /// The page with `facts`, where it is asked for, and what it shows. Dropping the page ends it.
+    /// The page with `facts` if requested, and its feed. A drop ends the page.
     pub fn start(
         &self,
         facts: impl FnOnce() -> Result<RunFacts, AppError>,

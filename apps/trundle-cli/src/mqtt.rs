@@ -9,10 +9,10 @@ use trundle::fleet::{BrokerAddress, FleetLink, RobotName};
 /// Home and fleet.
 #[derive(Debug, Args)]
 pub struct MqttArgs {
-    /// Join a home (Home Assistant) or a fleet (VDA 5050) by this broker: mqtt://USER@HOST:PORT; the run goes on after its mission
+    /// Join a home (Home Assistant) or a fleet (VDA 5050) through this broker: mqtt://USER@HOST:PORT; the run continues after its mission
     #[arg(long, value_name = "URL")]
     pub mqtt: Option<BrokerAddress>,
-    /// The broker's password stands in FILE [default: the variable TRUNDLE_MQTT_PASSWORD]
+    /// File with the broker's password [default: the variable TRUNDLE_MQTT_PASSWORD]
     #[arg(long, value_name = "FILE", requires = "mqtt", hide_short_help = true)]
     pub mqtt_password_file: Option<PathBuf>,
     /// Name of the robot: SERIAL or MANUFACTURER/SERIAL [default: trundle and the name of this machine]

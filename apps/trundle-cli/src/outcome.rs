@@ -1,4 +1,4 @@
-//! The ending of a command: its exit code, and a sentence if it is not as asked for.
+//! The end of a command: its exit code, and a sentence if the command missed its aim.
 
 use crate::console;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use trundle::app::exit_codes::{CODE_BAD_INPUT, CODE_INCOMPLETE, CODE_MISSED};
 use trundle::app::{AppError, stop};
 use trundle::io::IoError;
 
-/// Whether a command that ran to its end reached its aim.
+/// Whether a completed command reached its aim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
     /// Exit code 0.

@@ -16,7 +16,7 @@ pub struct OutputDirArg(PathBuf);
 #[derive(Debug, Clone)]
 pub struct OutputFileArg(PathBuf);
 
-/// A file that a command reads at its start and may replace later: its own earlier result.
+/// A file that a command reads at its start and may later replace by its own newer result.
 #[derive(Debug, Clone)]
 pub struct ContinuedFileArg(PathBuf);
 
@@ -62,15 +62,15 @@ impl Deref for OutputFileArg {
     }
 }
 
-/// The inputs of the command under way.
+/// The inputs of the present command.
 static INPUTS: OnceLock<InputFiles> = OnceLock::new();
 
 /// Refuses results that would replace an input; the folders that the command writes.
 ///
-/// Every argument that is a path is an input, and so is every text that names a file, but for those of the types above.
+/// Every argument that is a path is an input, and so is every text that names a file, except those of the types above.
 ///
 /// # Errors
-/// Names the result and the input, or the files that are in the way.
+/// Names the result and the input, or the conflicting files.
 pub fn check(matches: &ArgMatches) -> Result<Vec<PathBuf>, AppError> {
     let leaf = std::iter::successors(Some(matches), |matches| Some(matches.subcommand()?.1)).last();
     let leaf = leaf.unwrap_or(matches);
@@ -91,7 +91,7 @@ fn values<T: Clone + Send + Sync + 'static>(matches: &ArgMatches) -> impl Iterat
     matches.ids().filter_map(of).flatten().cloned()
 }
 
-/// The inputs of the command under way.
+/// The inputs of the present command.
 pub fn inputs() -> &'static InputFiles {
     INPUTS.get_or_init(InputFiles::default)
 }
@@ -99,7 +99,7 @@ pub fn inputs() -> &'static InputFiles {
 /// Writes a single file of results.
 ///
 /// # Errors
-/// When it cannot be written, or is an input.
+/// When the file cannot be written, or is an input.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), AppError> {
     Ok(OutputFile::create_apart_from(inputs(), path)?.write(bytes)?)
 }

@@ -18,7 +18,7 @@ pub struct ReplayArgs {
     /// Replay a recording that is cut, as by a power failure, up to the cut.
     #[arg(long)]
     pub recover: bool,
-    /// Folder for the results; the last run in it is kept as DIR.1
+    /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/replay")]
     pub out: OutputDirArg,
     /// The live page: it shows, and takes no commands.

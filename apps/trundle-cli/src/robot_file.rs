@@ -13,7 +13,7 @@ use trundle::runtime::settings::{json_schema, to_commented_toml};
 #[derive(Debug, Args)]
 #[command(after_help = "Example: trundle config > robot.toml && trundle demo --config robot.toml")]
 pub struct ConfigArgs {
-    /// Check this robot file and print it whole, its gaps filled with the defaults.
+    /// Check this robot file and print it completely, with defaults for missing keys.
     pub file: Option<PathBuf>,
     /// Set one key on top of the file; may be given again.
     #[arg(long, value_name = "KEY=VALUE")]

@@ -1,4 +1,4 @@
-//! The options of ROS 2 that several commands have, and the node beside `trundle run`.
+//! ROS 2 options of several commands, and the node of `trundle run`.
 
 use crate::console;
 use clap::Args;
@@ -12,10 +12,10 @@ use trundle::runtime::RobotConfig;
 /// Network and names of a ROS 2 node.
 #[derive(Debug, Args)]
 pub struct RosArgs {
-    /// Domain: nodes of different domains do not meet [default: ROS_DOMAIN_ID, else 0]
+    /// Domain: nodes of different domains do not see each other [default: ROS_DOMAIN_ID, else 0]
     #[arg(long, value_name = "N")]
     pub ros_domain: Option<u16>,
-    /// Networks: loopback, all, or addresses of interfaces. Whoever is on them can drive the robot.
+    /// Networks: loopback, all, or addresses of interfaces. Every computer on these networks can drive the robot.
     #[arg(long, value_name = "IP|all", default_value = "loopback")]
     pub ros_interface: Networks,
     /// Last: remappings, namespace and parameters, as every ROS 2 node takes them.
@@ -33,7 +33,7 @@ impl RosArgs {
     }
 }
 
-/// A node beside `trundle run`, and the run's end of the link to it.
+/// A node for `trundle run`, and the run's end of the link to the node.
 pub fn beside(
     args: &RosArgs,
     robot: &RobotConfig,

@@ -65,7 +65,7 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
     let (page, front_end) = args.live.beside(setup, progress, link, true)?;
     let start = |events, _place| {
         let body = start_hardware(&args.base, camera, setup.robot.camera, events, origin, observer)?;
-        // A run that is refused leaves the checkpoint where it is.
+        // A refused run does not change the checkpoint.
         if resumes_from_another_file(args) {
             checkpoint.map_or(Ok(()), keep_aside)?;
         }
@@ -80,7 +80,7 @@ fn drive(args: &RunArgs, setup: &RunSetup, camera: OpenCamera) -> Result<Outcome
     run_output::write(setup, run, Some(&timing), folder, args.options.common.quiet)
 }
 
-/// Whether the checkpoint that is written is not the one that the run resumes from.
+/// Whether the written checkpoint differs from the one that the run resumes from.
 fn resumes_from_another_file(args: &RunArgs) -> bool {
     args.mission.resume.as_deref() != args.options.checkpoint.as_deref()
 }

@@ -8,7 +8,7 @@ use trundle::app::{AppError, FinishedRun, RunSetup};
 use trundle::io::OutputFolder;
 
 /// Writes the folder of a run and prints its table. Returns whether the goal was reached. A file that could not be written is reported
-/// when everything else is done.
+/// after all other work.
 pub fn write(
     setup: &RunSetup,
     mut run: FinishedRun,
@@ -32,7 +32,7 @@ pub fn write(
     match output.incomplete {
         Some(error) => Err(error),
         None if numbers.is_success() => Ok(Outcome::Reached),
-        // The table holds the verdict where it is printed.
+        // The printed table already contains the verdict.
         None if quiet => Ok(Outcome::unless(Some(numbers.verdict()))),
         None => Ok(Outcome::Missed),
     }

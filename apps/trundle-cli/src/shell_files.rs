@@ -1,4 +1,4 @@
-//! `trundle completions` and `trundle man`: what a shell and a manual need of the command line.
+//! `trundle completions` and `trundle man`: command line data for shells and the manual.
 
 use crate::console;
 use crate::outcome::Outcome;
@@ -25,7 +25,7 @@ pub struct CompletionsArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Example: trundle man ~/.local/share/man/man1 && man trundle-slam")]
 pub struct ManArgs {
-    /// Folder for the pages: trundle.1, trundle-slam.1 and so on. A page of other content that is there is kept as trundle.1.1.
+    /// Folder for the pages: trundle.1, trundle-slam.1 and so on. An existing page with other content is renamed to trundle.1.1.
     pub dir: PathBuf,
 }
 

@@ -65,7 +65,7 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
     Ok(if drive.is_complete { Outcome::Reached } else { Outcome::Missed })
 }
 
-/// The driver that the arguments name; `None` for a person at the keys or the page, who starts when the robot is there.
+/// The driver of the arguments; `None` for a person at the keys or the page, who starts once the robot exists.
 fn driver(args: &SimArgs) -> Result<Option<Box<dyn SimDriver>>, AppError> {
     Ok(match (&args.driver.drive, &args.driver.follow) {
         (Some(file), _) => Some(Box::new(ScriptDriver::read(file)?)),

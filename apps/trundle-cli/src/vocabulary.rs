@@ -57,7 +57,7 @@ fn recall(args: &RecallArgs) -> Result<(), AppError> {
     Ok(())
 }
 
-/// The vocabularies to measure with their names.
+/// The vocabularies to measure, with their names.
 fn vocabularies(args: &RecallArgs) -> Result<Vec<(String, Arc<Vocabulary>)>, AppError> {
     if args.vocabularies.is_empty() {
         return Ok(vec![("built in".to_owned(), Vocabulary::builtin())]);

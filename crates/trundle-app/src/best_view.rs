@@ -9,10 +9,10 @@ use trundle_slam::SeenFeature;
 /// The image in which the largest number of features was tracked, for the report.
 #[derive(Debug, Default)]
 pub struct BestView {
-    /// Images that tracking has not used yet.
+    /// Images that tracking has not used.
     waiting: VecDeque<EncodedRgbd>,
     best: Option<EncodedRgbd>,
-    /// Its features.
+    /// Features of the image.
     pub features: Vec<SeenFeature>,
     inliers: usize,
 }
@@ -36,7 +36,7 @@ impl BestView {
         }
     }
 
-    /// The image, if there was any.
+    /// The image; `None` before the first one.
     pub fn image(&self) -> Option<RgbdImage> {
         self.best.as_ref()?.decode().ok()
     }

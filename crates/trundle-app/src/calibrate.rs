@@ -1,6 +1,6 @@
 //! Calibration by a recording or by images of a board: camera, mount, wheels, image delay.
 //!
-//! Each function reads its input, fits, and returns a [`Calibration`]: values with standard deviations beside the values in use.
+//! Each function reads its input, fits, and returns a [`Calibration`]: values with standard deviations, next to the values in use.
 //! [`Calibration::write`] changes exactly these keys of a robot file. See `docs/how-to/calibrate.md`.
 
 mod board_sheet;

@@ -9,7 +9,7 @@ use trundle_runtime::Checkpoint;
 /// The checkpoint in this file, and its bytes.
 ///
 /// # Errors
-/// When the file cannot be read, is not a checkpoint, or nothing is left of its mission. Names the file.
+/// When the file cannot be read, is not a checkpoint, or its mission is complete. Names the file.
 pub fn read_checkpoint(file: &Path) -> Result<(Checkpoint, Vec<u8>), AppError> {
     let refused = |error: &dyn Display| AppError::Input(format!("{}: {error}", file.display()));
     Expected::Checkpoint.check(file)?;

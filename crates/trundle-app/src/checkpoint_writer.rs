@@ -1,4 +1,4 @@
-//! Writing of checkpoints into one file, in a thread of its own.
+//! Writes checkpoints into one file on a thread.
 
 use crate::AppError;
 use std::path::Path;
@@ -8,11 +8,11 @@ use std::thread::JoinHandle;
 use trundle_io::{IoError, replace_file, require_replaceable};
 use trundle_runtime::Checkpoint;
 
-/// The newest checkpoint that is not written yet.
+/// The newest checkpoint that is not yet written.
 type Newest = Arc<Mutex<Option<Arc<Checkpoint>>>>;
 
-/// Writes the robot's newest checkpoint into a file, in a thread of its own: a slow disk does not delay control, and the file is
-/// whole at any instant.
+/// Writes the robot's newest checkpoint into a file on a thread: a slow disk does not delay control, and a reader always finds a complete
+/// file.
 pub struct CheckpointWriter {
     newest: Newest,
     /// Wakes the thread, which then writes the newest checkpoint.
@@ -24,8 +24,8 @@ impl CheckpointWriter {
     /// A writer of the file `path`.
     ///
     /// # Errors
-    /// When no file can be written there, or the thread cannot be started. A later checkpoint that cannot be written is logged as a
-    /// warning; the next one is tried again.
+    /// When the file cannot be created, or the thread cannot be started. A failure to write a later checkpoint is logged as a warning; the
+    /// next checkpoint is tried again.
     pub fn new(path: &Path) -> Result<Self, AppError> {
         require_replaceable(path)?;
         let (wake, wakes) = sync_channel::<()>(1);
@@ -50,10 +50,10 @@ impl CheckpointWriter {
         Ok(Self { newest, wake, thread })
     }
 
-    /// Writes `checkpoint` in place of the one before; skips one that still waits.
+    /// Writes `checkpoint` in place of the previous one; replaces a checkpoint that waits.
     pub fn write(&self, checkpoint: Arc<Checkpoint>) {
         *self.newest.lock().unwrap_or_else(PoisonError::into_inner) = Some(checkpoint);
-        // Where a wake-up waits already, the thread finds this checkpoint at it.
+        // If a wake-up already waits, the thread finds this checkpoint when it wakes.
         let _ = self.wake.try_send(());
     }
 
@@ -64,7 +64,7 @@ impl CheckpointWriter {
     pub fn finish(self, last: Option<Checkpoint>) -> Result<(), IoError> {
         last.into_iter().for_each(|last| self.write(Arc::new(last)));
         drop(self.wake);
-        // A thread that panicked has logged it.
+        // The panic of the thread is already logged.
         self.thread.join().unwrap_or(Ok(()))
     }
 }

@@ -44,7 +44,7 @@ impl std::fmt::Display for Converted {
 
 /// Name of the file of a ROS 2 bag in its folder.
 const BAG_FILE: &str = "bag.mcap";
-/// Rate of the images if it is not known \[Hz\]: that of the simulated camera. Source: ours.
+/// Rate of the images if the input gives no rate \[Hz\]; the rate of the simulated camera. Source: ours.
 const DEFAULT_RATE_HZ: f64 = 15.0;
 
 /// Writes the images of `input`, its odometry and its ground truth into `folder`. A damaged image is left out with a warning.
@@ -118,7 +118,7 @@ fn to_bag(
     Ok(converted)
 }
 
-/// Odometry and ground truth as messages with their topics, by rising stamps.
+/// Odometry and ground truth as messages with their topics, in the order of their stamps.
 fn poses(input: &SequenceInput, base: &str, camera: &str) -> Vec<(Stamp, &'static str, RosMessage)> {
     let (odom, world) = (FrameId::Odom.to_string(), FrameId::World.to_string());
     let odometry = input.odometry().into_iter().flatten().map(|(stamp, pose)| {

@@ -1,4 +1,4 @@
-//! A body whose events arrive encoded, as a recording holds them: any [`RobotBody`], a recording, or live hardware.
+//! A body whose events arrive in the encoding of a recording: any [`RobotBody`], a recording, or live hardware.
 
 use crate::{AppError, operator::OperatorRequest};
 use trundle_core::{RobotBody, Twist2};
@@ -8,7 +8,7 @@ use trundle_runtime::{Answer, Job, Worker};
 /// Input of a run.
 #[non_exhaustive]
 pub enum RunInput {
-    /// A sensor event, encoded as it is recorded.
+    /// A sensor event in the encoding of the recording.
     Event(EncodedEvent),
     /// The result of a background job.
     Answer(Answer),
@@ -18,7 +18,7 @@ pub enum RunInput {
     Interrupted,
 }
 
-/// A body whose events arrive encoded, as they are recorded. Background jobs of the robot run beside it.
+/// A body whose events arrive in the encoding of the recording. Background jobs of the robot run at the same time.
 pub trait EncodedBody {
     /// The next input; `None` at the end.
     ///
@@ -26,7 +26,7 @@ pub trait EncodedBody {
     /// When a sensor, the connection or the recording failed for good.
     fn next_input(&mut self) -> Result<Option<RunInput>, AppError>;
 
-    /// Asks the base to move with `twist` until the next command.
+    /// Commands the base to move with `twist` until the next command.
     ///
     /// # Errors
     /// When the base cannot be reached or refuses the command.
@@ -41,7 +41,7 @@ pub trait EncodedBody {
     /// Separate contacts so far, in truth; `None` if only the bumper reports contacts.
     fn true_contacts(&self) -> Option<u32>;
 
-    /// How much of its events has been read, 0 to 1; `None` if their end is not known.
+    /// Share of the events that was read, 0 to 1; `None` if their number is unknown.
     fn fraction_read(&self) -> Option<f64> {
         None
     }

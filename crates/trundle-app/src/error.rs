@@ -1,10 +1,10 @@
-//! Why a run or a command cannot go on, in one sentence for a person.
+//! Error that ends a run or a command, in one sentence for a person.
 
 use thiserror::Error;
 use trundle_core::Invalid;
 use trundle_io::IoError;
 
-/// Why a run or a command cannot go on, in one sentence for a person.
+/// Error that ends a run or a command, in one sentence for a person.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum AppError {
@@ -17,7 +17,7 @@ pub enum AppError {
     /// An argument, a file's content or a body's event cannot be accepted.
     #[error("{0}")]
     Input(String),
-    /// The user asked to stop, and there is nothing to write yet.
+    /// The user interrupted the command before any result existed.
     #[error("nothing was done yet, so nothing was written")]
     Stopped,
     /// The machine refused a thread, a device or a signal.
@@ -32,7 +32,7 @@ impl AppError {
         Self::Input(problem.to_string())
     }
 
-    /// The same error with the name of the file or part that it concerns in front, if it has none.
+    /// The same error, preceded by the name of the file or part concerned if the error names none.
     #[must_use]
     pub fn in_context(self, context: &dyn std::fmt::Display) -> Self {
         match self {

@@ -35,10 +35,10 @@ pub struct RecordingCost {
     pub queue_lengths: Histogram,
     /// Lines left out because the disk could not follow.
     pub lines_lost: u64,
-    /// Processor time of the recorder's thread, if there is one.
+    /// Processor time of the recorder's thread; 0 without a thread.
     pub cpu_time: Duration,
-    /// Why the recording is not whole, if it is not.
+    /// The reason for an incomplete recording; `None` for a complete one.
     pub error: Option<IoError>,
-    /// Why the last checkpoint is not written, if it is not.
+    /// The reason for a missing last checkpoint; `None` if the checkpoint was written.
     pub checkpoint_error: Option<IoError>,
 }

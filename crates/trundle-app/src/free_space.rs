@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-/// Free space below which a run goes on without recording \[bytes\]. Source: ours.
+/// Free disk space below which recording stops and the run continues \[bytes\]. Source: ours.
 pub const MIN_FREE_BYTES: u64 = 1_000_000_000;
 /// Messages of a recording between two checks of the free space: some seconds. Source: ours.
 const MESSAGES_BETWEEN_CHECKS: u32 = 500;
@@ -23,20 +23,20 @@ impl FreeSpace {
         Self::new(move || free_bytes(&folder), MIN_FREE_BYTES)
     }
 
-    /// A disk whose free space `read` reports, of which `min_free_bytes` stay free.
+    /// A disk whose free space `read` reports; recording stops below `min_free_bytes`.
     #[must_use]
     pub fn new(read: impl Fn() -> Option<u64> + Send + 'static, min_free_bytes: u64) -> Self {
         Self { read: Box::new(read), min_free_bytes, messages: 0 }
     }
 
-    /// Counts a message, and checks the disk from time to time. Where too little is free, the reason for ending the recording, in words.
+    /// Counts a message and checks the disk at intervals. Returns the reason to end the recording, in words, if too little space is free.
     pub fn shortage_at_message(&mut self) -> Option<String> {
         let is_due = self.messages.is_multiple_of(MESSAGES_BETWEEN_CHECKS);
         self.messages = self.messages.wrapping_add(1);
         if is_due { self.shortage() } else { None }
     }
 
-    /// Why nothing more may be written, in words, where too little is free.
+    /// The reason to stop writing, in words, if too little space is free.
     pub fn shortage(&self) -> Option<String> {
         let free = (self.read)().filter(|free| *free < self.min_free_bytes)?;
         let megabytes = |bytes: u64| bytes / 1_000_000;

@@ -16,10 +16,11 @@ use trundle_core::{PinholeCamera, SensorEvent};
 use trundle_drivers::BaseSpec;
 use trundle_runtime::real_time::InboxSender;
 
-/// Waits until standard input ends, then stops the base at the port that is standard output: the guard of a program that may die.
+/// Waits for the end of standard input, then stops the base at the port given as standard output. This process guards a program that may
+/// crash.
 ///
 /// # Errors
-/// When the port takes nothing, as when the base was unplugged.
+/// When the port accepts no data, for example after the base was unplugged.
 #[cfg(unix)]
 pub fn guard_base() -> Result<(), AppError> {
     trundle_drivers::kobuki::base_guard::guard_base(std::io::stdin().lock(), std::io::stdout())
@@ -34,8 +35,8 @@ pub fn guard_base() -> Result<(), AppError> {
     ))
 }
 
-/// Starts base and camera as the body of a run; `output` is the camera that the robot works with. Events go to `events`, their stamps count
-/// from `origin`. `observer` is called with each of them.
+/// Starts base and camera as the body of a run; `output` is the camera model used by the robot. Events go to `events`, their stamps count
+/// from `origin`. `observer` is called with each event.
 ///
 /// # Errors
 /// When the base does not answer, or the system refuses a thread.

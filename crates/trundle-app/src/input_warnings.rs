@@ -32,7 +32,7 @@ pub fn read_two_maps(files: [&Path; 2]) -> Result<[OccupancyGrid; 2], AppError> 
     Ok([first.grid, second.grid])
 }
 
-/// A trajectory of a file in any of its forms; its warnings are logged.
+/// Reads a trajectory file in any supported format; its warnings are logged.
 ///
 /// # Errors
 /// Those of [`read_trajectory_file`].

@@ -12,12 +12,12 @@ use trundle_runtime::{Mission, Task};
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct MissionFile {
-    /// A file of named places, beside the mission file.
+    /// File of named places, relative to the mission file.
     places: Option<String>,
     task: Vec<TaskEntry>,
 }
 
-/// A task: one of its keys stands.
+/// A task: exactly one key is given.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TaskEntry {
@@ -59,7 +59,7 @@ struct TaskEntry {
 /// ```
 ///
 /// # Errors
-/// Names the file and the line, or the task, and what is wrong there.
+/// Names the file and the line or task, and the fault.
 pub fn read_mission(file: &Path) -> Result<Mission, AppError> {
     let MissionFile { places, task: entries } = read_toml(file)?;
     let problem = |what: String| AppError::Input(format!("{}: {what}", file.display()));

@@ -1,16 +1,16 @@
-//! The mission that a front end asks for: goals, exploration, the charging station, or a file.
+//! The mission requested by a front end: goals, exploration, the charging station, or a file.
 
 use crate::{AppError, read_mission};
 use std::path::PathBuf;
 use trundle_core::Pose2;
 use trundle_runtime::{Mission, Task};
 
-/// The mission that a front end asks for.
+/// The mission requested by a front end.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct MissionRequest {
     /// Goals, map frame, one after the other.
     pub goals: Vec<Pose2>,
-    /// Whether the robot explores first, and comes back to the start if it has no other end.
+    /// Whether the robot explores first. Without another goal the robot then returns to the start.
     pub explore: bool,
     /// Whether the robot drives onto the charging station at the end.
     pub dock: bool,
@@ -19,7 +19,7 @@ pub struct MissionRequest {
 }
 
 impl MissionRequest {
-    /// Whether nothing is asked for.
+    /// Whether the request contains no task.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         *self == Self::default()

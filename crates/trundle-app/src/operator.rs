@@ -1,7 +1,7 @@
-//! The link between a run and its front ends: requests of an operator go in, views of the run come out.
+//! The link between a run and its front ends: requests of an operator enter, views of the run leave.
 //!
-//! A front end (a page, ROS 2) keeps an [`Operator`], the run an [`OperatorLink`]. Requests are recorded at the place at which the robot
-//! follows them, so a replay follows them there too. Views cost the robot a few copies at each control step; a slow reader misses views.
+//! A front end (a page, ROS 2) owns an [`Operator`], the run an [`OperatorLink`]. A request is recorded at the step that applies it, so a
+//! replay applies it at the same step. A view costs the robot a few copies at each control step; a slow reader skips views.
 
 mod annotation_edit;
 mod annotation_store;
@@ -34,11 +34,11 @@ pub(crate) use visual_map_feed::{VisualMapFeed, on_floor};
 
 use crate::Progress;
 
-/// Companions of a run: the progress line, and an operator if there is one.
+/// Companions of a run: the progress line, and an optional operator.
 pub struct FrontEnd {
     /// The progress line.
     pub progress: Progress,
-    /// The run's end of the link to an operator. [`crate::RunSetup::is_operated`] lets the run go on after its mission.
+    /// The run's end of the link to an operator. With [`crate::RunSetup::is_operated`] the run continues after its mission.
     pub operator: Option<OperatorLink>,
 }
 

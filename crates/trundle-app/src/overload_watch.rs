@@ -1,11 +1,10 @@
-//! A computer that is too slow for its images, for the log.
+//! Detects a computer that is too slow for its images, for the log.
 
 use trundle_core::Stamp;
 
 /// Time over which images are counted \[s\]. Source: ours.
 const WINDOW_S: f64 = 10.0;
-/// Part of the images from which the computer counts as too slow if they are dropped. At half of 30 Hz the robot still drives well.
-/// Source: ours.
+/// Share of dropped images above which the computer counts as too slow. At half of 30 Hz the robot still drives well. Source: ours.
 const MAX_DROPPED_PART: f64 = 0.6;
 
 /// Counts images that newer ones replaced before they were processed.
@@ -23,7 +22,8 @@ struct Window {
 }
 
 impl OverloadWatch {
-    /// Notes an image; `dropped` images were dropped in the run so far. A sentence where too many were in the last ten seconds.
+    /// Records an image; `dropped` is the number of images dropped in the run so far. Returns a warning if too many were dropped in the
+    /// last ten seconds.
     pub(crate) fn on_image(&mut self, stamp: Stamp, dropped: usize) -> Option<String> {
         let fresh = Window { from: stamp, images: 0, dropped_before: dropped };
         let window = self.window.get_or_insert(fresh);
@@ -46,7 +46,7 @@ impl OverloadWatch {
 mod tests {
     use super::*;
 
-    /// The sentences of 30 s at 30 Hz where one of `nth` images is processed.
+    /// The warnings in 30 s at 30 Hz if one of `nth` images is processed.
     fn sentences(nth: usize) -> usize {
         let (mut watch, mut dropped) = (OverloadWatch::default(), 0);
         let images = (0..900).filter_map(|i| {

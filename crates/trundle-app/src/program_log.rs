@@ -19,14 +19,15 @@ const FILE_FILTER: &str = "trundle=info,trundle_app=info,trundle_runtime=info,tr
 /// The lines for output folders, from the start of the program on.
 static LINES: OnceLock<Arc<Mutex<Vec<u8>>>> = OnceLock::new();
 
-/// Starts the log. `verbosity`: 0 warnings, 1 state changes and corrections, 2 everything. With 0 the variable `TRUNDLE_LOG` may set another filter.
+/// Starts the log. `verbosity`: 0 warnings, 1 state changes and corrections, 2 everything. At 0, the variable `TRUNDLE_LOG` may set another
+/// filter.
 ///
 /// # Errors
 /// When `TRUNDLE_LOG` is not a filter.
 pub fn start_log(verbosity: u8) -> Result<(), AppError> {
     let filter = stderr_filter(verbosity)?;
     let lines = Arc::clone(LINES.get_or_init(Arc::default));
-    // A standard error without a reader is not an error of the run. The default prints it there, and panics.
+    // A standard error without a reader is not an error of the run. By default, tracing would print such an error there, and panic.
     let terminal = tracing_subscriber::fmt::layer()
         .event_format(PlainLine("trundle: "))
         .with_writer(io::stderr)

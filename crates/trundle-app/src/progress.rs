@@ -1,4 +1,4 @@
-//! Where a run shows its progress: a line that a front end replaces each time.
+//! Progress of a run: a line that a front end replaces each time.
 
 use std::fmt;
 use std::sync::Arc;
@@ -6,12 +6,12 @@ use std::sync::Arc;
 /// A front end's function that shows a line.
 type ShowLine = dyn Fn(&str) + Send + Sync;
 
-/// Shows one line of progress; the newest replaces the one shown. Hidden unless a front end gives a function.
+/// Shows one line of progress; the newest line replaces the previous one. Without a function of a front end the line is hidden.
 #[derive(Clone, Default)]
 pub struct Progress(Option<Arc<ShowLine>>);
 
 impl Progress {
-    /// Shows nothing.
+    /// A progress that shows no line.
     #[must_use]
     pub fn hidden() -> Self {
         Self(None)
@@ -29,7 +29,7 @@ impl Progress {
         self.0.is_none()
     }
 
-    /// Shows how many of a known number are done: `3 of 12 runs, 25 %`.
+    /// Shows the number of finished items of a known number: `3 of 12 runs, 25 %`.
     pub fn show_count(&self, done: usize, total: usize, what: &str) {
         self.show(&format!("{done} of {total} {what}, {} %", 100 * done / total.max(1)));
     }

@@ -1,4 +1,4 @@
-//! A run in real time: the body in threads of its own on one core, the robot on another.
+//! A run in real time: the threads of the body on one core, those of the robot on another.
 //!
 //! | thread | core | work |
 //! |---|---|---|
@@ -32,15 +32,15 @@ use trundle_runtime::real_time::{InboxSender, LoopTimerConfig, ThreadPlacement, 
 
 /// Image rate of a run in real time \[Hz\]. Source: ours, the rate of a Kinect.
 pub const CAMERA_HZ: f64 = 30.0;
-/// Time without a command after which the base stops by itself \[s\]. Source: ours.
+/// Time without a command after which the base stops automatically \[s\]. Source: ours.
 pub const COMMAND_TIMEOUT_S: f64 = 0.2;
 /// Niceness of the worker threads above that of control. Source: ours.
 const WORKER_NICENESS: i32 = 5;
 /// Niceness of the recorder's thread above that of control. Source: ours.
 const RECORDER_NICENESS: i32 = 10;
 
-/// Runs the robot of `setup` in real time beside the body that `start_body` starts, until its mission is over or the user
-/// interrupts; records everything into `folder`.
+/// Runs the robot of `setup` in real time with the body that `start_body` starts, until the mission ends or the user interrupts. Everything
+/// is recorded into `folder`.
 ///
 /// # Errors
 /// When the system refuses a thread, the body cannot be started, or the robot cannot be accepted.

@@ -1,4 +1,4 @@
-//! The recording of a run: written within the run's own loop, or by a thread of its own.
+//! The recording of a run, written within the run's loop or by a separate thread.
 
 use crate::{AppError, FreeSpace, RecordingContent, checkpoint_writer::CheckpointWriter};
 use std::fs::File;
@@ -18,8 +18,8 @@ pub type FileRecorder = Recorder<BufWriter<File>>;
 
 type Line = Box<dyn FnOnce(&mut RecordingFile) + Send>;
 
-/// Records a run into `recording.mcap`: within the run's own loop, or by a thread of its own, so that a slow disk does not delay
-/// control. Writes checkpoints as well, if a file for them is given.
+/// Records a run into `recording.mcap`, within the run's loop or by a separate thread. With the thread a slow disk does not delay control.
+/// Writes checkpoints as well, if their file is given.
 pub struct RunRecorder {
     sink: Sink,
     /// Lines that wait for the disk, counted each time a line is written.
@@ -56,7 +56,7 @@ impl RunRecorder {
         Ok(Self::of(Sink::Inline(Box::new(RecordingFile::new(content, folder)?))))
     }
 
-    /// This recorder, whose recording ends if `space` is short; not for one with a thread of its own.
+    /// This recorder, whose recording ends if `space` is short; without effect for a recorder with a thread.
     #[must_use]
     pub fn watching(mut self, space: FreeSpace) -> Self {
         if let Sink::Inline(file) = &mut self.sink {
@@ -82,7 +82,7 @@ impl RunRecorder {
         Ok(Self::of(Sink::Inline(Box::new(file))))
     }
 
-    /// A recording into `folder`, written by a thread of its own at `place`. Nothing is recorded if `content` is [`RecordingContent::None`].
+    /// A recording into `folder`, written by its own thread at `place`. With [`RecordingContent::None`] no data is recorded.
     ///
     /// # Errors
     /// When the file cannot be created or the thread cannot be started.
@@ -147,8 +147,8 @@ impl RunRecorder {
         }
     }
 
-    /// Does `work` in the recorder's thread, so that it does not delay control; at once if there is no such thread, or if
-    /// it has much to do not at all.
+    /// Runs `work` in the recorder's thread, which does not delay control. Without a thread the work runs immediately; with a busy thread
+    /// the work is dropped.
     pub fn beside(&self, work: impl FnOnce() + Send + 'static) {
         match &self.sink {
             Sink::Inline(_) => work(),
@@ -164,7 +164,7 @@ impl RunRecorder {
     /// Writes the last checkpoint, if a file for them is given.
     ///
     /// # Errors
-    /// When it could not be written.
+    /// When the checkpoint could not be written.
     pub fn finish_checkpoints(&mut self, last: Option<Checkpoint>) -> Result<(), IoError> {
         self.checkpoints.take().map_or(Ok(()), |writer| writer.finish(last))
     }

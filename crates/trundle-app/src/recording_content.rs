@@ -8,9 +8,9 @@ use trundle_core::PinholeCamera;
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum RecordingContent {
-    /// Nothing is recorded.
+    /// No recording.
     None,
-    /// Everything but images: wheels, gyro, bumper, scans, truth, twists, poses and trajectories. It cannot be replayed.
+    /// Everything but images: wheels, gyro, bumper, scans, truth, twists, poses and trajectories. A replay is impossible.
     Events,
     /// Everything: a replay gives the same bytes.
     #[default]
@@ -43,7 +43,7 @@ impl RecordingContent {
         *self == Self::All
     }
 
-    /// Its name, as a user gives it.
+    /// Name of the content on the command line.
     #[must_use]
     pub fn name(self) -> &'static str {
         Self::CHOICES.iter().find(|(.., content)| *content == self).map_or("all", |(name, ..)| name)
@@ -60,8 +60,7 @@ impl RecordingContent {
         }
     }
 
-    /// Size of the recording of a run of at most `limit` s, `f64::MAX` without a limit, with images of `camera` at `rate_hz`, in a
-    /// sentence.
+    /// Size of the recording, in one sentence, for a run of at most `limit` s (`f64::MAX`: no limit) with images of `camera` at `rate_hz`.
     #[must_use]
     pub fn announcement(self, camera: &PinholeCamera, rate_hz: f64, limit: f64) -> String {
         let rate = self.bytes_per_second(camera, rate_hz) / BYTES_PER_MB;

@@ -1,4 +1,4 @@
-//! A recording as the robot's body: each event and each job's result at the place where the recording holds it.
+//! A recording as the robot's body: each event and each job's result at its place in the recording.
 
 use crate::encoded_body::{EncodedBody, RunInput};
 use crate::run_mark::{RunMark, RunMarkMessage};
@@ -19,7 +19,7 @@ pub struct RunReplayer {
 }
 
 impl RunReplayer {
-    /// Opens a recording of a run; the setup that it begins with.
+    /// Opens a recording of a run; returns the replayer and the recorded setup.
     ///
     /// # Errors
     /// When the file is not a recording of a run, or its robot cannot be accepted. Names the file.
@@ -30,7 +30,7 @@ impl RunReplayer {
     /// Opens a recording that may be cut at any byte: it is replayed up to the cut.
     ///
     /// # Errors
-    /// As [`RunReplayer::open`], and when nothing can be read before the cut.
+    /// As [`RunReplayer::open`], and when no event precedes the cut.
     pub fn open_to_cut(file: &Path) -> Result<(Self, RunSetup), AppError> {
         Self::of(file, RecordingReader::open_to_cut(file)?)
     }
@@ -49,14 +49,14 @@ impl RunReplayer {
         Ok((Self { reader, jobs: BTreeMap::new(), contacts: None, span: None }, setup))
     }
 
-    /// Where the recording was cut and how much of it was fed so far, in a sentence; `None` for a whole one.
+    /// Position of the cut and the share of events fed so far, in one sentence; `None` for a complete recording.
     #[must_use]
     pub fn cut_report(&self) -> Option<String> {
         let cut = self.reader.cut()?;
         Some(cut.report(self.span.map_or(0.0, |(first, last)| last - first)))
     }
 
-    /// Reads the rest of the recording, which the run did not need.
+    /// Reads the rest of the recording, which the run does not use.
     ///
     /// # Errors
     /// When the rest is broken.

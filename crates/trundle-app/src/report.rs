@@ -1,4 +1,4 @@
-//! The outputs of a run: numbers, tables, pages and the folder that holds them.
+//! The outputs of a run: numbers, tables, pages and their folder.
 
 mod camera_picture;
 mod goal_outcome;

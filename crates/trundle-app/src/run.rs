@@ -1,14 +1,14 @@
-//! A run from its setup to its end.
+//! A run from setup to end.
 
 use crate::encoded_body::{EncodedBody, RunInput};
 use crate::operator::FrontEnd;
 use crate::{AppError, FinishedRun, RunLog, RunRecorder, RunSession, RunSetup, stop};
 
-/// Time that a run goes on after the robot has arrived \[s\]. A longer roll is not seen. Source: ours.
+/// Time for which a run continues after the arrival of the robot \[s\]. Motion after this time is not recorded. Source: ours.
 pub const AFTER_ARRIVAL_S: f64 = 0.5;
 
-/// Runs the robot of `setup` on `body` until its mission is over, its time is over or the user interrupts; records everything. An
-/// operated run goes on after its mission.
+/// Runs the robot of `setup` on `body` until the mission ends, the time limit passes or the user interrupts; records everything. An
+/// operated run continues after its mission.
 ///
 /// # Errors
 /// When the robot or the checkpoint cannot be accepted, or the body failed.

@@ -6,7 +6,7 @@ use trundle_core::{Pose2, SensorEvent, Stamp, Twist2};
 use trundle_runtime::{DriveState, Reason, StepReport};
 use trundle_slam::Tracking;
 
-/// The log of a run for evaluation and pictures. All of it comes from the data: no wall clock.
+/// The log of a run for evaluation and pictures. All content comes from the data, none from the wall clock.
 #[derive(Debug, Default)]
 pub struct RunLog {
     /// First stamp of the run.
@@ -21,7 +21,7 @@ pub struct RunLog {
     pub twists: Vec<(Stamp, Twist2)>,
     /// Number of bumper presses.
     pub presses: usize,
-    /// Number of true contacts, if that is known.
+    /// Number of true contacts; `None` if unknown.
     pub true_contacts: Option<u32>,
     /// Plans made.
     pub plans: usize,
@@ -33,13 +33,14 @@ pub struct RunLog {
     pub state: DriveState,
     /// Each change of the state.
     pub changes: Vec<StateChange>,
-    /// Whether only the last minute is kept.
+    /// Whether only the last minute is stored.
     is_brief: bool,
 }
 
-/// Time that a brief log goes back \[s\]. Older entries are dropped. Source: ours.
+/// Length of a brief log \[s\]. Older entries are dropped. Source: ours.
 const BRIEF_LOG_S: f64 = 60.0;
-/// Old entries of a list that are dropped at once. Fewer stay, so that dropping is rare. Source: ours.
+/// Minimum number of old entries that are dropped in one step. Fewer old entries remain in the list, because each drop moves the list.
+/// Source: ours.
 const MIN_DROPPED_ENTRIES: usize = 1000;
 
 /// A change of the robot's state.
@@ -62,7 +63,7 @@ pub struct TrackCounts {
     pub weak: usize,
     /// Carried on by wheels and gyro, or by constant velocity.
     pub dead_reckoned: usize,
-    /// Without a pose.
+    /// Number of images without a pose.
     pub lost: usize,
 }
 
@@ -89,7 +90,7 @@ impl RunLog {
         Self { is_brief: true, ..Self::default() }
     }
 
-    /// Drops what a brief log does not keep.
+    /// Drops entries that are too old for a brief log.
     fn drop_old(&mut self) {
         let (now, end) = (self.now, self.elapsed());
         let is_old = |stamp: &Stamp| now - *stamp > BRIEF_LOG_S;
@@ -131,7 +132,7 @@ impl RunLog {
         stamps.iter().map(|stamp| self.start.map_or(0.0, |start| *stamp - start)).collect()
     }
 
-    /// Length of the true path, or of the estimated one if truth is not known \[m\].
+    /// Length of the true path, or of the estimated path without truth \[m\].
     pub fn path_length(&self) -> f64 {
         let path = if self.truths.is_empty() { &self.estimates } else { &self.truths };
         path.windows(2).map(|pair| pair[1].1.distance(&pair[0].1)).sum()
@@ -143,7 +144,7 @@ impl RunLog {
         self.truths.get(after.checked_sub(1)?).map(|(_, pose)| *pose)
     }
 
-    /// At every image of which truth is known: time since the first event \[s\], estimated pose, true pose, map frame.
+    /// For every image with truth: time since the first event \[s\], estimated pose, true pose, map frame.
     pub fn pose_pairs(&self) -> Vec<(f64, Pose2, Pose2)> {
         let start = self.start.unwrap_or_default();
         let pair = |(stamp, pose): &(Stamp, Pose2)| Some((*stamp - start, *pose, self.truth_at(*stamp)?));
@@ -174,7 +175,7 @@ impl RunLog {
     }
 }
 
-/// Drops what is old from the front of a list in the order of time, many at once.
+/// Drops the old entries from the front of a list sorted by time, many in one step.
 fn drop_first<T>(list: &mut Vec<T>, is_old: impl Fn(&T) -> bool) {
     if list.get(MIN_DROPPED_ENTRIES).is_some_and(&is_old) {
         list.drain(..list.partition_point(is_old));

@@ -1,4 +1,4 @@
-//! Marks that a recording holds between the events, so that a replay feeds the robot in the same order.
+//! Marks in a recording between the events, by which a replay feeds the robot in the same order.
 
 use crate::operator::OperatorRequest;
 use serde::{Deserialize, Serialize};
@@ -25,11 +25,11 @@ pub enum RunMark {
 impl RunMark {
     /// The topic of marks.
     pub const TOPIC: &str = "/mark";
-    /// The name of their schema.
+    /// Name of the schema of marks.
     pub const SCHEMA: &str = "trundle.Mark";
 }
 
-/// A mark as it is recorded.
+/// A mark in the format of the recording.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct RunMarkMessage {
     /// The mark.

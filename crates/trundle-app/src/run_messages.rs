@@ -8,7 +8,7 @@ use trundle_runtime::{DriveState, Robot, StepReport};
 
 /// Time between two maps of a recording \[s\]. Source: ours.
 const MAP_PERIOD_S: f64 = 2.0;
-/// Time between two scans of a recording \[s\]: a little under that of the map's. Source: ours.
+/// Time between two scans of a recording \[s\]: slightly less than the map's period. Source: ours.
 const SCAN_PERIOD_S: f64 = 0.19;
 /// The frame of the scans, at their origin.
 const SCAN_FRAME: &str = "scan";
@@ -24,7 +24,7 @@ pub(crate) struct RunMessages {
 }
 
 impl RunMessages {
-    /// Records what the step at `stamp` changed.
+    /// Records the changes of the step at `stamp`.
     pub(crate) fn record(
         &mut self,
         stamp: Stamp,

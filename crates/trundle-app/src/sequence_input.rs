@@ -1,4 +1,4 @@
-//! RGB-D images with odometry and truth, as `slam` and `map` read them: a TUM RGB-D folder, a ROS bag, or the recording of a run.
+//! RGB-D images with odometry and truth for `slam` and `map`: a TUM RGB-D folder, a ROS bag, or the recording of a run.
 
 mod frames;
 mod recorded_run;
@@ -39,13 +39,13 @@ impl<'a> SequenceOptions<'a> {
     }
 }
 
-/// RGB-D images in the order of their stamps, with what is known beside them.
+/// RGB-D images in the order of their stamps, with the input's other data.
 pub struct SequenceInput {
     /// The folder or file.
     pub path: PathBuf,
     /// The camera.
     pub camera: SequenceCamera,
-    /// The robot that carries the camera: the recording's own; the default one if the input names none.
+    /// The robot that carries the camera: the robot of a recording, else the default robot.
     pub robot: RobotConfig,
     source: Source,
 }
@@ -58,7 +58,7 @@ enum Source {
 
 impl SequenceInput {
     /// Whether `path` is read as RGB-D images: a TUM RGB-D folder, a recording of trundle, or a bag with images and without scans of a
-    /// laser. `topics` that are named make any bag one.
+    /// laser. With `topics` given, any bag counts as images.
     #[must_use]
     pub fn is_one(path: &Path, topics: &RosSequenceOptions) -> bool {
         let names_images = topics.color_topic.is_some() || topics.depth_topic.is_some();
@@ -75,7 +75,7 @@ impl SequenceInput {
     /// Opens a folder, a bag or a recording. Warnings are logged.
     ///
     /// # Errors
-    /// When it is none of them, cannot be read, holds no images, or has no known camera.
+    /// When the path is none of these, cannot be read, contains no images, or its camera is unknown.
     pub fn open(options: &SequenceOptions<'_>) -> Result<Self, AppError> {
         match FileKind::of(options.path)? {
             FileKind::TrundleRecording => {
@@ -100,7 +100,7 @@ impl SequenceInput {
         };
         log_warnings(&camera.warnings);
         log_warnings(sequence.warnings());
-        // Depth of ROS is in millimetres (REP 118), whatever the images of that camera's folders are in.
+        // Depth of ROS is in millimetres (REP 118), independent of the unit in folders of the same camera.
         camera.model.depth_scale = options.depth_scale.unwrap_or(KINECT_V2_DEPTH_SCALE);
         let topics = sequence.topics();
         tracing::info!("colour on {}, depth on {}", topics.color, topics.depth);
@@ -170,7 +170,7 @@ impl SequenceInput {
         }
     }
 
-    /// Whether there is no image; never so.
+    /// Whether the sequence is empty; always false.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
@@ -186,7 +186,7 @@ impl SequenceInput {
         }
     }
 
-    /// Number of colour images that the input names, those left out among them.
+    /// Number of colour images in the input, including those left out.
     #[must_use]
     pub fn listed(&self) -> usize {
         match &self.source {
@@ -226,7 +226,7 @@ impl SequenceInput {
         }
     }
 
-    /// Where a recording was cut, in a sentence; `None` for a whole one and for a folder.
+    /// Position of the cut in a recording, in one sentence; `None` for a complete recording and for a folder.
     #[must_use]
     pub fn cut_report(&self) -> Option<&str> {
         match &self.source {
@@ -235,7 +235,7 @@ impl SequenceInput {
         }
     }
 
-    /// Mount of the camera on the robot, if the input holds it: the pose of a level first camera.
+    /// Mount of the camera on the robot, the pose of a level first camera; `None` if the input does not contain it.
     #[must_use]
     pub fn level_from_first_camera(&self) -> Option<Pose3> {
         match &self.source {
@@ -245,7 +245,7 @@ impl SequenceInput {
         }
     }
 
-    /// The images in order, not yet decoded.
+    /// The images in order, not decoded.
     ///
     /// # Errors
     /// When the recording cannot be opened again.
@@ -270,7 +270,7 @@ impl SequenceInput {
     }
 }
 
-/// The camera of the robot that a recording names.
+/// The camera of a recording's robot.
 fn camera_of(robot: &RobotConfig, recording: &Path) -> SequenceCamera {
     SequenceCamera {
         model: CameraModel { camera: robot.camera, depth_scale: KINECT_V2_DEPTH_SCALE },

@@ -96,7 +96,7 @@ impl<'s> RunSession<'s> {
         self.operator.as_ref()?.next_request()
     }
 
-    /// Feeds the robot one input. Returns whether its mission is over.
+    /// Feeds one input to the robot; returns whether the mission is over.
     ///
     /// # Errors
     /// When an event cannot be decoded or the body refuses the command.
@@ -154,7 +154,7 @@ impl<'s> RunSession<'s> {
     /// Applies the results of running jobs in a fixed order, and closes the recording.
     ///
     /// # Errors
-    /// None today; a body that fails at the end may be reported here.
+    /// None at present; a body that fails at the end may be reported here.
     pub fn finish(mut self, body: &mut dyn EncodedBody) -> Result<FinishedRun, AppError> {
         if self.setup.real_time {
             self.record_mark(RunMark::End);
@@ -193,7 +193,7 @@ impl<'s> RunSession<'s> {
             self.recorder.write(move |file| file.record_event(&recorded));
         }
         if let EncodedEvent::Rgbd(mut image) = event {
-            // The recording holds the stamp of the driver, so that a replay corrects the stamp once as well.
+            // The recording contains the driver's stamp: a replay applies the same correction once.
             image.stamp = image.stamp.after(-self.setup.robot.image_delay);
             self.view.on_image(&image);
             if let Some(link) = &mut self.operator {

@@ -9,7 +9,7 @@ use trundle_io::Expected;
 /// Reads a TOML file.
 ///
 /// # Errors
-/// Names the file and why it cannot be read, or the line and what is wrong there.
+/// Names the file and the reason, or the line and the fault.
 pub fn read_toml<T: DeserializeOwned>(file: &Path) -> Result<T, AppError> {
     let text = read_text(file)?;
     toml::from_str(&text).map_err(|error| {
@@ -21,7 +21,7 @@ pub fn read_toml<T: DeserializeOwned>(file: &Path) -> Result<T, AppError> {
 /// The text of a TOML file.
 ///
 /// # Errors
-/// Names the file and why it cannot be read.
+/// Names the file and the reason.
 pub fn read_text(file: &Path) -> Result<String, AppError> {
     Expected::Toml.check(file)?;
     Ok(trundle_io::read_text(file)?)

@@ -35,29 +35,29 @@ pub struct RunSetup {
     pub mission: Mission,
     /// Moves truth into the map frame; for evaluation only.
     pub map_from_world: Pose2,
-    /// Time of the robot after which the run is given up \[s\].
+    /// Time of the robot at which the run ends \[s\].
     pub time_limit: f64,
     /// The robot.
     pub robot: RobotConfig,
-    /// Whether the robot's long work runs in threads beside the control loop.
+    /// Whether the robot's long jobs run in threads in parallel with the control loop.
     #[serde(default)]
     pub real_time: bool,
-    /// Whether the run goes on after its mission, for the next request of an operator.
+    /// Whether the run continues after its mission, for the next request of an operator.
     #[serde(default, rename = "operated", skip_serializing_if = "std::ops::Not::not")]
     pub is_operated: bool,
     /// Content of the recording.
     #[serde(default, skip_serializing_if = "RecordingContent::is_all")]
     pub recording: RecordingContent,
-    /// The checkpoint that the robot resumes from, as base64 of its bytes. None: the robot starts with an empty map.
+    /// The checkpoint of a resumed robot, as base64 of its bytes; `None` starts with an empty map.
     #[serde(default, rename = "woken", alias = "checkpoint", skip_serializing_if = "Option::is_none")]
     pub checkpoint: Option<String>,
-    /// The vocabulary by which places are recognised, as base64 of its bytes. None: the built-in one.
+    /// The vocabulary for place recognition, as base64 of its bytes; `None` is the built-in one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub vocabulary: Option<String>,
-    /// Zones and named places of the map. None: those of the checkpoint.
+    /// Zones and named places of the map; `None` uses those of the checkpoint.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub annotations: Option<MapAnnotations>,
-    /// The file in which changes of zones and places are kept.
+    /// The file that stores changes of zones and places.
     #[serde(skip)]
     pub annotations_file: Option<PathBuf>,
 }
@@ -101,7 +101,7 @@ impl RunSetup {
     /// The setup that a recording begins with, its robot checked.
     ///
     /// # Errors
-    /// When it is not a setup, or its robot cannot be accepted. Names the file.
+    /// When the config is not a setup, or its robot is invalid. Names the file.
     pub(crate) fn of_recording(file: &Path, config: serde_json::Value) -> Result<Self, AppError> {
         let name = file.display();
         let setup: Self = serde_json::from_value(with_present_names(config))
@@ -110,7 +110,7 @@ impl RunSetup {
         Ok(setup)
     }
 
-    /// The same run, given up after `time_limit` of the robot's time \[s\].
+    /// The same run with the end at `time_limit` of the robot's time \[s\].
     #[must_use]
     pub fn with_time_limit(self, time_limit: f64) -> Self {
         Self { time_limit, ..self }
@@ -121,7 +121,7 @@ impl RunSetup {
         log.elapsed() > self.time_limit
     }
 
-    /// The same run, which goes on after its mission for the requests of an operator.
+    /// The same run, which continues after its mission for the requests of an operator.
     #[must_use]
     pub fn operated(self) -> Self {
         Self { is_operated: true, ..self }
@@ -139,11 +139,11 @@ impl RunSetup {
         Self { vocabulary: Some(BASE64_STANDARD.encode(vocabulary.to_bytes())), ..self }
     }
 
-    /// The same run, with the zones and places of a GeoJSON file, which keeps their changes. Without the file there are those of the
-    /// checkpoint, and the first change makes it.
+    /// The same run with the zones and places of a GeoJSON file; changes are stored in this file. If the file is missing, those of the
+    /// checkpoint are used, and the first change creates the file.
     ///
     /// # Errors
-    /// When the file is there and cannot be used. Names the feature.
+    /// When the file exists and cannot be used. Names the feature.
     pub fn with_annotations_of(self, file: &Path) -> Result<Self, AppError> {
         let annotations = file.exists().then(|| read_annotations(file)).transpose()?;
         Ok(Self { annotations, annotations_file: Some(file.to_owned()), ..self })
@@ -193,7 +193,7 @@ impl RunSetup {
         }
     }
 
-    /// Whether the mission asks for nothing but to stand at the start.
+    /// Whether the mission only stays at the start.
     #[must_use]
     pub fn is_without_motion(&self) -> bool {
         let is_start = |goal: Pose2| {

@@ -1,14 +1,14 @@
-//! Where a front end shows how much of its work a command has done, step by step.
+//! Progress of a command, step by step, for a front end.
 
-/// Shows how many of a known number of steps are done. `()` shows nothing.
+/// Shows the number of finished steps. The implementation of `()` shows no progress.
 pub trait StepProgress {
-    /// The work begins; `steps` of them, if the number is known.
+    /// Starts the display; `steps` is the number of steps, `None` if unknown.
     fn begin(&self, steps: Option<usize>);
-    /// One more step is done.
+    /// Counts one more finished step.
     fn advance(&self);
-    /// Shows a line beside the count.
+    /// Shows a line next to the count.
     fn message(&self, line: &str);
-    /// Runs `work`, which may log, while nothing is shown.
+    /// Runs `work`, which may log, while the display is hidden.
     fn pause(&self, work: &dyn Fn());
     /// The work is done: the display is cleared.
     fn end(&self);

@@ -7,14 +7,14 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 use trundle_io::OutputFolder;
 
-/// Time between two looks for the user's request in a loop that waits. Source: ours.
+/// Period at which a waiting loop checks for the user's interrupt. Source: ours.
 pub const POLL_PERIOD: Duration = Duration::from_millis(50);
 /// The number of the first signal; 0 without one.
 static SIGNAL: AtomicUsize = AtomicUsize::new(0);
 /// Progress at the end of a loop that the signal ended; `None` without one.
 static STOPPED_AFTER: Mutex<Option<String>> = Mutex::new(None);
 
-/// A signal that asks the program to end.
+/// A signal that requests the end of the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StopSignal(usize);
 
@@ -37,7 +37,7 @@ impl StopSignal {
         SIGNAL_EXIT_CODE + u8::try_from(self.0).unwrap_or_default()
     }
 
-    /// Its name for a person.
+    /// Name of the signal, for a person.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self.0 {
@@ -48,7 +48,7 @@ impl StopSignal {
     }
 }
 
-/// Whether the user has asked to stop: the loop that asks ends now. `done`: what it has done, as "3 of 7 frames".
+/// Whether the user interrupted: the calling loop ends then. `done`: the finished work, as "3 of 7 frames".
 pub fn is_requested(done: impl FnOnce() -> String) -> bool {
     if SIGNAL.load(Ordering::Relaxed) == 0 {
         return false;
@@ -57,7 +57,7 @@ pub fn is_requested(done: impl FnOnce() -> String) -> bool {
     true
 }
 
-/// The signal and what was done until then, if it has ended a loop.
+/// The signal and the finished work, if a signal ended a loop.
 #[must_use]
 pub fn stopped() -> Option<(StopSignal, String)> {
     let done = STOPPED_AFTER.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
@@ -84,8 +84,9 @@ fn read_json(file: &Path) -> Result<serde_json::Value, AppError> {
     serde_json::from_slice(&bytes).map_err(AppError::input)
 }
 
-/// Takes Ctrl-C, SIGTERM and a closed terminal as requests, which the loops of the running command read. The second signal ends the
-/// program after `abandon`, which removes its unfinished results. The third ends it in the signal's handler, where `abandon` hangs.
+/// Handles Ctrl-C, SIGTERM and a closed terminal as interrupts, which the loops of the running command read. The second signal ends the
+/// program after `abandon`, which removes its unfinished results. The third signal ends the program in the signal's handler, in case
+/// `abandon` hangs.
 ///
 /// # Errors
 /// When the system refuses.
@@ -109,7 +110,7 @@ pub fn listen(abandon: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppEr
     })
 }
 
-/// Ignores the signals that ask a program to end.
+/// Ignores the signals that request the end of a program.
 ///
 /// # Errors
 /// When the system refuses.
@@ -118,7 +119,7 @@ pub fn ignore() -> Result<(), AppError> {
     on_signal(|_| {})
 }
 
-/// The signals that ask this program to end. A program that was started by `nohup` goes on without its terminal.
+/// The signals that request the end of this program. A program started by `nohup` ignores the loss of its terminal.
 #[cfg(unix)]
 fn ending_signals() -> Vec<i32> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -134,8 +135,8 @@ fn ignores_closed_terminal(status: &str) -> bool {
     mask.is_some_and(|mask| mask >> (SIGHUP_NUMBER - 1) & 1 == 1)
 }
 
-/// Ends the program at Ctrl-C or SIGTERM where `prepare` returns true: for commands that have written nothing until their end. Where it
-/// returns false the program is at its end, and goes on.
+/// Ends the program at Ctrl-C or SIGTERM if `prepare` returns true: for commands that write nothing before their end. If `prepare` returns
+/// false, the program is ending by itself and continues.
 ///
 /// # Errors
 /// When the system refuses.
@@ -149,7 +150,7 @@ pub fn end_at_once(prepare: impl Fn(StopSignal) -> bool + Send + 'static) -> Res
     })
 }
 
-/// Ends the process when it is dropped, by a panic too: the lock of abandoned results is never released.
+/// Ends the process on drop, also during a panic: the lock of abandoned results is never released.
 #[cfg(unix)]
 struct ExitOnDrop(StopSignal);
 
@@ -173,7 +174,7 @@ fn refused(error: std::io::Error) -> AppError {
     AppError::Environment(format!("cannot listen for Ctrl-C: {error}"))
 }
 
-/// Elsewhere Ctrl-C ends the program at once.
+/// On other systems Ctrl-C ends the program immediately.
 #[cfg(not(unix))]
 pub fn listen(_abandon: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppError> {
     Ok(())
@@ -185,7 +186,7 @@ pub fn ignore() -> Result<(), AppError> {
     Ok(())
 }
 
-/// Elsewhere Ctrl-C ends the program at once.
+/// On other systems Ctrl-C ends the program immediately.
 #[cfg(not(unix))]
 pub fn end_at_once(_prepare: impl Fn(StopSignal) -> bool + Send + 'static) -> Result<(), AppError> {
     Ok(())

@@ -1,6 +1,6 @@
 //! Tables as lines of text.
 
-/// Width of a column from which it holds text, not numbers \[characters\]. Source: ours.
+/// Width above which a column counts as text, not numbers \[characters\]. Source: ours.
 const MIN_TEXT_WIDTH: usize = 60;
 
 /// The lines of a table of two columns or more, columns aligned: the first one and texts to the left, numbers to the right.

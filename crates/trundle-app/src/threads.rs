@@ -5,7 +5,7 @@ use crate::AppError;
 /// Runs `work` on a pool of this number of threads; `None`: one per core.
 ///
 /// # Errors
-/// When the system refuses a thread, and those of `work`.
+/// When the system refuses a thread, and the errors of `work`.
 pub fn on_threads<T: Send>(
     threads: Option<u16>,
     work: impl FnOnce() -> Result<T, AppError> + Send,

@@ -1,4 +1,4 @@
-//! Files of visual vocabularies and of the descriptors that train them.
+//! Files of visual vocabularies and of their training descriptors.
 
 use crate::AppError;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use trundle_vision::{Descriptor, Vocabulary};
 /// The vocabulary of a file, else the program's own.
 ///
 /// # Errors
-/// Names the file and why it cannot be read.
+/// Names the file and the reason.
 pub fn vocabulary_or_builtin(path: Option<&Path>) -> Result<Arc<Vocabulary>, AppError> {
     path.map_or_else(|| Ok(Vocabulary::builtin()), |path| read_vocabulary(path).map(Arc::new))
 }
@@ -30,7 +30,7 @@ pub fn vocabulary_rows(vocabulary: &Vocabulary, milliseconds: f64) -> Vec<Vec<St
 /// A vocabulary in our own form.
 ///
 /// # Errors
-/// Names the file and why it cannot be read.
+/// Names the file and the reason.
 pub fn read_vocabulary(path: &Path) -> Result<Vocabulary, AppError> {
     Expected::Vocabulary.check(path)?;
     let bytes = std::fs::read(path).map_err(|error| unreadable(path, &error))?;
@@ -40,7 +40,7 @@ pub fn read_vocabulary(path: &Path) -> Result<Vocabulary, AppError> {
 /// A vocabulary in the text form of DBoW2.
 ///
 /// # Errors
-/// Names the file and why it cannot be read.
+/// Names the file and the reason.
 pub fn read_dbow2_vocabulary(path: &Path) -> Result<Vocabulary, AppError> {
     Expected::Dbow2Vocabulary.check(path)?;
     let text = read_text(path)?;
@@ -50,7 +50,7 @@ pub fn read_dbow2_vocabulary(path: &Path) -> Result<Vocabulary, AppError> {
 /// The descriptors of a folder, image by image in the order of the files' names.
 ///
 /// # Errors
-/// Names the file and why it cannot be read.
+/// Names the file and the reason.
 pub fn read_descriptors(folder: &Path) -> Result<Vec<Vec<Descriptor>>, AppError> {
     let kind = FileKind::of(folder)?;
     if !folder.is_dir() {

@@ -1,9 +1,9 @@
 //! Contact of a footprint that moves along an arc with a point, in closed form.
 //!
-//! Problem: the distance that a moving footprint travels until it touches a point. Idea: in the base frame the point moves
-//! instead, on a line, or on a circle around the centre of rotation. The footprint grown by a margin is bounded by its sides moved
-//! outward and by arcs about its corners. The first contact is the first crossing of the point's line or circle with one of
-//! those: closed forms, no sampling. Cost: O(corners).
+//! Problem: the distance that a moving footprint travels until it touches a point. Idea: in the base frame the point moves instead, on a
+//! line, or on a circle around the centre of rotation. The footprint grown by a margin is bounded by its sides moved outward and by arcs
+//! around its corners. The first contact is the first crossing of the point's line or circle with one of those: closed forms, no sampling.
+//! Cost: O(corners).
 
 use crate::rounded_hull::{Edge, RoundedHull};
 use std::f64::consts::TAU;
@@ -14,9 +14,8 @@ const CONTACT_TOLERANCE_M: f64 = 1e-9;
 /// Curvature below which a motion counts as straight, 1/m. Source: ours.
 const MAX_STRAIGHT_CURVATURE_PER_M: f64 = 1e-4;
 
-/// The distance along the arc of `twist` until the hull grown by `margin` m touches the point `p` (base frame, m): of the
-/// base's origin, m, or for a turn in place the angle, rad. `None` if it never does, 0 when it touches already and the motion
-/// presses on.
+/// The distance of the base's origin along the arc of `twist` until the hull grown by `margin` m touches the point `p` (base frame, m); m,
+/// or for a turn in place rad. `None` without a contact; 0 if the hull touches the point and the motion presses on.
 ///
 /// A hull that touches already may move away from the point, or along it.
 pub fn arc_contact(hull: &RoundedHull, twist: Twist2, p: Vector2, margin: f64) -> Option<f64> {
@@ -84,7 +83,7 @@ fn crossings_of_side(edge: &Edge, pole: Vector2, turn: f64, radius: f64) -> impl
     [-half, half].into_iter().filter(is_on).map(move |at| outward * height + along * at)
 }
 
-/// Crossings of the circle of radius `turn` around `pole` with that of `radius` about `corner`, relative to the pole.
+/// Intersections of the circle of radius `turn` around `pole` with the circle of radius `radius` around `corner`, relative to the pole.
 fn crossings(pole: Vector2, turn: f64, corner: Vector2, radius: f64) -> impl Iterator<Item = Vector2> {
     let to = corner - pole;
     let distance = to.norm();
@@ -182,7 +181,7 @@ mod tests {
         let turn = Twist2::new(0.0, 2.0);
         assert_eq!(arc_contact(&disc(0.2), turn, Vector2::new(0.1, 0.0), 0.0), None);
         let angle = arc_contact(&cart(), turn, Vector2::new(0.0, 0.3), 0.0).unwrap();
-        // The left side of the front comes around to it, 0.3 m from the axle.
+        // The left side of the front reaches the point, 0.3 m from the axle.
         assert!((angle - (std::f64::consts::FRAC_PI_2 - (0.2_f64 / 0.3).asin())).abs() < 1e-9, "{angle}");
         assert_eq!(arc_contact(&cart(), turn, Vector2::new(0.0, 0.46), 0.0), None);
     }

@@ -13,7 +13,7 @@ pub fn depth_within(corners: &[Vector2], point: Vector2) -> f64 {
     sides(corners).map(to_side).fold(f64::INFINITY, f64::min)
 }
 
-/// Centre and radius of the largest disc in a convex polygon. The depth is concave: a grid search about the maximum, refined, finds it.
+/// Centre and radius of the largest disc in a convex polygon. The depth is concave: a grid search around the maximum, refined, finds it.
 pub fn inscribed_disc(corners: &[Vector2]) -> (Vector2, f64) {
     const ROUNDS: usize = 12;
     const SAMPLES: i32 = 4;
@@ -38,7 +38,7 @@ pub fn centre_of(points: &[Vector2]) -> Vector2 {
     points.iter().sum::<Vector2>() / points.len() as f64
 }
 
-/// The polygon with its sides `by` m further in; `None` if nothing remains, or a side vanishes.
+/// The polygon with its sides moved inwards by `by` m; `None` if no area remains, or a side vanishes.
 pub fn inset(corners: &[Vector2], by: f64) -> Option<Vec<Vector2>> {
     let count = corners.len();
     let side = |i: usize| (corners[(i + 1) % count] - corners[i % count]).try_normalize(1e-12);

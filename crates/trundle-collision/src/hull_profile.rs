@@ -1,9 +1,9 @@
 //! A lookup table of a hull: fast lower bounds of the free motion for boxes of points.
 //!
-//! Problem: the closed forms cost half a microsecond per point. Idea: at rings around the axle the headings of contact are
-//! computed once, exactly. A point farther out than a ring is met at fewer headings, as the hull together with the axle is
-//! convex. In strips along x the table holds the hull's extent, rounded up. A box of points that is not met before a known
-//! contact can be skipped. Rounding is always outward, so that no contact is missed.
+//! Problem: the closed forms cost half a microsecond per point. Idea: at rings around the axle the headings of contact are computed once,
+//! exactly. A point farther out than a ring is met at fewer headings, as the hull together with the axle is convex. In strips along x the
+//! table holds the hull's extent, rounded up. A box of points that is not met before a known contact can be skipped. All rounding is
+//! outward, so no contact is missed.
 
 use crate::oriented_box::OrientedBox;
 use crate::rounded_hull::RoundedHull;
@@ -23,7 +23,8 @@ const MAX_RINGS: usize = 512;
 const RING_COST: u64 = 100;
 /// Number of strips along x: a fraction of a millimetre each, as their rounding delays every point. Source: ours.
 const STRIP_COUNT: usize = 512;
-/// Half thicknesses below which a box counts as its centre line, m: a slanted box is otherwise met by its corner. Source: ours.
+/// Half thicknesses below which a box counts as its centre line, m: a slanted box would otherwise touch with its corner first. Source:
+/// ours.
 const THIN_HALF_THICKNESS_M: [f64; 3] = [1e-8, 1e-5, 1e-3];
 /// Smallest ratio of length to thickness of such a box. Source: ours.
 const MIN_SLENDERNESS: f64 = 4.0;
@@ -43,7 +44,7 @@ pub struct HullProfile {
     strip: f64,
     /// Extent of the hull forward and backward in each strip, m; then in every two neighbours, every four, and so on.
     fronts: Vec<Vec<(f64, f64)>>,
-    /// The hull grown by each of [`THIN_HALF_THICKNESS_M`], for boxes that are no thicker than that.
+    /// The hull grown by each of [`THIN_HALF_THICKNESS_M`], for boxes up to this thickness.
     grown: [RoundedHull; THIN_HALF_THICKNESS_M.len()],
 }
 
@@ -99,8 +100,8 @@ impl HullProfile {
         RING_COST * self.rings as u64
     }
 
-    /// Lower bounds of the free turn, counter-clockwise and clockwise, before the hull meets a point of a box (relative to the axle,
-    /// in the hull's axes), rad; `None` if it never does.
+    /// Lower bounds of the free turn, counter-clockwise and clockwise, before the hull meets a point of a box (relative to the axle, in the
+    /// hull's axes), rad; `None` without a contact.
     pub fn free_turns(&self, bounds: &OrientedBox) -> Option<(f64, f64)> {
         let nearest = bounds.distance_from_origin() - ROUNDING_SLACK;
         if nearest >= self.outer {
@@ -148,8 +149,8 @@ impl HullProfile {
         farther(runs[first], runs[last + 1 - (1 << size)])
     }
 
-    /// Lower bounds of the free distance forward and backward before the hull meets a point of a box (in the hull's frame), m;
-    /// infinite if it never does.
+    /// Lower bounds of the free distance forward and backward before the hull meets a point of a box (in the hull's frame), m; infinite
+    /// without a contact.
     pub fn free_distances(&self, bounds: &OrientedBox) -> (f64, f64) {
         let never = (f64::INFINITY, f64::INFINITY);
         let (p, extent) = (bounds.center, bounds.extent().add_scalar(ROUNDING_SLACK));
@@ -207,8 +208,8 @@ pub fn wrap_positive(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).floor()
 }
 
-/// Upper bound of the hull's extent along x (against it for `sign` -1) between two values of y, m. The front is concave: its maximum
-/// is at the foremost corner, or at the end nearer to it.
+/// Upper bound of the hull's extent along x (for `sign` -1 against x) between two values of y, m. The front is concave: its maximum is at
+/// the foremost corner, or at the end nearer to it.
 fn front_in(hull: &RoundedHull, low: f64, high: f64, sign: f64) -> f64 {
     let (_, most) = hull.core_extent(Vector2::x() * sign);
     let foremost = hull.core.iter().find(|corner| sign * corner.at.x >= most);
@@ -257,7 +258,7 @@ mod tests {
             for i in 0..90 {
                 let heading = TAU * f64::from(i) / 90.0;
                 let holds = |from: f64, length: f64| (heading - from).rem_euclid(TAU) <= length;
-                // With all headings known except a blocked one, the box still matters.
+                // A box is still relevant if all headings but a blocked one are known.
                 prop_assert!(!inside(heading) || !profile.all_known(&bounds, |from, length| !holds(from, length)));
             }
             if !hull.overlaps(&Segment::point(p)) {

@@ -3,8 +3,8 @@
 //! - [`RoundedHull`]: a footprint with a margin. Overlap and distance of a segment, signed distance of a point.
 //! - [`blocked_headings`]: the headings at which a turn in place meets a segment. [`straight_contact`]: the free distance of a
 //!   straight move. [`arc_contact`]: the free distance along an arc until the hull meets a point.
-//! - [`HullProfile`]: a lookup table of a hull. It yields lower bounds of the free motion for boxes of points ([`OrientedBox`]), so
-//!   that most of a point cloud is skipped.
+//! - [`HullProfile`]: a lookup table of a hull. It gives lower bounds of the free motion for boxes of points ([`OrientedBox`]), which skip
+//!   most of a point cloud.
 //! - [`square`] and [`convex_polygon`]: distances of points, segments and convex polygons from the cells of a grid.
 //!
 //! ```

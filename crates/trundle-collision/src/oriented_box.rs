@@ -77,7 +77,7 @@ impl OrientedBox {
         (along * along + across * across).sqrt()
     }
 
-    /// Upper bound of half the angle that the box subtends at the origin, about the bearing of its centre, rad.
+    /// Upper bound of half the angle that the box subtends at the origin, around the bearing of its centre, rad.
     pub fn half_angle(&self) -> f64 {
         if self.half.x == 0.0 {
             return 0.0;

@@ -6,8 +6,8 @@ use trundle_core::{Footprint, Pose2, Vector2};
 /// Smallest radius of the corners, m: the closed forms need corners with a radius. Smaller margins are none. Source: ours.
 pub const MIN_CORNER_RADIUS_M: f64 = 1e-6;
 
-/// Overlap that counts as contact, which is free, m: rounding of poses and corners. Planner and docking share it, so that both
-/// pass the same gaps. Source: ours.
+/// Largest overlap that counts as contact and is free, m: rounding of poses and corners. Planner and docking share this value, so both pass
+/// the same gaps. Source: ours.
 pub const CONTACT_TOLERANCE_M: f64 = 1e-6;
 
 /// A footprint with a margin: a convex core and every point within `radius` of it, base frame, m.
@@ -41,7 +41,7 @@ pub(crate) struct Edge {
     /// Unit, outward.
     pub normal: Vector2,
     pub normal_bearing: f64,
-    /// The core lies where `normal . x <= offset`.
+    /// The core is the set `normal . x <= offset`.
     pub offset: f64,
     /// Length, m.
     pub length: f64,
@@ -55,8 +55,8 @@ impl Edge {
 }
 
 impl RoundedHull {
-    /// A footprint grown by `margin` (m), or shrunk when the margin is negative. A footprint that shrinks to nothing becomes a point
-    /// at the axle. A margin below [`MIN_CORNER_RADIUS_M`] is none: contact is free, up to [`CONTACT_TOLERANCE_M`].
+    /// A footprint grown by `margin` (m), or shrunk when the margin is negative. A footprint without remaining area becomes a point at the
+    /// axle. A margin below [`MIN_CORNER_RADIUS_M`] counts as 0: contact is free, up to [`CONTACT_TOLERANCE_M`].
     pub fn new(footprint: &Footprint, margin: f64) -> Self {
         let exact = Self::exact(footprint);
         if margin >= MIN_CORNER_RADIUS_M {
@@ -67,7 +67,7 @@ impl RoundedHull {
             .unwrap_or_else(|| Self::from_core(&[Vector2::zeros()], MIN_CORNER_RADIUS_M))
     }
 
-    /// The footprint itself: the corners of a polygon are sharp. For [`RoundedHull::signed_distance`] and
+    /// The footprint itself: the corners of a polygon are sharp. It suits [`RoundedHull::signed_distance`] and
     /// [`arc_contact`](crate::arc_contact), which need no rounded corners.
     pub fn exact(footprint: &Footprint) -> Self {
         match footprint {
@@ -106,7 +106,7 @@ impl RoundedHull {
         Self::from_core(&core, self.radius + by)
     }
 
-    /// The part of this hull with no point nearer than `depth` (m) to the outside; `None` if nothing is left.
+    /// The part of this hull with a distance of at least `depth` (m) from the outside; `None` if no area remains.
     ///
     /// The part is exact along the sides and too small at the corners, by [`MIN_CORNER_RADIUS_M`]: it never contains a point too many.
     pub fn shrunk(&self, depth: f64) -> Option<Self> {
@@ -124,7 +124,7 @@ impl RoundedHull {
         if self.edges.is_empty() || self.edges.iter().all(|edge| edge.offset >= 0.0) {
             return self.clone();
         }
-        // Sides that face the axle are replaced by two that end on it.
+        // Sides that face the axle are replaced by two sides that end at the axle.
         let n = self.edges.len();
         let faces = |i: usize| self.edges[i % n].offset < 0.0;
         let first = (0..n).find(|&i| faces(i) && !faces(i + n - 1)).unwrap_or(0);
@@ -147,7 +147,7 @@ impl RoundedHull {
         } else if hull.core_contains(Vector2::zeros()) {
             hull.edges.iter().map(|e| e.offset + radius).fold(f64::INFINITY, f64::min)
         } else {
-            // An axle outside the core lies in the margin, or outside the hull.
+            // An axle outside the core is in the margin, or outside the hull.
             (radius - hull.core_distance(&Segment::point(Vector2::zeros()))).max(0.0)
         };
         hull
@@ -186,7 +186,7 @@ impl RoundedHull {
         (self.core_distance(segment) - self.radius).max(0.0)
     }
 
-    /// Whether a point of the base frame lies inside the core.
+    /// Whether a point of the base frame is inside the core.
     pub fn core_contains(&self, p: Vector2) -> bool {
         !self.edges.is_empty() && self.edges.iter().all(|e| e.normal.dot(&p) <= e.offset)
     }
@@ -225,7 +225,7 @@ fn edge(a: Vector2, b: Vector2) -> Edge {
     Edge { side: Segment { a, b }, normal, normal_bearing, offset, length }
 }
 
-/// The part of a convex polygon where `normal . x <= offset`.
+/// The part of a convex polygon with `normal . x <= offset`.
 fn cut(corners: &[Vector2], normal: Vector2, offset: f64) -> Vec<Vector2> {
     let mut kept = Vec::with_capacity(corners.len() + 1);
     for (i, &a) in corners.iter().enumerate() {

@@ -22,7 +22,7 @@ impl Segment {
         self.a == self.b
     }
 
-    /// The nearest of its points to `p`.
+    /// The point of the segment nearest to `p`.
     pub fn nearest(&self, p: Vector2) -> Vector2 {
         let along = self.b - self.a;
         let squared = along.norm_squared();

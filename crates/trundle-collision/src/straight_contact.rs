@@ -1,7 +1,7 @@
 //! Straight moves: the free distance until the swept hull meets a segment, in closed form.
 //!
-//! Along x the distance to a segment is X(y) - F(y) over their common y. The segment is a line X and the hull's front F is
-//! concave, so the distance is convex in y: its minimum lies where the front is parallel to the segment, or at the nearest end
+//! The distance along x to a segment is X(y) - F(y) over their common range of y. The segment is a line X and the hull's front F is
+//! concave, so the distance is convex in y. Its minimum is at the point where the front is parallel to the segment, or at the nearest end
 //! of the common range.
 
 use crate::rounded_hull::RoundedHull;
@@ -20,7 +20,7 @@ pub enum StraightContact {
     Behind(f64),
 }
 
-/// Where a segment, in the base frame and without overlap, stops a straight move; `None` if it does not.
+/// Distance at which a segment stops a straight move (base frame, no overlap at the start); `None` without a contact.
 pub fn straight_contact(hull: &RoundedHull, segment: &Segment) -> Option<StraightContact> {
     let (bottom, top) = hull.core_extent(Vector2::y());
     let low = segment.a.y.min(segment.b.y).max(bottom - hull.radius + MIN_COMMON_RANGE_M);
@@ -69,7 +69,7 @@ fn parallel_y(hull: &RoundedHull, segment: &Segment, sign: f64) -> Option<f64> {
     foremost.map(|corner| corner.at.y + hull.radius * normal.y)
 }
 
-/// The x of a segment at `y`; of its first end when it runs along x.
+/// The x of a segment at `y`; for a segment along x, that of its first end.
 fn x_at(segment: &Segment, y: f64) -> f64 {
     let rise = segment.b.y - segment.a.y;
     if rise == 0.0 {
@@ -79,7 +79,7 @@ fn x_at(segment: &Segment, y: f64) -> f64 {
     }
 }
 
-/// The end of a segment along x that a move along x (`sign` 1) or against it (-1) meets first.
+/// The end of a segment along x that a move along x (`sign` 1) or against x (-1) meets first.
 fn nearer_end(segment: &Segment, sign: f64) -> f64 {
     if sign > 0.0 { segment.a.x.min(segment.b.x) } else { segment.a.x.max(segment.b.x) }
 }

@@ -1,8 +1,8 @@
 //! From a trajectory and a pose to a twist: tracking, point stabilisation, limits, safe stop.
 //!
-//! Start with [`Follower`]. It follows a trajectory with [`PathTracker`] (docs/methods.md A6) and stabilises the goal pose with
-//! [`Stabilizer`] (A7). The clock of its reference waits for a robot that falls behind. [`SafetyMonitor`] checks each twist after
-//! that, without any plan, and passes only twists from which the robot can still stop. Every command keeps the limits of [`Limiter`].
+//! Start with [`Follower`]. [`Follower`] follows a trajectory with [`PathTracker`] (docs/methods.md A6) and stabilises the goal pose with
+//! [`Stabilizer`] (A7). The clock of the reference slows down if the robot falls behind. [`SafetyMonitor`] then checks each twist without
+//! any plan, and passes only twists from which the robot can still stop. Every command keeps the limits of [`Limiter`].
 //! `docs/algorithms/control.md` has the laws, their gains and their limits.
 //!
 //! ```

@@ -1,9 +1,8 @@
 //! Limits a wanted twist to the speeds and accelerations of the base.
 //!
-//! Problem: a law asks for any twist; wheels have a top speed and a top acceleration. Idea: a twist that is too fast is
-//! slowed along its own curve; while the robot speeds up, the turn rate waits for the speed, so that it is on the wanted
-//! curve from the first moment; while it brakes, both fall in proportion, so that it stops on the curve it is on.
-//! Cost: O(1).
+//! Problem: a law commands any twist, while wheels have a maximum speed and acceleration. Idea: a twist that is too fast is slowed along
+//! its own curve. During acceleration the turn rate is in proportion to the speed, which keeps the robot on the wanted curve. During
+//! braking both fall in proportion, which keeps the robot on its present curve. Cost: O(1).
 
 use trundle_core::{DifferentialDrive, DriveLimits, Invalid, Twist2};
 
@@ -20,7 +19,7 @@ pub struct Limiter {
 pub struct Limited {
     /// The twist to send.
     pub twist: Twist2,
-    /// Whether it is another one than was wanted.
+    /// Whether the twist differs from the wanted one.
     pub saturated: bool,
 }
 
@@ -52,8 +51,8 @@ impl Limiter {
             if twist.is_finite() { self.limits.saturate(twist, self.wheelbase) } else { Twist2::ZERO };
     }
 
-    /// The command nearest in kind to `wanted` that is allowed `dt` seconds after the last one: within the speed limits,
-    /// and no component changed by more than its acceleration times `dt`. A wanted twist that is not finite counts as a stop.
+    /// The command nearest to `wanted` that is allowed `dt` seconds after the last one. It is within the speed limits, and each component
+    /// changes by at most its acceleration times `dt`. A wanted twist with a component that is not finite counts as a stop.
     pub fn limit(&mut self, wanted: Twist2, dt: f64) -> Limited {
         let finite = if wanted.is_finite() { wanted } else { Twist2::ZERO };
         let target = self.limits.saturate(finite, self.wheelbase);
@@ -71,14 +70,14 @@ impl Limiter {
         Limited { twist, saturated }
     }
 
-    /// The speed changes as far as its limit allows; the turn rate follows the curve at that speed, within its own limit.
+    /// The speed changes up to its limit; the turn rate follows the curve at that speed, within its own limit.
     fn step_along_curve(&self, target: Twist2, step: Twist2) -> Twist2 {
         let last = self.last;
         let v = last.v + (target.v - last.v).clamp(-step.v, step.v);
         let omega = if v == target.v {
             target.omega
         } else if v * target.v > 0.0 && v.abs() < target.v.abs() {
-            // Speeding up: on the target's curve at this speed; a base that already turns faster need not slow down for it.
+            // During acceleration the twist is on the target's curve at this speed; a base that turns faster need not reduce its turn rate.
             let on_curve = target.omega * v / target.v;
             last.omega.clamp(on_curve.min(target.omega), on_curve.max(target.omega))
         } else {
@@ -87,7 +86,7 @@ impl Limiter {
         Twist2::new(v, last.omega + (omega - last.omega).clamp(-step.omega, step.omega))
     }
 
-    /// A step on the segment from the last twist to the target: the allowed twists are a convex set with both in it.
+    /// A step on the segment from the last twist to the target: the allowed twists are a convex set that contains both.
     fn step_straight(&self, target: Twist2, step: Twist2) -> Twist2 {
         let last = self.last;
         let part = |gap: f64, step: f64| if gap.abs() > step { step / gap.abs() } else { 1.0 };

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-/// The same angle in (-pi, pi], rad. NaN stays NaN.
+/// The same angle in (-pi, pi], rad. NaN remains NaN.
 pub fn wrap_angle(angle: f64) -> f64 {
     if angle > -PI && angle <= PI {
         return angle;

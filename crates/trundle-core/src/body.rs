@@ -6,18 +6,18 @@ use serde::{Deserialize, Serialize};
 /// State of the bumper: pressed by an obstacle, or free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Touch {
-    /// When the state changed.
+    /// Time of the change.
     pub stamp: Stamp,
-    /// Whether it is pressed.
+    /// Whether the bumper is pressed.
     pub pressed: bool,
 }
 
 /// State of the cliff sensors: an edge ahead, or floor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Cliff {
-    /// When the state changed.
+    /// Time of the change.
     pub stamp: Stamp,
-    /// Whether any of them has no floor below.
+    /// Whether a cliff sensor detects no floor.
     pub over_edge: bool,
 }
 
@@ -37,7 +37,7 @@ pub enum SensorEvent {
     Cliff(Cliff),
     /// A 2-D laser's sweep.
     Scan(Scan),
-    /// Odometry that the body computes itself, with its covariance. A body yields it in place of wheels and gyro.
+    /// Odometry that the body computes itself, with its covariance. A body yields it instead of wheels and gyro.
     Odometry(Odometry),
     /// Power, wheel drop, buttons, links, silence.
     Body(BodyEvent),
@@ -51,7 +51,7 @@ pub enum SensorEvent {
 }
 
 impl SensorEvent {
-    /// When it happened.
+    /// Stamp of the event.
     pub fn stamp(&self) -> Stamp {
         match self {
             Self::Wheels(wheels) => wheels.stamp,
@@ -74,19 +74,19 @@ pub trait RobotBody {
 
     /// The next sensor event; `None` at the end.
     ///
-    /// A live body has no end. It waits no longer than a tenth of a second, then yields [`crate::BodyEventKind::Silence`].
+    /// A live body has no end. It waits a tenth of a second at most, then yields [`crate::BodyEventKind::Silence`].
     ///
     /// # Errors
-    /// When a sensor or the connection to it failed for good.
+    /// When a sensor or the connection to it failed permanently.
     fn next_event(&mut self) -> Result<Option<SensorEvent>, Self::Error>;
 
-    /// Asks the base to move with `twist` from now on, until the next command.
+    /// Commands the base to move with `twist` until the next command.
     ///
     /// # Errors
     /// When the base cannot be reached.
     fn command(&mut self, twist: Twist2) -> Result<(), Self::Error>;
 
-    /// Separate contacts of the body with an obstacle so far, in truth, for evaluation only. `None` (the default) where only the bumper
+    /// Number of true separate contacts of the body with obstacles so far, for evaluation only. `None` (the default) if only the bumper
     /// reports contacts.
     fn contact_count(&self) -> Option<u32> {
         None

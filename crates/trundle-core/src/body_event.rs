@@ -1,12 +1,12 @@
-//! Events of a body besides its motion and its images: wheel drop, power, docking light, buttons, links.
+//! Events of a body other than motion and images: wheel drop, power, docking light, buttons, links.
 
 use crate::{Invalid, Stamp, require_finite, require_in};
 use serde::{Deserialize, Serialize};
 
-/// An event of a body besides its motion and its images.
+/// An event of a body other than motion and images.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BodyEvent {
-    /// When it happened.
+    /// Stamp of the event.
     pub stamp: Stamp,
     /// The event.
     pub kind: BodyEventKind,
@@ -31,7 +31,7 @@ impl BodyEvent {
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum BodyEventKind {
-    /// A wheel left the floor or came back to it. The base must not drive while a wheel hangs.
+    /// A wheel left the floor or returned to it. The base must not drive while a wheel hangs in the air.
     WheelDrop(PerWheel),
     /// A wheel motor draws too much current, or no longer does.
     OverCurrent(PerWheel),
@@ -43,22 +43,21 @@ pub enum BodyEventKind {
     Button(Button),
     /// A device of the body was lost, or found again.
     Link(Link),
-    /// No event came from the body since the last one. A live body yields it in place of a longer silence, so that the time of the robot
-    /// goes on.
+    /// The body has had no event since the last one. A live body yields it during a longer silence, so that the robot's time advances.
     Silence,
 }
 
 /// A state of each wheel.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PerWheel {
-    /// Whether it holds of the left wheel.
+    /// State of the left wheel.
     pub left: bool,
-    /// Whether it holds of the right wheel.
+    /// State of the right wheel.
     pub right: bool,
 }
 
 impl PerWheel {
-    /// Whether it holds of either wheel.
+    /// Whether the state of either wheel is true.
     #[must_use]
     pub fn any(&self) -> bool {
         self.left || self.right
@@ -70,7 +69,7 @@ impl PerWheel {
 pub struct Battery {
     /// Voltage \[V\].
     pub voltage_v: f64,
-    /// Charge, 0 (empty) to 1 (full); `None` if the body cannot tell it.
+    /// Charge, 0 (empty) to 1 (full); `None` if the body does not measure it.
     pub charge: Option<f64>,
     /// Source of the power.
     pub source: PowerSource,
@@ -87,7 +86,7 @@ pub enum PowerSource {
     Battery,
     /// The contacts of a charging station.
     ChargingStation,
-    /// A power supply plugged in by hand: the base must not drive.
+    /// A power adapter, plugged in by a person: the base must not drive.
     Adapter,
 }
 
@@ -110,9 +109,9 @@ impl DockInfrared {
     }
 }
 
-/// Beams of a charging station that one receiver sees. Left and right are the station's own, which looks out of its front: the left
-/// sector is at the right hand of a robot that faces the station. Source: the vendor's dock drive, which turns a robot in the right
-/// sector clockwise until its left receiver sees the station, and then drives ahead to the middle.
+/// Beams of a charging station that one receiver sees. Left and right are those of the station, seen in the direction of its front: the
+/// left sector is on the right-hand side of a robot that faces the station. Source: the vendor's dock drive. It turns a robot in the right
+/// sector clockwise until its left receiver detects the station, and then drives ahead to the middle.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DockBeams {
     /// The left sector, near the station.
@@ -134,7 +133,7 @@ pub struct DockBeams {
 pub struct Button {
     /// Number of the button, from 0.
     pub index: u8,
-    /// Whether it is pressed.
+    /// Whether the button is pressed.
     pub pressed: bool,
 }
 
@@ -143,7 +142,7 @@ pub struct Button {
 pub struct Link {
     /// The device.
     pub device: Device,
-    /// Whether it answers.
+    /// Whether the device responds.
     pub is_up: bool,
 }
 

@@ -70,10 +70,10 @@ impl TryFrom<Unchecked> for PinholeCamera {
     }
 }
 
-/// Largest number of columns or rows. It refuses a mistyped number, for which memory would not suffice.
+/// Largest number of columns or rows. Larger numbers are refused as typing errors, for which memory would not suffice.
 const MOST_PIXELS: usize = 16_384;
 
-/// Longest readout time of a camera: 0.05 s. A longer one is refused, since no colour camera of a robot takes longer. Source: ours.
+/// Longest readout time of a camera: 0.05 s. A longer one is refused: no colour camera of a robot takes longer. Source: ours.
 const MAX_READOUT_S: f64 = 0.05;
 
 impl PinholeCamera {
@@ -147,7 +147,7 @@ impl PinholeCamera {
             .expect("invariant: the preset is valid")
     }
 
-    /// Time from the first to the last row of an image, s: a rolling shutter; 0 if all rows are taken at once.
+    /// Time from the first to the last row of an image, s: a rolling shutter; 0 if all rows are taken simultaneously.
     pub fn readout(&self) -> f64 {
         self.readout
     }
@@ -187,7 +187,7 @@ impl PinholeCamera {
         self.distortion
     }
 
-    /// Where a point in the camera frame (m) appears in a rectified image, px; `None` behind the camera.
+    /// Position of a point in the camera frame (m) in a rectified image, px; `None` behind the camera.
     pub fn project(&self, p_camera: Vector3) -> Option<Vector2> {
         (p_camera.z > 0.0).then(|| {
             let inverse = 1.0 / p_camera.z;
@@ -200,7 +200,7 @@ impl PinholeCamera {
         Vector3::new((pixel.x - self.cx) / self.fx * depth, (pixel.y - self.cy) / self.fy * depth, depth)
     }
 
-    /// Whether a pixel position lies in the image (pixel centres at whole numbers).
+    /// Whether a pixel position is inside the image (pixel centres at whole numbers).
     pub fn contains(&self, pixel: Vector2) -> bool {
         pixel.x >= -0.5
             && pixel.y >= -0.5
@@ -208,15 +208,15 @@ impl PinholeCamera {
             && pixel.y < self.height as f64 - 0.5
     }
 
-    /// Where a rectified pixel appears in the raw image.
+    /// Position of a rectified pixel in the raw image.
     pub fn distort(&self, pixel: Vector2) -> Vector2 {
         let n = Vector2::new((pixel.x - self.cx) / self.fx, (pixel.y - self.cy) / self.fy);
         let d = self.distort_normalized(n);
         Vector2::new(d.x * self.fx + self.cx, d.y * self.fy + self.cy)
     }
 
-    /// Where a raw pixel appears in a rectified image: the inverse of [`PinholeCamera::distort`] by 20 fixed-point
-    /// steps, good to 1e-6 px for lenses like the Kinect's within the image.
+    /// Position of a raw pixel in the rectified image: the inverse of [`PinholeCamera::distort`] by 20 fixed-point steps. The error is
+    /// below 1e-6 px for lenses like the Kinect's within the image.
     pub fn undistort(&self, pixel: Vector2) -> Vector2 {
         if self.distortion == Distortion::default() {
             return pixel;

@@ -1,4 +1,4 @@
-//! The camera's motion between two images as wheels and gyro measure it, with its covariance.
+//! The camera's motion between two images as measured by wheels and gyro, with its covariance.
 
 use crate::{Pose2, Pose3};
 use nalgebra::{Matrix3, Matrix6, Vector6};
@@ -17,14 +17,14 @@ const IN_PLANE: [usize; 3] = [0, 1, 5];
 pub struct CameraMotion {
     /// `previous_camera_from_camera`.
     pub motion: Pose3,
-    /// Of `motion` as a right perturbation (m, m, m, rad, rad, rad). `None` if it is unknown.
+    /// Covariance of `motion` as a right perturbation (m, m, m, rad, rad, rad); `None` if unknown.
     pub covariance: Option<Matrix6<f64>>,
 }
 
 impl CameraMotion {
-    /// Motion of the camera at `base_from_camera` for a motion of the base: camera_from_base * previous_base_from_base *
-    /// base_from_camera. `planar` is the covariance of the base's motion as a right perturbation (x m, y m, theta rad). Out of the
-    /// floor's plane the covariance is that of uneven floors.
+    /// Motion of the camera at `base_from_camera` for a motion of the base: camera_from_base * previous_base_from_base * base_from_camera.
+    /// `planar` is the covariance of the base's motion as a right perturbation (x m, y m, theta rad). Outside the floor's plane the
+    /// covariance is that of uneven floors.
     pub fn of_base((base_motion, planar): (Pose2, Matrix3<f64>), base_from_camera: Pose3) -> Self {
         let camera_from_base = base_from_camera.inverse();
         let motion = camera_from_base * Pose3::from_pose2(base_motion) * base_from_camera;
@@ -46,7 +46,7 @@ impl From<Pose3> for CameraMotion {
     }
 }
 
-/// Of the base's motion in space: in the plane as given, out of it by the floor.
+/// Covariance of the base's motion in space: the given one in the plane, that of the floor outside it.
 fn in_space(motion: &Pose2, planar: &Matrix3<f64>) -> Matrix6<f64> {
     let path = motion.x.hypot(motion.y) + HALF_WHEELBASE_M * motion.theta.abs();
     let (up, tilt) = (FLOOR_HEIGHT_NOISE.powi(2) * path, FLOOR_TILT_NOISE.powi(2) * path);

@@ -36,7 +36,7 @@ impl DifferentialDrive {
         Ok(self)
     }
 
-    /// Distance that the rim travels per tick, m.
+    /// Distance that the wheel's surface travels per tick, m.
     pub fn metres_per_tick(&self) -> f64 {
         std::f64::consts::TAU * self.wheel_radius / self.ticks_per_turn
     }
@@ -47,7 +47,7 @@ impl DifferentialDrive {
         (twist.v - turn, twist.v + turn)
     }
 
-    /// The base's twist for rim speeds (left, right), m/s.
+    /// The base's twist for wheel speeds (left, right), m/s.
     pub fn twist(&self, left: f64, right: f64) -> Twist2 {
         Twist2::new((left + right) / 2.0, (right - left) / self.wheelbase)
     }

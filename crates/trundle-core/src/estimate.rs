@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 /// The one pose estimate that planning and control use.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseEstimate {
-    /// The moment it holds for.
+    /// Time of the estimate.
     pub stamp: Stamp,
     /// `map_from_base`.
     pub pose: Pose2,

@@ -34,7 +34,7 @@ impl Footprint {
     /// A convex polygon; corners may come in either order and are stored counter-clockwise.
     ///
     /// # Errors
-    /// When there are fewer than three corners, one is not finite, the area is zero, or it is not convex.
+    /// When the polygon has fewer than three corners, a corner is not finite, the area is zero, or the polygon is not convex.
     pub fn polygon(mut corners: Vec<Vector2>) -> Result<Self, Invalid> {
         if corners.len() < 3 {
             return Err(Invalid::new("footprint corners", corners.len(), "", "3 or more"));
@@ -64,7 +64,7 @@ impl Footprint {
         Ok(Self::Polygon { corners })
     }
 
-    /// The greatest distance of any of its points from the base's origin, m.
+    /// The largest distance of a point of the footprint from the base's origin, m.
     pub fn circumscribed_radius(&self) -> f64 {
         match self {
             Self::Disc { radius } => *radius,
@@ -78,7 +78,7 @@ fn signed_area(corners: &[Vector2]) -> f64 {
     corners.iter().zip(next).map(|(a, b)| a.perp(b)).sum::<f64>() / 2.0
 }
 
-/// Sum of the changes of direction at all corners, rad: one whole turn, and more where sides cross.
+/// Sum of the changes of direction at all corners, rad: one full turn, or more if sides cross.
 fn total_turn(corners: &[Vector2]) -> f64 {
     let side = |i: usize| corners[(i + 1) % corners.len()] - corners[i % corners.len()];
     (0..corners.len()).map(|i| side(i).perp(&side(i + 1)).atan2(side(i).dot(&side(i + 1)))).sum()

@@ -6,7 +6,7 @@ use std::str::FromStr;
 impl FromStr for Footprint {
     type Err = String;
 
-    /// A radius (`0.2`), corners (`0.3,0.2 -0.3,0.2 ...`), or corners as Nav2 writes them (`[[0.3, 0.2], [-0.3, 0.2], ...]`), m.
+    /// A radius (`0.2`), corners (`0.3,0.2 -0.3,0.2 ...`), or corners in Nav2's format (`[[0.3, 0.2], [-0.3, 0.2], ...]`), m.
     fn from_str(text: &str) -> Result<Self, String> {
         if !text.contains([',', '[']) {
             return Self::disc(number(text)?).map_err(|invalid| invalid.to_string());

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub enum Cell {
     /// Never seen, or undecided.
     Unknown,
-    /// Nothing stands there.
+    /// The cell contains no obstacle.
     Free,
     /// An obstacle.
     Occupied,
@@ -24,7 +24,7 @@ pub struct CellIndex {
     pub row: usize,
 }
 
-/// Where a grid's cells lie in the map frame.
+/// Position of a grid's cells in the map frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GridGeometry {
     /// Side of a cell, m.
@@ -49,8 +49,8 @@ impl GridGeometry {
     /// Checked geometry: resolution in m, origin in m, size in cells.
     ///
     /// # Errors
-    /// When the resolution is not positive, the origin is not finite or more than 2^40 cells from zero (beyond it f64 does not
-    /// separate points of a cell), a side is zero, or there are more than 2^31 cells.
+    /// When the resolution is not positive, a side is zero, or the grid has more than 2^31 cells. Also when the origin is not finite or
+    /// more than 2^40 cells from zero, beyond which f64 does not separate points of a cell.
     pub fn new(resolution: f64, origin: Vector2, width: usize, height: usize) -> Result<Self, Invalid> {
         require_positive("resolution", resolution, "m")?;
         for (name, value) in [("origin x", origin.x), ("origin y", origin.y)] {
@@ -67,10 +67,10 @@ impl GridGeometry {
         Ok(Self { resolution, origin, width, height })
     }
 
-    /// Requires that the cells are those of the lattice of this resolution \[m\] with a corner at the origin, as a map that grows has them.
+    /// Requires cells of the lattice of this resolution \[m\] with a corner at the map's origin, as in a growing map.
     ///
     /// # Errors
-    /// When the resolution is another one, or the origin is not a multiple of it.
+    /// When the resolution differs, or the origin is not a multiple of it.
     pub fn require_lattice(&self, resolution: f64) -> Result<(), Invalid> {
         if (self.resolution - resolution).abs() > MAX_RESOLUTION_ERROR_M {
             return Err(Invalid::new("resolution of the map", self.resolution, "m", format!("{resolution}")));
@@ -88,12 +88,12 @@ impl GridGeometry {
         self.width * self.height
     }
 
-    /// Whether there is no cell.
+    /// Whether the grid has no cell.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The cell that holds a point of the map frame, if the grid reaches there. NaN is nowhere.
+    /// The cell that contains a point of the map frame; `None` outside the grid. `None` for NaN.
     pub fn cell_at(&self, point: Vector2) -> Option<CellIndex> {
         let col = ((point.x - self.origin.x) / self.resolution).floor();
         let row = ((point.y - self.origin.y) / self.resolution).floor();
@@ -129,7 +129,7 @@ impl OccupancyGrid {
     /// A grid over `cells`, row by row from the lowest y.
     ///
     /// # Errors
-    /// When the number of cells is not that of the geometry.
+    /// When the number of cells differs from that of the geometry.
     pub fn new(geometry: GridGeometry, cells: Vec<Cell>) -> Result<Self, Invalid> {
         if cells.len() != geometry.len() {
             return Err(Invalid::new("number of cells", cells.len(), "", geometry.len().to_string()));
@@ -145,7 +145,7 @@ impl OccupancyGrid {
     /// A grid from ASCII art for tests: `#` occupied, `.` free, anything else unknown; the first line is the highest y.
     ///
     /// # Errors
-    /// When the resolution is not positive, or there is no line, or lines differ in length.
+    /// When the resolution is not positive, the text has no line, or lines differ in length.
     pub fn from_ascii(resolution: f64, art: &str) -> Result<Self, Invalid> {
         let lines: Vec<&str> = art.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
         let width = lines.first().map_or(0, |line| line.chars().count());
@@ -158,7 +158,7 @@ impl OccupancyGrid {
         Self::new(geometry, lines.iter().rev().flat_map(|line| line.chars().map(cell)).collect())
     }
 
-    /// Where the cells lie.
+    /// Position of the cells in the map frame.
     pub fn geometry(&self) -> &GridGeometry {
         &self.geometry
     }

@@ -1,4 +1,4 @@
-//! An occupancy grid as text of runs, as recordings and messages hold it: `12u3f1o` is 12 unknown, 3 free and 1 occupied cell.
+//! An occupancy grid as text of runs, in recordings and messages: `12u3f1o` is 12 unknown, 3 free and 1 occupied cell.
 
 use crate::{Cell, GridGeometry, Invalid, OccupancyGrid, Vector2};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};

@@ -14,7 +14,7 @@ pub struct Image<T> {
 pub type GrayImage = Image<u8>;
 /// Red, green, blue, 0 to 255 each (sRGB).
 pub type ColorImage = Image<[u8; 3]>;
-/// Depth along the optical axis, metres; 0 if there is none.
+/// Depth along the optical axis, metres; 0 for unknown.
 pub type DepthImage = Image<f32>;
 
 impl<T> Image<T> {
@@ -65,17 +65,17 @@ impl<T> Image<T> {
         &mut self.data
     }
 
-    /// The pixels of row `y`. Panics when there is no such row.
+    /// The pixels of row `y`. Panics for a row outside the image.
     pub fn row(&self, y: usize) -> &[T] {
         &self.data[y * self.width..(y + 1) * self.width]
     }
 
-    /// The pixels of row `y`. Panics when there is no such row.
+    /// The pixels of row `y`. Panics for a row outside the image.
     pub fn row_mut(&mut self, y: usize) -> &mut [T] {
         &mut self.data[y * self.width..(y + 1) * self.width]
     }
 
-    /// The pixel at column `x`, row `y`, if there is one.
+    /// The pixel at column `x`, row `y`; `None` outside the image.
     pub fn get(&self, x: usize, y: usize) -> Option<&T> {
         (x < self.width && y < self.height).then(|| &self.data[y * self.width + x])
     }

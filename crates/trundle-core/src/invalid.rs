@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-/// A value that a constructor refuses: which field, what it was, in which unit, and what would be accepted.
+/// A value that a constructor refuses: field, value, unit and accepted values.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{field} is {value}{unit}, expected {expected}", unit = if unit.is_empty() { String::new() } else { format!(" {unit}") })]
 pub struct Invalid {
@@ -10,7 +10,7 @@ pub struct Invalid {
     pub field: String,
     /// The value met.
     pub value: String,
-    /// Its unit; empty when it has none.
+    /// Unit of the value; empty without a unit.
     pub unit: &'static str,
     /// The accepted values.
     pub expected: String,

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 /// Largest number of zones and places of a map. Source: ours; a floor of a hotel has 100 rooms.
 const MAX_ANNOTATIONS: usize = 400;
-/// Largest number of corners of all zones together. A recording holds each edition whole. Source: ours; 100 kB.
+/// Largest number of corners of all zones together. Each change is recorded as a whole list. Source: ours; 100 kB.
 const MAX_CORNERS_OF_MAP: usize = 4000;
 
 /// Zones and named places of a map, map frame.
@@ -24,16 +24,16 @@ pub struct MapAnnotations {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NamedPlace {
-    /// Its number, unique among zones and places of a map.
+    /// Number of the place, unique among zones and places of a map.
     pub id: u32,
-    /// Its name, unique among the places of a map.
+    /// Name of the place, unique among the places of a map.
     pub name: String,
-    /// `map_from_base` of a robot there.
+    /// `map_from_base` of a robot at the place.
     pub pose: Pose2,
 }
 
 impl MapAnnotations {
-    /// Whether nothing is written on the map.
+    /// Whether the map has no zones and no places.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.zones.is_empty() && self.places.is_empty()
@@ -54,7 +54,7 @@ impl MapAnnotations {
     /// The annotations, their numbers checked.
     ///
     /// # Errors
-    /// When a zone or place cannot be accepted, there are too many, a number comes twice, or two places have one name.
+    /// When a zone or place is invalid, their number is too large, a number is repeated, or two places have one name.
     pub fn validated(self) -> Result<Self, Invalid> {
         let count = self.zones.len() + self.places.len();
         if count > MAX_ANNOTATIONS {

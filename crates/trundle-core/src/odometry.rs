@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// The wheel encoders' counters, which wrap at 2^16 as the Kobuki's do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WheelTicks {
-    /// When they were read.
+    /// Stamp of the reading.
     pub stamp: Stamp,
     /// Left wheel, ticks, wrapping.
     pub left: u16,
@@ -15,10 +15,10 @@ pub struct WheelTicks {
     pub right: u16,
 }
 
-/// One reading of the gyro's vertical axis.
+/// A reading of the gyro's vertical axis.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GyroRate {
-    /// When it was read.
+    /// Stamp of the reading.
     pub stamp: Stamp,
     /// Turn rate, counter-clockwise, rad/s, with the sensor's bias.
     pub omega: f64,
@@ -27,18 +27,18 @@ pub struct GyroRate {
 /// Pose of the robot by wheels and gyro.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Odometry {
-    /// Of the newest wheel reading in it.
+    /// Stamp of the newest wheel reading included.
     pub stamp: Stamp,
     /// `odom_from_base`.
     pub pose: Pose2,
     /// The base's twist.
     pub twist: Twist2,
-    /// Covariance of `pose` as a right perturbation (x m, y m, theta rad), grown since the start.
+    /// Covariance of `pose` as a right perturbation (x m, y m, theta rad), accumulated since the start.
     pub covariance: Matrix3<f64>,
 }
 
 impl Odometry {
-    /// The odometry, each number of it finite and the variances not negative.
+    /// The odometry, checked: each number finite, the variances not negative.
     ///
     /// # Errors
     /// Names the number that is not.

@@ -12,7 +12,7 @@ impl Path {
     /// A path through `points` (map frame, m).
     ///
     /// # Errors
-    /// When there is no point, or one is not finite.
+    /// When the path has no point, or a point is not finite.
     pub fn new(points: Vec<Vector2>) -> Result<Self, Invalid> {
         if points.is_empty() {
             return Err(Invalid::new("path points", 0, "", "1 or more"));

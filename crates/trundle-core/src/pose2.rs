@@ -4,7 +4,7 @@ use crate::{Twist2, Vector2, Vector3, wrap_angle};
 use serde::{Deserialize, Serialize};
 use std::ops::Mul;
 
-/// Largest coordinate of a pose that a user gives \[m\]. Beyond it a cell of a grid has no index. Source: ours.
+/// Largest coordinate of a pose that a user gives \[m\]. A cell of a grid at a larger coordinate has no index. Source: ours.
 pub const MAX_COORDINATE_M: f64 = 1e6;
 
 /// A pose in the plane, an element of SE(2): `a_from_b` maps points of frame b into frame a.
@@ -21,7 +21,7 @@ pub struct Pose2 {
 }
 
 impl Pose2 {
-    /// The pose that changes nothing.
+    /// The identity pose.
     pub const IDENTITY: Self = Self { x: 0.0, y: 0.0, theta: 0.0 };
 
     /// A pose from metres and radians; the heading is wrapped into (-pi, pi].
@@ -56,7 +56,7 @@ impl Pose2 {
         Vector2::new(c * vector.x - s * vector.y, s * vector.x + c * vector.y)
     }
 
-    /// The exponential map of SE(2): where a body moving with constant (vx, vy, omega) stands after one unit of time.
+    /// The exponential map of SE(2): the pose of a body after one unit of time with constant (vx, vy, omega).
     pub fn exp(tangent: Vector3) -> Self {
         let (vx, vy, w) = (tangent.x, tangent.y, tangent.z);
         let (a, b) = sinc_pair(w);

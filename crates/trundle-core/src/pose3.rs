@@ -24,7 +24,7 @@ impl Default for Pose3 {
 }
 
 impl Pose3 {
-    /// The pose that changes nothing.
+    /// The identity pose.
     pub fn identity() -> Self {
         Self { rotation: UnitQuaternion::identity(), translation: Vector3::zeros() }
     }

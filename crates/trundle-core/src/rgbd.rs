@@ -24,7 +24,7 @@ impl RgbdImage {
         Ok(Self { stamp, color, depth })
     }
 
-    /// When it was taken.
+    /// Stamp of the image.
     pub fn stamp(&self) -> Stamp {
         self.stamp
     }
@@ -39,7 +39,7 @@ impl RgbdImage {
         &self.color
     }
 
-    /// The depth image, metres along the optical axis, 0 if there is none.
+    /// The depth image, metres along the optical axis, 0 for unknown.
     pub fn depth(&self) -> &DepthImage {
         &self.depth
     }

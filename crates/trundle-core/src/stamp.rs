@@ -5,7 +5,7 @@ use std::{fmt, ops::Sub};
 
 /// A moment on the sensors' clock: nanoseconds since that clock's epoch.
 ///
-/// Time is in the data: nothing below the runtime reads a clock.
+/// Time is part of the data: no crate below the runtime reads a clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Stamp {

@@ -1,4 +1,4 @@
-//! The problems of TOML files in plain words: the parser and serde speak of types of Rust.
+//! The problems of TOML files in plain words instead of the parser's and serde's Rust types.
 
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Deserializer};
 /// Characters of a line that a message repeats. Source: ours.
 const MAX_EXCERPT_CHARS: usize = 40;
 
-/// Reads a list of exactly `N` numbers, or nothing. The TOML reader itself ignores what follows in a longer list.
+/// Reads a list of exactly `N` numbers; refuses another length. The TOML reader itself ignores further numbers of a longer list.
 ///
 /// # Errors
 /// When the list has another length.
@@ -23,11 +23,11 @@ pub fn number_list<'de, D: Deserializer<'de>, const N: usize>(from: D) -> Result
 pub struct TomlProblem {
     /// The line, from 1.
     pub line: usize,
-    /// The problem there, and the accepted content.
+    /// The problem, and the accepted content.
     pub message: String,
 }
 
-/// Parser's marks of faults of form, and what is wrong in plain words.
+/// Phrases of the parser for syntax errors, and the same in plain words.
 const FORM_FAULTS: [(&str, &str); 13] = [
     ("key with no value", "there is no value, expected KEY = VALUE"),
     ("missing value", "there is no value, expected KEY = VALUE"),
@@ -70,7 +70,7 @@ const KINDS: [(&str, &str); 15] = [
     ("sequence", "a list"),
 ];
 
-/// The problem that a parser of TOML, or serde behind it, found in `text` at the byte `at`.
+/// The problem found in `text` at the byte `at` by a TOML parser, or by serde after it.
 #[must_use]
 pub fn toml_problem(text: &str, at: Option<usize>, message: &str) -> TomlProblem {
     let before = at.and_then(|at| text.get(..at)).unwrap_or_default();
@@ -120,13 +120,13 @@ fn of_key(message: &str) -> Option<String> {
     name.map(|name| format!("the key {name} is missing"))
 }
 
-/// Messages of the parser about the form of a line.
+/// Messages of the parser about the syntax of a line.
 fn of_form(content: &str, message: &str) -> Option<String> {
     let (_, words) = FORM_FAULTS.iter().find(|(mark, _)| message.contains(mark))?;
     Some(format!("'{}': {words}", excerpt(content)))
 }
 
-/// A value as serde describes it: its kind, then itself in quotes.
+/// A value in serde's description: its kind, then the value in quotes.
 fn found_value(found: &str) -> String {
     let mut quoted = found.split('`');
     if let (Some(_), Some(value)) = (quoted.next(), quoted.next()) {

@@ -2,7 +2,7 @@
 
 use crate::{Invalid, Pose2, Twist2};
 
-/// Where the robot should be at a time, and how it should be moving.
+/// Reference pose and twist of the robot at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrajectoryPoint {
     /// Seconds since the trajectory's start.
@@ -23,7 +23,7 @@ impl Trajectory {
     /// A trajectory through `points`.
     ///
     /// # Errors
-    /// When there is no point, the first time is not 0, times do not rise strictly, or a number is not finite.
+    /// When the trajectory has no point, the first time is not 0, times do not increase strictly, or a number is not finite.
     pub fn new(points: Vec<TrajectoryPoint>) -> Result<Self, Invalid> {
         let Some(first) = points.first() else {
             return Err(Invalid::new("trajectory points", 0, "", "1 or more"));

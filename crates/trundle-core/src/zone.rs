@@ -16,11 +16,11 @@ const MIN_ZONE_AREA_M2: f64 = 1e-4;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Zone {
-    /// Its number, unique among zones and places of a map.
+    /// Number of the zone, unique among zones and places of a map.
     pub id: u32,
-    /// Its name; may be empty.
+    /// Name of the zone; may be empty.
     pub name: String,
-    /// Its rule.
+    /// Rule of the zone.
     pub kind: ZoneKind,
     /// Corners \[m\], three or more, in either order; the last is joined to the first. No two sides cross.
     pub outline: Vec<[f64; 2]>,
@@ -30,9 +30,9 @@ pub struct Zone {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ZoneKind {
-    /// The robot plans no path onto it.
+    /// The robot plans no path through the zone.
     NoGo,
-    /// The robot plans no faster there than this \[m/s\].
+    /// The robot plans at most this speed in the zone \[m/s\].
     Slow(f64),
     /// No rule: it has a name alone.
     Area,
@@ -42,8 +42,8 @@ impl Zone {
     /// The zone, its numbers checked.
     ///
     /// # Errors
-    /// When the name is too long or holds control characters, a number is not finite or out of range, there are too few or too many
-    /// corners, two sides cross, or the zone has no area.
+    /// When the name is too long or contains control characters, a number is not finite or out of range, the number of corners is too small
+    /// or too large, two sides cross, or the zone has no area.
     pub fn validated(self) -> Result<Self, Invalid> {
         let label = self.label();
         require_name(&label, &self.name)?;
@@ -72,7 +72,7 @@ impl Zone {
         Ok(self)
     }
 
-    /// Name in messages: `zone 'stairs'`, `zone 3`, or `the new zone` if it has no number yet.
+    /// Name in messages: `zone 'stairs'`, `zone 3`, or `the new zone` before a number is assigned.
     #[must_use]
     pub fn label(&self) -> String {
         match self.name.trim() {
@@ -82,13 +82,13 @@ impl Zone {
         }
     }
 
-    /// Its corners, map frame \[m\].
+    /// Corners of the zone, map frame \[m\].
     #[must_use]
     pub fn corners(&self) -> Vec<Vector2> {
         self.outline.iter().map(|[x, y]| Vector2::new(*x, *y)).collect()
     }
 
-    /// Lowest and highest x and y of its corners \[m\].
+    /// Lowest and highest x and y of the corners \[m\].
     #[must_use]
     pub fn bounds(&self) -> (Vector2, Vector2) {
         let none = (Vector2::repeat(f64::INFINITY), Vector2::repeat(f64::NEG_INFINITY));
@@ -133,7 +133,7 @@ fn crossing_sides(corners: &[Vector2]) -> Option<(usize, usize)> {
     None
 }
 
-/// Whether the second of two joined sides lies on the first, or has no length.
+/// Whether the second of two joined sides overlaps the first, or has length zero.
 fn folds_back((a, b): (Vector2, Vector2), (_, c): (Vector2, Vector2)) -> bool {
     let (first, second) = (b - a, c - b);
     first.perp(&second) == 0.0 && first.dot(&second) <= 0.0

@@ -4,13 +4,13 @@
 pub enum Certificate {
     /// No motion of any kind leads from start to goal: a proof over all poses within reach.
     Never,
-    /// No motion leads through the centres of cells of the asked side, with exact headings: complete at that resolution.
+    /// No motion leads through the centres of cells of the requested side, with exact headings: complete at that resolution.
     AtResolution,
     /// No manoeuvre was found with the effort allowed: no certificate.
     None,
 }
 
-/// The setting of [`crate::DockingConfig`] that ended a search which neither found a manoeuvre nor proved that there is none.
+/// The setting of [`crate::DockingConfig`] that ended a search without a manoeuvre and without a proof of its impossibility.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SearchLimit {
     /// `search_nodes`: the number of expanded nodes.

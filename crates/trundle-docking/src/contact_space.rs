@@ -76,7 +76,7 @@ impl<'a> ContactSpace<'a> {
         self.scene
     }
 
-    /// Counted cost of all queries, those of its clones included: steps of about ten nanoseconds on a processor of 2020. The same on
+    /// Counted cost of all queries, including those of clones: steps of about ten nanoseconds on a processor of 2020. The count is equal on
     /// every machine.
     pub fn work(&self) -> u64 {
         self.budget.work()
@@ -92,7 +92,7 @@ impl<'a> ContactSpace<'a> {
         self.work().saturating_add(more).min(self.budget.most)
     }
 
-    /// Whether the whole plan has reached its limit.
+    /// Whether the work of the whole plan has reached its limit.
     pub(crate) fn is_spent(&self) -> bool {
         self.budget.is_spent()
     }
@@ -102,7 +102,7 @@ impl<'a> ContactSpace<'a> {
         self.budget.spend(work);
     }
 
-    /// Yields, where the work is done in parts, until more is granted.
+    /// Yields, if the work is done in parts, until more work is granted.
     pub(crate) fn yield_point(&self) -> BudgetYield<'_> {
         BudgetYield(&self.budget)
     }
@@ -114,7 +114,7 @@ impl<'a> ContactSpace<'a> {
         nearest.map(|(_, blocker)| blocker)
     }
 
-    /// The obstacle that stops a motion from `pose` before its end, if any.
+    /// The obstacle that stops a motion from `pose` before its end; `None` if the motion is free.
     pub fn blocker_of(&mut self, pose: &Pose2, motion: Motion) -> Option<Blocker> {
         match motion {
             Motion::Turn(angle) => {
@@ -182,8 +182,8 @@ impl<'a> ContactSpace<'a> {
         free
     }
 
-    /// Adds the headings at which a base at `position` overlaps an obstacle, sorted and joined; among many points some hundredths of
-    /// a radian of them may be missing.
+    /// Adds the headings at which a base at `position` overlaps an obstacle, sorted and joined. Among many points, up to some hundredths of
+    /// a radian may be missing.
     pub fn blocked_headings(&mut self, position: Vector2, blocked: &mut Vec<HeadingArc>) {
         let (hull, angles) = (&self.hull, &mut self.angles);
         let (first, half) = (blocked.len(), Vector2::repeat(hull.outer_radius()));

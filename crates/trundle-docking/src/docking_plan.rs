@@ -33,7 +33,7 @@ pub enum DockingRefusal {
 pub enum DockingPlan {
     /// A manoeuvre.
     Found(Solution),
-    /// There is none.
+    /// No manoeuvre exists.
     Impossible(Impossible),
 }
 
@@ -44,14 +44,14 @@ pub struct Solution {
     pub manoeuvre: Manoeuvre,
     /// Lower bound of the time of any manoeuvre with this margin, s.
     pub bound: f64,
-    /// The margin kept, m.
+    /// Margin of the manoeuvre, m.
     pub margin: f64,
 }
 
 /// Reason for the absence of a manoeuvre.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Impossible {
-    /// The obstacle that blocks it.
+    /// The blocking obstacle.
     pub by: Option<Blocker>,
     /// The proof; always [`Certificate::None`] by the method of \[Hong24\].
     pub certificate: Certificate,

@@ -7,7 +7,7 @@ use trundle_collision::{
 };
 use trundle_core::{Pose2, Vector2};
 
-/// Distance before a contact at which motions stop, m or rad, so that the next one begins without contact. Source: ours.
+/// Distance from a contact at which motions stop, m or rad: the next motion then begins without contact. Source: ours.
 pub const BACK_OFF: f64 = 1e-5;
 /// Rounding of sums of headings and distances, m or rad; far less than [`BACK_OFF`]. Source: ours.
 const ROUNDING_SLACK: f64 = 1e-9;
@@ -69,7 +69,7 @@ impl FreeTurn {
 /// Free straight moves of a robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeDrive {
-    /// Forward until the first contact, m, at most the distance asked for.
+    /// Forward until the first contact, m, at most the requested distance.
     pub ahead: f64,
     /// Backward until the first contact, m.
     pub behind: f64,

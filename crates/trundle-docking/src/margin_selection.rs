@@ -1,8 +1,8 @@
-//! Choice of the margin where the full one costs much time or has no manoeuvre.
+//! Choice of the margin if the full margin costs much time or allows no manoeuvre.
 //!
-//! Problem: the manoeuvre with the full margin in a narrow space may be very long, or take long to find. Idea: search one or two
-//! legs with smaller and smaller margins first. Search more legs with the full margin, and take them when they are not much slower
-//! than a manoeuvre with a smaller margin. Cost is counted, not timed, so that the answer is the same on every machine.
+//! Problem: the manoeuvre with the full margin in a narrow space may be very long, or take long to find. Idea: search one or two legs with
+//! smaller and smaller margins first. Search more legs with the full margin, and take them if they are not much slower than a manoeuvre
+//! with a smaller margin. The cost is counted, not timed, which gives the same answer on every machine.
 
 use crate::certificate::{Certificate, SearchLimit};
 use crate::contact_space::ContactSpace;
@@ -22,10 +22,10 @@ use trundle_core::Footprint;
 const MAX_TIME_RATIO: f64 = 3.0;
 /// Number of boxes for that lower bound. Source: ours.
 const RATIO_BOUND_BOXES: usize = 100;
-/// Divisor of the work for many motions where a smaller margin allows one or two legs. Source: ours.
+/// Divisor of the work for many motions if a smaller margin allows one or two legs. Source: ours.
 const REDUCED_WORK_DIVISOR: u64 = 40;
 
-/// A docking query, and the margins that may be kept, m.
+/// A docking query, and the candidate margins, m.
 #[derive(Debug)]
 pub struct MarginSelection<'a> {
     pub footprint: &'a Footprint,
@@ -47,7 +47,7 @@ struct FoundLegs<'a> {
 }
 
 impl<'a> MarginSelection<'a> {
-    /// The manoeuvre, with the margin that is worth its time.
+    /// The manoeuvre with the best compromise of margin and time.
     pub async fn plan(&self) -> DockingPlan {
         if let Some(found) = self.one_or_two(self.most).await {
             return self.solution(found).await;
@@ -60,7 +60,7 @@ impl<'a> MarginSelection<'a> {
             quick = self.one_or_two(self.least).await;
         }
         let Some(quick) = quick else {
-            // A proof for the smallest margin holds for all.
+            // A proof for the smallest margin is valid for all.
             let never = min_time::never(&self.query, &self.space(self.least), self.effort).await;
             return match never {
                 Some(LegOutcome::Disconnected(certificate, by)) => {
@@ -117,7 +117,7 @@ impl<'a> MarginSelection<'a> {
         Some(FoundLegs { space, legs, margin })
     }
 
-    /// With the work divided by `part`.
+    /// The search with the work divided by `part`.
     async fn many(&self, margin: f64, part: u64) -> Result<FoundLegs<'a>, NoLegs> {
         let mut space = self.space(margin);
         let effort = Effort { work: self.effort.work / part, ..self.effort };

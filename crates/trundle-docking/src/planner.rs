@@ -50,7 +50,7 @@ impl DockingPlanner {
         Ok(Self { config: config.validated()? })
     }
 
-    /// Its settings.
+    /// Settings of the planner.
     pub fn config(&self) -> &DockingConfig {
         &self.config
     }
@@ -166,7 +166,7 @@ impl DockingPlanner {
         match wide.plan().await {
             DockingPlan::Impossible(none) if none.certificate == Certificate::None => {
                 let limit = if budget.is_spent() { Some(self.limit_of(scene).1) } else { none.limit };
-                // A proof near the ends stands.
+                // A proof found near the ends is valid for the whole query.
                 let shown = if nearby.certificate == Certificate::None { none } else { nearby };
                 DockingPlan::Impossible(Impossible { limit, ..shown })
             }
@@ -225,8 +225,8 @@ impl DockingPlanner {
         DockingQuery { start, goal, limits: self.config.limits, reach: self.config.reach }
     }
 
-    /// A lower bound (s) of the time of any manoeuvre from `start` to `goal`, with the effort of the configuration; at most `known`,
-    /// the time of a manoeuvre.
+    /// A lower bound (s) of the time of any manoeuvre from `start` to `goal`, with the effort of the configuration; at most `known`, the
+    /// time of a known manoeuvre.
     ///
     /// # Errors
     /// As [`DockingPlanner::plan`].

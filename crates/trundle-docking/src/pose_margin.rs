@@ -3,13 +3,13 @@
 use nalgebra::Matrix3;
 use trundle_core::Footprint;
 
-/// The margin from obstacles, m, with which a pose of this covariance (x m, y m, heading rad, right perturbation) hides no contact
-/// within this many standard deviations.
+/// The margin from obstacles, m, with which a pose of this covariance (x m, y m, heading rad, right perturbation) has no contact within
+/// this many standard deviations.
 ///
-/// A point at distance r from the axle has the error of the position plus r times the error of the heading. With the largest
-/// standard deviation of the position in any direction and the largest distance of a footprint's point:
-/// `sigmas * (sqrt(largest eigenvalue of the position's part) + r_max * sqrt(heading's variance))`, an upper bound for any
-/// correlation. An invalid covariance (negative or not finite on its diagonal) gives 0.
+/// A point at distance r from the axle has the error of the position plus r times the error of the heading. With the largest standard
+/// deviation of the position in any direction and the largest distance of a footprint's point it is `sigmas * (sqrt(largest eigenvalue of
+/// the position's part) + r_max * sqrt(heading's variance))`. This is an upper bound for any correlation. An invalid covariance (negative
+/// or not finite on its diagonal) gives 0.
 pub fn margin_of(covariance: &Matrix3<f64>, footprint: &Footprint, sigmas: f64) -> f64 {
     let (xx, yy) = (covariance[(0, 0)], covariance[(1, 1)]);
     let xy = (covariance[(0, 1)] + covariance[(1, 0)]) / 2.0;

@@ -1,8 +1,8 @@
 //! Counted work, done in parts.
 //!
-//! Problem: a search of some tens of milliseconds does not fit into a control step of twenty. Idea: the search is a future that
-//! yields when it has used its grant, and continues with the next grant. Only counted work decides where it yields, so that the
-//! answer and the number of grants are the same on every machine.
+//! Problem: a search of some tens of milliseconds does not fit into a control step of twenty. Idea: the search is a future that yields when
+//! its grant is used up, and continues with the next grant. Counted work alone decides the places of yields: the answer and the number of
+//! grants are equal on every machine.
 
 use std::fmt;
 use std::pin::{Pin, pin};
@@ -15,7 +15,7 @@ use std::task::{Context, Poll, Waker};
 pub struct WorkBudget {
     work: AtomicU64,
     granted: AtomicU64,
-    /// Total work at which everything ends.
+    /// Total work at which every search ends.
     pub most: u64,
 }
 
@@ -25,7 +25,7 @@ impl WorkBudget {
         Arc::new(Self { work: AtomicU64::new(0), granted: AtomicU64::new(u64::MAX), most })
     }
 
-    /// A budget that yields at once, until work is granted.
+    /// A budget that yields immediately, until work is granted.
     pub fn rationed(most: u64) -> Arc<Self> {
         Arc::new(Self { work: AtomicU64::new(0), granted: AtomicU64::new(0), most })
     }
@@ -86,9 +86,9 @@ impl<T> PlanningJob<T> {
         Self { budget, search: Box::pin(search) }
     }
 
-    /// Continues the search for about `work` steps of about ten nanoseconds each ([`crate::ContactSpace::work`]): it yields at the first
-    /// possible place beyond. Returns the result once it is complete, the same as [`crate::DockingPlanner::plan_with_margin`]'s for any division
-    /// into parts. Must not be called again after that.
+    /// Continues the search for about `work` steps of about ten nanoseconds each ([`crate::ContactSpace::work`]), up to the next possible
+    /// yield. Returns the result at the end, equal to that of [`crate::DockingPlanner::plan_with_margin`] for any division into parts. Must
+    /// not be called again after the result.
     pub fn advance(&mut self, work: u64) -> Option<T> {
         self.budget.grant(work);
         match self.search.as_mut().poll(&mut Context::from_waker(Waker::noop())) {

@@ -6,10 +6,10 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// Port of a Kobuki where the udev rule of [`KOBUKI_UDEV_RULE`] is installed.
+/// Port of a Kobuki on a system with the udev rule [`KOBUKI_UDEV_RULE`].
 pub const KOBUKI_UDEV_PORT: &str = "/dev/kobuki";
-/// Rule of udev that gives a Kobuki's port its name and lets everyone in the group `dialout` use it. The FTDI chip of a Kobuki has a serial
-/// number that begins with `kobuki`. Source: measured by many users; the chip is an FT232 (0403:6001).
+/// Udev rule that names a Kobuki's port and gives access to the group `dialout`. The FTDI chip of a Kobuki has a serial number that begins
+/// with `kobuki`. Source: measured by many users; the chip is an FT232 (0403:6001).
 pub const KOBUKI_UDEV_RULE: &str = "SUBSYSTEM==\"tty\", ATTRS{idVendor}==\"0403\", ATTRS{idProduct}==\"6001\", \
     ATTRS{serial}==\"kobuki*\", ATTR{device/latency_timer}=\"1\", MODE=\"0660\", GROUP=\"dialout\", SYMLINK+=\"kobuki\"";
 
@@ -22,8 +22,8 @@ pub enum BaseSpec {
 }
 
 impl BaseSpec {
-    /// Opener of the base's port. `program` has the command [`crate::kobuki::base_guard::GUARD_COMMAND`]: a process of it stops the base
-    /// where this program dies.
+    /// Opener of the base's port. `program` has the command [`crate::kobuki::base_guard::GUARD_COMMAND`]: a guard process stops the base if
+    /// this program dies.
     #[must_use]
     pub fn connector(&self, program: &Path) -> Box<dyn Connector> {
         let Self::Kobuki(port) = self;

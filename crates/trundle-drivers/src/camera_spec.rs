@@ -42,7 +42,7 @@ impl CameraSpec {
     /// library may crash run in that process.
     ///
     /// # Errors
-    /// When there is no such camera, its library is missing, or it cannot be used.
+    /// When the camera does not exist, its library is missing, or it cannot be used.
     pub fn open(&self, timeout: Duration, program: &Path) -> Result<Box<dyn DepthCamera>, CameraError> {
         Ok(match self {
             Self::Stream(path) => Box::new(StreamCamera::open(path, timeout)?),

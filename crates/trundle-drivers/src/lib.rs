@@ -6,7 +6,7 @@
 //! | [`camera`] | depth cameras: one trait, pixel formats, registration of depth to colour |
 //! | [`clock`] | device clocks mapped to one clock, events put in order |
 //!
-//! A user names a base by a [`BaseSpec`] and a camera by a [`CameraSpec`].
+//! [`BaseSpec`] and [`CameraSpec`] are a user's names of a base and a camera.
 
 mod base_spec;
 pub mod camera;

@@ -7,28 +7,28 @@ use std::path::{Path, PathBuf};
 
 /// Folder of the devices on Linux.
 const DEVICE_FOLDER: &str = "/dev";
-/// Folder in which Linux names serial devices by maker and number.
+/// Folder of Linux with serial devices named by manufacturer and serial number.
 const BY_ID_FOLDER: &str = "/dev/serial/by-id";
-/// Beginnings of the names of serial devices at USB. Source: Linux's drivers usb-serial and cdc-acm.
+/// Prefixes of the names of USB serial devices. Source: Linux's drivers usb-serial and cdc-acm.
 const USB_SERIAL_NAMES: [&str; 2] = ["ttyUSB", "ttyACM"];
 
 /// A serial device at USB.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SerialDevice {
-    /// Where it is opened.
+    /// Path of the device.
     pub path: PathBuf,
     /// Maker, model and number; empty if the system does not list them.
     pub id: String,
-    /// Whether this user may open it.
+    /// Access of this user to the port.
     pub access: PortAccess,
 }
 
 /// Whether a port can be opened by this user.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PortAccess {
-    /// It can.
+    /// The port can be opened.
     Free,
-    /// Another program has it.
+    /// Another program uses the port.
     Busy,
     /// The user lacks the right.
     NoRights,
@@ -37,14 +37,14 @@ pub enum PortAccess {
 }
 
 impl SerialDevice {
-    /// Whether its name is that of a Kobuki's serial chip.
+    /// Whether the device's name is that of a Kobuki's serial chip.
     #[must_use]
     pub fn is_kobuki(&self) -> bool {
         self.id.to_lowercase().contains("kobuki")
     }
 }
 
-/// The serial devices at USB, sorted by path. Only Linux lists them.
+/// The USB serial devices, sorted by path. Only available on Linux.
 #[must_use]
 pub fn serial_devices() -> Vec<SerialDevice> {
     list(Path::new(DEVICE_FOLDER), Path::new(BY_ID_FOLDER))
@@ -66,7 +66,7 @@ fn list(devices: &Path, by_id: &Path) -> Vec<SerialDevice> {
     paths.into_iter().map(device).collect()
 }
 
-/// Names by maker and number, of the devices that they lead to.
+/// Names by manufacturer and serial number, by the path of their device.
 fn ids(by_id: &Path) -> BTreeMap<PathBuf, String> {
     let entries = fs::read_dir(by_id).into_iter().flatten().flatten();
     let named = entries.filter_map(|entry| {

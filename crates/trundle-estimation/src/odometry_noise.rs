@@ -37,7 +37,7 @@ const MAX_GAP_DISTANCE_M: f64 = 10.0;
 pub(crate) fn of_step(config: &OdometryConfig, step: &Step) -> Matrix3<f64> {
     let (distance, turn) = (step.distance.abs(), step.turn.abs());
     let slip = config.slip_length * step.slip;
-    // These two constants include the slip that no gyro shows.
+    // These two constants include slip that the gyro does not measure.
     let by_wheels = config.wheel_turn_noise.powi(2) * turn + config.wheel_way_noise.powi(2) * distance;
     let heading = step.by_gyro.unwrap_or(by_wheels);
     let spot = config.spot_noise.powi(2) * turn + slip;
@@ -64,7 +64,7 @@ pub(crate) struct UnobservedMotion {
     pub(crate) turn_variance: f64,
 }
 
-/// Correlation time of an unobserved motion, s. A longer time makes its variance grow faster. Source: ours.
+/// Correlation time of an unobserved motion, s. With a longer time the variance grows faster. Source: ours.
 const UNOBSERVED_CORRELATION_S: f64 = 2.0;
 /// Sideways part of an unobserved distance, ratio: the path may curve. Source: ours.
 const UNOBSERVED_SIDEWAYS_RATIO: f64 = 0.2;

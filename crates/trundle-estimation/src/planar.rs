@@ -22,7 +22,7 @@ pub(crate) fn small_adjoint(tangent: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -theta, y, theta, 0.0, -x, 0.0, 0.0, 0.0)
 }
 
-/// Angle below which the series stand for the closed forms, rad. Source: ours; their error there is below 1e-12.
+/// Angle below which series replace the closed forms, rad. Source: ours; their error below it is less than 1e-12.
 const MAX_SERIES_ANGLE_RAD: f64 = 1e-3;
 
 /// Right Jacobian of SE(2): `exp(a + b) = exp(a) exp(J b)` to first order in b. Closed form by ad^3 = -theta^2 ad.
@@ -68,8 +68,8 @@ pub(crate) fn without_negative_variances(matrix: Matrix3<f64>) -> Matrix3<f64> {
     symmetric(eigen.recompose())
 }
 
-/// The covariance of the base's planar pose (x m, y m, theta rad) that follows from the covariance of the camera's pose
-/// (m, m, m, rad, rad, rad), both as right perturbations.
+/// The covariance of the base's planar pose (x m, y m, theta rad), derived from the covariance of the camera's pose (m, m, m, rad, rad,
+/// rad); both are right perturbations.
 pub fn planar_covariance(camera: &Matrix6<f64>, base_from_camera: &Pose3) -> Matrix3<f64> {
     let to_base = base_from_camera.adjoint();
     let planar = Matrix3x6::from_rows(&[to_base.row(0), to_base.row(1), to_base.row(5)]);

@@ -1,4 +1,4 @@
-//! A smoother with a full window allocates nothing, and a step takes little.
+//! A smoother with a full window allocates no memory, and its step is fast.
 #![allow(clippy::unwrap_used, reason = "tests")]
 #![allow(clippy::print_stdout, reason = "the test reports a time")]
 

@@ -4,13 +4,13 @@ use crate::{Alignment, ErrorStatistics, EvalError, Similarity, align, associate}
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, Stamp, Vector3, require_finite};
 
-/// How the absolute trajectory error is taken.
+/// Settings of the absolute trajectory error.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct AbsoluteConfig {
-    /// Poses further apart in time than this are not compared, s; 0 or more; 0.01 as in evo.
+    /// Largest time difference of compared poses, s; 0 or more; 0.01 as in evo.
     pub max_difference: f64,
-    /// How the estimate is laid over the reference; [`Alignment::Rigid`] as the TUM benchmark does.
+    /// Alignment of the estimate with the reference; [`Alignment::Rigid`] as in the TUM benchmark.
     pub alignment: Alignment,
 }
 
@@ -39,14 +39,14 @@ pub(crate) fn require_max_difference(seconds: f64) -> Result<f64, Invalid> {
     Ok(seconds)
 }
 
-/// How far an estimate is from the truth.
+/// Absolute error of an estimate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AbsoluteError {
-    /// Of the distances between positions, m: `rmse` is the ATE of the TUM benchmark.
+    /// Distances between positions, m: `rmse` is the ATE of the TUM benchmark.
     pub statistics: ErrorStatistics,
-    /// Of the angles between orientations, rad.
+    /// Angles between orientations, rad.
     pub rotation: ErrorStatistics,
-    /// `reference_from_estimate`, as it was applied.
+    /// `reference_from_estimate` of the alignment.
     pub alignment: Similarity,
     /// The compared poses: (index in the reference, index in the estimate).
     pub pairs: Vec<(usize, usize)>,
@@ -54,11 +54,11 @@ pub struct AbsoluteError {
     pub errors: Vec<f64>,
 }
 
-/// The absolute trajectory error (evo's APE) of `estimate` against `reference`: associated by time, aligned by
-/// position, then the distance and the angle between the poses of each pair. Source: \[Sturm12\], eq. 3.
+/// The absolute trajectory error (evo's APE) of `estimate` against `reference`. Poses are associated by time and aligned by position; the
+/// errors are the distance and the angle of each pair. Source: \[Sturm12\], eq. 3.
 ///
 /// # Errors
-/// When stamps go back, nothing can be associated, a pose is not finite, or the alignment fails ([`align`]).
+/// When stamps decrease, no pose can be associated, a pose is not finite, or the alignment fails ([`align`]).
 pub fn absolute_trajectory_error(
     reference: &[(Stamp, Pose3)],
     estimate: &[(Stamp, Pose3)],
@@ -104,7 +104,7 @@ pub(crate) fn associated(
     Ok((pairs, truth, found))
 }
 
-/// Finite, and so small (below 1e100 m) that squares and sums of it are finite too.
+/// Whether the pose is finite and small enough (below 1e100 m) for finite squares and sums.
 fn usable(pose: &Pose3) -> bool {
     pose.is_finite() && pose.translation.amax() < 1e100
 }

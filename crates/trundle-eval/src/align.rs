@@ -5,11 +5,11 @@ use nalgebra::{Matrix3, Matrix4, Quaternion, SymmetricEigen, UnitQuaternion};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Pose3, Vector3};
 
-/// How an estimate is laid over the reference before it is evaluated.
+/// Alignment of an estimate with the reference before its evaluation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Alignment {
-    /// Not at all: both are in one frame.
+    /// No alignment: both are in one frame.
     None,
     /// By the rotation and translation that leave the least square error (evo's `-a`).
     #[default]
@@ -37,7 +37,7 @@ pub struct Similarity {
 }
 
 impl Similarity {
-    /// The one that changes nothing.
+    /// The identity.
     pub fn identity() -> Self {
         Self { pose: Pose3::identity(), scale: 1.0 }
     }
@@ -53,13 +53,12 @@ const MIN_ROTATION_GAP_RATIO: f64 = 1e-12;
 
 /// The transform T that minimises `sum |reference[i] - T estimate[i]|^2`; positions in m, pair by pair.
 ///
-/// Horn's closed form \[Horn87\]: the rotation is the eigenvector of the largest eigenvalue of a symmetric 4 x 4 matrix
-/// made of the cross-covariance, always proper; it is the minimum that Umeyama's SVD with its sign correction finds,
-/// and the eigenvalue is his `tr(DS)`, from which the scale follows \[Umeyama91, eq. 42\].
+/// Horn's closed form \[Horn87\]: the rotation is the eigenvector of the largest eigenvalue of a symmetric 4 x 4 matrix of the
+/// cross-covariance, always proper. It is the minimum of Umeyama's SVD with sign correction. The eigenvalue is Umeyama's `tr(DS)`, which
+/// gives the scale \[Umeyama91, eq. 42\].
 ///
 /// # Errors
-/// When the slices differ in length, hold fewer than three positions or one that is not finite, or when the
-/// positions lie on a line.
+/// When the slices differ in length, have fewer than three positions or one that is not finite, or the positions are collinear.
 pub fn align(
     reference: &[Vector3],
     estimate: &[Vector3],

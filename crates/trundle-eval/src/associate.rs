@@ -5,13 +5,13 @@ use trundle_core::{Stamp, require_finite};
 
 /// Pairs (index in `reference`, index in `estimate`) of poses that belong together, by rising time.
 ///
-/// evo's rule: every stamp of the shorter list (the estimate when both are as long) takes the nearest stamp of the
-/// longer one, if that is at most `max_difference` seconds away. A stamp of the longer list may be taken twice.
-/// Of two that are equally near the first is taken; which are so is decided in f64 seconds as evo does (0.2 us for
-/// dates of our century), because real files hold ties.
+/// evo's rule: every stamp of the shorter list (the estimate for equal lengths) is associated with the nearest stamp of the longer list
+/// within `max_difference` seconds. A stamp of the longer list may be taken twice. Of two equally near stamps the first is used. Equality
+/// is decided in f64 seconds as in evo (0.2 us for present dates), because real files contain such ties.
 ///
 /// # Errors
-/// When a list is empty or its stamps go back (TUM's ground truth repeats some), when nothing is near enough, or `max_difference` is not finite.
+/// When a list is empty or its stamps decrease (TUM's ground truth repeats some), no stamp is near enough, or `max_difference` is not
+/// finite.
 pub fn associate(
     reference: &[Stamp],
     estimate: &[Stamp],
@@ -49,13 +49,13 @@ fn span(stamps: &[Stamp], side: Side) -> Result<(Stamp, Stamp), EvalError> {
     }
 }
 
-/// The f64 nearest to the stamp in seconds, as a parser of its decimal text would give it. (Whole seconds are exact,
-/// and no decimal of nine digits lies near enough to the middle of two f64 for the second rounding to matter.)
+/// The f64 nearest to the stamp in seconds, equal to the parsed decimal text. (Whole seconds are exact, and no decimal of nine digits lies
+/// near enough to the middle of two f64 for the second rounding to matter.)
 fn seconds(stamp: &Stamp) -> f64 {
     (stamp.nanos / 1_000_000_000) as f64 + (stamp.nanos % 1_000_000_000) as f64 / 1e9
 }
 
-/// For every time of `short`, the nearest of `long` within `limit` s. Both rise.
+/// For every time of `short`, the nearest of `long` within `limit` s. Both lists are sorted.
 fn nearest<'a>(short: &'a [f64], long: &'a [f64], limit: f64) -> impl Iterator<Item = (usize, usize)> + 'a {
     short.iter().enumerate().filter_map(move |(i, &time)| {
         let away = |j: usize| (long[j] - time).abs();

@@ -4,7 +4,7 @@ use std::fmt;
 use thiserror::Error;
 use trundle_core::{Invalid, Stamp};
 
-/// Which of the two that are compared is meant.
+/// Side of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     /// The ground truth.
@@ -22,30 +22,30 @@ impl fmt::Display for Side {
     }
 }
 
-/// Why two trajectories or maps cannot be compared.
+/// Reason why two trajectories or maps cannot be compared.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum EvalError {
     /// A trajectory without a pose.
     #[error("the {0} trajectory has no pose")]
     Empty(Side),
-    /// Stamps may not go back.
+    /// Stamps decrease.
     #[error("stamp of {side} pose {index} is {stamp} s, expected at least the {before} s of the pose before")]
     StampsGoBack {
-        /// Which trajectory.
+        /// The trajectory.
         side: Side,
-        /// Which pose, from 0.
+        /// Index of the pose, from 0.
         index: usize,
-        /// Its stamp.
+        /// Stamp of the pose.
         stamp: Stamp,
-        /// The stamp before it.
+        /// Stamp of the previous pose.
         before: Stamp,
     },
     /// A pose holds NaN or infinity.
     #[error("{side} pose {index} is not finite")]
     NotFinite {
-        /// Which trajectory.
+        /// The trajectory.
         side: Side,
-        /// Which pose, from 0.
+        /// Index of the pose, from 0.
         index: usize,
     },
     /// No pose of one is near in time to a pose of the other.
@@ -61,12 +61,12 @@ pub enum EvalError {
         /// The limit, s.
         max_difference: f64,
     },
-    /// Too little to work on.
+    /// Too few poses.
     #[error("{found} associated poses, expected {needed} or more")]
     TooFewPoses {
-        /// How many there are.
+        /// Number of poses.
         found: usize,
-        /// How many it takes.
+        /// Required number of poses.
         needed: usize,
     },
     /// The two slices to align differ in length.
@@ -83,7 +83,7 @@ pub enum EvalError {
          so that no rotation aligns them better than others"
     )]
     Degenerate {
-        /// How many positions.
+        /// Number of positions.
         poses: usize,
         /// Relative gap between the best rotation and the next, without unit.
         spread: f64,
@@ -91,21 +91,21 @@ pub enum EvalError {
     /// No pair of poses is `delta` apart.
     #[error("no two of the {poses} associated poses are {delta} apart")]
     NoPairs {
-        /// How many poses there are.
+        /// Number of poses.
         poses: usize,
-        /// The distance asked for.
+        /// The requested distance.
         delta: crate::Delta,
     },
-    /// No relation has poses at both its times.
+    /// No relation has poses at both of its times.
     #[error("the estimate has poses for none of the {relations} relations")]
     NoRelation {
-        /// How many relations there are.
+        /// Number of relations.
         relations: usize,
     },
-    /// A map in which nothing can be compared.
+    /// A map without comparable obstacles.
     #[error("the {side} map has no obstacle to compare")]
     NoObstacle {
-        /// Which map.
+        /// The map.
         side: Side,
     },
     /// An option is out of range.
@@ -114,7 +114,7 @@ pub enum EvalError {
 }
 
 impl EvalError {
-    /// Which of the two the error is about, where it is about one of them.
+    /// Side of the error; `None` if it concerns both sides.
     pub fn side(&self) -> Option<Side> {
         match self {
             Self::Empty(side)

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose2, difference_of_angles};
 
-/// How far from its goal the robot stands.
+/// Error of the robot's pose at its goal.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GoalError {
     /// Reached minus goal along the map's x, m.
@@ -16,7 +16,7 @@ pub struct GoalError {
     pub dtheta: f64,
 }
 
-/// The error at the goal: where the robot stands (`reached`) against where it should, both `map_from_base`.
+/// The error at the goal: the reached pose (`reached`) against the goal, both `map_from_base`.
 ///
 /// # Errors
 /// When a pose is not finite.

@@ -1,11 +1,11 @@
 //! Trajectory, map and goal errors: pure functions from data to numbers.
 //!
-//! The definitions are those of the TUM RGB-D benchmark \[Sturm12\] as the PyPI tool `evo` computes them, and agree
-//! with it to 1e-6 (`tests/it` holds the proof, `data/evo` its numbers): absolute trajectory error after alignment
-//! \[Horn87, Umeyama91\], relative pose error over frames, seconds or metres, and the error at the goal.
+//! The definitions are those of the TUM RGB-D benchmark \[Sturm12\] in the PyPI tool `evo`, and agree with it to 1e-6 (proof in `tests/it`,
+//! numbers in `data/evo`). They are absolute trajectory error after alignment \[Horn87, Umeyama91\], relative pose error over frames,
+//! seconds or metres, and the error at the goal.
 //!
-//! Of laser logs, whose reference is often known only in pieces: the relations metric of \[Kuemmerle09\] ([`relation_error`],
-//! [`RelationSets`]). Of maps: how far occupied cells are from the true ones, precision and recall ([`map_agreement`]).
+//! For laser logs, whose reference is often known only in pieces: the relations metric of \[Kuemmerle09\] ([`relation_error`],
+//! [`RelationSets`]). For maps: distances of occupied cells from the true ones, precision and recall ([`map_agreement`]).
 //!
 //! A trajectory is a slice of `(Stamp, Pose3)` whose stamps do not go back, each pose `world_from_body`.
 //!

@@ -26,7 +26,7 @@ impl MapAgreementConfig {
     /// Passes a valid configuration through.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range of its field.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("within", self.within, "m", 0.001, 10.0)?;
         require_in("seen_within", self.seen_within, "m", 0.0, 10.0)?;
@@ -35,30 +35,29 @@ impl MapAgreementConfig {
     }
 }
 
-/// How well a map agrees with the true one.
+/// Agreement of a map with the true one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapAgreement {
-    /// From each occupied cell of the map to the nearest truly occupied one, centre to centre, m.
+    /// Distances from each occupied cell of the map to the nearest truly occupied one, centre to centre, m.
     pub to_truth: ErrorStatistics,
-    /// Part of the map's occupied cells that are within `within` of a truly occupied one, 0 to 1.
+    /// Part of the map's occupied cells within `within` of a truly occupied one, 0 to 1.
     pub precision: f64,
-    /// From each truly occupied surface cell that was there to be seen to the nearest occupied cell of the map, m.
+    /// Distances from each observable true surface cell to the nearest occupied cell of the map, m.
     pub from_truth: ErrorStatistics,
-    /// Part of these that are within `within`, 0 to 1.
+    /// Part of these within `within`, 0 to 1.
     pub recall: f64,
-    /// Part of the map's free cells that are truly occupied with all their neighbours, 0 to 1: walls that were cleared.
+    /// Part of the map's free cells that are truly occupied with all their neighbours, 0 to 1: walls cleared by mistake.
     pub cleared: f64,
-    /// Truly occupied surface cells in all: those not counted above were not there to be seen.
+    /// Number of all true surface cells, including those that were not observable.
     pub surface_cells: usize,
 }
 
-/// Compares the occupied cells of `estimate` with those of `truth`, whose frame `truth_from_estimate` leads to.
+/// Compares the occupied cells of `estimate` with those of `truth`; `truth_from_estimate` is the transform to the frame of `truth`.
 ///
-/// A surface cell is a truly occupied one that has a free neighbour among its eight. Insides of walls do not count.
+/// A surface cell is a truly occupied one with a free cell among its eight neighbours. Insides of walls do not count.
 ///
 /// # Errors
-/// When a map has no occupied cell (of the truth: no surface that was there to be seen), the pose is not finite, or the
-/// configuration is out of range.
+/// When a map has no occupied cell (the truth: no observable surface), the pose is not finite, or the configuration is out of range.
 pub fn map_agreement(
     truth: &OccupancyGrid,
     estimate: &OccupancyGrid,
@@ -126,7 +125,7 @@ fn is_known(grid: &OccupancyGrid, point: Vector2, reach: f64) -> bool {
     })
 }
 
-/// Part of the estimate's free cells that lie inside what is truly occupied.
+/// Part of the estimate's free cells inside true obstacles.
 fn cleared(truth: &OccupancyGrid, estimate: &OccupancyGrid, truth_from_estimate: Pose2) -> f64 {
     let geometry = *estimate.geometry();
     let (mut free, mut inside) = (0_usize, 0_usize);
@@ -160,7 +159,7 @@ mod tests {
 
     #[test]
     fn a_wall_a_cell_off_at_one_end_by_hand() {
-        // Eight cells, two of them a cell too low; one more stands in the open, 0.2 m below the wall.
+        // Eight cells, two of them one cell too low; another cell in free space, 0.2 m below the wall.
         let estimate = grid(
             "..........
              .######...
@@ -171,7 +170,7 @@ mod tests {
         assert!((found.precision - 6.0 / 9.0).abs() < 1e-12);
         assert!((found.to_truth.mean - (2.0 * 0.1 + 0.2) / 9.0).abs() < 1e-12);
         assert!((found.to_truth.max - 0.2).abs() < 1e-12);
-        // All eight true cells were seen; six are met, two have their nearest a cell away.
+        // All eight true cells were observable; six are exact, two have their nearest cell one cell away.
         assert_eq!((found.from_truth.count, found.surface_cells), (8, 8));
         assert!((found.recall - 0.75).abs() < 1e-12 && (found.from_truth.max - 0.1).abs() < 1e-12);
         let wide = map_agreement(&grid(TRUTH), &estimate, Pose2::IDENTITY, &config(0.1)).unwrap();
@@ -187,17 +186,17 @@ mod tests {
              .....?????",
         );
         let found = map_agreement(&grid(TRUTH), &half, Pose2::IDENTITY, &config(0.05)).unwrap();
-        // The fifth cell of the wall is a cell beyond the last known column, and counts as seen: its nearest is 0.1 m away.
+        // The fifth cell of the wall is one cell outside the last known column, and counts as observable: its nearest cell is 0.1 m away.
         assert_eq!(found.from_truth.count, 5);
         assert_eq!((found.precision, found.recall), (1.0, 0.8));
     }
 
     #[test]
     fn maps_in_other_frames_are_led_there() {
-        // Two cells beside each other at the origin's corner, seen by a map that is turned by 90 degrees and moved.
+        // Two neighbouring cells at the origin's corner, in a map rotated by 90 degrees and moved.
         let truth = grid("....\n....\n.##.\n....");
         let estimate = grid("....\n..#.\n..#.\n....");
-        // truth = R(-90 deg) estimate + t: (0.25, 0.15) and (0.25, 0.25) go to (0.15, 0.15) and (0.25, 0.15).
+        // truth = R(-90 deg) estimate + t: (0.25, 0.15) and (0.25, 0.25) become (0.15, 0.15) and (0.25, 0.15).
         let pose = Pose2::new(0.0, 0.4, -std::f64::consts::FRAC_PI_2);
         let found = map_agreement(&truth, &estimate, pose, &config(0.01)).unwrap();
         assert!(found.precision == 1.0 && found.to_truth.max < 1e-12, "{found:?}");

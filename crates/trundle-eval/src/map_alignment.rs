@@ -8,13 +8,13 @@ const ALIGNMENT_ROUNDS: usize = 60;
 /// Cells are paired as far as this at first, m, and in the end.
 const PAIRING_RADII_M: (f64, f64) = (0.8, 0.15);
 
-/// Lays a map over the true one: `truth_from_estimate` near `guess` (to about 0.5 m and 5 degrees) that brings its occupied
-/// cells nearest to truly occupied ones. By iterated closest points \[Besl92\], the reach of the pairs shrinking.
+/// Aligns a map with the true one: finds `truth_from_estimate` near `guess` (within about 0.5 m and 5 degrees) with the smallest distances
+/// between occupied cells. By iterated closest points \[Besl92\], the reach of the pairs shrinking.
 ///
-/// A map's frame is its own, so that where it begins is not an error of the map; what this leaves is.
+/// A map's own frame is arbitrary, so its offset is no error of the map; the remaining difference is.
 ///
 /// # Errors
-/// When a map has no occupied cell, or none of them finds a partner, or the guess is not finite.
+/// When a map has no occupied cell, none of them has a partner, or the guess is not finite.
 pub fn align_maps(truth: &OccupancyGrid, estimate: &OccupancyGrid, guess: Pose2) -> Result<Pose2, EvalError> {
     if !guess.is_finite() {
         return Err(Invalid::new("guess", "not finite", "m, m, rad", "finite numbers").into());

@@ -2,12 +2,12 @@
 
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
 
-/// The occupied cells of a grid, to be asked for the nearest one.
+/// The occupied cells of a grid, for nearest-cell queries.
 #[derive(Debug)]
 pub(crate) struct OccupiedCells {
     geometry: GridGeometry,
     occupied: Vec<bool>,
-    /// Rows that hold an occupied cell, so that empty ones cost nothing.
+    /// Whether each row has an occupied cell; empty rows are skipped.
     rows: Vec<bool>,
 }
 
@@ -19,15 +19,15 @@ impl OccupiedCells {
         Self { geometry, occupied, rows }
     }
 
-    /// Their centres, m.
+    /// Centres of the cells, m.
     pub(crate) fn centers(&self) -> impl Iterator<Item = Vector2> + '_ {
         let cells = self.occupied.iter().enumerate().filter(|(_, is)| **is);
         cells.map(|(i, _)| self.geometry.center(self.geometry.cell(i)))
     }
 
-    /// The centre of the occupied cell that is nearest to a point and within `reach` m of it.
+    /// The centre of the occupied cell nearest to a point, within `reach` m.
     ///
-    /// Rows by rising distance, until a row is farther than what was found.
+    /// Rows by increasing distance, until a row is farther than the best cell.
     pub(crate) fn nearest(&self, point: Vector2, reach: f64) -> Option<Vector2> {
         let g = &self.geometry;
         let at = (point - g.origin) / g.resolution - Vector2::repeat(0.5);
@@ -73,7 +73,7 @@ impl OccupiedCells {
     }
 }
 
-/// How many rows have their centres at or below `y`, in cells.
+/// Number of rows with centres at or below `y`, in cells.
 fn rows_below(y: f64, height: usize) -> usize {
     if y < 0.0 { 0 } else { (y.floor() as usize + 1).min(height) }
 }

@@ -7,11 +7,11 @@ use trundle_core::{Invalid, Pose3, Stamp, require_positive};
 /// Number of frames from which a delta is refused: more than a trajectory has. Source: ours.
 const MAX_FRAMES: f64 = 1e9;
 
-/// How far apart the two poses of a relative error are.
+/// Distance between the two poses of a relative error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Delta {
-    /// That many associated poses later; 1 or more.
+    /// Number of associated poses between both; 1 or more.
     Frames(usize),
     /// The first pose at least that many seconds later; above 0.
     Seconds(f64),
@@ -53,7 +53,7 @@ impl Delta {
     /// A delta of this length in this unit.
     ///
     /// # Errors
-    /// When it is not above 0, or a number of frames is not whole.
+    /// When the length is not above 0, or a number of frames is not whole.
     pub fn of(length: f64, unit: DeltaUnit) -> Result<Self, Invalid> {
         match unit {
             DeltaUnit::Frames if length.fract() == 0.0 && (1.0..MAX_FRAMES).contains(&length) => {
@@ -68,7 +68,7 @@ impl Delta {
     /// Passes a valid delta through.
     ///
     /// # Errors
-    /// When it is zero, negative or not finite.
+    /// When the distance is zero, negative or not finite.
     pub fn validated(self) -> Result<Self, Invalid> {
         match self {
             Self::Frames(0) => return Err(Invalid::new("delta", 0, "frames", "1 or more")),

@@ -4,7 +4,7 @@ use crate::Relation;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, Stamp, require_in};
 
-/// Which pairs of poses of a reference become relations.
+/// Selection of the pairs of reference poses that become relations.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RelationSetsConfig {
@@ -28,7 +28,7 @@ impl RelationSetsConfig {
     /// Passes a valid configuration through.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range of its field.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("near", self.near, "m", 0.01, 1000.0)?;
         require_in("far", self.far, "m", 0.01, 10_000.0)?;
@@ -38,20 +38,20 @@ impl RelationSetsConfig {
     }
 }
 
-/// Relations by what they show.
+/// Relations by their purpose.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RelationSets {
     /// Local accuracy of the trajectory: poses one metre apart.
     pub near: Vec<Relation>,
-    /// How straight corridors are: ten metres apart.
+    /// Ten metres apart: the straightness of corridors.
     pub far: Vec<Relation>,
     /// Whether loops are closed: one place at different times.
     pub loops: Vec<Relation>,
 }
 
 impl RelationSets {
-    /// The relations of a reference trajectory (`world_from_body`): from each pose the first one after the distance `near` and
-    /// after the distance `far`, and of each later visit to its place the nearest pose. Cost: poses squared.
+    /// The relations of a reference trajectory (`world_from_body`). From each pose they lead to the first pose after the distance `near`,
+    /// the first after `far`, and the nearest pose of each later visit. Cost: poses squared.
     ///
     /// # Errors
     /// When the configuration is out of range.
@@ -74,7 +74,7 @@ impl RelationSets {
         Ok(sets)
     }
 
-    /// All of them.
+    /// All relations.
     pub fn all(&self) -> Vec<Relation> {
         [&self.near, &self.far, &self.loops].into_iter().flatten().copied().collect()
     }
@@ -91,7 +91,7 @@ fn ways(reference: &[(Stamp, Pose3)]) -> Vec<f64> {
     std::iter::once(0.0).take(reference.len()).chain(rest).collect()
 }
 
-/// Of each visit from pose `from` on to the place of pose `i`, the pose that comes nearest.
+/// For each visit to the place of pose `i`, from pose `from` on, the nearest pose.
 fn visits(
     reference: &[(Stamp, Pose3)],
     i: usize,

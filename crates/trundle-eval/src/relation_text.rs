@@ -15,8 +15,8 @@ pub struct RelationTextError {
     pub problem: String,
 }
 
-/// The relations of a text in the form of the SLAM benchmark of \[Kuemmerle09\]: a line each,
-/// `from_time to_time x y z roll pitch yaw` (s, s, m, rad); `#` starts a comment.
+/// The relations of a text in the format of the SLAM benchmark of \[Kuemmerle09\]. Each line is `from_time to_time x y z roll pitch yaw`
+/// (s, s, m, rad); `#` starts a comment.
 ///
 /// # Errors
 /// With the line, when a field is missing, too many or no finite number.
@@ -49,7 +49,7 @@ fn relation(line: &str) -> Result<Relation, String> {
     })
 }
 
-/// Decimal seconds, exact to the nanosecond where the text is plain digits.
+/// Decimal seconds, exact to the nanosecond for plain digits.
 fn stamp(text: &str, name: &str) -> Result<Stamp, String> {
     let exact = || {
         let (whole, fraction) = text.split_once('.').unwrap_or((text, ""));

@@ -4,7 +4,7 @@ use crate::{ErrorStatistics, EvalError, Side, absolute::of_finite, absolute::req
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, Stamp};
 
-/// Where the robot was at one time, seen from where it was at another: what a person measured, or a reference holds.
+/// The robot's pose at one time relative to its pose at another, measured by a person or given by a reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relation {
     /// The one time.
@@ -15,7 +15,7 @@ pub struct Relation {
     pub relative: Pose3,
 }
 
-/// How relations are compared with an estimate.
+/// Settings of the comparison of relations with an estimate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RelationConfig {
@@ -40,24 +40,23 @@ impl RelationConfig {
     }
 }
 
-/// How far an estimate's relations are from those that are true.
+/// Errors of an estimate's relations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RelationError {
-    /// Of the lengths of the translations between true and estimated relation, m.
+    /// Lengths of the translations between true and estimated relation, m.
     pub translation: ErrorStatistics,
-    /// Of the angles between them, rad.
+    /// Angles between true and estimated relation, rad.
     pub rotation: ErrorStatistics,
     /// Relations one of whose times the estimate has no pose for; they are in no number.
     pub missed: usize,
 }
 
-/// The relations metric: for each true relation d* and its estimate d the error is d*^-1 d, whose translation and rotation
-/// are evaluated apart. Source: \[Kuemmerle09\], eq. 2 (the mean of squares there is `rmse` squared here). One wrong turn is
-/// one error, and does not spoil all that follows, as it does when trajectories are laid over each other.
+/// The relations metric: for each true relation d* and its estimate d the error is d*^-1 d, with translation and rotation evaluated
+/// separately. Source: \[Kuemmerle09\], eq. 2 (its mean of squares is the square of `rmse` here). One wrong turn is one error, while in
+/// aligned trajectories it affects all later poses.
 ///
 /// # Errors
-/// When there is no relation, the estimate is empty or its stamps go back, a number is not finite, or every relation is
-/// missed.
+/// When no relation is given, the estimate is empty or its stamps decrease, a number is not finite, or every relation is missed.
 pub fn relation_error(
     relations: &[Relation],
     estimate: &[(Stamp, Pose3)],
@@ -148,7 +147,7 @@ mod tests {
 
     #[test]
     fn an_error_counts_once_wherever_it_happened() {
-        // A straight line of ten metres with one wrong turn of 90 degrees in its middle.
+        // A straight line of ten metres with one wrong turn of 90 degrees in the middle.
         let truth: Vec<_> = (0..11).map(|i| planar(i, i as f64, 0.0, 0.0)).collect();
         let bent: Vec<_> = (0..11)
             .map(|i| {

@@ -5,15 +5,15 @@ use crate::{Delta, ErrorStatistics, EvalError};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, Stamp};
 
-/// How the relative pose error is taken.
+/// Settings of the relative pose error.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RelativeConfig {
-    /// Poses further apart in time than this are not compared, s; 0 or more; 0.01 as in evo.
+    /// Largest time difference of compared poses, s; 0 or more; 0.01 as in evo.
     pub max_difference: f64,
-    /// How far apart the two poses of a pair are; one frame as in evo.
+    /// Distance between the two poses of a pair; one frame as in evo.
     pub delta: Delta,
-    /// Whether pairs overlap: one from every pose. Off as in evo: each begins where the last ended.
+    /// Whether pairs overlap: one from every pose. Off as in evo: each pair begins at the end of the previous one.
     pub all_pairs: bool,
 }
 
@@ -35,7 +35,7 @@ impl RelativeConfig {
     }
 }
 
-/// How much an estimate drifts.
+/// Drift of an estimate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RelativeError {
     /// Length of the motion error's translation, m.
@@ -52,8 +52,7 @@ pub struct RelativeError {
 /// motion error `(Q_i^-1 Q_j)^-1 (P_i^-1 P_j)`. Source: \[Sturm12\], eq. 1. No alignment is needed.
 ///
 /// # Errors
-/// When stamps go back, nothing can be associated, a pose is not finite, no two poses are `delta` apart, or the
-/// configuration is invalid.
+/// When stamps decrease, no pose can be associated, a pose is not finite, no two poses are `delta` apart, or the configuration is invalid.
 pub fn relative_pose_error(
     reference: &[(Stamp, Pose3)],
     estimate: &[(Stamp, Pose3)],

@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 /// Statistics of a list of errors, in their unit.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ErrorStatistics {
-    /// How many errors.
+    /// Number of errors.
     pub count: usize,
     /// Root of the mean square.
     pub rmse: f64,
     /// Arithmetic mean.
     pub mean: f64,
-    /// Middle value; the mean of the two middle ones of an even number.
+    /// Middle value; for an even number, the mean of the two middle ones.
     pub median: f64,
     /// Standard deviation of the population (division by `count`).
     pub std: f64,
@@ -22,7 +22,7 @@ pub struct ErrorStatistics {
 }
 
 impl ErrorStatistics {
-    /// The statistics of `errors`; `None` if there are none or one is not finite.
+    /// The statistics of `errors`; `None` without errors or for one that is not finite.
     pub fn of(errors: &[f64]) -> Option<Self> {
         if errors.is_empty() || errors.iter().any(|e| !e.is_finite()) {
             return None;

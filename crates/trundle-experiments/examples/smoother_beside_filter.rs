@@ -1,8 +1,9 @@
-//! The smoother beside the filter, on drives of the whole robot in the simulator: error against the truth and its normalised square.
+//! The smoother in parallel with the filter, on drives of the whole robot in the simulator: error against the truth and its normalised
+//! square.
 //!
 //! `cargo run --release -p trundle-experiments --example smoother_beside_filter`
 //!
-//! The robot drives by the filter. The smoother receives the same measurements, and nothing uses its estimate.
+//! The robot drives by the filter. The smoother receives the same measurements; its estimate is not used.
 
 #![expect(clippy::print_stdout, reason = "an example prints its result")]
 
@@ -60,7 +61,7 @@ impl Errors {
     }
 }
 
-/// The smoother beside a robot.
+/// The smoother in parallel with a robot.
 struct Shadow {
     smoother: Smoother,
     used: usize,

@@ -31,7 +31,7 @@ pub struct BarnRequest {
 }
 
 impl BarnRequest {
-    /// The robot that drives: the one asked for, else the benchmark's.
+    /// The robot of the runs: the requested one, else the benchmark's.
     #[must_use]
     pub fn robot(&self) -> RobotConfig {
         self.robot.clone().unwrap_or_else(jackal::robot)
@@ -44,7 +44,7 @@ pub struct BarnOutcome {
     pub trials: Vec<BarnTrial>,
 }
 
-/// Crosses the worlds asked for, with each seed.
+/// Crosses the requested worlds, with each seed.
 ///
 /// # Errors
 /// When the data cannot be read, or a run cannot be created.

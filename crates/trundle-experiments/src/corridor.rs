@@ -97,7 +97,7 @@ impl CorridorTrial {
         }
     }
 
-    /// Whether it ends on the goal within 1 cm and 1 deg; by the paper's method, with the motions that the paper reports.
+    /// Whether the end is within 1 cm and 1 deg of the goal; for the paper's method, also with the motions reported in the paper.
     fn is_good(&self) -> bool {
         self.found().is_some_and(|found| {
             let (end, goal) = (found.manoeuvre.end(), self.problem.goal);

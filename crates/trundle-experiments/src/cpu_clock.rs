@@ -9,7 +9,7 @@ pub fn now() -> Duration {
     Duration::new(time.tv_sec.unsigned_abs(), u32::try_from(time.tv_nsec).unwrap_or(0))
 }
 
-/// Where threads have no clock of their own, the wall's.
+/// The clock of the thread, or wall-clock time if threads have no clock.
 #[cfg(not(unix))]
 pub fn now() -> Duration {
     std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap_or_default()

@@ -22,7 +22,7 @@ impl Row {
     /// A cell's number.
     ///
     /// # Errors
-    /// When it is none; names file, line and column.
+    /// When the column is not a number; the error names file, line and column.
     pub fn number<T: FromStr>(&self, column: usize) -> Result<T, AppError> {
         let cell = &self.cells[column];
         let wrong =
@@ -34,7 +34,7 @@ impl Row {
 /// The lines after the first of a file of comma-separated values, each with `columns` or more. The file is part of `set`.
 ///
 /// # Errors
-/// When it cannot be read, or a line is too short.
+/// When the file cannot be read, or a line is too short.
 pub fn rows(file: &Path, columns: usize, set: &DataSet) -> Result<Vec<Row>, AppError> {
     let name = file.display();
     let refused = |error: std::io::Error| match error {

@@ -1,9 +1,9 @@
-//! The data sets of experiments that do not come with trundle: what each is, where it comes from, its licence, how to get it.
+//! The data sets of experiments that are not part of trundle: description, source, licence and download.
 
 /// A data set that does not come with trundle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DataSet {
-    /// Its short name.
+    /// Short name of the data set.
     pub name: &'static str,
     /// Description.
     pub what: &'static str,
@@ -15,7 +15,7 @@ pub struct DataSet {
     pub command: &'static str,
     /// Conversion of the original, and its place on disk.
     pub place: &'static str,
-    /// The commands of trundle that read it.
+    /// The commands of trundle that read the data set.
     pub used_by: &'static str,
 }
 
@@ -89,7 +89,7 @@ const SENA: DataSet = DataSet {
 pub const DATA_SETS: [DataSet; 6] = [SMALL_HOUSE, BARN, MRPB, FREIBURG1_RPY, KILLIAN, SENA];
 
 impl DataSet {
-    /// The message where the data set is missing: its name, licence, the command, and where the rest stands.
+    /// The message for a missing data set: its name, licence, the command, and further information.
     #[must_use]
     pub fn how_to_get(&self) -> String {
         format!(
@@ -98,7 +98,7 @@ impl DataSet {
         )
     }
 
-    /// A line for each of its facts.
+    /// A line for each fact about the data set.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let line = |name: &str, text: &str| format!("  {name:<8} {text}");

@@ -22,7 +22,7 @@ const START_HALF_SIDE_M: f64 = 2.5;
 const MIN_START_DISTANCE_M: f64 = 0.5;
 /// Steps of the sequence of starts (Roberts 2018, three dimensions): it fills the space evenly.
 const START_STEPS: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
-/// Limits of the pose at contact: those of the station's plates.
+/// Limits of the pose at contact, given by the station's plates.
 const MAX_LATERAL_ERROR_M: f64 = 0.01;
 
 /// The docks, one for each start.
@@ -31,7 +31,7 @@ pub struct DocksOutcome {
     pub trials: Vec<(Pose2, DockTrial)>,
 }
 
-/// Docks from as many starts as there are seeds, in the room with a station at its east wall.
+/// Docks from one start per seed, in the room with a station at its east wall.
 ///
 /// # Errors
 /// When a number of the robot is outside its range.

@@ -1,4 +1,4 @@
-//! What accompanies an experiment: its display, and the source of its runs.
+//! The display and the source of the runs of an experiment.
 
 use crate::experiment_display::ExperimentDisplay;
 use crate::shards::{KeptRuns, ShardWriter};
@@ -7,12 +7,12 @@ use serde::de::DeserializeOwned;
 use std::sync::Arc;
 use trundle_app::AppError;
 
-/// What accompanies an experiment.
+/// The display and the source of the runs of an experiment.
 #[derive(Debug, Clone, Default)]
 pub struct ExperimentContext {
-    /// Its display.
+    /// Display of the experiment.
     pub display: ExperimentDisplay,
-    /// The source of its runs.
+    /// Source of the experiment's runs.
     pub runs: RunSource,
 }
 
@@ -22,9 +22,9 @@ pub enum RunSource {
     /// Each run is made.
     #[default]
     Made,
-    /// The runs of a shard are made and kept.
+    /// The program executes the runs of the shard and stores their results.
     Shard(Arc<ShardWriter>),
-    /// The runs were made and kept before.
+    /// The results were stored by an earlier program run.
     Kept(Arc<KeptRuns>),
 }
 
@@ -32,7 +32,7 @@ impl RunSource {
     /// The plans whose runs belong to this source.
     ///
     /// # Errors
-    /// When a shard has no run, or a kept run is missing.
+    /// When a shard has no run, or a stored run is missing.
     pub(crate) fn selected<P>(
         &self,
         plans: Vec<P>,
@@ -48,10 +48,10 @@ impl RunSource {
         }
     }
 
-    /// The result of a run: read if it is kept, else made. `None` for a run that has died.
+    /// Returns the stored result of a run, or executes the run. `None` for a run that panicked.
     ///
     /// # Errors
-    /// When a kept result cannot be understood, or the run cannot be made.
+    /// When a stored result is invalid, or the run cannot be executed.
     pub(crate) fn result<T: DeserializeOwned>(
         &self,
         name: &str,
@@ -63,7 +63,7 @@ impl RunSource {
         }
     }
 
-    /// Whether the other runs go on after the run `name` has died.
+    /// Whether the other runs continue after a panic of the run `name`.
     pub(crate) fn goes_on_without(&self, name: &str) -> bool {
         match self {
             Self::Shard(writer) => {
@@ -87,7 +87,7 @@ impl RunSource {
     /// Keeps the result of a run that was made for a shard.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// When the result cannot be written.
     pub(crate) fn keep<T: Serialize + DeserializeOwned>(
         &self,
         name: &str,

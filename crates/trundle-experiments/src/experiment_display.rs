@@ -1,18 +1,18 @@
-//! What a front end shows of an experiment while it goes: a line of progress, and one of its runs after the other.
+//! Display of a running experiment for a front end: a line of progress, and one run at a time.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use trundle_app::Progress;
 use trundle_app::operator::{EndedRun, FrontEnd, Operator, OperatorLink, SeriesView};
 
-/// What a front end shows of an experiment. Clones share it.
+/// Display of an experiment for a front end. Clones share the display.
 #[derive(Debug, Clone, Default)]
 pub struct ExperimentDisplay {
     progress: Progress,
     stage: Option<Arc<Stage>>,
 }
 
-/// Where one of the runs that go on side by side is shown.
+/// Display of one of the parallel runs.
 #[derive(Debug)]
 struct Stage {
     operator: Operator,
@@ -20,7 +20,7 @@ struct Stage {
     series: Mutex<SeriesView>,
 }
 
-/// A run of an experiment. Where no other run is on the stage, this one is, until it is dropped.
+/// A run of an experiment. If no other run is displayed, this run is, until it is dropped.
 #[derive(Debug)]
 pub struct StagedRun<'d> {
     display: &'d ExperimentDisplay,
@@ -30,7 +30,7 @@ pub struct StagedRun<'d> {
 
 /// The result of a run for a front end.
 pub trait RunResult {
-    /// Whether the run is as it should be.
+    /// Whether the run succeeded.
     fn is_success(&self) -> bool;
 
     /// The result in a sentence.
@@ -57,7 +57,7 @@ impl ExperimentDisplay {
         &self.progress
     }
 
-    /// Begins a series of runs; `unit`: what a run is called, as "worlds".
+    /// Begins a series of runs; `unit`: the plural name of a run, as "worlds".
     pub fn begin(&self, total: usize, unit: &'static str) {
         self.change(|series| {
             let number = series.number;
@@ -65,7 +65,7 @@ impl ExperimentDisplay {
         });
     }
 
-    /// A run begins: it is on the stage, where that is free.
+    /// A run begins: it is displayed if no other run is.
     #[must_use]
     pub fn enter(&self, name: String) -> StagedRun<'_> {
         let is_on_stage =
@@ -102,7 +102,7 @@ impl StagedRun<'_> {
         Some(stage.operator.link_of_shown_run())
     }
 
-    /// What accompanies the run alone, without a line of progress.
+    /// The companions of a run, without a line of progress.
     #[must_use]
     pub fn front_end(&self, progress: Progress) -> FrontEnd {
         FrontEnd { progress, operator: self.link() }

@@ -17,7 +17,7 @@ pub struct RunsRequest {
 
 /// The report of an experiment's outcome.
 pub trait ExperimentReport {
-    /// Whether every limit is kept.
+    /// Whether every limit is met.
     fn is_success(&self) -> bool;
 
     /// The table for the terminal, header first; empty if the verdict is enough.

@@ -7,21 +7,21 @@ use trundle_core::{OccupancyGrid, Pose2, RobotBody, SensorEvent, Twist2};
 use trundle_runtime::{DriveState, Mission, Robot, RobotConfig};
 use trundle_sim::{LaserConfig, Scene, SimConfig, Simulator};
 
-/// A robot with a laser and without a camera, in a scene, on its own senses.
+/// A robot with a laser and without a camera, in a scene, with its own estimate.
 pub struct LaserPlan {
     /// The robot.
     pub robot: RobotConfig,
-    /// Its simulated body.
+    /// Simulated body of the robot.
     pub body: SimConfig,
     /// The place, with the robot's start.
     pub scene: Scene,
     /// The mission, map frame.
     pub mission: Mission,
-    /// The map that it brings along; none: it begins with an empty one.
+    /// The initial map; `None` begins with an empty map.
     pub known: Option<OccupancyGrid>,
-    /// Of all noise.
+    /// Seed of all noise.
     pub seed: u64,
-    /// Seconds of the robot's time after which it is given up.
+    /// Time limit of the run, simulated time \[s\].
     pub time_limit: f64,
 }
 
@@ -32,7 +32,7 @@ pub struct Moment {
     pub time: f64,
     /// In truth, world frame.
     pub pose: Pose2,
-    /// How far the estimate is from that, m.
+    /// Distance of the estimate from the true position, m.
     pub estimate_error: f64,
     /// The command.
     pub twist: Twist2,
@@ -56,7 +56,7 @@ pub struct LaserRun {
     pub cycles_ms: Vec<f64>,
 }
 
-/// A Hokuyo-like laser, as in the BARN challenge: 270 deg, 720 beams, 30 m; all beams at once, as in Gazebo.
+/// A Hokuyo-like laser, as in the BARN challenge: 270 deg, 720 beams, 30 m; all beams simultaneous, as in Gazebo.
 pub fn hokuyo(forward: f64) -> LaserConfig {
     LaserConfig {
         x: forward,
@@ -71,7 +71,7 @@ pub fn hokuyo(forward: f64) -> LaserConfig {
     }
 }
 
-/// Runs the robot until `is_over` is true, its mission is over, or its time is; shows it to those who `watch`.
+/// Runs the robot until `is_over` is true, or its mission or its time ends; shows it to viewers (`watch`).
 ///
 /// # Errors
 /// When a number of the plan is outside its range, or the start is not free.

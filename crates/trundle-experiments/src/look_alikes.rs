@@ -10,15 +10,15 @@ use trundle_runtime::{Mission, RobotConfig, Task, TaskEnd};
 use trundle_sim::{Fault, FaultKind, FaultSchedule, plain_room};
 use trundle_viz::{Report, Table, Verdict};
 
-/// Distance from its goal beyond which a robot that reports its arrival is wrong, m.
+/// Minimum distance from the goal at which a reported arrival is false, m.
 const FALSE_ARRIVAL_M: f64 = 0.3;
-/// Heading error beyond which a robot that reports its arrival is wrong, deg.
+/// Minimum heading error at which a reported arrival is false, deg.
 const FALSE_ARRIVAL_DEG: f64 = 20.0;
 /// Change of the estimate's error between two images that counts as a jump away from the truth, m.
 const JUMP_M: f64 = 0.3;
 /// Time at which the robot is carried away, s.
 const CARRIED_AT_S: f64 = 25.0;
-/// How long that takes, s.
+/// Duration of the carrying, s.
 const CARRIED_FOR_S: f64 = 0.1;
 
 /// Events in a room.
@@ -47,7 +47,7 @@ pub struct LookAlikesOutcome {
 /// Runs every variant in a room for each seed.
 ///
 /// # Errors
-/// When a run cannot be created, or no run has the name asked for.
+/// When a run cannot be created, or no run has the requested name.
 pub fn run(request: &RunsRequest, context: &ExperimentContext) -> Result<LookAlikesOutcome, AppError> {
     let mut plans = Vec::new();
     for seed in 1..=u64::from(request.seeds) {
@@ -95,7 +95,7 @@ impl Score {
         }
     }
 
-    /// Whether no arrival is false, the estimate did not jump off, and nothing was touched.
+    /// Whether no arrival is false, the estimate has no jump away from the truth, and the robot touched no obstacle.
     fn is_right(self) -> bool {
         self.false_arrivals == 0 && self.jumps == 0 && self.contacts == 0
     }
@@ -117,7 +117,7 @@ fn is_false(goal: &GoalOutcome) -> bool {
     })
 }
 
-/// How often the estimate jumps away from the truth. A robot that is carried away makes none: there the truth jumps.
+/// Counts the jumps of the estimate away from the truth. Carrying the robot away causes no such jump: there the truth jumps.
 fn jumps(pairs: &[(f64, Pose2, Pose2)]) -> usize {
     let is_jump = |pair: &[(f64, Pose2, Pose2)]| {
         let [(_, believed, truth), (_, next_believed, next_truth)] = pair else { return false };

@@ -16,7 +16,7 @@ use trundle_viz::{Color, Figure, LineStyle, MapPicture, PoseStyle, Report, Table
 
 /// An experiment of this kind.
 struct Story {
-    /// Its name on the command line.
+    /// Name on the command line.
     name: &'static str,
     /// Title of the report.
     title: &'static str,
@@ -48,7 +48,7 @@ pub struct MissionsOutcome {
 /// Crosses the room of obstacles, with each seed.
 ///
 /// # Errors
-/// When a run cannot be created, or no run has the name asked for.
+/// When a run cannot be created, or no run has the requested name.
 pub fn run_obstacles(
     request: &RunsRequest,
     context: &ExperimentContext,
@@ -79,7 +79,7 @@ const HOUSE_GOALS: [(f64, f64, f64); 10] = [
 /// Drives to the ten goals of the house, whose mesh is the file `mesh` (z up), with each seed.
 ///
 /// # Errors
-/// When the mesh is not there, a run cannot be created, or no run has the name asked for.
+/// When the mesh does not exist, a run cannot be created, or no run has the requested name.
 pub fn run_house(
     request: &RunsRequest,
     mesh: &Path,
@@ -107,7 +107,7 @@ pub fn run_house(
     })
 }
 
-/// A run for each seed, of the scene and the mission that `story_of` has for it.
+/// Executes one run per seed, with the scene and the mission of `story_of`.
 fn run_story(
     story: &'static Story,
     request: &RunsRequest,

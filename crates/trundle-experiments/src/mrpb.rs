@@ -1,5 +1,5 @@
-//! The local-planning benchmark MRPB 1.0 in trundle's simulator: every pair of start and goal, with and without people. As there,
-//! the robot has the map and its start pose.
+//! The local-planning benchmark MRPB 1.0 in trundle's simulator: every pair of start and goal, with and without people. As in the
+//! benchmark, the robot has the map and its start pose.
 
 mod course;
 mod metrics;
@@ -27,13 +27,13 @@ use trundle_sim::{FaultSchedule, SimConfig};
 
 /// Radius of the benchmark's robot \[m\]. Source: MRPB 1.0.
 const ROBOT_RADIUS_M: f64 = 0.25;
-/// Distance that the benchmark adds to the radius for its planners \[m\]. Source: MRPB 1.0.
+/// Inflation of the radius by the benchmark's planners \[m\]. Source: MRPB 1.0.
 const INFLATION_M: f64 = 0.01;
-/// Range of its laser \[m\]. Source: MRPB 1.0.
+/// Range of the benchmark's laser \[m\]. Source: MRPB 1.0.
 const LASER_RANGE_M: f64 = 30.0;
-/// Its highest speed \[m/s\]. Source: MRPB 1.0.
+/// Maximum speed of the benchmark's robot \[m/s\]. Source: MRPB 1.0.
 const MAX_SPEED_M_S: f64 = 0.55;
-/// Time limit of a run \[s\]; afterwards it is given up. Source: ours.
+/// Time limit of a run \[s\]. Source: ours.
 const TIME_LIMIT_S: f64 = 600.0;
 
 /// The runs of the benchmark's courses.
@@ -49,7 +49,7 @@ pub struct MrpbRequest {
 }
 
 impl MrpbRequest {
-    /// The robot that drives: the one asked for, else the benchmark's.
+    /// The robot of the runs: the requested one, else the benchmark's.
     #[must_use]
     pub fn robot(&self) -> RobotConfig {
         self.robot.clone().unwrap_or_else(robot)
@@ -62,10 +62,10 @@ pub struct MrpbOutcome {
     pub trials: Vec<MrpbTrial>,
 }
 
-/// Drives every course asked for, with each seed.
+/// Drives every requested course, with each seed.
 ///
 /// # Errors
-/// When the data cannot be read, no course has the name asked for, or a run cannot be created.
+/// When the data cannot be read, no course has the requested name, or a run cannot be created.
 pub fn run(request: &MrpbRequest, context: &ExperimentContext) -> Result<MrpbOutcome, AppError> {
     let robot = request.robot();
     let chosen =
@@ -121,7 +121,7 @@ fn robot() -> RobotConfig {
     robot.schedule.map_hz = 10.0;
     robot.schedule.check_hz = 10.0;
     robot.schedule.improve_hz = 1.0;
-    // Only the ends of a long corridor give the position along it.
+    // Only the ends of a long corridor determine the position along it.
     robot.mapping = MapperConfig { max_range: LASER_RANGE_M, ..MapperConfig::default() };
     // Errors of laser scans are less correlated than those of images: each scan corrects less of the heading.
     robot.localization = LocalizerConfig {
@@ -130,7 +130,7 @@ fn robot() -> RobotConfig {
         scan_heading_sigma_deg: 0.3,
         ..LocalizerConfig::default()
     };
-    // A tenth of the benchmark's tolerance in position, a quarter in heading: the estimate has errors of its own.
+    // A tenth of the benchmark's tolerance in position, a quarter in heading, which leaves room for errors of the estimate.
     robot.control = FollowerConfig {
         settling: StabilizerConfig {
             position_tolerance: 0.1 * GOAL_TOLERANCE_M,
@@ -142,7 +142,7 @@ fn robot() -> RobotConfig {
     robot
 }
 
-/// Its body in the simulator.
+/// Simulated body of the robot.
 fn body(robot: &RobotConfig) -> Result<SimConfig, Invalid> {
     let mut config = simulated_body(robot, FaultSchedule::default())?;
     config.has_camera = false;

@@ -1,4 +1,4 @@
-//! People who step into the robot's path a metre before it: it stops, waits or goes around, without a contact.
+//! People who step into the robot's path one metre ahead. The robot stops, waits or drives around them, without a contact.
 
 use crate::trial::{self, Trial, TrialPlan};
 use crate::{ExperimentContext, ExperimentReport, RunsRequest};
@@ -17,7 +17,7 @@ const GOAL_XY_M: (f64, f64) = (2.0, 0.0);
 const ENCOUNTER_DISTANCE_M: f64 = 1.0;
 /// Range of the encounter along the path from its start, m: the robot drives at full speed there.
 const ENCOUNTER_PATH_RANGE_M: (f64, f64) = (1.9, 3.6);
-/// Range of the person's start beside the path, m.
+/// Range of the lateral distance between the path and the person's start, m.
 const SIDE_OFFSET_RANGE_M: (f64, f64) = (0.8, 1.2);
 /// Range of walking speeds, m/s.
 const WALKING_SPEED_RANGE_M_S: (f64, f64) = (0.7, 1.6);
@@ -34,7 +34,7 @@ struct StepOut {
 }
 
 impl StepOut {
-    /// One of a row of numbers without gaps and clusters: the additive recurrence of the plastic number's powers (Roberts 2018).
+    /// Point of a low-discrepancy sequence: the additive recurrence of the plastic number's powers (Roberts 2018).
     fn of(seed: u64) -> Self {
         let draw = |power: i32, (low, high): (f64, f64)| {
             let part = (seed as f64 * 1.167_303_978_261_418_7_f64.powi(-power)).fract();
@@ -73,7 +73,7 @@ pub struct PeopleOutcome {
 /// Runs with one person who steps out, a person a seed.
 ///
 /// # Errors
-/// When a run cannot be created, or no run has the name asked for.
+/// When a run cannot be created, or no run has the requested name.
 pub fn run(request: &RunsRequest, context: &ExperimentContext) -> Result<PeopleOutcome, AppError> {
     let robot = &request.robot;
     let radius = robot.footprint()?.circumscribed_radius();
@@ -89,7 +89,7 @@ pub fn run(request: &RunsRequest, context: &ExperimentContext) -> Result<PeopleO
     Ok(PeopleOutcome { trials: trial::run_all(plans, request, context)? })
 }
 
-/// The run without a person, by whose timetable the persons step out. Every shard makes it.
+/// Executes the run without a person; the persons step out by its timetable. Every shard executes this run.
 fn run_alone(plan: TrialPlan, context: &ExperimentContext) -> Result<Trial, AppError> {
     let ExperimentContext { display, runs } = context;
     let name = plan.label();

@@ -9,7 +9,7 @@ use trundle_runtime::{Mission, Task};
 use trundle_sim::Scene;
 use trundle_viz::{BarChart, Color, Figure, LineStyle, MapPicture, PoseStyle, Report, Table, Verdict};
 
-/// Their start poses, m; each with heading 0.
+/// Start poses of Li et al., m; each with heading 0.
 const STARTS: [(f64, f64); 8] =
     [(0.0, 2.4), (2.4, 2.4), (2.4, 0.0), (2.4, -2.4), (0.0, -2.4), (-2.4, -2.4), (-2.4, 0.0), (-2.4, 2.4)];
 
@@ -51,7 +51,7 @@ fn plans(request: &RunsRequest) -> Result<Vec<TrialPlan>, AppError> {
 /// Runs the eight start poses, with each seed.
 ///
 /// # Errors
-/// When a run cannot be created, or no run has the name asked for.
+/// When a run cannot be created, or no run has the requested name.
 pub fn run(request: &RunsRequest, context: &ExperimentContext) -> Result<PosesOutcome, AppError> {
     Ok(PosesOutcome { trials: trial::run_all(plans(request)?, request, context)? })
 }
@@ -161,7 +161,7 @@ fn rows(trials: &[Trial]) -> Vec<Vec<String>> {
     rows
 }
 
-/// As their figure 5: the driven paths against the planned ones, of the first seed.
+/// A picture like figure 5 of Li et al.: the driven and the planned paths of the first seed.
 fn paths(trials: &[Trial]) -> Vec<u8> {
     let mut picture = MapPicture::blank().axes("x, m", "y, m").window(Vector2::zeros(), 3.1);
     for trial in trials.iter().filter(|trial| trial.seed == 1) {

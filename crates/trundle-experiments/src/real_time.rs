@@ -1,4 +1,4 @@
-//! By the clock on the wall for many minutes: how evenly the robot is steered, what it costs of a core, and whether memory stays flat.
+//! A run in real time over many minutes: jitter of control, CPU load of a core, and growth of memory.
 
 use crate::simulated::{SimulatedRealTimeBody, simulated_real_time_body};
 use crate::{ExperimentContext, ExperimentReport};
@@ -9,11 +9,11 @@ use trundle_runtime::{Mission, RobotConfig, Task, TaskEnd, TaskRecord};
 use trundle_sim::{FaultSchedule, Scene, Simulator};
 use trundle_viz::{Chart, Color, Figure, Report, Table, Verdict};
 
-/// 999 of 1000 commands come within this of their time, ms.
+/// Largest time error of 999 of 1000 commands, ms.
 const JITTER_MS: f64 = 5.0;
-/// Largest load of the robot's core by all its threads.
+/// Largest load of the robot's core by all threads.
 const MAX_CPU_LOAD: f64 = 0.6;
-/// Largest growth of memory once maps and buffers have their size, MB/h.
+/// Largest growth of memory after maps and buffers have reached their size, MB/h.
 const MAX_MEMORY_GROWTH_MB_PER_H: f64 = 10.0;
 /// Time before which memory may grow, s: maps and buffers reach their size.
 const MEMORY_SETTLING_S: f64 = 600.0;
@@ -35,7 +35,7 @@ pub struct Limit {
 }
 
 impl Limit {
-    /// Whether the figure is within its limit. A figure that could not be measured is not.
+    /// Whether the figure meets its limit. A figure that could not be measured does not.
     #[must_use]
     pub fn is_kept(&self) -> bool {
         self.value.is_some_and(|value| value <= self.max)
@@ -61,9 +61,9 @@ pub struct RealTimeRequest {
 
 /// The outcome of a run in real time.
 pub struct RealTimeOutcome {
-    /// The figures evaluated against their limits.
+    /// The figures with their limits.
     pub limits: Vec<Limit>,
-    /// How the run kept time.
+    /// Timing of the run.
     pub timing: RealTimeReport,
     /// Goals reached.
     pub goals: usize,
@@ -77,8 +77,8 @@ pub struct RealTimeOutcome {
     pub seconds: f64,
 }
 
-/// Drives to and fro in the demo's scene, and records into `folder`. A run that measures memory explores the scene first: two
-/// equally long paths lead past its obstacles, and the map would grow at the first drive along the second.
+/// Drives forth and back in the demo's scene, and records into `folder`. A run that measures memory explores the scene first. Two equally
+/// long paths lead past its obstacles, and the first drive along the second one would enlarge the map.
 ///
 /// # Errors
 /// When the system refuses a thread, or the robot cannot be accepted.
@@ -107,7 +107,7 @@ pub fn run(
     Ok(RealTimeOutcome::of(&run, timing))
 }
 
-/// Limits of the evaluation; the growth of memory only in runs that go on long enough after the rooms are mapped.
+/// Limits of the evaluation; the growth of memory only for runs that continue long enough after the scene is mapped.
 fn limits(timing: &RealTimeReport) -> Vec<Limit> {
     let end = timing.memory.samples.last().map_or(0.0, |(time, _)| *time);
     let growth = Limit {

@@ -1,4 +1,4 @@
-//! Runs of an experiment side by side, until all are done or the user asks to stop.
+//! Parallel runs of an experiment, until all are done or the user interrupts.
 
 use crate::experiment_context::{ExperimentContext, RunSource};
 use crate::experiment_display::RunResult;
@@ -10,8 +10,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use trundle_app::operator::OperatorLink;
 use trundle_app::{AppError, stop};
 
-/// Makes the runs, as many at once as there are threads; the results are in the order of the plans. If the user asks to stop, the results
-/// are those of the runs that are done. `unit`: what a run is called, as "worlds"; `name_of`: its name on the display.
+/// Executes the runs in parallel, one per thread; the results are in the order of the plans. After an interrupt, the results are those of
+/// the finished runs. `unit`: the plural name of a run, as "worlds"; `name_of`: its name on the display.
 ///
 /// # Errors
 /// The first plan that cannot be carried out; [`AppError::Stopped`] if no run is done.
@@ -46,7 +46,7 @@ pub(crate) fn run_each<P: Send, T: Send + RunResult + Serialize + DeserializeOwn
     if results.is_empty() && total > 0 { Err(AppError::Stopped) } else { Ok(results) }
 }
 
-/// Makes a run. If the program fails in it, a message names the run. The other runs of a shard go on; any other experiment ends.
+/// Executes a run. If the run panics, a message names it. The other runs of a shard then continue; any other experiment ends.
 fn unless_it_dies<T>(
     runs: &RunSource,
     name: &str,

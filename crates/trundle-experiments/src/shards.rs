@@ -1,4 +1,4 @@
-//! Experiments in parts: the runs of a shard are kept in a folder, and shards are merged into the report of the whole experiment.
+//! Experiments in parts: a shard stores its runs in a folder, and a merge of the shards gives the report of the whole experiment.
 
 mod arguments;
 mod kept_runs;

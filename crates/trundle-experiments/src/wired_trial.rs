@@ -21,7 +21,7 @@ use trundle_sim::Simulator;
 /// Time between two points of the true path \[s\]. Source: ours.
 const PATH_PERIOD_S: f64 = 0.1;
 
-/// Makes one run over wires, beside its front end. Faults of the computer are not made.
+/// Executes one run over wires, with its front end. Faults of the computer are not simulated.
 ///
 /// # Errors
 /// When the plan cannot be carried out, or base or camera do not answer.
@@ -65,7 +65,7 @@ fn drive(setup: &RunSetup, folder: &Path, front_end: FrontEnd) -> Result<Finishe
     Ok(run)
 }
 
-/// The emulated robot in a thread of its own.
+/// The emulated robot in a separate thread.
 struct Emulation {
     is_over: Arc<AtomicBool>,
     thread: JoinHandle<Result<Truth, AppError>>,

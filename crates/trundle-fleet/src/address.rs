@@ -6,10 +6,10 @@ use std::str::FromStr;
 /// Port of MQTT without encryption. Source: IANA.
 const PLAIN_PORT: u16 = 1883;
 
-/// The address of a broker: `mqtt://[USER@]HOST[:PORT]`. It holds no password, which the list of processes would show.
+/// The address of a broker: `mqtt://[USER@]HOST[:PORT]`. It contains no password, which the list of processes would show.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BrokerAddress {
-    /// The user, where the broker asks for one.
+    /// The user, if the broker requires one.
     pub user: Option<String>,
     /// Name or address of the machine.
     pub host: String,
@@ -49,7 +49,7 @@ impl FromStr for BrokerAddress {
     }
 }
 
-/// Host and port; an IPv6 address stands in brackets.
+/// Host and port; an IPv6 address is in brackets.
 fn split_port(place: &str) -> Result<(&str, u16), String> {
     let end_of_host = place.rfind(']').map_or(0, |bracket| bracket + 1);
     match place[end_of_host..].rfind(':') {

@@ -1,10 +1,10 @@
-//! Why a robot cannot join a broker.
+//! Reason why a robot cannot join a broker.
 
 use std::path::PathBuf;
 use thiserror::Error;
 use trundle_app::AppError;
 
-/// Why a robot cannot join a broker. A broker that does not answer is not an error: the robot tries again.
+/// Reason why a robot cannot join a broker. A silent broker is not an error: the robot tries again.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum FleetError {
@@ -19,7 +19,7 @@ pub enum FleetError {
     /// A password without a user.
     #[error("a password is given and no user: expected --mqtt mqtt://USER@HOST:PORT")]
     PasswordWithoutUser,
-    /// The name of the robot cannot stand in a topic.
+    /// The name of the robot is invalid in a topic.
     #[error("--mqtt-name {0}: expected letters, digits, '-' and '_', as robot-7 or acme/robot-7")]
     Name(String),
     /// The system refuses a thread.

@@ -1,4 +1,4 @@
-//! The link of a robot to a broker, in a thread of its own.
+//! The link of a robot to a broker, on its own thread.
 
 use crate::worker::FleetWorker;
 use crate::{BrokerAddress, FleetError, FleetOptions, Password, RobotFacts, RobotName};
@@ -9,7 +9,7 @@ use std::thread::JoinHandle;
 use trundle_app::operator::{Operator, OperatorLink};
 use trundle_app::{AppError, RunSetup};
 
-/// The link of a robot to a broker. Dropping it says goodbye to the broker and ends the thread.
+/// The link of a robot to a broker. A drop disconnects from the broker and ends the thread.
 #[derive(Debug)]
 pub struct FleetLink {
     options: FleetOptions,
@@ -18,7 +18,7 @@ pub struct FleetLink {
 }
 
 impl FleetLink {
-    /// Joins a broker, or tries until it answers. A warning in the log says when the broker is gone and when it is back.
+    /// Joins a broker, retrying until it answers. The log has a warning when the broker is lost and when it returns.
     ///
     /// # Errors
     /// When a password has no user, or the system refuses a thread.
@@ -34,10 +34,10 @@ impl FleetLink {
         Ok(Self { options, is_over, thread: Some(thread) })
     }
 
-    /// The link beside a run of a setup, as the options of a command line ask for it.
+    /// The link for a run of a setup, with the options of a command line.
     ///
     /// # Errors
-    /// As [`FleetLink::start`]; when the password file or the robot's outline cannot be used, or the run takes no commands.
+    /// As [`FleetLink::start`]; when the password file or the robot's outline cannot be used, or the run accepts no commands.
     pub fn beside(
         setup: &RunSetup,
         link: &OperatorLink,

@@ -1,14 +1,14 @@
 //! trundle by MQTT: a robot at home and in a fleet, by one connection to a broker.
 //!
-//! [`FleetLink::start`] joins a broker from a thread of its own. It reads views of the run and sends commands by `trundle_app::operator`;
-//! the robot never waits for it, and goes on when the broker is gone.
+//! [`FleetLink::start`] joins a broker on a separate thread. It reads views of the run and sends commands by `trundle_app::operator`; the
+//! robot never waits for it, and continues if the broker is lost.
 //!
-//! | part | what it does |
+//! | part | purpose |
 //! |---|---|
 //! | `broker` | the connection: bounded queues, size limits, back-off |
 //! | `home` | state, map picture, places and commands for a home; Home Assistant's discovery |
 //! | [`vda5050`] | orders and states of VDA 5050 2.1 for a master control |
-//! | `worker` | the thread that brings them together |
+//! | `worker` | the thread that connects the parts |
 
 mod address;
 mod broker;

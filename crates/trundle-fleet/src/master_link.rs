@@ -1,4 +1,4 @@
-//! A vehicle on its topics: what a master control sends and reads, and when.
+//! A vehicle on its topics: contents and times of a master control's messages.
 
 use crate::broker::Publication;
 use crate::robot_commands::RobotCommands;
@@ -53,7 +53,7 @@ impl MasterLink {
         vec![self.topic(Topic::Order), self.topic(Topic::InstantActions)]
     }
 
-    /// The topic on which the robot and the broker say whether the robot is connected.
+    /// The topic for the robot's connection state, published by the robot and the broker.
     #[must_use]
     pub fn connection_topic(&self) -> String {
         self.topic(Topic::Connection)
@@ -70,7 +70,7 @@ impl MasterLink {
         Publication::json(self.connection_topic(), &ConnectionMessage { header, connection_state }, true)
     }
 
-    /// The broker accepted the robot: all is sent anew.
+    /// The broker accepted the robot: all messages are sent again.
     pub fn on_joined(&mut self) {
         self.is_new = true;
         self.sent = None;
@@ -121,7 +121,7 @@ impl MasterLink {
         due
     }
 
-    /// The state, where it changed, or was sent long ago.
+    /// The state if it changed or a repetition is due.
     fn due_state(&mut self, view: &RobotGlance) -> Option<Publication> {
         let is_wanted = self.vehicle.take_state_wish();
         if self.sent.is_some() && self.since_state < MIN_STATE_PERIOD && !is_wanted {

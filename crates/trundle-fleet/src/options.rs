@@ -1,4 +1,4 @@
-//! How a robot joins a broker.
+//! Options for joining a broker.
 
 use crate::{BrokerAddress, FleetError};
 use std::fmt;
@@ -14,12 +14,12 @@ const MAX_NAME_BYTES: usize = 64;
 /// Manufacturer if none is given.
 const MANUFACTURER: &str = "trundle";
 
-/// How a robot joins a broker.
+/// Options for joining a broker.
 #[derive(Debug, Clone)]
 pub struct FleetOptions {
     /// The broker.
     pub broker: BrokerAddress,
-    /// The password, where the broker asks for one.
+    /// The password, if the broker requires one.
     pub password: Option<Password>,
     /// The robot in topics and messages.
     pub name: RobotName,
@@ -27,7 +27,7 @@ pub struct FleetOptions {
     pub map_id: String,
 }
 
-/// A password. Its debug text does not show it.
+/// A password. Its debug text hides the content.
 #[derive(Clone)]
 pub struct Password(String);
 
@@ -35,7 +35,7 @@ impl Password {
     /// The password of a file, or of the variable TRUNDLE_MQTT_PASSWORD; `None` without both.
     ///
     /// # Errors
-    /// When the file cannot be read, is too large or holds nothing.
+    /// When the file cannot be read, is too large or is empty.
     pub fn read(file: Option<&Path>) -> Result<Option<Self>, FleetError> {
         let Some(file) = file else {
             return Ok(std::env::var(PASSWORD_VARIABLE).ok().filter(|text| !text.is_empty()).map(Self));
@@ -72,7 +72,7 @@ pub struct RobotName {
 }
 
 impl Default for RobotName {
-    /// The name of this machine; where it cannot stand in a topic, `robot`.
+    /// The name of this machine; `robot` if that is not valid in a topic.
     fn default() -> Self {
         let machine = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
         let robot = || Self { manufacturer: MANUFACTURER.to_owned(), serial_number: "robot".to_owned() };

@@ -3,15 +3,15 @@
 use trundle_app::operator::Operator;
 use trundle_core::Pose2;
 
-/// Named places, if the program has them. They may change while a run goes.
+/// Named places of the program. They may change during a run.
 pub trait Places: Send {
-    /// The names, in the order in which they are shown.
+    /// The names, in display order.
     fn names(&self) -> Vec<String>;
     /// Pose of a place, map frame.
     fn pose(&self, name: &str) -> Option<Pose2>;
 }
 
-/// The places that are kept with the map of a run.
+/// The places stored with the map of a run.
 impl Places for Operator {
     fn names(&self) -> Vec<String> {
         self.annotations().places.iter().map(|place| place.name.clone()).collect()

@@ -1,14 +1,14 @@
-//! Where commands to the robot go.
+//! Receiver of commands to the robot.
 
 use trundle_app::operator::Operator;
 use trundle_runtime::OperatorCommand;
 
-/// Where commands to the robot go: the link to a run, or a list in tests.
+/// Receiver of commands to the robot: the link to a run, or a list in tests.
 pub trait RobotCommands {
-    /// Sends a command; its number, by which a view names its mission.
+    /// Sends a command; returns its number, by which a view identifies its mission.
     ///
     /// # Errors
-    /// Why the robot does not take it.
+    /// Reason why the robot refuses the command.
     fn send(&mut self, command: OperatorCommand) -> Result<u64, String>;
 }
 

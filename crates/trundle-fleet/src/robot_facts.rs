@@ -4,17 +4,17 @@ use std::f64::consts::TAU;
 use trundle_app::RunSetup;
 use trundle_core::{DriveLimits, Footprint, Invalid, Vector2};
 
-/// Corners of the polygon that stands for a disc.
+/// Number of corners of the polygon that approximates a disc.
 const DISC_CORNERS: u32 = 16;
 
 /// Facts of a robot that the network gets once.
 #[derive(Debug, Clone)]
 pub struct RobotFacts {
-    /// The run: `demo: house`.
+    /// Name of the run: `demo: house`.
     pub title: String,
     /// Outline of the robot.
     pub footprint: Footprint,
-    /// Limits of its speed.
+    /// Limits of the robot's speed.
     pub limits: DriveLimits,
     /// Height of the robot \[m\]: the upper edge of the band in which obstacles count.
     pub height_m: f64,

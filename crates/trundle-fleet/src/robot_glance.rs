@@ -22,7 +22,7 @@ pub struct RobotGlance {
 }
 
 impl RobotGlance {
-    /// A robot at rest that knows its pose and has no mission.
+    /// A robot at rest with a known pose and without a mission.
     #[must_use]
     pub fn at_rest(pose: Pose2) -> Self {
         let (stamp, twist) = (Stamp::from_nanos(0), Twist2::new(0.0, 0.0));

@@ -19,7 +19,7 @@ pub fn utc_text(time: SystemTime) -> String {
     format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}.{:03}Z", since.subsec_millis())
 }
 
-/// Year, month and day of a number of days since 1 January 1970. Years are counted from 1 March, so that a leap day is the last of its year.
+/// Year, month and day of a number of days since 1 January 1970. Years start on 1 March, which makes a leap day the last of its year.
 fn date_of(days: u64) -> (u64, u64, u64) {
     let days = days + EPOCH_DAYS;
     let (era, day_of_era) = (days / DAYS_OF_ERA, days % DAYS_OF_ERA);

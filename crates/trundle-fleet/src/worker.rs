@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use trundle_app::operator::{Operator, RunView};
 use trundle_runtime::real_time::ThreadPlacement;
 
-/// Period of looks at the run. Source: ours.
+/// Period of reading views of the run. Source: ours.
 const LOOK_PERIOD: Duration = Duration::from_millis(50);
 /// Largest number of messages that are handled in a period; more wait at the broker. Source: ours.
 const MAX_MESSAGES_OF_PERIOD: usize = 200;
@@ -23,7 +23,7 @@ pub struct FleetWorker {
     master: MasterLink,
     address: String,
     is_joined: bool,
-    /// Whether a person knows that the broker is gone.
+    /// Whether the loss of the broker was reported.
     is_reported: bool,
 }
 
@@ -44,7 +44,7 @@ impl FleetWorker {
         Self { operator, broker, home, master, address, is_joined: false, is_reported: false }
     }
 
-    /// Works until `is_over`; then says goodbye.
+    /// Works until `is_over`; then disconnects.
     pub fn run(mut self, is_over: impl Fn() -> bool) {
         // If the system refuses the niceness, the link works all the same.
         _ = ThreadPlacement { nice: crate::broker::LINK_NICENESS, ..ThreadPlacement::default() }.take();
@@ -90,7 +90,7 @@ impl FleetWorker {
     }
 
     fn on_message(&mut self, topic: &str, payload: &[u8]) {
-        // A command that comes before the first view waits for nothing: the robot has no pose yet.
+        // A command before the first view is ignored: the robot has no pose.
         let Some(view) = self.operator.glance() else {
             return tracing::debug!("MQTT: a message before the first view");
         };
@@ -119,7 +119,7 @@ impl FleetWorker {
         }
     }
 
-    /// The newest view. The map is asked for only when a picture is due.
+    /// The newest view. The map is only requested when a picture is due.
     fn view(&self) -> Option<Arc<RunView>> {
         if self.is_joined && self.home.wants_map() { self.operator.view() } else { self.operator.glance() }
     }

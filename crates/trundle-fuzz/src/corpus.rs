@@ -1,4 +1,4 @@
-//! Inputs beside the seeds: those of `fuzz/corpus`, and files of test data if there are some.
+//! Inputs in addition to the seeds: those of `fuzz/corpus`, and test data if available.
 
 use crate::FuzzTarget;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ pub fn committed_inputs(target: &FuzzTarget) -> Vec<Vec<u8>> {
     inputs
 }
 
-/// Files in `folder` and in the folders in it whose names end as the target's inputs do. Empty if there is no such folder.
+/// Files in `folder` and its subfolders with an extension of the target's inputs. Empty if the folder does not exist.
 #[must_use]
 pub fn inputs_below(folder: &Path, target: &FuzzTarget) -> Vec<Vec<u8>> {
     let all = files_of(folder)

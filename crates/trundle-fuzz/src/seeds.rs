@@ -1,4 +1,4 @@
-//! Good inputs of each target, small ones.
+//! Small valid inputs of each target.
 
 mod binary;
 mod drivers;

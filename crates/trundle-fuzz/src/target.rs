@@ -5,7 +5,7 @@ use crate::{seeds, targets};
 /// A reader of bytes that a stranger can send.
 #[derive(Debug, Clone, Copy)]
 pub struct FuzzTarget {
-    /// Its name, as `cargo xtask fuzz --target` takes it.
+    /// Name of the target, for `cargo xtask fuzz --target`.
     pub name: &'static str,
     /// Reads the bytes. A panic is a finding.
     pub run: fn(&[u8]),
@@ -13,19 +13,19 @@ pub struct FuzzTarget {
     pub seeds: fn() -> Vec<Vec<u8>>,
     /// Words of the format, which a mutation inserts.
     pub words: &'static [&'static str],
-    /// Ends of file names that are inputs of this target.
+    /// File extensions of this target's inputs.
     pub endings: &'static [&'static str],
-    /// Whether the format is compressed, so that a small file may hold much.
+    /// Whether the format is compressed: a small file may then expand to much data.
     pub compressed: bool,
 }
 
-/// Memory that any input may take \[bytes\]: 64 MB. Below it, tables that do not depend on the input would be findings. Source: ours.
+/// Memory that any input may use \[bytes\]: 64 MB. With a smaller limit, tables independent of the input would be reported. Source: ours.
 const FREE_BYTES: usize = 64 << 20;
 /// Memory for each byte of an uncompressed input \[bytes\]. A value of three characters becomes a node of a document of some 100 bytes.
 /// Source: ours.
 const BYTES_PER_BYTE: usize = 256;
-/// Memory for each byte of a compressed input \[bytes\]. Deflate packs 1,032 bytes into one, an image of one bit per pixel eight pixels of three
-/// bytes into each of them; a zstd block of four bytes holds 128 KB. Source: RFC 1951, RFC 8878.
+/// Memory per byte of a compressed input \[bytes\]. Deflate packs 1,032 bytes into one. An image of one bit per pixel has eight pixels of
+/// three bytes in each of them; a zstd block of four bytes expands to 128 KB. Source: RFC 1951, RFC 8878.
 const BYTES_PER_COMPRESSED_BYTE: usize = 32_768;
 
 impl FuzzTarget {
@@ -35,7 +35,7 @@ impl FuzzTarget {
         TARGETS.iter().find(|target| target.name == name)
     }
 
-    /// The memory that an input of `length` bytes may take at once \[bytes\].
+    /// The memory that may be in use for an input of `length` bytes \[bytes\].
     #[must_use]
     pub fn memory_limit(&self, length: usize) -> usize {
         let factor = if self.compressed { BYTES_PER_COMPRESSED_BYTE } else { BYTES_PER_BYTE };

@@ -3,14 +3,14 @@
 //! - [`TileGrid`]: unbounded grid of tiles that clones share; [`LogOddsGrid`] and [`tiles::TileMap`] are its two kinds.
 //! - [`LogOddsGrid`] and [`ScanCells`]: log-odds of each cell, and the cells that one scan hits or sees free.
 //! - [`PublishedGrid`]: three-valued occupancy grid, updated in place, with a revision number for each tile.
-//! - [`DistanceField`]: exact distance to the nearest obstacle, updated where the grid changed.
+//! - [`DistanceField`]: exact distance to the nearest obstacle, updated after changes of the grid.
 //! - [`LikelihoodField`] over [`SurfacePoints`]: likelihood of a hit near the mean hits of occupied cells.
 //! - [`ray_cells`]: exact traversal of the cells along a line.
 //! - [`tiles`]: compact maps in bytes that share tiles between clones, for the many maps of a particle filter.
 //!
-//! Lines are traversed by two methods, with two contracts. [`ray_cells`] gives every cell that a line crosses: a beam does not pass
-//! between two obstacle cells that touch at a corner. The maps in [`tiles`] mark one cell for each step along the longer axis.
-//! With every crossed cell these maps take 26 to 37 % more time a scan and fit no better.
+//! Lines are traversed by two methods, with two contracts. [`ray_cells`] gives every cell that a line crosses: a beam does not pass between
+//! two obstacle cells that touch at a corner. The maps in [`tiles`] mark one cell for each step along the longer axis. With every crossed
+//! cell, these maps take 26 to 37 % more time per scan without a better fit.
 //!
 //! ```
 //! use trundle_core::{Cell, Vector2};

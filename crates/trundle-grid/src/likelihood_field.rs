@@ -32,7 +32,7 @@ impl<'a> LikelihoodField<'a> {
     /// Likelihood at a point of the map frame (m), 0 to 1; 0 outside the part.
     pub fn at(&self, point: Vector2) -> f32 {
         let within = (point - self.corner) * self.cells_per_metre;
-        // Cutting off the fraction is rounding down where it matters: in the field.
+        // Truncation equals rounding down for all values inside the field.
         let inside = within.x >= 0.0 && within.y >= 0.0;
         let index = if inside { self.index(within.x as i32, within.y as i32) } else { None };
         index.map_or(0.0, |i| self.values[i])
@@ -78,7 +78,7 @@ mod tests {
     }
 
     proptest! {
-        /// The likelihood at the centre of a cell is that of the nearest surface point, by brute force.
+        /// The likelihood at the centre of a cell equals that of the nearest surface point, found by exhaustive search.
         #[test]
         fn centres_agree_with_brute_force(cells in prop::collection::btree_set((0..20_i32, 0..20_i32), 1..20)) {
             let cells: Vec<_> = cells.into_iter().collect();

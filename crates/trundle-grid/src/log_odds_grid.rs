@@ -77,7 +77,7 @@ impl LogOddsGrid {
         (low, ((high.0 - low.0 + 1) as usize, (high.1 - low.1 + 1) as usize))
     }
 
-    /// Evidence to write to. Allocates the tile if there is none, and copies it if a clone shares it.
+    /// Evidence to write to. Allocates a missing tile, and copies a tile shared with a clone.
     pub fn entry(&mut self, cell: GridCell) -> &mut Evidence {
         &mut self.tile_mut(tile_of(cell)).0[index_in_tile(cell)]
     }

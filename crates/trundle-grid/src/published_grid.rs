@@ -1,4 +1,4 @@
-//! Three-valued occupancy grid that is updated in place and reports its changed tiles.
+//! Three-valued occupancy grid with in-place updates and a list of its changed tiles.
 
 use crate::GridCell;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
@@ -25,7 +25,7 @@ impl<T: PartialOrd> Thresholds<T> {
     }
 }
 
-/// Occupancy grid of whole tiles. A revision number is stored for each tile, so that readers fetch only what changed.
+/// Occupancy grid of whole tiles. Each tile has a revision number, by which readers fetch only changed tiles.
 ///
 /// Writing a cell is O(1). The grid gets a new layout only when its bounding box grows.
 #[derive(Debug, Clone)]
@@ -67,7 +67,7 @@ impl PublishedGrid {
         self.revision
     }
 
-    /// Begins a revision. Later writes belong to it.
+    /// Begins a revision. Later writes belong to this revision.
     pub fn begin_revision(&mut self) {
         self.revision += 1;
     }
@@ -175,7 +175,7 @@ mod tests {
                 prop_assert!(changes.len() <= 1);
                 let grid = published.grid();
                 if before.1 != *grid.geometry() {
-                    // The reader gives its copy a new layout; the old cells keep their places in the map.
+                    // A copy gets the new layout; the old cells retain their positions in the map.
                     let centres = |i: usize| grid.geometry().center(grid.geometry().cell(i));
                     let moved: Vec<Cell> = (0..grid.geometry().len()).map(|i| copy.at(centres(i))).collect();
                     copy = OccupancyGrid::new(*grid.geometry(), moved).unwrap();

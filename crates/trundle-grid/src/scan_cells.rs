@@ -1,4 +1,4 @@
-//! Cells that one scan hits, and cells that it observes as free.
+//! Cells with a hit in one scan, and cells observed as free in it.
 
 use crate::{GridCell, MapperConfig, ray_cells};
 use trundle_core::{Beam, Pose2, Scan, Vector2};
@@ -249,7 +249,7 @@ mod tests {
 
     #[test]
     fn beams_that_graze_a_wall_do_not_clear_it() {
-        // A wall 0.1 m to the left, along x: hits lie up to 0.3 m apart.
+        // A wall 0.1 m to the left, along x: hits are up to 0.3 m apart.
         let beam = |angle: f64| Beam::Hit { range: 0.1 / angle.sin() };
         let beams = (0..300).map(|i| beam(0.03 + 0.002 * f64::from(i))).collect();
         let scan = Scan::new(Stamp::default(), Vector2::zeros(), 0.03, 0.002, beams).unwrap();

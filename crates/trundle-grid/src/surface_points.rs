@@ -18,8 +18,8 @@ pub struct SurfacePoints {
 }
 
 impl SurfacePoints {
-    /// Surface points within `margin` m of the bounding box of `points` (map frame, m); `None` if there is no point. `resolution` is the
-    /// side of a cell of the map, m.
+    /// Surface points within `margin` m of the bounding box of `points` (map frame, m); `None` without points. `resolution` is the side of
+    /// a cell of the map, m.
     pub fn around(
         map: &LogOddsGrid,
         thresholds: Thresholds<f32>,
@@ -62,7 +62,7 @@ impl SurfacePoints {
             .filter_map(|(row, col)| self.cells[row as usize * self.width + col as usize])
     }
 
-    /// Column and row of the cell that contains `point`, which may lie outside the part.
+    /// Column and row of the cell that contains `point`; the point may be outside the part.
     pub fn column_and_row(&self, point: Vector2) -> (i32, i32) {
         let cell = GridCell::containing(point / self.resolution);
         (cell.x - self.corner.x, cell.y - self.corner.y)

@@ -45,13 +45,13 @@ proptest! {
         let here = rasterised(&config, Pose2::new(0.53125, 0.28125, theta), &scan);
         let by = |v: i32| f64::from(v) * config.resolution;
         let there = rasterised(&config, Pose2::new(0.53125 + by(x), 0.28125 + by(y), theta), &scan);
-        // Rounding may move a point that lies on a border: at most one cell in the scan.
+        // Rounding may move a point on a border: at most one cell per scan.
         let (moved, found) = (sets(&here, |c| (c.x + x, c.y + y)), sets(&there, |c| (c.x, c.y)));
         prop_assert!(moved.0.symmetric_difference(&found.0).count() <= 2);
         prop_assert!(moved.1.symmetric_difference(&found.1).count() <= 2);
     }
 
-    /// No cell is both hit and free, and the free cells lie on rays of the scan.
+    /// No cell is both hit and free, and the free cells are on rays of the scan.
     #[test]
     fn hits_and_free_cells_are_apart_and_within_range(scan in any_scan(), theta in -3.0..3.0_f64) {
         let config = exact();
@@ -132,7 +132,7 @@ proptest! {
         }
     }
 
-    /// Clones of a grid that are written in turn never see each other's cells.
+    /// Clones of a grid, written alternately, never share cells.
     #[test]
     fn clones_of_a_log_odds_grid_are_independent(
         writes in prop::collection::vec((0..3_usize, -200..200_i32, -200..200_i32, -3.0..3.0_f32), 1..60),

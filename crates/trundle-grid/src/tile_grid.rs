@@ -65,7 +65,7 @@ impl<T: TileData> TileGrid<T> {
         self.chunk(tile)?.tiles[Chunk::<T>::index(tile)].as_deref()
     }
 
-    /// Tile to write to. Allocates the tile if there is none, and copies it if a clone shares it.
+    /// Tile to write to. Allocates a missing tile, and copies a tile shared with a clone.
     pub fn tile_mut(&mut self, tile: TileIndex) -> &mut T {
         let slot = self.chunks.slot_mut(chunk_of(tile));
         let chunk = Arc::make_mut(slot.get_or_insert_with(|| Arc::new(Chunk::EMPTY)));
@@ -194,7 +194,7 @@ mod tests {
             for (at, value) in &first {
                 prop_assert_eq!(before.tile(*at).log_odds[0], *value, "the original is unchanged");
             }
-            // In the other direction, tiles that only the later map holds are visited as `None`.
+            // In the other direction, tiles that exist only in the later map are visited as `None`.
             let mut gone = Vec::new();
             before.changed_tiles(&after, |at, tile| gone.extend(tile.is_none().then_some(at)));
             gone.sort_unstable();

@@ -33,7 +33,8 @@ pub struct CameraModel {
     pub depth_scale: f64,
 }
 
-/// Readout time of a Kinect v1's colour camera: 0.026 s. Without it, images of a turning camera are distorted. Source: \[Ringaby11\].
+/// Readout time of a Kinect v1's colour camera: 0.026 s. With a wrong value, images of a turning camera are distorted. Source:
+/// \[Ringaby11\].
 const KINECT_V1_READOUT_S: f64 = 0.026;
 
 impl CameraModel {
@@ -53,8 +54,8 @@ impl CameraModel {
         Self::read(path)
     }
 
-    /// The camera of a preset. The three of the TUM RGB-D benchmark are its calibration of the colour cameras, to
-    /// which depth is registered (`vision.in.tum.de/data/datasets/rgbd-dataset/file_formats`).
+    /// The camera of a preset. The three TUM RGB-D presets are the benchmark's calibration of the colour cameras, to which depth is
+    /// registered (`vision.in.tum.de/data/datasets/rgbd-dataset/file_formats`).
     pub fn preset(name: &str) -> Option<Self> {
         let lens = |k1, k2, p1, p2, k3| Distortion { k1, k2, p1, p2, k3 };
         let tum = |focal, centre, distortion, readout| {
@@ -82,15 +83,14 @@ impl CameraModel {
         })
     }
 
-    /// The camera of a file: trundle's TOML, the YAML of ORB-SLAM2 and 3, of stella_vslam or of ROS's camera_info, or Open3D's
-    /// JSON. The content decides which format it is.
+    /// The camera of a file: trundle's TOML, the YAML of ORB-SLAM2 and 3, of stella_vslam or of ROS's camera_info, or Open3D's JSON. The
+    /// content determines the format.
     ///
-    /// The TOML has `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and `depth_scale` (units per metre), and, 0 if left out, the
-    /// lens `k1`, `k2`, `p1`, `p2`, `k3` in the order of OpenCV, and `readout` (s). A file that holds no depth scale is taken to
-    /// mean millimetres, as ROS does.
+    /// The TOML has `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and `depth_scale` (units per metre). The lens `k1`, `k2`, `p1`, `p2`,
+    /// `k3` in OpenCV's order and `readout` (s) default to 0. A file without a depth scale means millimetres, as in ROS.
     ///
     /// # Errors
-    /// With the line and key, when the file is none of these, a key is wrong or missing, or a value is not accepted.
+    /// With the line and key, when the file has no known format, a key is wrong or missing, or a value is invalid.
     pub fn read(path: &Path) -> Result<Self, IoError> {
         let kind = Expected::Camera.check(path)?;
         let text = read_text(path)?;

@@ -14,13 +14,13 @@ use trundle_core::{Beam, Pose2, Scan, Stamp, Twist2};
 
 /// The log of a laser and odometry in CARMEN's form, which most 2-D mapping programs read.
 ///
-/// A sweep is a line `ROBOTLASER1`, a pose by the wheels a line `ODOM`; both stand in the odometry's frame. A beam without a
-/// return has the maximum range, whether it met nothing or failed: the format does not separate the two.
+/// A sweep is a line `ROBOTLASER1`, a wheel pose a line `ODOM`; both are in the odometry's frame. A beam without a return has the maximum
+/// range, both for free space and for a failure: the format has no distinction.
 #[derive(Debug, Clone)]
 pub struct CarmenLog {
     text: String,
     max_range: f64,
-    /// Of the newest `ODOM`: `odom_from_base`.
+    /// `odom_from_base` of the newest `ODOM`.
     pose: Pose2,
     twist: Twist2,
 }
@@ -71,7 +71,7 @@ impl CarmenLog {
         self.text
     }
 
-    /// CARMEN ends its lines with the sensor's time, a host, and the logger's time.
+    /// A CARMEN line ends with the sensor's time, a host, and the logger's time.
     fn line(&mut self, content: &str, stamp: Stamp) {
         writeln!(self.text, "{content} {stamp} trundle {stamp}").expect("invariant: a String takes any text");
     }

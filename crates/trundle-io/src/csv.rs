@@ -3,8 +3,8 @@
 use std::fmt::Write;
 use trundle_core::{Path, Trajectory, Vector2};
 
-/// A table as CSV: the header's names, then one line per row; every number reads back as the same f64. Names carry units
-/// (`x_m`) and hold no comma.
+/// A table as CSV: the header's names, then one line per row; every number is read back as the same f64. Names contain units (`x_m`) and no
+/// comma.
 pub fn table_csv<const N: usize>(header: [&str; N], rows: impl IntoIterator<Item = [f64; N]>) -> String {
     let mut text = header.join(",");
     text.push('\n');

@@ -1,14 +1,14 @@
-//! How far the depth images of an input reach, and the likely cause if no depth can be used.
+//! Range of the depth images of an input, and the likely cause of unusable depth.
 
 use trundle_core::DepthImage;
 
-/// Depth below which a depth camera measures nothing, m. Source: Kinect v1 and V2, RealSense D435.
+/// Depth below which a depth camera has no measurement, m. Source: Kinect v1 and V2, RealSense D435.
 const MIN_USABLE_M: f32 = 0.3;
 /// Depth above which indoor depth is not used, m. Source: \[Li18\], Kinect V2.
 const MAX_USABLE_M: f32 = 8.0;
 /// Rows and columns from one pixel that counts to the next. Source: ours, 1,200 pixels of a 640 x 480 image.
 const PIXEL_STEP: usize = 16;
-/// Typical depth of a room's walls, m: a depth scale is evaluated by how near the mean depth comes to it. Source: ours.
+/// Typical depth of indoor walls, m: the score of a depth scale is the difference of the mean depth from this value. Source: ours.
 const TYPICAL_DEPTH_M: f64 = 2.0;
 /// Depth scales in use, units per metre: metres, 0.1 mm, mm, and TUM's 0.2 mm. Source: docs/formats.md.
 const KNOWN_SCALES: [f64; 4] = [1.0, 1000.0, 5000.0, 10_000.0];
@@ -73,7 +73,8 @@ impl DepthStatistics {
         self.largest * scale > MAX_UNITS + 0.5 || (scale == 1.0 && self.fractional > 0)
     }
 
-    /// Why no depth can be used, and the likely cause; `None` if some can, or no image was counted. `scale`: depth units per metre.
+    /// Reason for unusable depth, and the likely cause; `None` if some depth is usable, or no image was counted. `scale`: depth units per
+    /// metre.
     #[must_use]
     pub fn problem(&self, scale: f64) -> Option<String> {
         let with_depth = self.pixels - self.without_depth;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 use trundle_core::{Invalid, Stamp};
 
-/// Why a file cannot be read, understood or written: one sentence that names the file.
+/// Reason why a file cannot be read, parsed or written: one sentence with the file's name.
 #[derive(Debug, Error)]
 pub enum IoError {
     /// The operating system refused.
@@ -34,7 +34,7 @@ pub enum IoError {
     Field {
         /// The file.
         path: PathBuf,
-        /// Which value, and what would be accepted.
+        /// The value, and the accepted values.
         problem: Box<Invalid>,
     },
     /// An image cannot be read or made.
@@ -48,12 +48,12 @@ pub enum IoError {
     /// The work is done, but its results could not all be written.
     #[error("{}", incomplete_text(folder.as_deref(), problems))]
     Incomplete {
-        /// Where those are that could be written.
+        /// Folder of the results that could be written.
         folder: Option<PathBuf>,
-        /// Why the others are not there, one or more.
+        /// Reasons for the missing results, one or more.
         problems: Vec<IoError>,
     },
-    /// The file as a whole is not what it should be.
+    /// The file as a whole is invalid.
     #[error("{path}: {problem}", path = path.display())]
     Malformed {
         /// The file or folder.
@@ -66,7 +66,7 @@ pub enum IoError {
     WrongKind {
         /// The file or folder.
         path: PathBuf,
-        /// Its kind.
+        /// Kind of the file.
         found: &'static str,
         /// The accepted content.
         expected: &'static str,
@@ -76,7 +76,7 @@ pub enum IoError {
 }
 
 impl IoError {
-    /// The file or folder it is about.
+    /// The file or folder of the error.
     pub fn path(&self) -> &Path {
         match self {
             Self::System { path, .. }
@@ -101,7 +101,7 @@ impl IoError {
         }
     }
 
-    /// An error if there are `problems`; the results that could be written are in `folder`.
+    /// An error if `problems` is not empty; the results that could be written are in `folder`.
     pub(crate) fn incomplete(folder: &Path, problems: Vec<Self>) -> Result<(), Self> {
         if problems.is_empty() {
             return Ok(());
@@ -140,7 +140,7 @@ impl IoError {
         Self::image(path)(problem)
     }
 
-    /// A colour image of `found` px, width and height, where the camera's are of `expected`.
+    /// A colour image of `found` px (width and height); the camera has `expected`.
     #[must_use]
     pub fn wrong_image_size(path: &Path, found: (usize, usize), expected: (usize, usize)) -> Self {
         let expected = format!("{} x {} as the camera", expected.0, expected.1);
@@ -153,7 +153,7 @@ impl IoError {
     }
 }
 
-/// A further clause of a sentence, if there is one.
+/// A further clause of a sentence; empty for empty text.
 fn clause(text: &str) -> String {
     if text.is_empty() { String::new() } else { format!("; {text}") }
 }
@@ -191,9 +191,9 @@ fn reason(error: &std::io::Error) -> String {
 #[derive(Debug, Error)]
 #[error("frame {index} at {stamp} s: {source}")]
 pub struct FrameError {
-    /// Which frame, from 0.
+    /// Index of the frame, from 0.
     pub index: usize,
-    /// Its stamp.
+    /// Stamp of the frame.
     pub stamp: Stamp,
     /// The problem.
     pub source: IoError,

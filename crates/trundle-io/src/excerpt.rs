@@ -1,6 +1,6 @@
 //! Short, printable excerpts of a file's text, for messages.
 
-/// The text for a message: its first 40 characters, nothing unprintable.
+/// The text for a message: its first 40 characters, without unprintable ones.
 pub(crate) fn excerpt(text: &str) -> String {
     let short: String = text.chars().take(40).map(|c| if c.is_control() { '?' } else { c }).collect();
     if short.len() < text.len() { format!("{short}...") } else { short }

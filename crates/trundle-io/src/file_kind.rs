@@ -19,10 +19,10 @@ use std::fmt;
 use std::path::Path;
 
 impl FileKind {
-    /// The kind of what is at `path`, by its first 64 KiB or, of a folder, by its members.
+    /// The kind of a file by its first 64 KiB, or of a folder by its members.
     ///
     /// # Errors
-    /// When it does not exist or cannot be read.
+    /// When the path does not exist or cannot be read.
     pub fn of(path: &Path) -> Result<Self, IoError> {
         let meta = std::fs::metadata(path).map_err(IoError::system(path, "read"))?;
         if meta.is_dir() {

@@ -14,7 +14,7 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, IoError> {
 /// The whole file as text, without a byte order mark.
 ///
 /// # Errors
-/// When it cannot be read, or with the line where it is not UTF-8.
+/// When the file cannot be read; with the line if the line is not UTF-8.
 pub fn read_text(path: &Path) -> Result<String, IoError> {
     let mut text = String::from_utf8(read_bytes(path)?).map_err(|error| {
         let before = &error.as_bytes()[..error.utf8_error().valid_up_to()];
@@ -27,7 +27,7 @@ pub fn read_text(path: &Path) -> Result<String, IoError> {
     Ok(text)
 }
 
-/// The lines with content, with their numbers from 1: no blank ones, no comments (`#`).
+/// The lines with content and their numbers from 1, without blank lines and comments (`#`).
 pub(crate) fn content_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
     let numbered = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
     numbered.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'))
@@ -47,7 +47,7 @@ pub(crate) fn table_rows(text: &str) -> Vec<(usize, &str)> {
     rows
 }
 
-/// Whether a line is the names of columns: words only, and no name of a file.
+/// Whether a line is a header of column names: words only, no file name.
 fn is_header(line: &str) -> bool {
     let is_name = |field: &str| field.parse::<f64>().is_err() && !field.contains(['.', '/']);
     line.starts_with(|c: char| c.is_alphabetic() || c == '"') && fields(line).all(is_name)

@@ -1,13 +1,12 @@
 //! Data sets, maps, trajectories and recordings on disk: one file a format, described in `docs/formats.md`.
 //!
-//! Inputs: TUM RGB-D folders ([`TumSequence`]), CARMEN logs ([`read_carmen`]), ROS 2 bags
-//! ([`read_ros_bag`]), TUM trajectories ([`read_trajectory`]), cameras
-//! ([`CameraModel`]), ROS maps ([`read_map`]) and recordings ([`RecordingReader`]). What goes out is collected in an
-//! [`OutputFolder`], which shows nothing half-written: maps, trajectories, tables, TUM folders ([`TumWriter`]), laser logs
+//! Inputs: TUM RGB-D folders ([`TumSequence`]), CARMEN logs ([`read_carmen`]), ROS 2 bags ([`read_ros_bag`]), TUM trajectories
+//! ([`read_trajectory`]), cameras ([`CameraModel`]), ROS maps ([`read_map`]) and recordings ([`RecordingReader`]). Outputs are collected in
+//! an [`OutputFolder`], which never shows a partial result: maps, trajectories, tables, TUM folders ([`TumWriter`]), laser logs
 //! ([`CarmenLog`]), recordings ([`Recorder`]) and the numbers of a run ([`Summary`]). [`EncodedEvent`] is the interface between body and
-//! robot: a robot that receives its events receives live exactly what a replay of its recording gives.
+//! robot: the events of a live run equal those of the replay of its recording.
 //!
-//! Every error is an [`IoError`], one sentence that names the file and the line or field. No input panics.
+//! Every error is an [`IoError`], one sentence with the file and the line or field. No input panics.
 //!
 //! ```
 //! use trundle_core::OccupancyGrid;

@@ -1,4 +1,4 @@
-//! Maps in the form of the ROS `map_server`: a picture and a YAML file beside it.
+//! Maps in the format of the ROS `map_server`: a picture and a YAML file.
 
 mod annotations;
 mod graph;
@@ -27,7 +27,7 @@ use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid};
 const FREE_GREY: u8 = 254;
 /// Grey of an occupied cell.
 const OCCUPIED_GREY: u8 = 0;
-/// Grey of an unknown cell: its occupancy of 0.19608 lies just above the usual `free_thresh`.
+/// Grey of an unknown cell: its occupancy of 0.19608 is just above the usual `free_thresh`.
 const UNKNOWN_GREY: u8 = 205;
 
 /// A map of a file.
@@ -47,16 +47,16 @@ pub fn read_map(yaml_path: &Path) -> Result<OccupancyGrid, IoError> {
     Ok(read_map_file(yaml_path)?.grid)
 }
 
-/// A map from its YAML file and the picture that it names: a PGM, PNG or BMP, its colours averaged to grey.
+/// Reads a map from its YAML file and the picture named in it: a PGM, PNG or BMP; colours are averaged to grey.
 ///
-/// A pixel's occupancy is `(maxval - v) / maxval`, or `v / maxval` with `negate`. Above `occupied_thresh` it is
-/// occupied, below `free_thresh` free, between them unknown. A pixel that is not opaque is unknown. In mode `raw` it is `v / 100`,
-/// unknown above 100. A picture with a yaw is resampled along the map's axes: a cell is occupied that touches an occupied one, so
-/// walls may become a cell thicker. A `free_thresh` that makes those pixels free that `map_saver` writes for unknown gives a warning.
+/// A pixel's occupancy is `(maxval - v) / maxval`, or `v / maxval` with `negate`. A pixel above `occupied_thresh` is occupied, below
+/// `free_thresh` free, otherwise unknown. A pixel that is not opaque is unknown. In mode `raw` the occupancy is `v / 100`; values above 100
+/// are unknown. A picture with a yaw is resampled along the map's axes: a cell that touches an occupied one is occupied, so walls may become a cell
+/// thicker. A `free_thresh` above `map_saver`'s grey of unknown cells gives a warning, because these cells become free.
 ///
 /// # Errors
-/// When a file is missing or truncated, a field is missing or not accepted, thresholds are out of order, or the picture is
-/// larger than 2^28 cells.
+/// When a file is missing or truncated, a field is missing or invalid, thresholds are out of order, or the picture is larger than 2^28
+/// cells.
 pub fn read_map_file(yaml_path: &Path) -> Result<MapFile, IoError> {
     map_of(&MapSource::read(yaml_path)?)
 }
@@ -71,7 +71,7 @@ impl MapDescription {
     }
 }
 
-/// The map of its files.
+/// The map from its files.
 fn map_of(source: &MapSource) -> Result<MapFile, IoError> {
     let cells = source.picture.indices().map(|i| cell(source, i)).collect();
     let rank = |cell| match cell {
@@ -147,7 +147,7 @@ pub fn write_map_as(
     folder.write(&format!("{name}.yaml"), map_yaml(grid, &file).as_bytes())
 }
 
-/// The files of a map outside a folder of results: the picture beside `file`, then `file` itself.
+/// Writes the files of a map outside a folder of results: the picture next to `file`, then `file` itself.
 ///
 /// # Errors
 /// When the name of `file` does not end in .yaml, or the picture cannot be encoded.
@@ -168,7 +168,7 @@ pub fn map_files(
 /// The name and the bytes of a map's picture in this format.
 ///
 /// # Errors
-/// When it cannot be encoded.
+/// When the picture cannot be encoded.
 pub fn map_picture(name: &str, grid: &OccupancyGrid, image: MapImage) -> Result<(String, Vec<u8>), IoError> {
     match image {
         MapImage::Pgm => Ok((format!("{name}.pgm"), map_pgm(grid))),
@@ -210,7 +210,7 @@ fn map_png(grid: &OccupancyGrid) -> Result<Vec<u8>, CodecError> {
     encode_grey8((width, height), &greys(grid).collect::<Vec<u8>>())
 }
 
-/// The YAML beside the picture `image`; every number reads back as the same f64.
+/// The YAML for the picture `image`; every number is read back as the same f64.
 pub fn map_yaml(grid: &OccupancyGrid, image: &str) -> String {
     let GridGeometry { resolution, origin, .. } = *grid.geometry();
     let mut text = String::new();

@@ -1,4 +1,4 @@
-//! An output folder that appears complete or not at all, and replaces nothing but an earlier run.
+//! An output folder that appears complete or not at all, and replaces only an earlier run.
 
 mod file_identity;
 mod fingerprint;
@@ -29,11 +29,11 @@ use std::sync::{Mutex, PoisonError};
 /// Makes the content of a file.
 type Content = fn() -> Vec<u8>;
 
-/// A folder of results that appears whole or not at all.
+/// A folder of results that appears complete or not at all.
 ///
-/// Files are written into a hidden temporary folder beside it, and moved to their place by [`OutputFolder::commit`].
-/// Dropped without commit, everything written is removed again. The folder of an earlier run is kept: its name gets `.1`
-/// behind it. A folder with files that trundle did not write is refused, and so is one that holds an input.
+/// Files are written into a hidden temporary folder next to it, and moved to their place by [`OutputFolder::commit`]. A drop without commit
+/// removes all written files. The folder of an earlier run is renamed: its name gets the suffix `.1`. A folder with files that trundle did
+/// not write is refused, and so is one that holds an input.
 #[derive(Debug)]
 pub struct OutputFolder {
     place: OutputPlace,
@@ -49,18 +49,18 @@ pub struct OutputFolder {
 }
 
 impl OutputFolder {
-    /// Prepares to write the results to `target`; nothing is visible there before [`OutputFolder::commit`].
+    /// Prepares results for `target`; no file is visible there before [`OutputFolder::commit`].
     ///
     /// # Errors
-    /// Those of [`OutputFolder::check`], and when nothing can be written there.
+    /// Those of [`OutputFolder::check`], and when the folder is not writable.
     pub fn create(target: &Path) -> Result<Self, IoError> {
         Self::create_apart_from(&InputFiles::default(), target)
     }
 
-    /// A folder for results that must not replace the files `inputs`.
+    /// A folder for results that must not replace any of the files `inputs`.
     ///
     /// # Errors
-    /// Those of [`OutputFolder::check`], and when nothing can be written there.
+    /// Those of [`OutputFolder::check`], and when the folder is not writable.
     pub fn create_apart_from(inputs: &InputFiles, target: &Path) -> Result<Self, IoError> {
         let place = OutputPlace::check(target, inputs)?;
         let beside = parent(&place.real);
@@ -75,19 +75,19 @@ impl OutputFolder {
     /// Refuses a folder of results that cannot be replaced without a loss.
     ///
     /// # Errors
-    /// When `target` is a file, is or holds one of `inputs` or a file that trundle did not write, or when the folder that
-    /// keeps the last run does.
+    /// When `target` is a file, or is or contains one of `inputs` or a file not written by trundle. The same holds for the folder of the
+    /// last run.
     pub fn check(inputs: &InputFiles, target: &Path) -> Result<(), IoError> {
         OutputPlace::check(target, inputs).map(drop)
     }
 
-    /// This folder with a last file: the commit writes the file `name`, whose content is that of the moment of the commit.
+    /// This folder with a last file: the commit writes the file `name` with its content at that time.
     pub fn closing_with(mut self, name: &'static str, content: Content) -> Self {
         self.last = Some((name, content));
         self
     }
 
-    /// Where the results will be.
+    /// Final path of the results.
     pub fn target(&self) -> &Path {
         &self.place.target
     }
@@ -97,16 +97,16 @@ impl OutputFolder {
         &self.swept
     }
 
-    /// Where the file `name` is until the commit, for writers that need a path. Subfolders must be made by the caller.
+    /// Path of the file `name` before the commit, for writers that need a path. The caller must create subfolders.
     pub fn staged(&self, name: &str) -> PathBuf {
         self.scratch.stage().join(name)
     }
 
-    /// Writes the file `name`, a path relative to the folder; its subfolders are made. A file that the disk does not take is
-    /// left out, and [`OutputFolder::commit`] names it.
+    /// Writes the file `name`, a path relative to the folder; creates its subfolders. A file that does not fit on the disk is left out and
+    /// reported by [`OutputFolder::commit`].
     ///
     /// # Errors
-    /// When it cannot be written for another reason, by the name it would have had.
+    /// When the file cannot be written for another reason; the error gives its final name.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), IoError> {
         let path = self.staged(name);
         match self.make_subfolders(name).and_then(|()| fs::write(&path, bytes)) {
@@ -119,7 +119,7 @@ impl OutputFolder {
         }
     }
 
-    /// Makes the subfolders of the file `name`; never the staged folder itself, which is gone once the process ends by a signal.
+    /// Creates the subfolders of the file `name`, but not the staged folder itself, which is removed when a signal ends the process.
     fn make_subfolders(&self, name: &str) -> std::io::Result<()> {
         let folders: Vec<&Path> = Path::new(name).ancestors().skip(1).collect();
         let below = folders.into_iter().rev().filter(|folder| !folder.as_os_str().is_empty());
@@ -131,7 +131,7 @@ impl OutputFolder {
         })
     }
 
-    /// Notes a file that could not be written, or not to its end: [`OutputFolder::commit`] names it.
+    /// Records a missing or incomplete file, which [`OutputFolder::commit`] reports.
     pub fn leave_out(&self, problem: IoError) {
         self.unwritten.lock().unwrap_or_else(PoisonError::into_inner).push(problem);
     }
@@ -144,7 +144,7 @@ impl OutputFolder {
     /// Starts a recording as the file `name`; finish it before the commit.
     ///
     /// # Errors
-    /// When it cannot be created.
+    /// When the file cannot be created.
     pub fn recorder(&self, name: &str) -> Result<Recorder<BufWriter<File>>, IoError> {
         let target = self.target().join(name);
         let file = File::create(self.staged(name)).map_err(IoError::system(&target, "create"))?;
@@ -154,15 +154,14 @@ impl OutputFolder {
     /// Starts a ROS 2 bag as the file `name`; finish it before the commit.
     ///
     /// # Errors
-    /// When it cannot be created.
+    /// When the file cannot be created.
     pub fn bag(&self, name: &str) -> Result<Recorder<BufWriter<File>>, IoError> {
         let target = self.target().join(name);
         let file = File::create(self.staged(name)).map_err(IoError::system(&target, "create"))?;
         Recorder::bag(BufWriter::with_capacity(1 << 20, file), &target)
     }
 
-    /// Moves everything to its place, and the files of an earlier run to the folder that keeps the last run. Returns the
-    /// folder.
+    /// Moves all files to their place, and the files of an earlier run to the folder of the last run. Returns the folder.
     ///
     /// # Errors
     /// [`IoError::Incomplete`] when a file could not be written or moved; it holds the folder of the others.
@@ -179,7 +178,7 @@ impl OutputFolder {
         Ok(self.target().to_owned())
     }
 
-    /// Lists the results in the stage. Where the disk refuses the list, the next run treats the folder as foreign.
+    /// Lists the results in the stage. If the list cannot be written, the next run treats the folder as foreign.
     fn write_marker(&self) {
         let stage = self.scratch.stage();
         if let Err(error) = RunMarker::of(&stage).and_then(|marker| marker.write(&stage)) {
@@ -188,7 +187,7 @@ impl OutputFolder {
         }
     }
 
-    /// The results beside their place, where they cannot be moved to it.
+    /// The results next to their place, if they cannot be moved there.
     fn rescued(&self, problem: IoError) -> IoError {
         let beside = self.place.real.with_file_name(with_ending(&self.place.real, ".new"));
         let rescue = if beside.exists() { free_name(&beside) } else { beside };
@@ -206,7 +205,7 @@ impl Drop for OutputFolder {
     }
 }
 
-/// The hidden folder beside the place, or in it where it is a disk of its own or nothing can be written beside it.
+/// The hidden folder next to the place; or inside it if the place is a separate disk or its parent is not writable.
 fn scratch_for(place: &OutputPlace) -> Result<Scratch, IoError> {
     let beside = parent(&place.real);
     let failed = IoError::system(&place.target, "create");
@@ -253,7 +252,7 @@ fn parent(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// `dir` and the folders above it that do not exist, the innermost first.
+/// The missing folders of the path `dir`, the innermost first.
 fn missing_above(dir: &Path) -> Vec<PathBuf> {
     let missing = dir.ancestors().take_while(|dir| !dir.as_os_str().is_empty() && !dir.exists());
     missing.map(Path::to_owned).collect()

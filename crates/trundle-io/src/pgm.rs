@@ -16,8 +16,8 @@ pub(crate) struct Pgm {
 }
 
 impl Pgm {
-    /// A PGM of Netpbm: `P5` (binary, 8 or 16 bits) or `P2` (text), comments from `#` to the end of their line. Behind the pixels
-    /// only blanks may stand.
+    /// A PGM of Netpbm: `P5` (binary, 8 or 16 bits) or `P2` (text), comments from `#` to the end of their line. Only blanks may follow the
+    /// pixels.
     pub fn parse(bytes: &[u8]) -> Result<Self, String> {
         let mut scan = Scanner { bytes, at: 2 };
         let binary = match bytes.get(..2) {
@@ -93,7 +93,7 @@ impl<'a> Scanner<'a> {
         })
     }
 
-    /// The bytes behind the blank that ends the header. `\r\n` is one blank where the `needed` bytes of pixels come behind both.
+    /// The bytes after the blank that ends the header. `\r\n` counts as one blank if `needed` bytes of pixels follow.
     fn behind_header(&self, needed: usize) -> &'a [u8] {
         let rest = self.bytes.get(self.at..).unwrap_or_default();
         match rest.strip_prefix(b"\r\n") {
@@ -120,7 +120,7 @@ impl<'a> Scanner<'a> {
     }
 }
 
-/// Refuses what stands behind the last pixel.
+/// Refuses content after the last pixel.
 fn require_blank(rest: &[u8]) -> Result<(), String> {
     if rest.iter().all(u8::is_ascii_whitespace) {
         return Ok(());

@@ -1,5 +1,5 @@
-//! Recordings of a run: MCAP with messages of ROS 2 in CDR, which RViz, Foxglove, Rerun and rosbags open as it is. Recordings of JSON, as
-//! earlier versions wrote them, are read too.
+//! Recordings of a run: MCAP with messages of ROS 2 in CDR, which RViz, Foxglove, Rerun and rosbags open without conversion. Recordings of
+//! JSON, as earlier versions wrote them, are read too.
 
 mod chunk_decoder;
 mod container;
@@ -25,11 +25,11 @@ pub(crate) const LIBRARY: &str = "trundle";
 
 /// Topics of a recording.
 mod topics {
-    /// In front of the topics of what a replay needs.
+    /// Prefix of the topics needed by a replay.
     pub const PRIVATE: &str = "/trundle";
-    /// The key of a channel's metadata that names the schema of its JSON.
+    /// The key in a channel's metadata for the schema of its JSON.
     pub const SCHEMA_KEY: &str = "trundle_schema";
-    // Where each kind of sensor event is recorded.
+    // Topics of the sensor events.
     pub const WHEELS: &str = "/wheels";
     pub const GYRO: &str = "/gyro";
     pub const TOUCH: &str = "/touch";

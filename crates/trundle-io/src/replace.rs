@@ -6,11 +6,11 @@ use std::io::{self, Write};
 use std::path::Path;
 use tempfile::NamedTempFile;
 
-/// Writes a file that is, at any instant and after any crash, either the old one or the new one, whole: into a hidden file
-/// beside it, to the disk, then in its place. The new one has the rights of the old one.
+/// Writes a file that is, at any instant and after any crash, either the complete old or the complete new one. The bytes go into a hidden
+/// file in the same folder, to the disk, then in place of the old file. The new one has the rights of the old one.
 ///
 /// # Errors
-/// When it cannot be written, or the old one may not be: it is untouched then.
+/// When the file cannot be written, or the old one may not be: the old file is unchanged then.
 pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let rights = rights_of(path).map_err(IoError::system(path, "write"))?;
@@ -23,17 +23,17 @@ pub fn replace_file(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
     written.map(drop).map_err(IoError::system(path, "write"))
 }
 
-/// Checks that [`replace_file`] can write a file at `path`; makes its folder if there is none.
+/// Checks that [`replace_file`] can write a file at `path`; creates the folder if missing.
 ///
 /// # Errors
-/// When it cannot.
+/// When the file cannot be written.
 pub fn require_replaceable(path: &Path) -> Result<(), IoError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let made = std::fs::create_dir_all(folder).and_then(|()| hidden_file(folder, rights_of(path)?));
     made.map(drop).map_err(IoError::system(path, "write"))
 }
 
-/// A hidden file with the rights of the one that it will replace; else with those of a new file, less the user's mask.
+/// A hidden file with the permissions of the replaced one, or else of a new file, reduced by the user's mask.
 fn hidden_file(folder: &Path, rights: Rights) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".trundle-");
@@ -49,9 +49,9 @@ fn hidden_file(folder: &Path, rights: Rights) -> io::Result<NamedTempFile> {
 
 /// Rights of the file that replaces another one.
 enum Rights {
-    /// Those of the old one.
+    /// Permissions of the old file.
     Old(Permissions),
-    /// There is no old one: before the user's mask.
+    /// Permissions of a new file, before the user's mask.
     New(Permissions),
 }
 

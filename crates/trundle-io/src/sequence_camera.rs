@@ -4,17 +4,17 @@ use crate::camera::{CameraModel, KINECT_V2_DEPTH_SCALE};
 use crate::{Expected, FileKind, IoError, Warnings};
 use std::path::{Path, PathBuf};
 
-/// The preset that is assumed if nothing is known of the camera.
+/// The preset for an unknown camera.
 const ASSUMED_PRESET: &str = "freiburg1";
 
-/// The camera of a sequence and where it comes from.
+/// The camera of a sequence and its source.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SequenceCamera {
     /// The camera.
     pub model: CameraModel,
     /// The preset or the file.
     pub name: String,
-    /// Whether the camera is a guess: neither options nor files name one.
+    /// Whether the camera is a guess: neither options nor files give one.
     pub is_assumed: bool,
     /// Warnings about the choice.
     pub warnings: Warnings,
@@ -68,7 +68,7 @@ impl SequenceCamera {
     }
 }
 
-/// The camera files of a folder: `camera.toml` alone if it is there, else all by their content, sorted by name.
+/// The camera files of a folder: only `camera.toml` if it exists, else all by their content, sorted by name.
 fn camera_files(dir: &Path) -> Vec<PathBuf> {
     let own = dir.join("camera.toml");
     if own.exists() {

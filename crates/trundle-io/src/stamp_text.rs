@@ -5,7 +5,7 @@ use trundle_core::{Invalid, Stamp};
 
 /// A stamp from decimal text in seconds, exact: `1305031229.528748`, `-0.5`, `1.305031229528748e9`.
 ///
-/// No f64 comes between, so that every digit down to the nanosecond survives; finer digits are rounded half up.
+/// The text is not converted to f64, so every digit down to the nanosecond is preserved; finer digits are rounded half up.
 ///
 /// # Errors
 /// When the text is not a decimal number or is more than 292 years from the epoch.

@@ -11,12 +11,12 @@ const MIN_MILLISECONDS: f64 = 1e11;
 const MIN_MICROSECONDS: f64 = 1e14;
 /// Stamp from which on microseconds are none \[us\]: the year 5138. Larger numbers are read as nanoseconds. Source: ours.
 const MIN_NANOSECONDS: f64 = 1e17;
-/// Median step between whole-numbered stamps from which on they are not seconds \[s\]; milliseconds are read. Images and poses 5 s
-/// apart are not a sequence. Source: ours.
+/// Median step between whole-numbered stamps from which their unit is milliseconds, not seconds \[s\]. Images and poses 5 s apart are not a
+/// sequence. Source: ours.
 const MIN_STEP_MILLISECONDS: f64 = 5.0;
-/// Median step between whole-numbered stamps from which on they are not milliseconds \[ms\]; microseconds are read. Source: ours.
+/// Median step between whole-numbered stamps from which their unit is microseconds, not milliseconds \[ms\]. Source: ours.
 const MIN_STEP_MICROSECONDS: f64 = 1e3;
-/// Median step between whole-numbered stamps from which on they are not microseconds \[us\]; nanoseconds are read. Source: ours.
+/// Median step between whole-numbered stamps from which their unit is nanoseconds, not microseconds \[us\]. Source: ours.
 const MIN_STEP_NANOSECONDS: f64 = 1e6;
 
 /// The unit of a file's stamps.
@@ -29,7 +29,7 @@ pub(crate) enum StampUnit {
 }
 
 impl StampUnit {
-    /// The unit of a file's stamps: that of the largest, or, where all are whole numbers, of their usual step.
+    /// The unit of a file's stamps, by the largest stamp, or for whole numbers by their usual step.
     pub(crate) fn of(texts: &[&str]) -> Self {
         let stamps: Vec<f64> = texts.iter().filter_map(|text| text.parse().ok()).collect();
         let largest = stamps.iter().fold(0.0_f64, |largest, stamp| largest.max(stamp.abs()));

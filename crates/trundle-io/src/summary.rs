@@ -4,8 +4,8 @@ use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// The numbers of a run for scripts: `summary.json`. Names carry their unit (`goal_error_m`, `slam_p99_ms`). Values
-/// are SI where the name has no other unit. Keys are sorted, so that the same numbers are the same bytes.
+/// The numbers of a run for scripts: `summary.json`. Names contain their unit (`goal_error_m`, `slam_p99_ms`). Values without a unit in
+/// their name are SI. Keys are sorted, so equal numbers give equal bytes.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Summary {
     values: BTreeMap<String, Value>,
@@ -26,7 +26,7 @@ impl Summary {
         self
     }
 
-    /// Notes that the user ended the work before its end; nothing where not.
+    /// Records that the user ended the work early; without effect for `false`.
     pub fn set_interrupted(&mut self, is_interrupted: bool) -> &mut Self {
         if is_interrupted { self.set("interrupted", true) } else { self }
     }

@@ -1,4 +1,4 @@
-//! TOML texts of any file, with the errors of all of them in the same words.
+//! TOML texts of any file, with uniform errors.
 
 use crate::IoError;
 use serde::de::DeserializeOwned;
@@ -8,7 +8,7 @@ use trundle_core::toml_problem;
 /// The value that the text of a file holds.
 ///
 /// # Errors
-/// Names the file, the line, and what is wrong there.
+/// Names the file, the line, and the fault.
 pub(crate) fn parse_toml<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, IoError> {
     toml::from_str(text).map_err(|error| {
         let problem = toml_problem(text, error.span().map(|span| span.start), error.message());

@@ -1,10 +1,10 @@
-//! Warnings about an input, collected by kind: how often, and up to three examples.
+//! Warnings about an input, grouped by kind: their number, and up to three examples.
 
 use std::fmt;
 
-/// Number of examples of a kind that are kept. Source: ours.
+/// Maximum number of stored examples of a kind. Source: ours.
 const MAX_EXAMPLES: usize = 3;
-/// Number of kinds that are kept; further ones are counted together. Source: ours.
+/// Maximum number of stored kinds; further kinds are counted together. Source: ours.
 const MAX_KINDS: usize = 16;
 /// The kind of what comes after [`MAX_KINDS`].
 const OTHERS: &str = "other problems";
@@ -15,21 +15,21 @@ pub struct Warnings {
     kinds: Vec<Warning>,
 }
 
-/// The warnings of one kind. Its text: the problem, how often, and up to three places.
+/// The warnings of one kind. Its text: the problem, the number of occurrences, and up to three places.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Warning {
     /// The problem of the first.
     problem: String,
-    /// How many there are.
+    /// Number of occurrences.
     count: usize,
-    /// Where, of the first three.
+    /// The first three places.
     places: Vec<String>,
     /// The problem without its numbers.
     kind: String,
 }
 
 impl Warnings {
-    /// Notes a problem and its place: a file, a line, a frame. The place may be empty.
+    /// Adds a problem and its place: a file, a line, a frame. The place may be empty.
     pub fn add(&mut self, problem: &str, place: &str) {
         let kind = without_numbers(problem);
         let known = self.kinds.iter().position(|warning| warning.kind == kind);
@@ -51,18 +51,18 @@ impl Warnings {
         }
     }
 
-    /// One warning a kind, in the order of their first occurrence.
+    /// One warning per kind, in the order of their first occurrence.
     pub fn iter(&self) -> impl Iterator<Item = &Warning> {
         self.kinds.iter()
     }
 
-    /// Whether there is none.
+    /// Whether the collection is empty.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.kinds.is_empty()
     }
 
-    /// How many there are of all kinds.
+    /// Number of warnings of all kinds.
     #[must_use]
     pub fn count(&self) -> usize {
         self.kinds.iter().map(|warning| warning.count).sum()
@@ -83,7 +83,7 @@ impl Warnings {
 }
 
 impl Warning {
-    /// How many warnings there are of this kind.
+    /// Number of warnings of this kind.
     #[must_use]
     pub fn count(&self) -> usize {
         self.count

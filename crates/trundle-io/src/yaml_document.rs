@@ -1,4 +1,4 @@
-//! YAML files as a tree of values, with our words for what is wrong and the line of each key.
+//! YAML files as a tree of values, with uniform errors and the line of each key.
 
 use crate::IoError;
 use crate::excerpt::excerpt;
@@ -60,28 +60,28 @@ impl<'a> YamlDocument<'a> {
         value.filter(|value| **value != YamlValue::Null(()))
     }
 
-    /// The first of the keys that is there, else the first.
+    /// The first existing key, else the first one.
     pub(crate) fn first_of<'k>(&self, keys: &[&'k str]) -> &'k str {
         keys.iter().find(|key| self.get(key).is_some()).unwrap_or(&keys[0])
     }
 
-    /// The value of a key that must be there.
+    /// The value of a required key.
     pub(crate) fn require(&self, key: &str, expected: &str) -> Result<&YamlValue, IoError> {
         self.get(key)
             .ok_or_else(|| IoError::malformed(self.path, format!("{key} is missing, expected {expected}")))
     }
 
-    /// The number of a key that must be there.
+    /// The number of a required key.
     pub(crate) fn number(&self, key: &str, expected: &str) -> Result<f64, IoError> {
         self.as_number(key, self.require(key, expected)?, expected)
     }
 
-    /// The number of a key, or a default if it is not there.
+    /// The number of a key, or a default for a missing key.
     pub(crate) fn number_or(&self, key: &str, default: f64, expected: &str) -> Result<f64, IoError> {
         self.get(key).map_or(Ok(default), |value| self.as_number(key, value, expected))
     }
 
-    /// The numbers of a list that must be there.
+    /// The numbers of a required list.
     pub(crate) fn numbers(&self, key: &str, expected: &str) -> Result<Vec<f64>, IoError> {
         match self.require(key, expected)? {
             YamlValue::List(list) => list.iter().map(|value| self.as_number(key, value, expected)).collect(),
@@ -89,7 +89,7 @@ impl<'a> YamlDocument<'a> {
         }
     }
 
-    /// The text of a key that must be there.
+    /// The text of a required key.
     pub(crate) fn text(&self, key: &str, expected: &str) -> Result<&str, IoError> {
         match self.require(key, expected)? {
             YamlValue::Text(text) => Ok(text),
@@ -102,7 +102,7 @@ impl<'a> YamlDocument<'a> {
         self.invalid(Invalid::new(key, words(value), "", expected))
     }
 
-    /// The error with the line of the key that its field begins with.
+    /// The error with the line of its field's first key.
     pub(crate) fn invalid(&self, invalid: Invalid) -> IoError {
         let key = invalid.field.split(' ').next().unwrap_or_default();
         match self.line_of(key) {
@@ -190,7 +190,7 @@ fn first_document(text: &str) -> String {
     plain
 }
 
-/// The line with a value that is not a finite number in quotes, so that it is refused under its key.
+/// The line with a value that is not a finite number put in quotes, which makes the error name its key.
 fn quoted(line: &str) -> String {
     let value = line.split_once(": ").map_or("", |(_, value)| value.trim());
     let is_infinite = [".nan", ".inf", "-.inf", "+.inf"].iter().any(|word| value.eq_ignore_ascii_case(word));

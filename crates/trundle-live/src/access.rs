@@ -1,4 +1,4 @@
-//! Permissions to drive and to look: two random tokens.
+//! Permissions to drive and to view: two random tokens.
 
 use crate::LiveError;
 use std::fmt::Write as _;
@@ -21,7 +21,7 @@ const TOKEN_BYTES: usize = 16;
 /// Largest token file that is read \[bytes\].
 const MAX_TOKEN_FILE_BYTES: u64 = 1024;
 
-/// The token that drives and the token that only looks, as hexadecimal text.
+/// The token for driving and the token for viewing, as hexadecimal text.
 #[derive(Clone)]
 pub struct Tokens {
     drive: String,
@@ -37,7 +37,7 @@ impl Tokens {
         Ok(Self { drive: random_token()?, view: random_token()? })
     }
 
-    /// The tokens of a file, which is written with new ones where it does not exist. Links stay valid over restarts.
+    /// The tokens of a file; a missing file is created with new ones. Links are therefore valid after restarts.
     ///
     /// # Errors
     /// When the file cannot be read or written, or holds no tokens.
@@ -87,7 +87,7 @@ impl Tokens {
         }
     }
 
-    /// Permission of a token; `None` for a wrong one. The time does not depend on where it differs.
+    /// Permission of a token; `None` for a wrong one. The computing time is independent of the position of a difference.
     #[must_use]
     pub fn access(&self, token: &str) -> Option<Access> {
         let is = |known: &str| -> Choice { known.as_bytes().ct_eq(token.as_bytes()) };
@@ -121,7 +121,7 @@ fn random_token() -> Result<String, LiveError> {
     Ok(text)
 }
 
-/// A new file that only its owner reads.
+/// A new file that only its owner can read.
 fn create_private(file: &Path) -> std::io::Result<std::fs::File> {
     let mut options = OpenOptions::new();
     options.write(true).create_new(true);

@@ -1,4 +1,4 @@
-//! Where the live page is served.
+//! Address of the live page.
 
 use std::fmt;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
@@ -7,17 +7,17 @@ use std::str::FromStr;
 /// Port of the live page if none is given. Source: ours; IANA has it unassigned.
 const DEFAULT_PORT: u16 = 8642;
 
-/// Where the live page is served: an address of this machine and a port.
+/// Address of the live page: an address of this machine and a port.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LiveAddress {
     /// The address.
     pub socket: SocketAddr,
-    /// Whether another port may be taken where this one is in use.
+    /// Whether another port may be used if this one is in use.
     pub takes_another_port: bool,
 }
 
 impl LiveAddress {
-    /// The text that stands for the default: loopback, port 8642, or a free port if it is in use.
+    /// The text for the default: loopback, port 8642, or a free port if it is in use.
     pub const DEFAULT: &'static str = "loopback";
 
     /// Whether other machines can reach the page.

@@ -1,11 +1,11 @@
-//! Why the live page cannot be served.
+//! Reason why the live page cannot be served.
 
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use thiserror::Error;
 use trundle_app::AppError;
 
-/// Why the live page cannot be served.
+/// Reason why the live page cannot be served.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LiveError {

@@ -6,15 +6,15 @@ use std::time::Duration;
 use trundle_app::operator::RunView;
 use trundle_core::Pose2;
 
-/// Period of looks at the run.
+/// Period of reading views of the run.
 pub const HISTORY_PERIOD: Duration = Duration::from_millis(200);
-/// Points that are kept: ten minutes of driving. Source: ours.
+/// Maximum number of stored points: ten minutes of driving. Source: ours.
 const MAX_POINTS: usize = 3000;
-/// States that are kept. Source: ours.
+/// Maximum number of stored states. Source: ours.
 const MAX_STATES: usize = 200;
-/// Distance from the last point from which on another is kept \[m\]. Source: ours; less than a pixel of a usual screen.
+/// Minimum distance between two stored points \[m\]. Source: ours; less than a pixel of a usual screen.
 const POINT_DISTANCE_M: f64 = 0.02;
-/// Turn from the last point from which on another is kept \[rad\]. Source: ours.
+/// Minimum turn between two stored points \[rad\]. Source: ours.
 const POINT_TURN_RAD: f64 = 0.05;
 
 /// The last ten minutes of a run.
@@ -22,7 +22,7 @@ const POINT_TURN_RAD: f64 = 0.05;
 pub struct History {
     points: VecDeque<(f64, Pose2)>,
     states: VecDeque<StateEntry>,
-    /// States so far, those included that are not kept.
+    /// Number of states so far, including those no longer stored.
     states_so_far: usize,
     /// Number of runs that were shown before this one.
     run: u64,

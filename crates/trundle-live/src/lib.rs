@@ -1,13 +1,13 @@
-//! The live page: shows a run in a browser while it goes, and steers it.
+//! The live page: displays a run in a browser, and steers it.
 //!
-//! [`LivePage::start`] serves the page from a thread of its own. The page reads views of the run and sends commands by
-//! `trundle_app::operator`; the robot never waits for it. Without viewers nothing is computed but a short history.
+//! [`LivePage::start`] serves the page on a separate thread. The page reads views of the run and sends commands by `trundle_app::operator`;
+//! the robot never waits for it. Without viewers only a short history is computed.
 //!
-//! | part | what it does |
+//! | part | purpose |
 //! |---|---|
-//! | `access` | tokens of 128 bits: one drives, one only looks |
+//! | `access` | tokens of 128 bits: one for driving, one for viewing |
 //! | `http` | the page's files, the checks of Host and Origin, limits of connections |
-//! | `viewer` | one browser: what it is sent, what it may ask |
+//! | `viewer` | one browser: data sent to it, and allowed requests |
 //! | `wire` | the messages |
 //! | `steering` | who holds the wheel; from a request to commands of the robot |
 //!

@@ -1,14 +1,14 @@
-//! How the live page is served.
+//! Options of the live page.
 
 use crate::{LiveAddress, Tokens};
 use trundle_app::operator::MapFolder;
 
-/// How the live page is served.
+/// Options of the live page.
 #[derive(Debug, Clone)]
 pub struct LiveOptions {
-    /// Where.
+    /// Address of the page.
     pub address: LiveAddress,
-    /// Permissions to drive and to look.
+    /// Permissions to drive and to view.
     pub tokens: Tokens,
     /// Whether the run takes commands; a replay and an experiment take none.
     pub is_steered: bool,

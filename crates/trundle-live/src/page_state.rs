@@ -10,18 +10,18 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use tokio::sync::watch;
 use trundle_app::operator::Operator;
 
-/// State that all viewers of a page share. They are served by one thread; no lock is held while it waits.
+/// State that all viewers of a page share. One thread serves them; no lock is held while the thread waits.
 #[derive(Debug)]
 pub struct PageState {
     /// The run.
     pub operator: Operator,
-    /// Permissions to drive and to look.
+    /// Permissions to drive and to view.
     pub tokens: Tokens,
     /// Whether the run takes commands.
     pub is_steered: bool,
     /// Whether other machines can reach the page.
     pub is_shared: bool,
-    /// Facts of the run, told once.
+    /// Facts of the run, sent once.
     pub facts: RunFacts,
     /// Sends commands.
     pub steering: RunSteering,

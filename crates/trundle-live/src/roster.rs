@@ -1,8 +1,8 @@
-//! Viewers, and the one who holds the wheel.
+//! Viewers, and the viewer in control.
 
 use std::collections::BTreeMap;
 
-/// Most viewers at once. Source: ours; ten are measured not to disturb the robot.
+/// Maximum number of simultaneous viewers. Source: ours; measured: ten viewers do not disturb the robot.
 const MAX_VIEWERS: usize = 24;
 /// Longest name of a viewer \[characters\].
 const MAX_NAME_CHARS: usize = 24;
@@ -10,7 +10,7 @@ const MAX_NAME_CHARS: usize = 24;
 /// Number of a viewer.
 pub type ViewerId = u64;
 
-/// Viewers, and the one who holds the wheel: at most one.
+/// Viewers, and at most one viewer in control.
 #[derive(Debug, Default)]
 pub struct Roster {
     names: BTreeMap<ViewerId, String>,
@@ -19,7 +19,7 @@ pub struct Roster {
 }
 
 impl Roster {
-    /// A viewer comes; its number. `None` if there are too many.
+    /// Adds a viewer; returns its number. `None` if the number of viewers is at its limit.
     pub fn enter(&mut self) -> Option<ViewerId> {
         if self.names.len() >= MAX_VIEWERS {
             return None;
@@ -29,7 +29,7 @@ impl Roster {
         Some(self.last)
     }
 
-    /// Gives a viewer its name.
+    /// Sets the name of a viewer.
     pub fn rename(&mut self, id: ViewerId, name: &str) {
         let clean: String = name.chars().filter(|c| !c.is_control()).take(MAX_NAME_CHARS).collect();
         if !clean.trim().is_empty() {
@@ -37,18 +37,18 @@ impl Roster {
         }
     }
 
-    /// A viewer goes. Returns whether it held the wheel.
+    /// Removes a viewer. Returns whether the viewer was in control.
     pub fn leave(&mut self, id: ViewerId) -> bool {
         self.names.remove(&id);
         self.release(id)
     }
 
-    /// Gives control to a viewer, and takes it from the one that had it.
+    /// Gives control to a viewer, and takes it from the previous one.
     pub fn take(&mut self, id: ViewerId) {
         self.wheel = Some(id);
     }
 
-    /// Leaves the wheel. Returns whether this viewer held it.
+    /// Releases control. Returns whether this viewer was in control.
     pub fn release(&mut self, id: ViewerId) -> bool {
         let held = self.wheel == Some(id);
         if held {
@@ -60,7 +60,7 @@ impl Roster {
     /// Gives a free wheel to a viewer.
     ///
     /// # Errors
-    /// The name of another viewer that holds it.
+    /// The name of another viewer in control.
     pub fn require(&mut self, id: ViewerId) -> Result<(), String> {
         match self.wheel {
             Some(holder) if holder != id => Err(self.name_of(holder)),

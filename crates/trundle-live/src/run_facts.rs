@@ -6,7 +6,7 @@ use trundle_app::RunSetup;
 use trundle_core::{DriveLimits, Footprint, Invalid};
 use trundle_runtime::RobotConfig;
 
-/// What a page shows: by it the page offers what can be commanded.
+/// Kind of the displayed run; it determines the commands on the page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunKind {
@@ -21,15 +21,15 @@ pub enum RunKind {
 /// Facts of a run that a viewer gets once.
 #[derive(Debug, Clone)]
 pub struct RunFacts {
-    /// What it is.
+    /// Kind of the run.
     pub kind: RunKind,
-    /// The run, for the title of the page: `demo: house`.
+    /// Name of the run, for the title of the page: `demo: house`.
     pub title: String,
     /// Outline of the robot.
     pub footprint: Footprint,
-    /// Limits of its speed.
+    /// Limits of the robot's speed.
     pub limits: DriveLimits,
-    /// Content of the recording, in a word; empty where the page says nothing about it.
+    /// Content of the recording, in one word; empty if the page does not show it.
     pub recording: &'static str,
 }
 

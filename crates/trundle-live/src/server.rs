@@ -1,4 +1,4 @@
-//! The server of the live page, in a thread of its own.
+//! The server of the live page, on its own thread.
 
 use crate::access::Access;
 use crate::history::HISTORY_PERIOD;
@@ -20,12 +20,13 @@ const PAGE_NICENESS: i32 = 10;
 
 /// Longest wait for the page's thread at the end of a run. Source: ours; it ends within milliseconds unless it hangs.
 const END_TIMEOUT: Duration = Duration::from_secs(2);
-/// Longest wait for the viewers to hear that the program ends. Source: ours, a viewer on the same network hears it within milliseconds.
+/// Longest wait until the viewers have received the end of the program. Source: ours; a viewer on the same network receives it within
+/// milliseconds.
 const GOODBYE_TIMEOUT: Duration = Duration::from_millis(300);
-/// Time between two looks at whether it has ended.
+/// Period of checks for the end of the thread.
 const END_CHECK_PERIOD: Duration = Duration::from_millis(5);
 
-/// A live page that is served. Dropping it ends the page's thread and all its links.
+/// A live page in service. A drop ends the page's thread and all its links.
 #[derive(Debug)]
 pub struct LivePage {
     address: SocketAddr,
@@ -52,7 +53,7 @@ impl LivePage {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(system)?;
         let (end, ended) = oneshot::channel();
         let work = move || {
-            // If the system refuses the niceness, the page is served all the same.
+            // If the system refuses the niceness, the page is served without it.
             _ = ThreadPlacement { nice: PAGE_NICENESS, ..ThreadPlacement::default() }.take();
             run_to_end(runtime, serve(listener, state, ended));
         };
@@ -60,13 +61,13 @@ impl LivePage {
         Ok(Self { address, is_shared, drive_token, view_token, end: Some(end), thread: Some(thread) })
     }
 
-    /// Where the page is served.
+    /// Address of the page.
     #[must_use]
     pub fn address(&self) -> SocketAddr {
         self.address
     }
 
-    /// The link of an access; `None` for a driving link where the run takes no commands. Browsers do not send the part behind `#`.
+    /// The link of an access; `None` for a driving link of a run without commands. Browsers do not send the part after `#`.
     #[must_use]
     pub fn link(&self, access: Access) -> Option<String> {
         let token = match access {
@@ -120,7 +121,7 @@ impl Drop for LivePage {
     }
 }
 
-/// Runs a future to its end. A file that is still being read is not waited for: the disk may never answer.
+/// Runs a future to its end. A file still being read is not waited for, because the disk may never respond.
 fn run_to_end(runtime: Runtime, future: impl Future<Output = ()>) {
     runtime.block_on(future);
     runtime.shutdown_background();
@@ -140,7 +141,7 @@ async fn serve(listener: TcpListener, state: Arc<PageState>, ended: oneshot::Rec
     }
 }
 
-/// Tells the viewers that the program ends, and waits shortly until they have heard it.
+/// Informs the viewers of the end of the program, and waits shortly until they have received the message.
 async fn say_goodbye(state: &PageState) {
     state.end();
     let all_gone = async {
@@ -173,7 +174,7 @@ fn bind(options: &LiveOptions) -> Result<TcpListener, LiveError> {
     bound.map_err(|problem| LiveError::Address { address, problem })
 }
 
-/// The address by which other machines reach this one. The socket sends nothing: it only asks the system for its route.
+/// The address by which other machines reach this one. The socket sends no data: it only queries the system's route.
 fn own_address() -> Option<IpAddr> {
     /// An address of documentation. Source: RFC 5737.
     const FAR_AWAY: (Ipv4Addr, u16) = (Ipv4Addr::new(192, 0, 2, 1), 9);

@@ -1,4 +1,5 @@
-//! A live map over an hour at 5 Hz, and a loop that bends all of it: `cargo run --release -p trundle-mapping --example live_bench`
+//! A live map over one hour at 5 Hz, and a loop closure that bends the whole map: `cargo run --release -p trundle-mapping --example
+//! live_bench`
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs, reason = "a measurement for the terminal")]
 
 #[path = "../tests/it/boxes.rs"]
@@ -14,7 +15,7 @@ use trundle_mapping::{LiveMapper, MapperConfig};
 
 const HERTZ: f64 = 5.0;
 const SCANS: usize = 18_000;
-/// Least cells redrawn with each control step, and within how many all is redrawn, as the robot does.
+/// Minimum number of cells redrawn per control step, and number of steps for the whole map; the values of the robot.
 const REDRAWING: (usize, usize) = (60_000, 90);
 
 /// Time on the processor, ms: others may be at work too.
@@ -41,7 +42,7 @@ fn main() {
     let config = MapperConfig { blind_range: 0.0, ..MapperConfig::default() };
     let mut mapper = LiveMapper::new(config).unwrap();
     let (mut inserts, mut shown) = (Vec::new(), Vec::new());
-    // There and back again, for an hour.
+    // Forth and back for one hour.
     let forth = drive.scans.len();
     for k in 0..SCANS {
         let lap = k % (2 * forth);

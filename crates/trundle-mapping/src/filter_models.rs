@@ -11,7 +11,7 @@ const FIELD_REACH_M: f64 = 0.2;
 /// Sigma of the coarse likelihood \[cells\]: one step of the coarse search. Source: ours.
 const COARSE_SIGMA_CELLS: f64 = 2.0;
 
-/// Settings of a filter with the models that follow from them.
+/// Settings of a filter with the models derived from them.
 #[derive(Debug)]
 pub(crate) struct FilterModels {
     pub(crate) config: ParticleConfig,
@@ -20,7 +20,7 @@ pub(crate) struct FilterModels {
 }
 
 impl FilterModels {
-    /// Models of these settings.
+    /// Derives the models from the settings.
     ///
     /// # Errors
     /// When a setting is out of range.

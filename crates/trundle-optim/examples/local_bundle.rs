@@ -20,7 +20,7 @@ const OBSERVATIONS: usize = 17_000;
 fn main() {
     let runs: usize = std::env::args().nth(1).map_or(50, |n| n.parse().unwrap());
     let problem = problem();
-    // Four steps exactly, whatever they gain.
+    // Exactly four steps, independent of the gain.
     let config = BundleConfig { steps: 4, converged: 1e-300, ..BundleConfig::default() };
     let mut solver = BundleSolver::default();
     let mut times: Vec<f64> = (0..runs)
@@ -43,7 +43,7 @@ fn main() {
     );
 }
 
-/// Cameras along an arc around a cloud of points, with a pixel of noise and a Kinect's depth; two of them hold still.
+/// Cameras along an arc around a cloud of points, with a pixel of noise and a Kinect's depth; two cameras are fixed.
 fn problem() -> BundleProblem {
     let mut rng = ChaCha8Rng::seed_from_u64(11);
     let camera =

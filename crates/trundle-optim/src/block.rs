@@ -1,7 +1,7 @@
-//! Square blocks and the few operations on them that take the time of a sparse factorisation.
+//! Square blocks and the operations that dominate the time of a sparse factorisation.
 //!
-//! All of them are written column by column, so that each line is one vector operation, and are inlined into callers that
-//! are compiled twice: plainly and for AVX. Neither compilation reorders or fuses what is written: the bits are the same.
+//! All operations are column by column, one vector operation per line. They are inlined into callers that are compiled twice: without and
+//! with AVX. Both variants have the same order of operations without fusing, and give equal bits.
 
 /// Column of N rows; six for a pose in space, three for one in the plane.
 pub(crate) type Column<const N: usize = 6> = [f64; N];
@@ -50,7 +50,8 @@ pub(crate) fn subtract_transposed_product<const N: usize>(
     }
 }
 
-/// Turns a symmetric block, of which the lower half counts, into its lower Cholesky factor. Returns whether it is positive definite.
+/// Replaces a symmetric block, of which the lower half is read, by its lower Cholesky factor. Returns whether the block is positive
+/// definite.
 #[inline(always)]
 pub(crate) fn factorise<const N: usize>(block: &mut Block<N>) -> bool {
     for j in 0..N {

@@ -9,7 +9,7 @@ use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 /// Symmetric positive definite matrix of N x N blocks in profile storage, and its Cholesky factor in place.
 ///
-/// Block rows hold the lower half from their first non-zero block on. A factor fills nothing else. Rows are ordered by reverse
+/// Block rows contain the lower half from their first non-zero block on. A factor has the same profile. Rows are ordered by reverse
 /// Cuthill-McKee. The profile of a chain with few loops is a few blocks wide: O(n) work and memory.
 ///
 /// ```
@@ -31,12 +31,12 @@ pub struct BlockMatrix<const N: usize = 6> {
     row_of: Vec<usize>,
     /// First block column of each row.
     first: Vec<usize>,
-    /// Where each row's first block stands.
+    /// Index of each row's first block.
     start: Vec<usize>,
     blocks: Vec<Block<N>>,
     /// The unknowns while solving, by row.
     unknowns: Vec<Column<N>>,
-    /// The inverse within the profile, as far as it was requested.
+    /// The inverse within the profile, as far as computed.
     inverse: Vec<Block<N>>,
     /// The column of the inverse in computation.
     column: InverseColumn<N>,
@@ -45,15 +45,15 @@ pub struct BlockMatrix<const N: usize = 6> {
 /// A column of the inverse during its computation.
 #[derive(Debug, Clone)]
 struct InverseColumn<const N: usize> {
-    /// How many columns are left, this one included.
+    /// Number of remaining columns, including this one.
     left: usize,
-    /// The rows below its diagonal that the profile has.
+    /// The rows below the diagonal in the profile.
     below: Vec<usize>,
-    /// Their blocks of the factor, divided by that of the diagonal.
+    /// Blocks of the factor in these rows, divided by the diagonal block.
     factors: Vec<Block<N>>,
-    /// How many of these rows are done.
+    /// Number of finished rows.
     done: usize,
-    /// The block on the diagonal as far as these blocks determine it.
+    /// The diagonal block, accumulated from the finished blocks.
     diagonal: Block<N>,
 }
 
@@ -105,7 +105,7 @@ impl<const N: usize> BlockMatrix<N> {
         self.blocks.resize(size, Self::ZERO);
     }
 
-    /// How many nodes there are.
+    /// Number of nodes.
     pub(crate) fn count(&self) -> usize {
         self.first.len()
     }
@@ -120,7 +120,7 @@ impl<const N: usize> BlockMatrix<N> {
         self.blocks.fill(Self::ZERO);
     }
 
-    /// Adds a block at (a, b), and its transpose at (b, a) where these differ.
+    /// Adds a block at (a, b), and for a != b its transpose at (b, a).
     pub fn add(&mut self, a: usize, b: usize, block: &SMatrix<f64, N, N>) {
         let (i, j) = (self.row_of[a], self.row_of[b]);
         let sum = self.block_mut(i.max(j), i.min(j));
@@ -131,13 +131,13 @@ impl<const N: usize> BlockMatrix<N> {
         }
     }
 
-    /// The block at a row and a column up to it, which is within the profile.
+    /// The block at a row and a column up to that row, within the profile.
     #[inline(always)]
     pub(crate) fn block_mut(&mut self, row: usize, column: usize) -> &mut Block<N> {
         &mut self.blocks[self.start[row] + column - self.first[row]]
     }
 
-    /// Multiplies the diagonal by 1 + `factor`, and adds a little where it is zero.
+    /// Multiplies the diagonal by 1 + `factor`, and adds a small number to zeros.
     pub(crate) fn damp(&mut self, factor: f64) {
         for row in 0..self.first.len() {
             let block = self.block_mut(row, row);
@@ -147,18 +147,17 @@ impl<const N: usize> BlockMatrix<N> {
         }
     }
 
-    /// How many products of blocks the factor of a row takes.
+    /// Number of block products for the factor of a row.
     pub(crate) fn row_work(&self, row: usize) -> usize {
         let width = row - self.first[row] + 1;
         width * width / 2 + 1
     }
 
-    /// Turns one row into that of the Cholesky factor, once all rows above are; `false` when the matrix is not positive
-    /// definite.
+    /// Replaces one row by that of the Cholesky factor, after all rows above it; `false` if the matrix is not positive definite.
     pub(crate) fn factorise_row(&mut self, row: usize) -> bool {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx") {
-            // SAFETY: the processor has the one feature that the function is compiled for.
+            // SAFETY: the processor has the only feature that the function is compiled for.
             return unsafe { self.factorise_row_by_avx(row) };
         }
         self.factorise_row_plainly(row)
@@ -192,7 +191,7 @@ impl<const N: usize> BlockMatrix<N> {
         factorise(&mut diagonal[0])
     }
 
-    /// Turns the whole matrix into its Cholesky factor; `false` when it is not positive definite.
+    /// Replaces the whole matrix by its Cholesky factor; `false` if the matrix is not positive definite.
     pub fn factorise(&mut self) -> bool {
         (0..self.count()).all(|row| self.factorise_row(row))
     }
@@ -205,8 +204,8 @@ impl<const N: usize> BlockMatrix<N> {
         self.begin_column();
     }
 
-    /// The next block of the inverse within the profile, column by column from the last (Takahashi et al. 1973): with
-    /// Z L = L'^-1, Z_ij = -sum Z_ik L_kj L_jj^-1. About how many products of blocks it took; `None` if all is done.
+    /// The next block of the inverse within the profile, column by column from the last (Takahashi et al. 1973): with Z L = L'^-1, Z_ij =
+    /// -sum Z_ik L_kj L_jj^-1. Returns the approximate number of block products; `None` if the inverse is complete.
     pub(crate) fn invert_on(&mut self) -> Option<usize> {
         let j = self.column.left.checked_sub(1)?;
         if self.column.done < self.column.below.len() {
@@ -236,7 +235,7 @@ impl<const N: usize> BlockMatrix<N> {
     fn invert_row(&mut self, j: usize) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx") {
-            // SAFETY: the processor has the one feature that the function is compiled for.
+            // SAFETY: the processor has the only feature that the function is compiled for.
             return unsafe { self.invert_row_by_avx(j) };
         }
         self.invert_row_plainly(j);
@@ -272,7 +271,7 @@ impl<const N: usize> BlockMatrix<N> {
         column.done += 1;
     }
 
-    /// The diagonal block of the inverse of a node, once its column is there.
+    /// The diagonal block of the inverse for a node, after its column is computed.
     pub(crate) fn inverse_of(&self, node: usize) -> SMatrix<f64, N, N> {
         let row = self.row_of[node];
         SMatrix::from_data(ArrayStorage(self.inverse[self.start[row] + row - self.first[row]]))

@@ -43,13 +43,13 @@ impl BundleConfig {
 /// A camera pose of a [`BundleProblem`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BundlePose {
-    /// Where the camera is.
+    /// Pose of the camera.
     pub world_from_camera: Pose3,
-    /// Whether it must not move. Without any fixed pose the whole scene may drift along the gauge.
+    /// Whether the pose is constant. Without any fixed pose the whole scene may drift along the gauge.
     pub fixed: bool,
 }
 
-/// Which pose saw which point, and how.
+/// Observation of a point from a pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BundleObservation {
     /// Index of the pose.
@@ -75,7 +75,7 @@ pub struct BundleProblem {
 /// Result of [`BundleProblem::solve`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct BundleSolution {
-    /// `world_from_camera` of every pose, fixed ones as they were.
+    /// `world_from_camera` of every pose; fixed ones are unchanged.
     pub poses: Vec<Pose3>,
     /// Every point, world frame, m.
     pub points: Vec<Vector3>,
@@ -90,10 +90,10 @@ pub struct BundleSolution {
 }
 
 impl BundleProblem {
-    /// A problem over `poses`, `points` (world, m) and what was seen; pixels are rectified.
+    /// A problem over `poses`, `points` (world, m) and their observations; pixels are rectified.
     ///
     /// # Errors
-    /// When an observation names a pose or point that is not there.
+    /// When an observation refers to a pose or point that does not exist.
     pub fn new(
         camera: PinholeCamera,
         poses: Vec<BundlePose>,
@@ -110,11 +110,11 @@ impl BundleProblem {
         Ok(Self { camera, poses, points, observations, constraints: Vec::new(), parts: Vec::new() })
     }
 
-    /// This problem with further measurements between poses, for example by wheels or of the floor. Each counts under the Huber loss as a
-    /// whole, with the bound at 95 %: a wrong one, as by slip, pulls no harder than one at the bound.
+    /// This problem with further measurements between poses, for example by wheels or of the floor. Each has the Huber loss as a whole,
+    /// with the bound at 95 %: a wrong constraint, for example by slip, has at most the influence of one at the bound.
     ///
     /// # Errors
-    /// When one names a pose that is not there, constrains one to itself, or has a number that is not finite.
+    /// When a constraint refers to a pose that does not exist, connects a pose to itself, or has a number that is not finite.
     pub fn with_constraints(self, constraints: Vec<PoseConstraint>) -> Result<Self, Invalid> {
         for (i, constraint) in constraints.iter().enumerate() {
             constraint.check(i, self.poses.len())?;
@@ -126,7 +126,7 @@ impl BundleProblem {
     /// the refinement, but reduce no covariance.
     ///
     /// # Errors
-    /// When there are not as many numbers as poses.
+    /// When the number of parts differs from the number of poses.
     pub fn with_parts(self, parts: Vec<usize>) -> Result<Self, Invalid> {
         if parts.len() != self.poses.len() {
             return Err(Invalid::new(
@@ -233,7 +233,7 @@ mod tests {
         let whole = problem.solve(&config);
         let mut solver = BundleSolver::default();
         for work in [1, 700, 7, usize::MAX >> 1] {
-            // Another problem in between, of another size.
+            // Another problem of another size in between.
             solver.begin(&perturbed(&scene, 5), &config);
             solver.advance(2 * work);
             solver.begin(&problem, &config);
@@ -252,7 +252,7 @@ mod tests {
     #[test]
     fn constraints_hold_poses_without_points_and_a_wrong_one_pulls_little() {
         let mut scene = scene();
-        // The last two poses see nothing that the others see.
+        // The last two poses have no points in common with the others.
         scene.observations.retain(|seen| seen.pose < 4);
         let constraints = vec![measured(&scene, 3, 4, 0.01), measured(&scene, 5, 4, 0.01)];
         let problem = perturbed(&scene, 1).with_constraints(constraints.clone()).unwrap();
@@ -267,7 +267,7 @@ mod tests {
     #[test]
     fn chance_links_between_parts_do_not_reduce_covariances() {
         let mut scene = scene();
-        // Of what the first four poses see, the last two see three points only.
+        // The last two poses observe only three points of the first four.
         let known: Vec<usize> = scene.observations.iter().filter(|o| o.pose < 4).map(|o| o.point).collect();
         scene.observations.retain(|o| o.pose < 4 || !known.contains(&o.point) || o.point < 3);
         let constraints = vec![measured(&scene, 3, 4, 0.3), measured(&scene, 5, 4, 0.01)];
@@ -349,7 +349,7 @@ mod tests {
             let covariance = solver.covariance(5).expect("a covariance");
             sum += error.dot(&(covariance.try_inverse().unwrap() * error));
             assert!(solver.covariance(0).is_none(), "it is fixed");
-            // The points are not known exactly: the pose is known less well than they would let it.
+            // The points are not known exactly: the pose is less certain than with exact points.
             let own = solver.information(5).unwrap().try_inverse().unwrap();
             assert!((covariance - own).symmetric_eigenvalues().min() > -1e-12);
         }

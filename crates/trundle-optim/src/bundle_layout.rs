@@ -2,19 +2,18 @@
 
 use crate::bundle::{BundleObservation, BundleProblem};
 
-/// The observations of a bundle problem as the solver walks over them: by rising point, within a point by rising row of the
-/// pose, those of fixed poses last.
+/// The observations of a bundle problem in the solver's order: by point, within a point by row of the pose, those of fixed poses last.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Layout {
     /// The sorted observations.
     pub seen: Vec<Measurement>,
-    /// Where each point's begin; one more at the end.
+    /// Start of each point's observations; one more entry at the end.
     starts: Vec<u32>,
-    /// Where sorted observation i stood.
+    /// Original index of each sorted observation.
     pub order: Vec<u32>,
 }
 
-/// An observation in the numbers that its residual takes.
+/// An observation in the numbers of its residual.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Measurement {
     /// Index of the pose.
@@ -27,14 +26,14 @@ pub(crate) struct Measurement {
     pub inverse_depth: f64,
     /// 1 / sigma, m; 0 without a depth.
     pub per_depth: f64,
-    /// Squared residual where the loss turns linear.
+    /// Squared residual above which the loss is linear.
     pub bound: f64,
-    /// Whether it counts for how certain the result is.
+    /// Whether the observation counts for the certainty of the result.
     pub is_certain: bool,
 }
 
 impl Layout {
-    /// Sorts a problem's observations; `row_of` is the row of each pose, higher than that of all others for fixed ones.
+    /// Sorts a problem's observations; `row_of` is the row of each pose, with the highest number for fixed ones.
     pub fn fill(&mut self, problem: &BundleProblem, row_of: impl Fn(usize) -> u32) {
         let observations = &problem.observations;
         self.order.clear();
@@ -70,7 +69,7 @@ impl Layout {
         }
     }
 
-    /// Where the observations of a point stand.
+    /// Indices of a point's observations.
     #[inline(always)]
     pub fn of_point(&self, point: usize) -> std::ops::Range<usize> {
         self.starts[point] as usize..self.starts[point + 1] as usize

@@ -4,13 +4,13 @@ use crate::bundle_layout::Measurement;
 use crate::observation::{COST_BEHIND_CAMERA, MIN_PROJECTION_DEPTH_M};
 use trundle_core::{PinholeCamera, Pose3};
 
-/// A camera pose as the residuals need it.
+/// A camera pose in the numbers of the residuals.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct View {
-    /// Of `camera_from_world`, by rows.
+    /// Rotation of `camera_from_world`, by rows.
     pub rotation: [[f64; 3]; 3],
     translation: [f64; 3],
-    /// Row of the reduced system, [`FIXED_ROW`] where the pose does not move.
+    /// Row of the reduced system; [`FIXED_ROW`] for a fixed pose.
     pub row: u32,
 }
 

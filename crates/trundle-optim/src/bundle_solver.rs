@@ -9,8 +9,8 @@ use crate::pose_graph::PoseConstraint;
 use nalgebra::Matrix6;
 use trundle_core::{Pose3, Vector3};
 
-/// Most free poses for which the reduced system is dense: 64. With more, poses without a common point stay uncoupled, which then
-/// saves time. Source: ours.
+/// Maximum number of free poses for a dense reduced system: 64. With more poses, poses without a common point are not coupled, which saves
+/// time. Source: ours.
 const MAX_DENSE_POSES: usize = 64;
 /// Units of work of [`BundleSolver::advance`] to linearise an observation: 4. One unit takes some 20 ns. Source: ours, measured.
 const WORK_PER_OBSERVATION: usize = 4;
@@ -21,10 +21,9 @@ const WORK_PER_CONSTRAINT: usize = 60;
 
 /// A running bundle adjustment by the Schur complement (Triggs et al. 2000).
 ///
-/// Levenberg-Marquardt on the Huber loss. The points are eliminated, 3 x 3 each; the reduced system of the poses is solved by
-/// a block Cholesky factor. A step costs O(sum over points of (poses that see it)^2 + poses x profile^2). Buffers are kept
-/// from one problem to the next: once they have grown, nothing is allocated. The work can be cut into slices; how it is cut
-/// changes no bit of the result.
+/// Levenberg-Marquardt on the Huber loss. The points are eliminated, 3 x 3 each; the reduced system of the poses is solved by a block
+/// Cholesky factor. Cost of a step: O(sum over points of (poses with this point)^2 + poses x profile^2). Buffers are reused from one
+/// problem to the next: once they have grown, no memory is allocated. The work can be cut into slices; the result is the same bit for bit.
 ///
 /// ```
 /// # use trundle_optim::{BundleConfig, BundleProblem, BundleSolver};
@@ -48,7 +47,7 @@ pub struct BundleSolver {
     constraints: Vec<PoseConstraint>,
     pairs: Vec<(usize, usize)>,
     phase: Phase,
-    /// How far the phase has come: a point, or a row.
+    /// Progress of the phase: a point, or a row.
     cursor: usize,
     damping: f64,
     cost: f64,
@@ -85,9 +84,9 @@ enum Phase {
     Linearise,
     /// Every point taken out of the system of the poses.
     Eliminate,
-    /// Its factor, row by row.
+    /// Factorises the system, row by row.
     Factorise,
-    /// The points moved after the poses, and the cost there.
+    /// Moves the points after the poses, and computes the cost.
     Move,
     /// The remaining residual of every observation.
     Judge,
@@ -120,7 +119,7 @@ impl BundleSolver {
         self.enter(Phase::Linearise);
     }
 
-    /// Goes on for about `work` units, some 20 ns each; `true` once it is done.
+    /// Continues for about `work` units, some 20 ns each; `true` at the end.
     pub fn advance(&mut self, work: usize) -> bool {
         let mut left = isize::try_from(work).unwrap_or(isize::MAX);
         while self.phase != Phase::Done && left > 0 {
@@ -134,12 +133,12 @@ impl BundleSolver {
         while !self.advance(usize::MAX) {}
     }
 
-    /// `world_from_camera` of every pose as far as it is refined.
+    /// `world_from_camera` of every pose at the present state.
     pub fn poses(&self) -> &[Pose3] {
         &self.here.poses
     }
 
-    /// Every point as far as it is refined, world frame, m.
+    /// Every point at the present state, world frame, m.
     pub fn points(&self) -> &[Vector3] {
         &self.here.points
     }
@@ -149,8 +148,8 @@ impl BundleSolver {
         &self.chi2
     }
 
-    /// Covariance of a pose as a right perturbation (m, rad), taking every fixed pose and every sigma as true; once it is
-    /// done, if the configuration asked for it and the pose is free and determined.
+    /// Covariance of a pose as a right perturbation (m, rad), with fixed poses and sigmas taken as exact. Available at the end if the
+    /// configuration requests it and the pose is free and determined.
     pub fn covariance(&self, pose: usize) -> Option<Matrix6<f64>> {
         let row = self.rows.get(pose).filter(|row| **row != FIXED_ROW && self.ending == Ending::WorkedOut)?;
         Some(self.normal.covariance_of(*row)).filter(|c| c.iter().all(|value| value.is_finite()))
@@ -167,7 +166,7 @@ impl BundleSolver {
         self.initial_cost
     }
 
-    /// Robust cost as far as it is refined.
+    /// Robust cost at the present state.
     pub fn cost(&self) -> f64 {
         self.cost
     }
@@ -209,7 +208,7 @@ impl BundleSolver {
         }
     }
 
-    /// A bit of work; how many units it was.
+    /// Runs one piece of work; returns its units.
     fn work_on(&mut self) -> usize {
         match self.phase {
             Phase::Linearise => self.linearise(),
@@ -319,7 +318,7 @@ impl BundleSolver {
         work
     }
 
-    /// Takes the step or refuses it.
+    /// Accepts or rejects the step.
     fn decide(&mut self) {
         if self.partial_cost > self.cost {
             return self.refuse();
@@ -339,7 +338,7 @@ impl BundleSolver {
     /// Tries a shorter step.
     fn refuse(&mut self) {
         if self.ending == Ending::WorkingOut {
-            // Not determined.
+            // The system is not determined.
             self.ending = Ending::Refining;
             return self.enter(Phase::Done);
         }
@@ -387,7 +386,7 @@ impl State {
 }
 
 impl BundleProblem {
-    /// Refines the free poses and all points, at once and with buffers of its own.
+    /// Refines the free poses and all points in one call with its own buffers.
     pub fn solve(&self, config: &BundleConfig) -> BundleSolution {
         let mut solver = BundleSolver::default();
         solver.begin(self, config);

@@ -15,7 +15,7 @@ use trundle_core::{Pose3, Vector3};
 pub(crate) struct Coupling {
     /// The point in the camera's frame, m.
     p: [f64; 3],
-    /// Its information, by camera frame and world frame, by columns.
+    /// Information between camera frame and world frame, by columns.
     coupling: [[f64; 3]; 3],
 }
 
@@ -26,7 +26,7 @@ const UNCOUPLED: Coupling = Coupling { p: [0.0; 3], coupling: [[0.0; 3]; 3] };
 struct PointBlock {
     hessian: [f64; 6],
     gradient: [f64; 3],
-    /// Of the damped block, upper half by rows; zero if it cannot be inverted.
+    /// Inverse of the damped block, upper half by rows; zero if singular.
     inverse: [f64; 6],
 }
 
@@ -41,7 +41,7 @@ pub(crate) struct Normal {
     crossed: Vec<(u32, u32, Matrix6<f64>)>,
     /// S = U - W V^-1 W' \[Triggs et al. 2000\].
     pub reduced: BlockMatrix,
-    /// Its right-hand side by node, then the step.
+    /// Right-hand side by node, then the step.
     pub step: Vec<Vector6<f64>>,
     /// Node of each row.
     node_of: Vec<usize>,
@@ -92,7 +92,7 @@ impl Normal {
         loss
     }
 
-    /// Adds what was seen of a point; its robust cost by `loss_of`, [`refining`] or [`certain`].
+    /// Adds the observations of a point; its robust cost by `loss_of`, [`refining`] or [`certain`].
     #[inline(always)]
     pub fn linearise(
         &mut self,
@@ -166,7 +166,7 @@ impl Normal {
         Matrix6::from_data(nalgebra::ArrayStorage(self.poses[row as usize].0))
     }
 
-    /// How the pose of a row moves, once the reduced system is solved.
+    /// Step of the pose of a row, after the reduced system is solved.
     pub fn step_of(&self, row: u32) -> Vector6<f64> {
         self.step[self.node_of[row as usize]]
     }
@@ -188,7 +188,7 @@ impl Normal {
         }
     }
 
-    /// Eliminates a range of points from it.
+    /// Eliminates a range of points from the system.
     pub fn eliminate(
         &mut self,
         points: std::ops::Range<usize>,
@@ -198,7 +198,7 @@ impl Normal {
     ) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx") {
-            // SAFETY: the processor has the one feature that the function is compiled for.
+            // SAFETY: the processor has the only feature that the function is compiled for.
             return unsafe { self.eliminate_by_avx(points, damping, layout, views) };
         }
         self.eliminate_plainly(points, damping, layout, views);
@@ -264,7 +264,7 @@ impl Normal {
         }
     }
 
-    /// How a point moves once the poses' step is known, m.
+    /// Step of a point, given the poses' step, m.
     #[inline(always)]
     pub fn point_step(&self, index: usize, layout: &Layout, views: &[View]) -> [f64; 3] {
         let block = &self.points[index];
@@ -318,7 +318,7 @@ fn add_pose((block, gradient): &mut (Block, Column), info: &[[f64; 3]; 3], g: &[
     (0..3).for_each(|i| gradient[i + 3] += turned[i]);
 }
 
-/// The inverse of a symmetric block (upper halves by rows) whose diagonal grows by a part of itself; zero if it has none.
+/// The inverse of a symmetric block (upper halves by rows) whose diagonal is enlarged by a part of itself; zero if singular.
 #[inline(always)]
 fn inverse(hessian: &[f64; 6], damping: f64) -> [f64; 6] {
     let [a, b, c, d, e, f] = *hessian;

@@ -7,7 +7,7 @@ pub struct Huber {
 }
 
 impl Huber {
-    /// Linear where the squared residual is above `chi2`, which is positive.
+    /// Linear for a squared residual above `chi2`, which is positive.
     pub fn beyond(chi2: f64) -> Self {
         Self { threshold: chi2.sqrt() }
     }

@@ -2,19 +2,18 @@
 
 use nalgebra::{Matrix3x6, Matrix6};
 
-/// Largest share of a point in one of the six components of a pose: 0.25, while there are enough points. A point with a larger
-/// share, a near one among many far ones, would put the camera where it was matched, whether right or wrong. Source: ours, after
-/// \[Hampel86\].
+/// Largest share of a point in one of the six components of a pose, with enough points: 0.25. A point with a larger share, a near one among
+/// many far ones, would alone determine the pose, right or wrong. Source: ours, after \[Hampel86\].
 const MAX_LEVERAGE: f64 = 0.25;
-/// Largest share in multiples of the mean share, where points are few: 3. Source: ours.
+/// Largest share in multiples of the mean share, with few points: 3. Source: ours.
 const MAX_LEVERAGE_OF_MEAN: f64 = 3.0;
 /// Largest number of passes over the points: 20. Three wrong points that agree are bounded after some ten. Source: ours.
 const MAX_PASSES: usize = 20;
 /// Ratio of a share to its limit that ends the passes: 1.1. Source: ours.
 const LEVERAGE_TOLERANCE: f64 = 1.1;
 
-/// By how much to weight each of `rows`, the Jacobians of points' residuals in standard deviations, 0 to 1: so that no leverage,
-/// the part of the fit that a point decides by itself, is above the bound (the GM-estimators of Mallows, \[Hampel86\]).
+/// Weight of each of `rows`, 0 to 1, with which no leverage exceeds the bound (the GM-estimators of Mallows, \[Hampel86\]). The rows are
+/// the Jacobians of points' residuals in standard deviations; leverage is the part of the fit determined by one point.
 pub(crate) fn bounded(rows: &[Matrix3x6<f64>]) -> Vec<f64> {
     let mut weights = vec![1.0; rows.len()];
     let counted = rows.iter().filter(|row| **row != Matrix3x6::zeros()).count();

@@ -1,11 +1,11 @@
 //! Robust least squares on SE(3) over what an RGB-D camera measures of points.
 //!
-//! [`PoseProblem`] refines one camera pose against known points (tracking). [`BundleProblem`] refines several poses and the points
-//! together by the Schur complement (bundle adjustment, Triggs et al. 2000). [`PoseGraph`] distributes the correction of a closed loop
-//! over poses with relative constraints. [`ArrowSystem`] solves a chain of states with common parameters (fixed-lag smoothing). The first two share the residual of [`PointObservation`] (rectified pixel and inverse depth, each
-//! in its standard deviations), the Huber loss and the perturbation: poses are `world_from_camera`, perturbed on the right, translation
-//! first, so that a covariance is that of the camera in its own frame. Everything runs on one thread in a fixed order: the same input
-//! gives the same bits.
+//! [`PoseProblem`] refines one camera pose against known points (tracking). [`BundleProblem`] refines several poses and the points together
+//! by the Schur complement (bundle adjustment, Triggs et al. 2000). [`PoseGraph`] distributes the correction of a closed loop over poses
+//! with relative constraints. [`ArrowSystem`] solves a chain of states with common parameters (fixed-lag smoothing). The first two share
+//! the residual of [`PointObservation`] (rectified pixel and inverse depth, each in its standard deviations), the Huber loss and the
+//! perturbation. Poses are `world_from_camera`, perturbed on the right, translation first: a covariance is that of the camera in its own
+//! frame. Everything runs on one thread in a fixed order: the same input gives the same bits.
 //!
 //! ```
 //! use nalgebra::{Matrix6, UnitQuaternion};

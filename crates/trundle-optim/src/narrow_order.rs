@@ -1,9 +1,9 @@
-//! The order of a sparse system that keeps its profile narrow.
+//! The order of a sparse system with a narrow profile.
 
 use std::collections::VecDeque;
 
-/// The row of each node by reverse Cuthill-McKee (Cuthill, McKee 1969; George 1971): breadth first from a node of least
-/// degree, neighbours by rising degree, then backwards. Ties go to the lower number. Keeps coupled nodes near each other.
+/// The row of each node by reverse Cuthill-McKee (Cuthill, McKee 1969; George 1971): breadth first from a node of minimum degree,
+/// neighbours by increasing degree, then reversed. Among equals, the lower number comes first. Coupled nodes get near rows.
 pub(crate) fn narrow_order(count: usize, pairs: &[(usize, usize)]) -> Vec<usize> {
     let mut neighbours = vec![Vec::new(); count];
     for &(a, b) in pairs.iter().filter(|(a, b)| a != b) {

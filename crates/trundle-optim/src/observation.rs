@@ -21,18 +21,18 @@ pub(crate) const MIN_PROJECTION_DEPTH_M: f64 = 0.02;
 pub struct InverseDepth {
     /// 1 / (depth along the optical axis), 1/m.
     pub value: f64,
-    /// Its standard deviation, 1/m.
+    /// Standard deviation of the inverse depth, 1/m.
     pub sigma: f64,
 }
 
 /// Measurement of one point in one image.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointObservation {
-    /// Where it was seen, rectified px.
+    /// Position of the observation, rectified px.
     pub pixel: Vector2,
     /// Standard deviation of either pixel coordinate, px.
     pub pixel_sigma: f64,
-    /// Inverse depth along the optical axis, where the sensor measured one.
+    /// Inverse depth along the optical axis; `None` without a measurement.
     pub depth: Option<InverseDepth>,
 }
 
@@ -98,7 +98,7 @@ pub(crate) fn camera_point_by_pose(p_camera: Vector3) -> Matrix3x6<f64> {
     jacobian
 }
 
-/// Cost of a point behind the camera: 1e3. It rejects a step and does not dominate the sum. Source: ours.
+/// Cost of a point behind the camera: 1e3. The value rejects a step without dominating the sum. Source: ours.
 pub(crate) const COST_BEHIND_CAMERA: f64 = 1e3;
 
 /// The robust loss of an observation of a point at `p_camera`.

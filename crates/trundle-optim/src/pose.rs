@@ -41,11 +41,11 @@ impl PoseConfig {
     }
 }
 
-/// Number of points of one image whose errors are the same in the worst case: 8. The covariance of a pose is multiplied by this number
-/// where the pose is compared with a prior; [`PoseSolution`] itself assumes independent errors. Source: docs/algorithms/slam.md.
+/// Number of points of one image whose errors are the same in the worst case: 8. A comparison with a prior multiplies the covariance of a
+/// pose by this number; [`PoseSolution`] itself assumes independent errors. Source: docs/algorithms/slam.md.
 pub const CORRELATED_POINTS: f64 = 8.0;
 
-/// One camera pose against points that are taken as known: motion-only bundle adjustment \[MurArtal17\].
+/// One camera pose against points that count as exact: motion-only bundle adjustment \[MurArtal17\].
 ///
 /// Levenberg-Marquardt on the Huber loss. After each round every observation is classified by its chi-square, and the
 /// next round runs over the inliers. Cost: linear in the observations, some microseconds each.
@@ -55,9 +55,9 @@ pub struct PoseProblem<'a> {
     pub camera: &'a PinholeCamera,
     /// Points (world, m) with their measurements in the image.
     pub observations: &'a [(Vector3, PointObservation)],
-    /// A prior of the pose, by wheels for example: fused with the solution of the points, where both agree.
+    /// A prior of the pose, for example by wheels; fused with the solution of the points if both agree.
     pub prior: Option<PosePrior>,
-    /// Whether no point may decide by itself, for matches that nothing predicted: see [`PoseProblem::solve`].
+    /// Whether the influence of single points is bounded, for matches without a prediction: see [`PoseProblem::solve`].
     pub bounded: bool,
 }
 
@@ -68,9 +68,9 @@ pub struct PoseSolution {
     pub world_from_camera: Pose3,
     /// Whether observation i agrees at 95 % with the pose that the image alone gives.
     pub inliers: Vec<bool>,
-    /// How many do.
+    /// Number of inliers.
     pub inlier_count: usize,
-    /// Whether there was a prior that contradicts them.
+    /// Whether a prior was given that contradicts the points.
     pub contradicts_prior: bool,
     /// Number of observations that agree with each other on another pose, which contradicts the prior: those of a thing that moves.
     pub moving: usize,
@@ -362,7 +362,7 @@ mod tests {
             let mut observations = scene(truth(), 80, 1.0, seed);
             for (i, (point, seen)) in observations.iter_mut().enumerate() {
                 let p_camera = truth().inverse().transform(*point);
-                // All beyond the depth camera's range, but for three that were mapped 8 cm aside of where they are.
+                // All points are outside the depth camera's range, except three whose map positions are wrong by 8 cm.
                 let (range, aside) = if i < 3 { (0.1 + 0.03 * i as f64, 0.08) } else { (8.0, 0.0) };
                 let p_camera = p_camera * range / p_camera.z + Vector3::x() * aside;
                 (*point, seen.depth) = (truth().transform(p_camera), None);

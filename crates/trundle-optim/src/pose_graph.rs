@@ -45,21 +45,21 @@ pub struct PoseConstraint {
     pub from: usize,
     /// Index of the second pose.
     pub to: usize,
-    /// Where the second is, in the frame of the first.
+    /// Pose of the second in the frame of the first.
     pub from_to: Pose3,
-    /// Inverse covariance of a right perturbation of it (m, rad), symmetric.
+    /// Inverse covariance of `from_to` as a right perturbation (m, rad), symmetric.
     pub information: Matrix6<f64>,
 }
 
 /// Poses tied by relative measurements: SE(3) pose graph optimisation, as after a closed loop.
 ///
-/// Minimises the sum of |log(from_to^-1 from^-1 to)|^2 in the measurements' information (Grisetti et al. 2010) by
-/// Levenberg-Marquardt over a block Cholesky factor in profile storage. No robust loss: a wrong loop is refused before it
-/// gets here. Cost: linear in the poses for a chain with few loops.
+/// Minimises the sum of |log(from_to^-1 from^-1 to)|^2 in the measurements' information (Grisetti et al. 2010) by Levenberg-Marquardt over
+/// a block Cholesky factor in profile storage. No robust loss: wrong loops are refused before. Cost: linear in the poses for a chain with
+/// few loops.
 #[derive(Debug, Clone)]
 pub struct PoseGraph {
     poses: Vec<Pose3>,
-    /// Number of each pose among the free ones; `None` of a fixed one.
+    /// Index of each pose among the free ones; `None` for a fixed one.
     free: Vec<Option<usize>>,
     constraints: Vec<PoseConstraint>,
 }
@@ -67,9 +67,9 @@ pub struct PoseGraph {
 /// Result of [`PoseGraph::solve`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseGraphSolution {
-    /// Every pose, fixed ones as they were.
+    /// Every pose; fixed ones are unchanged.
     pub poses: Vec<Pose3>,
-    /// Squared residual of every constraint: a loop that does not fit the rest stands out by it.
+    /// Squared residual of every constraint; a loop that contradicts the rest has a large value.
     pub chi2: Vec<f64>,
     /// Sum of the squared residuals before.
     pub initial_cost: f64,
@@ -80,11 +80,11 @@ pub struct PoseGraphSolution {
 }
 
 impl PoseGraph {
-    /// A graph over `poses` (`world_from_pose`), of which those marked in `fixed` stay.
+    /// A graph over `poses` (`world_from_pose`); those marked in `fixed` are constant.
     ///
     /// # Errors
-    /// When the lengths differ, no pose is fixed, a constraint names a pose that is not there or constrains one to itself, or
-    /// a number is not finite.
+    /// When the lengths differ, no pose is fixed, a constraint refers to a missing pose or connects a pose to itself, or a number is not
+    /// finite.
     pub fn new(poses: Vec<Pose3>, fixed: &[bool], constraints: Vec<PoseConstraint>) -> Result<Self, Invalid> {
         if fixed.len() != poses.len() {
             return Err(Invalid::new(
@@ -151,7 +151,7 @@ impl PoseGraph {
         (BlockMatrix::new(count, &pairs), vec![Vector6::zeros(); count])
     }
 
-    /// J'WJ and J'Wr at the poses as they are.
+    /// J'WJ and J'Wr at the present poses.
     fn linearise(&self, matrix: &mut BlockMatrix, gradient: &mut [Vector6<f64>]) {
         matrix.clear();
         gradient.fill(Vector6::zeros());
@@ -213,8 +213,8 @@ impl PoseConstraint {
     }
 }
 
-/// The inverse right Jacobian of SE(3) by its series I + ad/2 + ad^2/12 (Barfoot 2017, eq. 7.94): 1e-3 off at 1 rad,
-/// exact where a graph ends up.
+/// The inverse right Jacobian of SE(3) by its series I + ad/2 + ad^2/12 (Barfoot 2017, eq. 7.94). The error is 1e-3 at 1 rad, and vanishes
+/// at the graph's optimum.
 fn inverse_right_jacobian(x: Vector6<f64>) -> Matrix6<f64> {
     let (rho, phi) = (Vector3::new(x[0], x[1], x[2]), Vector3::new(x[3], x[4], x[5]));
     let mut ad = Matrix6::zeros();

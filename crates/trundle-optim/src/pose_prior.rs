@@ -1,4 +1,4 @@
-//! A pose known from another sensor, and its fusion with that of the image.
+//! A pose known from another sensor, and its fusion with the pose of the image.
 
 use crate::observation::{CHI2_95_6, CHI2_999_6};
 use nalgebra::{Matrix6, Vector6};
@@ -9,15 +9,15 @@ use trundle_core::Pose3;
 pub struct PosePrior {
     /// The pose.
     pub world_from_camera: Pose3,
-    /// Covariance of a right perturbation of it (m, rad).
+    /// Covariance of the prior as a right perturbation (m, rad).
     pub covariance: Matrix6<f64>,
 }
 
 impl PosePrior {
-    /// The most probable pose between this prior and `pose`, which was found without it: a Kalman update. `covariance` (right perturbation;
-    /// m, rad) is that of `pose`. The update multiplies it by `alike`, since it may be too small. With it the covariance of the result:
-    /// `covariance`, and the share of the prior. It is never below `covariance`, because the caller may use the prior too. `None` if the
-    /// two contradict each other at 99.9 %.
+    /// The most probable pose between this prior and `pose`, which was found without the prior: a Kalman update. `covariance` (right
+    /// perturbation; m, rad) is that of `pose`. The update multiplies this covariance by `alike`, because it may be too small. Also returns
+    /// the covariance of the result: `covariance`, plus the share of the prior. The returned covariance is never below `covariance`,
+    /// because the caller may use the prior too. `None` if the two contradict each other at 99.9 %.
     pub fn fused_with(
         &self,
         pose: Pose3,
@@ -27,7 +27,7 @@ impl PosePrior {
         let off = (self.world_from_camera.inverse() * pose).log();
         let counted = covariance * alike;
         let chi2 = off.dot(&(self.covariance + counted).cholesky()?.solve(&off));
-        // Between the two bounds it counts the less the farther off it is (Huber).
+        // Between the two bounds the weight decreases with the distance (Huber).
         let own = self.covariance * (chi2 / CHI2_95_6).max(1.0);
         let gain = own * (own + counted).cholesky()?.inverse();
         let rest = Matrix6::identity() - gain;

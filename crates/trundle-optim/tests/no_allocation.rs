@@ -1,4 +1,4 @@
-//! A bundle solver that has grown to a problem's size allocates nothing for the next one of that size.
+//! A bundle solver with buffers of a problem's size allocates no memory for the next problem of that size.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use nalgebra::Vector6;

@@ -140,7 +140,7 @@ fn field(grid: &OccupancyGrid) {
     picture.save("field");
 }
 
-/// The printed potential's force, and where following it from everywhere ends up.
+/// The force of the printed potential, and the end points of its descents from all starts.
 fn potential(grid: &OccupancyGrid, goal: Vector2) {
     let field = DistanceField::from_grid(grid, UnknownIs::Free);
     let printed = PotentialField::new(&field, goal, ROBOT, PotentialConfig::default());
@@ -206,7 +206,7 @@ fn speeds(plan: &PlanResult) {
 /// A chart over time in a part of a picture 6 m wide.
 struct Axes {
     name: &'static str,
-    /// Its lower and upper border in the picture, m.
+    /// Lower and upper border of the strip in the picture, m.
     low: f64,
     high: f64,
     range: (f64, f64),
@@ -245,7 +245,7 @@ impl Axes {
     }
 }
 
-/// A long robot in a corridor that its circle does not pass.
+/// A long robot in a corridor too narrow for its circumscribed circle.
 fn outline() {
     let row = |r: usize| {
         let open = r > 0 && r < 18;

@@ -2,7 +2,7 @@
 
 use trundle_core::{GridGeometry, Invalid, Vector2};
 
-/// Largest number of cells of an area. Larger ones are refused: memory and time grow with the cells. Source: ours.
+/// Largest number of cells of an area. Larger areas are refused: memory and time grow with the cells. Source: ours.
 const MAX_AREA_CELLS: f64 = 4.0e7;
 /// Margin around a start or goal off the grid, m. A smaller one leaves no path around the robot. Source: ours.
 const OFF_GRID_MARGIN_M: f64 = 1.0;
@@ -10,7 +10,7 @@ const OFF_GRID_MARGIN_M: f64 = 1.0;
 /// The smallest rectangle on the grid's lattice that holds the grid, the start and the goal, extended by `beyond` m.
 ///
 /// # Errors
-/// When it would have more than [`MAX_AREA_CELLS`] cells.
+/// When the area would have more than [`MAX_AREA_CELLS`] cells.
 pub(crate) fn area(
     grid: &GridGeometry,
     start: Vector2,

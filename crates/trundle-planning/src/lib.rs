@@ -1,8 +1,8 @@
 //! Paths and trajectories on occupancy grids: from a grid, a pose and a goal to a verified curve with its timing.
 //!
-//! [`Planner`] is the entry point. A geodesic search on the grid finds waypoints; a quadratic program fits a [`Curve`] through
-//! them inside a convex free corridor; timing turns the curve into a [`Trajectory`](trundle_core::Trajectory) within the drive's
-//! limits. Equations, parameters and limits are in `docs/algorithms/planning.md`; definitions in docs/methods.md, A4 and A5.
+//! [`Planner`] is the entry point. A geodesic search on the grid finds waypoints. A quadratic program fits a [`Curve`] through them inside
+//! a convex free corridor. Timing turns the curve into a [`Trajectory`](trundle_core::Trajectory) within the drive's limits. Equations,
+//! parameters and limits are in `docs/algorithms/planning.md`; definitions in docs/methods.md, A4 and A5.
 //!
 //! ```
 //! use trundle_core::{DifferentialDrive, DriveLimits, Footprint, OccupancyGrid, Pose2, Twist2};

@@ -14,7 +14,7 @@ pub struct Obstruction {
     pub time: f64,
     /// Pose at the contact.
     pub pose: Pose2,
-    /// Clearance beside the footprint there, m, negative: the missing distance.
+    /// Clearance of the footprint at the contact, m, negative: the missing distance.
     pub clearance: f64,
 }
 
@@ -62,8 +62,8 @@ pub(crate) fn max_overlap(shape: &RobotShape) -> f64 {
     if shape.is_disc() { shape.radius } else { MAX_OVERLAP_M }
 }
 
-/// Checks the trajectory of a [`reduced_shape`] shape from `from` seconds on, against every layer. Where it overlaps an obstacle at once,
-/// `escape` describes the overlap; the shape may continue as long as it comes no deeper, until it has left.
+/// Checks the trajectory of a [`reduced_shape`] shape from `from` seconds on, against every layer. For a shape that overlaps an obstacle at
+/// the start, `escape` describes the overlap. The shape may continue while its overlap does not grow, until it is free.
 pub(crate) fn validate_layers(
     layers: &[Layer<'_>],
     trajectory: &Trajectory,
@@ -104,8 +104,8 @@ pub(crate) fn validate_layers(
     Ok(())
 }
 
-/// The clearance at a pose, at most what the shape needs ([`RobotShape::needs`]), m: from the axle for a disc, beside the boundary for a
-/// polygon.
+/// The clearance at a pose, at most the required clearance of the shape ([`RobotShape::needs`]), m: from the axle for a disc, from the
+/// boundary for a polygon.
 fn clearance((grid, unknown): Layer<'_>, pose: Pose2, shape: &RobotShape) -> f64 {
     let (point, cap, outline) = (pose.position(), shape.needs(), shape.outline(pose));
     let geometry = grid.geometry();

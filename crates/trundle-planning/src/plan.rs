@@ -5,7 +5,7 @@ use crate::curve::phase::Phase;
 use std::fmt;
 use trundle_core::{Invalid, Path, Pose2, Trajectory, Vector2};
 
-/// Largest clearance beside the footprint that is measured, m. A larger one makes no difference to a plan. Source: ours.
+/// Largest clearance of the footprint that is measured, m. A larger one makes no difference to a plan. Source: ours.
 pub const MAX_CLEARANCE_M: f64 = 1.0;
 
 /// Result of a planning request.
@@ -20,24 +20,24 @@ pub enum Plan {
     },
     /// The footprint at the start overlaps an obstacle.
     StartInObstacle {
-        /// Clearance beside the footprint, m, negative: the missing distance.
+        /// Clearance of the footprint, m, negative: the missing distance.
         clearance: f64,
     },
     /// The footprint at the goal overlaps an obstacle.
     GoalInObstacle {
-        /// Clearance beside the footprint, m, negative: the missing distance.
+        /// Clearance of the footprint, m, negative: the missing distance.
         clearance: f64,
     },
-    /// The start is off the map, which may not be left.
+    /// The start is outside the map, and the robot may not leave the map.
     StartOutside,
-    /// The goal is off the map, which may not be left.
+    /// The goal is outside the map, and the robot may not leave the map.
     GoalOutside,
     /// An invalid request: a number is not finite, or the map or a distance is too large.
     Refused(Invalid),
 }
 
 impl Plan {
-    /// Whether no path leads to the goal, or to a point near enough to it.
+    /// Whether no path leads to the goal, or to a point within the goal tolerance.
     pub(crate) fn is_short_of_goal(&self) -> bool {
         match self {
             Self::Blocked { .. } => true,
@@ -93,8 +93,8 @@ pub fn clearance_text(metres: f64) -> String {
 /// A plan from start to goal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanResult {
-    /// The waypoints, start and goal included. Straight segments between them are free, except that the first one stands for the
-    /// braking arc where a moving robot has to stop first.
+    /// The waypoints, start and goal included. Straight segments between them are free; for a moving robot that must stop first, the first
+    /// segment replaces its braking arc.
     pub waypoints: Path,
     /// The path of the search, a cell's side apart.
     pub raw: Path,
@@ -104,15 +104,15 @@ pub struct PlanResult {
     pub trajectory: Trajectory,
     /// Length of all curves, m.
     pub length: f64,
-    /// Smallest clearance beside the footprint along the trajectory, m; at most [`MAX_CLEARANCE_M`]. Negative: the depth of the
+    /// Smallest clearance of the footprint along the trajectory, m; at most [`MAX_CLEARANCE_M`]. A negative value is the depth of the
     /// overlap that the robot leaves.
     pub min_clearance: f64,
     /// Whether the descent on the potential of \[Ge00\] was trapped and the geodesic search took over.
     pub fell_back: bool,
     /// Whether the trajectory continues the twist given: false when it starts from rest although the robot moves.
     pub is_continuous: bool,
-    /// The reason why the trajectory ends at the reachable point nearest to the goal ([`PlannerConfig::goal_tolerance`]); `None`
-    /// where it ends at the goal.
+    /// The reason why the trajectory ends at the reachable point nearest to the goal ([`PlannerConfig::goal_tolerance`]); `None` if it ends
+    /// at the goal.
     ///
     /// [`PlannerConfig::goal_tolerance`]: crate::PlannerConfig::goal_tolerance
     pub instead_of: Option<Plan>,

@@ -1,7 +1,7 @@
 //! The ROS clock and the run's clock.
 //!
-//! A run's stamps count from its start. ROS stamps count from 1970, or from the start of a simulator (`use_sim_time`). One offset maps
-//! between both; it does not change during a run, so a stamp that goes out and comes back is the same.
+//! A run's stamps count from its start. ROS stamps count from 1970, or from the start of a simulator (`use_sim_time`). One constant offset
+//! maps between both: a stamp is unchanged after a conversion forth and back.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
@@ -64,7 +64,7 @@ impl RosClock {
     /// Sets a simulated clock.
     ///
     /// # Errors
-    /// When the time went back: the simulator was started anew.
+    /// When the time decreased: the simulator was restarted.
     pub fn set(&self, time: Stamp) -> Result<(), Invalid> {
         let Source::Simulated(clock) = &self.source else { return Ok(()) };
         let _ = clock.first.compare_exchange(NOT_BEGUN, time.nanos, Ordering::Relaxed, Ordering::Relaxed);

@@ -1,8 +1,8 @@
-//! Why a node cannot be started.
+//! Reason why a node cannot be started.
 
 use trundle_app::AppError;
 
-/// Why a node cannot be started, or a name or argument is refused.
+/// Reason why a node cannot be started, or why a name or argument is refused.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Ros2Error {
@@ -22,7 +22,7 @@ pub enum Ros2Error {
         /// The argument.
         argument: String,
     },
-    /// A parameter whose value is not of its type.
+    /// A parameter whose value has the wrong type.
     #[error("parameter {name} is '{value}', expected {expected}")]
     Parameter {
         /// Name of the parameter.

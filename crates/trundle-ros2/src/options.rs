@@ -1,10 +1,10 @@
-//! How a program joins ROS 2: what its command line says.
+//! ROS 2 options of a program's command line.
 
 use crate::Ros2Error;
 use crate::node::{Names, Networks, NodeSettings, RosArguments};
 use crate::outputs::FrameNames;
 
-/// How a program joins ROS 2.
+/// ROS 2 options of a program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Ros2Options {
     /// Namespace, names, domain, networks.
@@ -17,11 +17,11 @@ pub struct Ros2Options {
     pub stamped_commands: bool,
 }
 
-/// Parameters that may stand after `--ros-args`.
+/// Parameters allowed after `--ros-args`.
 const KNOWN: &str = "use_sim_time, enable_stamped_cmd_vel, map_frame, odom_frame, base_frame, camera_frame";
 
 impl Ros2Options {
-    /// Reads the arguments after `--ros-args`. Without `domain` the variable ROS_DOMAIN_ID counts, else 0.
+    /// Reads the arguments after `--ros-args`. Without `domain`, the variable ROS_DOMAIN_ID applies, else 0.
     ///
     /// # Errors
     /// Names the argument, parameter or domain that is not of the known forms.
@@ -69,7 +69,7 @@ impl Ros2Options {
     }
 }
 
-/// The domain: as given, else that of the environment, else 0.
+/// The domain: the given one, else that of the environment, else 0.
 fn domain_id(given: Option<u16>) -> Result<u16, Ros2Error> {
     let from_environment = || std::env::var("ROS_DOMAIN_ID").ok().filter(|value| !value.is_empty());
     match (given, from_environment()) {

@@ -1,4 +1,4 @@
-//! The robot as a ROS 2 node: its outputs, its actions and services, and its body where that comes by topics.
+//! The robot as a ROS 2 node: its outputs, its actions and services, and its body if that comes by topics.
 
 use crate::body::{BodyDescription, BodySettings, OdometryReader, Ros2Body};
 use crate::clock::RosClock;
@@ -16,7 +16,7 @@ use trundle_core::SensorEvent;
 use trundle_runtime::real_time::InboxSender;
 use trundle_runtime::{CameraMount, RangeSource, RobotConfig};
 
-/// The robot as a running ROS 2 node. Dropping it ends its threads.
+/// The robot as a running ROS 2 node. A drop ends its threads.
 pub struct RobotNode {
     // Declared first: the outputs end before the node.
     _outputs: RobotOutputs,
@@ -25,7 +25,7 @@ pub struct RobotNode {
     observer: Option<EventObserver>,
 }
 
-/// A robot whose body comes by topics, all of them begun.
+/// A robot whose body comes by topics, all of them active.
 pub struct Ros2Robot {
     /// The node.
     pub node: RobotNode,
@@ -36,11 +36,11 @@ pub struct Ros2Robot {
 }
 
 impl Ros2Robot {
-    /// Joins the network and waits until the robot's topics have begun. Camera and mount of `robot` become those of the topics; a mount
-    /// that no transform gives stays as it is.
+    /// Joins the network and waits until the robot's topics are active. Camera and mount of `robot` are replaced by those of the topics; a
+    /// mount without a transform does not change.
     ///
     /// # Errors
-    /// When the network cannot be joined, or topics stay silent for `timeout`.
+    /// When the network cannot be joined, or topics are silent for `timeout`.
     pub fn connect(
         options: &Ros2Options,
         settings: BodySettings,
@@ -72,7 +72,7 @@ impl Ros2Robot {
         Ok(Self { node, link, body, described })
     }
 
-    /// Starts the body of a run: events go to `events`. The node lives on in its second value.
+    /// Starts the body of a run: events go to `events`. The node continues in the second value.
     ///
     /// # Errors
     /// When the system refuses a thread.

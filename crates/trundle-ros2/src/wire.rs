@@ -1,4 +1,4 @@
-//! Sequences as CDR holds them: bytes in one piece, and fixed arrays of any length.
+//! Sequences in CDR: bytes as one block, and fixed arrays of any length.
 
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeTuple;
@@ -41,7 +41,7 @@ impl<'de> Visitor<'de> for BytesVisitor {
     }
 }
 
-/// An array of `N` values: serde and `Default` know arrays up to 32 only.
+/// An array of `N` values: serde and `Default` support arrays up to 32 only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FixedArray<T, const N: usize>(pub [T; N]);
 

@@ -9,7 +9,7 @@ const CONTACT_POINT_STEP_DEG: i32 = 6;
 /// Distance of a contact point from the footprint's outline \[m\]: it falls into the next cell. Source: ours.
 const CONTACT_POINT_OFFSET_M: f64 = 0.03;
 
-/// Possible positions of an obstacle that presses the bumper of a robot of this outline: points ahead of it, base frame, m.
+/// Possible positions of an obstacle that presses the bumper of a robot with this outline: points ahead of the outline, base frame, m.
 pub(crate) fn ahead_of(footprint: &Footprint) -> Vec<Vector2> {
     let bearings = (-BUMPER_HALF_ANGLE_DEG..=BUMPER_HALF_ANGLE_DEG)
         .step_by(CONTACT_POINT_STEP_DEG as usize)
@@ -26,7 +26,7 @@ pub(crate) fn front_of(footprint: &Footprint) -> f64 {
     way_out(footprint, Vector2::new(1.0, 0.0))
 }
 
-/// How far the outline reaches from the base's origin in a direction, m.
+/// Distance from the base's origin to the outline in a direction, m.
 fn way_out(footprint: &Footprint, direction: Vector2) -> f64 {
     match footprint {
         Footprint::Disc { radius } => *radius,

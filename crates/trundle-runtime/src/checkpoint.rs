@@ -17,19 +17,19 @@ use trundle_slam::MapFileError;
 pub struct Checkpoint {
     /// The visual maps, as [`trundle_slam::RgbdSlam::save`] gives them.
     pub visual: Vec<u8>,
-    /// Where each of them lies in the map, and how surely, by its number.
+    /// Pose and covariance of each visual map in the map, by the number of the visual map.
     pub visual_maps: BTreeMap<u32, VisualAnchor>,
     /// The floor map.
     pub grid: OccupancyGrid,
     /// Finished tasks, and remaining tasks.
     pub mission: MissionState,
-    /// The charging station, where the robot knows one.
+    /// The charging station; `None` if unknown.
     pub station: Option<StationEstimate>,
     /// Zones and named places of the map.
     pub annotations: MapAnnotations,
 }
 
-/// Why a checkpoint is refused.
+/// Reason why a checkpoint is refused.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
@@ -39,7 +39,7 @@ pub enum CheckpointError {
     /// Made by a version that this one does not read.
     #[error("checkpoint of version {found}, expected {FORMAT_VERSION}")]
     Version {
-        /// Its version.
+        /// Version of the checkpoint.
         found: u32,
     },
     /// Cut off, or changed since it was written.
@@ -69,7 +69,7 @@ struct Notes {
     station: Option<StationEstimate>,
     #[serde(default, skip_serializing_if = "MapAnnotations::is_empty")]
     annotations: MapAnnotations,
-    /// Of the floor map, m.
+    /// Resolution of the floor map, m.
     resolution: f64,
     /// Lower left corner of the floor map, map frame, m.
     origin: [f64; 2],
@@ -105,7 +105,7 @@ impl Checkpoint {
     /// Reads a checkpoint. The visual maps are decoded when the robot resumes.
     ///
     /// # Errors
-    /// When the bytes are not a checkpoint, of another version, damaged or cut off, or contradict themselves. No bytes make it panic.
+    /// When the bytes are not a checkpoint, of another version, damaged or cut off, or contradict themselves. No input causes a panic.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
         let rest = bytes.strip_prefix(MAGIC).ok_or(CheckpointError::Foreign)?;
         let (version, rest) = number(rest)?;

@@ -8,7 +8,7 @@ use trundle_mapping::{Localized, MapLocalizer, MapperConfig, ParticleConfig};
 /// Global localization by scans, for a robot with unknown pose whose camera recognises no place.
 ///
 /// The odometry combines scans along the path, and [`MapLocalizer`] searches the combined scan in the whole map. A pose that is proved
-/// better than every other must explain some more scans before it is reported.
+/// better than every other must explain further scans before it is reported.
 #[derive(Debug)]
 pub(crate) struct GlobalLocalization {
     config: ParticleConfig,
@@ -17,7 +17,7 @@ pub(crate) struct GlobalLocalization {
     search: Search,
 }
 
-/// How far the search has come.
+/// State of the search.
 #[derive(Debug)]
 enum Search {
     /// The place is known.
@@ -36,14 +36,15 @@ enum Search {
 /// A place that was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LocalizedPose {
-    /// Of the scan.
+    /// Stamp of the scan.
     pub(crate) stamp: Stamp,
     pub(crate) map_from_base: Pose2,
-    /// As a right perturbation (m, m, rad).
+    /// Covariance as a right perturbation (m, m, rad).
     pub(crate) covariance: Matrix3<f64>,
 }
 
-/// Number of scans after the first that must fit a candidate pose, each 10 deg or 0.3 m farther on, if no image can be recognised. Source: ours.
+/// Number of scans after the first that must fit a candidate pose if no image can be recognised; the scans are 10 deg or 0.3 m apart.
+/// Source: ours.
 const MIN_CONFIRMING_SCANS: usize = 6;
 /// Number of scans if images have enough features and are not recognised: that is evidence against every pose in the map. Source: ours.
 const MIN_CONFIRMING_SCANS_SEEN: usize = 18;
@@ -70,7 +71,7 @@ impl GlobalLocalization {
         Ok(Self { config: config.validated()?, searches: 0, search: Search::None })
     }
 
-    /// Whether a search is under way.
+    /// Whether a search runs.
     pub(crate) fn is_sought(&self) -> bool {
         !matches!(self.search, Search::None)
     }
@@ -85,8 +86,8 @@ impl GlobalLocalization {
         self.search = Search::None;
     }
 
-    /// Takes in a scan, `in_the_dark` where images show too little to be recognised; the place once it is certain.
-    /// Cost: linear in the map's area for each scan 10 deg or 0.3 m farther on, until a place is found.
+    /// Adds a scan; returns the pose once certain. `in_the_dark`: the images show too little for place recognition. Cost: linear in the
+    /// map's area for each scan 10 deg or 0.3 m farther on, until a pose is found.
     pub(crate) fn look(
         &mut self,
         odom_from_base: Pose2,
@@ -128,7 +129,7 @@ impl GlobalLocalization {
     }
 }
 
-/// The covariance of a pose in the map's directions as one in its own.
+/// A covariance in the map's axes, rotated into the axes of the pose.
 fn seen_from(pose: Pose2, covariance: Matrix3<f64>) -> Matrix3<f64> {
     let (sin, cos) = pose.theta.sin_cos();
     let turn = Matrix3::new(cos, sin, 0.0, -sin, cos, 0.0, 0.0, 0.0, 1.0);
@@ -169,7 +170,7 @@ mod tests {
         Scan::new(stamp, Vector2::zeros(), first, step, (-35..=35).map(beam).collect()).unwrap()
     }
 
-    /// The pose in `map` that is found by the scans of `truth`, for a robot that turns three times at `at`, and the number of scans.
+    /// The pose in `map` found by the scans of `truth`, for a robot that turns three times at `at`, and the number of scans.
     fn found(
         map: &OccupancyGrid,
         truth: &OccupancyGrid,
@@ -238,7 +239,7 @@ mod tests {
         let along_y = Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, 4.0, 0.1));
         let facing = Pose2::new(3.0, 1.0, std::f64::consts::FRAC_PI_6);
         let own = seen_from(facing, along_y);
-        // Most of it to the side, and to the left more when it lies ahead.
+        // The pose's largest variance is lateral; its correlation is positive.
         assert!((own[(0, 0)] - 1.75).abs() < 1e-12 && (own[(1, 1)] - 3.25).abs() < 1e-12);
         assert!((own[(0, 1)] - 3.0 * 0.75_f64.sqrt() / 2.0).abs() < 1e-12 && own[(2, 2)] == 0.1);
     }

@@ -1,8 +1,8 @@
 //! The final approach: an arc, or turns and straight moves.
 //!
-//! In free space an arc is faster. In narrow space turns on the spot and straight moves reach the goal, exact for the footprint. The
-//! rule: the arc, where the simulated arc is free and no slower than the manoeuvre. Both are computed to the end before one is
-//! chosen; neither computation takes more than a part of a control step.
+//! In free space an arc is faster. In narrow space turns on the spot and straight moves reach the goal, exact for the footprint. Rule: the
+//! arc, if the simulated arc is free and no slower than the manoeuvre. Both are computed to the end before the choice; each computation
+//! takes only a part of a control step.
 
 mod end;
 mod report;
@@ -69,9 +69,9 @@ impl Default for GoalApproachConfig {
 
 /// Rate at which the obstacle scene is rebuilt \[1/s\]. Source: ours.
 const SCENE_RATE_HZ: f64 = 10.0;
-/// Speed below which the robot counts as standing \[m/s\]. Source: ours.
+/// Speed below which the robot counts as at rest \[m/s\]. Source: ours.
 const STANDING_SPEED_M_S: f64 = 0.02;
-/// Turn rate below which the robot counts as standing \[rad/s\]. Source: ours.
+/// Turn rate below which the robot counts as at rest \[rad/s\]. Source: ours.
 const STANDING_TURN_RATE_RAD_S: f64 = 0.05;
 
 /// Chooses between an arc and a manoeuvre, and executes the manoeuvre. The work of a step is about
@@ -104,7 +104,7 @@ impl GoalApproach {
         require_in("docking.arc_margin", config.arc_margin, "m", 0.0, 0.5)?;
         require_in("docking.time_limit", config.time_limit, "s", 1.0, 3600.0)?;
         require_in("docking.max_stops", f64::from(config.max_stops), "", 1.0, 1000.0)?;
-        // Its settings are checked here, once; later positioners are of the same.
+        // Checks the settings once; later positioners use the same settings.
         Positioner::new(config.planner.clone(), config.positioner, footprint.clone(), Pose2::IDENTITY)?;
         Ok(Self {
             docker: DockingPlanner::new(config.positioner.planner(config.planner.clone()))?,
@@ -147,14 +147,13 @@ impl GoalApproach {
         }
     }
 
-    /// Whether the robot had better stand until it is known: the arc is not free.
+    /// Whether the robot should remain at rest until the choice is made: the arc is not free.
     pub(crate) fn holds(&self) -> bool {
         self.choice.as_ref().is_some_and(ApproachSelection::is_arc_lost)
     }
 
-    /// A part of what [`GoalApproach::consider`] began: whether turns and straight moves take over now. A robot that still
-    /// rolls is
-    /// brought to a stand first, by [`GoalApproach::step`], and measured there.
+    /// Computes a part of the choice begun by [`GoalApproach::consider`]; returns whether turns and straight moves take over now. A moving
+    /// robot is first stopped by [`GoalApproach::step`], and its pose is measured at rest.
     pub(crate) fn takes_over(&mut self, s: &WorldState<'_>) -> bool {
         self.verdict(s) == Verdict::Manoeuvre && self.begin()
     }
@@ -171,7 +170,7 @@ impl GoalApproach {
         self.takes_over(s)
     }
 
-    /// Begins turns and straight moves onto a goal without a comparison with an arc. Returns whether it could.
+    /// Begins turns and straight moves onto a goal without a comparison with an arc. Returns whether the start succeeded.
     pub(crate) fn begin_at(&mut self, goal: Pose2) -> bool {
         if self.goal != Some(goal) {
             (self.goal, self.notes) = (Some(goal), Notes::default());

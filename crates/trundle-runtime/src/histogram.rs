@@ -15,7 +15,7 @@ pub struct Histogram {
 
 /// Lower end of the first bin.
 const FIRST_BIN_START: f64 = 1e-6;
-/// Ratio of a bin's upper to its lower end: a quantile is the middle of its bin, so within 1 %.
+/// Ratio of a bin's upper to its lower end: a quantile is the middle of its bin, an error below 1 %.
 const BIN_RATIO: f64 = 1.02;
 /// Number of bins: they end at 10^6.
 const BIN_COUNT: usize = 1396;
@@ -46,22 +46,22 @@ impl Histogram {
         self.most = self.most.max(other.most);
     }
 
-    /// How many numbers were counted.
+    /// Number of counted values.
     pub fn count(&self) -> u64 {
         self.count
     }
 
-    /// Their sum.
+    /// Sum of the counted values.
     pub fn sum(&self) -> f64 {
         self.sum
     }
 
-    /// The largest; `None` if nothing was counted.
+    /// Maximum of the counted values; `None` if no value was counted.
     pub fn most(&self) -> Option<f64> {
         (self.count > 0).then_some(self.most)
     }
 
-    /// The number that the part `fraction` (0 to 1) of all do not exceed; `None` if nothing was counted.
+    /// The quantile: the part `fraction` (0 to 1) of all values does not exceed it; `None` if no value was counted.
     pub fn quantile(&self, fraction: f64) -> Option<f64> {
         let rank = (self.count.checked_sub(1)? as f64 * fraction.clamp(0.0, 1.0)).round() as u64;
         let mut below = 0;

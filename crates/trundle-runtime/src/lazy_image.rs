@@ -1,9 +1,9 @@
-//! An image that is decoded when it is needed.
+//! An image that is decoded at its first use.
 
 use std::fmt;
 use trundle_core::{RgbdImage, Stamp};
 
-/// An image that is decoded at its first use: a dropped image costs nothing.
+/// An image that is decoded at its first use: a dropped image is never decoded.
 pub struct LazyImage {
     stamp: Stamp,
     load: Box<dyn FnOnce() -> Result<RgbdImage, String> + Send>,
@@ -15,7 +15,7 @@ impl LazyImage {
         Self { stamp, load: Box::new(load) }
     }
 
-    /// When it was taken.
+    /// Stamp of the image.
     pub fn stamp(&self) -> Stamp {
         self.stamp
     }

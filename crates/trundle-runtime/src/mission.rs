@@ -14,8 +14,7 @@ use std::fmt;
 pub use task::Task;
 use trundle_core::{Invalid, Pose2, Stamp};
 
-/// Tasks in a row. A goal that cannot be reached while others wait is put off to the end, but before a return, and tried once
-/// more.
+/// A sequence of tasks. An unreachable goal is postponed while other tasks wait: to the end, but before a return, for one more attempt.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Mission {
@@ -26,7 +25,7 @@ impl Mission {
     /// The tasks, to be done in this order.
     ///
     /// # Errors
-    /// When a goal is not finite; names it by its place.
+    /// When a goal is not finite; the error names its index.
     pub fn new(tasks: Vec<Task>) -> Result<Self, Invalid> {
         for (i, task) in tasks.iter().enumerate() {
             task.require_usable(i)?;
@@ -40,23 +39,23 @@ impl Mission {
     }
 }
 
-/// How far a mission has come.
+/// State of a mission.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MissionState {
     /// The remaining tasks, the present one first.
     pub left: Mission,
-    /// The places of these tasks in the mission.
+    /// Indices of these tasks in the mission.
     pub places: Vec<usize>,
     /// The tasks that have ended.
     pub ended: Vec<TaskRecord>,
-    /// Whether an operator gave the mission and waits for its outcome: a goal without a path ends at once.
+    /// Whether an operator gave the mission and waits for its result: a goal without a path ends immediately.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub by_operator: bool,
 }
 
 impl MissionState {
-    /// A mission that has yet to begin.
+    /// The state before the first task.
     pub fn new(mission: Mission) -> Self {
         let places = (0..mission.tasks().len()).collect();
         Self { places, left: mission, ended: Vec::new(), by_operator: false }
@@ -88,22 +87,22 @@ impl MissionState {
     }
 }
 
-/// How a task ended.
+/// End of a task.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum TaskEnd {
-    /// As it should.
+    /// The task succeeded.
     Done,
-    /// Not done, for now: it comes once more at the end of the mission.
+    /// Postponed: a second attempt follows at the end of the mission.
     PutOff {
-        /// Why.
+        /// Reason for the postponement.
         #[serde(flatten)]
         reason: Reason,
     },
-    /// Not done.
+    /// The task failed.
     GivenUp {
-        /// Why.
+        /// Reason for the failure.
         #[serde(flatten)]
         reason: Reason,
     },
@@ -123,15 +122,15 @@ impl fmt::Display for TaskEnd {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TaskRecord {
-    /// Its place in the mission.
+    /// Index of the task in the mission.
     pub index: usize,
     /// The task.
     pub task: Task,
-    /// How it ended.
+    /// End of the task.
     pub end: TaskEnd,
-    /// When it began.
+    /// Time of the start.
     pub from: Stamp,
-    /// When it ended.
+    /// Time of the end.
     pub to: Stamp,
     /// Estimated pose of the robot at that time, map frame.
     pub pose: Pose2,

@@ -14,29 +14,29 @@ use trundle_mapping::GridMapper;
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum OperatorCommand {
-    /// Begin this mission in place of what is left of the present one. From an empty mission on the robot brakes to rest.
+    /// Begin this mission in place of the rest of the present one. From an empty mission on the robot brakes to rest.
     Begin(Mission),
     /// Stop, and keep the mission.
     Pause,
     /// Go on after a pause.
     Continue,
-    /// The pose of the robot, as the operator knows it.
+    /// The pose of the robot, given by the operator.
     SetPose(PoseGuess),
     /// Change a setting, until the run ends.
     Change(RunSetting),
     /// The zones and named places of the map, in place of the present ones.
     Annotate(MapAnnotations),
-    /// Another map in place of the present one, with the robot file's resolution. Its frame is the map frame from now on, and the pose is
-    /// unknown. The mission is cancelled; zones, places and charging station of the old map are dropped. The robot keeps its own map
-    /// and its mission where the cells do not fit ([`crate::StepReport::map_replaced`]).
+    /// Another map in place of the present one, with the robot file's resolution. Its frame becomes the map frame, and the pose is unknown.
+    /// The mission is cancelled; zones, places and charging station of the old map are dropped. If the cells do not fit, the robot retains
+    /// its map and its mission ([`crate::StepReport::map_replaced`]).
     LoadMap(Box<OccupancyGrid>),
-    /// Drive with this twist, below the safety monitor: the mission is paused. Without another one within
-    /// [`TELEOP_SILENCE_S`] the robot stops.
+    /// Drive with this twist, checked by the safety monitor: the mission is paused. Without another twist within [`TELEOP_SILENCE_S`] the
+    /// robot stops.
     Drive(Twist2),
 }
 
-/// Time after a twist of the operator at which the robot stops, where no other twist comes \[s\]. Longer: a lost link lets the robot
-/// roll on. Source: ours; three periods of a page that sends at 10 Hz.
+/// Time after the last twist of the operator at which the robot stops \[s\]. With a longer time, the robot would drive on after the loss of
+/// the link. Source: ours; three periods of a page that sends at 10 Hz.
 pub const TELEOP_SILENCE_S: f64 = 0.3;
 
 impl OperatorCommand {
@@ -86,7 +86,7 @@ pub fn require_loadable(map: &GridGeometry, robot: &RobotConfig) -> Result<(), I
     GridMapper::require_fits(&robot.mapping, map)
 }
 
-/// A pose of the robot with its uncertainty, as an operator knows it.
+/// A pose of the robot with its uncertainty, as given by an operator.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PoseGuess {
     /// `map_from_base`.
@@ -122,12 +122,12 @@ impl PoseGuess {
 pub enum RunSetting {
     /// `limits.v_m_s`: highest forward speed of the next plans \[m/s\]. The robot file's speed is never exceeded.
     Speed(f64),
-    /// `mission_executor.patience_s`: time without progress after which a goal is given up \[s\].
+    /// `mission_executor.patience_s`: time without progress after which a goal is abandoned \[s\].
     Patience(f64),
 }
 
 impl RunSetting {
-    /// Its key in the robot file.
+    /// Key of the setting in the robot file.
     #[must_use]
     pub fn key(self) -> &'static str {
         match self {
@@ -136,7 +136,7 @@ impl RunSetting {
         }
     }
 
-    /// Its value, in the unit of the key.
+    /// Value of the setting, in the unit of the key.
     #[must_use]
     pub fn value(self) -> f64 {
         match self {

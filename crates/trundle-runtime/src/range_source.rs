@@ -9,6 +9,6 @@ pub enum RangeSource {
     /// The depth camera, its images cut to a scan.
     #[default]
     DepthCamera,
-    /// A 2-D laser's own scans. A camera, if there is one, still corrects the pose.
+    /// A 2-D laser's own scans. A camera, if present, still corrects the pose.
     Laser,
 }

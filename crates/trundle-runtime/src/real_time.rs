@@ -1,8 +1,7 @@
-//! The robot beside the clock on the wall: threads, queues, cores.
+//! The robot in real time: threads, queues, cores.
 //!
-//! The control thread feeds a [`crate::Robot`] with background jobs from an [`Inbox`]. [`WorkerThreads`] runs the jobs, one thread for
-//! each worker. The order in which events and results reach the robot is the order of the run: fed again in this order, they give the
-//! same reports.
+//! The control thread feeds a [`crate::Robot`] with background jobs from an [`Inbox`]. [`WorkerThreads`] runs the jobs, one thread for each
+//! worker. Events and results in the same order give the same reports.
 //!
 //! The loop of a robot's driver, whose own threads put sensor events into the inbox:
 //!

@@ -15,9 +15,9 @@ use std::fmt;
 use trundle_control::{SlowReason, StopReason};
 use trundle_core::Vector2;
 
-/// Why the robot does not move on, or why a task ended undone. `Display` gives the reason in words.
+/// The reason for a stop of the robot, or for an incomplete task. `Display` gives the reason in words.
 ///
-/// In files a reason is its text (`reason`) and the names of its kinds (`kinds`). A reason that is read back keeps both, as
+/// In files a reason is its text (`reason`) and the names of its kinds (`kinds`). A reason read from a file keeps both, as
 /// [`Reason::Restored`].
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -39,7 +39,7 @@ pub enum Reason {
     NoPath {
         /// The planner's result.
         cause: NoPath,
-        /// Floor that was kept out of the search because it could not be observed, map frame \[m\].
+        /// Floor that was excluded from the search because the robot could not observe it, map frame \[m\].
         unseen: Option<Vector2>,
     },
     /// The pose is unknown everywhere on the map.
@@ -67,7 +67,7 @@ pub enum Reason {
         time: f64,
         /// The state, in one word.
         state: &'static str,
-        /// The reason of that state, where the state has one.
+        /// The reason of that state; `None` if the state has none.
         cause: Option<Box<Reason>>,
     },
     /// The final approach by turns and straight moves fails.
@@ -94,12 +94,12 @@ pub struct TaskFailure {
     pub index: usize,
     /// The task.
     pub task: Task,
-    /// Why it is undone.
+    /// Reason for the incomplete task.
     pub reason: Reason,
 }
 
 impl Reason {
-    /// The kinds of this reason and of the reasons behind it, outermost first.
+    /// The kinds of this reason and of its causes, outermost first.
     pub fn kinds(&self) -> Vec<ReasonKind> {
         if let Self::Restored { kinds, .. } = self {
             return kinds.clone();

@@ -16,7 +16,7 @@ pub struct StepReport {
     pub estimate: Option<PoseEstimate>,
     /// Stamp of the image that was processed in this step, or whose result was applied.
     pub image: Option<Stamp>,
-    /// Why the image cannot be decoded.
+    /// Reason why the image cannot be decoded.
     pub broken_image: Option<String>,
     /// Report of the visual tracker, on images.
     pub track: Option<TrackReport>,
@@ -28,15 +28,15 @@ pub struct StepReport {
     pub state: DriveState,
     /// Whether the step made a new plan.
     pub replanned: bool,
-    /// Whether another map stands in place of the one before, by an operator's command.
+    /// Whether an operator's command replaced the map.
     pub map_replaced: bool,
-    /// Whether what was left of the mission is dropped, by an operator's command.
+    /// Whether an operator's command dropped the rest of the mission.
     pub mission_replaced: bool,
     /// Whether the mission is over; `state` then holds its outcome.
     pub finished: bool,
 }
 
-/// Measurements that the pose estimate received in a step, for a second estimator beside it.
+/// Measurements that the pose estimate received in a step, for a second estimator.
 #[derive(Debug, Clone, Default)]
 pub struct PoseMeasurements {
     /// Motion by wheels and gyro.

@@ -11,12 +11,12 @@ pub(crate) struct ScanPoseLog {
     most: usize,
 }
 
-/// Number of scan poses that are kept before the log is thinned. Source: ours.
+/// Number of stored scan poses above which the log is thinned. Source: ours.
 const MIN_KEPT_POSES: usize = 2048;
 
 impl ScanPoseLog {
-    /// Records a scan that was drawn with the camera at `visual_from_camera`; from time to time drops those that are not `kept`, and
-    /// returns true then. The log therefore grows with the kept scans.
+    /// Records a scan drawn with the camera at `visual_from_camera`. At intervals the log drops scans that are not `kept`, and then returns
+    /// true. The log therefore grows only with the kept scans.
     pub(crate) fn note<I: Iterator<Item = Stamp>>(
         &mut self,
         stamp: Stamp,
@@ -87,7 +87,7 @@ mod tests {
         scan_poses.note(forgotten, Pose3::from_pose2(old), std::iter::empty);
         let moved = scan_poses.follow(&[(stamp, Pose3::from_pose2(new))], base);
         assert_eq!(moved.len(), 1);
-        // The scan was drawn 2 cm beside where the visual map had the base; it stays so.
+        // The scan was drawn 2 cm from the base's position in the visual map; the offset remains.
         let beside = Pose2::new(0.0, 0.02, 0.0);
         let off = (moved[&stamp] * (old * beside)).inverse() * (new * beside);
         assert!(off.log().norm() < 1e-12, "{off:?}");

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Stamp, require_in};
 
-/// How often the stages run that do not run with every reading of their sensor.
+/// Rates of the stages that do not run with every reading of their sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
@@ -36,7 +36,7 @@ impl Schedule {
     }
 }
 
-/// Decides by the data's time when a stage is due.
+/// Decides by the stamps of the data whether a stage is due.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ticker {
     period: f64,
@@ -49,12 +49,12 @@ impl Ticker {
         Self { period: 1.0 / hz, last: None }
     }
 
-    /// The stage is due the next time.
+    /// Makes the stage due at the next query.
     pub(crate) fn hurry(&mut self) {
         self.last = None;
     }
 
-    /// Whether the stage is due at `now`; if so, the next time is counted from now. A millisecond early is on time.
+    /// Whether the stage is due at `now`; if due, the next time is counted from `now`. A time up to one millisecond early counts as due.
     pub(crate) fn due(&mut self, now: Stamp) -> bool {
         let due = self.will_be_due(now);
         if due {

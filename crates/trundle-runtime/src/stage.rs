@@ -79,7 +79,7 @@ impl Stage {
     }
 }
 
-/// Cost of the stages: wall-clock time, for reports only. No decision of the robot uses it.
+/// Cost of the stages: wall-clock time, for reports only. No decision of the robot uses these times.
 #[derive(Debug, Clone, Default)]
 pub struct StageTimes {
     /// Milliseconds.
@@ -90,7 +90,7 @@ pub struct StageTimes {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct StageCost {
-    /// How often it ran.
+    /// Number of runs of the stage.
     pub runs: u64,
     /// Milliseconds.
     pub median_ms: f64,
@@ -105,7 +105,7 @@ pub struct StageCost {
 }
 
 impl StageTimes {
-    /// Runs `work` and notes what it took.
+    /// Runs `work` and records its time.
     pub fn measure<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let result = work();
@@ -113,7 +113,7 @@ impl StageTimes {
         result
     }
 
-    /// Takes over what was measured elsewhere.
+    /// Adds the times of another measurement.
     pub fn add(&mut self, other: &Self) {
         self.spent.iter_mut().zip(&other.spent).for_each(|(mine, theirs)| mine.add(theirs));
     }
@@ -122,7 +122,7 @@ impl StageTimes {
         self.spent[stage as usize].note(elapsed.as_secs_f64() * 1e3);
     }
 
-    /// How often a stage ran so far.
+    /// Number of runs of a stage so far.
     pub fn runs(&self, stage: Stage) -> u64 {
         self.spent[stage as usize].count()
     }

@@ -1,4 +1,4 @@
-//! The world state: what a decision needs, by reference and as a copy for a decision that runs beside the control loop.
+//! The world state: the input of a decision, by reference, and as a copy for a decision in parallel with the control loop.
 
 use crate::zones::{ZoneMasks, ZoneView};
 use std::sync::Arc;
@@ -31,9 +31,9 @@ pub(crate) struct WorldState<'a> {
 /// The charging station, as far as the robot knows it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct StationState {
-    /// Its pose. `None` before its light was seen.
+    /// Estimated pose of the station. `None` before the robot saw its light.
     pub(crate) estimate: Option<StationEstimate>,
-    /// Whether the robot stands on its contacts.
+    /// Whether the robot is on the contacts of the station.
     pub(crate) is_docked: bool,
 }
 
@@ -41,14 +41,14 @@ pub(crate) struct StationState {
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct DynamicObstacles<'a> {
     pub(crate) movers: &'a [MovingObstacle],
-    /// Hits of new obstacles near by that no scan has shown gone, map frame, m.
+    /// Hits of new obstacles nearby that no scan has disproved, map frame, m.
     pub(crate) unconfirmed: &'a [Vector2],
-    /// The map without them. `None` if nothing moves.
+    /// The map without moving obstacles. `None` if there are none.
     pub(crate) static_grid: Option<&'a OccupancyGrid>,
 }
 
 impl<'a> WorldState<'a> {
-    /// The map without what moves: what the robot knows of the floor.
+    /// The map without moving obstacles: the known floor.
     pub(crate) fn floor(&self) -> &'a OccupancyGrid {
         self.dynamic_obstacles.static_grid.unwrap_or(self.grid)
     }
@@ -70,7 +70,7 @@ pub(crate) struct OwnedWorldState {
     now: Stamp,
     estimate: PoseEstimate,
     grid: OccupancyGrid,
-    /// With `odom_from_base` when it was taken, and now.
+    /// The last scan, with `odom_from_base` at the scan and now.
     scan: Option<(Scan, Pose2, Pose2)>,
     seen: Option<Stamp>,
     wheels: Option<Stamp>,
@@ -81,7 +81,7 @@ pub(crate) struct OwnedWorldState {
     static_grid: Option<OccupancyGrid>,
     station: StationState,
     zone_masks: Option<Arc<ZoneMasks>>,
-    /// As in [`ZoneView`].
+    /// The grids of [`ZoneView`].
     zone_grids: [Option<OccupancyGrid>; 2],
 }
 

@@ -1,8 +1,8 @@
-//! The zones of a running robot: the map with no-go zones occupied, speed limits, and the way out of a no-go zone.
+//! The zones of a running robot: the map with no-go zones occupied, speed limits, and the exit from a no-go zone.
 //!
-//! A no-go zone is an obstacle of plans, not of the safety monitor. A robot that stands deeper in one than the planner leaves obstacles
-//! may leave it: until it is out, the zone is costly and slow floor for it, and all other zones count. A goal in a no-go zone is refused
-//! also then.
+//! A no-go zone is an obstacle for plans, not for the safety monitor. A robot deeper in a zone than the planner's escape distance may leave
+//! the zone. Until it is out, this zone is costly and slow floor; all other zones apply. A goal in a no-go zone is refused also during the
+//! exit.
 
 use std::sync::Arc;
 use trundle_core::{
@@ -20,9 +20,9 @@ const LEAVING_COST_PERCENT: u8 = 100;
 pub(crate) struct RobotZones {
     annotations: Arc<MapAnnotations>,
     check: FootprintCheck,
-    /// Overlap with an obstacle from which the planner leaves it \[m\].
+    /// Overlap with an obstacle up to which the planner can leave the obstacle \[m\].
     escape: f64,
-    /// The no-go zones that the robot stands in and leaves.
+    /// The no-go zones that contain the robot and that it is leaving.
     left: Vec<u32>,
     masks: Option<Arc<ZoneMasks>>,
     floor: Option<ZonedFloor>,
@@ -41,14 +41,14 @@ pub(crate) struct ZoneMasks {
     check: Option<(FootprintCheck, GridGeometry)>,
 }
 
-/// The zones of the map, as they count for the robot at its present pose.
+/// The zones of the map as they apply to the robot at its present pose.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ZoneView<'a> {
-    /// Speed limits and costs, and the no-go zones. `None` before there was a zone.
+    /// Speed limits and costs, and the no-go zones. `None` before the first zone.
     pub(crate) masks: Option<&'a Arc<ZoneMasks>>,
-    /// The map with the no-go zones occupied. `None` if they forbid nothing.
+    /// The map with the no-go zones occupied. `None` if no zone forbids any cell.
     pub(crate) grid: Option<&'a OccupancyGrid>,
-    /// The map without moving obstacles, its no-go zones occupied. `None` if nothing moves.
+    /// The map without moving obstacles, its no-go zones occupied. `None` without moving obstacles.
     pub(crate) static_grid: Option<&'a OccupancyGrid>,
 }
 
@@ -56,7 +56,7 @@ pub(crate) struct ZoneView<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ZonedMap<'a> {
     pub(crate) grid: &'a OccupancyGrid,
-    /// Of the grid.
+    /// Revision of the grid.
     pub(crate) revision: u64,
     /// The grid without what moves.
     pub(crate) static_grid: Option<&'a OccupancyGrid>,
@@ -64,7 +64,7 @@ pub(crate) struct ZonedMap<'a> {
     pub(crate) scanned: Option<Stamp>,
 }
 
-/// The map with the no-go zones occupied, and what it was made of.
+/// The map with the no-go zones occupied, and its inputs.
 #[derive(Debug)]
 struct ZonedFloor {
     key: (u64, u64, bool, Option<Stamp>),
@@ -85,7 +85,7 @@ impl RobotZones {
         }
     }
 
-    /// Other zones in place of the present ones.
+    /// Replaces the present zones.
     pub(crate) fn set(&mut self, annotations: MapAnnotations) {
         let are_same = self.annotations.zones == annotations.zones;
         self.annotations = Arc::new(annotations);
@@ -100,7 +100,7 @@ impl RobotZones {
         &self.annotations
     }
 
-    /// The zones as they count for the robot.
+    /// The zones as they apply to the robot.
     pub(crate) fn view(&self) -> ZoneView<'_> {
         ZoneView {
             masks: self.masks.as_ref(),
@@ -147,21 +147,21 @@ impl RobotZones {
         self.annotations.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo)
     }
 
-    /// Whether the robot stands too deep in a zone to plan with it as an obstacle, or has not left it since.
+    /// Whether the robot is too deep in a zone to plan with it as an obstacle, or has not left the zone since then.
     fn leaves(&self, zone: &Zone, lattice: &GridGeometry, pose: Pose2) -> bool {
         let overlap = self.check.overlap_with_zone(zone, lattice, pose);
         let is_leaving = self.left.contains(&zone.id);
         overlap > if is_leaving { 0.0 } else { self.escape }
     }
 
-    /// A grid with the no-go zones occupied that the robot does not stand in.
+    /// A grid with all no-go zones occupied except those that contain the robot.
     fn over(&self, grid: &OccupancyGrid) -> OccupancyGrid {
         let mut over = grid.clone();
         self.no_go().filter(|zone| !self.left.contains(&zone.id)).for_each(|zone| forbid(&mut over, zone));
         over
     }
 
-    /// The masks of the next version; without a lattice there is no map yet to ask by.
+    /// The masks of the next version; without a lattice no map exists to define the cells.
     fn masks_after_change(&self, lattice: Option<GridGeometry>) -> Arc<ZoneMasks> {
         let left: Vec<&Zone> = self.no_go().filter(|zone| self.left.contains(&zone.id)).collect();
         let costly =
@@ -182,7 +182,7 @@ impl RobotZones {
     }
 }
 
-/// Side of the cells of speed limits \[m\]. Source: ours; that of the map's cells by default.
+/// Side of the cells of speed limits \[m\]. Source: ours; the default size of the map's cells.
 const MASK_RESOLUTION_M: f64 = 0.05;
 
 impl ZoneMasks {
@@ -250,13 +250,13 @@ mod tests {
         assert!((masks.speeds.as_ref().unwrap().limit(inside.position()) - LEAVING_SPEED_M_S).abs() < 1e-6);
         assert!(masks.costs.is_some());
         assert_eq!(masks.no_go_zone_at(Pose2::new(1.4, 1.6, 0.0)).unwrap().id, 1, "no goal in it");
-        // Its outline still reaches in.
+        // The outline still overlaps the zone.
         zones.update(Pose2::new(2.1, 1.5, 0.0), &map(&grid, 1));
         assert_eq!(cells(zones.view()), [Cell::Free, Cell::Occupied]);
         zones.update(Pose2::new(2.3, 1.5, 0.0), &map(&grid, 1));
         assert_eq!(cells(zones.view()), [Cell::Occupied, Cell::Occupied]);
         assert!(zones.view().masks.unwrap().costs.is_none());
-        // At its border the planner leaves it as any obstacle.
+        // At the border of the zone the planner leaves it like any obstacle.
         zones.update(Pose2::new(2.15, 1.5, 0.0), &map(&grid, 1));
         assert_eq!(cells(zones.view()), [Cell::Occupied, Cell::Occupied]);
     }

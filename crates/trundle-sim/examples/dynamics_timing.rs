@@ -1,4 +1,4 @@
-//! How many seconds of the robot's time a second of the clock simulates, without camera.
+//! Simulated seconds per wall-clock second, without camera.
 //!
 //! `cargo run --release -p trundle-sim --example dynamics_timing [SCENE...]`: built-in scenes or glTF files, z up.
 #![allow(clippy::print_stdout, reason = "an example talks to its user")]
@@ -53,7 +53,7 @@ fn scene(name: &str) -> Result<Scene, Box<dyn std::error::Error>> {
     Ok(Scene { name: name.into(), world, start, ..Scene::by_name("room", 1)? })
 }
 
-/// Drives about, and back and aside when it touches something.
+/// Drives at random; after a contact, backs off and turns.
 fn wander(robot: &mut Simulator) -> Result<(), Box<dyn std::error::Error>> {
     let mut until_free = 0.0;
     robot.command(Twist2::new(0.4, 0.1))?;

@@ -1,4 +1,4 @@
-//! Cost of worlds from files: reading a glTF house, what a robot can touch in it, its true grid.
+//! Cost of worlds from files: reading a glTF house, its contact geometry, its true grid.
 //!
 //! `cargo run --release -p trundle-sim --example house_timing -- FILE.glb` (z up).
 #![expect(clippy::print_stdout, reason = "a program that prints")]

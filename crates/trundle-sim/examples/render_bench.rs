@@ -1,8 +1,8 @@
 //! Times drawing and casting in a glTF scene and writes the depth images: our half of `bench/simulator/render.py`.
 //!
-//! `cargo run --release -p trundle-sim --example render_bench -- SCENE.glb POSES.txt OUT_DIR FRAMES`: a pose a line, x y (m)
-//! heading pitch (rad), of a camera 0.6 m above the floor. Prints JSON: means over the poses of the best of the frames.
-//! CPU time is that of all threads, from /proc; elsewhere it is the clock's.
+//! `cargo run --release -p trundle-sim --example render_bench -- SCENE.glb POSES.txt OUT_DIR FRAMES`: one pose per line, x y (m) heading
+//! pitch (rad), of a camera 0.6 m above the floor. Prints JSON: means over the poses, each the best of its frames. CPU time is that of all
+//! threads, from /proc; on other systems it is wall-clock time.
 #![expect(clippy::print_stdout, reason = "this is what an example is for")]
 
 use std::error::Error;
@@ -82,7 +82,7 @@ fn best(runs: usize, mut run: impl FnMut()) -> (f64, f64) {
     best
 }
 
-/// Seconds that all threads of this program have worked, if the system says.
+/// CPU time of all threads of this program, s; `None` if the system does not report it.
 fn cpu_seconds() -> Option<f64> {
     let mut nanoseconds = 0.0;
     for task in fs::read_dir("/proc/self/task").ok()? {

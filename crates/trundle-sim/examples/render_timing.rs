@@ -1,4 +1,4 @@
-//! Times the parts of an RGB-D frame in the built-in scenes and prints medians. Writes nothing.
+//! Times the parts of an RGB-D frame in the built-in scenes and prints medians. Writes no file.
 //!
 //! `cargo run --release -p trundle-sim --example render_timing [FRAMES]`: each scene seen from its start and its goal, turning.
 #![expect(clippy::print_stdout, reason = "this is what an example is for")]

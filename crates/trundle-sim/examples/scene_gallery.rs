@@ -1,5 +1,4 @@
-//! Writes a picture of every built-in scene (what a camera sees from two places, and the true grid with start and goal)
-//! and prints what the scenes cost.
+//! Writes a picture of every built-in scene (two camera views, and the true grid with start and goal) and prints the scenes' costs.
 //!
 //! `cargo run --release -p trundle-sim --example scene_gallery -- OUT_DIR [SEED [HEIGHT_PX [SCENE]]]` writes
 //! OUT_DIR/scene-NAME.png.
@@ -13,7 +12,7 @@ use trundle_sim::{HeightBand, Renderer, Scene, camera_mount};
 
 type Failure = Box<dyn std::error::Error>;
 
-/// Where the cameras stand: x, y (m) and heading (deg) in the scene's world.
+/// Poses of the cameras: x, y (m) and heading (deg) in the scene's world.
 const VIEWS: [(&str, [[f64; 3]; 2]); 10] = [
     ("demo", [[0.9, 1.1, 20.0], [5.0, 3.9, -40.0]]),
     ("room", [[2.4, 2.4, -135.0], [-2.4, 0.0, 20.0]]),
@@ -51,7 +50,7 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Two views one over the other, each `height` px, and the plan beside them.
+/// Two views, one above the other, each `height` px, and the plan to the right.
 fn picture(scene: &Scene, views: [[f64; 3]; 2], height: u32) -> Result<RgbImage, Failure> {
     let width = height * 6 / 5;
     let plan = plan(scene, 2 * height + 4)?;

@@ -1,4 +1,4 @@
-//! Writes what the robot's camera sees as PPM (colour) and PGM (depth, 8 m white), and the plan of the scene.
+//! Writes the image of the robot's camera as PPM (colour) and PGM (depth, 8 m white), and the plan of the scene.
 //!
 //! `cargo run -p trundle-sim --example snapshot -- demo 1 0.9,1.1,20 /tmp/view` writes /tmp/view.ppm, /tmp/view.pgm and
 //! /tmp/view_plan.pgm. The pose is x, y (m) and heading (deg) in the scene's world.

@@ -1,8 +1,8 @@
 //! Worlds, robot dynamics and sensors with noise and ground truth.
 //!
-//! [`Simulator`] is a Kobuki with a Kinect V2 in a [`Scene`], behind the trait that hardware is behind
-//! ([`trundle_core::RobotBody`]). It shares nothing but trundle-core with what it evaluates. Same scene, seed and commands,
-//! same bytes, on any number of threads. How each part works stands in `docs/algorithms/simulator.md`.
+//! [`Simulator`] is a Kobuki with a Kinect V2 in a [`Scene`], behind the same trait as hardware ([`trundle_core::RobotBody`]). It shares
+//! only trundle-core with the evaluated code. Equal scene, seed and commands give equal bytes, for any number of threads.
+//! `docs/algorithms/simulator.md` describes all parts.
 //!
 //! ```
 //! use trundle_core::{RobotBody, SensorEvent, Twist2};

@@ -1,7 +1,6 @@
 //! Chance without state: hashes of counters, and normal deviates from their bits.
 //!
-//! Per-pixel noise must not depend on which thread draws first, so it is a hash of (seed, frame, pixel) rather than the
-//! next number of a generator.
+//! Per-pixel noise must not depend on the order of threads: it is a hash of (seed, frame, pixel), not the next number of a generator.
 
 use std::sync::LazyLock;
 

@@ -30,12 +30,11 @@ use trundle_core::{
 /// Between these heights, m, people need room to walk.
 const PERSON_HEIGHT_BAND_M: (f64, f64) = (0.05, 1.75);
 
-/// A Kobuki with an RGB-D camera and, if wished, a laser in a scene, behind the trait that hardware is behind.
+/// A Kobuki with an RGB-D camera and optionally a laser in a scene, behind the same trait as hardware.
 ///
-/// Events come in the order of their stamps, at equal stamps wheels, gyro, touch, cliff, station, truth, scan, image; only an image
-/// that a fault makes late comes after things that happened after it. The first set is of time 0. Truth comes with every
-/// wheel reading, scan and image, dropped ones too. It never ends by itself. The same scene, configuration, seed and commands
-/// give the same bytes on any number of threads.
+/// Events are in the order of their stamps; at equal stamps wheels, gyro, touch, cliff, station, truth, scan, image. Only an image delayed
+/// by a fault comes after later events. The first set has stamp 0. Truth comes with every wheel reading, scan and image, also with dropped
+/// ones. The simulation has no end. The same scene, configuration, seed and commands give the same bytes on any number of threads.
 #[derive(Debug)]
 pub struct Simulator {
     scene: Arc<Scene>,
@@ -43,9 +42,9 @@ pub struct Simulator {
     obstacles: Obstacles,
     crowd: Crowd,
     body: Kobuki,
-    /// `None` if the camera is aside.
+    /// `None` after the camera was detached.
     rig: Option<CameraRig>,
-    /// Shots that the camera aside has not taken yet.
+    /// Shots not yet taken by the detached camera.
     shots: Vec<Shot>,
     laser: Option<Laser>,
     /// None in a scene without a charging station.
@@ -61,7 +60,7 @@ pub struct Simulator {
     refused_commands: u32,
 }
 
-/// When each sensor is due.
+/// Due times of the sensors.
 #[derive(Debug)]
 struct Clocks {
     wheels: Clock,
@@ -73,7 +72,7 @@ struct Clocks {
 /// The last reading of each sensor that reports changes only.
 #[derive(Debug, Default)]
 struct LastReadings {
-    /// Whether the bumper truly is pressed.
+    /// Whether the bumper is truly pressed.
     is_touching: bool,
     is_pressed: bool,
     /// The wheels' counters, left and right.
@@ -82,11 +81,11 @@ struct LastReadings {
 }
 
 impl Simulator {
-    /// A robot at the scene's start; `seed` is that of all noise.
+    /// A robot at the scene's start; `seed` is the seed of all noise.
     ///
     /// # Errors
-    /// When a number is outside its range or not finite, the robot would start or be put in an obstacle, or a person would
-    /// walk through one.
+    /// When a number is outside its range or not finite, the robot would start or be moved into an obstacle, or a person's path crosses
+    /// one.
     pub fn new(scene: Scene, config: SimConfig, seed: u64) -> Result<Self, SimError> {
         let config = config.validated()?;
         let band = HeightBand::new(config.kobuki.step_over, config.kobuki.height)?;
@@ -147,7 +146,7 @@ impl Simulator {
         &self.config.camera
     }
 
-    /// The moment that the dynamics have reached: that of the newest event made.
+    /// The time reached by the dynamics: that of the newest event.
     pub fn stamp(&self) -> Stamp {
         Stamp::from_nanos(self.now as i64 * 1_000_000)
     }
@@ -177,7 +176,7 @@ impl Simulator {
         self.body.path_length()
     }
 
-    /// Metres between the robot and the nearest thing or person it could touch.
+    /// Distance between the robot and the nearest obstacle or person, m.
     pub fn clearance(&self) -> f64 {
         let (footprint, pose) = (self.body.footprint(), self.true_pose());
         self.obstacles.clearance(footprint, pose).min(self.crowd.clearance(footprint, pose))
@@ -216,7 +215,7 @@ impl Simulator {
         }
     }
 
-    /// Queues what is due now, in the fixed order.
+    /// Queues the readings that are due now, in the fixed order.
     fn read_sensors(&mut self) -> Result<(), SimError> {
         let stamp = self.stamp();
         let (wheels, gyro) = (self.clocks.wheels.due(self.now), self.clocks.gyro.due(self.now));
@@ -275,7 +274,7 @@ impl Simulator {
         }
     }
 
-    /// Light and charger; nothing in a scene without a station.
+    /// Light and charger; no event in a scene without a station.
     fn read_station(&mut self, stamp: Stamp) {
         let Some(station) = &mut self.station else { return };
         let movers = self.crowd.movers();

@@ -6,7 +6,7 @@ use crate::world::shape::Shape;
 /// A shape with the paint of its faces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solid {
-    /// Where it is.
+    /// Shape and pose.
     pub shape: Shape,
     /// The paint.
     pub finish: Finish,

@@ -1,5 +1,5 @@
-//! ORB features of images and how long they take, for bench/vision: `orb_features REPEATS IMAGE.png...` prints for each image
-//! a line `image PATH` with the milliseconds of each repeat, then a line `x y descriptor` a feature, the descriptor in hex.
+//! ORB features of images and their times, for bench/vision: `orb_features REPEATS IMAGE.png...`. For each image it prints a line `image
+//! PATH` with the milliseconds of each repeat, then a line `x y descriptor` per feature, the descriptor in hex.
 #![expect(clippy::print_stdout, reason = "it is what the example is for")]
 
 use std::error::Error;

@@ -1,5 +1,5 @@
-//! Prints the AprilTags of images: `tag_corners IMAGE...`. For each image a line `image NAME`, then for each tag its id and the
-//! corners upper left, upper right, lower right and lower left, px.
+//! Prints the AprilTags of images: `tag_corners IMAGE...`. Each image gives a line `image NAME`. Each tag gives its id and the corners
+//! upper left, upper right, lower right and lower left, px.
 
 use trundle_core::GrayImage;
 use trundle_vision::board::tags::find_tags;

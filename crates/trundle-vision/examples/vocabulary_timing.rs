@@ -1,5 +1,5 @@
-//! Medians for the program's own vocabulary: reading it, describing an image of 1000 features, asking an index of 2000
-//! keyframes: `cargo run --release -p trundle-vision --example vocabulary_timing`. Set RAYON_NUM_THREADS=1 for one thread.
+//! Median times with the built-in vocabulary: reading, conversion of an image of 1000 features, a query among 2000 keyframes. `cargo run
+//! --release -p trundle-vision --example vocabulary_timing` Set RAYON_NUM_THREADS=1 for one thread.
 #![expect(clippy::print_stdout, reason = "it is what the example is for")]
 
 #[path = "../tests/it/texture.rs"]
@@ -49,7 +49,7 @@ fn main() -> Result<(), Invalid> {
     Ok(())
 }
 
-/// 1000 features from a window of the pool that moves with the number, as keyframes of one way share what they see.
+/// 1000 features from a window of the pool that moves with `number`: neighbouring keyframes share features.
 fn keyframe(pool: &[Descriptor], number: usize) -> Vec<Descriptor> {
     let first = number * pool.len() / KEYFRAMES as usize;
     pool.iter().cycle().skip(first).step_by(3).take(1000).copied().collect()

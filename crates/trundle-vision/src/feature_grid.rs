@@ -13,7 +13,7 @@ const CELL_PX: f32 = 16.0;
 pub struct FeatureGrid {
     columns: usize,
     rows: usize,
-    /// Where the entries of cell (row by row) start; one more at the end.
+    /// Start of each cell's entries (row by row); one more at the end.
     starts: Vec<u32>,
     entries: Vec<Entry>,
 }
@@ -27,8 +27,8 @@ struct Entry {
 }
 
 impl FeatureGrid {
-    /// Sorts `keypoints` (raw or rectified px, as the queries will be) of an image of `width` x `height` px. Those outside
-    /// of it are found all the same; those whose position is not finite never are.
+    /// Sorts `keypoints` of an image of `width` x `height` px; raw or rectified px, as in the queries. Keypoints outside the image are
+    /// found too; those whose position is not finite are never found.
     pub fn new(keypoints: &[Keypoint], width: usize, height: usize) -> Self {
         let count = |side: usize| (side as f32 / CELL_PX).ceil().max(1.0) as usize;
         let (columns, rows) = (count(width), count(height));
@@ -49,8 +49,8 @@ impl FeatureGrid {
         grid
     }
 
-    /// The indices of the keypoints less than or just `radius` px from (`x`, `y`) whose octave is one of `octaves`: cell by
-    /// cell, row by row, rising within a cell.
+    /// The indices of the keypoints within `radius` px (inclusive) of (`x`, `y`) with an octave in `octaves`: cell by cell, row by row,
+    /// increasing within a cell.
     pub fn near(
         &self,
         x: f32,
@@ -68,7 +68,7 @@ impl FeatureGrid {
         down.flat_map(move |row| self.cells(row, across.clone())).filter(inside).map(|e| e.index as usize)
     }
 
-    /// The entries of some cells of one row, which lie side by side.
+    /// The entries of some cells of one row, contiguous in memory.
     fn cells(&self, row: usize, columns: Range<usize>) -> &[Entry] {
         let start = |column: usize| self.starts[row * self.columns + column] as usize;
         &self.entries[start(columns.start)..start(columns.end)]

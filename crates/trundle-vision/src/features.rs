@@ -9,7 +9,7 @@ pub struct Keypoint {
     pub x: f32,
     /// Row in the full-size raw image, px.
     pub y: f32,
-    /// Level of the image pyramid it was found on: 0 is full size.
+    /// Level of the image pyramid; 0 is full size.
     pub octave: u8,
     /// Orientation by the intensity centroid, rad, image axes (x right, y down).
     pub angle: f32,
@@ -34,14 +34,14 @@ impl Descriptor {
 pub struct Features {
     /// The corners, in a fixed order.
     pub keypoints: Vec<Keypoint>,
-    /// Their descriptors.
+    /// Descriptors of the keypoints.
     pub descriptors: Vec<Descriptor>,
-    /// Image patches around them; empty if none were cut out.
+    /// Image patches around the keypoints; empty if not requested.
     pub patches: Vec<ImagePatch>,
 }
 
 impl Features {
-    /// Keeps those whose indices are wanted, in their order.
+    /// Removes all features except those whose indices are wanted; preserves the order.
     pub fn retain(&mut self, wants: impl Fn(usize) -> bool) {
         let mut kept = 0;
         for i in 0..self.keypoints.len().min(self.descriptors.len()) {

@@ -15,9 +15,9 @@ pub struct Match {
 
 /// Pairs of descriptors each of which is the other's nearest, by rising `a`.
 ///
-/// A pair differs in `max_distance` bits at most, and in both directions in fewer than `ratio` times as many as the next best
-/// \[Lowe04, sec. 7.1\]; a `ratio` of 1 or more disables this test. Of equally near ones the lowest index counts. With `a` and `b`
-/// exchanged the pairs are the same. Cost: one distance for each of a x b.
+/// A pair differs in `max_distance` bits at most, and in both directions in fewer than `ratio` times as many as the next best \[Lowe04,
+/// sec. 7.1\]; a `ratio` of 1 or more disables this test. Among equally near ones the lowest index is used. An exchange of `a` and `b`
+/// gives the same pairs. Cost: one distance for each of a x b.
 pub fn match_mutual(a: &[Descriptor], b: &[Descriptor], max_distance: u32, ratio: f32) -> Vec<Match> {
     let (from_a, from_b) = nearest_both_ways(a, b);
     let is_clear =
@@ -44,7 +44,7 @@ impl Nearest {
     const NONE: Self = Self { index: u32::MAX, distance: u32::MAX, next_distance: u32::MAX };
 
     fn meet(&mut self, index: u32, distance: u32) {
-        // Hardly ever true, and then it hardly matters how long the rest takes.
+        // The condition is rarely true, so the time of this branch is negligible.
         if distance < self.next_distance {
             if distance < self.distance {
                 *self = Self { index, distance, next_distance: self.distance };
@@ -74,7 +74,7 @@ fn nearest_both_ways(a: &[Descriptor], b: &[Descriptor]) -> (Vec<Nearest>, Vec<N
 fn measure(query: &Descriptor, others: &[Descriptor], distances: &mut [u32]) {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("popcnt") {
-        // SAFETY: the processor has the one feature that the function is compiled for.
+        // SAFETY: the processor has the only feature that the function is compiled for.
         return unsafe { measure_by_popcnt(query, others, distances) };
     }
     measure_plainly(query, others, distances);
@@ -100,7 +100,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn any_descriptors() -> impl Strategy<Value = Vec<Descriptor>> {
-        // Few distinct bits, so that ties are common.
+        // Few distinct bits, which makes ties frequent.
         let word = prop::array::uniform4(0..16u64);
         prop::collection::vec(word.prop_map(Descriptor), 0..24)
     }

@@ -1,4 +1,4 @@
-//! A raster canvas: lines, discs, polygons and the PNG that it becomes.
+//! A raster canvas with lines, discs and polygons, and its PNG encoder.
 
 use crate::clip::{Px, visible_runs};
 use crate::color::Color;
@@ -8,7 +8,7 @@ use tiny_skia::{FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke,
 /// Longest side of any canvas, px.
 pub(crate) const MAX_SIDE: i64 = 6000;
 
-/// How a line is drawn.
+/// Style of a line.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pen {
     pub color: Color,
@@ -24,7 +24,7 @@ impl Pen {
     }
 }
 
-/// An opaque picture being drawn. Everything outside it, and every number that is not finite, is left out.
+/// An opaque picture being drawn. Everything outside the picture, and every number that is not finite, is left out.
 #[derive(Debug, Clone)]
 pub(crate) struct Canvas {
     /// Always opaque: premultiplied and straight colour are the same.
@@ -127,7 +127,7 @@ impl Canvas {
         });
     }
 
-    /// Lays a colour over each pixel near `center` with the opacity that `coverage` gives for its distance.
+    /// Blends a colour over each pixel near `center`, with the opacity that `coverage` gives for its distance.
     fn round(&mut self, center: Px, radius: f64, color: Color, coverage: impl Fn(f64) -> f64) {
         let size = self.width().max(self.height()) as f64;
         let near = |v: f64| v.is_finite() && v > -size && v < 2.0 * size;
@@ -149,7 +149,7 @@ impl Canvas {
         }
     }
 
-    /// Copies another canvas to where its upper left corner is to lie.
+    /// Copies another canvas with its upper left corner to this position.
     pub(crate) fn paste(&mut self, other: &Self, x: i64, y: i64) {
         let (from, to) = (x.max(0), (x + other.width()).min(self.width()));
         if from >= to {

@@ -1,12 +1,12 @@
-//! Cutting polylines at a rectangle, so that the rasteriser gets finite, moderate numbers only.
+//! Clipping of polylines to a rectangle: the rasteriser receives only finite, moderate numbers.
 
 /// A place in a picture: pixels from the left, pixels from the top.
 pub(crate) type Px = (f64, f64);
 
-/// Points nearer than this to the last one kept add nothing that could be seen, px.
+/// Distance of a point from the last selected one below which it is skipped, px.
 const INVISIBLE_STEP: f64 = 0.2;
 
-/// The parts of a polyline within `margin` px of a `width` x `height` picture. A point that is not finite cuts it.
+/// The parts of a polyline within `margin` px of a `width` x `height` picture. A point that is not finite cuts the polyline.
 pub(crate) fn visible_runs(
     points: impl IntoIterator<Item = Px>,
     size: (f64, f64),
@@ -65,7 +65,7 @@ fn clip(a: Px, b: Px, size: (f64, f64), margin: f64) -> Option<(Px, Px)> {
             leave = leave.min(room / along);
         }
     }
-    // Rounding may leave an end far outside where the other end is astronomically far away: hold both.
+    // Rounding may leave an end far outside if the other end is extremely distant: both are clamped.
     let held = |v: f64, side: f64| v.clamp(-margin, side + margin);
     let hold = |p: Px| (held(p.0, size.0), held(p.1, size.1));
     let at = |t: f64| (a.0 + dx * t, a.1 + dy * t);

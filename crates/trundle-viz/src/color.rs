@@ -37,7 +37,7 @@ impl Color {
     pub(crate) const INK: Self = Self::rgb(0x22_26_2b);
     /// Axes and minor text.
     pub(crate) const FAINT_INK: Self = Self::rgb(0x6b_72_7a);
-    /// Lines that must not be noticed first.
+    /// Colour of unobtrusive lines.
     pub(crate) const HAIRLINE: Self = Self::rgb(0xe2_e5_e9);
     /// Free cells.
     pub(crate) const FREE: Self = Self::rgb(0xfd_fd_fb);
@@ -64,7 +64,7 @@ impl Color {
         [mix(self.r, below[0]), mix(self.g, below[1]), mix(self.b, below[2])]
     }
 
-    /// As CSS writes it.
+    /// The colour in CSS notation.
     pub(crate) fn css(self) -> String {
         match self.a {
             255 => format!("#{:02x}{:02x}{:02x}", self.r, self.g, self.b),

@@ -11,7 +11,7 @@ const ANCHORS: [[f64; 3]; 7] = [
     [47.0, 38.0, 112.0],
 ];
 
-/// The colour of `t` in 0 (near, light) to 1 (far, dark); outside is held at the ends, NaN counts as 0.
+/// The colour of `t` from 0 (near, light) to 1 (far, dark); values outside are clamped, NaN counts as 0.
 pub(crate) fn color_at(t: f64) -> [u8; 3] {
     let held = if t > 0.0 { t.min(1.0) } else { 0.0 };
     let place = held * (ANCHORS.len() - 1) as f64;

@@ -1,4 +1,4 @@
-//! A bitmap typeface of our own, so that pictures carry labels without any font file.
+//! A bitmap typeface: labels of pictures need no font file.
 
 /// Rows of a glyph.
 pub(crate) const HEIGHT: usize = 7;
@@ -7,7 +7,7 @@ pub(crate) const WIDTH: usize = 5;
 /// Rows below the base line that a descender may take.
 pub(crate) const DESCENT_ROWS: usize = 2;
 
-/// One letter.
+/// A letter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Glyph {
     /// Rows from the top; the highest of [`WIDTH`] bits is the leftmost column in use.
@@ -28,7 +28,7 @@ pub(crate) fn glyph(character: char) -> Glyph {
     if character.is_ascii_digit() { Glyph { rows, drop, width: WIDTH } } else { proportional(rows, drop) }
 }
 
-/// Digits keep the full width so that columns of numbers line up; all else takes only the columns it uses.
+/// Digits have a constant width, which aligns columns of numbers; other letters have only the columns they use.
 fn proportional(rows: [u8; HEIGHT], drop: usize) -> Glyph {
     let used = rows.iter().fold(0, |all, row| all | row);
     let left = (used.leading_zeros() as usize).saturating_sub(8 - WIDTH);

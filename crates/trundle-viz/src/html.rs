@@ -20,7 +20,7 @@ pub(crate) fn escape(text: &str) -> String {
     safe
 }
 
-/// A colour of the palette as CSS that a dark scheme may lighten; any other colour as it is.
+/// A colour of the palette as CSS that a dark scheme may lighten; any other colour unchanged.
 pub(crate) fn ink(color: Color) -> String {
     let names = [
         ("blue", Color::BLUE),

@@ -31,14 +31,14 @@ pub enum Mark {
     Cell,
 }
 
-/// One line of a legend: what the colour and the mark mean.
+/// A line of a legend: the meaning of a colour and a mark.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LegendItem {
     /// The text.
     pub label: String,
-    /// Its colour in the picture.
+    /// Colour in the picture.
     pub color: Color,
-    /// Its sign.
+    /// Sign of the entry.
     pub mark: Mark,
 }
 

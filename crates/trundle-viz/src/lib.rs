@@ -5,10 +5,10 @@
 //! [`depth_picture`] show what the camera saw. A [`Chart`] shows numbers over time. A [`Report`] puts all of it on one HTML
 //! page that needs nothing but a browser, and [`RunReport`] fills that page from the data of a run.
 //!
-//! Pictures are 8-bit RGB PNGs. Colours are those of Okabe and Ito (2008), which readers with any colour vision can distinguish, and
-//! one colour keeps its meaning in every picture. The typeface is our own. No clock and no random number is used: same content, same
-//! bytes. Nothing fails: numbers that are not finite are left out, an empty grid or image gives an empty picture, and a picture
-//! that is too large is shrunk.
+//! Pictures are 8-bit RGB PNGs. Colours are those of Okabe and Ito (2008), which readers with any colour vision can distinguish; each
+//! colour has one meaning in all pictures. The typeface is part of the crate. No clock and no random number is used: equal content gives
+//! equal bytes. No input is an error: numbers that are not finite are left out, an empty grid or image gives an empty picture, and a too
+//! large picture is shrunk.
 
 mod camera;
 mod canvas;

@@ -4,7 +4,7 @@ use crate::canvas::Canvas;
 use crate::color::Color;
 use crate::font::{DESCENT_ROWS, HEIGHT, glyph};
 
-/// How text is set.
+/// Style of a text.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct TextStyle {
     /// Pixels a dot of the typeface.

@@ -3,14 +3,14 @@
 /// Round numbers along an axis.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Ticks {
-    /// The numbers, rising, all within the range asked for.
+    /// Tick values in increasing order, all within the requested range.
     pub values: Vec<f64>,
     step: f64,
 }
 
 impl Ticks {
-    /// Multiples of 1, 2 or 5 times a power of ten within `low..=high`, near to `count` of them.
-    /// No ticks if the range is empty or not finite.
+    /// Multiples of 1, 2 or 5 times a power of ten within `low..=high`, about `count` of them. Empty for a range that is empty or not
+    /// finite.
     pub(crate) fn new(low: f64, high: f64, count: usize) -> Self {
         let span = high - low;
         if !(span.is_finite() && span > 0.0) {
@@ -36,7 +36,7 @@ pub(crate) fn round_step(least: f64) -> f64 {
     choices.into_iter().find(|&step| step >= least * (1.0 - 1e-9)).unwrap_or(10.0 * power)
 }
 
-/// A number with the digits that a step of `step` asks for.
+/// A number with the digits required by a step of `step`.
 pub(crate) fn number(value: f64, step: f64) -> String {
     if !(1e-4..1e6).contains(&step) && step > 0.0 {
         return format!("{value:.1e}");

@@ -1,4 +1,4 @@
-//! SLAM on a TUM RGB-D folder: where was the camera when it took each image?
+//! SLAM on a TUM RGB-D folder: the camera's pose at each image.
 //!
 //! `cargo run --release --example 01_slam_a_folder -- FOLDER`; without a folder, five simulated images of a room.
 
@@ -11,7 +11,7 @@ use trundle::io::{CameraModel, TumSequence};
 use trundle::sim::{Scene, SimConfig, Simulator};
 use trundle::slam::{RgbdSlam, SlamConfig};
 
-/// Largest difference between the stamps of a colour and a depth image that belong together \[s\]; that of TUM's tools.
+/// Largest difference between the stamps of a colour image and its depth image \[s\]. Source: the default of TUM's tools.
 const MAX_STAMP_DIFFERENCE_S: f64 = 0.02;
 
 /// Tracks the images and prints a pose each.

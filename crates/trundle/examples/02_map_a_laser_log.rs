@@ -11,7 +11,7 @@ use trundle::io::{LaserLogOptions, read_laser_log};
 use trundle::mapping::{ParticleConfig, ParticleMapper};
 use trundle::sim::{LaserConfig, Scene, SimConfig, Simulator};
 
-/// Maps the scans and prints how much is known.
+/// Maps the scans and prints the area of the known floor.
 ///
 /// # Errors
 /// When the log cannot be read.

@@ -9,7 +9,7 @@ use trundle::core::{Pose2, RobotBody};
 use trundle::runtime::{Robot, RobotConfig};
 use trundle::sim::{Scene, SimConfig, Simulator};
 
-/// Robot's time after which the drive is given up \[s\]; ours.
+/// Time of the simulation after which the example stops the drive \[s\]. Source: ours.
 const TIME_LIMIT_S: f64 = 30.0;
 
 /// Drives half a metre forward and prints how the drive ended.

@@ -1,4 +1,4 @@
-//! Exploring: the robot looks at frontiers between free and unknown floor until none is left.
+//! Exploration: the robot drives to frontiers between free and unknown floor until no frontier is left.
 //!
 //! `cargo run --release --example 06_explore -- SECONDS`; without an argument, three seconds.
 
@@ -9,7 +9,7 @@ use trundle::core::RobotBody;
 use trundle::runtime::{Mission, Robot, RobotConfig, Task};
 use trundle::sim::{Scene, SimConfig, Simulator};
 
-/// Explores for a while and prints the state of the mission each second.
+/// Explores for a fixed time and prints the state of the mission each second.
 ///
 /// # Errors
 /// When the scene or the robot is not valid.

@@ -10,7 +10,7 @@ use trundle::core::{RobotBody, SensorEvent};
 use trundle::io::{EncodedEvent, RecordedMessage, Recorder, RecordingReader};
 use trundle::sim::{Scene, SimConfig, Simulator};
 
-/// Prints how many events of each kind a recording holds.
+/// Prints the number of events of each kind in a recording.
 ///
 /// # Errors
 /// When the recording cannot be read.

@@ -1,7 +1,7 @@
 //! Your own robot: a body behind `RobotBody` with its own dimensions.
 //!
-//! `cargo run --release --example 08_your_own_robot`. The body here is a model that reads its wheels without noise; replace
-//! `MyRobot` by the driver of your base and camera.
+//! `cargo run --release --example 08_your_own_robot`. The example's body is a model whose wheels have no noise. Replace `MyRobot` by the
+//! driver of your base and camera.
 
 #![expect(clippy::print_stdout, reason = "an example prints its result")]
 
@@ -15,7 +15,7 @@ const PERIOD_S: f64 = 0.02;
 /// Time after which this example ends \[s\].
 const DURATION_S: f64 = 2.0;
 
-/// A base that does exactly what it is commanded. A real one reads its serial port here.
+/// A base that follows each command exactly. The driver of a real base reads its serial port here.
 struct MyRobot {
     drive: DifferentialDrive,
     twist: Twist2,
@@ -53,7 +53,7 @@ impl RobotBody for MyRobot {
     }
 }
 
-/// Runs the robot. Without a camera it does not move: safety wants an image first, and says so.
+/// Runs the robot. Without a camera the robot does not move: the safety monitor requires an image first and reports its absence.
 ///
 /// # Errors
 /// When the robot is not valid.

@@ -1,5 +1,5 @@
-//! Autonomy for a two-wheeled indoor robot with one RGB-D camera: it finds out where it is, draws the map, plans a
-//! smooth path, drives it, and settles on its goal pose. No ROS needed.
+//! Autonomy for a two-wheeled indoor robot with one RGB-D camera: localization, mapping, path planning, control, and an exact final
+//! approach. The library needs no ROS.
 //!
 //! The whole robot is [`runtime::Robot`]: sensor events in, pose, map, plan and twist out.
 //!
@@ -42,7 +42,7 @@
 //! | join a home or a fleet by MQTT | `fleet`, with the feature `mqtt` |
 //! | speak ROS 2 | `ros2`, with the feature `ros2` |
 //!
-//! Eight numbered examples stand in `crates/trundle/examples`.
+//! `crates/trundle/examples` contains eight numbered examples.
 
 pub use trundle_app as app;
 pub use trundle_collision as collision;

@@ -2,7 +2,7 @@
 
 use super::digest::Quantity;
 
-/// One case: commands of `trundle` in order, and what of their outputs is compared.
+/// A case: commands of `trundle` in order, and the compared parts of their outputs.
 pub struct Case {
     /// The case's name, first part of each of its keys in the golden file.
     pub name: &'static str,
@@ -25,7 +25,7 @@ const RUN: &[(&str, Quantity, &str)] = &[
     ("grid", File, "run/map.pgm"),
 ];
 
-/// All cases; the slowest come first, so that two threads end at about the same time.
+/// All cases; the slowest come first, which lets two threads end at about the same time.
 pub const CASES: &[Case] = &[
     Case { name: "demo-direct", needs: None, commands: &["demo --direct --out {out}/run"], outputs: RUN },
     Case {

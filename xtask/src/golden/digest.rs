@@ -1,4 +1,4 @@
-//! Digests of outputs: numbers only, so that a change of wording does not change them.
+//! Digests of outputs: of numbers only, independent of wording.
 
 use super::recording::each_text;
 use std::path::{Path, PathBuf};
@@ -38,7 +38,7 @@ impl Digest {
     /// Digest of `quantity` at `path`.
     ///
     /// # Errors
-    /// When the path cannot be read, or is not an MCAP recording where a topic is asked for.
+    /// When the path cannot be read, or is not an MCAP recording although a topic is given.
     pub fn of(quantity: Quantity, path: &Path) -> Result<Self, String> {
         let mut digest = Self::empty();
         match quantity {
@@ -93,7 +93,7 @@ fn sorted_files(folder: &Path) -> Result<Vec<PathBuf>, String> {
     Ok(files)
 }
 
-/// The text's fields that are numbers, one per line: headers and names of columns may be reworded.
+/// The text's numeric fields, one per line, without headers and column names.
 fn without_words(text: &[u8]) -> Vec<u8> {
     let fields = text.split(|b| b" ,;\t\n\r".contains(b));
     let is_number = |field: &&[u8]| {

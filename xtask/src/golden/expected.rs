@@ -8,7 +8,7 @@ pub type Digests = BTreeMap<String, String>;
 /// Reads the golden file's text.
 ///
 /// # Errors
-/// When a line is not a key and a digest, or a key stands twice.
+/// When a line is not a key and a digest, or a key is repeated.
 pub fn parse(text: &str) -> Result<Digests, String> {
     let mut digests = Digests::new();
     for (i, line) in text.lines().enumerate().filter(|(_, line)| !line.is_empty() && !line.starts_with('#')) {
@@ -29,7 +29,7 @@ pub fn write(digests: &Digests) -> String {
     std::iter::once(head.to_owned()).chain(lines).collect()
 }
 
-/// How the digests found differ from those expected, one line a key. Keys of skipped cases are left out.
+/// Differences between found and expected digests, one line per key. Keys of skipped cases are left out.
 pub fn differences(expected: &Digests, found: &Digests, skipped: &[&str]) -> Vec<String> {
     let is_skipped = |key: &str| skipped.iter().any(|case| key.split('/').next() == Some(*case));
     let keys = expected.keys().chain(found.keys().filter(|key| !expected.contains_key(*key)));

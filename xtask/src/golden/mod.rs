@@ -1,5 +1,5 @@
-//! The golden net: runs stored recordings and seeded simulations, and compares hashes of twists, poses, grids, maps and
-//! plans with a committed file. A change that should not change results proves it so.
+//! The golden net: runs stored recordings and seeded simulations, and compares hashes of twists, poses, grids, maps and plans with a
+//! committed file. It proves that a change does not affect results.
 
 mod cases;
 mod digest;
@@ -23,7 +23,7 @@ const CASES_AT_ONCE: usize = 2;
 
 /// Options of the golden net.
 pub struct Options {
-    /// Write what was found into the golden file instead of comparing.
+    /// Write the found digests into the golden file instead of comparing.
     pub update: bool,
     /// Run only cases whose name holds this.
     pub only: Option<String>,
@@ -81,7 +81,7 @@ pub fn run(root: &Path, options: &Options) -> Verdict {
     Ok(differences.is_empty())
 }
 
-/// Where the cases run.
+/// Folders of the cases.
 struct Net<'a> {
     root: &'a Path,
     trundle: PathBuf,

@@ -4,7 +4,7 @@ use mcap::records::{Record, op};
 use mcap::{McapError, parse_record};
 use std::io::Read;
 
-/// Bytes of a record before its content: opcode and length.
+/// Length of a record's head: opcode and length \[bytes\].
 const HEAD_BYTES: usize = 1 + 8;
 /// Bytes of a text message before the text: encapsulation and length. A zero follows the text.
 const TEXT_HEAD_BYTES: usize = 4 + 4;

@@ -72,7 +72,7 @@ fn read(output: &Output, source: &Source) -> Result<f64, String> {
     Ok((value * source.scale * step).round() / step)
 }
 
-/// The first number that stands after `text`.
+/// The first number after `text`.
 fn number_after(printed: &str, text: &str) -> Option<f64> {
     let (_, rest) = printed.split_once(text)?;
     let words = rest.split(|c: char| c.is_whitespace() || ",;:()|%".contains(c));

@@ -1,4 +1,4 @@
-//! Results: `results/*.json` hold every figure; `docs/results.md` is made from them and from nothing else.
+//! Results: `results/*.json` contain every figure; `docs/results.md` is generated from them only.
 
 mod measure;
 mod model;
@@ -16,7 +16,7 @@ const FOLDER: &str = "results";
 /// The file of known limits in that folder: a list of sentences.
 const LIMITS: &str = "known-limits.json";
 
-/// Writes the page; with `measured` names, repeats those measurements first.
+/// Writes the page; repeats the measurements named in `measured` first.
 pub fn run(root: &Path, measured: &[String]) -> Verdict {
     let mut measurements = read(root)?;
     for name in measured {
@@ -35,7 +35,7 @@ pub fn run(root: &Path, measured: &[String]) -> Verdict {
     Ok(lines <= page::MAX_LINES)
 }
 
-/// The page as the files give it.
+/// The page generated from the files.
 ///
 /// # Errors
 /// When a file cannot be read or is not a measurement.

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Measurement {
-    /// The heading of the results page under which it stands.
+    /// The heading of the results page that contains the result.
     pub subject: String,
     /// The quantity, in words.
     pub title: String,
@@ -30,18 +30,18 @@ pub struct Figure {
     pub name: String,
     /// The value.
     pub value: f64,
-    /// Its unit; empty for counts.
+    /// Unit of the figure; empty for counts.
     pub unit: String,
     /// The goal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub goal: Option<Goal>,
-    /// Which way is better, where no goal says it.
+    /// Better direction, if no goal determines it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub better: Option<Better>,
     /// Another program's or paper's figure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peer: Option<Peer>,
-    /// Where the command's output holds it; without it, the figure is copied from what the command prints.
+    /// Place of the figure in the command's output; without it, the figure is copied by hand.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<Source>,
 }
@@ -50,13 +50,13 @@ pub struct Figure {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Goal {
-    /// The value must not be above.
+    /// The value must be at most this.
     AtMost(f64),
-    /// The value must not be below.
+    /// The value must be at least this.
     AtLeast(f64),
 }
 
-/// Which way is better.
+/// Better direction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Better {
@@ -70,26 +70,26 @@ pub enum Better {
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Peer {
-    /// Whose.
+    /// Name of the peer.
     pub name: String,
     /// The value, in the same unit.
     pub value: f64,
-    /// Whether the command measures it in the same run.
+    /// Whether the command measures the peer in the same run.
     #[serde(default)]
     pub same_run: bool,
-    /// Where the command's output holds it.
+    /// Place of the figure in the command's output.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<Source>,
 }
 
-/// Where an output holds a number.
+/// Place of a number in an output.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Source {
     /// JSON pointer into the output folder's `summary.json`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub summary: Option<String>,
-    /// Text on standard output after which the number stands.
+    /// Text on standard output that precedes the number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<String>,
     /// Factor from the output's unit to the figure's.
@@ -102,7 +102,7 @@ fn one() -> f64 {
 }
 
 impl Goal {
-    /// Whether a value keeps it.
+    /// Whether a value meets the goal.
     pub fn is_kept_by(self, value: f64) -> bool {
         match self {
             Self::AtMost(limit) => value <= limit,
@@ -112,7 +112,7 @@ impl Goal {
 }
 
 impl Figure {
-    /// How many times better than the peer's; above 1 is better. `None` without a peer, or without a better direction.
+    /// Ratio to the peer's figure; above 1 is better. `None` without a peer, or without a better direction.
     pub fn ratio(&self) -> Option<f64> {
         let peer = self.peer.as_ref()?.value;
         let better = self.better.or(self.goal.map(|goal| match goal {

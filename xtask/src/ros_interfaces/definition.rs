@@ -1,6 +1,6 @@
 //! Reads an interface definition: the text of a `.msg`, `.srv` or `.action` file.
 
-/// One interface: a message, a service or an action.
+/// An interface: a message, a service or an action.
 #[derive(Debug, PartialEq)]
 pub struct Interface {
     /// Package, as `geometry_msgs`.
@@ -45,12 +45,12 @@ impl Kind {
     }
 }
 
-/// One structure.
+/// A structure.
 #[derive(Debug, Default, PartialEq)]
 pub struct Part {
-    /// Its fields, in order.
+    /// Fields in order.
     pub fields: Vec<Field>,
-    /// Its constants, in order.
+    /// Constants in order.
     pub constants: Vec<Constant>,
 }
 
@@ -61,14 +61,14 @@ pub struct Field {
     pub name: String,
     /// Type of the field or of its elements: `float64`, `string`, `Pose`, `std_msgs/Header`.
     pub element: String,
-    /// Whether it is one value or many.
+    /// Whether the field is one value or an array.
     pub count: Count,
 }
 
 /// Number of values of a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Count {
-    /// One.
+    /// One value.
     One,
     /// A fixed number.
     Fixed(usize),
@@ -83,14 +83,14 @@ pub struct Constant {
     pub name: String,
     /// Type: `uint8`, `string`.
     pub element: String,
-    /// The value as it stands in the file.
+    /// The value as written in the file.
     pub value: String,
 }
 
 /// Reads the text of one file.
 ///
 /// # Errors
-/// Names the line that is neither a field nor a constant, and a wrong number of parts.
+/// Names the line that is neither a field nor a constant, or a wrong number of parts.
 pub fn parse(package: &str, kind: Kind, name: &str, text: &str) -> Result<Interface, String> {
     let mut parts = vec![Part::default()];
     for (i, line) in text.lines().enumerate() {
@@ -129,7 +129,7 @@ fn add_line(part: &mut Part, line: &str) -> Option<()> {
     Some(())
 }
 
-/// `float64[36]` is 36 of `float64`; bounds (`string<=10`, `uint8[<=4]`) do not alter what goes over the wire.
+/// `float64[36]` is 36 of `float64`; bounds (`string<=10`, `uint8[<=4]`) do not affect the encoding.
 fn element_and_count(text: &str) -> Option<(String, Count)> {
     let (element, count) = match text.split_once('[') {
         None => (text, Count::One),

@@ -3,9 +3,9 @@
 use super::definition::{Constant, Count, Field, Interface, Kind, Part};
 use std::fmt::Write;
 
-/// Largest fixed array that serde and `Default` know. Longer ones are `FixedArray`.
+/// Largest fixed array supported by serde and `Default`. Longer ones are `FixedArray`.
 const MAX_PLAIN_ARRAY: usize = 32;
-/// Rust's words that are names of fields.
+/// Keywords of Rust that are names of fields.
 const KEYWORDS: [&str; 4] = ["type", "match", "ref", "move"];
 
 /// The file of one interface.
@@ -22,7 +22,7 @@ pub fn file(interface: &Interface) -> String {
     text
 }
 
-/// The implementation of the trait that names the type.
+/// The implementation of the trait with the type's name.
 fn type_of(interface: &Interface) -> String {
     let Interface { package, kind, name, .. } = interface;
     let names = format!("    const PACKAGE: &str = \"{package}\";\n    const NAME: &str = \"{name}\";\n");

@@ -1,4 +1,4 @@
-//! The allow-list: how many findings of a rule a file may have. It may only shrink.
+//! The allow-list: the number of findings of a rule that a file may have. The numbers may only decrease.
 
 use super::finding::{Finding, Rule};
 use std::collections::BTreeMap;
@@ -33,7 +33,7 @@ impl Allowed {
         Ok(Self(lines.map(entry).collect::<Result<_, _>>()?))
     }
 
-    /// Drops what is allowed; entries that allow more than there is become warnings.
+    /// Removes allowed findings; entries that allow more than the present findings become warnings.
     pub fn apply(&self, findings: Vec<Finding>) -> Vec<Finding> {
         let found = counts(&findings);
         let is_allowed = |finding: &Finding| {
@@ -53,7 +53,7 @@ impl Allowed {
         findings.iter().filter(|finding| !is_allowed(finding)).cloned().chain(stale).collect()
     }
 
-    /// The list's text for what is found: never more than is allowed, unless `grows`.
+    /// The list's text for the findings: never more than allowed, unless `grows`.
     pub fn shrunk(&self, findings: &[Finding], grows: bool) -> String {
         let least = |((rule, path), count): ((Rule, String), usize)| {
             let allowed = self.0.get(&(rule, path.clone())).copied().unwrap_or(0);

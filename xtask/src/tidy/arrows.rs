@@ -1,4 +1,4 @@
-//! Which crate may depend on which, and which may read TOML and command lines.
+//! Allowed dependencies between crates, and the crates that may read TOML and command lines.
 
 use super::finding::Finding;
 use super::tree::{File, Package, Tree};
@@ -18,7 +18,7 @@ pub const EDGES: [&str; 5] = ["trundle-sim", "trundle-io", "trundle-drivers", "t
 /// Crates that may read TOML or command lines.
 const SETTINGS_CRATES: [&str; 6] =
     ["trundle-runtime", "trundle-app", "trundle-cli", "trundle-io", "trundle-fuzz", "xtask"];
-/// Packages that speak HTTP.
+/// Packages with HTTP.
 const HTTP_PACKAGES: [&str; 5] = ["axum", "hyper", "hyper-util", "tokio", "tokio-tungstenite"];
 
 /// Checks every arrow between packages.

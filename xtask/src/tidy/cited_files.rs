@@ -1,4 +1,4 @@
-//! Documents name files that are there: paths in code spans that begin with a folder of the workspace.
+//! Documents only name existing files: paths in code spans that begin with a folder of the workspace.
 
 use super::finding::{Finding, Rule};
 use super::tree::{File, Tree};

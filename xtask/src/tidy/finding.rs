@@ -2,22 +2,22 @@
 
 use std::fmt;
 
-/// Something that is not as it should be.
+/// A violation of a rule.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Finding {
     /// The file, relative to the workspace.
     pub path: String,
-    /// Its line, from 1.
+    /// Line of the finding, from 1.
     pub line: usize,
-    /// Whether it fails the check.
+    /// Severity: whether the finding fails the check.
     pub severity: Severity,
-    /// The rule, where findings of it can be on the allow-list.
+    /// The rule, if its findings can be on the allow-list.
     pub rule: Option<Rule>,
     /// The problem.
     pub message: String,
 }
 
-/// How bad it is.
+/// Severity of a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// Fails the check.
@@ -45,7 +45,7 @@ pub enum Rule {
     ProcessWord,
     /// A name that the glossary replaces.
     Glossary,
-    /// A document names a file that is not there.
+    /// A document names a missing file.
     MissingFile,
     /// Two crates have a public type of one name.
     TypeName,

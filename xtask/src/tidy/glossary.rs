@@ -1,4 +1,4 @@
-//! Names: the glossary's second table lists those that modules, types, functions, fields and variables must not have.
+//! Names: the glossary's second table lists those that are refused for modules, types, functions, fields and variables.
 
 use super::finding::{Finding, Rule};
 use super::source::identifiers;
@@ -35,7 +35,7 @@ fn instead_of<'a>(refused: &BTreeMap<&str, &'a str>, name: &str) -> Option<&'a s
     refused.get(name).copied().or_else(by_beginning)
 }
 
-/// The refused names, each with what to write instead.
+/// The refused names, each with its replacement.
 fn refused(glossary: &str) -> BTreeMap<&str, &str> {
     let table = glossary.split_once(TABLE).map_or("", |(_, table)| table);
     let rows =

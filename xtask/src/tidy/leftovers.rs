@@ -1,9 +1,9 @@
-//! Nothing unfinished is merged.
+//! Unfinished code is not merged.
 
 use super::finding::Finding;
 use super::tree::Tree;
 
-/// Notes to self, anywhere in a file. Written in halves, so that this file is clean.
+/// Notes to oneself, anywhere in a file. Written in halves, which keeps this file clean.
 const NOTES: [&str; 3] = [concat!("TO", "DO"), concat!("FIX", "ME"), concat!("XX", "X")];
 /// Holes in code, tests too.
 const HOLES: [&str; 3] = [concat!("to", "do!("), concat!("unimpl", "emented!("), concat!("#[ign", "ore")];

@@ -1,13 +1,13 @@
-//! One nalgebra, and no C or C++ anywhere in the graph.
+//! A single version of nalgebra, and no C or C++ in the dependency graph.
 
 use super::finding::Finding;
 use super::tree::Tree;
 
-/// Packages that compile or look for foreign code.
+/// Packages that compile or search for foreign code.
 const FOREIGN: [&str; 7] = ["cc", "cmake", "bindgen", "pkg-config", "vcpkg", "nasm-rs", "cxx"];
-/// Packages of systems that trundle does not run on: what they alone depend on is never built.
+/// Packages of unsupported systems: their exclusive dependencies are never built.
 const OTHER_SYSTEMS: [&str; 1] = ["iana-time-zone-haiku"];
-/// Packages of which there must be one version: their types cross crates.
+/// Packages that must have one version: their types cross crates.
 const SINGLE: [&str; 1] = ["nalgebra"];
 
 /// Checks `Cargo.lock`.

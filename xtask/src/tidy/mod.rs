@@ -1,7 +1,7 @@
-//! The design's invariants, checked in the sources: what is absent on purpose must stay absent.
+//! The design's invariants, checked in the sources.
 //!
-//! Each file here is one kind of rule. A rule is a function from the workspace's tree to findings; every finding names a
-//! file and a line. `cargo test` runs them all as a test.
+//! Each file in this folder is one kind of rule. A rule is a function from the workspace's tree to findings; every finding has a file and a
+//! line. `cargo test` runs them all as a test.
 
 mod allowed;
 mod arrows;
@@ -29,7 +29,7 @@ use finding::{Finding, Severity};
 use std::path::Path;
 use tree::Tree;
 
-/// Checks the workspace and prints one line a finding. Returns whether there is no error.
+/// Checks the workspace and prints one line per finding. Returns whether no error was found.
 pub fn run(root: &Path) -> Verdict {
     let findings = check(root)?;
     for finding in &findings {
@@ -40,7 +40,7 @@ pub fn run(root: &Path) -> Verdict {
     Ok(errors == 0)
 }
 
-/// Lowers the allow-list to what is found; with `grows` it accepts all that is found (for a new rule).
+/// Lowers the allow-list to the present findings; with `grows` it accepts all findings (for a new rule).
 pub fn shrink(root: &Path, grows: bool) -> Verdict {
     let text = allowed(root)?.shrunk(&all_findings(root)?, grows);
     std::fs::write(root.join(allowed::FILE), text)

@@ -1,14 +1,14 @@
 //! The graph of each crate's modules: no module depends on itself through others.
 //!
-//! A module is a file. It depends on another one when its code, re-exports left out, names an item that is defined there.
-//! For an item that is re-exported in between, the defining module counts.
+//! A module is a file. It depends on another module if its code, without re-exports, names an item defined there. For a re-exported item,
+//! the defining module counts.
 
 use super::finding::{Finding, Rule};
 use super::tree::{Package, Tree};
 use super::use_paths::{self, NamedPath};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A module's path below its crate's root; the root's is empty.
+/// A module's path below its crate's root; empty for the root.
 type ModulePath = Vec<String>;
 
 /// Re-exports that are followed one after the other at the longest.
@@ -38,7 +38,7 @@ fn check_package(tree: &Tree, package: &Package) -> Vec<Finding> {
         .collect()
 }
 
-/// The modules of a crate with the paths that each names.
+/// The modules of a crate with the paths in each.
 struct Modules {
     named: BTreeMap<ModulePath, Vec<NamedPath>>,
 }
@@ -54,7 +54,7 @@ impl Modules {
         Self { named }
     }
 
-    /// Which module depends on which.
+    /// Dependencies of each module.
     fn edges(&self) -> BTreeMap<&ModulePath, BTreeSet<&ModulePath>> {
         let targets = |module, paths: &[NamedPath]| -> BTreeSet<&ModulePath> {
             let used = paths.iter().filter(|path| !path.is_exported);
@@ -64,7 +64,7 @@ impl Modules {
         self.named.iter().map(|(module, paths)| (module, targets(module, paths))).collect()
     }
 
-    /// The module that defines what `path` names when it stands in `module`; `None` outside the crate.
+    /// The module that defines the item of `path`, used in `module`; `None` outside the crate.
     fn resolve(&self, module: &ModulePath, path: &[String], reexports: usize) -> Option<&ModulePath> {
         let (first, mut rest) = path.split_first()?;
         let mut at = match first.as_str() {

@@ -6,7 +6,7 @@ use super::tree::{File, Tree};
 /// Words in a sentence of documents and doc comments.
 const MAX_WORDS: usize = 40;
 
-/// Words about how the project is worked on rather than about the product. Written in halves, so that this file is clean.
+/// Words about the work on the project instead of the product. Written in halves, which keeps this file clean.
 const PROCESS_WORDS: [&str; 6] = [
     concat!("fresh ", "eyes"),
     concat!("this ", "session"),
@@ -63,7 +63,7 @@ fn doc_paragraphs(text: &str) -> Vec<(usize, String)> {
     markdown_paragraphs(&text.lines().map(doc).collect::<Vec<_>>().join("\n"))
 }
 
-/// Paragraphs of Markdown with their first lines; headings, code blocks and tables are left out.
+/// Paragraphs of Markdown with their first lines, without headings, code blocks and tables.
 fn markdown_paragraphs(text: &str) -> Vec<(usize, String)> {
     let mut paragraphs: Vec<(usize, String)> = Vec::new();
     let (mut is_open, mut fenced) = (false, false);

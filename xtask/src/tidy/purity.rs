@@ -4,7 +4,7 @@ use super::arrows::{ALGORITHM_CRATES, EDGES};
 use super::finding::Finding;
 use super::tree::Tree;
 
-/// Words of code that reach out of a function's arguments, and what they reach for.
+/// Words of code that access anything outside a function's arguments, and the accessed thing.
 const OUTSIDE: [(&str, &str); 14] = [
     ("std::fs", "files"),
     ("std::net", "sockets"),
@@ -23,7 +23,7 @@ const OUTSIDE: [(&str, &str); 14] = [
 ];
 /// Members of `std` that do.
 const OUTSIDE_OF_STD: [&str; 5] = ["fs", "net", "thread", "process", "env"];
-/// Words that make a result depend on when and where it was computed.
+/// Words that make a result depend on the time and place of its computation.
 const NONDETERMINISM: [(&str, &str); 9] = [
     ("Instant", "the clock"),
     ("SystemTime", "the clock"),

@@ -10,7 +10,7 @@ const TOO_MANY_LINES: usize = 600;
 
 /// The crate of the command line.
 const COMMAND_LINE: &str = "trundle-cli";
-/// Lines of code of the command line: what is more belongs into a crate that every front end shares.
+/// Maximum number of lines of the command line's code; more code belongs in a crate shared by all front ends.
 const MAX_COMMAND_LINE_LINES: usize = 3000;
 
 /// Checks sizes of files and of the command line, and the crates' own documentation.

@@ -1,4 +1,4 @@
-//! Rust code as tidy reads it: without comments, strings and tests.
+//! Rust code without comments, strings and tests.
 
 /// Rust code in which comments, strings and test items are blanks: as long as the text, line for line.
 pub struct Code {
@@ -24,12 +24,12 @@ impl Code {
         self.text.lines().enumerate().map(|(i, line)| (i + 1, line))
     }
 
-    /// How many lines hold code.
+    /// Number of lines with code.
     pub fn len(&self) -> usize {
         self.text.lines().filter(|line| !line.trim().is_empty()).count()
     }
 
-    /// The lines on which `word` stands, not as a part of a longer word.
+    /// The lines with `word` as a whole word.
     pub fn lines_with<'a>(&'a self, word: &'a str) -> impl Iterator<Item = usize> + 'a {
         self.lines().filter(move |(_, line)| has_word(line, word)).map(|(number, _)| number)
     }
@@ -74,7 +74,7 @@ pub fn definitions(code: &str) -> Vec<(&str, &str)> {
     words.windows(2).filter(|pair| KEYWORDS.contains(&pair[0])).map(|pair| (pair[0], pair[1])).collect()
 }
 
-/// Whether `word` stands in `line`, bounded on the sides where it begins or ends with a letter.
+/// Whether `line` contains `word`, with boundaries at ends that are letters.
 fn has_word(line: &str, word: &str) -> bool {
     let part = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
     line.match_indices(word).any(|(at, _)| {
@@ -107,7 +107,7 @@ fn blank(chars: &mut [char]) {
     }
 }
 
-/// Whether the character before belongs to the same word (`br"..."` counts as a string).
+/// Whether the previous character belongs to the same word (`br"..."` counts as a string).
 fn is_part(chars: &[char], i: usize) -> bool {
     i > 0 && (chars[i - 1].is_alphanumeric() || chars[i - 1] == '_') && chars[i - 1] != 'b'
 }

@@ -15,17 +15,17 @@ pub struct Tree {
 pub struct File {
     /// Relative to the workspace, with `/`.
     pub path: String,
-    /// Its text.
+    /// Text of the file.
     pub text: String,
 }
 
 /// A package of the workspace.
 pub struct Package {
-    /// Its name.
+    /// Name of the package.
     pub name: String,
-    /// Its folder, relative to the workspace.
+    /// Folder of the package, relative to the workspace.
     pub folder: String,
-    /// Its parsed `Cargo.toml`.
+    /// Parsed `Cargo.toml`.
     pub manifest: toml::Table,
 }
 
@@ -33,11 +33,11 @@ pub struct Package {
 pub struct Source<'a> {
     /// The file.
     pub file: &'a File,
-    /// Its code without comments, strings and tests.
+    /// Code of the file without comments, strings and tests.
     pub code: Code,
 }
 
-/// Folder of code that `cargo xtask ros-interfaces` writes: names and fields of its types are those of ROS 2's messages.
+/// Folder of code written by `cargo xtask ros-interfaces`: names and fields of its types are those of ROS 2's messages.
 const GENERATED_FOLDER: &str = "/src/generated/";
 
 impl Source<'_> {
@@ -47,7 +47,7 @@ impl Source<'_> {
     }
 }
 
-/// Folders that hold nothing of ours.
+/// Folders without code of the project.
 const SKIPPED: [&str; 5] = ["target", "out", ".git", ".scratch", "node_modules"];
 /// Files that are read.
 const EXTENSIONS: [&str; 6] = ["rs", "toml", "md", "lock", "sh", "yml"];

@@ -1,4 +1,5 @@
-//! One name, one type: no two crates of the facade define a public type of the same name. Generated messages are not exported by it.
+//! One name, one type: no two crates of the facade define a public type of the same name. Generated messages are not exported by the
+//! facade.
 
 use super::finding::{Finding, Rule};
 use super::source::definitions;

@@ -1,10 +1,10 @@
-//! Types that fit a head: how many fields a struct has, and how many methods in how many files.
+//! Size of types: number of fields of a struct, and of methods and their files.
 
 use super::finding::{Finding, Rule};
 use super::tree::{Package, Tree};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Maximum number of fields of a struct; beyond it, fields that belong together get a struct of their own.
+/// Maximum number of fields of a struct; beyond it, fields that belong together form a separate struct.
 const MAX_FIELDS: usize = 15;
 /// Methods of one type's inherent impls.
 const MAX_METHODS: usize = 30;
@@ -72,7 +72,7 @@ fn inherent_impls(code: &str) -> Vec<(String, usize)> {
     impls.map(|(_, head, body)| (type_name(&head), top_level(body).matches("fn ").count())).collect()
 }
 
-/// Position, head (what stands between keyword and brace) and body of each item with a braced body.
+/// Position, head (the text between keyword and brace) and body of each item with a braced body.
 fn items<'a>(code: &'a str, keyword: &str) -> Vec<(usize, String, &'a str)> {
     let mut found = Vec::new();
     let mut line_start = 0;
@@ -104,7 +104,7 @@ fn items<'a>(code: &'a str, keyword: &str) -> Vec<(usize, String, &'a str)> {
     found
 }
 
-/// The text up to the brace that closes the one before it.
+/// The text up to the closing brace of the preceding one.
 fn body(code: &str) -> &str {
     let mut depth = 1;
     for (i, c) in code.char_indices() {

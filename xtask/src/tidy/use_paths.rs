@@ -1,19 +1,19 @@
-//! Paths that Rust code names: `use` declarations with their groups opened, and paths written in place.
+//! Paths in Rust code: `use` declarations with expanded groups, and inline paths.
 
-/// A path that code names, its segments from the first on.
+/// A path in code, with its segments from the first on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NamedPath {
     /// Segments; the last is `*` for a glob.
     pub segments: Vec<String>,
-    /// The name it is bound to in the module; `None` for a path written in place.
+    /// The name bound in the module; `None` for an inline path.
     pub binds: Option<String>,
-    /// Whether a visibility stands before the `use`: a re-export.
+    /// Whether a visibility precedes the `use`: a re-export.
     pub is_exported: bool,
-    /// The line it begins on, from 1.
+    /// First line of the path, from 1.
     pub line: usize,
 }
 
-/// All paths that `code` (comments, strings and tests blanked) names.
+/// All paths in `code` (comments, strings and tests blanked).
 pub fn paths(code: &str) -> Vec<NamedPath> {
     let mut found = Vec::new();
     let mut in_place = code.to_owned();
@@ -47,7 +47,7 @@ fn use_statements(code: &str) -> Vec<(usize, usize, bool)> {
     found
 }
 
-/// Calls `emit` with each path of a use tree and the name that it binds.
+/// Calls `emit` with each path of a use tree and its bound name.
 fn open_group(tree: &str, prefix: &[String], emit: &mut impl FnMut(Vec<String>, String)) {
     let tree = tree.trim();
     if let Some((head, group)) = tree.split_once('{') {
@@ -89,7 +89,7 @@ fn branches(group: &str) -> Vec<&str> {
     found.into_iter().filter(|branch| !branch.trim().is_empty()).collect()
 }
 
-/// Paths of two and more segments that stand in code.
+/// Paths of two and more segments in code.
 fn written_paths(code: &str) -> Vec<NamedPath> {
     let is_word = |c: char| c.is_alphanumeric() || c == '_';
     let mut found = Vec::new();

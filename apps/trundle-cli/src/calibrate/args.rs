@@ -19,11 +19,11 @@ pub struct CalibrateArgs {
 pub enum CalibrateCommand {
     /// Intrinsics and lens of a camera, by images of a board.
     Camera(BoardImageArgs),
-    /// A board to print, SVG in its true size.
+    /// A board to print, SVG in true size.
     Board(BoardSheetArgs),
     /// Pose of the camera on the base, by a drive with turns on the spot and straight parts.
     Mount(DriveArgs),
-    /// Radius of the wheels and distance between them, by a drive with turns and straight parts.
+    /// Radius of the wheels and distance between them, from a drive with turns and straight parts.
     Wheels(DriveArgs),
     /// Delay of the image stamps, by a drive that starts and stops turning.
     Delay(DriveArgs),
@@ -37,7 +37,7 @@ pub struct DriveArgs {
     /// Read a recording that is cut, as by a power failure, up to the cut.
     #[arg(long)]
     pub recover: bool,
-    /// Set the found keys in this robot file, which is created if there is none.
+    /// Set the calibrated keys in this robot file; a missing file is created.
     #[arg(long, value_name = "FILE")]
     pub write: Option<PathBuf>,
     /// Options of every command.
@@ -60,7 +60,7 @@ pub struct BoardImageArgs {
     /// Write a camera file, for `trundle slam --camera`.
     #[arg(long, value_name = "FILE")]
     pub write_camera: Option<PathBuf>,
-    /// Set the camera in this robot file, which is created if there is none.
+    /// Set the camera in this robot file; a missing file is created.
     #[arg(long, value_name = "FILE")]
     pub write: Option<PathBuf>,
     /// Options of every command.

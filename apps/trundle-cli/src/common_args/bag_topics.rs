@@ -12,7 +12,7 @@ pub struct BagTopicsArgs {
     /// The topic of a bag's depth images, registered to colour [default: the only one in the frame of colour]
     #[arg(long, value_name = "TOPIC")]
     pub depth_topic: Option<String>,
-    /// The topic of the camera_info of a bag's colour images [default: the one beside them]
+    /// The topic of the camera_info of a bag's colour images [default: the one with the same prefix]
     #[arg(long, value_name = "TOPIC")]
     pub info_topic: Option<String>,
     /// The topic of a bag's odometry, or of its transforms [default: that with the most odometry]

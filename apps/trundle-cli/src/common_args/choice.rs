@@ -1,4 +1,4 @@
-//! Named choices of the command line; names, help texts and values stand in the crate that owns the values.
+//! Named choices of the command line; names, help texts and values are defined in the crate of the values.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 

@@ -1,4 +1,4 @@
-//! Numbers of the command line, refused with option, value, unit and what is expected.
+//! Numbers of the command line, refused with option, value, unit and accepted range.
 
 use clap::builder::TypedValueParser;
 use clap::error::ErrorKind;
@@ -8,13 +8,13 @@ use std::ffi::OsStr;
 /// The number of an option.
 #[derive(Debug, Clone, Copy)]
 pub struct NumberArg {
-    /// Unit, as `m`; empty if there is none.
+    /// Unit, as `m`; empty without a unit.
     unit: &'static str,
-    /// Which numbers are taken.
+    /// Accepted numbers.
     range: Range,
 }
 
-/// Which finite numbers are taken.
+/// Accepted finite numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Range {
     Any,
@@ -117,7 +117,7 @@ mod tests {
         assert_eq!(long, "--near is 11 s, expected a number in s, above 0 and at most 10");
     }
 
-    /// The options of a command and of those below it that take numbers, each with a word in place of them.
+    /// The options of a command and its subcommands that take numbers, each with a word in place of its number.
     fn wrong_numbers(command: &Command, before: &[String]) -> Vec<Vec<String>> {
         let is_number = |arg: &&Arg| arg.get_value_parser().type_id() == TypeId::of::<f64>();
         let wrong = |arg: &Arg| {

@@ -10,7 +10,7 @@ pub struct PlaceArgs {
     /// Seed of the room's furniture and textures and of all noise.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Where the robot starts, world frame: m, m, deg [default: the room's own, or where there is space]
+    /// Start of the robot, world frame: m, m, deg [default: the scene's own, or a free place]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     pub start: Option<PoseArg>,
     /// A charging station, world frame: the middle of its front on the floor, x out of the front: m, m, deg [default: none]
@@ -22,7 +22,7 @@ pub struct PlaceArgs {
 }
 
 impl PlaceArgs {
-    /// How the scene is made.
+    /// Options of the scene.
     pub fn options(&self) -> SceneOptions {
         let pose = |arg: Option<PoseArg>| arg.map(|pose| pose.0);
         let (start, station) = (pose(self.start), pose(self.station));

@@ -21,13 +21,13 @@ pub struct DemoArgs {
     /// The mission.
     #[command(flatten)]
     pub mission: DemoMissionArgs,
-    /// By the clock on the wall: simulator and robot in threads of their own, camera at 30 Hz; Ctrl-C stops the robot and ends the run.
+    /// In real time: simulator and robot on their own threads, camera at 30 Hz; Ctrl-C stops the robot and ends the run.
     #[arg(long)]
     pub real_time: bool,
-    /// The file that the robot's state is kept in.
+    /// The file that stores the robot's state.
     #[command(flatten)]
     pub state: CheckpointArgs,
-    /// Content of recording.mcap; a replay needs all. Below 1 GB of free disk the run goes on without recording.
+    /// Content of recording.mcap; a replay needs all. Below 1 GB of free disk the run continues without recording.
     #[arg(long, value_name = "WHAT", default_value = "events", value_parser = choice(&RecordingContent::CHOICES))]
     pub record: RecordingContent,
     /// Recognise places by this vocabulary, in trundle's form [default: the built-in one]
@@ -42,10 +42,10 @@ pub struct DemoArgs {
     /// The robot's settings.
     #[command(flatten)]
     pub robot: RobotArgs,
-    /// Folder for the results; the last run in it is kept as DIR.1
+    /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/demo")]
     pub out: OutputDirArg,
-    /// The live page; with it the demo is in real time.
+    /// The live page; with it the demo runs in real time.
     #[command(flatten)]
     pub live: LiveArgs,
     /// Options of every command.
@@ -56,10 +56,10 @@ pub struct DemoArgs {
 /// The mission of a demo.
 #[derive(Debug, Args)]
 pub struct DemoMissionArgs {
-    /// Goal in the map frame, which starts at the robot: m, m, deg; may be said again for the next one [default: the room's own]
+    /// Goal in the map frame, which starts at the robot: m, m, deg; may be repeated [default: the scene's own]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     pub goal: Vec<PoseArg>,
-    /// Drive straight to the goal: the map is drawn on the way [default: explore until the map is complete, do the goals, come back]
+    /// Drive straight to the goal, mapping during the drive [default: explore until the map is complete, drive to the goals, return]
     #[arg(long)]
     pub direct: bool,
     /// Drive onto the charging station at the end: with --direct and without --goal that alone.
@@ -70,11 +70,11 @@ pub struct DemoMissionArgs {
 /// The state of a robot, written and read.
 #[derive(Debug, Args)]
 pub struct CheckpointArgs {
-    /// Write the robot's maps and the state of its mission to FILE, every 3 to 10 s: `--resume` goes on from there.
+    /// Write the robot's maps and the state of its mission to FILE, every 3 to 10 s: `--resume` continues from it.
     #[arg(long, value_name = "FILE", alias = "memory")]
     pub checkpoint: Option<OutputFileArg>,
-    /// Resume from the file of --checkpoint, standing here in the room (m, m, deg): the robot localizes itself in its maps and goes on
-    /// with its mission. The map's frame stays that of --start.
+    /// Resume from the file of --checkpoint with the robot at this pose in the scene (m, m, deg): the robot localizes itself in its maps
+    /// and continues its mission. The map's frame is still that of --start.
     #[arg(long, value_name = "X,Y,DEG", alias = "wake", allow_hyphen_values = true, requires = "checkpoint", conflicts_with_all = ["goal", "direct"])]
     pub resume: Option<PoseArg>,
 }

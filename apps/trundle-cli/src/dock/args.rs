@@ -18,39 +18,41 @@ use trundle::docking::Method;
     Exit code: 0 a manoeuvre was found, 1 there is none or start or goal do not fit (why, and a picture, are written instead), 2 bad input, nothing is written."
 )]
 pub struct DockArgs {
-    /// A map in map_server's form (*.yaml), a laser log (*.log, one scan of it), a file of corridor problems (docs/corridor-benchmark.md), or one of hong24-a, -b, -c, -d, which are built in.
+    /// A map in map_server's format (*.yaml), a laser log (*.log, one scan of it), a file of corridor problems
+    /// (docs/corridor-benchmark.md), or one of the built-in hong24-a, -b, -c, -d.
     pub place: PathBuf,
-    /// Start pose in the map frame: m, m, deg [default: the problem's; in a scan, where it was made: 0,0,0]
+    /// Start pose in the map frame: m, m, deg [default: the problem's; in a scan, the robot's pose: 0,0,0]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     pub from: Option<PoseArg>,
     /// Goal pose in the map frame: m, m, deg [default: the problem's]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     pub to: Option<PoseArg>,
-    /// The robot's outline: a radius, or the corners of a convex polygon, also as Nav2 writes them ([[X,Y],[X,Y],...]), base frame, m [default: the problem's or the robot file's]
+    /// The robot's outline: a radius, or the corners of a convex polygon, also in Nav2's format ([[X,Y],[X,Y],...]), base frame, m
+    /// [default: the problem's or the robot file's]
     #[arg(long, value_name = "R|'X,Y X,Y X,Y...'", allow_hyphen_values = true)]
     pub footprint: Option<Footprint>,
-    /// Which scan of the log, from 1; poses are in the frame of the robot that made it [default: the last]. With a log only.
+    /// Number of the scan in the log, from 1; poses are in the frame of the robot that made it [default: the last]. With a log only.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub scan: Option<u32>,
-    /// Which problem of the file [default: the first]. With a file of problems only.
+    /// Name of the problem in the file [default: the first]. With a file of problems only.
     #[arg(long, value_name = "NAME")]
     pub problem: Option<String>,
-    /// Which method plans [default: the robot file's, or optimal]
+    /// Planning method [default: the robot file's, or optimal]
     #[arg(long, value_parser = choice(&Method::CHOICES))]
     pub method: Option<Method>,
-    /// Only write the problem to a file, as text to change: with --from, --to and --footprint if they are given; a map's outlines as walls.
+    /// Only write the problem to a file, as text to edit, including --from, --to and --footprint; a map's outlines become walls.
     #[arg(long, value_name = "FILE")]
     pub write_problem: Option<OutputFileArg>,
-    /// Take unknown cells of the map, and what is off it, for free rather than blocked. With a map only.
+    /// Treat unknown cells of the map, and the space outside it, as free instead of blocked. With a map only.
     #[arg(long)]
     pub through_unknown: bool,
-    /// Kept from every obstacle, m [default: the robot file's docking.planner.margin, which is 0.05; without a robot file 0.01]
+    /// Margin from every obstacle, m [default: the robot file's docking.planner.margin, which is 0.05; without a robot file 0.01]
     #[arg(long, value_name = "M", value_parser = NumberArg::from_zero("m"), allow_negative_numbers = true)]
     pub margin: Option<f64>,
     /// The robot: its footprint, and the settings of [docking.planner], with which the robot itself plans.
     #[command(flatten)]
     pub robot: RobotArgs,
-    /// Folder for the results; the last run in it is kept as DIR.1
+    /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/dock")]
     pub out: OutputDirArg,
     /// Options of every command.

@@ -36,7 +36,7 @@ pub struct TrajectoryArgs {
     pub reference: PathBuf,
     /// The trajectory to evaluate.
     pub estimate: PathBuf,
-    /// How the estimate is laid over the reference for the absolute error.
+    /// Alignment of the estimate with the reference for the absolute error.
     #[arg(long, value_name = "HOW", default_value = "se3", value_parser = choice(&Alignment::CHOICES))]
     pub align: Alignment,
     /// Length of the motions of the relative error, in --unit.
@@ -45,13 +45,13 @@ pub struct TrajectoryArgs {
     /// Unit of --delta.
     #[arg(long, default_value = "frames", value_parser = choice(&DeltaUnit::CHOICES))]
     pub unit: DeltaUnit,
-    /// Take a motion from every pose on, so that motions overlap.
+    /// Start a motion at every pose: motions overlap.
     #[arg(long)]
     pub all_pairs: bool,
     /// Poses further apart in time than this are not compared, s.
     #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = NumberArg::from_zero("s"), allow_negative_numbers = true)]
     pub max_difference: f64,
-    /// Write report.html, its pictures and summary.json into this folder; the last one is kept in DIR.1
+    /// Write report.html, its pictures and summary.json into this folder; the previous one is renamed to DIR.1
     #[arg(long, value_name = "DIR")]
     pub out: Option<OutputDirArg>,
     /// Options of every command.
@@ -74,10 +74,10 @@ pub struct RelationsArgs {
     /// REFERENCE is a relation file.
     #[arg(long)]
     pub file: bool,
-    /// A pose stands for a time at most so far away, s.
+    /// A pose is matched to a time at most this far away, s.
     #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = NumberArg::from_zero("s"), allow_negative_numbers = true)]
     pub max_difference: f64,
-    /// Write summary.json into this folder; the last one is kept in DIR.1
+    /// Write summary.json into this folder; the previous one is renamed to DIR.1
     #[arg(long, value_name = "DIR")]
     pub out: Option<OutputDirArg>,
     /// Options of every command.
@@ -92,20 +92,20 @@ pub struct RelationsArgs {
     The map is laid over the true one by iterated closest points, beginning at --at, unless --exact."
 )]
 pub struct MapsArgs {
-    /// The true map, in map_server's form.
+    /// The true map, in map_server's format.
     pub truth: PathBuf,
     /// The map to evaluate.
     pub map: PathBuf,
-    /// Where the map's frame lies in the true one's: m, m, deg.
+    /// Pose of the map's frame in the true one's: m, m, deg.
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true, default_value = "0,0,0")]
     pub at: PoseArg,
-    /// --at is exact: the map is evaluated where it lies.
+    /// --at is exact: the map is evaluated at this pose.
     #[arg(long)]
     pub exact: bool,
-    /// Occupied cells agree when their centres are at most so far apart, m.
+    /// Occupied cells agree if their centres are at most this far apart, m.
     #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub within: f64,
-    /// Write summary.json into this folder; the last one is kept in DIR.1
+    /// Write summary.json into this folder; the previous one is renamed to DIR.1
     #[arg(long, value_name = "DIR")]
     pub out: Option<OutputDirArg>,
     /// Options of every command.

@@ -10,7 +10,7 @@ use trundle::experiments::{IndexRange, Shard};
 /// `trundle experiment`
 #[derive(Debug, Args)]
 pub struct ExperimentArgs {
-    /// Which one.
+    /// The experiment.
     #[command(subcommand)]
     pub which: Which,
 }
@@ -18,19 +18,19 @@ pub struct ExperimentArgs {
 /// The experiments.
 #[derive(Debug, Subcommand)]
 pub enum Which {
-    /// The eight start poses of Li et al.: how exactly the robot settles, on its own senses.
+    /// The eight start poses of Li et al.: the pose error at the goal, without ground truth.
     Poses(PosesArgs),
     /// An unknown room with obstacles, crossed while it is mapped.
     Obstacles(RunsArgs),
     /// Ten goals in six rooms of a furnished house, from an empty map.
     House(HouseArgs),
-    /// Sensors that break, wheels that slip, people in the way: nothing touched, and on when it can be.
+    /// Broken sensors, slipping wheels, people in the path: no contact, and continuation when possible.
     Faults(RunsArgs),
-    /// Somebody steps into the robot's way a metre before it, one per run.
+    /// A person steps into the robot's path one metre ahead, one per run.
     People(RunsArgs),
     /// Plain rooms that look alike from several poses, alone, with people, and carried away.
     LookAlikes(RunsArgs),
-    /// Drives onto a charging station by its infrared light, from a start for each seed.
+    /// Drives onto a charging station by its infrared light, from one start per seed.
     DockingStation(RunsArgs),
     /// The worlds of the BARN challenge, crossed at up to 2 m/s with a 2-D laser.
     Barn(BarnArgs),
@@ -71,10 +71,10 @@ pub struct SeriesArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Exit code: 0 every limit kept, 1 otherwise, 2 bad input.")]
 pub struct RunsArgs {
-    /// Only runs whose name and seed ("lights out, seed 2") hold this.
+    /// Only runs whose name and seed ("lights out, seed 2") contain this text.
     #[arg(long, value_name = "WORD")]
     pub only: Option<String>,
-    /// Folder for the results; the last run in it is kept as DIR.1
+    /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/experiment")]
     pub out: OutputDirArg,
     /// Options of every experiment with many runs.
@@ -110,13 +110,13 @@ pub struct HouseArgs {
     after_help = "Exit code: 0 success at least 97 % and mean score at least 0.45, 1 otherwise, 2 bad input."
 )]
 pub struct BarnArgs {
-    /// Which of the worlds, counted from 0 in the order of worlds.csv [default: all]
+    /// Numbers of the worlds, from 0 in the order of worlds.csv [default: all]
     #[arg(long, value_name = "A-B")]
     pub worlds: Option<IndexRange>,
     /// Folder with worlds.csv and obstacles.csv.
     #[arg(long, value_name = "DIR", default_value = "../shared/data/nav/barn")]
     pub data: PathBuf,
-    /// Folder for the results; the last run in it is kept as DIR.1
+    /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/barn")]
     pub out: OutputDirArg,
     /// Options of every experiment with many runs.
@@ -136,7 +136,7 @@ pub struct MrpbArgs {
     /// Folder with start_goal.csv, actors.csv and maps.
     #[arg(long, value_name = "DIR", default_value = "../shared/data/nav/mrpb")]
     pub data: PathBuf,
-    /// Folder for the results; the last run in it is kept as DIR.1
+    /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/mrpb")]
     pub out: OutputDirArg,
     /// Options of every experiment with many runs.
@@ -151,7 +151,7 @@ pub struct MrpbArgs {
                   growing by at most 10 MB/h, nothing touched; 1 otherwise, 2 bad input."
 )]
 pub struct RealTimeArgs {
-    /// How long it drives.
+    /// Duration of the drive.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=600))]
     pub minutes: u32,
     /// Seed of noise and room.
@@ -160,7 +160,7 @@ pub struct RealTimeArgs {
     /// The robot's settings.
     #[command(flatten)]
     pub robot: RobotArgs,
-    /// Folder for the results; the last run in it is kept as DIR.1
+    /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/real-time")]
     pub out: OutputDirArg,
     /// The live page: it shows the runs, and takes no commands.
@@ -177,7 +177,7 @@ pub struct RealTimeArgs {
     after_help = "Exit code: 0 every scenario solved, the paper's method with the motions it reports, 1 otherwise, 2 bad input."
 )]
 pub struct CorridorArgs {
-    /// Folder for the results; the last run in it is kept as DIR.1
+    /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/corridor")]
     pub out: OutputDirArg,
     /// Options of every command.
@@ -195,7 +195,7 @@ pub struct MergeArgs {
     /// The folders of the shards.
     #[arg(required = true, value_name = "DIR")]
     pub folders: Vec<PathBuf>,
-    /// Folder for the results; the last run in it is kept as DIR.1
+    /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/experiment")]
     pub out: OutputDirArg,
     /// Options of every command.

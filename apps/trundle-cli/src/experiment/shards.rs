@@ -14,7 +14,7 @@ struct ExperimentLine {
     experiment: ExperimentArgs,
 }
 
-/// The origin of the runs that the options of an experiment ask for.
+/// The origin of the runs, by the options of an experiment.
 ///
 /// # Errors
 /// When the robot file cannot be read.
@@ -35,7 +35,7 @@ pub fn origin_of(series: Option<&SeriesArgs>) -> Result<RunOrigin, AppError> {
 /// The experiment of merged shards, with the output of the merge.
 ///
 /// # Errors
-/// When the arguments in the manifest are not those of an experiment of this version.
+/// When the arguments in the manifest do not belong to an experiment of this version.
 pub fn experiment_of(manifest: &ShardManifest, merge: &MergeArgs) -> Result<Which, AppError> {
     let out = ["--out".into(), merge.out.as_os_str().to_owned()];
     let quiet = merge.common.quiet.then(|| "--quiet".into());

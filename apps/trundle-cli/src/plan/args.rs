@@ -31,7 +31,7 @@ pub struct PlanArgs {
     /// Named places: TOML, a table a place with x, y, heading_deg.
     #[arg(long, value_name = "FILE")]
     pub places: Option<PathBuf>,
-    /// Keep-out mask, as Nav2's: what is black is forbidden, greys (mode scale) cost extra.
+    /// Keep-out mask in Nav2's format: black is forbidden, grey (mode scale) has extra costs.
     #[arg(long, value_name = "MASK.yaml")]
     pub keepout: Option<PathBuf>,
     /// Speed mask, as Nav2's: the darker the slower; black sets no limit.
@@ -40,16 +40,16 @@ pub struct PlanArgs {
     /// Way-point graph, GeoJSON as Nav2's route server has it: drive along its lanes.
     #[arg(long, value_name = "FILE")]
     pub graph: Option<PathBuf>,
-    /// If a goal is blocked, stop as near to it as can be reached, at most so far off, m [default when given: 1]
+    /// If a goal is blocked, stop at the nearest reachable point, at most this far away, m [default when given: 1]
     #[arg(long, value_name = "M", num_args = 0..=1, require_equals = true, default_missing_value = "1", value_parser = NumberArg::from_zero("m"), allow_negative_numbers = true)]
     pub near: Option<f64>,
-    /// Print the curve's polynomials and the constraints that shape it.
+    /// Print the curve's polynomials and its active constraints.
     #[arg(long)]
     pub coefficients: bool,
     /// The robot's settings.
     #[command(flatten)]
     pub robot: RobotArgs,
-    /// Folder for the results; the last run in it is kept as DIR.1
+    /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/plan")]
     pub out: OutputDirArg,
     /// Options of every command.

@@ -30,7 +30,7 @@ pub struct Ros2Args {
     /// Gyro; if it has messages, it gives the heading in place of the odometry. `none`: not used.
     #[arg(long, value_name = "TOPIC", default_value = "imu")]
     pub imu: String,
-    /// A 2-D laser, in place of scans made of depth.
+    /// A 2-D laser, instead of scans from depth images.
     #[arg(long, value_name = "TOPIC")]
     pub scan: Option<String>,
     /// Network and names.
@@ -39,13 +39,13 @@ pub struct Ros2Args {
     /// Goal in the map frame: m, m, deg; may be given again.
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true, conflicts_with_all = ["explore", "mission"])]
     pub goal: Vec<PoseArg>,
-    /// Explore until the map is complete, then come back.
+    /// Explore until the map is complete, then return.
     #[arg(long, conflicts_with = "mission")]
     pub explore: bool,
     /// The tasks of a mission file.
     #[arg(long, value_name = "FILE")]
     pub mission: Option<PathBuf>,
-    /// Go on after the mission and wait for goals.
+    /// Continue after the mission and wait for goals.
     #[arg(long)]
     pub stay: bool,
     /// Longest wait for the robot's topics, s
@@ -57,7 +57,7 @@ pub struct Ros2Args {
     /// The live page.
     #[command(flatten)]
     pub live: LiveArgs,
-    /// Folder for the results; the last run in it is kept as DIR.1
+    /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/ros2")]
     pub out: OutputDirArg,
 }
@@ -76,12 +76,12 @@ impl Ros2Args {
         }
     }
 
-    /// Whether the run goes on after its mission.
+    /// Whether the run continues after its mission.
     pub fn stays(&self) -> bool {
         self.stay || self.live.is_operated() || self.request().is_empty()
     }
 
-    /// The mission that is asked for.
+    /// The requested mission.
     pub fn request(&self) -> MissionRequest {
         let goals = self.goal.iter().map(|goal| goal.0).collect();
         MissionRequest { goals, explore: self.explore, dock: false, file: self.mission.clone() }

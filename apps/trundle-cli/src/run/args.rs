@@ -23,13 +23,13 @@ pub struct RunArgs {
     /// The depth camera: realsense, freenect (Kinect v1), orbbec, openni2, stream:PATH, folder:PATH (docs/camera-stream.md), kinect2-dump:FILE; a serial number or recording may follow, as realsense:FILE.db3.
     #[arg(long, value_name = "CAMERA")]
     pub camera: CameraSpec,
-    /// Intrinsics of the colour camera: those that the camera reports, or those of the robot file.
+    /// Intrinsics of the colour camera: those reported by the camera, or those of the robot file.
     #[arg(long, value_enum, value_name = "FROM", default_value_t = IntrinsicsArg::Device)]
     pub intrinsics: IntrinsicsArg,
     /// The mission.
     #[command(flatten)]
     pub mission: MissionArgs,
-    /// Write what --check measured into this robot file; its other keys stay.
+    /// Write the measurements of --check into this robot file; its other keys do not change.
     #[arg(long, value_name = "ROBOT.toml", requires = "check", conflicts_with_all = ["goal", "explore", "dock", "mission", "resume"])]
     pub write: Option<PathBuf>,
     /// Files, time and settings.
@@ -38,10 +38,10 @@ pub struct RunArgs {
     /// The live page.
     #[command(flatten)]
     pub live: LiveArgs,
-    /// Folder for the results; the last run in it is kept as DIR.1
+    /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/run")]
     pub out: OutputDirArg,
-    /// Publish map, pose and state on ROS 2, and take goals from there, also after the mission.
+    /// Publish map, pose and state on ROS 2, and accept goals from there, also after the mission.
     #[cfg(feature = "ros2")]
     #[arg(long)]
     pub ros2: bool,
@@ -54,10 +54,10 @@ pub struct RunArgs {
 /// Options of every run on a live robot.
 #[derive(Debug, Args)]
 pub struct RunOptions {
-    /// Write the robot's maps and the state of its mission to FILE, every 3 to 10 s: `--resume FILE` goes on from there.
+    /// Write the robot's maps and the state of its mission to FILE, every 3 to 10 s: `--resume FILE` continues from it.
     #[arg(long, value_name = "FILE")]
     pub checkpoint: Option<OutputFileArg>,
-    /// Content of recording.mcap; a replay needs all. Below 1 GB of free disk the run goes on without recording.
+    /// Content of recording.mcap; a replay needs all. Below 1 GB of free disk the run continues without recording.
     #[arg(long, value_name = "WHAT", default_value = "events", value_parser = choice(&RecordingContent::CHOICES))]
     pub record: RecordingContent,
     /// Recognise places by this vocabulary, in trundle's form [default: the built-in one]
@@ -96,20 +96,20 @@ impl RunOptions {
 }
 
 impl RunArgs {
-    /// The intrinsics of the robot file, if those are wished.
+    /// The intrinsics of the robot file, if requested.
     pub fn robot_camera(&self, robot: &RobotConfig) -> Option<PinholeCamera> {
         (self.intrinsics == IntrinsicsArg::Robot).then_some(robot.camera)
     }
 }
 
-/// The mission of a run: one of these, and the charging station at its end.
+/// The mission of a run: one of these, optionally with the charging station at its end.
 #[derive(Debug, Args)]
 #[group(required = true, multiple = true)]
 pub struct MissionArgs {
     /// Goal in the map frame, which starts at the robot: m, m, deg; may be given again for the next one.
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true, conflicts_with_all = ["explore", "mission", "resume"])]
     pub goal: Vec<PoseArg>,
-    /// Explore until the map is complete, then come back to the start.
+    /// Explore until the map is complete, then return to the start.
     #[arg(long, conflicts_with_all = ["mission", "resume"])]
     pub explore: bool,
     /// Drive onto the charging station, alone or after the goals, and stop when the battery charges.
@@ -127,7 +127,7 @@ pub struct MissionArgs {
 }
 
 impl MissionArgs {
-    /// The mission that is asked for.
+    /// The requested mission.
     pub fn request(&self) -> MissionRequest {
         let goals = self.goal.iter().map(|goal| goal.0).collect();
         MissionRequest { goals, explore: self.explore, dock: self.dock, file: self.mission.clone() }

@@ -10,7 +10,7 @@ use trundle::app::hardware::{CheckRequest, HardwareReport, OpenCamera, check_har
 /// Duration of a check if the user gives none \[s\]. Source: ours; time for a push by hand.
 const CHECK_S: f64 = 15.0;
 
-/// Checks base and camera, prints what was found, and writes the measured part of the robot file if that is wished.
+/// Checks base and camera, prints the results, and writes the measured part of the robot file if requested.
 pub fn check(args: &RunArgs) -> Result<Outcome, AppError> {
     let robot = args.options.robot.robot()?;
     args.write.as_deref().map_or(Ok(()), require_robot_file)?;

@@ -35,7 +35,7 @@ pub struct SimArgs {
     /// The live page.
     #[command(flatten)]
     pub live: ViewArgs,
-    /// Write a TUM RGB-D folder: images, ground truth, odometry, calibration, the true map; the last one is kept as DIR.1
+    /// Write a TUM RGB-D folder: images, ground truth, odometry, calibration, the true map; the previous one is renamed to DIR.1
     #[arg(long, value_name = "DIR")]
     pub record: Option<OutputDirArg>,
     /// The true map.
@@ -65,10 +65,10 @@ pub struct DriverArgs {
     /// Drive to way-points, a line each: x y heading_deg (m, m, deg, world frame).
     #[arg(long, value_name = "FILE", group = "driver")]
     pub follow: Option<PathBuf>,
-    /// Drive by keys in the terminal: arrows or WASD, space to stop, q to quit. The live page shows what the robot sees.
+    /// Drive by keys in the terminal: arrows or WASD, space to stop, q to quit. The live page shows the robot's camera image.
     #[arg(long, group = "driver")]
     pub keys: bool,
-    /// Stop after this time of the robot, s, or when the drive is over [default: 5 if there is no drive]
+    /// Stop after this simulated time, s, or at the end of the drive [default: 5 without a drive]
     #[arg(long, value_name = "S", value_parser = NumberArg::up_to(1e6, "s"), allow_negative_numbers = true)]
     pub duration: Option<f64>,
 }
@@ -80,7 +80,7 @@ pub struct RosRobotArgs {
     /// Be a ROS 2 robot, in real time, until Ctrl-C or --duration.
     #[arg(long, conflicts_with_all = ["driver", "record", "map", "kobuki", "live"])]
     pub ros2: bool,
-    /// With --ros2: raw images in place of JPEG and PNG files.
+    /// With --ros2: raw images instead of JPEG and PNG.
     #[arg(long, requires = "ros2", hide_short_help = true)]
     pub raw_images: bool,
     /// Network and names.
@@ -91,16 +91,16 @@ pub struct RosRobotArgs {
 /// The file of the true map.
 #[derive(Debug, Args)]
 pub struct TrueMapArgs {
-    /// Write the true occupancy grid; without a drive, duration or recording, do nothing else.
+    /// Write the true occupancy grid; without a drive, duration or recording, only this is done.
     #[arg(long, value_name = "FILE.yaml")]
     pub map: Option<OutputFileArg>,
-    /// Format of the picture of that map.
+    /// Format of the true map's picture.
     #[arg(long, value_name = "FORMAT", default_value = "pgm", hide_short_help = true, value_parser = choice(&MapImage::CHOICES))]
     pub map_image: MapImage,
     /// Side of the map's cells, m.
     #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub resolution: f64,
-    /// Heights between which something is in the way, m, for the map [default: the robot's]
+    /// Height band of obstacles, m, for the map [default: the robot's]
     #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], hide_short_help = true, value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub band: Option<Vec<f64>>,
 }
@@ -108,10 +108,10 @@ pub struct TrueMapArgs {
 /// The wires behind which the simulator is a real robot.
 #[derive(Debug, Args)]
 pub struct WireArgs {
-    /// Answer as a Kobuki at a pseudo terminal, in real time, until Ctrl-C or --duration; LINK becomes a symbolic link to it.
+    /// Emulate a Kobuki at a pseudo terminal, in real time, until Ctrl-C or --duration; LINK becomes a symbolic link to the terminal.
     #[arg(long, value_name = "LINK", conflicts_with_all = ["driver", "record", "map", "live"])]
     pub kobuki: Option<PathBuf>,
-    /// Write the camera's frames into this FIFO (docs/camera-stream.md); it is made if it is not there.
+    /// Write the camera's frames into this FIFO (docs/camera-stream.md), which is created if missing.
     #[arg(long, value_name = "FIFO", requires = "kobuki")]
     pub camera_stream: Option<PathBuf>,
 }
@@ -176,7 +176,7 @@ impl SimArgs {
         self.live.live.is_some() && !has_driver
     }
 
-    /// Whether the map is all that is asked for.
+    /// Whether only the map is requested.
     pub fn wants_only_map(&self) -> bool {
         let drives = self.driver.drive.is_some() || self.driver.follow.is_some() || self.is_shown();
         self.true_map.map.is_some() && !drives && self.driver.duration.is_none() && self.record.is_none()

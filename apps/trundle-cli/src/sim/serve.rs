@@ -7,7 +7,7 @@ use std::path::Path;
 use trundle::app::{AppError, stop};
 use trundle::experiments::simulated::{EmulatedRobot, load_simulator};
 
-/// Serves base and camera until the time is over or the user interrupts; prints where the robot stands in truth.
+/// Serves base and camera until the time is over or the user interrupts; prints the robot's true pose.
 pub fn serve(args: &SimArgs, name: &str, port: &Path) -> Result<Outcome, AppError> {
     let simulator = load_simulator(name, args.place.options(), args.sensors.config()?)?;
     let mut robot = EmulatedRobot::at(simulator, port, args.wires.camera_stream.as_deref())?;

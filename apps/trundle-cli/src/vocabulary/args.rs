@@ -27,7 +27,7 @@ pub enum VocabularyCommand {
     Export(ExportArgs),
     /// Read one in the text form of DBoW2.
     Import(ImportArgs),
-    /// Measure how often places are recognised by one or more.
+    /// Measure the place recognition rate of one or more vocabularies.
     Recall(RecallArgs),
 }
 
@@ -42,7 +42,7 @@ impl VocabularyArgs {
     }
 }
 
-/// Where images come from.
+/// Sources of images.
 #[derive(Debug, Args)]
 pub struct Sources {
     /// TUM RGB-D folders.
@@ -56,7 +56,7 @@ pub struct Sources {
     /// Seeds of the furniture and textures of built-in scenes, and of the places: FIRST-LAST.
     #[arg(long, value_name = "A-B", default_value = "1-1")]
     pub seeds: IndexRange,
-    /// Views of each scene and seed, at chance places with room, by Kinect V2 and v1 in turn.
+    /// Views of each scene and seed, at random places with clearance, by Kinect V2 and v1 alternately.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub views: u32,
     /// glTF files have z up, not y.
@@ -88,7 +88,7 @@ impl Sources {
     after_help = "Example: trundle vocabulary train --scene room --scene house --seeds 1-4 --out own.voc"
 )]
 pub struct TrainArgs {
-    /// Where images come from.
+    /// Sources of images.
     #[command(flatten)]
     pub sources: Sources,
     /// A folder of descriptors that another program made: a file an image, 32 bytes a descriptor.
@@ -148,7 +148,7 @@ pub struct RecallArgs {
     /// A vocabulary to measure; may be given again [default: the program's own]
     #[arg(long = "vocabulary", value_name = "FILE")]
     pub vocabularies: Vec<PathBuf>,
-    /// Where images come from.
+    /// Sources of images.
     #[command(flatten)]
     pub sources: Sources,
     /// Options of every command.

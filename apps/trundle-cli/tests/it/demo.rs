@@ -1,7 +1,7 @@
 use crate::program::{refusal, summary, text, trundle};
 use std::fs;
 
-/// The whole robot in closed loop: there on its own senses, nothing touched, and every promised file written.
+/// The whole robot in closed loop: the goal is reached with its own estimate, without contact, and every file is written.
 #[test]
 fn the_demo_reaches_its_goal_and_replays_byte_for_byte() {
     let scratch = tempfile::tempdir().unwrap();

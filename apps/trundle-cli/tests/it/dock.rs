@@ -2,7 +2,7 @@ use crate::plan::write_room;
 use crate::program::{refusal, summary, text, trundle};
 use std::fs;
 
-/// A robot of 0.6 x 0.4 m in a corridor of 1 m, 10 cm beside its goal.
+/// A robot of 0.6 x 0.4 m in a corridor of 1 m, 10 cm to the side of its goal.
 const PROBLEM: &str = "trundle-corridors 1
 problem beside
 footprint 0.3 0.2 -0.3 0.2 -0.3 -0.2 0.3 -0.2
@@ -118,7 +118,7 @@ fn the_papers_corridor_experiment_holds() {
     assert!(optimal.as_f64().unwrap() <= paper.as_f64().unwrap() + 1e-9);
 }
 
-/// A laser 0.5 m from a wall to its left and to its right.
+/// A laser 0.5 m from a wall on its left and another on its right.
 #[test]
 fn among_the_points_of_a_scan_too() {
     let scratch = tempfile::tempdir().unwrap();

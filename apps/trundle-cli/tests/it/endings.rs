@@ -1,4 +1,4 @@
-//! Every ending keeps what there is: Ctrl-C, SIGTERM, kill -9, a full disk.
+//! Every end preserves existing results: Ctrl-C, SIGTERM, kill -9, a full disk.
 #![cfg(unix)]
 
 use crate::program::{summary, text, trundle};
@@ -7,7 +7,7 @@ use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-/// A program is given up after this time \[s\].
+/// Time limit of a program \[s\].
 const PATIENCE_S: u64 = 120;
 
 fn start(args: &[&str]) -> Child {
@@ -34,7 +34,7 @@ fn wait_until(what: &str, is_so: impl Fn() -> bool) {
     }
 }
 
-/// Runs `trundle args --out OUT`, where OUT is in `folder`, and sends `signal` when it writes.
+/// Runs `trundle args --out OUT`, with OUT in `folder`, and sends `signal` once it writes.
 fn signalled(args: &[&str], out: &Path, signal: &str) -> Output {
     let child = start(args);
     wait_until("the program writes nothing", || writes_in(out.parent().unwrap()));
@@ -43,7 +43,7 @@ fn signalled(args: &[&str], out: &Path, signal: &str) -> Output {
     child.wait_with_output().unwrap()
 }
 
-/// The program was stopped by Ctrl-C or SIGTERM, said so, and its results are there.
+/// Asserts that the program was stopped by Ctrl-C or SIGTERM, reported it, and wrote its results.
 fn assert_stopped(output: &Output, out: &Path, (code, signal): (i32, &str)) {
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(code), "{said}");
@@ -148,7 +148,7 @@ fn a_command_that_has_nothing_yet_ends_at_once() {
     assert_eq!(fs::read_dir(scratch.path()).unwrap().count(), 0);
 }
 
-/// A terminal that is closed, or a pipe whose reader has ended, takes no message of a program that a signal ends.
+/// A closed terminal, or a pipe without a reader, receives no message of a program ended by a signal.
 #[test]
 fn a_signal_ends_a_command_whose_standard_error_has_no_reader() {
     let scratch = tempfile::tempdir().unwrap();
@@ -191,7 +191,7 @@ fn files_of_a_killed_run_are_named_and_removed() {
     assert!(!writes_in(scratch.path()) && out.exists());
 }
 
-/// A file that may not grow is as a disk that is full.
+/// A limited file size simulates a full disk.
 #[test]
 fn results_that_a_full_disk_refuses_are_named_and_the_rest_is_there() {
     let scratch = tempfile::tempdir().unwrap();
@@ -208,7 +208,7 @@ fn results_that_a_full_disk_refuses_are_named_and_the_rest_is_there() {
     assert_eq!(output.status.code(), Some(3), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// At whatever moment a short command is stopped: all of its results are there, or no trace of them.
+/// A short command stopped at any moment leaves all its results or none.
 #[test]
 fn a_stopped_short_command_leaves_all_or_nothing() {
     let scratch = tempfile::tempdir().unwrap();
@@ -276,8 +276,8 @@ fn a_disk_that_takes_no_image_is_named() {
     assert!(said.contains("cannot write") && !said.contains("no image to write"), "{said}");
 }
 
-/// Ends a drive that is recorded into `out` in the moment after `delay_ms` of its commit, as seen from the outside: by a second signal
-/// or by `kill -9`. Returns the exit code.
+/// Ends a drive recorded into `out` `delay_ms` after the start of its commit, seen from outside, by a second signal or by `kill -9`.
+/// Returns the exit code.
 fn end_in_commit(out: &Path, signal: &str, delay_ms: u64) -> Option<i32> {
     let child =
         start(&["sim", "room", "--duration", "1000", "--rate", "5", "--quiet", "--record", text(out)]);
@@ -306,7 +306,7 @@ fn content(folder: &Path) -> std::collections::BTreeMap<std::path::PathBuf, Vec<
     files
 }
 
-/// At whatever moment a second signal or `kill -9` comes: the run before is whole in one folder.
+/// After a second signal or `kill -9` at any moment, the previous run is complete in one folder.
 #[test]
 fn a_run_that_is_ended_twice_leaves_the_run_before_whole() {
     let scratch = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Trajectories evaluated: the numbers of the PyPI tool evo, and what the folder holds.
+//! Evaluation of trajectories: the numbers of the PyPI tool evo, and the files of the folder.
 
 use crate::program::{refusal, summary, text, trundle};
 use serde_json::Value;

@@ -16,7 +16,7 @@ fn sequence(folder: &Path) -> PathBuf {
     data
 }
 
-/// The trajectory that `trundle slam` finds, its summary, and what it says.
+/// The trajectory of `trundle slam`, its summary, and its output.
 fn track(data: &Path, out: &Path) -> (String, serde_json::Value, String) {
     let output = trundle(&["slam", text(data), "--quiet", "--height=0.45", "--tilt=8", "--out", text(out)]);
     let said = String::from_utf8(output.stderr).unwrap();
@@ -33,7 +33,7 @@ fn a_sequence_in_other_forms_is_the_same_sequence() {
     let (expected, numbers, said) = track(&data, &out);
     assert!(said.is_empty() && numbers["camera_assumed"] == false, "{said}");
 
-    // The camera is that of orb_slam.yaml, the images those of associations.txt, the odometry has TUM's form.
+    // The camera comes from orb_slam.yaml, the images from associations.txt, and the odometry has TUM's format.
     let poses = read_odometry(&file("odometry.txt")).unwrap();
     let line = |(stamp, pose): &(trundle::core::Stamp, trundle::core::Pose2)| {
         let half = pose.theta / 2.0;

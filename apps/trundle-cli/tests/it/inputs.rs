@@ -1,4 +1,4 @@
-//! `trundle map` on other inputs than CARMEN logs, and `trundle eval` on what it made.
+//! `trundle map` on inputs other than CARMEN logs, and `trundle eval` on its results.
 
 use crate::program::{refusal, summary, text, trundle};
 use std::fs;
@@ -105,7 +105,7 @@ fn inputs_without_poses_are_refused_by_name() {
     assert!(sentence.contains("a.relations, line 1: "), "{sentence}");
 }
 
-/// The range from a place to the walls of a room of 6 x 4 m with a box at one of them, m.
+/// The range to the walls of a room of 6 x 4 m with a box at one wall, m.
 fn room_range(x: f64, y: f64, heading: f64) -> f64 {
     let is_free = |x: f64, y: f64| {
         let is_in_box = (4.0..5.0).contains(&x) && y > 3.0;

@@ -14,7 +14,7 @@ const WIRE_VERSION: u32 = 3;
 /// A program with its live page.
 struct LiveProgram {
     process: Child,
-    /// What it printed before the link, and the link's line.
+    /// Output before the link, and the line of the link.
     printed: String,
     address: String,
     token: String,
@@ -87,7 +87,7 @@ impl WebSocket {
         Self(reader)
     }
 
-    /// Sends a text, masked by zeros; whether the other end is there.
+    /// Sends a text, masked by zeros; returns whether the other end is connected.
     fn send(&mut self, text: &str) -> bool {
         let length = text.len() as u16;
         let mut frame = vec![0x80 | Self::TEXT];
@@ -132,14 +132,14 @@ impl Browser {
         assert!(self.link.send(&message.to_string()), "{message}");
     }
 
-    /// The next message of JSON; `None` where the program has ended.
+    /// The next message of JSON; `None` after the end of the program.
     fn next(&mut self) -> Option<Value> {
         loop {
             match self.link.receive()? {
                 (WebSocket::TEXT, text) => {
                     let value: Value = serde_json::from_slice(&text).unwrap();
                     if value["type"] == "state" {
-                        // The program may end meanwhile: the next message tells.
+                        // The program may end in between, which the next message shows.
                         self.link.send(&json!({"type": "seen", "batch": value["batch"]}).to_string());
                     }
                     return Some(value);
@@ -159,7 +159,7 @@ impl Browser {
         panic!("no such {kind} before the end")
     }
 
-    /// Asks; the refusal.
+    /// Sends a request; returns the refusal.
     fn refusal(&mut self, mut request: Value) -> String {
         self.last_id += 1;
         request["id"] = self.last_id.into();
@@ -175,7 +175,7 @@ impl Browser {
     }
 }
 
-/// Files of a folder that hold no time of the wall clock, with their bytes.
+/// Files of a folder without wall-clock times, with their bytes.
 fn files(folder: &Path, names: &[&str]) -> Vec<(PathBuf, Vec<u8>)> {
     names.iter().map(|name| (PathBuf::from(name), std::fs::read(folder.join(name)).unwrap())).collect()
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 /// Longest time of one run \[s\].
 const RUN_LIMIT_S: &str = "60";
 
-/// A simulated robot in a process of its own.
+/// A simulated robot in a separate process.
 struct EmulatedRobot {
     process: Child,
     folder: PathBuf,
@@ -117,7 +117,7 @@ fn a_robot_that_is_unplugged_stops_says_so_and_goes_on_when_it_is_back() {
     let mut run = robot.run(&["--goal", "2,0,0", "--time-limit", RUN_LIMIT_S]);
     let run = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     std::thread::sleep(Duration::from_secs(6));
-    // A process that stands still is a base and a camera that are silent.
+    // A stopped process is a silent base and camera.
     signal(&robot.process, "STOP");
     std::thread::sleep(Duration::from_secs(2));
     signal(&robot.process, "CONT");
@@ -130,7 +130,7 @@ fn a_robot_that_is_unplugged_stops_says_so_and_goes_on_when_it_is_back() {
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
 }
 
-/// Whether this process, and so each that it starts, ignores SIGHUP.
+/// Whether this process, and therefore each child, ignores SIGHUP.
 fn ignores_closed_terminal() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).unwrap();
@@ -141,7 +141,7 @@ fn ignores_closed_terminal() -> bool {
 fn a_run_that_is_killed_or_loses_its_terminal_leaves_a_base_at_rest() {
     for (name, code) in [("KILL", None), ("HUP", Some(129))] {
         if name == "HUP" && ignores_closed_terminal() {
-            // A program under nohup inherits it.
+            // A program under nohup inherits this state.
             println!("skipped: these tests ignore SIGHUP, as under nohup");
             continue;
         }

@@ -1,10 +1,10 @@
-//! The log: silent unless it is asked for, and the same `log.txt` either way.
+//! The log: silent by default, with the same `log.txt` at every level.
 
 use crate::program::text;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// Runs the demo for 6 s of the robot's time into `out`; what it prints on standard error.
+/// Runs the demo for 6 s of simulated time into `out`; returns its standard error.
 fn demo(out: &Path, filter: Option<&str>, flags: &[&str]) -> String {
     let mut program = Command::new(env!("CARGO_BIN_EXE_trundle"));
     program.args(["demo", "--direct", "--seed", "2", "--time-limit", "6", "--quiet", "--out", text(out)]);

@@ -1,4 +1,4 @@
-//! The program as its users meet it: arguments in, files, sentences and exit codes out.
+//! The program from a user's view: arguments in, files, sentences and exit codes out.
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "helpers of tests")]
 
 mod bad_input;

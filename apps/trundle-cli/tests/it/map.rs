@@ -2,7 +2,7 @@ use crate::program::{refusal, shared, summary, text, trundle};
 use std::fs;
 use std::path::Path;
 
-/// The first `scans` scans of a log, as a file of its own.
+/// The first `scans` scans of a log, in a separate file.
 fn beginning(log: &Path, scans: usize, to: &Path) {
     let all = fs::read_to_string(log).unwrap();
     let lines: Vec<&str> = all.lines().filter(|line| line.starts_with("FLASER")).take(scans).collect();
@@ -88,7 +88,7 @@ fn an_old_map_is_gone_on_with_and_localised_in() {
         let out = scratch.path().join(name);
         let found = run(&out, &more);
         assert!(found.lines().count() > 20, "{name}: {found}");
-        // The same log in its own map: the same poses.
+        // The same log in its own map gives the same poses.
         for line in found.lines() {
             let same = original.lines().find(|o| o.split(' ').next() == line.split(' ').next()).unwrap();
             let (a, b) = (pose(line), pose(same));
@@ -123,7 +123,7 @@ fn the_old_map_survives_a_death_at_any_moment_of_saving() {
     use std::time::{Duration, Instant};
     let scratch = tempfile::tempdir().unwrap();
     let Some((log, first)) = mapped(scratch.path()) else { return };
-    // A run that is killed while it replaces another leaves that one's map here or where the last run is kept.
+    // A run killed during the replacement of another leaves that one's map in this folder or in that of the last run.
     let last = first.with_file_name("first.1");
     let staging = || {
         let entries = fs::read_dir(scratch.path()).unwrap().flatten();
@@ -179,7 +179,7 @@ fn the_old_map_survives_a_disk_that_fills_up() {
         let last = first.with_file_name("first.1");
         if output.status.code() == Some(3) {
             assert!(said.contains("cannot write"), "{blocks} blocks: {said}");
-            // What could not be written is named, and the last run is kept.
+            // Files that could not be written are reported, and the last run is preserved.
             fs::remove_dir_all(&first).unwrap();
             fs::rename(&last, &first).unwrap();
         } else {

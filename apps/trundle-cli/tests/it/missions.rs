@@ -1,7 +1,7 @@
 use crate::program::{summary, text, trundle};
 use std::fs;
 
-/// Explored from an empty map, then a goal, then back: each reached in truth, nothing touched.
+/// Exploration from an empty map, then a goal, then the return: each truly reached, without contact.
 #[test]
 fn an_unknown_room_is_explored_and_the_robot_comes_back() {
     let scratch = tempfile::tempdir().unwrap();
@@ -18,7 +18,7 @@ fn an_unknown_room_is_explored_and_the_robot_comes_back() {
     }
 }
 
-/// An eye that closes for 5 s: the robot stands, and goes on.
+/// A black camera image for 5 s: the robot stops, and continues.
 #[test]
 fn a_black_camera_costs_time_and_nothing_else() {
     let scratch = tempfile::tempdir().unwrap();

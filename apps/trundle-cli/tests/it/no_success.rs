@@ -1,4 +1,4 @@
-//! Runs that end without having done what they are for: exit code 1, and the likely cause.
+//! Runs that miss their aim: exit code 1, and the likely cause.
 
 use crate::program::trundle;
 use std::fmt::Write as _;

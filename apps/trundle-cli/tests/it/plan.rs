@@ -70,7 +70,7 @@ impl Room {
         self.scratch.path().join("out")
     }
 
-    /// Runs `trundle plan` with the places; its standard output, or what it complains of.
+    /// Runs `trundle plan` with the places; returns its standard output, or its error.
     fn plan(&self, more: &[&str]) -> Result<String, String> {
         let out = self.out();
         let base = ["plan", text(&self.map), "--places", text(&self.places), "--out", text(&out)];
@@ -182,7 +182,7 @@ fn no_plan_leaves_its_reason_and_nothing_of_an_earlier_plan() {
     };
     assert_eq!(ask(&["--goal=5,1,0"]).0, 0);
     assert_eq!(names().len(), 11);
-    // Bad input: nothing is written, nothing removed.
+    // Bad input: no file is written or removed.
     assert_eq!(ask(&["--goal=5,1,0", "--keepout=nowhere.yaml"]).0, 2);
     assert_eq!(names().len(), 11);
     let mask = write_mask(room.scratch.path(), "keepout", (254, 0), TRINARY);
@@ -217,14 +217,14 @@ fn over(n: usize, k: usize) -> f64 {
     (0..k).fold(1.0, |product, i| product * (n - i) as f64 / (i + 1) as f64)
 }
 
-/// The printed polynomials are the drawn curve, and the printed constraints hold where they should.
+/// The printed polynomials are the drawn curve, and the printed constraints are active at the right places.
 #[test]
 fn coefficients_are_the_curve_and_active_constraints_are_active() {
     let room = Room::new();
-    // Around the wall's end and back: corners that lean on it.
+    // Around the wall's end and back: corners that touch the wall.
     let said =
         room.plan(&["--from=desk", "--goal=3.5,0.8,-90", "--goal=2.5,0.6,180", "--coefficients"]).unwrap();
-    // Of each piece, as printed: x then y, rising powers.
+    // For each piece, as printed: x then y, increasing powers.
     let polynomials: Vec<Vec<f64>> = said
         .lines()
         .filter_map(|line| {
@@ -250,7 +250,7 @@ fn coefficients_are_the_curve_and_active_constraints_are_active() {
     let table = numbers(&room.out().join("coefficients.csv"));
     let printed: usize = polynomials.iter().map(Vec::len).sum();
     assert_eq!(table.len() * 2, printed);
-    // Of a curve and piece, a control point in the Bernstein basis.
+    // A control point of a curve and piece in the Bernstein basis.
     let control = |curve: f64, piece: f64, k: usize| {
         let rows: Vec<_> = table.iter().filter(|row| row[0] == curve && row[1] == piece).collect();
         let n = rows.len() - 1;
@@ -271,7 +271,7 @@ fn coefficients_are_the_curve_and_active_constraints_are_active() {
     }
 }
 
-/// Grey is expensive: the way leads around it if that is not a great detour.
+/// Grey is costly: the path leads around it if the detour is short.
 #[test]
 fn grey_of_a_keep_out_mask_is_dear() {
     let room = Room::new();

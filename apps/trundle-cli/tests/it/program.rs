@@ -10,7 +10,7 @@ pub fn trundle(args: &[&str]) -> Output {
         .expect("the program starts")
 }
 
-/// The sentence with which `trundle args` refuses its input: exit code 2, nothing on standard output.
+/// The sentence with which `trundle args` refuses its input: exit code 2, without standard output.
 pub fn refusal(args: &[&str]) -> String {
     let output = trundle(args);
     let sentence = String::from_utf8(output.stderr).unwrap();
@@ -25,7 +25,7 @@ pub fn summary(folder: &Path) -> serde_json::Value {
     serde_json::from_slice(&std::fs::read(folder.join("summary.json")).unwrap()).unwrap()
 }
 
-/// A file or folder of the workplace's data; says that it skips if there is none.
+/// A file or folder of the shared data; prints a note if absent.
 pub fn shared(name: &str) -> Option<PathBuf> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).join(name);
     if !path.exists() {

@@ -4,11 +4,11 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A robot file with a small camera, so that a loaded machine keeps up with most of its images.
+/// A robot file with a small camera: a loaded machine can process most of its images.
 const SMALL_CAMERA: &str =
     "[camera]\nwidth = 128\nheight = 106\nfx = 91.5\nfy = 91.5\ncx = 63.5\ncy = 52.5\n";
 
-/// The files that must be the same in a run and its replay.
+/// The files that must be equal in a run and its replay.
 const SAME: [&str; 6] =
     ["map.pgm", "map.yaml", "trajectory.txt", "groundtruth.txt", "report.html", "recording.mcap"];
 
@@ -34,7 +34,7 @@ fn demo<'a>(robot: &'a Path, live: &'a Path) -> [&'a str; 9] {
     ["demo", "--real-time", "--record", "all", "--quiet", "--config", text(robot), "--out", text(live)]
 }
 
-/// Whatever the threads did on however loaded a machine: nothing was touched, and it can be done again.
+/// On a loaded machine with any order of threads: no contact, and the replay is equal.
 #[test]
 fn a_run_in_real_time_replays_byte_for_byte() {
     let scratch = tempfile::tempdir().unwrap();
@@ -49,7 +49,7 @@ fn a_run_in_real_time_replays_byte_for_byte() {
     replay_is_the_same(scratch.path(), &live);
 }
 
-/// Ctrl-C: the run ends as runs do, with everything written.
+/// Ctrl-C: the run ends normally, with all files written.
 #[cfg(unix)]
 #[test]
 fn the_user_may_end_a_run_in_real_time() {

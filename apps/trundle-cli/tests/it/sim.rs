@@ -40,7 +40,7 @@ fn record(folder: &Path, name: &str, threads: &str, extra: &[&str]) -> PathBuf {
     out
 }
 
-/// A recording is tracked as it is: its own camera, odometry as prior, evaluated against its own ground truth.
+/// A recording is tracked without options: its own camera, odometry as prior, evaluated against its own ground truth.
 #[test]
 fn a_recorded_drive_is_read_by_slam_as_it_is() {
     let scratch = tempfile::tempdir().unwrap();
@@ -185,7 +185,7 @@ fn numbers_and_places_that_cannot_be() {
     );
 }
 
-/// The example of the scene file's documentation, as it is printed there.
+/// The example in the scene file's documentation.
 #[test]
 fn the_documented_scene_file_runs_for_as_long_as_asked() {
     let scratch = tempfile::tempdir().unwrap();

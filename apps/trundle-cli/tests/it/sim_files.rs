@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-/// A triangle of 1 m with texture coordinates, its one texture `gone.png`.
+/// A triangle of 1 m with texture coordinates and one texture `gone.png`.
 const TRIANGLE: &str = r#"{
   "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
   "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": 0}]}],
@@ -25,7 +25,7 @@ fn file(folder: &Path, name: &str, content: &str) -> PathBuf {
     path
 }
 
-/// Runs `trundle sim` on `scene` in `folder`, `content` being that of the scene.
+/// Runs `trundle sim` on `scene` in `folder`, with the scene's `content`.
 fn refused(folder: &Path, name: &str, content: &str, extra: &[&str]) -> String {
     let path = file(folder, name, content);
     let sentence = refusal(&[&["sim", text(&path)], extra].concat());

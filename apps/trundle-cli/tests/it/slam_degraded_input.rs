@@ -1,5 +1,5 @@
-//! Difficult input of a robot with wheels: it turns faster than the camera can follow, stands in the dark, looks at nothing. Its
-//! SLAM is never lost, and a second after the view is back it is where it says.
+//! Difficult input of a robot with wheels: it turns too fast for the camera, is in the dark, or faces an untextured surface. SLAM is never
+//! lost, and its pose is right one second after the view is back.
 
 use crate::program::{summary, text, trundle};
 use std::fs;

@@ -1,4 +1,4 @@
-//! A calibration board to print, as SVG in its true size.
+//! A calibration board to print, as SVG in true size.
 
 use crate::AppError;
 use std::fmt::Write;
@@ -22,7 +22,7 @@ struct Sheet {
     path: String,
 }
 
-/// Writes a board to print, SVG; the file is replaced whole. Lengths are those of the board, in mm.
+/// Writes a board to print, as SVG, and replaces an existing file. Lengths of the SVG are in mm, the true size of the board.
 ///
 /// # Errors
 /// When the file cannot be written.

@@ -7,7 +7,7 @@ use trundle_core::{GrayImage, PinholeCamera, gray_from_color};
 use trundle_io::{CameraModel, KINECT_V2_DEPTH_SCALE, decode_color, replace_file};
 use trundle_vision::board::{Board, BoardView, CameraFit, CameraParameters, LensModel, calibrate_camera};
 
-/// Images of a board, and what is on it.
+/// Images of a board, and the kind of the board.
 #[derive(Debug, Clone)]
 pub struct BoardRequest {
     /// Image files, JPEG or PNG, or folders of them.
@@ -42,7 +42,7 @@ struct FoundViews {
 /// Calibrates a camera by images of a board. Images without a board are named in the notes.
 ///
 /// # Errors
-/// When there are no images, they differ in size, or too few show the board.
+/// When no image is given, the images differ in size, or too few show the board.
 pub fn calibrate_board(
     request: &BoardRequest,
     progress: &dyn StepProgress,
@@ -184,7 +184,7 @@ impl CameraCalibration {
     /// Writes a camera file, TOML, with depth in mm; the file is replaced whole.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// When the file cannot be written.
     pub fn write_camera_file(&self, file: &Path) -> Result<(), AppError> {
         let model = CameraModel { camera: self.camera, depth_scale: KINECT_V2_DEPTH_SCALE };
         Ok(replace_file(file, model.to_toml().as_bytes())?)

@@ -70,7 +70,7 @@ impl<'a> FloorImages<'a> {
         self.seen += 1;
     }
 
-    /// The floor in each image that shows it.
+    /// The floor in each image that shows the floor.
     fn views(&self) -> Result<Vec<FloorView>, AppError> {
         let views = self.search.views();
         if views.len() >= MIN_FLOOR_IMAGES {
@@ -97,7 +97,7 @@ fn add_floor(
     calibration.notes.push(format!("floor seen in {} images", floor.images));
 }
 
-/// The keys of the robot file that the floor shows, beside the mount in use.
+/// The keys of the robot file that the floor determines, next to the mount in use.
 #[must_use]
 pub fn floor_values(floor: &FloorMount, before: &CameraMount) -> [CalibratedValue; 3] {
     let height = (floor.height.value, floor.height.sigma);

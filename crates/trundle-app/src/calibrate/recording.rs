@@ -18,7 +18,7 @@ impl CalibrationInput {
     /// Opens a recording of trundle; with `recover` one that is cut, up to the cut.
     ///
     /// # Errors
-    /// When the file is not a recording of trundle, or holds no images or no robot.
+    /// When the file is not a recording of trundle, or contains no images or no robot.
     pub fn open(path: &Path, recover: bool) -> Result<Self, AppError> {
         if !matches!(FileKind::of(path)?, FileKind::TrundleRecording) {
             let name = path.display();

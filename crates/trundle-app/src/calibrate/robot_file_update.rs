@@ -1,4 +1,4 @@
-//! Keys of a robot file set in place: other keys, comments and order stay.
+//! Replaces keys of a robot file: other keys, comments and order do not change.
 
 use super::values::{CalibratedValue, Calibration};
 use crate::{AppError, read_text};
@@ -9,11 +9,11 @@ use trundle_io::{replace_file, require_replaceable};
 use trundle_runtime::settings::RobotFile;
 
 impl Calibration {
-    /// Sets the found keys in a robot file. All other keys and comments stay; a file that does not exist is created.
+    /// Replaces the calibrated keys in a robot file. All other keys and comments are unchanged; a missing file is created.
     ///
     /// # Errors
-    /// When the file is not a robot file, a found value is outside the range of its key, or the file cannot be written; it is unchanged
-    /// then.
+    /// When the file is not a robot file, a calibrated value is outside the range of its key, or the file cannot be written. The file is
+    /// unchanged then.
     pub fn write(&self, file: &Path) -> Result<(), AppError> {
         let keys: Vec<&CalibratedValue> = self.values.iter().filter(|value| value.is_key).collect();
         if keys.is_empty() {
@@ -38,7 +38,7 @@ pub fn require_robot_file(file: &Path) -> Result<(), AppError> {
     Ok(require_replaceable(file)?)
 }
 
-/// Sets keys of a robot file, or creates the file with them. The file is replaced whole, or stays as it is.
+/// Sets keys of a robot file, or creates the file with them. The file is replaced as a whole or left unchanged.
 pub(super) fn update_robot_file(file: &Path, values: &[&CalibratedValue]) -> Result<(), AppError> {
     let old = if file.exists() { read_text(file)? } else { String::new() };
     let refused =
@@ -61,7 +61,7 @@ fn updated(text: &str, values: &[&CalibratedValue]) -> Result<String, String> {
     Ok(document.to_string())
 }
 
-/// Sets the key at a dotted path; tables on the way are made if there are none.
+/// Sets the key at a dotted path; creates missing tables.
 fn set(table: &mut Table, path: &str, value: &CalibratedValue) -> Result<(), String> {
     let Some((head, rest)) = path.split_once('.') else {
         set_leaf(table.entry(path).or_insert(Item::None), value);
@@ -71,7 +71,7 @@ fn set(table: &mut Table, path: &str, value: &CalibratedValue) -> Result<(), Str
     match inner {
         Item::Table(inner) => set(inner, rest, value),
         Item::Value(Value::InlineTable(inline)) => {
-            // An inline table keeps its form.
+            // An inline table remains an inline table.
             let mut inner =
                 Table::from_iter(inline.iter().map(|(key, value)| (key.to_owned(), value.clone())));
             set(&mut inner, rest, value)?;
@@ -82,12 +82,12 @@ fn set(table: &mut Table, path: &str, value: &CalibratedValue) -> Result<(), Str
     }
 }
 
-/// Replaces a value; a comment behind it stays.
+/// Replaces a value; the comment after the value is preserved.
 fn set_leaf(item: &mut Item, value: &CalibratedValue) {
     let number = if value.decimals == 0 {
         Value::from(value.value.round() as i64)
     } else {
-        // The value as it is printed, without noise digits.
+        // The value as printed, rounded to its significant digits.
         Value::from(value.text().parse::<f64>().unwrap_or(value.value))
     };
     let decor = item.as_value().map(|old| old.decor().clone());

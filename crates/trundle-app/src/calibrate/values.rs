@@ -1,4 +1,4 @@
-//! Calibrated values beside the values in use: the table and the robot file.
+//! Calibrated values next to the values in use: the table and the robot file.
 
 /// A calibrated value.
 #[derive(Debug, Clone, PartialEq)]
@@ -13,7 +13,7 @@ pub struct CalibratedValue {
     pub sigma: Option<f64>,
     /// Unit of both.
     pub unit: &'static str,
-    /// The value in use before, if there is one.
+    /// The value in use before calibration; `None` if the robot file has none.
     pub before: Option<f64>,
     /// Decimals that are printed and written.
     pub decimals: usize,
@@ -54,7 +54,7 @@ impl CalibratedValue {
         Self { name, is_key: false, value, sigma: Some(sigma), unit, before: None, decimals }
     }
 
-    /// The value as it is printed and written.
+    /// The value as text, for the table and the robot file.
     pub(super) fn text(&self) -> String {
         format!("{:.*}", self.decimals, self.value)
     }

@@ -1,8 +1,8 @@
-//! Why there is no manoeuvre, in a sentence.
+//! The reason for an impossible manoeuvre, in one sentence.
 
 use trundle_docking::{Certificate, Impossible, SearchLimit};
 
-/// Why there is no manoeuvre, in one sentence.
+/// The reason for an impossible manoeuvre, in one sentence.
 #[must_use]
 pub fn impossible_text(impossible: &Impossible) -> String {
     let by = impossible.by.as_ref().map_or_else(String::new, |by| format!(": {by} is in the way"));

@@ -11,7 +11,7 @@ use trundle_docking::{Certificate, DockingPlan, Solution};
 use trundle_io::{OutputFolder, Summary};
 use trundle_viz::tiles;
 
-/// Writes steps, pictures and summary; where the folder is. `seconds`: wall-clock time of planning.
+/// Writes steps, pictures and summary; returns the folder. `seconds`: wall-clock time of planning.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -39,7 +39,7 @@ pub fn write_docking(
     Ok(folder.commit()?)
 }
 
-/// Four motions a row; of more than 16 about as many as there are rows.
+/// Pictures in a row: four; above 16 motions, about the square root of their number.
 fn columns(motions: usize) -> usize {
     motions.isqrt().max(4)
 }

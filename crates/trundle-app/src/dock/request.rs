@@ -1,4 +1,4 @@
-//! The request for a manoeuvre: where the obstacles come from, which poses, which outline, which settings.
+//! The request for a manoeuvre: obstacles, poses, outline and settings.
 
 use super::result::DockingResult;
 use super::task::{DockingTask, built_in_problem, file_problem, named, scan_task};
@@ -24,7 +24,7 @@ pub struct DockingRequest {
     pub scan: Option<usize>,
     /// Name of the problem of a file; `None` for the first one.
     pub problem: Option<String>,
-    /// Whether unknown cells of a map, and what is off it, are free.
+    /// Whether unknown cells of a map and the space outside the map are free.
     pub unknown_is_free: bool,
     /// Planning method; `None` for the robot's.
     pub method: Option<Method>,
@@ -34,7 +34,7 @@ pub struct DockingRequest {
     pub robot: Option<RobotConfig>,
 }
 
-/// Where the obstacles come from.
+/// Source of the obstacles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Source {
     Map,

@@ -32,7 +32,7 @@ impl DockingResult {
         }
     }
 
-    /// The manoeuvre, if there is one.
+    /// The manoeuvre; `None` if the task has none.
     #[must_use]
     pub fn found(&self) -> Option<&Solution> {
         match self {
@@ -41,7 +41,7 @@ impl DockingResult {
         }
     }
 
-    /// Why the task admits no manoeuvre.
+    /// The reason why the task has no manoeuvre.
     #[must_use]
     pub fn refusal(&self) -> Option<&str> {
         match self {

@@ -20,7 +20,7 @@ pub fn rows(manoeuvre: &Manoeuvre) -> Vec<Vec<String>> {
     std::iter::once(header).chain(manoeuvre.steps().iter().enumerate().map(row)).collect()
 }
 
-/// How far, in the unit of its kind.
+/// Length or angle of a motion, with its unit.
 pub fn amount(motion: Motion) -> String {
     match motion {
         Motion::Turn(angle) => format!("{:.1} deg", angle.to_degrees().abs()),
@@ -28,7 +28,7 @@ pub fn amount(motion: Motion) -> String {
     }
 }
 
-/// How long it takes, and how near that is to the least.
+/// Duration of the manoeuvre, and its distance from the proven minimum.
 pub fn verdict(found: &Solution) -> String {
     let duration = found.manoeuvre.duration();
     let proven = if found.bound > 0.0 {

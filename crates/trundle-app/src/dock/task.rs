@@ -9,7 +9,7 @@ use trundle_io::{LaserLog, LaserLogOptions, no_return_cause, range_unit_hint, re
 
 /// A docking task.
 pub struct DockingTask {
-    /// Its name, for the summary.
+    /// Name of the task, for the summary.
     pub name: String,
     /// The robot's outline.
     pub footprint: Footprint,
@@ -23,7 +23,7 @@ pub struct DockingTask {
     pub grid: Option<OccupancyGrid>,
     /// The list, if the obstacles are a list's.
     pub problem: Option<Problem>,
-    /// Why no manoeuvre can be planned for the task; `None` if the planner decides.
+    /// The reason why the task cannot be planned; `None` if the planner decides.
     pub refusal: Option<String>,
 }
 
@@ -109,7 +109,7 @@ pub(super) fn scan_task(
     Ok(DockingTask { refusal, ..task })
 }
 
-/// Why nothing can be planned in a scan of the log: it saw nothing, or ranges are in another unit.
+/// The reason why no task can be planned in a scan of the log: the scan has no returns, or its ranges are in another unit.
 fn scan_refusal(log: &LaserLog, is_blind: bool) -> Option<String> {
     if let Some(hint) = range_unit_hint(log) {
         return Some(format!("{hint} No manoeuvre is planned"));

@@ -1,4 +1,4 @@
-//! The occupied cells of a map against those of the true map.
+//! Comparison of the occupied cells of a map with the true map.
 
 use super::named_error::named_error;
 use crate::{AppError, read_two_maps};
@@ -7,7 +7,7 @@ use trundle_core::Pose2;
 use trundle_eval::{EvalError, MapAgreement, MapAgreementConfig, align_maps, map_agreement};
 use trundle_io::Summary;
 
-/// How well the occupied cells of a map agree with those of the true map.
+/// Agreement of the occupied cells of a map with those of the true map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapEvaluation {
     /// The agreement of the cells.

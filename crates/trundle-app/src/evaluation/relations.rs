@@ -13,7 +13,7 @@ use trundle_io::{Summary, read_text};
 /// Share of poses that may have the stamp of the pose before. Above it the stamps are rounded, and a stamp names several poses. Source: ours.
 const MAX_REPEATED_STAMPS_SHARE: f64 = 0.1;
 
-/// A trajectory, refused where many poses have one stamp: such a pose cannot be found by its time.
+/// Reads a trajectory; refuses one in which many poses share a stamp, because such a pose cannot be found by its time.
 ///
 /// # Errors
 /// When the file cannot be read, or its stamps are rounded.
@@ -33,20 +33,20 @@ pub fn unrounded_trajectory(path: &Path) -> Result<Vec<(Stamp, Pose3)>, AppError
 /// The form of a reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RelationReference {
-    /// A trajectory: relations 1 m and 10 m apart and between places visited again are taken from it.
+    /// A trajectory: the relations are its own, 1 m and 10 m apart and between places visited twice.
     Trajectory,
     /// A relation file: lines of from_time, to_time, x, y, z, roll, pitch, yaw.
     RelationFile,
 }
 
-/// The errors of a trajectory for each set of relations, the last one all of them.
+/// The errors of a trajectory for each set of relations; the last set contains all relations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RelationEvaluation {
     sets: Vec<(&'static str, RelationError)>,
 }
 
 impl RelationEvaluation {
-    /// Evaluates the trajectory of the file `estimate`. A pose stands for a time at most `max_difference` \[s\] away.
+    /// Evaluates the trajectory of the file `estimate`. A pose is matched to a time at most `max_difference` \[s\] away.
     ///
     /// # Errors
     /// When a file cannot be read, the reference has no relation, or the trajectory has no pose for one.
@@ -107,7 +107,7 @@ fn row(name: &str, error: &RelationError) -> Vec<String> {
     ]
 }
 
-/// The relations with their names, the last all of them.
+/// The sets of relations with their names; the last set contains all relations.
 fn relation_sets(
     path: &Path,
     form: RelationReference,
@@ -123,7 +123,7 @@ fn relation_sets(
     Ok(vec![("1 m", sets.near), ("10 m", sets.far), ("loops", sets.loops), ("all", all)])
 }
 
-/// Why a reference has no relation.
+/// The reason why a reference has no relation.
 fn no_relation(path: &Path, form: RelationReference) -> Result<String, AppError> {
     if form == RelationReference::RelationFile {
         return Ok("no relation in it, expected lines of: from_time to_time x y z roll pitch yaw".to_owned());

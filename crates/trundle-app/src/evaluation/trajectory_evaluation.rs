@@ -18,13 +18,13 @@ pub struct TrajectoryEvaluation {
     pub absolute: AbsoluteError,
     /// Relative pose error.
     pub relative: RelativeError,
-    /// How the absolute error was taken.
+    /// Settings of the absolute error.
     pub absolute_config: AbsoluteConfig,
-    /// How the relative error was taken.
+    /// Settings of the relative error.
     pub relative_config: RelativeConfig,
     /// The estimate, laid over the reference.
     pub aligned: Vec<(Stamp, Pose3)>,
-    /// The positions of the reference beside each compared pose, m.
+    /// Position of the reference at each compared pose, m.
     pub truth: Vec<Vector3>,
 }
 
@@ -71,7 +71,7 @@ impl TrajectoryEvaluation {
         self.absolute.pairs.iter().map(|&(_, e)| self.aligned[e].1.translation).collect()
     }
 
-    /// The absolute errors (cm) by the time of the estimate since its first pose (s).
+    /// The absolute errors (cm) over the time since the first pose of the estimate (s).
     pub(crate) fn absolute_errors_cm(&self) -> Vec<(f64, f64)> {
         let pairs = self.absolute.pairs.iter().zip(&self.absolute.errors);
         pairs.map(|(&(_, e), error)| (self.seconds(e), error * 1e2)).collect()

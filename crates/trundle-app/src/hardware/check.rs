@@ -45,7 +45,7 @@ pub struct CheckRequest<'a> {
 pub struct HardwareReport {
     /// The table: what, value.
     pub rows: Vec<Vec<String>>,
-    /// Faults to fix before a drive, each with the remedy; empty if there are none.
+    /// Faults to mend before a drive, each with the remedy; empty if none was found.
     pub problems: Vec<String>,
     /// Parts that were not checked, and how to check them.
     pub notes: Vec<String>,
@@ -53,7 +53,7 @@ pub struct HardwareReport {
     pub values: Calibration,
 }
 
-/// Starts base and camera, which stand still, and listens to them; a person may push the robot meanwhile.
+/// Starts base and camera without driving and measures their data; a person may push the robot during the check.
 ///
 /// # Errors
 /// When base or camera cannot be started.
@@ -65,7 +65,7 @@ pub fn check_hardware(request: CheckRequest<'_>) -> Result<HardwareReport, AppEr
     let sink = Arc::clone(&log);
     let on_event = move |event| sink.lock().unwrap_or_else(PoisonError::into_inner).on_event(&event);
     let drivers = Drivers::start(base, camera, output, origin, on_event)?;
-    // The probe of the base takes a part of the time since the origin.
+    // The probe of the base uses a part of the time since the origin.
     let start = Instant::now();
     let is_over = || stop::is_requested(|| format!("{:.1} s", start.elapsed().as_secs_f64()));
     while start.elapsed().as_secs_f64() < seconds && !is_over() {

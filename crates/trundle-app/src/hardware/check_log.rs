@@ -44,7 +44,7 @@ pub(super) struct CheckLog {
     pub distances: [f64; 2],
     /// Turn by the gyro \[rad\].
     pub gyro_turn: f64,
-    /// Gyro rates while the wheels stood \[rad/s\].
+    /// Gyro rates while the wheels were at rest \[rad/s\].
     pub rest_rates: Vec<f64>,
     pub body: BodyNotes,
     last_ticks: Option<WheelTicks>,
@@ -77,7 +77,7 @@ impl CheckLog {
         }
     }
 
-    /// Of the robot's drive \[m\].
+    /// Distance between the wheels of the robot's drive \[m\].
     pub fn wheelbase(&self) -> f64 {
         self.drive.wheelbase
     }
@@ -151,12 +151,12 @@ impl CheckLog {
     }
 }
 
-/// The mean; 0 of nothing.
+/// The mean; 0 without values.
 pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
-/// The rate of readings by their arrivals \[Hz\], and the longest gap \[ms\]; `None` of fewer than two.
+/// The rate of readings by their arrivals \[Hz\], and the longest gap \[ms\]; `None` for fewer than two readings.
 pub(super) fn rate_and_gap(arrivals: &[f64]) -> Option<(f64, f64)> {
     let (first, last) = (arrivals.first()?, arrivals.last()?);
     let gap = arrivals.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);

@@ -39,7 +39,7 @@ pub fn device_rows() -> Vec<Vec<String>> {
     rows
 }
 
-/// The library of a kind of camera, and the cameras that it lists.
+/// The library for a kind of camera, and the cameras that the library lists.
 fn camera_rows(kind: NativeKind, report: &LibraryReport) -> Vec<Vec<String>> {
     let name = format!("camera {kind}");
     let row = |value: String| vec![name.clone(), value];

@@ -1,4 +1,4 @@
-//! The drivers of base and camera, in threads of their own.
+//! The drivers of base and camera, in their own threads.
 
 use crate::{AppError, stop};
 use std::path::PathBuf;
@@ -20,7 +20,7 @@ const CAMERA_TIMEOUT: Duration = Duration::from_secs(10);
 /// Name of the program of the command line.
 const PROGRAM_NAME: &str = "trundle";
 
-/// Longest wait for a lost camera to open again: the driver's threads look for the end of the run in between. Source: ours.
+/// Longest wait for a lost camera to open again: in between, the driver's threads check for the end of the run. Source: ours.
 const REOPEN_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A camera that is open, and how to open it again.
@@ -33,7 +33,7 @@ impl OpenCamera {
     /// Opens the camera.
     ///
     /// # Errors
-    /// When there is no such camera, it cannot be used, or the user asked to stop.
+    /// When the camera does not exist or cannot be used, or the user interrupted.
     pub fn open(spec: &CameraSpec) -> Result<Self, AppError> {
         let (sender, opened) = channel();
         let asked = spec.clone();
@@ -57,7 +57,7 @@ impl OpenCamera {
         Ok(Self { spec: spec.clone(), camera })
     }
 
-    /// Refuses a recording: a base must not drive by old images.
+    /// Refuses a recorded camera: a base must not drive by old images.
     ///
     /// # Errors
     /// When the camera is a recording.
@@ -91,15 +91,15 @@ impl OpenCamera {
         }
     }
 
-    /// Description of the camera by itself.
+    /// The camera's own description.
     #[must_use]
     pub fn info(&self) -> &CameraInfo {
         self.camera.info()
     }
 }
 
-/// The program `trundle`, whose commands `serve-camera` and `guard-base` are processes beside a run: this program where it is that one,
-/// else the one in the search path.
+/// Path of the program `trundle`, for its helper commands `serve-camera` and `guard-base`: the present program if it is `trundle`, else the
+/// one in the search path.
 fn helper_program() -> PathBuf {
     let is_trundle = |program: &PathBuf| program.file_stem().is_some_and(|name| name == PROGRAM_NAME);
     std::env::current_exe().ok().filter(is_trundle).unwrap_or_else(|| PROGRAM_NAME.into())
@@ -109,7 +109,7 @@ fn refused(spec: &CameraSpec, error: &CameraError) -> AppError {
     AppError::Input(format!("camera {spec}: {error}"))
 }
 
-/// Base and camera that run. Dropping them stops the base.
+/// Running drivers of base and camera. Dropping them stops the base.
 pub struct Drivers {
     base: KobukiBase,
     camera: CameraThread,
@@ -152,7 +152,7 @@ impl Drivers {
         Ok(Self { base, camera })
     }
 
-    /// Where commands go.
+    /// Sender for commands to the base.
     #[must_use]
     pub fn commands(&self) -> Sender<Twist2> {
         self.base.commands()
@@ -177,7 +177,7 @@ impl Drivers {
     }
 }
 
-/// The camera's clock mapped to the host's by a filter, anew for each opening.
+/// A filter that maps the camera's clock to the host's, reset at each opening.
 fn stamp_maps() -> StampMapFactory {
     Box::new(|info| {
         let config = DeviceClockConfig { transport_delay_s: info.delay_s, ..DeviceClockConfig::default() };

@@ -13,23 +13,22 @@ const MIN_STEPS: usize = 8;
 const MAX_POINTS: usize = 180;
 /// Minimum turn of a step that reveals a mirrored laser \[rad\]. Source: ours.
 const MIN_STEP_TURN_RAD: f64 = 0.15;
-/// Largest turn of a step \[rad\]. Beyond it two scans share too little. Source: ours.
+/// Largest turn of a step \[rad\]. Two scans farther apart share too little. Source: ours.
 const MAX_STEP_TURN_RAD: f64 = 0.8;
 /// Minimum length of a step that reveals a turned laser \[m\]. Source: ours.
 const MIN_STEP_LENGTH_M: f64 = 0.2;
-/// Largest length of a step \[m\]. Beyond it two scans share too little. Source: ours.
+/// Largest length of a step \[m\]. Two scans farther apart share too little. Source: ours.
 const MAX_STEP_LENGTH_M: f64 = 1.0;
 /// Number of scans after the first among which a step ends. Source: ours.
 const MAX_STEP_SCANS: usize = 40;
 /// Distance from which a point has no match \[m\]. Source: ours.
 const MAX_MATCH_DISTANCE_M: f64 = 0.3;
-/// Difference of two turns of a laser below which they are the same \[rad\]. Half a degree, as turns are named in whole ones.
-/// Source: ours.
+/// Difference of two turns of a laser below which they are equal \[rad\]: half a degree, as messages give whole degrees. Source: ours.
 const MIN_TURN_DIFFERENCE_RAD: f64 = 0.0087;
-/// Error of the better mount as a share of that of the mount taken. Above it none is named. Source: ours.
+/// Largest ratio of the better mount's error to the given mount's error. Above it no mount is suggested. Source: ours.
 const MAX_ERROR_SHARE: f64 = 0.6;
 
-/// Share of the steps with wrong odometry \[1\] from which on a warning is given, whatever the mount. Source: ours.
+/// Share of the steps with implausible odometry \[1\] above which a warning is given for any mount. Source: ours.
 const MIN_SHARE_NOT_BELIEVED: f64 = 0.3;
 /// Number of scans below which that share is not evaluated. Source: ours.
 const MIN_SCANS: usize = 10;
@@ -49,9 +48,9 @@ pub(super) fn mount_hint(log: &LaserLog, counts: &ScanCounts) -> Option<String> 
     }
 }
 
-/// Name of a mount, and the options that are not given for it; `None` if it is the mount taken.
+/// Name of a mount, and the options that select the mount; `None` if it equals `taken`.
 fn described(mount: LaserMount, taken: LaserMount) -> Option<String> {
-    // Without the sign of a negative zero.
+    // Adding zero removes the sign of a negative zero.
     let degrees = mount.turn.to_degrees().round() + 0.0;
     let is_turned_otherwise = wrap_angle(mount.turn - taken.turn).abs() >= MIN_TURN_DIFFERENCE_RAD;
     let mut options = String::new();
@@ -81,7 +80,7 @@ fn described(mount: LaserMount, taken: LaserMount) -> Option<String> {
     Some(format!("the laser seems to be mounted {how}: {options}"))
 }
 
-/// The mount that fits the odometry of the log's steps clearly better than the one taken, if there is one.
+/// The mount that fits the odometry of the log's steps clearly better than the given mount; `None` if no mount does.
 pub(super) fn better_mount(log: &LaserLog) -> Option<LaserMount> {
     let steps = steps(&log.scans);
     if steps.len() < MIN_STEPS {
@@ -95,7 +94,7 @@ pub(super) fn better_mount(log: &LaserLog) -> Option<LaserMount> {
     (error < MAX_ERROR_SHARE * taken).then(|| best.applied_to(log.mount))
 }
 
-/// Another reading of a scan's angles: about the laser, mirrored at the base's x axis first, then turned to the left.
+/// Another interpretation of a scan's angles: mirrored at the base's x axis, then rotated to the left, around the laser.
 #[derive(Debug, Clone, Copy)]
 struct Reading {
     is_mirrored: bool,
@@ -136,7 +135,7 @@ fn steps(scans: &[LaserLogScan]) -> Vec<Step<'_>> {
     found
 }
 
-/// From each scan the first step that is wanted.
+/// The first accepted step from each scan.
 fn steps_of<'a>(scans: &'a [LaserLogScan], is_wanted: &dyn Fn(&Pose2) -> bool) -> Vec<Step<'a>> {
     let step_from = |(i, first): (usize, &'a LaserLogScan)| {
         let later = scans[i + 1..].iter().take(MAX_STEP_SCANS);
@@ -179,7 +178,8 @@ mod tests {
     use std::f64::consts::TAU;
     use trundle_core::{Beam, Scan, Stamp};
 
-    /// A drive on a curve in a room of 6 x 4 m with a box, seen by a laser that is mounted as `truth` and read as upright ahead.
+    /// A simulated drive along a curve in a room of 6 x 4 m with a box; the laser is mounted as `truth` and its log claims an upright laser
+    /// at heading 0.
     fn drive(truth: LaserMount) -> LaserLog {
         let scans = (0..36).map(|i| {
             let at = f64::from(i) * 0.17;
@@ -198,7 +198,7 @@ mod tests {
         LaserLog { scans: scans.collect(), ..LaserLog::default() }
     }
 
-    /// The range to the walls and to a box at one of them, m.
+    /// The range to the walls and to a box at a wall, m.
     fn range(from: Vector2, heading: f64) -> f64 {
         let along = Vector2::new(heading.cos(), heading.sin());
         (1..300)

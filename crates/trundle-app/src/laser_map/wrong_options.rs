@@ -6,8 +6,8 @@ use crate::sequence_input::SequenceInput;
 use trundle_io::FileKind;
 
 impl LaserMapRequest {
-    /// Refuses options of a laser beside RGB-D images, options of a camera beside a laser log, and topics of a log without them.
-    /// `laser_option`: the name of an option of the laser that is given.
+    /// Refuses options of a laser for RGB-D images, options of a camera for a laser log, and topics for a log without topics.
+    /// `laser_option`: the name of the given option of the laser.
     ///
     /// # Errors
     /// Names the option and the kind of the log.

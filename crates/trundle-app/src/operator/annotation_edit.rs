@@ -5,11 +5,11 @@ use trundle_core::{Invalid, MapAnnotations, NamedPlace, Zone};
 /// A change of zones and named places.
 #[derive(Debug, Clone, PartialEq)]
 pub enum AnnotationEdit {
-    /// A zone in place of that with its number; number 0: a new one.
+    /// Replaces the zone with the same number; number 0 adds a zone.
     SetZone(Zone),
     /// No zone with this number.
     RemoveZone(u32),
-    /// A place in place of that with its number; number 0: a new one.
+    /// Replaces the place with the same number; number 0 adds a place.
     SetPlace(NamedPlace),
     /// No place with this number.
     RemovePlace(u32),
@@ -19,7 +19,7 @@ impl AnnotationEdit {
     /// The annotations after the change.
     ///
     /// # Errors
-    /// When there is no zone or place with the number, or the new one cannot be accepted.
+    /// When no zone or place has the number, or the new one is invalid.
     pub fn applied_to(&self, annotations: &MapAnnotations) -> Result<MapAnnotations, Invalid> {
         let mut next = annotations.clone();
         let free = next.free_id();

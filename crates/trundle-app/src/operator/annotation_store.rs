@@ -11,9 +11,10 @@ use trundle_runtime::OperatorCommand;
 pub(super) struct AnnotationStore {
     pub(super) newest: Arc<MapAnnotations>,
     pub(super) file: Option<PathBuf>,
-    /// Changes that were sent and that the robot has not applied yet.
+    /// Number of changes that were sent and not yet applied by the robot.
     pub(super) waiting: u32,
-    /// Number of the last request that was sent before the map was replaced; 0 before that. Changes up to it are of an earlier map.
+    /// Number of the last request sent before the map was replaced; 0 before any replacement. Changes up to this number belong to an
+    /// earlier map.
     pub(super) last_of_earlier_map: u64,
 }
 
@@ -23,7 +24,7 @@ impl AnnotationStore {
         Self { newest, file, ..Self::default() }
     }
 
-    /// Takes over what the robot applies, if it is not a change that was sent here: a replay, or another way to the robot.
+    /// Adopts the annotations that the robot applied, unless the change was sent here: the change came from a replay or another front end.
     pub(super) fn note_obeyed(&mut self, annotations: &MapAnnotations) {
         if self.waiting > 0 {
             self.waiting -= 1;
@@ -32,13 +33,12 @@ impl AnnotationStore {
         }
     }
 
-    /// Begins without annotations and without a file: those of the old map do not belong to the new one. `last`: number of the last
-    /// request that was sent.
+    /// Clears annotations and file: those of the old map do not belong to the new one. `last`: number of the last request sent.
     pub(super) fn note_map_replaced(&mut self, last: u64) {
         *self = Self { waiting: self.waiting, last_of_earlier_map: last, ..Self::default() };
     }
 
-    /// Whether a request changes the zones or places of an earlier map: the robot must not apply it on the present one.
+    /// Whether a request changes the zones or places of an earlier map; the robot must not apply such a request to the present map.
     pub(super) fn is_of_earlier_map(&self, request: &OperatorRequest) -> bool {
         matches!(request.command, OperatorCommand::Annotate(_)) && request.id <= self.last_of_earlier_map
     }

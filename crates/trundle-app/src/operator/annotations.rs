@@ -8,7 +8,7 @@ use trundle_io::{annotations_text, replace_file};
 use trundle_runtime::OperatorCommand;
 
 impl Operator {
-    /// Zones and named places of the map. Those that are the same are the same allocation.
+    /// Zones and named places of the map. Equal annotations share one allocation.
     #[must_use]
     pub fn annotations(&self) -> Arc<MapAnnotations> {
         Arc::clone(&self.annotation_store().newest)
@@ -17,8 +17,8 @@ impl Operator {
     /// Changes zones or places: sends them to the robot, and writes the file that keeps them.
     ///
     /// # Errors
-    /// When the change cannot be accepted, the run takes no command, or the file cannot be written. In the last case the change counts
-    /// until the run ends.
+    /// When the change is invalid, the run accepts no command, or the file cannot be written. In the last case the change is valid until
+    /// the run ends.
     pub fn edit_annotations(&self, edit: &AnnotationEdit) -> Result<(), OperatorError> {
         // The file is written without the lock of the store, for which the run may wait.
         let _one_at_a_time = self.editing();
@@ -37,7 +37,7 @@ impl Operator {
     /// The goal pose of the place of this name, map frame.
     ///
     /// # Errors
-    /// When there is no such place; names those that there are.
+    /// When the place does not exist; the error lists the known places.
     pub fn goal_of_place(&self, name: &str) -> Result<Pose2, OperatorError> {
         let annotations = self.annotations();
         annotations.pose_of(name).ok_or_else(|| {

@@ -8,8 +8,8 @@ use trundle_io::{JPEG_QUALITY, encode_color};
 
 /// Time between two copies of the camera's image \[s\]. A copy of 100 kB takes 10 us. Source: ours.
 const IMAGE_PERIOD_S: f64 = 0.1;
-/// Time by the clock between two images that are encoded for views alone: a simulator is faster than real time, and an image takes
-/// some 3 ms. Source: ours; a page is sent an image each 180 ms.
+/// Wall-clock time between two images that are encoded only for views. A simulator runs faster than real time, and encoding takes some 3
+/// ms. Source: ours; a page receives an image each 180 ms.
 const ENCODING_PERIOD: Duration = Duration::from_millis(150);
 
 /// Keeps the newest image of the camera.
@@ -17,19 +17,19 @@ const ENCODING_PERIOD: Duration = Duration::from_millis(150);
 pub(crate) struct ImageFeed {
     image: Option<Arc<ImageView>>,
     depth: Option<Arc<DepthView>>,
-    /// When an image was last encoded for views alone.
+    /// Time of the last image encoded only for views.
     encoded: Option<Instant>,
 }
 
 impl ImageFeed {
-    /// Keeps a copy of an image where the last one is old.
+    /// Copies an image if the last copy is old.
     pub(crate) fn note_jpeg(&mut self, stamp: Stamp, jpeg: &[u8]) {
         if self.image.as_ref().is_none_or(|image| is_apart(image.stamp, stamp, IMAGE_PERIOD_S)) {
             self.image = Some(Arc::new(ImageView { stamp, jpeg: jpeg.to_vec() }));
         }
     }
 
-    /// Keeps a copy of a depth image where the last one is old.
+    /// Copies a depth image if the last copy is old.
     pub(crate) fn note_depth(&mut self, stamp: Stamp, depth: &DepthImage) {
         let is_due = |last: &Arc<DepthView>| is_apart(last.stamp, stamp, IMAGE_PERIOD_S);
         if self.depth.as_ref().is_none_or(is_due) {
@@ -37,7 +37,7 @@ impl ImageFeed {
         }
     }
 
-    /// Encodes an image of a simulator, not too often. One that cannot be encoded is not shown.
+    /// Encodes an image of a simulator at a limited rate. An image that cannot be encoded is not shown.
     pub(crate) fn note_rgbd(&mut self, image: &RgbdImage) {
         let stamp = image.stamp();
         if self.encoded.is_none_or(|encoded| encoded.elapsed() >= ENCODING_PERIOD)

@@ -16,10 +16,10 @@ use trundle_runtime::{OperatorCommand, Robot, StepReport};
 
 /// Largest number of requests that wait for the run. A run takes one at each step. Source: ours.
 const MAX_WAITING_REQUESTS: usize = 64;
-/// Time without a request for a view after which the run counts as unwatched. Source: ours; a viewer asks ten times a second.
+/// Time without a request for a view after which the run counts as unwatched. Source: ours; a viewer requests a view ten times a second.
 const UNWATCHED_AFTER: Duration = Duration::from_secs(1);
 
-/// A front end's end of the link. Clones share it.
+/// A front end's end of the link. Clones share the end.
 #[derive(Debug, Clone)]
 pub struct Operator {
     shared: Arc<Shared>,
@@ -31,7 +31,7 @@ pub struct OperatorLink {
     requests: Receiver<OperatorRequest>,
     shared: Arc<Shared>,
     feed: ViewFeed,
-    /// When a front end last asked for a view, as the run noticed.
+    /// Time of the last request for a view, as noticed by the run.
     asked: Instant,
 }
 
@@ -40,7 +40,7 @@ struct Shared {
     /// The sender, and the number of the last request.
     requests: Mutex<(SyncSender<OperatorRequest>, u64)>,
     view: Mutex<Option<Arc<RunView>>>,
-    /// Whether a front end has asked for a view since the last step.
+    /// Whether a front end requested a view since the last step.
     is_asked: AtomicBool,
     series: Mutex<Option<Arc<SeriesView>>>,
     annotations: Mutex<AnnotationStore>,
@@ -48,27 +48,27 @@ struct Shared {
     editing: Mutex<()>,
 }
 
-/// Why a request does not reach the run.
+/// Reason why a request does not reach the run.
 #[derive(Debug, Error)]
 pub enum OperatorError {
     /// A number of the command is not finite or outside its range.
     #[error(transparent)]
     Invalid(#[from] Invalid),
-    /// Requests come faster than the run takes them.
+    /// Requests arrive faster than the run processes them.
     #[error("{MAX_WAITING_REQUESTS} requests wait for the robot: send fewer")]
     Busy,
     /// The run is over.
     #[error("the run is over")]
     Over,
-    /// Zones or places cannot be written to their file.
+    /// Zones or places could not be written to their file.
     #[error("the change counts until the run ends, and is not kept: {0}")]
     NotKept(String),
-    /// There is no place of this name.
+    /// No place has this name.
     #[error("no place '{name}'; there are: {}", if known.is_empty() { "none" } else { known })]
     NoPlace {
         /// The name.
         name: String,
-        /// The names that there are.
+        /// The known names.
         known: String,
     },
 }
@@ -86,7 +86,7 @@ pub fn operator_link() -> (Operator, OperatorLink) {
 }
 
 impl Operator {
-    /// Sends a command; its number, by which [`RunView::mission`] names the mission that it begins.
+    /// Sends a command; returns its number, by which [`RunView::mission`] identifies the mission that the command starts.
     ///
     /// # Errors
     /// When the command cannot be carried out, too many wait, or the run is over.
@@ -118,13 +118,14 @@ impl Operator {
         self.shared.annotations.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The newest view without a wish for its large parts: scan, image and map may be old.
+    /// The newest view, without a request for its large parts: scan, image and map may be old.
     #[must_use]
     pub fn glance(&self) -> Option<Arc<RunView>> {
         self.shared.view.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// The newest view; `None` before the first step. Scan, image and map are kept up to date while somebody asks at least once per second.
+    /// The newest view; `None` before the first step. Scan, image and map are updated while a front end calls this at least once per
+    /// second.
     #[must_use]
     pub fn view(&self) -> Option<Arc<RunView>> {
         self.shared.is_asked.store(true, Ordering::Relaxed);
@@ -133,13 +134,13 @@ impl Operator {
 }
 
 impl Operator {
-    /// The end of this link for another run that is shown and takes no commands.
+    /// The end of this link for another displayed run without commands.
     #[must_use]
     pub fn link_of_shown_run(&self) -> OperatorLink {
         OperatorLink::new(sync_channel(0).1, Arc::clone(&self.shared))
     }
 
-    /// Shows how far a series has come.
+    /// Shows the progress of a series.
     pub fn show_series(&self, series: SeriesView) {
         *self.shared.series.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::new(series));
     }
@@ -162,42 +163,41 @@ impl OperatorLink {
         Operator { shared: Arc::clone(&self.shared) }
     }
 
-    /// Takes an image of the camera over into later views, where somebody watches.
+    /// Copies a camera image into later views if a front end watches.
     pub(crate) fn note_image(&mut self, stamp: Stamp, jpeg: &[u8]) {
         if self.is_watched() {
             self.feed.images.note_jpeg(stamp, jpeg);
         }
     }
 
-    /// Takes an image of a simulator over into later views, where somebody watches.
+    /// Copies an image of a simulator into later views if a front end watches.
     pub fn note_rgbd(&mut self, image: &RgbdImage) {
         if self.is_watched() {
             self.feed.images.note_rgbd(image);
         }
     }
 
-    /// As [`OperatorLink::note_rgbd`] for an event with an image; other events show nothing.
+    /// Applies [`OperatorLink::note_rgbd`] to an event with an image; ignores other events.
     pub fn note_event(&mut self, event: &SensorEvent) {
         if let SensorEvent::Rgbd(image) = event {
             self.note_rgbd(image);
         }
     }
 
-    /// Whether somebody watches: large parts of views are made only then.
+    /// Whether a front end watches: large parts of views are only made then.
     #[must_use]
     pub fn is_watched(&self) -> bool {
         self.asked.elapsed() < UNWATCHED_AFTER
     }
 
-    /// Notes whether a front end has asked for a view.
+    /// Records whether a front end requested a view.
     fn note_asked(&mut self) {
         if self.shared.is_asked.swap(false, Ordering::Relaxed) {
             self.asked = Instant::now();
         }
     }
 
-    /// The next request, if one waits. Changes of the zones and places of a map that was replaced meanwhile are dropped: the file
-    /// of that map has them.
+    /// The next request, if one waits. Changes to zones and places of a replaced map are dropped: the file of that map contains them.
     pub fn next_request(&self) -> Option<OperatorRequest> {
         loop {
             let request = self.requests.try_recv().ok()?;
@@ -231,8 +231,8 @@ impl OperatorLink {
         }
     }
 
-    /// Notes what the request `id` replaced. Zones and places belong to the map: a robot on another map has none, and the file of the
-    /// old ones stays as it is.
+    /// Records the effect of the request `id`. Zones and places belong to the map: a robot on another map has none, and the file of the old
+    /// ones does not change.
     pub(crate) fn note_obeyed(&mut self, id: u64, report: &StepReport) {
         if report.mission_replaced {
             self.feed.note_mission(id);
@@ -254,7 +254,7 @@ impl OperatorLink {
         }
     }
 
-    /// Publishes a view of work without a robot. Its images are those of [`OperatorLink::note_rgbd`], where it has none.
+    /// Publishes a view of work without a robot. A view without images shows those of [`OperatorLink::note_rgbd`].
     pub fn publish_view(&mut self, mut view: RunView) {
         self.note_asked();
         let images = &self.feed.images;

@@ -1,4 +1,4 @@
-//! The map of a run as files, while it goes.
+//! The map of a run as files, during the run.
 
 use trundle_core::{MapAnnotations, OccupancyGrid};
 use trundle_io::{annotations_text, map_pgm, map_yaml};

@@ -11,9 +11,9 @@ use trundle_core::{MAX_TEXT_CELLS, OccupancyGrid};
 use trundle_io::{MapDescription, picture_size};
 use trundle_runtime::{RobotConfig, require_loadable};
 
-/// Most names that are offered. Source: ours.
+/// Maximum number of offered names. Source: ours.
 const MAX_NAMES: usize = 200;
-/// Largest YAML file of a map \[bytes\]. Source: ours; those of map_saver have 150.
+/// Largest YAML file of a map \[bytes\]. Source: ours; files of map_saver have 150.
 const MAX_YAML_BYTES: u64 = 64 * 1024;
 /// Largest picture of a map \[bytes\]: a PGM of 16 bits with the most cells that are recorded, and its header.
 const MAX_PICTURE_BYTES: u64 = 2 * MAX_TEXT_CELLS as u64 + 64 * 1024;
@@ -23,7 +23,7 @@ const MAX_PICTURE_BYTES: u64 = 2 * MAX_TEXT_CELLS as u64 + 64 * 1024;
 pub struct MapFolder {
     folder: PathBuf,
     robot: RobotConfig,
-    /// Whether it was logged that there are more names than are offered.
+    /// Whether the warning of more names than [`MAX_NAMES`] was logged.
     is_cut_told: Arc<AtomicBool>,
 }
 
@@ -35,7 +35,7 @@ impl MapFolder {
     pub fn open(folder: PathBuf, robot: RobotConfig) -> Result<Self, String> {
         Self::check(&folder)?;
         let maps = Self { folder, robot, is_cut_told: Arc::default() };
-        // The warning of more names than are offered comes at the start, not when a page asks.
+        // Logs the warning of too many names at the start, not at a page's first request.
         drop(maps.names());
         Ok(maps)
     }
@@ -43,7 +43,7 @@ impl MapFolder {
     /// Refuses a path that is no folder that can be read.
     ///
     /// # Errors
-    /// Why not, and what is expected.
+    /// The reason why the folder cannot be used, and what is expected.
     pub fn check(folder: &Path) -> Result<(), String> {
         let problem = match std::fs::read_dir(folder) {
             Ok(_) => return Ok(()),
@@ -60,8 +60,8 @@ impl MapFolder {
         ))
     }
 
-    /// The names of the maps that are offered, sorted; none where the folder can no longer be read. The first names beyond those are
-    /// logged once, with their number.
+    /// The names of the offered maps, sorted; empty if the folder can no longer be read. Names beyond the limit are logged once, with their
+    /// number.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
         let mut names = self.all_names();
@@ -72,7 +72,7 @@ impl MapFolder {
         names
     }
 
-    /// The first time that there are more names than are offered: how many.
+    /// The warning of more names than the limit, with their number; only the first time.
     fn cut_warning(&self, count: usize) -> Option<String> {
         let is_new = count > MAX_NAMES && !self.is_cut_told.swap(true, Ordering::Relaxed);
         let folder = self.folder.display();
@@ -90,14 +90,14 @@ impl MapFolder {
         names
     }
 
-    /// The map of a name. Reads files of the folder alone: no link leads out of it, and nothing but regular files is opened. This may
-    /// take seconds.
+    /// The map of a name. Only regular files inside the folder are opened; a link that leads out of the folder is refused. Reading may take
+    /// seconds.
     ///
     /// # Errors
-    /// In a sentence without content of the files, when there is none of this name, its files are broken, too large or outside the
-    /// folder, or the robot cannot take it. What is broken goes to the log: whoever asks need not be allowed to read the files.
+    /// When no map has this name, its files are broken, too large or outside the folder, or the robot cannot accept the map. The error
+    /// contains nothing of the files' content. Details are logged only, because the caller may lack the right to read the files.
     pub fn read(&self, name: &str) -> Result<OccupancyGrid, String> {
-        // Only names of the list: none leads out of the folder.
+        // Only listed names are accepted, so no path leaves the folder.
         if !self.all_names().iter().any(|known| known == name) {
             return Err(format!("There is no map '{name}' in the folder of maps."));
         }
@@ -248,7 +248,7 @@ mod tests {
             std::fs::write(file(&format!("{name}.yaml")), map_yaml(&grid, image)).unwrap();
         }
         std::fs::write(file("wide.pgm"), "P5 30000 20000 255\n").unwrap();
-        // A file with a hole takes no place on the disk.
+        // A sparse file uses no space on the disk.
         for name in ["large.pgm", "long.yaml"] {
             std::fs::File::create(file(name)).unwrap().set_len(256 << 20).unwrap();
         }

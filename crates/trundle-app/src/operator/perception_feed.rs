@@ -8,7 +8,7 @@ use trundle_slam::{RgbdSlam, TrackReport};
 
 /// Time between two copies of the features \[s\]. A copy of 1,000 features takes 5 us. Source: ours.
 const FEATURES_PERIOD_S: f64 = 0.2;
-/// Number of closed loops that are kept. Source: ours; more are not seen on a screen.
+/// Maximum number of closed loops in a view. Source: ours; a screen does not show more.
 const MAX_LOOPS: usize = 20;
 
 /// Keeps features of the last image and closed loops.

@@ -6,7 +6,7 @@ use trundle_runtime::OperatorCommand;
 /// A command of an operator, with the number by which views name its mission.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct OperatorRequest {
-    /// Its number, from 1, in the order of sending.
+    /// Number of the request, from 1, in the order of sending.
     pub id: u64,
     /// The command.
     pub command: OperatorCommand,

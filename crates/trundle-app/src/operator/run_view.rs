@@ -10,7 +10,7 @@ use trundle_core::{
 use trundle_planning::MovingObstacle;
 use trundle_runtime::{DriveState, MotionHold, RunSetting, Task, TaskRecord};
 
-/// State of a run after a step. Large parts are shared with earlier views in which they are the same.
+/// State of a run after a step. Large parts are shared with earlier views that have equal parts.
 #[derive(Debug, Clone)]
 pub struct RunView {
     /// Time of the step.
@@ -21,7 +21,7 @@ pub struct RunView {
     pub odometry: Option<Odometry>,
     /// The last command.
     pub twist: Twist2,
-    /// What goes on; of the whole mission when it is over.
+    /// State of the run; after the end of the mission, the result of the whole mission.
     pub state: RunState,
     /// The mission.
     pub mission: MissionView,
@@ -39,13 +39,13 @@ pub struct RunView {
     pub map: Option<Arc<MapView>>,
     /// Surroundings of the robot besides the map.
     pub perception: PerceptionView,
-    /// How often stages ran so far.
+    /// Number of runs of each stage.
     pub counts: RunCounts,
-    /// Present values of the settings that may change while the robot runs; `None` where there is no robot with settings.
+    /// Present values of the settings that may change while the robot runs; `None` without a robot with settings.
     pub settings: Option<[RunSetting; 2]>,
 }
 
-/// What goes on in a run.
+/// State of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RunState {
     /// A robot decides.
@@ -54,17 +54,17 @@ pub enum RunState {
     Activity(Activity),
 }
 
-/// What goes on where no robot decides.
+/// Activity of a run without a robot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Activity {
     /// In one or two words.
     pub name: &'static str,
-    /// More about it, in a sentence.
+    /// Details of the activity, in one sentence.
     pub reason: Option<String>,
 }
 
 impl RunView {
-    /// A view of a moment without mission and without robot: `map_from_base`, the base's twist and what goes on; all else empty.
+    /// A view of a moment without mission and without robot: `map_from_base`, the base's twist and the activity; all else is empty.
     #[must_use]
     pub fn of_activity(stamp: Stamp, pose: Pose2, twist: Twist2, activity: Activity) -> Self {
         let estimate = PoseEstimate { stamp, pose, twist, covariance: Default::default() };
@@ -107,7 +107,7 @@ impl RunState {
         }
     }
 
-    /// Why the robot does not move on, or more about the activity, in a sentence.
+    /// The reason why the robot does not move, or details of the activity, in one sentence.
     #[must_use]
     pub fn reason(&self) -> Option<String> {
         match self {
@@ -131,7 +131,7 @@ impl RunState {
 pub struct PerceptionView {
     /// The newest colour image.
     pub image: Option<Arc<ImageView>>,
-    /// Its depth, where it is at hand.
+    /// Depth of the image; `None` if unavailable.
     pub depth: Option<Arc<DepthView>>,
     /// The visual map, at most [`super::VISUAL_MAP_PERIOD_S`] old.
     pub visual_map: Option<Arc<VisualMapView>>,
@@ -159,16 +159,16 @@ pub struct FeatureView {
 pub struct FeatureSpot {
     /// Column and row \[px\].
     pub at_px: [f64; 2],
-    /// Whether it is a landmark that agrees with the pose.
+    /// Whether the feature is a landmark that agrees with the pose.
     pub is_tracked: bool,
 }
 
 /// A loop closure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClosedLoop {
-    /// Of the image by which it was closed.
+    /// Stamp of the image that closed the loop.
     pub stamp: Stamp,
-    /// `map_from_base` after it.
+    /// `map_from_base` after the closure.
     pub pose: Pose2,
 }
 
@@ -181,7 +181,7 @@ pub struct VisualMapView {
     pub landmarks: Vec<Vector3>,
 }
 
-/// How often parts of the robot ran since its start. The difference of two views gives a rate.
+/// Number of runs of the robot's parts since its start. The difference of two views gives a rate.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RunCounts {
     /// Camera poses by SLAM.
@@ -233,10 +233,10 @@ impl DepthView {
     }
 }
 
-/// A mission as a run shows it.
+/// A mission as displayed.
 #[derive(Debug, Clone, Default)]
 pub struct MissionView {
-    /// The request that began it; 0 for the mission of the setup.
+    /// Number of the request that started the mission; 0 for the mission of the setup.
     pub id: u64,
     /// The present task.
     pub task: Option<Task>,

@@ -1,19 +1,19 @@
-//! What stands around a run that is shown: its part of a longer work, and the runs beside it.
+//! Context of a displayed run: its position in a series, and the runs before it.
 
 use std::sync::Arc;
 
 /// A work of many steps or runs, one of which is shown.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SeriesView {
-    /// What is counted: `images`, `runs`.
+    /// Name of the counted things: `images`, `runs`.
     pub unit: &'static str,
-    /// Number of those that are done.
+    /// Number of finished ones.
     pub done: usize,
-    /// Number of all, where it is known.
+    /// Total number; `None` if unknown.
     pub total: Option<usize>,
     /// Number of runs that were shown before the present one. At another number all that was shown belongs to another run.
     pub number: u64,
-    /// The run that is shown; empty where there is one alone.
+    /// Name of the displayed run; empty if the series has one run.
     pub shown: String,
     /// The runs that have ended, in the order of their ends.
     pub ended: Arc<Vec<EndedRun>>,
@@ -22,10 +22,10 @@ pub struct SeriesView {
 /// A run that has ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EndedRun {
-    /// Its name.
+    /// Name of the run.
     pub name: String,
-    /// Whether it is as it should be.
+    /// Whether the run succeeded.
     pub is_success: bool,
-    /// Its result in a sentence.
+    /// Result of the run, in one sentence.
     pub text: String,
 }

@@ -20,7 +20,7 @@ pub(super) struct ViewFeed {
     plan: Option<Arc<Trajectory>>,
     map: Option<Arc<MapView>>,
     map_copied: Option<Stamp>,
-    /// Number of maps that stood before the present one.
+    /// Number of replaced maps.
     map_number: u64,
     /// Images of the camera.
     pub(super) images: ImageFeed,
@@ -37,7 +37,7 @@ impl ViewFeed {
         self.plan = None;
     }
 
-    /// Another map stands in place of the one before: the next view has it.
+    /// Marks that another map replaced the present one: the next view contains the new map.
     pub(super) fn note_map_replaced(&mut self) {
         self.map_number += 1;
         self.map = None;
@@ -96,7 +96,7 @@ impl ViewFeed {
         })
     }
 
-    /// While a decision job runs, the mission stays as it was.
+    /// While a decision job runs, the mission of the view does not change.
     fn update_mission(&mut self, robot: &Robot, report: &StepReport) {
         self.mission.is_over = report.finished;
         let Some(progress) = robot.mission_progress() else { return };

@@ -17,7 +17,7 @@ pub(crate) struct VisualMapFeed {
 }
 
 impl VisualMapFeed {
-    /// Copies the visual map where the last copy is old. While a perception job runs the map is away, and the last copy stays.
+    /// Copies the visual map if the last copy is old. While a perception job runs the map is unavailable, and the view has the last copy.
     pub(crate) fn update(&mut self, now: Stamp, slam: Option<&RgbdSlam>, map_from_visual: Option<Pose3>) {
         if self.newest.as_ref().is_some_and(|(copied, _)| now - *copied < VISUAL_MAP_PERIOD_S) {
             return;

@@ -5,7 +5,7 @@ use super::request::{NamedPose, PlanRequest};
 use trundle_core::{OccupancyGrid, Pose2, Twist2};
 use trundle_planning::{MultiGoalPlan, Plan, Planner, WaypointGraph};
 
-/// Distance below which two positions count as the same \[m\]. Beyond it a message names the position. Source: ours.
+/// Distance below which two positions count as the same \[m\]. Beyond it a message gives the position. Source: ours.
 const MAX_SAME_POSITION_M: f64 = 0.01;
 
 impl PlanRequest {
@@ -26,7 +26,7 @@ impl PlanRequest {
         found
     }
 
-    /// One sentence: which leg has no plan, and why.
+    /// One sentence: the leg without a plan, and the reason.
     pub fn explain(&mut self, refusal: &GoalRefusal) -> String {
         let GoalRefusal { goal, why, .. } = refusal;
         let from = self.leg_start(refusal);
@@ -40,7 +40,7 @@ impl PlanRequest {
         format!("{whole}: {why}{}", self.what_changes(why, refusal.from, *goal))
     }
 
-    /// The pose at which a leg begins: the start or the goal before, by name where the robot stands there.
+    /// The pose at which a leg begins: the start or the previous goal, with its name if the robot stands at that pose.
     fn leg_start(&self, refusal: &GoalRefusal) -> NamedPose {
         let asked = if refusal.goal == 0 { &self.start } else { &self.goals[refusal.goal - 1] };
         let is_there = asked.pose.distance(&refusal.from) < MAX_SAME_POSITION_M;
@@ -104,7 +104,7 @@ impl PlanRequest {
     }
 }
 
-/// The plan of one leg from rest, along the graph if there is one.
+/// The plan of one leg from rest, along the graph if one is given.
 fn plan_leg(
     planner: &mut Planner,
     (grid, graph): (&OccupancyGrid, Option<&WaypointGraph>),

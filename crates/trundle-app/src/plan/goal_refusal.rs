@@ -8,7 +8,7 @@ use trundle_planning::Plan;
 pub struct GoalRefusal {
     /// The goal's number, from 0.
     pub goal: usize,
-    /// Where the leg begins: the start, or where the robot stops at the goal before.
+    /// Start of the leg: the start, or the pose at which the robot stops at the previous goal.
     pub from: Pose2,
     /// The planner's answer.
     pub why: Plan,
@@ -19,16 +19,16 @@ pub struct GoalRefusal {
 pub struct MovedGoal {
     /// The goal's number, from 0.
     pub goal: usize,
-    /// Where the robot stops instead.
+    /// Pose at which the robot stops instead.
     pub to: Pose2,
     /// Distance of that pose from the goal, m.
     pub off: f64,
-    /// Why the goal itself has no plan.
+    /// The reason why the goal itself has no plan.
     pub why: String,
 }
 
 impl MovedGoal {
-    /// One sentence.
+    /// The refusal in one sentence.
     #[must_use]
     pub fn note(&self) -> String {
         let Self { goal, to, off, why } = self;

@@ -7,7 +7,7 @@ use trundle_io::{read_graph, read_keep_out_mask, read_speed_mask};
 use trundle_planning::{CostMask, Planner, SpeedMask, WaypointGraph};
 use trundle_viz::MaskShares;
 
-/// How many cells of a speed mask set a limit.
+/// Number of cells of a speed mask that set a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SpeedMaskLimits {
     /// Cells whose speed is not above 0, or above 100 %: they set no limit, as in Nav2.
@@ -70,7 +70,7 @@ pub fn read_lanes(path: &Path) -> Result<WaypointGraph, AppError> {
         .map_err(|error| AppError::Input(format!("{}: {error}", path.display())))
 }
 
-/// Refuses a mask that lies wholly beside the map: it belongs to another map or another frame.
+/// Refuses a mask without overlap with the map: such a mask belongs to another map or another frame.
 fn require_overlap(path: &Path, mask: &GridGeometry, map: &GridGeometry) -> Result<(), AppError> {
     let span = |g: &GridGeometry, axis: usize, cells: usize| {
         (g.origin[axis], g.origin[axis] + cells as f64 * g.resolution)

@@ -13,7 +13,7 @@ const CURVE_SAMPLE_SPACING_M: f64 = 0.02;
 /// Wall-clock time of planning, s.
 #[derive(Debug, Clone, Copy)]
 pub struct PlanTimes {
-    /// All of it.
+    /// Total time.
     pub all: f64,
     /// By stage.
     pub stages: PlanningTimes,
@@ -43,7 +43,7 @@ pub fn curve_csv(plan: &MultiGoalPlan) -> String {
     table_csv(["curve", "s_m", "x_m", "y_m", "theta_rad", "curvature_1_m"], points)
 }
 
-/// Of each piece, the coefficients of u^k, u from 0 to 1 along the piece: curve, piece, power, x, y.
+/// For each piece, the coefficients of u^k, u from 0 to 1 along the piece: curve, piece, power, x, y.
 fn coefficients(plan: &MultiGoalPlan) -> Vec<[f64; 5]> {
     let mut rows = Vec::new();
     for (i, curve) in curves(plan).enumerate() {
@@ -73,7 +73,7 @@ pub fn coefficients_csv(plan: &MultiGoalPlan) -> String {
     table_csv(["curve", "piece", "power", "x_m", "y_m"], coefficients(plan))
 }
 
-/// The active constraints: normal . control point <= offset, and what a metre of clearance would gain.
+/// The active constraints: normal . control point <= offset, and the gain per metre of clearance.
 pub fn constraints_csv(plan: &MultiGoalPlan) -> String {
     let head = ["curve", "piece", "control", "normal_x", "normal_y", "offset_m", "multiplier"];
     table_csv(head, constraints(plan))

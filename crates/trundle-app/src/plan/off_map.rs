@@ -1,4 +1,4 @@
-//! How far the robot's outline leaves the map along a plan: what is off the map is unknown.
+//! Distance by which the robot's outline leaves the map along a plan: space outside the map is unknown.
 
 use super::request::PlanRequest;
 use trundle_core::{Footprint, GridGeometry, Pose2, Vector2};
@@ -10,17 +10,17 @@ const MAX_IGNORED_DISTANCE_M: f64 = 0.005;
 /// Distance of two poses of the curve that are checked \[m\]. Source: ours.
 const POSE_SPACING_M: f64 = 0.02;
 
-/// The place of a plan where the robot's outline is farthest off the map.
+/// The place of a plan at which the robot's outline is farthest outside the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OffMap {
     /// Distance of the outermost point of the outline from the map's edge, m.
     pub by: f64,
-    /// Where the base is then, map frame.
+    /// Pose of the base at this place, map frame.
     pub at: Pose2,
 }
 
 impl OffMap {
-    /// Where the outline leaves the map along the plan; `None` if it does not.
+    /// The place at which the outline is farthest outside the map along the plan; `None` if the outline stays on the map.
     #[must_use]
     pub fn of(request: &PlanRequest, plan: &MultiGoalPlan) -> Option<Self> {
         let geometry = request.grid.geometry();
@@ -29,7 +29,7 @@ impl OffMap {
         off.max_by(|a, b| a.by.total_cmp(&b.by)).filter(|off| off.by > MAX_IGNORED_DISTANCE_M)
     }
 
-    /// One sentence.
+    /// The warning in one sentence.
     #[must_use]
     pub fn warning(&self) -> String {
         let Self { by, at } = self;

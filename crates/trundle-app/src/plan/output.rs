@@ -1,4 +1,4 @@
-//! The folder of a plan, or of the reason why there is none.
+//! The folder of a plan, or of the reason for its absence.
 
 use super::goal_refusal::{GoalRefusal, MovedGoal};
 use super::numbers::{PlanTimes, coefficients_csv, constraints_csv, curve_csv, no_plan_summary, summary};
@@ -10,7 +10,7 @@ use trundle_core::{DriveLimits, Vector2};
 use trundle_io::{OutputFolder, trajectory_csv, waypoints_csv};
 use trundle_planning::MultiGoalPlan;
 
-/// Writes way-points, curve, trajectory, pictures, page and summary; where the folder is.
+/// Writes way-points, curve, trajectory, pictures, page and summary; returns the folder.
 ///
 /// # Errors
 /// When a file cannot be written.

@@ -1,4 +1,4 @@
-//! The plan in pictures, and the page that holds them.
+//! The plan in pictures, and their page.
 
 use super::goal_refusal::{GoalRefusal, MovedGoal};
 use super::numbers::{PlanTimes, curves, plan_rows, points};
@@ -10,7 +10,7 @@ use trundle_viz::{
     speed_charts,
 };
 
-/// `plan.png`, `field.png`, `corridors.png` and the page that holds them and the speeds.
+/// `plan.png`, `field.png`, `corridors.png` and the page with them and the speeds.
 pub struct Pictures {
     pub plan: Vec<u8>,
     pub field: Vec<u8>,
@@ -18,7 +18,7 @@ pub struct Pictures {
     pub page: String,
 }
 
-/// Draws everything.
+/// Draws map, plan and legend.
 pub fn draw(
     request: &PlanRequest,
     plan: &MultiGoalPlan,
@@ -65,7 +65,7 @@ pub fn draw(
     Pictures { plan: plan_png, field, corridors, page }
 }
 
-/// `plan.png` if there is no plan: the ends of the leg, and the reachable position nearest to its goal.
+/// `plan.png` without a plan: the ends of the leg, and the reachable position nearest to its goal.
 pub fn without_plan(request: &PlanRequest, refusal: &GoalRefusal) -> Vec<u8> {
     let (start, goal) = (refusal.from, request.goals[refusal.goal].pose);
     let nearest: Vec<Vector2> = match refusal.why {

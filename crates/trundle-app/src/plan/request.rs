@@ -19,7 +19,7 @@ pub struct PlanFiles {
     pub keep_out: Option<PathBuf>,
     /// A speed mask, as Nav2's.
     pub speed_mask: Option<PathBuf>,
-    /// A way-point graph, GeoJSON as Nav2's route server has it.
+    /// A way-point graph, GeoJSON in the format of Nav2's route server.
     pub graph: Option<PathBuf>,
 }
 
@@ -28,7 +28,7 @@ pub struct PlanFiles {
 pub struct NamedPose {
     /// `map_from_base`.
     pub pose: Pose2,
-    /// Its name, for messages.
+    /// Name of the pose, for messages.
     pub name: Option<String>,
 }
 
@@ -36,7 +36,7 @@ impl NamedPose {
     /// The place `name` of the file of places.
     ///
     /// # Errors
-    /// When there is no file of places, or no such place in it.
+    /// When no file of places is given, or the file has no such place.
     pub fn of_place(
         name: &str,
         file: Option<&Path>,
@@ -75,7 +75,7 @@ pub struct PlanRequest {
     pub footprint: Footprint,
     /// Plans with all masks.
     pub planner: Planner,
-    /// Where the robot stands.
+    /// Pose of the robot at the start.
     pub start: NamedPose,
     /// Goals, in order.
     pub goals: Vec<NamedPose>,
@@ -83,7 +83,7 @@ pub struct PlanRequest {
     pub keep_out: Option<MaskShares>,
     /// For pictures: 1 less the share of the full speed.
     pub slow: Option<MaskShares>,
-    /// How many cells of the speed mask set a limit.
+    /// Number of cells of the speed mask that set a limit.
     pub speed_limits: Option<SpeedMaskLimits>,
     pub(super) graph: Option<WaypointGraph>,
     /// Plans without the keep-out mask, to report the effect of the mask.
@@ -154,7 +154,7 @@ impl PlanRequest {
     /// The plan through all goals.
     ///
     /// # Errors
-    /// Which goal has none.
+    /// The first goal without a plan, and the reason.
     pub fn plan(&mut self) -> Result<MultiGoalPlan, GoalRefusal> {
         let goals: Vec<Pose2> = self.goals.iter().map(|goal| goal.pose).collect();
         self.plan_through(&goals).map_err(|(goal, why)| {
@@ -172,7 +172,7 @@ impl PlanRequest {
         }
     }
 
-    /// The lanes of the way-point graph, end to end; none without one.
+    /// The lanes of the way-point graph, end to end; empty without a graph.
     #[must_use]
     pub fn lanes(&self) -> Vec<[Vector2; 2]> {
         let of = |graph: &WaypointGraph| {

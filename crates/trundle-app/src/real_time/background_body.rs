@@ -1,4 +1,4 @@
-//! A body that runs in threads of its own and sends its events into the run's inbox.
+//! A body that runs in its own threads and sends its events into the run's inbox.
 
 use super::MemoryUsage;
 use crate::AppError;
@@ -18,9 +18,9 @@ pub struct TimedEvent {
     pub at: Instant,
 }
 
-/// A body that runs in threads of its own: it sends its events into the inbox that it was started with.
+/// A body that runs in its own threads and sends its events into the inbox given at its start.
 pub trait BackgroundBody {
-    /// Where commands go.
+    /// Sender for commands to the body.
     fn commands(&self) -> Sender<Twist2>;
 
     /// The count of separate contacts, in truth; `None` if only the bumper reports contacts.
@@ -44,7 +44,7 @@ pub struct Lateness {
     pub max_ms: f64,
 }
 
-/// How the body kept time. Where a simulated body did not, the robot's figures are not the robot's alone.
+/// Timing of the body. Delays of a simulated body also appear in the robot's figures.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct BodyTiming {
     /// Lateness of the base's readings; `None` if the base is real.

@@ -1,4 +1,4 @@
-//! The way of events from drivers into a run.
+//! The path of events from drivers into a run.
 
 use super::{BodyTiming, MemoryUsage, TimedEvent};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,10 +12,10 @@ use trundle_runtime::real_time::{InboxItem, InboxSender};
 /// Time without any event after which silence is reported: five readings of a base at 50 Hz. Source: ours.
 const MIN_SILENCE: Duration = Duration::from_millis(100);
 
-/// Is called with each event of the drivers, in the thread that sends it; it must not wait.
+/// Callback for each event of the drivers, in the thread that sends the event; the callback must not wait.
 pub type EventObserver = Arc<dyn Fn(&SensorEvent) + Send + Sync>;
 
-/// Sends the events of drivers into a run, from any thread. Images are encoded in the thread that sends them.
+/// Sends the events of drivers into a run, from any thread. Images are encoded in the sending thread.
 #[derive(Clone)]
 pub struct EventFeed {
     events: InboxSender<TimedEvent>,
@@ -45,7 +45,7 @@ impl EventFeed {
         Self::with_clock(events, origin, clock)
     }
 
-    /// A feed with another clock of the run, as that of a simulator, which may run slower or stand still.
+    /// A feed with another clock of the run: a simulator's clock may run slower or stop.
     #[must_use]
     pub fn with_clock(events: InboxSender<TimedEvent>, origin: Instant, clock: HostClock) -> Self {
         Self { events, origin, clock, state: Arc::default() }
@@ -78,7 +78,7 @@ impl EventFeed {
         }
     }
 
-    /// How the drivers kept time.
+    /// Timing of the drivers.
     pub(super) fn timing(&self) -> BodyTiming {
         let state = self.state();
         let age = |fraction| state.image_ages.quantile(fraction).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! A body of drivers that run in threads of their own: base, camera, laser.
+//! A body of drivers with their own threads: base, camera, laser.
 
 use super::{BackgroundBody, BodyTiming, EventFeed};
 use crate::AppError;

@@ -13,14 +13,14 @@ pub struct MemoryUsage {
 const SAMPLE_PERIOD_S: f64 = 5.0;
 
 impl MemoryUsage {
-    /// Takes a sample when one is due.
+    /// Takes a sample if one is due.
     pub fn sample(&mut self, time: f64) {
         if self.samples.last().is_none_or(|(last, _)| time - last >= SAMPLE_PERIOD_S) {
             self.samples.extend(resident_mb().map(|mb| (time, mb)));
         }
     }
 
-    /// Growth from `begin` s on by a straight line through it, MB per hour; `None` if that is less than half a minute.
+    /// Growth since `begin` (s), the slope of a fitted straight line, MB per hour; `None` for less than half a minute.
     pub fn growth_mb_an_hour(&self, begin: f64) -> Option<f64> {
         let end = self.samples.last()?.0;
         let late: Vec<_> = self.samples.iter().filter(|(time, _)| *time >= begin).collect();

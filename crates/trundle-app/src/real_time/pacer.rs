@@ -1,11 +1,11 @@
-//! Holds simulated time back to the wall clock.
+//! Delays a simulation to the wall clock.
 
 use std::time::{Duration, Instant};
 
-/// Lag beyond which a simulation does not catch up: its time goes on from there \[s\]. Source: ours.
+/// Lag above which a simulation does not catch up and its time continues from there \[s\]. Source: ours.
 const MAX_CATCH_UP_S: f64 = 0.25;
 
-/// Holds simulated time back to the wall clock.
+/// Delays a simulation to the wall clock.
 #[derive(Debug)]
 pub struct RealTimePacer {
     /// When the simulated time was, or would have been, 0.

@@ -1,21 +1,21 @@
-//! How a run in real time kept time: jitter, load, queues, memory.
+//! Timing of a run in real time: jitter, load, queues, memory.
 
 use super::{BodyTiming, MemoryUsage};
 use serde::Serialize;
 use trundle_runtime::Histogram;
 use trundle_runtime::real_time::LoopTimerReport;
 
-/// Half of a run from which the growth of memory is shown \[s\]: 5 minutes. A shorter run is still filling its maps. Source: ours.
+/// Half of a run above which the growth of memory is shown \[s\]: 5 minutes. A shorter run is still filling its maps. Source: ours.
 const MIN_MEMORY_HALF_S: f64 = 300.0;
 
-/// How a run in real time kept time.
+/// Timing of a run in real time.
 #[derive(Debug, Clone, Serialize)]
 pub struct RealTimeReport {
     /// The control loop.
     pub control: Option<LoopTimerReport>,
     /// Processor time of the robot's threads, as parts of its core.
     pub load: Vec<ThreadLoad>,
-    /// The sum of them.
+    /// Sum of the loads.
     pub load_total: f64,
     /// Lengths of the queues.
     pub queues: Vec<QueueLength>,
@@ -23,7 +23,7 @@ pub struct RealTimeReport {
     pub refused: u64,
     /// Lines of the recording left out because the disk could not follow: it ends before the first.
     pub lines_lost: u64,
-    /// How the body kept time.
+    /// Timing of the body.
     #[serde(rename = "world")]
     pub body: BodyTiming,
     /// Resident memory of the whole program.
@@ -56,7 +56,7 @@ pub struct QueueLength {
 
 impl QueueLength {
     pub(super) fn of(queue: &str, lengths: &Histogram) -> Option<Self> {
-        // A histogram has no zero: what is below 1 is none.
+        // A histogram has no bin for zero: a value below 1 is zero.
         let whole = |fraction| Some(lengths.quantile(fraction)?.round());
         let (median, p99) = (whole(0.5)?, whole(0.99)?);
         Some(Self { queue: queue.to_owned(), median, p99, most: lengths.most()? })

@@ -9,15 +9,15 @@ use trundle_runtime::{TaskEnd, TaskRecord};
 /// Outcome of a task with a goal.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct GoalOutcome {
-    /// Its place in the mission, from 0.
+    /// Index of the task in the mission, from 0.
     pub task: usize,
-    /// Where to, map frame.
+    /// Goal pose, map frame.
     pub goal: Pose2,
-    /// How it ended.
+    /// End of the task.
     pub end: TaskEnd,
-    /// When it ended, s since the start.
+    /// Time of the end, s since the start.
     pub at_s: f64,
-    /// Where the robot stood in truth then, against the goal; `None` without truth.
+    /// Error of the robot's true pose at the end, against the goal; `None` without truth.
     pub error: Option<GoalError>,
     /// Error of the estimated pose at the end.
     pub believed: Option<GoalError>,
@@ -47,8 +47,8 @@ impl GoalOutcome {
         })
     }
 
-    /// Whether the robot came within these distances of the goal, m and rad: in truth if it is known, else by its own estimate.
-    /// Before a restart only the estimate is recorded.
+    /// Whether the robot came within these distances of the goal, m and rad; by the true pose if known, else by the estimate. Before a
+    /// restart only the estimate is recorded.
     pub fn is_reached(&self, distance: f64, turn: f64) -> bool {
         let near = |error: GoalError| error.distance < distance && error.dtheta.abs() < turn;
         let error = self.error.filter(|_| !self.before_restart).or(self.believed);

@@ -15,11 +15,11 @@ pub struct RunOutput {
     pub numbers: RunNumbers,
     /// The folder.
     pub folder: PathBuf,
-    /// The reason where some results could not be written.
+    /// The reason if some results could not be written.
     pub incomplete: Option<AppError>,
 }
 
-/// Writes the folder of a run. What the disk does not take is left out, as is a recording that could not be written to its end.
+/// Writes the folder of a run. Files for which the disk has no space are left out, as is an incomplete recording.
 ///
 /// # Errors
 /// When a file cannot be written.

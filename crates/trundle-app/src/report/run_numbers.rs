@@ -9,20 +9,20 @@ use trundle_eval::{GoalError, goal_error};
 use trundle_io::Summary;
 use trundle_runtime::{DriveState, GoalApproachReport, Reason, Stage, StageTimes, TaskEnd};
 
-/// The numbers of a run, all but the wall clock's.
+/// The numbers of a run, without the wall clock's.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct RunNumbers {
-    /// The goals of the mission, as they came.
+    /// Outcomes of the mission's goals, in order.
     pub goals: Vec<GoalOutcome>,
-    /// How many goals the mission has; `None` if it asks for nothing but to stand at the start.
+    /// Number of goals in the mission; `None` for a mission that only stays at the start.
     pub goals_asked: Option<usize>,
-    /// Where the robot stands in truth at the end, against the last goal; `None` without truth.
+    /// Error of the robot's true pose at the end, against the last goal; `None` without truth.
     pub goal_error: Option<GoalError>,
     /// Error of the estimated pose against the last goal.
     pub believed_error: Option<GoalError>,
     /// The estimate's distance from truth over the run: root of the mean square, m.
     pub estimate_rmse: Option<f64>,
-    /// Number of contacts: true ones, if those are known.
+    /// Number of contacts: the true number if known.
     pub contacts: usize,
     /// Distance driven, m.
     pub path_length: f64,
@@ -39,10 +39,10 @@ pub struct RunNumbers {
     /// Stamps of the images that a newer one replaced before they were processed, s since the start.
     pub images_dropped: Vec<f64>,
     /// Report of turns and straight moves for the last goal with such a request; `None` without a request.
-    /// Files of numbers do not hold it.
+    /// Files of numbers do not contain it.
     #[serde(skip)]
     pub docking: Option<GoalApproachReport>,
-    /// How it ended.
+    /// End of the run.
     pub end: RunEnd,
 }
 
@@ -55,16 +55,16 @@ pub struct RunEnd {
     pub is_operated: bool,
     /// The time limit that ended the run \[s\], if one did.
     pub out_of_time: Option<f64>,
-    /// The tasks at its end, with and without a goal.
+    /// Numbers of tasks at the end, with and without a goal.
     pub tasks: TaskCounts,
 }
 
 /// Numbers of tasks at the end of a run.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TaskCounts {
-    /// Those that the robot reported as done.
+    /// Number of tasks reported as done.
     pub done: usize,
-    /// Those that were left.
+    /// Number of tasks left.
     pub left: usize,
 }
 
@@ -83,7 +83,7 @@ impl RunEnd {
         }
     }
 
-    /// Whether the run was ended before its mission was over.
+    /// Whether the run ended before its mission.
     fn is_cut(&self) -> bool {
         self.out_of_time.is_some() || self.state == DriveState::Stopped { reason: Reason::Interrupted }
     }
@@ -102,9 +102,9 @@ fn docking_text(docking: &GoalApproachReport) -> String {
     format!("{motions} motions, {plans} plans, {restarts} broken off, {waits} waits, {time:.1} s; {end}")
 }
 
-/// The goal counts as reached within this, m.
+/// Distance within which the goal counts as reached \[m\].
 const GOAL_TOLERANCE_M: f64 = 0.05;
-/// And within this, deg.
+/// Heading difference within which the goal counts as reached \[deg\].
 const ALIGNED_DEG: f64 = 3.0;
 
 impl RunNumbers {
@@ -137,12 +137,12 @@ impl RunNumbers {
         self.goal_error.or(self.believed_error)
     }
 
-    /// Whether the end is near enough to the last goal, if there is one.
+    /// Whether the end is near enough to the last goal; true without a goal.
     pub fn is_near(&self) -> bool {
         self.judged_error().is_none_or(|error| error.distance < GOAL_TOLERANCE_M)
     }
 
-    /// Whether the heading is near enough to the last goal's, if there is one.
+    /// Whether the heading is near enough to the last goal's; true without a goal.
     pub fn is_aligned(&self) -> bool {
         self.judged_error().is_none_or(|error| error.dtheta.abs().to_degrees() < ALIGNED_DEG)
     }
@@ -167,7 +167,7 @@ impl RunNumbers {
         believed.filter(|goal| !goal.is_reached(GOAL_TOLERANCE_M, ALIGNED_DEG.to_radians())).count()
     }
 
-    /// How it went, in a sentence.
+    /// Result of the run, in one sentence.
     pub fn verdict(&self) -> String {
         if self.is_success() {
             return match self.goals.iter().filter(|goal| goal.end == TaskEnd::Done).count() {
@@ -186,7 +186,7 @@ impl RunNumbers {
         if self.end.state != DriveState::Arrived {
             faults.push(self.end.why_not_arrived());
         }
-        // A run that was ended early had not come to its last goal.
+        // A run that was ended early has not reached its last goal.
         let is_off = !(self.end.is_cut() || self.is_near() && self.is_aligned());
         if let Some(error) = self.judged_error().filter(|_| is_off) {
             let (cm, deg) = (error.distance * 100.0, error.dtheta.to_degrees());
@@ -201,7 +201,7 @@ impl RunNumbers {
         format!("Failed: {}.", faults.join("; "))
     }
 
-    /// A run with an operator ends when the operator ends it.
+    /// The verdict of a run that the operator ended.
     fn operated_verdict(&self) -> String {
         let mut faults = Vec::new();
         if self.end.tasks.left > 0 {
@@ -263,7 +263,7 @@ impl RunNumbers {
 
     /// `summary.json`: the numbers of the table; the wall clock's under `wall_clock`.
     pub fn summary(&self, setup: &RunSetup, run: &FinishedRun, timing: Option<&RealTimeReport>) -> Summary {
-        // A replay's summary is the run's, byte for byte, so it bears the run's name.
+        // A replay's summary equals the run's byte for byte, so it has the run's command.
         let mut summary = Summary::new(&setup.command);
         summary
             .set("scene", &setup.scene)

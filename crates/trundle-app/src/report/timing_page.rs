@@ -4,8 +4,7 @@ use super::{RunNumbers, stage_rows};
 use crate::{FinishedRun, real_time::RealTimeReport};
 use trundle_viz::{Card, Chart, Color, Figure, Report, Table};
 
-/// Times of every stage of a run, queues and drops, by the wall clock: the one page that differs
-/// between a run and its replay.
+/// Wall-clock times of every stage of a run, queues and drops: the only page that differs between a run and its replay.
 pub fn html(run: &FinishedRun, numbers: &RunNumbers, timing: Option<&RealTimeReport>) -> String {
     let header = ["stage", "median, ms", "p99", "p99.9", "most", "runs"];
     let stages =

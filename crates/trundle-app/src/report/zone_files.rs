@@ -6,8 +6,8 @@ use trundle_core::{GridGeometry, MapAnnotations, ZoneKind};
 use trundle_io::{OutputFolder, annotations_text, write_map, write_speed_mask};
 use trundle_planning::{forbidden_cells, slow_speeds};
 
-/// Writes `zones.geojson`, and over the cells of the map `keepout_mask.yaml` and `speed_mask.yaml` with their pictures, each where there
-/// is something to write. `full_speed`: the robot's highest speed \[m/s\].
+/// Writes `zones.geojson`, and over the cells of the map `keepout_mask.yaml` and `speed_mask.yaml` with their pictures. Empty files are
+/// left out. `full_speed`: the robot's highest speed \[m/s\].
 ///
 /// # Errors
 /// When a file cannot be written.

@@ -5,7 +5,7 @@ use std::path::Path;
 use trundle_core::{Pose3, Stamp};
 use trundle_eval::{AbsoluteConfig, RelativeConfig};
 
-/// ATE and RPE. If they are undefined (no overlap in time), a warning gives the cause.
+/// ATE and RPE. If the errors are undefined (no overlap in time), a warning gives the cause.
 pub fn against_truth(
     path: &Path,
     truth: &[(Stamp, Pose3)],

@@ -11,10 +11,10 @@ use trundle_mapping::{GridMapper, MapperConfig};
 use trundle_runtime::{LevelMap, Stage, StageTimes};
 use trundle_slam::{RgbdSlam, TrackReport, Tracking};
 
-/// Time between two copies of the map. Source: ours; as that of a robot.
+/// Time between two copies of the map. Source: ours; the period of a robot's map.
 const MAP_PERIOD: Duration = Duration::from_secs(1);
 
-/// Makes views of a tracked sequence. Without somebody who watches they hold pose and counts alone.
+/// Makes views of a tracked sequence. Without a watching front end, a view contains only pose and counts.
 pub(super) struct SequenceFeed {
     link: OperatorLink,
     images: ImageFeed,
@@ -24,11 +24,11 @@ pub(super) struct SequenceFeed {
     scan: Option<(Pose2, Arc<Scan>)>,
     tracked: u64,
     last: Option<(Stamp, Pose2)>,
-    /// Time of the first image: views count from there.
+    /// Time of the first image, the zero of the views' time.
     first: Option<Stamp>,
 }
 
-/// What is shown of the tracker.
+/// Parts of the tracker that a view shows.
 pub(super) struct Tracker<'t> {
     pub(super) slam: &'t RgbdSlam,
     pub(super) map: &'t LevelMap,
@@ -106,7 +106,7 @@ impl SequenceFeed {
     }
 }
 
-/// The floor map as it grows: each scan once, and all anew when a loop was closed.
+/// The growing floor map: each scan is drawn once, and all scans again after a loop closure.
 struct MapFeed {
     config: MapperConfig,
     mapper: Option<GridMapper>,
@@ -120,7 +120,7 @@ impl MapFeed {
     fn update(&mut self, report: &TrackReport, tracker: &Tracker<'_>) {
         let is_corrected = report.closed_loop.is_some() || report.merged.is_some();
         let count = tracker.map.scan_count();
-        // Scans that came while nobody watched are missing.
+        // Scans that arrived while no front end watched are missing.
         if is_corrected || self.mapper.is_none() || count > self.count + 1 {
             self.mapper = redrawn(tracker, &self.config);
         } else if count > self.count

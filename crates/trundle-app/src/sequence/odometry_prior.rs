@@ -19,7 +19,7 @@ impl<'a> OdometryPrior<'a> {
         Self { poses: input.odometry().unwrap_or(&[]), base_from_camera, noise: robot.odometry.clone() }
     }
 
-    /// `earlier_camera_from_later_camera`; `None` in a gap of the odometry, and where it jumps.
+    /// `earlier_camera_from_later_camera`; `None` in a gap and at a jump of the odometry.
     pub fn motion(&self, earlier: Stamp, later: Stamp) -> Option<CameraMotion> {
         let base_motion = self.at(earlier)?.inverse() * self.at(later)?;
         let farthest = self.noise.max_speed * (later - earlier);
@@ -30,7 +30,7 @@ impl<'a> OdometryPrior<'a> {
         Some(CameraMotion::of_base((base_motion, noise), self.base_from_camera))
     }
 
-    /// Why no two of the images, the first and last of which have these stamps, have the odometry's motion between them.
+    /// The reason why no two of the images have odometry between them; `first` and `last` are the stamps of the first and the last image.
     pub fn why_no_motion(&self, (first, last): (Stamp, Stamp)) -> String {
         let Some(((from, _), (to, _))) = self.poses.first().zip(self.poses.last()) else {
             return "no motion between images: it holds no pose".to_owned();

@@ -1,4 +1,4 @@
-//! The recording of a tracked sequence, and the links between keyframes that it shows.
+//! The recording of a tracked sequence, and its links between keyframes.
 
 use crate::RecordingContent;
 use std::collections::BTreeMap;
@@ -15,8 +15,8 @@ const MIN_SHARED_LANDMARKS: usize = 30;
 /// The frame that camera poses, landmarks and keyframes are in.
 const FRAME: &str = "visual";
 
-/// Records a tracked sequence: every image with its features and the camera's pose; landmarks and keyframe graph when a
-/// loop was closed, and at the end.
+/// Records a tracked sequence: every image with its features and camera pose. Landmarks and keyframe graph follow after each loop closure
+/// and at the end.
 ///
 /// A disk that is full ends the recording.
 pub struct SequenceRecorder {
@@ -47,7 +47,7 @@ impl SequenceRecorder {
         Ok(Some(Self { recorder, has_images, failure: None, now: Stamp::default() }))
     }
 
-    /// Records an image and its tracking.
+    /// Records an image and the result of its tracking.
     pub fn record(&mut self, image: EncodedRgbd, report: &TrackReport, slam: &RgbdSlam) {
         if self.failure.is_some() {
             return;
@@ -105,9 +105,9 @@ impl SequenceRecorder {
 
 /// Links between keyframes, by their positions in the visual frame, m.
 pub struct KeyframeLinks {
-    /// Those that share landmarks.
+    /// Pairs of keyframes that share landmarks.
     pub covisible: Vec<(Vector3, Vector3)>,
-    /// Those that closed a loop.
+    /// Pairs of keyframes that closed a loop.
     pub loops: Vec<(Vector3, Vector3)>,
 }
 

@@ -1,4 +1,4 @@
-//! The images of a sequence, one after the other, decoded only when they are asked for.
+//! The images of a sequence, one after the other, decoded on request.
 
 use crate::AppError;
 use std::path::Path;
@@ -8,7 +8,7 @@ use trundle_io::{
     RosFrames, TumSequence,
 };
 
-/// An image that is not decoded yet.
+/// An image that is not yet decoded.
 pub struct PendingFrame<'a> {
     index: usize,
     content: Content<'a>,
@@ -24,7 +24,7 @@ enum Content<'a> {
 }
 
 impl PendingFrame<'_> {
-    /// When it was taken.
+    /// Stamp of the image.
     #[must_use]
     pub fn stamp(&self) -> Stamp {
         match &self.content {
@@ -37,7 +37,7 @@ impl PendingFrame<'_> {
     /// The image.
     ///
     /// # Errors
-    /// When it is damaged or not of the camera's size: the caller may go on with the next.
+    /// When the image is damaged or not of the camera's size: the caller may continue with the next image.
     pub fn decode(&self) -> Result<RgbdImage, FrameError> {
         match &self.content {
             Content::Listed(sequence) => sequence.load(self.index),
@@ -46,7 +46,7 @@ impl PendingFrame<'_> {
         }
     }
 
-    /// The decoded image, where it is of the camera's size.
+    /// The decoded image, checked against the camera's size.
     fn sized(
         &self,
         path: &Path,
@@ -62,7 +62,7 @@ impl PendingFrame<'_> {
         Ok(decoded)
     }
 
-    /// The bytes to record for the decoded `image`: those that were read, if they are of the recordings' form.
+    /// The bytes to record for the decoded `image`: the bytes that were read, if their encoding is that of recordings.
     ///
     /// # Errors
     /// When the image cannot be encoded.

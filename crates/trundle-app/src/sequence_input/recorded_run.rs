@@ -1,4 +1,4 @@
-//! Data of a run's recording beside its images: the robot, odometry, truth, scans of a laser.
+//! Data of a run's recording other than images: the robot, odometry, truth, scans of a laser.
 
 use crate::setup::RunSetup;
 use crate::{AppError, RecordingContent};
@@ -24,7 +24,7 @@ impl RecordedRun {
     /// Reads a recording; with `recover` one that is cut, up to the cut.
     ///
     /// # Errors
-    /// When the file is not a recording, is broken, or names a robot that cannot be accepted.
+    /// When the file is not a recording, is broken, or contains an invalid robot.
     pub fn read(file: &Path, recover: bool) -> Result<Self, AppError> {
         let mut reader = open(file, recover)?;
         let setup =
@@ -46,7 +46,7 @@ impl RecordedRun {
     /// The recording again, from its beginning.
     ///
     /// # Errors
-    /// When the file cannot be read any more.
+    /// When the file can no longer be read.
     pub(super) fn open(&self) -> Result<RecordingReader, AppError> {
         open(&self.file, self.recover)
     }
@@ -54,7 +54,7 @@ impl RecordedRun {
     /// Refuses a recording without images.
     ///
     /// # Errors
-    /// Where there is no image.
+    /// When the recording has no image.
     pub fn require_images(&self) -> Result<(), AppError> {
         if self.images > 0 {
             return Ok(());
@@ -66,7 +66,7 @@ impl RecordedRun {
         }))
     }
 
-    /// The robot that made it; `None` if the recording names none.
+    /// The robot of the recording; `None` if the recording contains none.
     #[must_use]
     pub fn robot(&self) -> Option<&RobotConfig> {
         self.robot.as_ref()
@@ -78,13 +78,13 @@ impl RecordedRun {
         self.images
     }
 
-    /// `odom_from_base` by wheels and gyro; `None` if the recording holds no wheels.
+    /// `odom_from_base` by wheels and gyro; `None` for a recording without wheels.
     #[must_use]
     pub fn odometry(&self) -> Option<&[(Stamp, Pose2)]> {
         (!self.odometry.is_empty()).then_some(&self.odometry)
     }
 
-    /// `world_from_camera`; `None` if the recording holds no truth.
+    /// `world_from_camera`; `None` for a recording without truth.
     #[must_use]
     pub fn ground_truth(&self) -> Option<&[(Stamp, Pose3)]> {
         (!self.camera_truth.is_empty()).then_some(&self.camera_truth)
@@ -103,7 +103,7 @@ impl RecordedRun {
         }
     }
 
-    /// Where the recording was cut, in a sentence; `None` for a whole one.
+    /// Position of the cut in the recording, in one sentence; `None` for a complete recording.
     #[must_use]
     pub fn cut_report(&self) -> Option<&str> {
         self.cut_report.as_deref()

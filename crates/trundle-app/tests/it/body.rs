@@ -1,4 +1,4 @@
-//! Bodies for tests: a base that stands still, and one whose user ends the run.
+//! Bodies for tests: a base at rest, and a base whose user ends the run.
 
 use std::io;
 use trundle_app::{
@@ -11,14 +11,14 @@ use trundle_runtime::{Answer, Job, Mission, RobotConfig, Task, Worker};
 /// The goal of all runs, map frame.
 pub const GOAL: Pose2 = Pose2 { x: 1.0, y: 0.0, theta: 0.0 };
 
-/// A base that stands still whatever it is asked for: gyro, wheels and truth at 50 Hz, no camera.
+/// A base at rest that ignores commands: gyro, wheels and truth at 50 Hz, no camera.
 #[derive(Debug, Default)]
 pub struct StillBody {
     /// Events left.
     pub events: std::collections::VecDeque<SensorEvent>,
     /// Commands so far.
     pub commands: Vec<Twist2>,
-    /// Contacts in truth. `None` if they are not counted.
+    /// True contacts; `None` if not counted.
     pub contacts: Option<u32>,
     /// Whether the sensors fail once the events are used up.
     pub fails: bool,
@@ -117,7 +117,7 @@ pub fn setup() -> RunSetup {
     RunSetup::new("nowhere", Mission::new(vec![Task::Go(GOAL)]).unwrap(), RobotConfig::default())
 }
 
-/// Runs `setup` on `body`, recorded into a folder that is not kept.
+/// Runs `setup` on `body`, recorded into a temporary folder.
 pub fn run(setup: &RunSetup, body: &mut dyn EncodedBody) -> Result<FinishedRun, AppError> {
     let scratch = tempfile::tempdir().unwrap();
     let folder = OutputFolder::create(&scratch.path().join("run")).unwrap();

@@ -1,4 +1,4 @@
-//! Calibration of the simulated robot, whose robot file holds wrong values.
+//! Calibration of the simulated robot, with wrong values in the robot file.
 
 use crate::body::{run_into, setup};
 use std::path::{Path, PathBuf};
@@ -14,12 +14,12 @@ use trundle_runtime::settings::RobotFile;
 use trundle_runtime::{CameraMount, Mission, RobotConfig, Task};
 use trundle_sim::{CommandScript, KobukiConfig, Scene, SimConfig, Simulator};
 
-/// Where the camera truly sits.
+/// True pose of the camera's mount.
 const MOUNT: CameraMount =
     CameraMount { x: 0.09, y: -0.025, z: 0.48, yaw_deg: 2.5, pitch_deg: 14.0, roll_deg: -1.5 };
 /// True delay of the images' stamps, s.
 const DELAY_S: f64 = 0.042;
-/// True wheels; the robot file holds the Kobuki's 0.035 m and 0.230 m.
+/// True wheels; the robot file has the Kobuki's 0.035 m and 0.230 m.
 const DRIVE: DifferentialDrive =
     DifferentialDrive { wheel_radius: 0.0365, wheelbase: 0.238, ..DifferentialDrive::KOBUKI };
 
@@ -115,7 +115,7 @@ fn drive_on_time() -> CalibrationInput {
     CalibrationInput::open(file, false).unwrap()
 }
 
-/// The found value is within `limit` of the truth, and its standard deviation is no more than `limit`.
+/// Asserts that the error of the calibrated value is within `limit`, and its standard deviation too.
 #[track_caller]
 fn assert_found(calibration: &Calibration, name: &str, truth: f64, limit: f64) {
     let found = calibration.value(name).unwrap_or_else(|| panic!("{name}: {calibration:?}"));

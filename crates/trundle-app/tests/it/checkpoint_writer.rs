@@ -6,7 +6,7 @@ use trundle_app::CheckpointWriter;
 use trundle_core::OccupancyGrid;
 use trundle_runtime::{Checkpoint, Mission, MissionState, Task};
 
-/// A checkpoint that `number` tells from others.
+/// A checkpoint identified by `number`.
 fn checkpoint(number: u8) -> Checkpoint {
     Checkpoint {
         visual: vec![number; 1000],

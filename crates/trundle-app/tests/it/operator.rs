@@ -1,4 +1,4 @@
-//! An operator's requests reach the robot, views come back, and a replay follows at the same places.
+//! An operator's requests reach the robot, views are published, and a replay applies the requests at the same steps.
 
 use crate::body::{GOAL, StillBody, setup};
 use std::path::Path;

@@ -95,7 +95,7 @@ fn the_depth_images_of_a_recording_make_a_map() {
     assert_eq!(run.failure, None);
 }
 
-/// Cuts over the whole file: at any byte what was written before it is read, and never anything else.
+/// Cuts at many places of the file: all data before the cut is read, and no other data.
 #[test]
 fn a_cut_recording_is_read_up_to_the_cut() {
     let scratch = tempfile::tempdir().unwrap();
@@ -120,7 +120,7 @@ fn a_cut_recording_is_read_up_to_the_cut() {
         let refusal = SequenceInput::open(&options(&cut_file, false)).err().unwrap().to_string();
         assert!(refusal.contains("truncated") && refusal.contains("--recover"), "{refusal}");
     }
-    // What is cut is lost with its flush, about 1 MB.
+    // The data lost by a cut is the unflushed part, about 1 MB.
     assert!(last_count + 6 >= all.len(), "{last_count} of {} images before the last cut", all.len());
 }
 

@@ -1,4 +1,4 @@
-//! Recorder and replayer: a replay feeds the robot what the run fed it.
+//! Recorder and replayer: a replay feeds the robot the same inputs as the run.
 
 use crate::body::{InterruptedBody, StillBody, run_into, setup};
 use std::path::{Path, PathBuf};

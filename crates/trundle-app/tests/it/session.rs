@@ -1,4 +1,4 @@
-//! The session: what ends a run, and what the body receives.
+//! The session: the conditions that end a run, and the commands that the body receives.
 
 use crate::body::{GOAL, InterruptedBody, StillBody, run, setup};
 use trundle_app::AFTER_ARRIVAL_S;

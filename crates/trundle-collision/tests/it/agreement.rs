@@ -36,7 +36,7 @@ proptest! {
         };
         match (swept, by_hull) {
             (Some(a), Some(b)) => prop_assert!((a - b).abs() < 1e-9, "{a} {b}"),
-            // A graze along a side counts for one and not for the other.
+            // A graze along a side may count as contact for only one of both methods.
             (a, b) => prop_assert!(a.is_none() && b.is_none() || grazes(&hull, point), "{a:?} {b:?}"),
         }
     }
@@ -88,7 +88,7 @@ proptest! {
     }
 }
 
-/// Whether a point lies within rounding of the lines along which the hull's sides move.
+/// Whether a point is within rounding of the lines along which the hull's sides move.
 fn grazes(hull: &RoundedHull, point: Vector2) -> bool {
     let ends =
         |offset: f64| straight_contact(hull, &Segment::point(point + Vector2::new(0.0, offset))).is_some();

@@ -20,7 +20,7 @@ proptest! {
     fn no_pose_before_the_contact_touches_and_the_pose_at_it_does(twist in any_twist(), point in any_point(), margin in 0.0..0.1_f64) {
         prop_assume!(gap_after(twist, 0.0, point) > margin + 1e-6);
         let contact = arc_contact(&RoundedHull::exact(&polygon()), twist, point, margin);
-        // Not more than a whole turn.
+        // At most one full turn.
         let free = contact.unwrap_or(6.2 * (twist.v / twist.omega).abs().min(1.0));
         for i in 0..200 {
             let gap = gap_after(twist, free * f64::from(i) / 200.0, point);

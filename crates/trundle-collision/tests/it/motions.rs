@@ -58,7 +58,7 @@ proptest! {
                 prop_assert!(left == 0.0 || gap > 0.0 || !hull.overlaps(&seen_from(pose, &segment)), "{turn}");
             }
         }
-        // And a heading is free exactly where the hull does not overlap.
+        // A heading is free exactly if the hull has no overlap.
         for i in 0..90 {
             let at = TAU * f64::from(i) / 90.0;
             let seen = seen_from(Pose2::new(0.0, 0.0, at), &segment);

@@ -12,7 +12,7 @@ use trundle_core::{
     DifferentialDrive, DriveLimits, Invalid, Pose2, PoseEstimate, Stamp, Trajectory, TrajectoryPoint, Twist2,
 };
 
-/// Follows a trajectory and settles at its goal.
+/// Follows a trajectory and comes to rest at its goal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Follower {
     config: FollowerConfig,
@@ -33,7 +33,7 @@ struct FollowTask {
 /// Phase of following.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FollowPhase {
-    /// Nothing to follow: it brakes and stands.
+    /// No trajectory: the robot brakes and remains at rest.
     Idle,
     /// Along the trajectory.
     Tracking,
@@ -57,28 +57,28 @@ impl fmt::Display for FollowPhase {
     }
 }
 
-/// One step of following.
+/// Result of one control step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FollowReport {
     /// The twist to send.
     pub twist: Twist2,
     /// The phase.
     pub phase: FollowPhase,
-    /// Where the robot should be, and how it should be moving; the goal at rest once the trajectory has arrived.
+    /// Reference pose and twist of the robot; after the arrival, the goal at rest.
     pub reference: Option<TrajectoryPoint>,
     /// Error to the reference in the robot's frame; zero when idle.
     pub error: TrackingError,
-    /// Whether a limit of the base changed what the law wanted.
+    /// Whether a limit of the base changed the law's command.
     pub saturated: bool,
-    /// Whether the robot is so far from its reference that the clearance of the trajectory is not guaranteed: plan again.
+    /// Whether the robot is too far from its reference for the trajectory's guaranteed clearance; a new plan is needed.
     pub off_track: bool,
-    /// Whether the robot stands at the goal, within the tolerances.
+    /// Whether the robot is at rest at the goal, within the tolerances.
     pub done: bool,
 }
 
 /// Longest time between two steps that is counted, s. Larger: the reference jumps farther after a pause. Source: ours.
 const MAX_STEP_S: f64 = 0.1;
-/// Longest extrapolation of an estimate by its own twist, s. Larger: more trust in an old twist. Source: ours.
+/// Longest extrapolation of an estimate by its own twist, s. With a larger value, older twists are extrapolated. Source: ours.
 const MAX_EXTRAPOLATION_S: f64 = 0.2;
 
 impl Follower {
@@ -102,8 +102,8 @@ impl Follower {
         })
     }
 
-    /// Follows a trajectory (map frame) from its beginning, then settles at `goal`: the end of the trajectory, or where a map correction
-    /// has moved it, some centimetres away. The motion between the two is not checked for obstacles.
+    /// Follows a trajectory (map frame) from its beginning, then stabilises at `goal`: the end of the trajectory, or its position after a
+    /// map correction, some centimetres away. The motion between the two is not checked for obstacles.
     pub fn follow(&mut self, trajectory: Trajectory, goal: Pose2) {
         self.stabilizer.restart();
         self.task = Some(FollowTask { clock: ReferenceClock::new(trajectory), goal, settling: false });
@@ -131,12 +131,12 @@ impl Follower {
         self.task.as_ref().map(|task| task.clock.end())
     }
 
-    /// How settling from `from` at `goal` would go.
+    /// Simulated point stabilisation from `from` at `goal`.
     pub fn preview_stabilization(&self, from: Pose2, goal: Pose2) -> StabilizerPreview {
         self.stabilizer.preview(from, goal)
     }
 
-    /// The command for `now`. An estimate that is older is carried forward by its own twist.
+    /// The command for `now`. An older estimate is extrapolated by its own twist.
     pub fn step(&mut self, estimate: &PoseEstimate, now: Stamp) -> FollowReport {
         let dt = self.last_step.map_or(0.0, |last| (now - last).clamp(0.0, MAX_STEP_S));
         self.last_step = Some(now);

@@ -4,7 +4,7 @@ use crate::following::follower_config::FollowerConfig;
 use crate::path_tracking::tracking_error::TrackingError;
 use trundle_core::{Pose2, Trajectory, TrajectoryPoint, Twist2};
 
-/// A trajectory with a clock of its own.
+/// A trajectory with its own clock.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ReferenceClock {
     trajectory: Trajectory,
@@ -22,7 +22,7 @@ impl ReferenceClock {
         Self { trajectory, time: 0.0, rate: 1.0, arrival_time }
     }
 
-    /// Advances the reference by `dt` seconds, or by fewer when the robot is behind it.
+    /// Advances the reference by `dt` seconds, or by less if the robot is behind the reference.
     pub(super) fn advance(&mut self, dt: f64, pose: Pose2, config: &FollowerConfig) {
         let error = TrackingError::between(pose, self.trajectory.at(self.time).pose);
         self.rate = clock_rate(error, self.trajectory.at(self.time).twist, config);
@@ -45,14 +45,14 @@ impl ReferenceClock {
         TrajectoryPoint { twist: scaled(point.twist, self.rate), ..point }
     }
 
-    /// The reference for the tracking law: the present pose with the twist `lead` s later, when the command takes effect.
+    /// The reference for the tracking law: the present pose with the twist `lead` s later, at which the command takes effect.
     pub(super) fn reference_ahead(&self, lead: f64) -> TrajectoryPoint {
         let point = self.trajectory.at(self.time);
         let then = self.trajectory.at(self.time + lead * self.rate);
         TrajectoryPoint { twist: scaled(then.twist, self.rate), ..point }
     }
 
-    /// Whether only a turn on the spot, or nothing, is left.
+    /// Whether the rest of the trajectory is at most a turn on the spot.
     pub(super) fn has_arrived(&self) -> bool {
         self.time >= self.arrival_time
     }
@@ -62,7 +62,7 @@ fn scaled(twist: Twist2, factor: f64) -> Twist2 {
     Twist2::new(twist.v * factor, twist.omega * factor)
 }
 
-/// The time from which the position stays at its end, s.
+/// The time from which the position is constant, s.
 fn arrival_time(trajectory: &Trajectory) -> f64 {
     let end = trajectory.end();
     let points = trajectory.points();
@@ -72,7 +72,7 @@ fn arrival_time(trajectory: &Trajectory) -> f64 {
 
 /// Rate of the reference clock, 0 to 1.
 ///
-/// The clock may stop for errors that A6 regulates at rest: along the path, and in heading. An error beside the path only slows it.
+/// The clock may stop for errors that A6 regulates at rest: along the path, and in heading. A lateral error only slows the clock.
 fn clock_rate(error: TrackingError, reference: Twist2, config: &FollowerConfig) -> f64 {
     let remaining = |error: f64, from: f64, to: f64| ((to - error) / (to - from)).clamp(0.0, 1.0);
     let behind = if reference.v < 0.0 { -error.along } else { error.along };

@@ -1,7 +1,7 @@
 //! Tracking a moving reference (docs/methods.md A6; \[Kanayama90\], \[Li18\]).
 //!
-//! Problem: stay at a reference pose that moves with a known twist. Idea: express the error in the robot's frame. Drive the twist of the
-//! reference plus feedback on the errors along the path and in heading; a lateral error turns the robot towards the reference, in
+//! Problem: follow a reference pose that moves with a known twist. Idea: express the error in the robot's frame. The command is the twist
+//! of the reference plus feedback on the errors along the path and in heading. A lateral error turns the robot towards the reference, in
 //! proportion to the speed. A Lyapunov function proves that the error falls. Cost: O(1).
 //!
 //! | paper | name here | unit |

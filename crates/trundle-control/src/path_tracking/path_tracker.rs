@@ -15,14 +15,14 @@ pub struct PathTracker {
     limiter: Limiter,
 }
 
-/// One step of tracking.
+/// Result of one control step of tracking.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrackingReport {
     /// The twist to send.
     pub twist: Twist2,
     /// Error to the reference in the robot's frame.
     pub error: TrackingError,
-    /// Whether a limit of the base changed what the law wanted.
+    /// Whether a limit of the base changed the law's command.
     pub saturated: bool,
 }
 

@@ -14,7 +14,7 @@ pub struct TrackingError {
 }
 
 impl TrackingError {
-    /// Of a robot at `pose` with its reference at `reference`, both in one frame.
+    /// Error of a robot at `pose` with its reference at `reference`, both in one frame.
     pub fn between(pose: Pose2, reference: Pose2) -> Self {
         let (s, c) = pose.theta.sin_cos();
         let gap = reference.position() - pose.position();

@@ -6,11 +6,11 @@ use trundle_core::Twist2;
 /// A6's gains at one moment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Gains {
-    /// Of the error along, 1/s.
+    /// Gain of the error along the path, 1/s.
     pub(super) k1: f64,
-    /// Of the heading error, 1/s.
+    /// Gain of the heading error, 1/s.
     pub(super) k2: f64,
-    /// Of the error beside, 1/m^2.
+    /// Gain of the lateral error, 1/m^2.
     pub(super) k_cross: f64,
 }
 

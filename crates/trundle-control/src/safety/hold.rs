@@ -3,13 +3,13 @@
 use std::fmt;
 use trundle_core::Device;
 
-/// A condition of the body under which no wheel may turn. It ends when the body reports so.
+/// A condition of the body under which no wheel may turn. The hold ends with the report of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum MotionHold {
-    /// A wheel hangs: the robot was lifted, or stands over an edge.
+    /// A wheel hangs in the air: the robot was lifted, or is at an edge.
     WheelDrop,
-    /// A wheel motor draws too much current: something blocks the wheel.
+    /// A wheel motor exceeds its current limit: the wheel is blocked.
     OverCurrent,
     /// A power supply is plugged in: the robot would tear its cable.
     AdapterConnected,

@@ -7,18 +7,18 @@ use trundle_core::{Cell, OccupancyGrid, Pose2, Scan, Vector2};
 pub struct SafetyScan<'a> {
     /// The scan.
     pub scan: &'a Scan,
-    /// `odom_from_base` when it was taken.
+    /// `odom_from_base` at the stamp of the scan.
     pub odom_at_scan: Pose2,
     /// `odom_from_base` now.
     pub odom_now: Pose2,
 }
 
-/// The map, and the pose of the robot in it.
+/// The map, and the robot's pose in the map.
 #[derive(Debug, Clone, Copy)]
 pub struct SafetyMemory<'a> {
     /// The map.
     pub grid: &'a OccupancyGrid,
-    /// Obstacles seen recently and not yet in the map, map frame, m.
+    /// Obstacles observed recently and not yet in the map, map frame, m.
     pub unconfirmed: &'a [Vector2],
     /// `map_from_base` now.
     pub map_from_base: Pose2,
@@ -27,9 +27,9 @@ pub struct SafetyMemory<'a> {
 /// A round obstacle near the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Obstacle {
-    /// Its centre, base frame, m.
+    /// Centre of the obstacle, base frame, m.
     pub(super) at: Vector2,
-    /// Its radius, m: 0 for a hit of a beam, half a side for a cell.
+    /// Radius of the obstacle, m: 0 for a hit of a beam, half a side for a cell.
     pub(super) extent: f64,
 }
 

@@ -7,15 +7,15 @@ use trundle_core::Vector2;
 /// Decision of the safety monitor about a command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SafetyAction {
-    /// Let it pass.
+    /// The twist passed unchanged.
     Pass,
-    /// Slowed it along its own curve.
+    /// The twist was slowed along its own curve.
     Slow(SlowReason),
-    /// Stopped it. Before an obstacle the robot may still turn on the spot.
+    /// The twist was stopped. In front of an obstacle the robot may still turn on the spot.
     Stop(StopReason),
 }
 
-/// Why the robot drives slower than commanded.
+/// Reason why the robot drives slower than commanded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SlowReason {
     /// An obstacle ahead, still far enough.
@@ -25,24 +25,24 @@ pub enum SlowReason {
         /// The obstacle, base frame, m.
         at: Vector2,
     },
-    /// An obstacle beside a turn on the spot, still far enough.
+    /// An obstacle near a turn on the spot, at a sufficient distance.
     ObstacleBeside {
         /// Angle until contact, rad.
         angle: f64,
         /// The obstacle, base frame, m.
         at: Vector2,
     },
-    /// An obstacle close beside the path.
+    /// An obstacle close to the side of the path.
     NarrowGap {
         /// The obstacle, base frame, m.
         at: Vector2,
     },
     /// The newest image with content is older than usual.
     OldImage {
-        /// Its age, s.
+        /// Age of the image, s.
         age: f64,
     },
-    /// The wheels are commanded and the encoders count nothing.
+    /// The wheels are commanded while the encoders count nothing.
     WheelsCountNothing,
     /// Driving backward, out of view.
     Reversing,
@@ -50,7 +50,7 @@ pub enum SlowReason {
     BackingOut,
 }
 
-/// Why the robot was stopped.
+/// Reason why the robot was stopped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StopReason {
     /// An obstacle nearer than the braking distance.
@@ -69,24 +69,24 @@ pub enum StopReason {
     },
     /// The bumper is pressed.
     Touched,
-    /// A cliff sensor has no floor below it.
+    /// A cliff sensor detects no floor.
     Cliff,
-    /// No image, or scan of a laser, has come yet.
+    /// No image, or scan of a laser, has arrived yet.
     NoImage,
-    /// Images or scans come, but none has had content yet.
+    /// Images or scans arrive, but none has had content yet.
     NothingSeen,
     /// The newest image with content, or scan of a laser, is too old.
     StaleImage {
-        /// Its age, s.
+        /// Age of the image, s.
         age: f64,
     },
-    /// The wheels are commanded and the encoders count nothing, and no image measures the motion.
+    /// The wheels are commanded while the encoders count nothing, and no image measures the motion.
     NothingTellsMotion,
-    /// No wheel reading has come yet.
+    /// No wheel reading has arrived yet.
     NoWheels,
     /// The newest wheel reading is too old.
     StaleWheels {
-        /// Its age, s.
+        /// Age of the reading, s.
         age: f64,
     },
     /// A condition of the body under which no wheel may turn.

@@ -32,7 +32,7 @@ pub struct SafetyInput<'a> {
     pub memory: Option<SafetyMemory<'a>>,
     /// Whether the bumper is pressed.
     pub touched: bool,
-    /// Whether a cliff sensor has no floor below it.
+    /// Whether a cliff sensor detects no floor.
     pub over_edge: bool,
     /// A condition of the body under which no wheel may turn.
     pub hold: Option<MotionHold>,
@@ -56,12 +56,12 @@ impl SafetyInput<'_> {
 /// Sensor of the motion since the scan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum MotionSense {
-    /// The wheels count it.
+    /// The wheel encoders measure the motion.
     #[default]
     Wheels,
-    /// The wheels are commanded and the encoders count nothing; images or scans measure the motion, later.
+    /// The wheels are commanded while the encoders count nothing; images or scans measure the motion, with a delay.
     Sight,
-    /// Nothing does.
+    /// No sensor measures the motion.
     Nothing,
 }
 
@@ -74,8 +74,8 @@ pub struct SafetyReport {
     pub action: SafetyAction,
 }
 
-/// Difference of two distances to a wall that counts as none, m. Larger: the robot may drift towards a wall. Source: a row of round cells
-/// varies by 1.5 mm; ours.
+/// Largest difference of two equal distances to a wall, m. Larger: the robot may drift towards a wall. Source: a row of round cells varies
+/// by 1.5 mm; ours.
 const SAME_DISTANCE_M: f64 = 3e-3;
 
 /// Slowest turn on the spot, rad/s: a slower one is a stop. Source: ours.
@@ -85,7 +85,7 @@ const MIN_TURN_RATE_RAD_PER_S: f64 = 0.02;
 struct FreePath {
     /// Distance to contact, m, and the obstacle.
     contact: Option<(f64, Vector2)>,
-    /// The first obstacle close beside the arc: distance until abreast, m, and position.
+    /// The first obstacle close to the side of the arc: distance until abreast, m, and position.
     beside: Option<(f64, Vector2)>,
 }
 
@@ -118,7 +118,7 @@ impl SafetyMonitor {
         if input.twist.v == 0.0 && self.needs_no_turn_check(input.twist) {
             return SafetyReport { twist: input.twist, action: SafetyAction::Pass };
         }
-        // Near a station the camera may be blind; the bumper and the map watch there.
+        // Near a station the camera may be blind; the bumper and the map replace the camera there.
         let age = input.image.filter(|_| station.is_none()).map_or(0.0, |image| input.now - image);
         self.latency = self.config.latency_for(age);
         self.collect_obstacles(input);
@@ -135,7 +135,7 @@ impl SafetyMonitor {
         )
     }
 
-    /// Why no command may pass: a number is not finite, the body holds the robot, or wheel readings are missing.
+    /// Reason why no command may pass: a number is not finite, the body holds the robot, or wheel readings are missing.
     fn missing_input(&self, input: &SafetyInput<'_>) -> Option<StopReason> {
         let poses = input.scan.iter().flat_map(|s| [s.odom_at_scan, s.odom_now]);
         let mut poses = poses.chain(input.memory.iter().map(|m| m.map_from_base));
@@ -150,7 +150,7 @@ impl SafetyMonitor {
         (age > self.config.wheels_timeout).then_some(StopReason::StaleWheels { age })
     }
 
-    /// Why perception is lost, if images are missing or nothing measures the motion.
+    /// Reason for the loss of perception, if images are missing or no sensor measures the motion.
     fn lost_perception(&self, input: &SafetyInput<'_>) -> Option<StopReason> {
         let nothing = (input.motion == MotionSense::Nothing).then_some(StopReason::NothingTellsMotion);
         if input.station_motion().is_some() {
@@ -166,7 +166,7 @@ impl SafetyMonitor {
         nothing
     }
 
-    /// Limits the speed of a robot whose wheels count nothing.
+    /// Limits the speed of a robot whose wheel encoders count nothing.
     fn limited_by_uncounted_wheels(&self, input: &SafetyInput<'_>) -> SafetyReport {
         let speed =
             if input.motion == MotionSense::Wheels { f64::INFINITY } else { self.config.uncounted_speed };
@@ -215,8 +215,8 @@ impl SafetyMonitor {
         self.obstacles.iter().filter_map(contact).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
-    /// Margin about the footprint that nothing may enter, m. A robot already nearer than the configured margin may move as long as it comes
-    /// no nearer than `slack`: otherwise it could never leave a wall.
+    /// Margin around the footprint that must be free, m. A robot within the configured margin may move if it comes no nearer than `slack`:
+    /// otherwise it could never leave a wall.
     fn contact_margin(&self, slack: f64) -> f64 {
         let gaps = self.obstacles.iter().map(|o| self.footprint.signed_distance(o.at) - o.extent);
         (gaps.fold(f64::INFINITY, f64::min) - slack).clamp(0.0, self.config.side_margin)
@@ -275,7 +275,7 @@ fn stop(reason: StopReason) -> SafetyReport {
     SafetyReport { twist: Twist2::ZERO, action: SafetyAction::Stop(reason) }
 }
 
-/// The twist at most this fast, m/s, on its own curve.
+/// The twist slowed to at most this speed, m/s, on its own curve.
 fn slowed_to(twist: Twist2, speed: f64, reason: SlowReason) -> SafetyReport {
     let part = speed / twist.v.abs();
     if part >= 1.0 {
@@ -452,7 +452,7 @@ mod tests {
 
     #[test]
     fn it_leaves_a_wall_within_the_margin() {
-        // A wall along x, 5 mm beside the disc.
+        // A wall along x, 5 mm from the disc.
         let distance: f64 = 0.1755 + 0.005;
         let bearing = |i: i32| (10.0 + 2.0 * f64::from(i)).to_radians();
         let ranges: Vec<f64> = (0..80).map(|i| distance / bearing(i).sin()).collect();
@@ -498,7 +498,7 @@ mod tests {
             let scan = scan(at.y.atan2(at.x), 0.01, &[at.norm()]);
             let twist =
                 cart().check(&SafetyInput { scan: seen(&scan), ..fresh(Twist2::new(0.0, 2.0)) }).twist;
-            // The base follows within what the monitor counts on.
+            // The base follows the command within the monitor's assumption.
             rate = twist.omega.clamp(rate - 3.0 * 0.02, rate + 3.0 * 0.02);
             theta += rate * 0.02;
             let at = Pose2::new(0.0, 0.0, theta).inverse().transform(post);

@@ -1,10 +1,10 @@
-//! Motion at a charging station: what the safety monitor permits there and nowhere else.
+//! Motion at a charging station: the exceptions of the safety monitor there.
 
 use trundle_core::{Pose2, Twist2, Vector2};
 
 /// Highest speed of a permitted motion \[m/s\]. Source: ours.
 const MAX_SPEED_M_S: f64 = 0.1;
-/// Highest turn rate of a permitted motion \[rad/s\]: it holds the heading and does not turn. Source: ours.
+/// Highest turn rate of a permitted motion \[rad/s\]: enough to keep the heading, too little for a turn. Source: ours.
 const MAX_TURN_RATE_RAD_S: f64 = 0.12;
 /// Outline of a station: depth and half of the width \[m\]. Source: ours, the size of the Kobuki's station.
 const STATION_DEPTH_M: f64 = 0.1;
@@ -14,15 +14,16 @@ const MAX_DISTANCE_ERROR_M: f64 = 0.2;
 /// Margin about the outline within which an obstacle belongs to the station \[m\]: a cell of the map. Source: ours.
 const OUTLINE_MARGIN_M: f64 = 0.05;
 
-/// A straight motion at a charging station. Contact with the station is intended, and the camera may be too near to measure anything: the
-/// monitor then ignores the station as an obstacle and the age of the newest image. All else holds: other obstacles, bumper, cliffs.
+/// A straight motion at a charging station. Contact with the station is intended, and the camera may be too near for measurements. The
+/// monitor then ignores the station as an obstacle and the age of the newest image. All other checks apply: other obstacles, bumper,
+/// cliffs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum StationMotion {
     /// Ahead onto the station.
     Docking {
         /// The station in the base frame: the middle of its front, x out of the front.
         base_from_station: Pose2,
-        /// Distance along its axis by which the station may be nearer or farther, m, up to 0.2.
+        /// Largest error of the station's distance along its axis, m, up to 0.2.
         distance_error: f64,
     },
     /// Back off the station, over the floor that the robot came over.

@@ -1,8 +1,8 @@
 //! Point stabilisation: drive to a pose and rest there (docs/methods.md A7; \[Aicardi95\]).
 //!
-//! Problem: no smooth law of the pose alone brings a two-wheeled robot to rest at a pose \[Brockett83\]. Idea: in polar
-//! coordinates about the goal a linear law does. It is driven forward or backward, depending on where the goal lies. Within the position
-//! tolerance a turn on the spot corrects the heading. Cost: O(1).
+//! Problem: no smooth law of the pose alone brings a two-wheeled robot to rest at a pose \[Brockett83\]. Idea: in polar coordinates around
+//! the goal a linear law does. The robot drives forward or backward, depending on the direction of the goal. Within the position tolerance
+//! a turn on the spot corrects the heading. Cost: O(1).
 //!
 //! | paper | name here | unit |
 //! |---|---|---|

@@ -1,4 +1,4 @@
-//! The law in polar coordinates about the goal.
+//! The law in polar coordinates around the goal.
 
 use crate::stabilization::stabilizer_config::StabilizerConfig;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -14,7 +14,7 @@ pub(super) enum Gear {
 /// Angle beyond abeam at which the gear changes, rad. Larger: fewer gear changes, longer detours. Source: ours.
 const GEAR_HYSTERESIS_RAD: f64 = 0.3;
 
-/// A pose in polar coordinates about the goal; for driving backward both headings are turned by pi.
+/// A pose in polar coordinates around the goal; for driving backward both headings are rotated by pi.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Polar {
     /// rho, m.
@@ -38,7 +38,7 @@ impl Polar {
     }
 }
 
-/// The gear for a goal, given the one engaged.
+/// The gear for a goal, given the engaged gear.
 pub(super) fn select_gear(goal: Pose2, pose: Pose2, engaged: Option<Gear>) -> Gear {
     let gap = goal.position() - pose.position();
     let bearing = difference_of_angles(gap.y.atan2(gap.x), pose.theta).abs();
@@ -50,8 +50,8 @@ pub(super) fn select_gear(goal: Pose2, pose: Pose2, engaged: Option<Gear>) -> Ge
     }
 }
 
-/// A7 with v = k_rho rho cos(alpha) \[Aicardi95\]: equal to k_rho rho to first order, and never away from the goal.
-/// A turn above the limit is slowed along its own curve.
+/// A7 with v = k_rho rho cos(alpha) \[Aicardi95\]: equal to k_rho rho to first order, and never away from the goal. A turn rate above the
+/// limit slows the twist along its own curve.
 pub(super) fn polar_law(polar: Polar, gear: Gear, config: &StabilizerConfig) -> Twist2 {
     let shaping = (polar.distance / config.shaping_distance).min(1.0);
     let beta = polar.approach.clamp(-config.max_approach, config.max_approach);

@@ -7,7 +7,7 @@ use crate::stabilization::stabilizer_config::StabilizerConfig;
 use std::f64::consts::TAU;
 use trundle_core::{DifferentialDrive, DriveLimits, Invalid, Pose2, PoseEstimate, Twist2};
 
-/// Brings the base to a near pose and to rest there.
+/// Drives the base to a near pose and brings it to rest there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stabilizer {
     config: StabilizerConfig,
@@ -28,11 +28,11 @@ pub enum StabilizerPhase {
     Approaching,
     /// Turns on the spot to the heading.
     Turning,
-    /// Stands within the tolerances.
+    /// The robot is at rest within the tolerances.
     Settled,
 }
 
-/// One step of point stabilisation.
+/// Result of one control step of point stabilisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StabilizerReport {
     /// The twist to send.
@@ -41,7 +41,7 @@ pub struct StabilizerReport {
     pub phase: StabilizerPhase,
     /// The goal in the robot's frame.
     pub error: TrackingError,
-    /// Whether a limit of the base changed what the law wanted.
+    /// Whether a limit of the base changed the law's command.
     pub saturated: bool,
 }
 
@@ -49,9 +49,10 @@ pub struct StabilizerReport {
 const POSITION_TOLERANCE_PART: f64 = 0.4;
 /// Part of the heading tolerance at which the turn ends. Larger: less accurate, fewer retries. Source: ours.
 const HEADING_TOLERANCE_PART: f64 = 0.5;
-/// Turn rate below which the base counts as at rest, rad/s. Larger: settled is reported earlier, with more overshoot. Source: ours.
+/// Turn rate below which the base counts as at rest, rad/s. A larger value reports the rest earlier, with more overshoot. Source: ours.
 const STANDSTILL_RATE_RAD_PER_S: f64 = 0.03;
-/// Shift of a goal that still counts as the same goal, m and rad. Larger: map corrections restart fewer approaches. Source: ours.
+/// Largest shift of a goal that counts as the same goal, m and rad. With a larger value, fewer map corrections restart the approach.
+/// Source: ours.
 const SAME_GOAL_M_AND_RAD: f64 = 0.05;
 
 impl Stabilizer {
@@ -147,8 +148,8 @@ impl Stabilizer {
         self.phase = StabilizerPhase::Approaching;
     }
 
-    /// Ends an approach that has turned by a whole turn. That happens when the estimate moves about the goal as the robot turns, by an error
-    /// of the map: the robot would circle without end. It then accepts `release` tolerances, and after that its present position.
+    /// Ends an approach whose total turn reaches a full turn. Cause: an error of the map moves the estimate around the goal during a turn,
+    /// and the robot would circle without end. The stabilizer then accepts `release` tolerances, and after that the present position.
     fn stop_circling(&mut self) {
         if self.retries < self.config.attempts {
             self.retries = self.config.attempts;

@@ -1,4 +1,4 @@
-//! Simulates point stabilisation before it is driven.
+//! Simulates point stabilisation before the drive.
 
 use crate::stabilization::stabilizer::{Stabilizer, StabilizerPhase};
 use trundle_core::{Pose2, PoseEstimate, Stamp};
@@ -20,7 +20,7 @@ impl StabilizerPreview {
 }
 
 impl Stabilizer {
-    /// Runs the law from `from` to `goal`, both in one frame, from a restart; the stabilizer itself stays as it is.
+    /// Runs the law from `from` to `goal`, both in one frame, from a restart; the stabilizer itself does not change.
     pub fn preview(&self, from: Pose2, goal: Pose2) -> StabilizerPreview {
         let mut law = self.clone();
         law.restart();

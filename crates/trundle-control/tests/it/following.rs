@@ -7,7 +7,7 @@ fn follower() -> Follower {
     Follower::new(FollowerConfig::default(), DifferentialDrive::KOBUKI, DriveLimits::KOBUKI).unwrap()
 }
 
-/// A trajectory through legs of (length m, turn rad): each from rest to rest, a turn on the spot where the length is 0.
+/// A trajectory through legs of (length m, turn rad), each from rest to rest; a leg of length 0 is a turn on the spot.
 fn legs(legs: &[(f64, f64)]) -> Trajectory {
     let mut points = vec![TrajectoryPoint { time: 0.0, pose: Pose2::IDENTITY, twist: Twist2::ZERO }];
     for &(length, turn) in legs {
@@ -39,7 +39,7 @@ struct Run {
     phases: Vec<FollowPhase>,
 }
 
-/// Follows; `alter` may change the command at a time (a safety stop).
+/// Follows a trajectory; `alter` may change the command (a safety stop).
 fn run(mut plant: Plant, trajectory: &Trajectory, goal: Pose2, alter: impl Fn(f64, Twist2) -> Twist2) -> Run {
     let mut follower = follower();
     follower.follow(trajectory.clone(), goal);

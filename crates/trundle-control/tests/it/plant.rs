@@ -9,11 +9,11 @@ const STEP: f64 = 0.002;
 pub struct Plant {
     pub pose: Pose2,
     pub now: Stamp,
-    /// From a command to its effect, s.
+    /// Delay from a command to its effect, s.
     pub delay: f64,
     /// Time constant of the motors, s.
     pub lag: f64,
-    /// Highest acceleration of a rim, m/s^2.
+    /// Maximum acceleration of a wheel, m/s^2.
     pub ramp: f64,
     /// Half width of the estimate's uniform noise: m, rad.
     pub noise: (f64, f64),
@@ -70,7 +70,7 @@ impl Plant {
         }
     }
 
-    /// Sends a command and lets a control period pass.
+    /// Sends a command and simulates one control period.
     pub fn drive(&mut self, command: Twist2) {
         self.pending.push_back((self.now.after(self.delay).nanos, command));
         let mut passed = 0.0;

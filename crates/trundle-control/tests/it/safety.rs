@@ -45,7 +45,7 @@ impl World {
         Scan::new(stamp, Vector2::zeros(), (-34.5_f64).to_radians(), 1.0_f64.to_radians(), beams).unwrap()
     }
 
-    /// Map that a mapper would have drawn of it.
+    /// The map of this world as drawn by a mapper.
     fn grid(&self) -> OccupancyGrid {
         let geometry = GridGeometry::new(0.05, Vector2::new(-4.0, -4.0), 200, 160).unwrap();
         let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
@@ -73,7 +73,7 @@ struct Drive {
     slowest: f64,
 }
 
-/// Drives with one command for a while; images at 12.5 Hz, a period late.
+/// Drives with one command for `seconds`; images at 12.5 Hz, one period late.
 fn drive(world: &World, mut plant: Plant, command: Twist2, seconds: f64, with_map: bool) -> Drive {
     let (mut monitor, grid) = (monitor(), world.grid());
     let mut last = SafetyReport { twist: Twist2::ZERO, action: SafetyAction::Pass };
@@ -124,14 +124,14 @@ proptest! {
         plant.delay = delay;
         let drive = drive(&wall, plant, command, 3.0 + 2.0 / v, true);
         prop_assert!(drive.min_clearance > 0.0, "{} m", drive.min_clearance);
-        // One that bends away from the wall may go on along it.
+        // A twist that bends away from the wall may continue along it.
         prop_assert!(drive.last.twist.v < if share.abs() < 0.2 { 0.02 } else { 0.15 }, "{:?}", drive.last);
     }
 
     #[test]
     fn walls_beside_a_corridor_never_stop_it(v in 0.1..0.70, width in 0.7..1.2, offset in -1.0..1.0) {
         let (v, width): (f64, f64) = (v, width);
-        // Anywhere in the corridor where 1.5 cm are left on either side of what the map may draw, a cell too near.
+        // Any lateral position in the corridor with 1.5 cm left on either side of the map's cells, which may be one cell too near.
         let y = offset * (width / 2.0 - RADIUS - 0.05 - 0.015);
         let corridor = empty().segment((-3.9, -width / 2.0), (5.9, -width / 2.0));
         let corridor = corridor.segment((-3.9, width / 2.0), (5.9, width / 2.0));

@@ -9,9 +9,9 @@ struct Outcome {
     seconds: f64,
     /// Distance to the goal and heading error at the end, m and deg.
     error: (f64, f64),
-    /// How often the speed changed its sign.
+    /// Number of sign changes of the speed.
     reversals: usize,
-    /// The farthest it was from the goal, m.
+    /// Largest distance from the goal, m.
     farthest: f64,
     settled: bool,
 }

@@ -1,4 +1,4 @@
-//! The forms in which files hold core types.
+//! Formats of core types in files.
 
 use serde_json::{from_str, json, to_value};
 use trundle_core::{Cell, DifferentialDrive, DriveLimits, FrameId, PinholeCamera, Pose3, Stamp};

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use std::f64::consts::TAU;
 use trundle_core::{Footprint, Pose2, Vector2};
 
-/// A polygon with its corners on a circle about `centre`, hence convex.
+/// A polygon with its corners on a circle around `centre`, hence convex.
 fn inscribed(bearings: &[f64], radius: f64, centre: Vector2) -> Vec<Vector2> {
     let mut sorted = bearings.to_vec();
     sorted.sort_by(f64::total_cmp);

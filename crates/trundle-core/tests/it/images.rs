@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 use trundle_core::{ColorImage, DepthImage, GrayImage, Image, RgbdImage, Stamp, gray_from_color};
 
-/// An image whose pixels hold their own column and row.
+/// An image whose pixels contain their own column and row.
 fn numbered(width: usize, height: usize) -> Image<(usize, usize)> {
     Image::from_fn(width, height, |x, y| (x, y))
 }

@@ -1,4 +1,4 @@
-//! The error of every constructor: field, value, unit and what is expected.
+//! The error of every constructor: field, value, unit and accepted values.
 
 use trundle_core::{
     Beam, ColorImage, DepthImage, DifferentialDrive, Distortion, DriveLimits, Footprint, FreeSpan,

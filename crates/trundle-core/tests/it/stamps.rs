@@ -6,7 +6,7 @@ use trundle_core::{
     Vector2, WheelTicks,
 };
 
-/// Nanoseconds of a century about the epoch.
+/// Nanoseconds of a century around the epoch.
 const CENTURY: i64 = 3_155_760_000_000_000_000;
 
 proptest! {

@@ -7,7 +7,7 @@ use trundle_core::{Pose2, Vector2};
 
 /// Counted cost of a node without its headings, in units of [`ContactSpace::work`]. Source: ours.
 const NODE_COST: u64 = 40;
-/// Difference of a heading that counts as nearly the same, rad. Source: ours.
+/// Largest difference between two headings that count as nearly equal, rad. Source: ours.
 const NEAR_HEADING_RAD: f64 = 0.03;
 
 /// A free gap of headings over a cell.
@@ -27,7 +27,7 @@ pub struct FreeHeadings<'s, 'a> {
     /// Side of a cell, m.
     pub side: f64,
     count: usize,
-    /// First gap and number of gaps of each cell; `u32::MAX` when not yet computed.
+    /// First gap and number of gaps of each cell; `u32::MAX` before their computation.
     ranges: Vec<(u32, u32)>,
     gaps: Vec<HeadingArc>,
     blocked: Vec<HeadingArc>,
@@ -64,7 +64,7 @@ impl<'s, 'a> FreeHeadings<'s, 'a> {
         self.low + Vector2::new(column as f64 + 0.5, row as f64 + 0.5) * self.side
     }
 
-    /// The node that holds a pose, if it is free there.
+    /// The node of a pose; `None` if the pose is not free.
     pub fn node_at(&mut self, pose: &Pose2) -> Option<Node> {
         let at = (pose.position() - self.low) / self.side;
         let inside = at.min() >= 0.0 && at.max() < self.count as f64;
@@ -75,8 +75,8 @@ impl<'s, 'a> FreeHeadings<'s, 'a> {
             .find(|&node| meets(&self.gap(node), pose.theta, 0.0))
     }
 
-    /// The node of a pose. Where its own cell's centre is not free there: the nearest of the cells around whose centre is free at its
-    /// heading, or at one a little off.
+    /// The node of a pose. If its own cell's centre is not free: the nearest surrounding cell with a free centre at its heading, or at a
+    /// slightly different heading.
     pub fn node_near(&mut self, pose: &Pose2) -> Option<Node> {
         if let Some(node) = self.node_at(pose) {
             return Some(node);

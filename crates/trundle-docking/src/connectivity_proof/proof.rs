@@ -12,7 +12,7 @@ use trundle_core::{Pose2, Vector2, wrap_angle};
 pub enum Connectivity {
     /// Start and goal are not connected: no motion of any kind leads from one to the other.
     Disconnected {
-        /// The obstacle where the reachable poses come nearest to the other end.
+        /// The obstacle at which the reachable poses come nearest to the other end.
         by: Option<Blocker>,
     },
     /// Start and goal are connected, as far as cells of this side, or the work allowed, can show.
@@ -24,12 +24,12 @@ pub enum Connectivity {
 pub struct ProofGrid {
     /// Centre of the square.
     pub center: Vector2,
-    /// Half its side, m.
+    /// Half the side of the region, m.
     pub half: f64,
     /// Side of a cell, m.
     pub side: f64,
-    /// Whether the hull is shrunk by a cell's half diagonal, for a proof; or used as it is at the cells' centres, for reachability at
-    /// this resolution.
+    /// Whether the hull is shrunk by a cell's half diagonal, for a proof; otherwise the true hull at the cells' centres gives reachability
+    /// at this resolution.
     pub shrunk: bool,
     /// Value of [`ContactSpace::work`] at which the test ends without a proof.
     pub limit: u64,
@@ -47,7 +47,7 @@ pub async fn test_connectivity(
     let Some(shrunk) = space.hull().shrunk(depth) else { return Connectivity::Connected };
     let mut shrunk = space.with_hull(shrunk);
     let mut headings = FreeHeadings::new(&mut shrunk, center, half, side);
-    // A proof needs the cells of the ends themselves; there the shrunk hull is free because the true one is.
+    // A proof needs the cells of the ends themselves; the shrunk hull is free there because the true hull is.
     let mut node = |pose| if grid.shrunk { headings.node_at(pose) } else { headings.node_near(pose) };
     let (Some(first), Some(last)) = (node(start), node(goal)) else {
         return Connectivity::Connected;
@@ -85,7 +85,7 @@ pub async fn test_connectivity(
     }
 }
 
-/// Reached nodes in order, and those to expand: the nearest to the other end first, so that connected regions meet early.
+/// Reached nodes in order, and nodes to expand: the nearest to the other end first, which connects regions early.
 struct Flood {
     visited: Vec<Node>,
     open: BinaryHeap<Reverse<(u64, Node)>>,
@@ -108,7 +108,7 @@ impl Flood {
     }
 }
 
-/// Marks a node; returns whether it was marked already.
+/// Marks a node; returns whether it was already marked.
 fn mark(seen: &mut Vec<u8>, node: Node, by: u8) -> bool {
     if seen.len() <= node.gap as usize {
         seen.resize(node.gap as usize + 1, 0);

@@ -21,8 +21,8 @@ const SIDEWAYS_COST: f64 = 8.0;
 const HEADING_INSET_RAD: f64 = 0.05;
 
 impl<'s, 'a> TimeEstimate<'s, 'a> {
-    /// Searches from the goal over cells of `side` (m) within a square, at `speed` (m/s). It covers the start and `beyond` (s) more,
-    /// plus as many sixths of the time to the start as that is half seconds; it ends when [`ContactSpace::work`] reaches `limit`.
+    /// Searches from the goal over cells of `side` (m) within a square, at `speed` (m/s). The search covers the start and `beyond` (s)
+    /// more, plus as many sixths of the time to the start as that is half seconds. It ends when [`ContactSpace::work`] reaches `limit`.
     pub async fn new(
         space: &'s mut ContactSpace<'a>,
         goal: &Pose2,
@@ -63,7 +63,7 @@ impl<'s, 'a> TimeEstimate<'s, 'a> {
         estimate
     }
 
-    /// Estimated time from a pose, s; infinite when it is not known to be connected with the goal.
+    /// Estimated time from a pose, s; infinite without a known connection to the goal.
     pub fn seconds(&mut self, pose: &Pose2) -> f64 {
         let node = self.headings.node_near(pose);
         node.and_then(|n| self.seconds.get(n.gap as usize)).map_or(f64::INFINITY, |&s| f64::from(s))
@@ -114,7 +114,7 @@ impl<'s, 'a> TimeEstimate<'s, 'a> {
     }
 }
 
-/// The heading nearest to `heading` inside both gaps, away from their ends where there is space.
+/// The heading nearest to `heading` inside both gaps, away from their ends if space allows.
 fn shared(a: HeadingArc, b: HeadingArc, heading: f64) -> f64 {
     let mut best = (f64::INFINITY, heading);
     let offset = (b.start - a.start).rem_euclid(TAU);

@@ -47,13 +47,14 @@ impl PathPiece {
         from.advance(Twist2::new(self.way * part, self.turn * part), 1.0)
     }
 
-    /// Minimum time from rest to rest, s: of its distance or of its turn, whichever takes longer.
+    /// Minimum time from rest to rest, s: of its distance or of its turn, whichever is longer.
     pub fn time(&self, limits: &MotionLimits) -> f64 {
         limits.drive_time(self.way).max(limits.turn_time(self.turn))
     }
 }
 
-/// Time of a path, s: every piece from rest to rest, with a pause (`switch_time`) between two, except where it rolls on in the same direction.
+/// Time of a path, s: every piece from rest to rest, with a pause (`switch_time`) between two, except for pieces that continue in the same
+/// direction.
 pub fn time_of(path: &[PathPiece], limits: &MotionLimits) -> f64 {
     let pauses = path.windows(2).filter(|pair| pair[0].way * pair[1].way <= 0.0).count();
     path.iter().map(|piece| piece.time(limits)).sum::<f64>() + pauses as f64 * limits.switch_time

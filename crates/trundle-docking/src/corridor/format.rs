@@ -162,7 +162,7 @@ pub(super) fn floats(number: usize, text: &str, count: usize) -> Result<Vec<f64>
     }
 }
 
-/// The error with the number of its line.
+/// The error with its line number.
 fn in_line(number: usize, error: Invalid) -> Invalid {
     Invalid { field: format!("line {number}: {}", error.field), ..error }
 }

@@ -10,8 +10,8 @@ use trundle_core::{Footprint, Pose2, Vector2};
 /// Smallest clearance of start and goal, m. Source: ours.
 const MIN_CLEARANCE_M: f64 = 0.01;
 
-/// A random corridor problem: walls along x about y = 0, 0.55 to 1.10 m apart, with dead ends, boxes, and a niche behind an
-/// opening; the goal along the corridor, the start a few decimetres beside it. All obstacles are solid or walls.
+/// A random corridor problem. Walls along x around y = 0 are 0.55 to 1.10 m apart, with dead ends, boxes, and a niche behind an opening.
+/// The goal is along the corridor, the start a few decimetres to its side. All obstacles are solid or walls.
 pub fn generate(name: impl Into<String>, rng: &mut ChaCha8Rng) -> Problem {
     let name = name.into();
     loop {
@@ -29,7 +29,7 @@ pub fn generate(name: impl Into<String>, rng: &mut ChaCha8Rng) -> Problem {
     }
 }
 
-/// Mostly the box of 0.6 x 0.4 m around its axle.
+/// In most cases the box of 0.6 x 0.4 m around its axle.
 fn footprint(rng: &mut ChaCha8Rng) -> Footprint {
     let rectangle =
         |front: f64, back: f64, half: f64| vec![(front, half), (-back, half), (-back, -half), (front, -half)];

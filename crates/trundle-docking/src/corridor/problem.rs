@@ -3,10 +3,10 @@
 use crate::scene::obstacle_scene::{Obstacle, ObstacleScene};
 use trundle_core::{Footprint, Invalid, Pose2};
 
-/// A robot beside its goal in a narrow space.
+/// A robot next to its goal in a narrow space.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Problem {
-    /// One word.
+    /// Name of the problem, one word.
     pub name: String,
     /// The robot's footprint.
     pub footprint: Footprint,
@@ -22,7 +22,7 @@ impl Problem {
     /// The obstacles, indexed.
     ///
     /// # Errors
-    /// When one of them is not valid.
+    /// When an obstacle is invalid.
     pub fn scene(&self) -> Result<ObstacleScene, Invalid> {
         ObstacleScene::new(&self.obstacles)
     }

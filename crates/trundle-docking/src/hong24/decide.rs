@@ -13,13 +13,13 @@ pub enum Decision {
     Settled,
     /// Carry out these motions.
     Move(Vec<Motion>),
-    /// Nothing was found: move away, and start again.
+    /// No motion was found: move away, and start again.
     Recover(Motion),
-    /// Nothing was found, and no recovery move is free.
+    /// No motion was found, and no recovery move is free.
     Stuck,
 }
 
-/// Difference of two costs that counts as a tie: clockwise then precedes counter-clockwise, and forward precedes back. Source: ours.
+/// Difference of two costs that counts as a tie. Clockwise then precedes counter-clockwise, and forward precedes back. Source: ours.
 const COST_TIE: f64 = 1e-9;
 
 /// The method with its obstacles.
@@ -35,7 +35,7 @@ pub struct Hong24Method<'a> {
 
 impl Hong24Method<'_> {
     /// The next motions for a base at `pose`: lateral deviation first, then longitudinal, then angular. `recoveries` is the number of
-    /// recovery moves so far: they alternate between back and forward. Also stuck once the plan's work is used up.
+    /// recovery moves so far: they alternate between back and forward. The result is stuck as well once the plan's work is used up.
     pub async fn decide(&self, pose: &Pose2, goal: &Pose2, recoveries: usize) -> Decision {
         let error = goal.inverse() * *pose;
         let found = if error.y.abs() > self.config.lateral_threshold {
@@ -88,7 +88,7 @@ impl Hong24Method<'_> {
         turns
     }
 
-    /// Point D of the straight AC: its distance (negative backward, m) and the lateral deviation left there, m.
+    /// Point D of the straight AC: its distance (negative backward, m) and the remaining lateral deviation, m.
     async fn min_lateral(&self, from: &Pose2, goal: &Pose2, sign: f64) -> (f64, f64) {
         let samples = (self.config.reach / self.config.distance_step).floor() as usize;
         let mut best = (0.0, f64::INFINITY);
@@ -104,7 +104,7 @@ impl Hong24Method<'_> {
         best
     }
 
-    /// Turns to the goal's heading and drives the rest along it, as far as it is free.
+    /// Turns to the goal's heading and drives the remaining distance along it, as far as free.
     async fn longitudinal(&self, pose: &Pose2, goal: &Pose2) -> Option<Vec<Motion>> {
         let turn = self.turn_to(pose, goal.theta).await?;
         let turned = Pose2::new(pose.x, pose.y, goal.theta);
@@ -116,7 +116,7 @@ impl Hong24Method<'_> {
             .then(|| vec![Motion::Turn(turn), Motion::Drive(at(free))])
     }
 
-    /// The shorter turn to a heading, when every sample of it is free.
+    /// The shorter turn to a heading, if every sample of it is free.
     async fn turn_to(&self, pose: &Pose2, heading: f64) -> Option<f64> {
         let turn = wrap_angle(heading - pose.theta);
         let samples = (turn.abs() / self.config.angle_step).ceil().max(1.0) as usize;

@@ -1,9 +1,9 @@
-//! The position adjustment of \[Hong24\] (docs/methods.md B), as in the paper: greedy, one turn and one straight move at a time.
+//! The position adjustment of \[Hong24\] (docs/methods.md B), as in the paper: greedy, alternating one turn and one straight move.
 //!
 //! Problem: reach a pose in a corridor by turns in place and straight moves. Idea: correct the lateral deviation by the turn and the
-//! straight move of minimum cost f = w1 t + w2 d; then turn to the goal's heading and correct the longitudinal deviation; then turn
-//! the rest. Cost: turn samples times straight samples per decision. Contact is tested at the samples only, as in the paper. The
-//! search may yield between two samples.
+//! straight move of minimum cost f = w1 t + w2 d. Then turn to the goal's heading and correct the longitudinal deviation; then correct the
+//! heading. Cost: turn samples times straight samples per decision. Contact is tested at the samples only, as in the paper. The search may
+//! yield between two samples.
 //!
 //! | paper | name here | unit |
 //! |---|---|---|
@@ -18,7 +18,7 @@ use crate::motion::limits::MotionLimits;
 use crate::motion::manoeuvre::{Manoeuvre, Motion};
 use trundle_core::Pose2;
 
-/// Repeats the method's decisions, each carried out exactly, until the goal is reached or the method gives up (`None`).
+/// Repeats the method's decisions, each carried out exactly, until the goal is reached or the method fails (`None`).
 pub async fn plan(
     space: &ContactSpace<'_>,
     start: Pose2,

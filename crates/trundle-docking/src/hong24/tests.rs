@@ -159,7 +159,7 @@ fn no_chosen_motion_passes_a_sample_that_touches() {
     }
 }
 
-/// A sleeve around the robot at its place beside the goal: it neither turns nor comes nearer to the goal's line.
+/// A sleeve around the robot next to the goal: it can neither turn nor approach the goal's line.
 fn sleeve() -> Vec<Obstacle> {
     [-0.01, 0.41].map(|y| Obstacle::Segment(at(-2.0, y), at(2.0, y))).to_vec()
 }

@@ -22,7 +22,7 @@ impl Legs {
         (time + query.turn_cost(wrap_angle(query.goal.theta - heading))).max(0.0)
     }
 
-    /// The motions and their time (s), pauses included, when all of them are free.
+    /// The motions and their time (s) with pauses, if all motions are free.
     pub fn motions(&self, query: &DockingQuery, space: &mut ContactSpace<'_>) -> Option<(f64, Vec<Motion>)> {
         let (mut motions, mut pose) = (Vec::with_capacity(2 * self.0.len() + 1), query.start);
         let mut time = -query.limits.switch_time;
@@ -64,8 +64,8 @@ impl Legs {
         self.poses(start).map(|pose| pose.position())
     }
 
-    /// The same headings and first distances, with the last two distances such that the legs end at the goal; `None` if the last
-    /// two headings are parallel.
+    /// The same headings and first distances, with the last two distances chosen to end at the goal; `None` if the last two headings are
+    /// parallel.
     pub fn closed(&self, query: &DockingQuery) -> Option<Self> {
         let n = self.0.len();
         let direction = |(heading, _): (f64, f64)| Vector2::new(heading.cos(), heading.sin());

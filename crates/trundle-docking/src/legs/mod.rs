@@ -1,4 +1,4 @@
-//! Legs: straight moves with the turns between them, and the query that they answer.
+//! Legs: straight moves with the turns between them, and the docking query.
 
 pub(crate) mod leg_sequence;
 pub(crate) mod query;

@@ -12,17 +12,17 @@ pub struct DockingQuery {
     pub goal: Pose2,
     /// Speeds and pauses.
     pub limits: MotionLimits,
-    /// Distance beyond start and goal within which a manoeuvre stays, m.
+    /// Distance outside start and goal that a manoeuvre may use, m.
     pub reach: f64,
 }
 
 impl DockingQuery {
-    /// Time of a turn and the pause after it, s; 0 for no turn.
+    /// Time of a turn and the following pause, s; 0 without a turn.
     pub fn turn_cost(&self, angle: f64) -> f64 {
         if angle.abs() < 1e-9 { 0.0 } else { self.limits.turn_time(angle) + self.limits.switch_time }
     }
 
-    /// Time of a straight move and the pause after it, s; 0 for no move.
+    /// Time of a straight move and the following pause, s; 0 without a move.
     pub fn drive_cost(&self, way: f64) -> f64 {
         if way.abs() < 1e-9 { 0.0 } else { self.limits.drive_time(way) + self.limits.switch_time }
     }
@@ -32,7 +32,7 @@ impl DockingQuery {
         (self.start.position() + self.goal.position()) / 2.0
     }
 
-    /// Half the side of the square about [`DockingQuery::center`] within which a manoeuvre stays, m.
+    /// Half the side of the square around [`DockingQuery::center`] that a manoeuvre may use, m.
     pub fn half(&self) -> f64 {
         self.reach + self.start.distance(&self.goal) / 2.0
     }

@@ -1,4 +1,4 @@
-//! Laws of legs and of the query that they answer.
+//! Laws of legs and of their query.
 
 use crate::contact_space::ContactSpace;
 use crate::legs::leg_sequence::Legs;

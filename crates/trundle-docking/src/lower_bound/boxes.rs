@@ -1,4 +1,4 @@
-//! Squares of a quadtree over the positions where the robot turns.
+//! Squares of a quadtree over the turning positions of the robot.
 
 use trundle_core::Vector2;
 
@@ -14,7 +14,7 @@ impl Square {
     /// The whole region.
     pub const ALL: Self = Self { level: 0, x: 0, y: 0 };
 
-    /// Its four quarters.
+    /// The four quarters of the square.
     pub fn quarters(self) -> [Self; 4] {
         let at = |x, y| Self { level: self.level + 1, x: 2 * self.x + x, y: 2 * self.y + y };
         [at(0, 0), at(1, 0), at(0, 1), at(1, 1)]
@@ -29,7 +29,7 @@ pub struct Region {
     pub half: f64,
 }
 
-/// A position known to lie within `half` (m) of `center` along both axes.
+/// A position within `half` (m) of `center` along both axes.
 #[derive(Debug, Clone, Copy)]
 pub struct PositionBox {
     pub center: Vector2,
@@ -46,7 +46,7 @@ impl Region {
 }
 
 impl PositionBox {
-    /// One exact position.
+    /// An exact position.
     pub fn exactly(p: Vector2) -> Self {
         Self { center: p, half: 0.0 }
     }

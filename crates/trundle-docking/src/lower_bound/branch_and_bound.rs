@@ -31,14 +31,14 @@ pub struct Bounded {
     pub boxes: usize,
 }
 
-/// A family of manoeuvres: those that turn in given squares.
+/// A family of manoeuvres: those with turns in given squares.
 #[derive(Debug, Clone, Copy)]
 struct Family {
     bound: f64,
     /// Number of turning positions in use.
     turns: usize,
     squares: [Square; MAX_SPLIT_LEGS - 1],
-    /// Whether its contacts have been tested.
+    /// Whether the contacts of the family have been tested.
     tested: bool,
 }
 
@@ -54,15 +54,15 @@ impl PartialOrd for Family {
     }
 }
 impl Ord for Family {
-    /// The smallest bound is the greatest; ties are broken by squares, so that the order is unique.
+    /// The heap returns the smallest bound first; ties are broken by squares, for a unique order.
     fn cmp(&self, other: &Self) -> Ordering {
         let key = |f: &Self| (f.turns, f.squares);
         other.bound.total_cmp(&self.bound).then_with(|| key(other).cmp(&key(self)))
     }
 }
 
-/// Raises the bound, and improves the legs where a box holds better ones. Ends when both are within `gap` (a part) of each other,
-/// when `most` boxes have been expanded, or when [`ContactSpace::work`] reaches `limit`.
+/// Raises the bound, and improves the legs if a box contains better ones. Ends when both differ by at most `gap` (a part), when `most`
+/// boxes have been expanded, or when [`ContactSpace::work`] reaches `limit`.
 pub async fn improve(
     query: &DockingQuery,
     space: &mut ContactSpace<'_>,
@@ -108,7 +108,7 @@ pub async fn improve(
         let widest =
             (0..family.turns).min_by_key(|&i| family.squares[i].level).expect("invariant: a family turns");
         if family.squares[widest].level >= FINEST_LEVEL {
-            // The finest squares are not split: their bound stands.
+            // The finest squares are not split: their bound is final.
             known.bound = family.bound;
             return known;
         }
@@ -140,7 +140,7 @@ struct Bounding<'t, 'a> {
 }
 
 impl Bounding<'_, '_> {
-    /// Time of a straight drive to the goal, s; infinite when it is not free. It covers manoeuvres of one leg or none.
+    /// Time of a straight drive to the goal, s; infinite if the drive is not free. It covers manoeuvres of one leg or none.
     fn straight(&self, space: &mut ContactSpace<'_>) -> f64 {
         let rest = self.query.goal.position() - self.query.start.position();
         let toward = if rest.norm() > 1e-9 { rest.y.atan2(rest.x) } else { self.query.start.theta };
@@ -219,7 +219,7 @@ impl Bounding<'_, '_> {
         chain.min_time(&ends, [open; MAX_SPLIT_LEGS - 1]).unwrap_or(f64::INFINITY)
     }
 
-    /// The same bound with contacts; `None` if every manoeuvre of the family touches something.
+    /// The same bound with contacts; `None` if every manoeuvre of the family has a contact.
     fn tested_bound(&mut self, family: &Family) -> Option<f64> {
         let places = self.places(family);
         let shrunk = self.shrunk.as_mut().expect("invariant: contacts are asked for among obstacles");

@@ -43,11 +43,11 @@ const MAX_SECTORS: usize = 16;
 const SECTOR_WIDTH_RAD: f64 = 0.06;
 
 impl Chain<'_> {
-    /// Lower bound of the time of all manoeuvres through these boxes, s, with `gaps` the headings that may be free at each turning
-    /// position; `None` if none is possible.
+    /// Lower bound of the time of all manoeuvres through these boxes, s; `None` if none is possible. `gaps` are the headings that may be
+    /// free at each turning position.
     ///
-    /// Each leg's headings are cut into sectors, and the minimum runs over one sector per leg. A leg that could point anywhere must
-    /// still point somewhere, so that the turns before and after it add up.
+    /// Each leg's headings are cut into sectors, and the minimum runs over one sector per leg. A leg that could point anywhere still has
+    /// one direction, so the turns before and after it add up.
     pub fn min_time(&self, ends: &Ends<'_>, gaps: [&[HeadingArc]; MAX_SPLIT_LEGS - 1]) -> Option<f64> {
         let (limits, pause) = (&ends.query.limits, ends.query.limits.switch_time);
         let mut before = Sectors::default();
@@ -109,7 +109,7 @@ impl Sectors {
     /// The sectors of a leg that may be driven forward or backward.
     fn of(leg: &LegRange, free: [bool; 2]) -> Self {
         let mut sectors = Self::default();
-        // Where every direction is open, backward adds none.
+        // If every direction is open, the backward direction adds none.
         let gears = if leg.spread >= PI { [true, false] } else { free };
         let most = if leg.spread >= PI { MAX_SECTORS } else { MAX_SECTORS / 2 };
         let parts = ((2.0 * leg.spread / SECTOR_WIDTH_RAD).ceil() as usize).clamp(1, most);

@@ -30,7 +30,7 @@ impl<'a> ShrunkHulls<'a> {
         Self { whole: whole.clone(), spaces, gaps: BTreeMap::new(), blocked: Vec::new() }
     }
 
-    /// The hull for positions known to within `depth` (m); `None` if nothing of it remains.
+    /// The hull for positions known within `depth` (m); `None` if no area remains.
     fn space(&mut self, depth: f64) -> Option<&mut ContactSpace<'a>> {
         let step = (2.0 * (depth / MIN_SHRINK_M).log2()).ceil().max(0.0) as usize;
         let whole = &self.whole;
@@ -86,7 +86,7 @@ impl<'a> ShrunkHulls<'a> {
         let heading = leg.headings(backward).middle;
         let pose = Pose2::new(from.center.x, from.center.y, heading);
         let way = if backward { -rest.norm() } else { rest.norm() };
-        // A free drive backs off before a contact; a bound must not.
+        // A free drive backs off before a contact, which a bound must not do.
         space.drive(&pose, way.abs() + 0.01).allows(way - (2.0 * crate::free_motion::BACK_OFF).copysign(way))
     }
 }

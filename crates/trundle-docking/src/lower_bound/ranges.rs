@@ -12,7 +12,7 @@ pub struct LegRange {
     pub least: f64,
     /// Centre of the directions, rad.
     pub direction: f64,
-    /// Largest deviation of a direction, rad; pi when nothing is known.
+    /// Largest deviation of a direction, rad; pi if unknown.
     pub spread: f64,
 }
 

@@ -118,7 +118,7 @@ proptest! {
             (heading, if backward { -d.norm() } else { d.norm() })
         };
         let driven = Legs(points.windows(2).enumerate().map(leg).collect());
-        // Between two legs there is a pause also if no turn is needed.
+        // A pause separates two legs even without a turn.
         let turns = |(a, b): (&(f64, f64), &(f64, f64))| if wrap_angle(a.0 - b.0).abs() < 1e-9 { query.limits.switch_time } else { 0.0 };
         let pauses: f64 = driven.0.iter().zip(&driven.0[1..]).map(turns).sum();
         prop_assert!(bound <= driven.min_time(&query) + pauses + 1e-9, "{bound} above {}", driven.min_time(&query));

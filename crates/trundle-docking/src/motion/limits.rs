@@ -60,7 +60,7 @@ impl MotionLimits {
     }
 }
 
-/// Minimum time over the distance `way` with bounded speed and acceleration: a trapezoidal speed profile, triangular when it is short.
+/// Minimum time over the distance `way` with bounded speed and acceleration: a trapezoidal speed profile, triangular for short distances.
 fn rest_to_rest(way: f64, speed: f64, acceleration: f64) -> f64 {
     if way * acceleration >= speed * speed {
         way / speed + speed / acceleration

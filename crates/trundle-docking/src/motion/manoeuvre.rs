@@ -4,18 +4,18 @@ use crate::motion::limits::MotionLimits;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Pose2, Twist2};
 
-/// One motion from rest to rest.
+/// A motion from rest to rest.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Motion {
-    /// A turn in place, rad, counter-clockwise positive; more than half a turn where only the longer turn is free.
+    /// A turn in place, rad, counter-clockwise positive; more than half a turn if only the longer turn is free.
     Turn(f64),
     /// A straight move, m, backward negative.
     Drive(f64),
 }
 
 impl Motion {
-    /// Pose of a base that started at `from` after `part` of the motion (in its own unit, m or rad).
+    /// Pose of a base that started at `from` after `part` of the motion (in the motion's unit, m or rad).
     pub fn after(&self, from: Pose2, part: f64) -> Pose2 {
         match self {
             Self::Turn(_) => Pose2::new(from.x, from.y, from.theta + part),
@@ -57,9 +57,9 @@ impl Motion {
 pub struct Step {
     /// The motion.
     pub motion: Motion,
-    /// `map_from_base` before it.
+    /// `map_from_base` before the motion.
     pub from: Pose2,
-    /// `map_from_base` after it.
+    /// `map_from_base` after the motion.
     pub to: Pose2,
     /// Start, s after the manoeuvre's start.
     pub starts: f64,
@@ -93,12 +93,12 @@ impl Manoeuvre {
         &self.steps
     }
 
-    /// `map_from_base` at its beginning.
+    /// `map_from_base` at the start.
     pub fn start(&self) -> Pose2 {
         self.start
     }
 
-    /// `map_from_base` at its end.
+    /// `map_from_base` at the end.
     pub fn end(&self) -> Pose2 {
         self.steps.last().map_or(self.start, |step| step.to)
     }
@@ -108,12 +108,12 @@ impl Manoeuvre {
         self.steps.last().map_or(0.0, |step| step.starts + step.lasts)
     }
 
-    /// Its speeds and pauses.
+    /// Speeds and pauses of the manoeuvre.
     pub fn limits(&self) -> &MotionLimits {
         &self.limits
     }
 
-    /// Pose and twist `time` seconds after the start; those of the ends outside.
+    /// Pose and twist `time` seconds after the start; before and after the manoeuvre, those of its ends.
     pub fn at(&self, time: f64) -> (Pose2, Twist2) {
         let Some(step) = self.steps.iter().rev().find(|step| step.starts <= time).or(self.steps.first())
         else {

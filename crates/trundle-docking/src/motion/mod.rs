@@ -1,4 +1,4 @@
-//! Motions from rest to rest, and manoeuvres of them.
+//! Motions from rest to rest, and manoeuvres made of motions.
 
 pub(crate) mod limits;
 pub(crate) mod manoeuvre;

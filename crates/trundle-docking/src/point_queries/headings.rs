@@ -7,8 +7,8 @@ use trundle_collision::{
 };
 use trundle_core::Vector2;
 
-/// The headings at which a hull overlaps points. All reported headings overlap; a small part at either end may be missing. It is
-/// used where a heading that wrongly counts as free does no harm: bounds, proofs and heuristics.
+/// The headings at which a hull overlaps points. All reported headings overlap; a small part at either end may be missing. It is used for
+/// bounds, proofs and heuristics, for which a heading that wrongly counts as free is harmless.
 pub struct HeadingsQuery<'q> {
     hull: &'q RoundedHull,
     profile: &'q HullProfile,
@@ -57,7 +57,7 @@ impl PointQuery for HeadingsQuery<'_> {
     }
 }
 
-/// Sorts intervals from `first` on and joins those that meet; an interval may extend over 2 pi.
+/// Sorts intervals from `first` on and joins overlapping ones; an interval may extend over 2 pi.
 pub fn join(arcs: &mut Vec<HeadingArc>, first: usize) {
     arcs[first..].sort_unstable_by(|a, b| a.start.total_cmp(&b.start));
     let mut kept = first;

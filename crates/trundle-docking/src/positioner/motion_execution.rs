@@ -60,7 +60,7 @@ impl MotionExecution {
             }
         };
         let whole = self.motion.amount();
-        // The rest of the motion when the command takes effect.
+        // The remaining motion at the time when the command takes effect.
         let left = (whole - done) * whole.signum() - self.rate.abs() * config.delay;
         if left <= 0.0 {
             return Command::Done;
@@ -69,7 +69,7 @@ impl MotionExecution {
         let allowed = (2.0 * braking * left).sqrt().min(top).max(creep);
         let rate = allowed.min(self.rate.abs() + acceleration * dt);
         let stopping = (rate * rate / (2.0 * braking) + rate * config.delay).min(left);
-        // The part of the motion that it takes to stop.
+        // The part of the motion needed to stop.
         let ahead = match self.motion {
             Motion::Turn(_) => Motion::Turn(stopping.copysign(whole)),
             Motion::Drive(_) => Motion::Drive(stopping.copysign(whole)),

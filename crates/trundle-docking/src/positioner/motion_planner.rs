@@ -13,7 +13,7 @@ use crate::positioner::report::{PositionerInput, PositionerReason};
 use crate::work_budget::PlanningJob;
 use trundle_core::{Footprint, Pose2, wrap_angle};
 
-/// Number of tolerances around the goal within which contact-free motions need no margin. Source: ours.
+/// Number of tolerances around the goal within which motions need no margin. Source: ours.
 const NO_MARGIN_TOLERANCES: f64 = 5.0;
 
 /// The next action.
@@ -64,7 +64,7 @@ impl MotionPlanner {
         let method = self.planner.config().method;
         let known = match method {
             Method::Optimal => self.nearly_there(input, pose).map(|nearly| self.taken(nearly)),
-            // \[Hong24\]: the straight move follows the turn, whatever was measured between.
+            // \[Hong24\]: the straight move follows the turn without a new decision.
             Method::Hong24 => self.pending.take(),
         };
         if let Some(motion) = known {
@@ -91,7 +91,7 @@ impl MotionPlanner {
         asked.min(self.config.max_margin).max(self.planner.config().margin)
     }
 
-    /// The first motion of an accepted manoeuvre. An empty manoeuvre gives an empty motion: it ends at once, and the pose is measured
+    /// The first motion of an accepted manoeuvre. An empty manoeuvre gives an empty motion: it ends immediately, and the pose is measured
     /// again.
     pub(super) fn taken(&mut self, manoeuvre: Manoeuvre) -> Motion {
         let first = manoeuvre.steps().first().map(|step| step.motion);
@@ -99,8 +99,8 @@ impl MotionPlanner {
         first.unwrap_or(Motion::Turn(0.0))
     }
 
-    /// One or two motions that end close enough, with the margin kept; near the goal, where the noise of the pose is as large as the
-    /// error, without a margin.
+    /// One or two motions that end close enough, with the margin; without a margin near the goal, because the noise of the pose is as large
+    /// as the error there.
     fn nearly_there(&self, input: &PositionerInput<'_>, pose: &Pose2) -> Option<Manoeuvre> {
         let limits = self.planner.config().limits;
         let (tolerance, part) = (self.tolerance(), self.config.aim);
@@ -114,8 +114,8 @@ impl MotionPlanner {
         Some(Manoeuvre::new(*pose, &motions, limits))
     }
 
-    /// Whether the robot was pushed since its search began at `from`: a point of its footprint is farther off than the tolerances and
-    /// the noise of the pose explain.
+    /// Whether the robot was pushed since its search began at `from`: the motion of a footprint point exceeds the tolerances and the noise
+    /// of the pose.
     pub(super) fn is_pushed(&self, input: &PositionerInput<'_>, from: &Pose2) -> bool {
         let (tolerance, arm) = (self.tolerance(), self.footprint.circumscribed_radius());
         let noise = margin_of(&input.covariance, &self.footprint, self.config.sigmas);
@@ -123,8 +123,7 @@ impl MotionPlanner {
         off > tolerance.position + arm * tolerance.heading + noise
     }
 
-    /// Continues a search from `pose`. Once it is complete: the first motion, `None` if there is nothing to do, or the reason why
-    /// there is none.
+    /// Continues a search from `pose`. Once complete, returns the first motion, `None` at the goal, or the reason for a missing manoeuvre.
     pub(super) fn search_on(
         &mut self,
         search: &mut MotionSearch,
@@ -149,7 +148,7 @@ impl MotionPlanner {
         }
     }
 
-    /// One pair at a time, as in \[Hong24\]: the turn, then the straight move, then a new decision.
+    /// One pair per decision, as in \[Hong24\]: the turn, then the straight move.
     fn first_of_pair(
         &mut self,
         decision: Decision,
@@ -172,7 +171,7 @@ impl MotionPlanner {
         Ok(Some(first))
     }
 
-    /// The first motion of a manoeuvre, if all of it is still free: obstacles may have moved since its search began.
+    /// The first motion of a manoeuvre, if the whole manoeuvre is free: obstacles may have moved since its search began.
     fn first_of(
         &mut self,
         manoeuvre: Manoeuvre,

@@ -21,7 +21,7 @@ impl Tolerance {
     }
 }
 
-/// One or two free motions that end within `part` of the tolerance, where the exact goal would take a whole manoeuvre.
+/// One or two free motions that end within `part` of the tolerance, if the exact goal would need a whole manoeuvre.
 pub fn nearly(
     space: &mut ContactSpace<'_>,
     limits: &MotionLimits,

@@ -2,7 +2,7 @@
 
 use trundle_core::{Pose2, wrap_angle};
 
-/// The mean of poses that lie close together.
+/// The mean of poses close to each other.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PoseAverage {
     first: Pose2,

@@ -20,7 +20,7 @@ enum Phase {
     Settled,
 }
 
-/// Brings a robot onto a goal and keeps it there.
+/// Moves a robot onto a goal and corrects later deviations.
 #[derive(Debug)]
 pub struct Positioner {
     planner: MotionPlanner,
@@ -62,7 +62,7 @@ impl Positioner {
         matches!(self.phase, Some(Phase::Settled))
     }
 
-    /// Whether it waits because nothing can be planned.
+    /// Whether the positioner waits because no manoeuvre exists.
     pub fn is_waiting(&self) -> bool {
         matches!(self.phase, Some(Phase::Wait { .. }))
     }

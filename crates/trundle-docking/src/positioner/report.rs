@@ -14,7 +14,7 @@ pub struct PositionerInput<'a> {
     pub stamp: Stamp,
     /// The measured `map_from_base`.
     pub pose: Pose2,
-    /// Its covariance (x m, y m, heading rad), right perturbation: it determines the margin.
+    /// Covariance of the pose (x m, y m, heading rad), right perturbation; it determines the margin.
     pub covariance: Matrix3<f64>,
     /// Obstacles now, map frame.
     pub scene: &'a ObstacleScene,
@@ -33,7 +33,7 @@ pub enum PositionerReason {
     Settled,
     /// An obstacle blocks the motion, or a new plan: stopped, and planning again from here.
     Obstacle(Blocker),
-    /// There is no manoeuvre; planned again after a wait.
+    /// No manoeuvre exists; planned again after a wait.
     NoWay(Option<Blocker>),
     /// The query cannot be planned; tried again after a wait.
     Refused(DockingRefusal),

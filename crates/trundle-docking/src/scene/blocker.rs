@@ -7,16 +7,16 @@ use trundle_core::{Cell, Vector2};
 /// An obstacle that a motion or a pose meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Blocker {
-    /// Its kind.
+    /// Kind of the obstacle.
     pub thing: BlockerKind,
-    /// Its nearest point; of a cell, its centre. Map frame, m.
+    /// Nearest point of the obstacle; for a cell, its centre. Map frame, m.
     pub at: Vector2,
 }
 
 /// Kind of an obstacle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BlockerKind {
-    /// One of a list of obstacles, by its number; of a grid, while a search goes on, a segment of an outline.
+    /// An obstacle of a list, by its number; during a search on a grid, a segment of an outline.
     Listed(u32),
     /// An occupied cell of a grid.
     Occupied,
@@ -27,7 +27,7 @@ pub enum BlockerKind {
 }
 
 impl Blocker {
-    /// One of a list.
+    /// An obstacle of a list.
     pub(crate) fn listed(number: u32, at: Vector2) -> Self {
         Self { thing: BlockerKind::Listed(number), at }
     }

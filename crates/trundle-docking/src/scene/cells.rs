@@ -2,7 +2,7 @@
 
 use trundle_core::{Cell, CellIndex, GridGeometry, Vector2};
 
-/// The cells of a grid in a box, and which of them block.
+/// The cells of a grid in a box, and their blocking state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cells {
     geometry: GridGeometry,
@@ -16,8 +16,8 @@ pub struct Cells {
 }
 
 impl Cells {
-    /// The cells of a grid that overlap the box of half side `half` (m) about `center`; `kind` gives the state of each: all but free
-    /// ones block.
+    /// The cells of a grid that overlap the box of half side `half` (m) around `center`; `kind` gives the state of each: all but free ones
+    /// block.
     pub fn new(
         geometry: GridGeometry,
         center: Vector2,
@@ -54,7 +54,7 @@ impl Cells {
         if inside { self.kinds[index()] } else { Cell::Free }
     }
 
-    /// The blocking cell at a point of its outline or inside: its state, and its centre, m; `None` at the grid's border.
+    /// The blocking cell at a point inside it or on its outline: its state, and its centre, m; `None` at the grid's border.
     pub fn at(&self, p: Vector2) -> Option<(Cell, Vector2)> {
         let off = 1e-3 * self.geometry.resolution;
         let about = [(0.0, 0.0), (off, off), (-off, off), (-off, -off), (off, -off)];
@@ -65,7 +65,7 @@ impl Cells {
         })
     }
 
-    /// Whether a point lies in a blocking cell, or outside the grid where that counts.
+    /// Whether a point is in a blocking cell, or outside the grid if the outside blocks.
     pub fn hold(&self, p: Vector2) -> bool {
         self.geometry.cell_at(p).map_or(self.beyond, |cell| self.blocks(cell.col, cell.row))
     }

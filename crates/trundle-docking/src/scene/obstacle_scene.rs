@@ -28,7 +28,7 @@ const DISTANCE_COST: u64 = 5;
 pub struct ObstacleSegment {
     /// Map frame, m.
     pub segment: Segment,
-    /// Number of its obstacle.
+    /// Number of the obstacle.
     pub obstacle: u32,
 }
 
@@ -70,8 +70,8 @@ impl ObstacleScene {
         Ok(Self { pieces, points: Arc::new(PointIndex::new(points)), solids, cells: None })
     }
 
-    /// The occupied cells of a grid that overlap the box of half side `half` (m) about `center`. With `unknown_blocks` also the
-    /// unknown ones, and the space outside the grid.
+    /// The occupied cells of a grid that overlap the box of half side `half` (m) about `center`. With `unknown_blocks`, unknown cells and
+    /// the space outside the grid are included.
     pub fn from_grid(grid: &OccupancyGrid, center: Vector2, half: f64, unknown_blocks: bool) -> Self {
         let geometry = *grid.geometry();
         let kind = |cell: CellIndex| match grid.get(cell) {
@@ -86,7 +86,7 @@ impl ObstacleScene {
         Self { pieces, points, solids: Vec::new(), cells: Some(Arc::new(cells)) }
     }
 
-    /// The scene without segments beyond a box of half side `half` (m) about `center`. Points stay: their tree skips them.
+    /// The scene without segments outside a box of half side `half` (m) around `center`. Points remain: queries skip them by their tree.
     pub(crate) fn around(&self, center: Vector2, half: f64) -> Self {
         let pieces = self
             .pieces
@@ -126,8 +126,8 @@ impl ObstacleScene {
         self.points.ask(query)
     }
 
-    /// Distance of a footprint at a pose from the nearest obstacle, m, 0 when it overlaps one, and that obstacle; `None` if nothing
-    /// is within `reach` (m).
+    /// Distance of a footprint at a pose from the nearest obstacle, m, 0 for an overlap, and that obstacle; `None` without an obstacle
+    /// within `reach` (m).
     pub fn clearance(&self, footprint: &Footprint, pose: &Pose2, reach: f64) -> Option<(f64, Blocker)> {
         self.clearance_of(&RoundedHull::exact(footprint), pose, reach)
     }
@@ -178,7 +178,7 @@ impl ObstacleScene {
         self.pieces.len() + self.points.all().len()
     }
 
-    /// Whether there are no obstacles.
+    /// Whether the scene has no obstacles.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }

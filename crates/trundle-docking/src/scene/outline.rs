@@ -4,7 +4,7 @@ use crate::scene::cells::Cells;
 use trundle_collision::Segment;
 use trundle_core::{GridGeometry, Vector2};
 
-/// The outlines of blocking cells, as long as they run straight: between a blocking cell and one that does not block.
+/// The outlines of blocking cells, joined along straight lines: the borders between blocking and free cells.
 pub fn outlines(cells: &Cells) -> Vec<Segment> {
     let (geometry, (left, right), (low, high)) = (cells.geometry(), cells.cols, cells.rows);
     let at = |col: isize, row: isize| col >= 0 && row >= 0 && cells.blocks(col as usize, row as usize);

@@ -18,7 +18,7 @@ struct Node {
     patch: OrientedBox,
     from: u32,
     to: u32,
-    /// The first of its halves; 0 for none.
+    /// Index of the first half; 0 for none.
     halves: u32,
 }
 
@@ -31,13 +31,13 @@ const MAX_STACK: usize = 64;
 
 /// A query over all points.
 pub trait PointQuery {
-    /// Whether a sample point of every box is visited before its halves, and then once more.
+    /// Whether a sample point of every box is visited before its halves, and then again with them.
     const VISITS_SAMPLES: bool = true;
     /// Counted cost of a visit, in units of [`crate::ContactSpace::work`].
     const COST: u64 = 1;
 
-    /// Whether points in a box can matter, given what is known: boxes with the smallest value are visited first. `None` if they
-    /// cannot matter.
+    /// Relevance of the points in a box, given the results so far: boxes with the smallest value are visited first. `None` if the points
+    /// are irrelevant.
     fn relevance(&self, patch: &OrientedBox) -> Option<f64>;
 
     /// Visits a point with its number.
@@ -72,7 +72,7 @@ impl PointIndex {
         &self.points
     }
 
-    /// Calls `visit` with every point in a box about `center`, and maybe some beside it.
+    /// Calls `visit` with every point in a box around `center`, and possibly some points nearby.
     pub fn visit(&self, center: Vector2, half: Vector2, visit: impl FnMut(Vector2, u32)) {
         self.ask(&mut InBox { center, half, visit });
     }

@@ -38,8 +38,8 @@ const MAX_LEGS_GUIDED: usize = 60;
 /// Number of further layers of a guided beam after the first solution: the result is shortened anyway. Source: ours.
 const EXTRA_LAYERS: usize = 2;
 
-/// Beam search: layer by layer, one more leg each, the best `width` nodes are kept; from each the search is completed by one or two
-/// exact legs. At most `nodes` are expanded.
+/// Beam search: each layer adds one leg, and the best `width` nodes continue. From each node the search is completed by one or two exact
+/// legs. At most `nodes` are expanded.
 pub async fn beam(search: &mut LegSearch<'_, '_>, width: usize, nodes: usize) {
     layers(search, width, MAX_LEGS, (nodes, usize::MAX), |search, pose| search.estimate(pose)).await;
 }

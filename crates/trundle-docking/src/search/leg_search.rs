@@ -61,8 +61,8 @@ impl<'s, 'a> LegSearch<'s, 'a> {
         self.best.as_ref().map_or(f64::INFINITY, |(time, _)| *time)
     }
 
-    /// Searches the best completion to the goal by one or two legs from a base at `pose` with these `rays`. `prefix` are the legs
-    /// that led there, `spent` their time with all pauses, s. Returns whether a better one was found.
+    /// Searches the best completion to the goal by one or two legs from a base at `pose` with these `rays`. `prefix` are the preceding
+    /// legs, `spent` their time with all pauses, s. Returns whether a better one was found.
     pub async fn complete(&mut self, pose: &Pose2, rays: &[Ray], prefix: &[(f64, f64)], spent: f64) -> bool {
         self.tails.clear();
         self.collect_straight(pose, spent);
@@ -89,7 +89,7 @@ impl<'s, 'a> LegSearch<'s, 'a> {
         self.time_to_beat() < before
     }
 
-    /// The true time of a tail, when it is free. Of a pair only the turn between is unknown so far.
+    /// The true time of a tail, if the tail is free. For a pair, only the turn in between is untested.
     fn tested(&mut self, pose: &Pose2, tail: &Tail) -> Option<f64> {
         let (heading, way) = tail.first;
         let Some((next, _)) = tail.second else {
@@ -152,8 +152,7 @@ impl<'s, 'a> LegSearch<'s, 'a> {
         }
     }
 
-    /// Estimated time from a base at rest at `pose` to the goal, s: the best of a few pairs of legs, with contacts of the last leg
-    /// only.
+    /// Estimated time from rest at `pose` to the goal, s: the best of a few pairs of legs, with contacts of the last leg only.
     pub fn estimate(&self, pose: &Pose2) -> f64 {
         let rest = self.query.goal.position() - pose.position();
         let query = &self.query;

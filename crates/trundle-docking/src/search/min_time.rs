@@ -25,7 +25,7 @@ pub enum LegOutcome {
     Found(Timed),
     /// No motion of any kind exists, or none at the requested resolution; with the blocking obstacle.
     Disconnected(Certificate, Option<Blocker>),
-    /// Nothing was found before this limit, though start and goal are connected as far as the cells show.
+    /// No manoeuvre was found before this limit, although the cells connect start and goal.
     Nothing(SearchLimit),
 }
 
@@ -60,7 +60,7 @@ fn has_small_budget(space: &ContactSpace<'_>) -> bool {
     space.most() < 5 * SHORT_SEARCH_WORK
 }
 
-/// Cost limit of a short search; smaller if the limit of the whole plan is less than a few times that.
+/// Cost limit of a short search; reduced if the limit of the whole plan is less than a few times this limit.
 fn short_search_work(space: &ContactSpace<'_>) -> u64 {
     SHORT_SEARCH_WORK.min(space.most() / 8)
 }
@@ -107,7 +107,7 @@ pub async fn improve_legs(
     (best, bound)
 }
 
-/// Lower bound of the time of any legs, s, at most `known`: boxes are split until it is within `gap` of that, at most `boxes`.
+/// Lower bound of the time of any legs, s, at most `known`: boxes are split until the bound is within `gap` of `known`, at most `boxes`.
 pub async fn bound(
     query: &DockingQuery,
     space: &mut ContactSpace<'_>,
@@ -131,7 +131,7 @@ const SHORT_ESTIMATE_BEYOND_START_S: f64 = 0.5;
 /// Relative gap above which more legs are searched. Source: ours.
 const MIN_WORTHWHILE_GAP: f64 = 0.05;
 
-/// Searches legs where one or two do not suffice, or proves that there are none.
+/// Searches legs if one or two do not suffice, or proves their impossibility.
 pub async fn many(query: DockingQuery, space: &mut ContactSpace<'_>, effort: Effort) -> LegOutcome {
     let limit = space.until(effort.work);
     if space.work() >= limit {
@@ -178,7 +178,7 @@ pub async fn never(query: &DockingQuery, space: &ContactSpace<'_>, effort: Effor
     None
 }
 
-/// Connectivity test with cells of `side` (m), with the hull shrunk for a proof or as it is.
+/// Connectivity test with cells of `side` (m), with the hull shrunk for a proof or unchanged.
 async fn apart(
     query: &DockingQuery,
     space: &ContactSpace<'_>,
@@ -196,7 +196,7 @@ async fn apart(
     }
 }
 
-/// A beam led by the time estimate over cells of `side` (m); where it does not reach the goal, legs along the cells' path.
+/// A beam search with the time estimate over cells of `side` (m); if it does not reach the goal, legs along the cells' path.
 async fn led_by_cells<'a>(
     search: &mut LegSearch<'_, 'a>,
     second: &mut ContactSpace<'a>,

@@ -5,11 +5,11 @@ use crate::legs::leg_sequence::Legs;
 use crate::legs::query::DockingQuery;
 use trundle_core::wrap_angle;
 
-/// Improves legs by small changes of headings and distances, one at a time; the last two distances follow so that the end stays
-/// exact. Returns the legs and their time (s), never slower than the input. Ends when [`ContactSpace::work`] reaches `limit`.
+/// Improves legs by small changes of single headings and distances; the last two distances follow from the exact end. Returns the legs and
+/// their time (s), never slower than the input. Ends when [`ContactSpace::work`] reaches `limit`.
 ///
-/// Coordinate search with halving steps: the time has kinks where a turn vanishes or a speed limit is reached, and the free set has
-/// corners, so that no derivative is used.
+/// Coordinate search with halving steps. No derivative is used: the time has kinks where a turn vanishes or a speed limit is reached, and
+/// the free set has corners.
 pub async fn polish(
     query: &DockingQuery,
     space: &mut ContactSpace<'_>,
@@ -54,7 +54,7 @@ fn try_heading(
 ) -> bool {
     let mut improved =
         try_change(query, space, best, |legs, sign| legs.0[i].0 = wrap_angle(legs.0[i].0 + sign * step));
-    // A first or last turn that vanishes saves its pause.
+    // The removal of the first or last turn saves its pause.
     if i == 0 {
         improved |= try_change(query, space, best, |legs, _| legs.0[0].0 = query.start.theta);
     }

@@ -16,15 +16,14 @@ pub struct Ray {
     pub ahead: f64,
     /// Free distance backward, m.
     pub behind: f64,
-    /// Time of the turn to the heading and the pause after it, s.
+    /// Time of the turn to the heading and the following pause, s.
     pub cost: f64,
 }
 
-/// Distance kept from every contact, m and rad: rays are joined from both ends, and must be free from either. Source: ours.
+/// Distance from every contact, m and rad: rays are joined from both ends, and must be free from either end. Source: ours.
 const CONTACT_SLACK: f64 = 2e-4;
 
-/// Rays about `pose`: its own heading first, then headings over all free turns: `count` steps over all of them, at least `finest`
-/// (rad) each, and both ends.
+/// Rays around `pose`: first its own heading, then `count` headings over all free turns, at least `finest` (rad) apart, and both ends.
 pub async fn rays(
     query: &DockingQuery,
     space: &mut ContactSpace<'_>,

@@ -1,4 +1,4 @@
-//! Replacement of runs of legs by shorter ones.
+//! Replaces runs of legs by shorter ones.
 
 use crate::contact_space::ContactSpace;
 use crate::legs::leg_sequence::Legs;
@@ -9,8 +9,8 @@ use trundle_core::Pose2;
 /// Number of poses above which not all pairs are compared. Source: ours.
 const MAX_COMPARED_POSES: usize = 90;
 
-/// Replaces runs of legs by one or two, wherever that is free and saves time, until [`ContactSpace::work`] reaches `limit`; never slower
-/// than the input.
+/// Replaces runs of legs by one or two, if these are free and save time, until [`ContactSpace::work`] reaches `limit`; never slower than
+/// the input.
 pub async fn shorten(
     query: &DockingQuery,
     space: &mut ContactSpace<'_>,
@@ -30,7 +30,7 @@ pub async fn shorten(
     best
 }
 
-/// The fastest legs along a list of poses, each of which may be skipped, and their time (s), when there are any. Once
+/// The fastest legs along a list of poses, each of which may be skipped, and their time (s); `None` if no legs are free. Once
 /// [`ContactSpace::work`] reaches `limit`, only neighbours are joined.
 pub async fn through(
     query: &DockingQuery,
@@ -39,7 +39,7 @@ pub async fn through(
     limit: u64,
 ) -> Option<(f64, Legs)> {
     let count = poses.len();
-    // The time to each pose with the pause after it, the pose before, and the legs between.
+    // The time to each pose with the following pause, the previous pose, and the legs in between.
     let mut best: Vec<(f64, usize, Legs)> = vec![(f64::INFINITY, 0, Legs::default()); count];
     best[0].0 = 0.0;
     let span = if count > MAX_COMPARED_POSES { MAX_COMPARED_POSES / 4 } else { count };

@@ -1,8 +1,8 @@
 //! A manoeuvre along a motion of any kind.
 //!
-//! Idea \[Laumond94\]: a motion that may also go sideways leads along connected poses. Its poses are joined by one or two legs, far
-//! ones first; if these are not free, half of the motion is tried, and half of that. A base that can turn and drive a little can
-//! move sideways a little, so that short parts are free wherever there is any clearance.
+//! Idea \[Laumond94\]: a motion that may also go sideways follows connected poses. Its poses are joined by one or two legs, distant poses
+//! first; if these are not free, the motion is halved, repeatedly. A base that can turn and drive a little can move sideways a little:
+//! short parts are free with any clearance.
 
 use crate::contact_space::ContactSpace;
 use crate::legs::leg_sequence::Legs;
@@ -14,8 +14,8 @@ use trundle_core::{Pose2, wrap_angle};
 /// Largest number of halvings between two neighbouring poses. Source: ours.
 const MAX_HALVINGS: u32 = 5;
 
-/// Legs along `poses`, which lead from start to goal, and their time (s); `None` if some part is not free, or when
-/// [`ContactSpace::work`] reaches `limit`.
+/// Legs along `poses` from start to goal, and their time (s); `None` if some part is not free, or when [`ContactSpace::work`] reaches
+/// `limit`.
 pub async fn trace(
     query: &DockingQuery,
     space: &mut ContactSpace<'_>,
@@ -68,7 +68,7 @@ async fn linked(
     Some(chain)
 }
 
-/// The two halves of a gap, the second first; `None` if it must not be halved, or its middle is not free.
+/// The two halves of a gap, the second first; `None` if the gap must not be halved, or its middle is not free.
 fn halves(space: &ContactSpace<'_>, first: &Pose2, last: &Pose2, times: u32) -> Option<[Part; 2]> {
     let times = times.checked_sub(1)?;
     let turn = wrap_angle(last.theta - first.theta);

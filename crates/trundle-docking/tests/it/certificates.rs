@@ -1,4 +1,4 @@
-//! Proofs that there is no way, against poses that hang together by brute force.
+//! Proofs of impossibility, compared with an exhaustive search over connected poses.
 
 use crate::contact::{distance, footprint, obstacle, sides};
 use crate::shapes::ends;
@@ -11,11 +11,11 @@ use trundle_docking::{Certificate, DockingConfig, DockingPlan, DockingPlanner, O
 
 /// Proofs that are put to the test.
 const PROOFS: usize = 6;
-/// Steps of the poses from one to the next, m; and how many headings there are.
+/// Distance between neighbouring poses, m, and number of headings.
 const STEP: f64 = 0.04;
 const HEADINGS: i32 = 48;
 
-/// Poses on a lattice about the start, each far enough from everything that the step to the next is free too.
+/// Poses on a lattice around the start, each with enough clearance for a free step to the next.
 struct Lattice<'a> {
     footprint: &'a Footprint,
     pieces: &'a [(Vector2, Vector2)],
@@ -32,7 +32,7 @@ impl Lattice<'_> {
 
     fn is_free(&self, pose: &Pose2) -> bool {
         let (middle, half) = self.square;
-        // Half a step: every pose between two is as near as that to one of them.
+        // Half a step: the largest distance of a pose from the nearest lattice pose.
         let moves = 0.5 * STEP.max(self.footprint.circumscribed_radius() * TAU / f64::from(HEADINGS));
         (pose.position() - middle).amax() <= half
             && distance(self.footprint, pose, self.pieces) > moves + 1e-3
@@ -48,7 +48,7 @@ impl Lattice<'_> {
             round(off.y, STEP),
             round(seen.theta, TAU / f64::from(HEADINGS)).rem_euclid(HEADINGS),
         );
-        // From the goal to its node: along x and y and about, each less than half a step.
+        // The motion from the goal to its node: along x and y and a turn, each less than half a step.
         if !self.is_free(goal) || !self.is_free(&self.pose(last)) || !self.is_free(&self.start) {
             return false;
         }
@@ -69,7 +69,7 @@ impl Lattice<'_> {
     }
 }
 
-/// A goal proven impossible for any motion is not reached by poses that hang together; where a way was found they often are.
+/// A goal with a proof of impossibility is not reachable over connected poses; a goal with a manoeuvre often is.
 #[test]
 fn a_goal_proven_impossible_is_not_reached_by_brute_force() {
     let mut rng = ChaCha8Rng::seed_from_u64(33);

@@ -10,7 +10,7 @@ use trundle_docking::{
     PositionerConfig, PositionerInput, PositionerReason,
 };
 
-/// Solvable problems settle within 1 cm and 1 deg, and none touches anything; the benchmark does 500 of them.
+/// Solvable problems end within 1 cm and 1 deg without a contact; the benchmark runs 500 of them.
 #[test]
 fn it_reaches_the_goal_pose_under_noise() {
     let mut rng = ChaCha8Rng::seed_from_u64(77);
@@ -43,7 +43,7 @@ fn it_reaches_the_goal_pose_under_noise() {
     assert_eq!(contacts, 0);
 }
 
-/// A box that appears in the way: the command is zero within 0.1 s; when it is gone, the robot goes on from where it stands.
+/// A box appears ahead: the command is zero within 0.1 s; after its removal, the robot continues from its present pose.
 fn stops_and_starts_again(method: Method) {
     let footprint = Footprint::KOBUKI;
     let goal = Pose2::new(1.0, 0.0, 0.0);
@@ -110,7 +110,7 @@ fn the_papers_method_stops_and_starts_again_too() {
     stops_and_starts_again(Method::Hong24);
 }
 
-/// A positioner in a search of many steps: at which of them it begins to move; pose and scene by step.
+/// A positioner with a search of many steps: returns the step of its first motion; pose and scene are given by step.
 fn begins<'s>(
     method: Method,
     at: impl Fn(usize) -> (Pose2, &'s ObstacleScene),
@@ -133,7 +133,7 @@ fn begins<'s>(
     (reasons, began)
 }
 
-/// Things farther off than the robot goes: the more, the longer a search.
+/// Obstacles out of the robot's reach, which make the search longer.
 fn far_off() -> Vec<Obstacle> {
     let around = |i: u32| {
         let (sin, cos) = (f64::from(i) * 0.01 * std::f64::consts::TAU).sin_cos();
@@ -151,7 +151,7 @@ fn amid(reasons: &[PositionerReason]) -> usize {
     steps[steps.len() / 2]
 }
 
-/// A robot that is pushed while it plans plans anew from where it stands then.
+/// A robot that is pushed during planning plans again from its new pose.
 #[test]
 fn a_plan_from_where_it_no_longer_stands_is_not_carried_out() {
     let scene = ObstacleScene::new(&far_off()).unwrap();
@@ -166,8 +166,7 @@ fn a_plan_from_where_it_no_longer_stands_is_not_carried_out() {
     }
 }
 
-/// A plan that is ready is looked at among what stands around by then, to its last motion: here its first, a turn of a disc,
-/// is free.
+/// A finished plan is checked against the present obstacles, up to its last motion: its first motion here, a turn of a disc, is free.
 #[test]
 fn a_plan_through_what_has_come_meanwhile_is_not_carried_out() {
     let mut around = far_off();
@@ -187,7 +186,7 @@ fn a_plan_through_what_has_come_meanwhile_is_not_carried_out() {
     }
 }
 
-/// The paper's four scenarios in closed loop, by its own method: settled within its thresholds, nothing touched.
+/// The paper's four scenarios in closed loop with its own method: the end is within its thresholds, without contact.
 #[test]
 fn the_method_of_hong24_reaches_its_goals_under_noise() {
     let docking = DockingConfig { method: Method::Hong24, ..DockingConfig::default() };

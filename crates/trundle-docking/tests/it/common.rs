@@ -39,7 +39,7 @@ pub fn any_pose(rng: &mut ChaCha8Rng, spread: f64) -> Pose2 {
     Pose2::new(x, y, rng.random_range(-PI..PI))
 }
 
-/// The mirror image of a pose about the x axis.
+/// The mirror image of a pose with respect to the x axis.
 pub fn mirrored(pose: Pose2) -> Pose2 {
     Pose2::new(pose.x, -pose.y, -pose.theta)
 }

@@ -11,7 +11,7 @@ const CASES: usize = 100_000;
 const AMONG_CELLS: f64 = 0.2;
 /// Overlap up to which a motion without a margin counts as free, m: contact, and the rounding of a sharp corner.
 pub const CONTACT_M: f64 = 1e-5;
-/// Samples of a motion: no point of a robot moves more than about a centimetre from one to the next, and a contact between two would
+/// Number of samples of a motion: no point of a robot moves more than about a centimetre between two samples, so a contact in between would
 /// have to begin and end there.
 const VISITS_SAMPLES: u32 = 400;
 
@@ -72,7 +72,7 @@ pub fn cells(rng: &mut ChaCha8Rng) -> (ObstacleScene, Vec<Obstacle>) {
     (ObstacleScene::from_grid(&grid, Vector2::zeros(), 5.0, false), squares)
 }
 
-/// Brute force, on its own: the least distance of the footprint from any side; 0 if they cross or one holds the other.
+/// Exhaustive and independent: the minimum distance of the footprint from any side; 0 if they cross or one contains the other.
 pub fn distance(footprint: &Footprint, pose: &Pose2, pieces: &[(Vector2, Vector2)]) -> f64 {
     let (outline, radius) = match footprint {
         Footprint::Disc { radius } => (vec![pose.position()], *radius),
@@ -116,7 +116,7 @@ pub fn sides(obstacles: &[Obstacle]) -> Vec<(Vector2, Vector2)> {
     obstacles.iter().flat_map(of).collect()
 }
 
-/// One motion of a free start each: its sampled poses are free, and where it ends by contact, a millimetre is left at most.
+/// One motion from each free start: its sampled poses are free, and a motion that ends by contact leaves at most a millimetre.
 #[test]
 fn motions_are_safe_and_not_too_careful() {
     let mut rng = ChaCha8Rng::seed_from_u64(8);
@@ -160,7 +160,7 @@ fn motions_are_safe_and_not_too_careful() {
                     left >= -1e-9,
                     "{footprint:?} {obstacles:?} {start:?} {motion:?} margin {margin} at sample {i}: {left}"
                 );
-                // Those that are free because this one is so far off need no look.
+                // The clearance of this sample proves the next ones free.
                 i += 1 + (left / moves.max(1e-9)).max(0.0) as u32;
             }
             if by.is_some() {
@@ -177,7 +177,7 @@ fn motions_are_safe_and_not_too_careful() {
     assert!(stopped > cases / 5, "only {stopped} of {cases} motions met something");
 }
 
-/// Among many points the answers come from a tree; they are those of all points, asked in small groups.
+/// Among many points the answers come from a tree; they equal those of all points, queried in small groups.
 #[test]
 fn many_points_answer_as_all_of_them() {
     let mut rng = ChaCha8Rng::seed_from_u64(9);

@@ -10,10 +10,10 @@ use trundle_docking::{ContactSpace, FreeDrive, FreeTurn, Motion, Obstacle, Obsta
 
 /// Random cases of each law.
 const CASES: usize = 1_500;
-/// Distance of the longest straight move asked for, m.
+/// Largest requested distance of a straight move, m.
 const REACH: f64 = 0.9;
 
-/// A footprint that stands free by 2 mm and a margin among some obstacles.
+/// A footprint with a clearance of 2 mm plus a margin among some obstacles.
 struct Case {
     footprint: Footprint,
     obstacles: Vec<Obstacle>,
@@ -51,7 +51,7 @@ fn cases(seed: u64) -> impl Iterator<Item = Case> {
     .take(CASES)
 }
 
-/// Whether two free amounts are the same; amounts without a contact are infinite.
+/// Whether two free amounts are equal; amounts without a contact are infinite.
 fn same(a: f64, b: f64) -> bool {
     a == b || (a - b).abs() < 1e-6
 }

@@ -23,7 +23,7 @@ fn planner() -> DockingPlanner {
     DockingPlanner::new(DockingConfig::default()).expect("valid")
 }
 
-/// Each with what is wrong, where, and what to do.
+/// Each error gives the fault, the place, and the remedy.
 #[test]
 fn bad_input_is_refused_with_a_reason() {
     let wall = ObstacleScene::new(&[Obstacle::Segment(at(0.25, -1.0), at(0.25, 1.0))]).unwrap();
@@ -75,7 +75,7 @@ fn a_closed_wall_is_named_as_what_forbids_it() {
     );
 }
 
-/// A goal the other way round in a corridor too narrow to turn: impossible; where it widens far off, out of reach.
+/// A goal in the opposite direction in a corridor too narrow for a turn: proven impossible; with a wider place far away, out of reach.
 #[test]
 fn a_corridor_too_narrow_to_turn_is_certified() {
     let walls = [(-0.3, 0.3), (0.3, 0.3)].map(|(y, _)| Obstacle::Segment(at(-9.0, y), at(9.0, y)));
@@ -88,7 +88,7 @@ fn a_corridor_too_narrow_to_turn_is_certified() {
     );
 }
 
-/// A wall with ends: no way round within the first reach, one in the wider look.
+/// A wall with ends: no path around it within the first reach, but one in the extended search.
 #[test]
 fn a_path_around_a_wall_is_found_farther_off() {
     let wall = ObstacleScene::new(&[Obstacle::Polygon(
@@ -101,7 +101,7 @@ fn a_path_around_a_wall_is_found_farther_off() {
     assert!(solution.manoeuvre.end().distance(&goal) < 1e-9);
 }
 
-/// A corridor of a map, too narrow to turn in and longer than any look: none of it may be left out.
+/// A corridor of a map, too narrow for a turn and longer than any query: none of its walls may be left out.
 #[test]
 fn no_turn_leads_through_the_walls_of_a_map() {
     let free = |y: usize| (4..40).contains(&y);
@@ -134,7 +134,7 @@ fn the_default_method_solves_the_papers_scenarios_and_knows_how_well() {
     }
 }
 
-/// Every manoeuvre ends exactly, keeps clear of everything, and is not slower than its bound allows.
+/// Every manoeuvre ends exactly, is free of contact, and is consistent with its lower bound.
 #[test]
 fn manoeuvres_are_free_and_end_exactly() {
     let mut rng = ChaCha8Rng::seed_from_u64(4);
@@ -188,7 +188,7 @@ fn hardly_any_room_takes_many_motions_and_is_solved() {
     }
 }
 
-/// On a map a person is told which cell is in the way, not which piece of which outline.
+/// On a map, the error gives the blocking cell instead of a segment of an outline.
 #[test]
 fn on_a_map_the_blocking_cell_is_named() {
     let wall = "#".repeat(30) + "\n";
@@ -232,7 +232,7 @@ fn a_hundred_thousand_points_are_planned() {
     let plan = || planner().plan(&robot(), &scene, start, goal).unwrap();
     let (found, ms) = timed(plan);
     let DockingPlan::Found(solution) = found else { panic!("{found:?}") };
-    // Asked of every point: exact though it was planned among a few.
+    // Checked against every point: exact although planned among a few.
     let mut space = ContactSpace::new(&robot(), solution.margin, &scene);
     for step in solution.manoeuvre.steps() {
         let free = match step.motion {

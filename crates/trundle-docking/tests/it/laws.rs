@@ -20,7 +20,7 @@ fn plan(problem: &Problem) -> DockingPlan {
     planner.plan(&problem.footprint, &problem.scene().unwrap(), problem.start, problem.goal).unwrap()
 }
 
-/// The problem with every point and pose mapped; `mirrors` says whether the map changes the orientation.
+/// The problem with every point and pose mapped; `mirrors`: whether the map changes the orientation.
 fn mapped(
     problem: &Problem,
     mirrors: bool,

@@ -1,4 +1,4 @@
-//! Plans made in parts, and among very many points: counted work keeps to what was granted.
+//! Plans made in parts, and among very many points: counted work respects the grant.
 
 use crate::clock::{slowness, timed};
 use crate::clouds;
@@ -10,10 +10,10 @@ use trundle_docking::{
     Certificate, DockingConfig, DockingPlan, DockingPlanner, Method, Obstacle, ObstacleScene, SearchLimit,
 };
 
-/// More than a part may cost beyond its grant: what lies between two rests.
+/// Largest cost of a part above its grant: the work between two yields.
 const BEYOND: u64 = 60_000;
 
-/// The same plan however it is cut, and no part much beyond its grant.
+/// The same plan for any division, with no part much above its grant.
 #[test]
 fn a_plan_in_parts_is_the_plan_at_once() {
     let planner = DockingPlanner::new(DockingConfig { margin: 0.0, ..DockingConfig::default() }).unwrap();
@@ -81,7 +81,7 @@ fn a_hundred_thousand_points_of_any_kind_stay_under_a_tenth_of_a_second() {
     assert_eq!(found, 17);
 }
 
-/// Among a grid's cells too a whole plan ends where it has cost as much as it may, and says by which setting.
+/// Among a grid's cells, too, a whole plan ends at its work limit, and the error gives the setting.
 #[test]
 fn a_whole_plan_has_a_limit_and_names_it() {
     let hard = &parse(include_str!("../data/hard.txt")).unwrap()[0];
@@ -102,7 +102,7 @@ fn a_whole_plan_has_a_limit_and_names_it() {
     }
 }
 
-/// One decision of the paper's method looks at tens of thousands of poses: it rests between them.
+/// One decision of the paper's method tests tens of thousands of poses: it yields between them.
 #[test]
 fn the_papers_method_rests_too() {
     let config = DockingConfig { method: Method::Hong24, ..DockingConfig::default() };

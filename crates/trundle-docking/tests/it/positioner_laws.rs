@@ -1,4 +1,4 @@
-//! Laws of the positioner: what it commands, when it rests, and that it converges with slip and a noisy gyro.
+//! Laws of the positioner: its commands, its rest, and its convergence with slip and a noisy gyro.
 
 use crate::common::{at, robot, scene, solid, wall};
 use crate::world::{DT, covariance};
@@ -44,7 +44,7 @@ impl SlippingBase {
     }
 }
 
-/// One run of at most `secs`, and every report.
+/// One run of at most `secs`; returns every report.
 fn run(
     positioner: &mut Positioner,
     base: &mut SlippingBase,

@@ -11,7 +11,7 @@ use trundle_docking::{
 /// A setting: key, unit, lowest and highest value, and how it is set.
 type Setting<C> = (&'static str, &'static str, f64, f64, fn(&mut C, f64));
 
-/// Both ends of each range are accepted; beyond either end, and not a number, are refused by name.
+/// Both ends of each range are accepted; values outside and not-a-number are refused by name.
 fn refuses<C: Clone>(
     prefix: &str,
     good: &C,

@@ -14,7 +14,7 @@ fn obstacles(rng: &mut ChaCha8Rng) -> Vec<Obstacle> {
     (0..rng.random_range(1..6)).map(|_| obstacle(rng)).collect()
 }
 
-/// Whether a polygon among the obstacles holds a point.
+/// Whether a polygon among the obstacles contains a point.
 fn holds(obstacles: &[Obstacle], p: Vector2) -> bool {
     obstacles.iter().any(|obstacle| match obstacle {
         Obstacle::Polygon(corners) => (0..corners.len()).all(|i| {
@@ -114,7 +114,7 @@ fn moving_by_a_distance_changes_the_clearance_by_at_most_that() {
         let step = any_pose(&mut rng, 0.05).position();
         let moved = Pose2 { x: pose.x + step.x, y: pose.y + step.y, ..pose };
         let change = clearance(&scene, &footprint, &moved) - clearance(&scene, &footprint, &pose);
-        // A thin wall may pass into the inside of a solid, where the clearance is zero at once.
+        // A thin wall may enter a solid, where the clearance drops to zero.
         let near = clearance(&scene, &footprint, &pose).min(clearance(&scene, &footprint, &moved));
         assert!(change.abs() <= step.norm() + 1e-9 || near == 0.0, "{change} by {}", step.norm());
     }

@@ -1,4 +1,4 @@
-//! Whole plans of any footprint among anything, against brute force.
+//! Whole plans of any footprint among any obstacles, compared with exhaustive search.
 
 use crate::contact::{CONTACT_M, distance, footprint, obstacle, sides};
 use rand::{RngExt, SeedableRng};
@@ -11,7 +11,7 @@ use trundle_docking::{
 
 const PROBLEMS: usize = 100;
 
-/// Start and goal some centimetres from everything, near each other.
+/// Start and goal with some centimetres of clearance, near each other.
 pub fn ends(rng: &mut ChaCha8Rng, free: impl Fn(&Pose2) -> bool) -> Option<(Pose2, Pose2)> {
     let start =
         Pose2::new(rng.random_range(-0.3..0.3), rng.random_range(-0.3..0.3), rng.random_range(-PI..PI));
@@ -22,7 +22,7 @@ pub fn ends(rng: &mut ChaCha8Rng, free: impl Fn(&Pose2) -> bool) -> Option<(Pose
     (free(&start) && free(&goal)).then_some((start, goal))
 }
 
-/// The least distance on the way, no point of the robot moving by more than 2 mm between two looks.
+/// The minimum distance along the path; no point of the robot moves more than 2 mm between two samples.
 fn min_along_path(footprint: &Footprint, manoeuvre: &Manoeuvre, pieces: &[(Vector2, Vector2)]) -> f64 {
     let arm = footprint.circumscribed_radius().max(1.0);
     let mut least = f64::INFINITY;
@@ -37,8 +37,8 @@ fn min_along_path(footprint: &Footprint, manoeuvre: &Manoeuvre, pieces: &[(Vecto
     least
 }
 
-/// Discs, triangles, heptagons, the axle anywhere, outside too: every manoeuvre is free and ends exactly, and where the greedy
-/// method finds a free way nothing is called impossible.
+/// Discs, triangles and heptagons with any axle, also outside. Every manoeuvre is free and ends exactly, and no query that the greedy
+/// method solves is called impossible.
 #[test]
 fn any_shape_is_safe_and_nothing_possible_is_called_impossible() {
     let mut rng = ChaCha8Rng::seed_from_u64(21);
@@ -71,7 +71,7 @@ fn any_shape_is_safe_and_nothing_possible_is_called_impossible() {
                     never += i32::from(none.certificate == Certificate::Never);
                     continue;
                 };
-                // It looks at samples only, and ends near the goal: free by a centimetre is free.
+                // The greedy method tests samples only, and ends near the goal: a clearance of one centimetre counts as free.
                 let is_free = min_along_path(&footprint, &other.manoeuvre, &pieces) > 0.005;
                 let is_there = other.manoeuvre.end().distance(&goal) < 1e-3;
                 assert!(

@@ -1,4 +1,4 @@
-//! A small kinematic world: noise on the pose, wheels that lag. Also included by the corridor benchmark.
+//! A small kinematic world: noise on the pose, wheels that lag. The corridor benchmark uses it too.
 
 use nalgebra::{Matrix3, Vector3};
 use rand::{Rng, RngExt, SeedableRng};
@@ -50,9 +50,9 @@ fn normal(rng: &mut impl Rng) -> f64 {
     (0..12).map(|_| rng.random_range(0.0..1.0)).sum::<f64>() - 6.0
 }
 
-/// How a run ended.
+/// Result of a run.
 pub struct Run {
-    /// The positioner said so.
+    /// Whether the positioner reported the end.
     pub settled: bool,
     /// In truth within 1 cm and 1 deg.
     pub within: bool,
@@ -60,11 +60,11 @@ pub struct Run {
     pub contact: bool,
     /// Motions made.
     pub motions: usize,
-    /// Until it settled, s.
+    /// Time until the end, s.
     pub time: f64,
 }
 
-/// Noise that the pose sensor reports of itself.
+/// Covariance reported by the pose sensor.
 pub fn covariance() -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::new(0.002, 0.002, 0.15_f64.to_radians()).map(|sigma| sigma * sigma))
 }

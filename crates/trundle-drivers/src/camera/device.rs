@@ -5,17 +5,17 @@ use std::time::Duration;
 
 /// A camera that delivers pairs of a colour and a depth image.
 pub trait DepthCamera: Send {
-    /// Facts of the camera and its streams. It does not change while the camera is open.
+    /// Facts of the camera and its streams. The facts are constant while the camera is open.
     fn info(&self) -> &CameraInfo;
 
     /// The next frame; `None` if none came within `timeout`.
     ///
     /// # Errors
-    /// [`CameraError::BrokenFrame`] when one frame is damaged: the next call may succeed. Every other error means that the camera must be
-    /// opened anew.
+    /// [`CameraError::BrokenFrame`] when one frame is damaged: the next call may succeed. After every other error the camera must be
+    /// reopened.
     fn next_frame(&mut self, timeout: Duration) -> Result<Option<CameraFrame>, CameraError>;
 
-    /// Whether no frame will ever follow. Always `false` for a live camera; `true` at the end of a recording.
+    /// Whether no further frame will follow. Always `false` for a live camera; `true` at the end of a recording.
     fn has_ended(&self) -> bool {
         false
     }

@@ -4,7 +4,7 @@ use super::UsbSpeed;
 use std::io::ErrorKind;
 use trundle_core::Invalid;
 
-/// Why a camera cannot be opened or read. Each sentence ends with what to do.
+/// Reason why a camera cannot be opened or read. Each sentence ends with a remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CameraError {
@@ -13,7 +13,7 @@ pub enum CameraError {
     LibraryMissing {
         /// Name of the library, as the loader searches it.
         name: String,
-        /// How to get it.
+        /// Remedy for the missing library.
         remedy: String,
     },
     /// The library is installed in a version that does not suit.
@@ -31,26 +31,26 @@ pub enum CameraError {
     LibraryBroken {
         /// Name of the library.
         name: String,
-        /// Its file, and who named it.
+        /// File of the library, and the setting that names it.
         file: String,
         /// Message of the loader.
         problem: String,
         /// The remedy.
         remedy: String,
     },
-    /// A function of the library failed for a reason without a variant of its own.
+    /// A function of the library failed for a reason without a specific variant.
     #[error("the library {library} failed in {function}: {message}: {remedy}")]
     LibraryFailed {
         /// Name of the library.
         library: String,
-        /// Its function.
+        /// Name of the function.
         function: String,
-        /// Its message.
+        /// Message of the library.
         message: String,
         /// The remedy.
         remedy: String,
     },
-    /// The camera does not offer the wanted streams.
+    /// The camera does not offer the requested streams.
     #[error("the camera {device} does not offer {wanted}: {remedy}")]
     StreamsUnavailable {
         /// The camera.
@@ -72,12 +72,12 @@ pub enum CameraError {
         /// The camera.
         device: String,
     },
-    /// The user may not open the camera.
+    /// The user has no permission to open the camera.
     #[error("no permission to open the camera {device}: {remedy}")]
     NoPermission {
         /// The camera.
         device: String,
-        /// How to get the permission.
+        /// Remedy for the missing permission.
         remedy: String,
     },
     /// The camera was unplugged.
@@ -133,7 +133,7 @@ pub enum CameraError {
     },
 }
 
-/// Why a file cannot be read, and what to do.
+/// Reason why a file cannot be read, and the remedy.
 fn reason(source: &std::io::Error) -> String {
     match source.kind() {
         ErrorKind::NotFound => {
@@ -145,7 +145,7 @@ fn reason(source: &std::io::Error) -> String {
 }
 
 impl CameraError {
-    /// Whether the next frame may be good without opening the camera anew.
+    /// Whether the next frame may be good without reopening the camera.
     pub fn is_of_one_frame(&self) -> bool {
         matches!(self, Self::BrokenFrame(_))
     }

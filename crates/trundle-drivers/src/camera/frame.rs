@@ -1,4 +1,4 @@
-//! Colour and depth as a camera delivers them.
+//! Colour and depth in the form of the camera.
 
 use super::PixelFormat;
 use trundle_core::Stamp;

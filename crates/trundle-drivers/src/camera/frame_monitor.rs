@@ -3,25 +3,25 @@
 use super::{CameraFrame, CameraInfo, RawImage, StreamInfo, UsbSpeed};
 use trundle_core::{DepthImage, Invalid, PinholeCamera, Stamp, require_in};
 
-/// Focal length over image width \[1\]: 0.3 to 3, which is 118 to 19 degrees. Outside, the intrinsics are those of another camera or are
-/// scaled to another size. Source: ours; the depth cameras on sale have 50 to 110 degrees.
+/// Ratio of focal length to image width \[1\]: 0.3 to 3, a field of view of 118 to 19 degrees. Outside this range, the intrinsics belong to
+/// another camera or another image size. Source: ours; the depth cameras on sale have 50 to 110 degrees.
 const FOCAL_PER_WIDTH_RANGE: (f64, f64) = (0.3, 3.0);
 /// Place of the principal point as a share of the image's side \[1\]. Source: ours; within 0.07 of the middle for calibrated cameras.
 const PRINCIPAL_POINT_RANGE: (f64, f64) = (0.25, 0.75);
-/// Frames in a row with the same time at which a camera counts as stuck: 5. Source: ours; 0.17 s at 30 Hz.
+/// Number of consecutive frames with equal times at which a camera counts as stuck: 5. Source: ours; 0.17 s at 30 Hz.
 const MAX_SAME_STAMPS: usize = 5;
-/// Frames in a row with the same bytes at which a camera counts as stuck: 30. Source: ours; noise of the sensor changes bytes in every
-/// frame.
+/// Number of consecutive frames with equal bytes at which a camera counts as stuck: 30. Source: ours; noise of the sensor changes bytes in
+/// every frame.
 const MAX_SAME_BYTES: usize = 30;
-/// Frames in a row without any depth at which it is reported: 30. Source: ours; 1 s at 30 Hz.
+/// Number of consecutive frames without any depth at which a fault is reported: 30. Source: ours; 1 s at 30 Hz.
 const MAX_EMPTY_DEPTHS: usize = 30;
 /// Bytes between two bytes that enter the signature of an image. Source: ours; 64 keeps the cost below 0.1 ms for a colour image.
 const SIGNATURE_STEP_BYTES: usize = 64;
 
-/// A fault of a camera that its frames show.
+/// A fault of a camera detected in its frames.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CameraFault {
-    /// The same frame again and again. The camera must be opened anew.
+    /// The same frame repeatedly. The camera must be reopened.
     #[error("the camera delivered the same frame {frames} times: open it anew")]
     Stuck {
         /// Identical frames in a row.
@@ -32,10 +32,10 @@ pub enum CameraFault {
         "the last {frames} depth images hold no depth: look for something right in front of the lens, for strong sun, or for a projector that is off"
     )]
     NoDepth {
-        /// Such frames in a row.
+        /// Number of such consecutive frames.
         frames: usize,
     },
-    /// An image has not the promised size. The camera must be opened anew.
+    /// The size of an image differs from the declared one. The camera must be reopened.
     #[error("the {stream} image is {width} x {height} px, expected {} x {}: open the camera anew", expected.0, expected.1)]
     SizeChanged {
         /// Colour or depth.
@@ -68,13 +68,13 @@ pub enum CameraFault {
 }
 
 impl CameraFault {
-    /// Whether the camera must be opened anew.
+    /// Whether the camera must be reopened.
     pub fn needs_reopening(&self) -> bool {
         matches!(self, Self::Stuck { .. } | Self::SizeChanged { .. })
     }
 }
 
-/// Faults that a camera shows before its first frame.
+/// Faults detected before the first frame.
 pub fn faults_of_info(info: &CameraInfo) -> Vec<CameraFault> {
     let slow = info.usb.filter(|speed| *speed < UsbSpeed::Super);
     let slow = slow.map(|speed| CameraFault::UsbTooSlow { speed });
@@ -89,7 +89,7 @@ pub fn faults_of_info(info: &CameraInfo) -> Vec<CameraFault> {
 /// Refuses intrinsics that no camera has.
 ///
 /// # Errors
-/// When a focal length or the principal point is far from those of any camera.
+/// When a focal length or the principal point is implausible.
 pub fn check_intrinsics(camera: &PinholeCamera) -> Result<(), Invalid> {
     let (width, height) = (camera.width() as f64, camera.height() as f64);
     let (low, high) = FOCAL_PER_WIDTH_RANGE;
@@ -115,7 +115,7 @@ pub struct FrameMonitor {
 }
 
 impl FrameMonitor {
-    /// For the frames of a camera. `expects_noise` is `false` for rendered images, which repeat byte for byte if nothing moves.
+    /// A monitor for the frames of a camera. `expects_noise` is `false` for rendered images, which are equal if no object moves.
     pub fn new(info: &CameraInfo, expects_noise: bool) -> Self {
         Self {
             color: info.color,
@@ -140,12 +140,12 @@ impl FrameMonitor {
         self.last_stamps
     }
 
-    /// Whether the newest frame has the stamps of the one before.
+    /// Whether the newest frame has the stamps of the previous one.
     pub fn is_repeated(&self) -> bool {
         self.same_stamps > 0
     }
 
-    /// Takes a frame as delivered; a fault if it shows one. A fault that lasts is reported once for each limit's worth of frames.
+    /// Checks a frame; returns a new fault. A lasting fault is reported once per limit's number of frames.
     pub fn on_frame(&mut self, frame: &CameraFrame) -> Option<CameraFault> {
         let size = size_fault("colour", &frame.color, &self.color);
         let size = size.or_else(|| size_fault("depth", &frame.depth, &self.depth));
@@ -159,7 +159,7 @@ impl FrameMonitor {
         size.or(by_stamp.or(by_bytes).map(|frames| CameraFault::Stuck { frames }))
     }
 
-    /// Takes the converted depth image of a frame; a fault when there was none for many frames.
+    /// Checks the converted depth image of a frame; returns a fault after many images without depth.
     pub fn on_depth(&mut self, depth: &DepthImage) -> Option<CameraFault> {
         let is_empty = !depth.data().iter().any(|depth| *depth > 0.0);
         self.empty_depths = if is_empty { self.empty_depths + 1 } else { 0 };
@@ -168,7 +168,7 @@ impl FrameMonitor {
     }
 }
 
-/// Counts frames that equal the one before; the number of equal frames each time `limit` of them came.
+/// Counts frames equal to the previous one; returns their number each time `limit` is reached.
 fn repeats(is_same: bool, count: &mut usize, limit: usize) -> Option<usize> {
     *count = if is_same { *count + 1 } else { 0 };
     let frames = *count + 1;

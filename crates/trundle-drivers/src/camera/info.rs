@@ -1,11 +1,11 @@
-//! Description of a camera by itself.
+//! A camera's own description.
 
 use super::PixelFormat;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use trundle_core::{PinholeCamera, Pose3};
 
-/// Description of a camera by itself.
+/// A camera's own description.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CameraInfo {
     /// Name of the model.
@@ -26,11 +26,11 @@ pub struct CameraInfo {
     pub color_from_depth: Option<Pose3>,
     /// Time from the middle of the exposure to the arrival of the frame at the host \[s\].
     pub delay_s: f64,
-    /// Whether frames come at the camera's own rate. A recording waits for its reader.
+    /// Whether frames arrive at the camera's own rate. A recording waits for its reader.
     pub is_live: bool,
 }
 
-/// One of the streams of a camera.
+/// A stream of a camera.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StreamInfo {

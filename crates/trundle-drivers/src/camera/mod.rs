@@ -3,15 +3,15 @@
 //! | module | content |
 //! |---|---|
 //! | [`device`] | the trait [`DepthCamera`] |
-//! | [`info`] | what a camera says of itself: streams, intrinsics, delay |
+//! | [`info`] | a camera's own description: streams, intrinsics, delay |
 //! | [`frame`] | colour and depth as delivered |
 //! | [`pixels`] | pixel formats to [`trundle_core::ColorImage`] and [`trundle_core::DepthImage`] |
 //! | [`native`] | cameras through the libraries of their makers |
 //! | [`registration`] | depth moved into the colour camera |
 //! | [`frame_monitor`] | faults found in the frames themselves |
 //! | [`pipe`] | frames from a pipe, a file or a growing folder |
-//! | [`kinect2`] | depth of the Kinect V2 from its raw packets, which come from a file or by USB |
-//! | [`camera_thread`] | a camera in a thread of its own, reopened after faults |
+//! | [`kinect2`] | depth of the Kinect V2 from its raw packets, read from a file or by USB |
+//! | [`camera_thread`] | a camera with its own threads, reopened after faults |
 
 pub mod camera_thread;
 pub mod device;

@@ -23,11 +23,11 @@ pub enum PixelFormat {
     Mjpg,
     /// Luminance.
     Gray8,
-    /// Depth in whole numbers of 16 bits; the unit is [`super::CameraInfo::depth_unit_m`]; 0 if there is none.
+    /// Depth in whole numbers of 16 bits; the unit is [`super::CameraInfo::depth_unit_m`]; 0 for unknown.
     Depth16,
-    /// Depth in metres as a 32-bit float; 0, NaN or infinite if there is none.
+    /// Depth in metres as a 32-bit float; 0, NaN or infinite for unknown.
     DepthF32,
-    /// Raw disparity of the Kinect v1, 11 bits in 16; 2047 if there is none.
+    /// Raw disparity of the Kinect v1, 11 bits in 16; 2047 for unknown.
     Disparity11,
     /// A PNG file of one 16-bit channel; values as in [`PixelFormat::Depth16`].
     DepthPng16,

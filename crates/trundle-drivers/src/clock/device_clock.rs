@@ -1,11 +1,11 @@
 //! Device stamps on the host's clock.
 //!
-//! A packet arrives after its stamp by a delay that is never below a minimum. The difference between arrival and stamp is thus the offset
-//! of the clocks, plus their drift, plus a delay. The packets with the smallest delay lie on the lower edge of these differences over
-//! time. A line below all of them, along an edge of their lower convex hull, is the map between the clocks \[Zhang02\]. Bounding the drift
-//! is the idea of \[Olson10\].
+//! A packet arrives after its stamp, with a delay of at least a minimum. The difference between arrival and stamp is thus the offset of the
+//! clocks, plus their drift, plus a delay. The packets with the smallest delay are on the lower edge of these differences over time. The
+//! map between the clocks is a line below all of them, along an edge of their lower convex hull \[Zhang02\]. Bounding the drift is the idea
+//! of \[Olson10\].
 //!
-//! The minimum delay itself cannot be observed. It is [`DeviceClockConfig::transport_delay_s`].
+//! The minimum delay itself is not observable. It is [`DeviceClockConfig::transport_delay_s`].
 //!
 //! | paper's symbol | name here | unit |
 //! |---|---|---|
@@ -20,24 +20,24 @@ use super::lower_hull::{Point, lower_hull, slope_at};
 use std::collections::VecDeque;
 use trundle_core::Stamp;
 
-/// Time of device over which only the packet with the smallest delay is kept: 1 s. Source: ours; 50 packets of a Kobuki.
+/// Device time from which only the packet with the smallest delay is stored: 1 s. Source: ours; 50 packets of a Kobuki.
 const BIN_S: f64 = 1.0;
 /// Span of packets below which the drift counts as zero: 10 s. Source: ours; 100 ppm over 10 s are 1 ms.
 const MIN_DRIFT_SPAN_S: f64 = 10.0;
-/// Time of arrival over which packets are beyond the largest delay when the device's clock jumped: 0.3 s. Source: ours; the backlog of a
-/// stalled host arrives at once.
+/// Time of arrival over which packets exceed the largest delay after a jump of the device's clock: 0.3 s. Source: ours; the backlog of a
+/// stalled host arrives in one burst.
 const MIN_LATE_SPAN_S: f64 = 0.3;
-/// Spread of the offsets of these packets: 0.1 s. Source: ours; the offsets of a backlog shrink from packet to packet.
+/// Largest spread of the offsets of these packets: 0.1 s. Source: ours; the offsets of a backlog shrink from packet to packet.
 const MAX_JUMP_SPREAD_S: f64 = 0.1;
 
 /// Configuration of a [`DeviceClock`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DeviceClockConfig {
-    /// Time over which the smallest delays are kept, s, 10 to 600. Default 60.
+    /// Time over which the smallest delays are stored, s, 10 to 600. Default 60.
     pub window_s: f64,
     /// Largest drift between the clocks, ppm, 0 to 10000. Default 500: twice the sum of two poor crystals.
     pub max_drift_ppm: f64,
-    /// Arrival before its expected time by more than this is a jump of the device's clock, s, above 0. Default 0.02.
+    /// Largest time by which a packet may arrive early, s, above 0; an earlier one is a jump of the device's clock. Default 0.02.
     pub max_early_s: f64,
     /// Delay beyond which a series of packets is a jump of the device's clock, s, above 0. Default 0.3.
     pub max_delay_s: f64,
@@ -116,7 +116,7 @@ impl DeviceClock {
         self.in_order(arrival.after(-delay - self.config.transport_delay_s), arrival)
     }
 
-    /// Estimated drift: how much faster the host's clock runs than the device's, ppm. `None` in the first 10 s.
+    /// Estimated drift of the host's clock relative to the device's, ppm; positive if the host's is faster. `None` in the first 10 s.
     pub fn drift_ppm(&self) -> Option<f64> {
         (self.span() >= MIN_DRIFT_SPAN_S).then_some(self.slope * 1e6)
     }
@@ -156,19 +156,19 @@ impl DeviceClock {
         is_steady && arrival - since >= MIN_LATE_SPAN_S
     }
 
-    /// How early a packet may arrive, s: in the first second the smallest delay is not yet known.
+    /// Largest time by which a packet may be early, s: in the first second the smallest delay is unknown.
     fn early_limit(&self) -> f64 {
         if self.bins.len() > 1 { self.config.max_early_s } else { self.config.max_delay_s }
     }
 
-    /// Discards the device's clock, as after a lost link: the device may have been switched off. Results stay in order.
+    /// Discards the device's clock, for example after a lost link: the device may have been switched off. Later results are still in order.
     pub fn restart(&mut self) {
         (self.origin, self.slope, self.intercept) = (None, 0.0, 0.0);
         self.bins.clear();
         self.late = None;
     }
 
-    /// Adds an offset to its bin and fits the line anew.
+    /// Adds an offset to its bin and fits the line again.
     fn add(&mut self, device: f64, offset: f64) {
         match self.bins.back_mut() {
             Some(last) if device < (last.0 / BIN_S).floor() * BIN_S + BIN_S => {
@@ -184,7 +184,7 @@ impl DeviceClock {
         self.fit();
     }
 
-    /// The line below all points that is nearest to them in the mean: along the hull's edge at their mean time.
+    /// The line below all points with the smallest mean distance: along the hull's edge at their mean time.
     fn fit(&mut self) {
         let limit = self.config.max_drift_ppm * 1e-6;
         self.slope = if self.span() < MIN_DRIFT_SPAN_S {
@@ -197,7 +197,7 @@ impl DeviceClock {
         self.intercept = intercepts.fold(f64::INFINITY, f64::min);
     }
 
-    /// Not before the last result, not after the arrival.
+    /// Limits a stamp to the interval from the last result to the arrival.
     fn in_order(&mut self, stamp: Stamp, arrival: Stamp) -> Stamp {
         let stamp = stamp.min(arrival).max(self.last.unwrap_or(stamp));
         self.last = Some(stamp);

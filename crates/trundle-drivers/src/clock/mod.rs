@@ -2,11 +2,11 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`unwrap`] | counters that wrap, as time since the first one |
+//! | [`unwrap`] | wrapping counters, converted to the time since their first value |
 //! | [`device_clock`] | device stamps on the host's clock |
 //! | [`reorder_buffer`] | events in the order of their stamps |
 //!
-//! Nothing here reads a clock: the time of arrival is an argument. [`HostClock`] is how a driver's threads are given one.
+//! No function reads a clock: the time of arrival is an argument. [`HostClock`] is the clock of a driver's threads.
 
 pub mod device_clock;
 mod lower_hull;
@@ -20,5 +20,5 @@ pub use unwrap::MillisUnwrapper;
 use std::sync::Arc;
 use trundle_core::Stamp;
 
-/// The host's clock as drivers are given it: the stamp of now, which never runs backwards.
+/// The host's clock for drivers: the present stamp, which never decreases.
 pub type HostClock = Arc<dyn Fn() -> Stamp + Send + Sync>;

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use trundle_core::Stamp;
 
-/// A buffer that holds each event for a while, so that one with an earlier stamp can overtake it.
+/// A buffer that delays each event, which allows events with earlier stamps to overtake it.
 ///
 /// It yields events in the order of their stamps; events of one stamp in the order of their arrival.
 #[derive(Debug, Clone)]
@@ -18,12 +18,12 @@ pub struct ReorderBuffer<T> {
 }
 
 impl<T> ReorderBuffer<T> {
-    /// A buffer that holds events until `hold_s` (s, 0 or above) after their stamps, and at most `max_events` of them.
+    /// A buffer that stores events until `hold_s` (s, 0 or above) after their stamps, and at most `max_events`.
     pub fn new(hold_s: f64, max_events: usize) -> Self {
         Self { hold_s, max_events, events: BTreeMap::new(), arrivals: 0, last: None, dropped: 0 }
     }
 
-    /// Takes an event. False when its stamp is before an event that was yielded: it is dropped and counted.
+    /// Adds an event. Returns false for a stamp before an event already delivered; the event is dropped and counted.
     pub fn push(&mut self, stamp: Stamp, event: T) -> bool {
         if self.last.is_some_and(|last| stamp < last) {
             self.dropped += 1;

@@ -1,4 +1,4 @@
-//! A wrapping counter of milliseconds as time since its first value.
+//! A wrapping millisecond counter, converted to the time since its first value.
 
 use trundle_core::Stamp;
 
@@ -9,8 +9,8 @@ const NANOS_PER_MS: i64 = 1_000_000;
 
 /// Unwraps a 16-bit counter of milliseconds.
 ///
-/// Of all times that fit a value, the one nearest to the host's elapsed time is taken. A silence of any length is bridged, as long as the
-/// two clocks differ by less than 32 s over it.
+/// Among all times that match a value, the nearest to the host's elapsed time is used. A silence of any length is bridged if the clocks
+/// differ by less than 32 s over it.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct MillisUnwrapper {
     /// Unwrapped time and arrival of the last value.

@@ -21,16 +21,16 @@ use trundle_core::{Invalid, SensorEvent, Twist2, require_in};
 
 /// Maximum number of events that wait for the sink: 1024, five seconds of a base. Source: ours.
 const MAX_WAITING_EVENTS: usize = 1024;
-/// Largest gain that the protocol's 32 bits hold in thousandths: 4294967. Source: the protocol's "Set Controller Gain".
+/// Largest gain that fits the protocol's 32 bits in thousandths: 4294967. Source: the protocol's "Set Controller Gain".
 const MAX_GAIN: f64 = 4_294_967.0;
 
-/// Oldest firmware that knows the commands of gains: 1.2.0. Source: the vendor's driver, issue 289 of yujinrobot/kobuki.
+/// Oldest firmware with commands for gains: 1.2.0. Source: the vendor's driver, issue 289 of yujinrobot/kobuki.
 const GAINS_FIRMWARE: Version = Version::new(1, 2, 0);
 
-/// Receiver of the events of a base, on a thread of its own.
+/// Receiver of the events of a base, called on the base's thread.
 pub type EventSink = Box<dyn FnMut(SensorEvent) + Send>;
 
-/// A running base. Dropping it stops the base.
+/// A running base. A drop stops the base.
 #[derive(Debug)]
 pub struct KobukiBase {
     commands: Sender<Twist2>,
@@ -42,7 +42,7 @@ pub struct KobukiBase {
 impl KobukiBase {
     /// Opens the port, stops the base, waits until it has sent packets and versions, and starts the threads.
     ///
-    /// `sink` receives the events in the order of their stamps, which are those of `clock`. The first one is the link's.
+    /// `sink` receives the events in the order of their stamps, which are in the time of `clock`. The first event is the link's.
     ///
     /// # Errors
     /// When a setting is out of range, the port cannot be opened, or no Kobuki answers within `start_limit_s`.
@@ -73,13 +73,13 @@ impl KobukiBase {
         Ok(base)
     }
 
-    /// A sender of speeds: v in m/s, omega in rad/s, counter-clockwise. The newest one holds for `command_timeout_s`, then the base stops.
-    /// Those sent while the link is down are dropped.
+    /// A sender of speeds: v in m/s, omega in rad/s, counter-clockwise. The newest speed is active for `command_timeout_s`, then the base
+    /// stops. Speeds sent while the link is down are dropped.
     pub fn commands(&self) -> Sender<Twist2> {
         self.commands.clone()
     }
 
-    /// Sets all outputs: digital ones, supplies, lights. They are set again after a lost link.
+    /// Sets all outputs: digital outputs, supplies, lights. They are set again after the return of a lost link.
     pub fn set_outputs(&self, outputs: Outputs) {
         self.send(KobukiCommand::Outputs(outputs));
     }
@@ -107,13 +107,13 @@ impl KobukiBase {
         Ok(())
     }
 
-    /// Asks for the gains; [`KobukiBase::gains`] has them after the answer. Firmware 1.2.0 or later.
+    /// Requests the gains; [`KobukiBase::gains`] returns them after the answer. Firmware 1.2.0 or later.
     pub fn request_gains(&self) {
         self.warn_of_old_firmware();
         self.send(KobukiCommand::GetGains);
     }
 
-    /// Gains as the base reported them last.
+    /// Gains in the last report of the base.
     pub fn gains(&self) -> Option<Gains> {
         locked(&self.status).gains
     }
@@ -138,7 +138,7 @@ impl KobukiBase {
         locked(&self.status).latest.clone()
     }
 
-    /// Sends zero speed, closes the port, and waits for the threads. It blocks as long as the sink does.
+    /// Sends zero speed, closes the port, and waits for the threads. The call blocks as long as the sink does.
     pub fn stop(self) {
         drop(self);
     }

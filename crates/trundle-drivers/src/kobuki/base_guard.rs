@@ -1,7 +1,7 @@
-//! A process of its own that stops the base where the program that drives it dies.
+//! A separate process that stops the base if the program that drives it dies.
 //!
-//! A base keeps its last command for ever. A program that is killed, or that crashes, cannot send zero speed any more. The guard has the
-//! open port and a pipe from the program. When the pipe closes, the guard sends zero speed and ends.
+//! A base repeats its last command forever. A killed or crashed program cannot send zero speed. The guard has the open port and a pipe from
+//! the program. When the pipe closes, the guard sends zero speed and ends.
 
 use super::protocol::{BaseControl, KobukiCommand};
 use rustix::io::Errno;
@@ -17,22 +17,22 @@ use std::time::{Duration, Instant};
 pub const GUARD_COMMAND: &str = "guard-base";
 /// Number of times that zero speed is sent: a packet on a noisy line may be lost. Source: ours.
 const STOP_COUNT: u32 = 3;
-/// Time between two of them: the base's cycle.
+/// Period of these commands: the base's cycle.
 const STOP_PERIOD: Duration = Duration::from_millis(20);
 /// Longest time for the guard to end, after which it is killed. Source: ours.
 const MAX_END_TIME: Duration = Duration::from_millis(500);
 
-/// The guard of an open port. It ends with this value.
+/// The guard of an open port. A drop ends the guard.
 #[derive(Debug)]
 pub(super) struct BaseGuard {
     process: Child,
-    /// Closed when this value is dropped, or when this program dies.
+    /// Pipe that closes when this value is dropped, or when this program dies.
     pipe: Option<ChildStdin>,
 }
 
 impl BaseGuard {
-    /// Starts `program` with [`GUARD_COMMAND`]; its standard output is the port. A process group of its own keeps the terminal's signals
-    /// away from it.
+    /// Starts `program` with [`GUARD_COMMAND`]; its standard output is the port. A separate process group shields it from the terminal's
+    /// signals.
     pub(super) fn start(program: &Path, port: BorrowedFd<'_>) -> io::Result<Self> {
         let mut process = Command::new(program)
             .arg(GUARD_COMMAND)
@@ -53,7 +53,7 @@ impl Drop for BaseGuard {
         while matches!(self.process.try_wait(), Ok(None)) && start.elapsed() < MAX_END_TIME {
             std::thread::sleep(Duration::from_millis(5));
         }
-        // It may have ended by itself.
+        // The process may have ended by itself.
         let _ = self.process.kill();
         let _ = self.process.wait();
     }
@@ -62,7 +62,7 @@ impl Drop for BaseGuard {
 /// The work of a guard: waits until `pipe` ends, then sends zero speed to `port` and releases the port.
 ///
 /// # Errors
-/// When the port takes nothing, as when the base was unplugged.
+/// When the port accepts no data, for example after the base was unplugged.
 pub fn guard_base(mut pipe: impl Read, port: impl AsFd) -> io::Result<()> {
     let mut ignored = [0; 64];
     loop {

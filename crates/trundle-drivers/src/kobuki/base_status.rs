@@ -15,11 +15,11 @@ pub struct Versions {
     pub unique_id: Option<UniqueId>,
 }
 
-/// Oldest firmware without faults that the vendor names: 1.1.4. Source: the vendor's driver, recommended versions 1.1.4 and 1.2.0.
+/// Oldest firmware without known faults according to the vendor: 1.1.4. Source: the vendor's driver, recommended versions 1.1.4 and 1.2.0.
 const MIN_FIRMWARE: Version = Version::new(1, 1, 4);
 
 impl Versions {
-    /// Why the firmware is not one that the vendor recommends, with the remedy; `None` if it is.
+    /// The reason why the firmware is not recommended by the vendor, with the remedy; `None` for a recommended one.
     pub fn firmware_fault(&self) -> Option<String> {
         match self.firmware {
             Some(firmware) if firmware >= MIN_FIRMWARE => None,
@@ -32,7 +32,7 @@ impl Versions {
         }
     }
 
-    /// Takes what a packet says.
+    /// Updates the status from a packet.
     pub(super) fn update(&mut self, feedback: &Feedback) {
         self.hardware = feedback.hardware.or(self.hardware);
         self.firmware = feedback.firmware.or(self.firmware);
@@ -51,7 +51,7 @@ pub struct BaseCounters {
     pub decoder: DecoderCounters,
     /// Speeds sent.
     pub speeds_sent: u64,
-    /// Commands dropped because the link was lost when they came.
+    /// Number of commands dropped because the link was lost.
     pub commands_dropped: u64,
     /// Events dropped because the sink was too slow.
     pub events_dropped: u64,
@@ -61,7 +61,7 @@ pub struct BaseCounters {
     pub reconnects: u64,
     /// Jumps of the base's clock, its restarts among them.
     pub clock_jumps: u64,
-    /// Times that the stream began to look as if the port had two users.
+    /// Number of times that the stream began to look like that of a port with two users.
     pub stream_faults: u64,
 }
 

@@ -1,6 +1,6 @@
-//! When which speed is sent to the base.
+//! Times and speeds of the commands to the base.
 //!
-//! A base keeps its last command for ever. The driver thus repeats commands, and sends zero when none came for a while.
+//! A base repeats its last command forever. The driver therefore repeats commands, and sends zero without a recent command.
 
 use super::protocol::BaseControl;
 use trundle_core::{Stamp, Twist2};
@@ -15,7 +15,7 @@ const MIN_SPACING_S: f64 = 0.005;
 pub(super) struct CommandSchedule {
     /// Time after which a command no longer holds, s.
     timeout_s: f64,
-    /// The newest command and when it came.
+    /// The newest command and its time.
     wanted: Option<(BaseControl, Stamp)>,
     /// The last command sent, and when.
     sent: Option<(BaseControl, Stamp)>,
@@ -26,12 +26,12 @@ impl CommandSchedule {
         Self { timeout_s, wanted: None, sent: None }
     }
 
-    /// Takes a command that came at `now`.
+    /// Stores a command with its arrival time `now`.
     pub(super) fn set(&mut self, twist: Twist2, now: Stamp) {
         self.wanted = Some((BaseControl::from_twist(twist), now));
     }
 
-    /// Discards all commands: the next one sent is zero speed, at once.
+    /// Discards all commands: zero speed is sent next, immediately.
     pub(super) fn restart(&mut self) {
         (self.wanted, self.sent) = (None, None);
     }

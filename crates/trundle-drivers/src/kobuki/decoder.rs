@@ -1,11 +1,11 @@
 //! Packets out of a stream of bytes that may be cut, lost, doubled, flipped or mixed with others.
 //!
-//! The decoder searches the header and checks the sub-payloads as they arrive, then the checksum. Only the first byte of a refused frame
-//! is skipped, so a good packet within the refused bytes is found. How the stream is cut changes neither the packets nor the counters.
-//! The buffer holds 259 bytes, one frame. The cost is linear in the bytes for sound packets, and at most 255 steps a byte for garbage.
+//! The decoder searches for the header and checks the sub-payloads on arrival, then the checksum. Only the first byte of a refused frame is
+//! skipped: a good packet within the refused bytes is found. The division of the stream into reads has no effect on packets and counters.
+//! The buffer contains 259 bytes, one frame. The cost is linear in the bytes for valid packets, and at most 255 steps per byte for garbage.
 //!
-//! An XOR checksum cannot tell a packet that lost a byte 0xAA from a sound one when the next packet's header follows. The last byte of such
-//! a packet is the header's first byte. The decoder keeps it, so the next packet is not lost.
+//! An XOR checksum cannot distinguish a packet that lost a byte 0xAA from a valid one if the next packet's header follows. The last byte of
+//! such a packet is the header's first byte. The decoder keeps this byte in its buffer, so the next packet is not lost.
 
 use super::protocol::command::{KobukiCommand, min_command_bytes};
 use super::protocol::feedback::{Feedback, min_feedback_bytes};
@@ -161,13 +161,13 @@ impl FeedbackDecoder {
         self.0.counters
     }
 
-    /// Drops the bytes of an unfinished packet, after which the stream begins anew.
+    /// Drops the bytes of an unfinished packet, for a new stream.
     pub fn clear(&mut self) {
         self.0.clear();
     }
 }
 
-/// Commands out of the bytes that a driver sends. The emulator uses it.
+/// Decodes commands from the bytes sent by a driver. The emulator uses it.
 #[derive(Debug, Clone)]
 pub struct CommandDecoder(FrameDecoder);
 
@@ -191,10 +191,10 @@ impl CommandDecoder {
     }
 }
 
-/// A fuzz target: reads any bytes at once and one by one.
+/// A fuzz target: reads any bytes in one call and byte by byte.
 ///
 /// # Panics
-/// When the two readings differ, or when a byte is neither skipped, nor in a packet, nor waiting.
+/// When the two readings differ, or when a byte is neither skipped, nor part of a packet, nor buffered.
 pub fn fuzz_decoder(bytes: &[u8]) {
     let (mut whole, mut single) = (FeedbackDecoder::default(), FeedbackDecoder::default());
     let (mut packets, mut packets_by_byte) = (Vec::new(), Vec::new());

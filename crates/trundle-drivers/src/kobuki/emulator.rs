@@ -1,6 +1,6 @@
-//! The device's end of the protocol: feedback packets out of a state, wanted speeds out of command bytes.
+//! The device's side of the protocol: feedback packets from a state, wanted speeds from command bytes.
 //!
-//! It has no clock, no noise and no inertia. A simulator supplies the state, every 20 ms, and drives with the twist that comes back.
+//! It has no clock, no noise and no inertia. A simulator supplies the state every 20 ms, and drives with the returned twist.
 
 use super::decoder::{CommandDecoder, DecoderCounters};
 use super::feedback_events::FEEDBACK_PERIOD_S;
@@ -12,9 +12,9 @@ use trundle_core::{DockInfrared, PerWheel, Twist2};
 
 /// Milliseconds between feedback packets: 20 ms. Source: the protocol's "Feedback Identifier", 50 Hz.
 const FEEDBACK_PERIOD_MS: u16 = 20;
-/// Readings of the gyro a packet: 2. Source: the captured packet; the protocol says two or three.
+/// Number of gyro readings per packet: 2. Source: the captured packet; the protocol allows two or three.
 const READINGS_PER_PACKET: u8 = 2;
-/// Sounds that are kept until they are taken: 64. Source: ours.
+/// Maximum number of stored sounds: 64. Source: ours.
 const MAX_KEPT_SOUNDS: usize = 64;
 /// Units of the battery's byte in a volt: 10. Source: the protocol's "Basic Sensor Data".
 const BATTERY_UNITS_PER_V: f64 = 10.0;
@@ -26,7 +26,7 @@ pub struct KobukiState {
     pub ticks: (u16, u16),
     /// Turn rate, rad/s, counter-clockwise, with the sensor's errors.
     pub gyro_rate: f64,
-    /// Heading as the firmware integrates it, rad, -pi to pi, counter-clockwise.
+    /// Heading integrated by the firmware, rad, -pi to pi, counter-clockwise.
     pub heading: f64,
     /// Pressed bumpers.
     pub bumper: ThreeSides,
@@ -48,7 +48,7 @@ pub struct KobukiState {
     pub dock: DockInfrared,
 }
 
-/// A base that stands on the floor with a full battery; the cliff signals are those of the captured packet.
+/// A base on the floor with a full battery; the cliff signals are those of the captured packet.
 impl Default for KobukiState {
     fn default() -> Self {
         Self {
@@ -131,7 +131,7 @@ impl EmulatedKobuki {
         sensors.encode()
     }
 
-    /// Takes bytes of a driver. The twist of the last base control among them, if any: v in m/s, omega in rad/s.
+    /// Processes bytes of a driver. Returns the twist of the last base control among them, if any: v in m/s, omega in rad/s.
     pub fn on_bytes(&mut self, bytes: &[u8]) -> Option<Twist2> {
         let mut commands = Vec::new();
         self.decoder.push(bytes, |command| commands.push(command));
@@ -153,7 +153,7 @@ impl EmulatedKobuki {
         self.decoder.counters()
     }
 
-    /// Takes the sounds that were asked for since the last call, at most 64.
+    /// Returns and removes the requested sounds since the last call, at most 64.
     pub fn take_sounds(&mut self) -> Vec<KobukiCommand> {
         std::mem::take(&mut self.sounds)
     }

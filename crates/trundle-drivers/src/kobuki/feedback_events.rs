@@ -1,8 +1,8 @@
 //! Sensor events out of feedback packets.
 //!
-//! The gyro's events come from its raw readings. The firmware's calibrated rate is one value a packet, so turns between packets are lost,
-//! and the firmware subtracts a bias of its own. The raw readings are all there, two or three per packet, with a steady bias that the
-//! localization estimates. Their z axis points up: counter-clockwise is positive, as in the base's frame.
+//! The gyro's events come from its raw readings. The firmware's calibrated rate is one value per packet, so turns between packets are lost;
+//! the firmware also subtracts its own bias. The raw readings are complete, two or three per packet, with a constant bias that the
+//! localization estimates. Their z axis is up: counter-clockwise is positive, as in the base's frame.
 //!
 //! The base's stamps are mapped to the host's clock by a [`DeviceClock`]. Stamps of the events never run backwards.
 
@@ -34,7 +34,7 @@ pub enum GyroSource {
     Calibrated,
 }
 
-/// Events out of feedback packets, in order, with what was last reported.
+/// Converts feedback packets to events, in order; stores the reported states.
 #[derive(Debug, Clone)]
 pub struct FeedbackEvents {
     gyro_source: GyroSource,
@@ -103,7 +103,8 @@ impl FeedbackEvents {
         body(stamp, BodyEventKind::Link(Link { device: Device::Base, is_up }))
     }
 
-    /// The first packet of a link: the link's event with the stamp of the first of the packet's, then these. The base's clock is estimated anew.
+    /// Events of the first packet of a link: first the link's event, with the stamp of the packet's first event. The estimate of the base's
+    /// clock restarts.
     pub fn events_after_link_up(&mut self, feedback: &Feedback, arrival: Stamp) -> Vec<SensorEvent> {
         self.clock.restart();
         (self.unwrapper, self.last_device) = (MillisUnwrapper::default(), None);
@@ -168,7 +169,7 @@ impl FeedbackEvents {
 }
 
 impl Reported {
-    /// The battery when it is news: a change of the charger at once, one of the voltage once per second.
+    /// The battery's event: a change of the charger immediately, a change of the voltage once per second.
     fn battery_change(&mut self, core: &CoreSensors, stamp: Stamp) -> Option<Battery> {
         let (charger, decivolts) = (core.charger, core.battery_decivolts);
         let is_news = self.battery.is_none_or(|(then, last_charger, last_decivolts)| {
@@ -183,12 +184,12 @@ impl Reported {
     }
 }
 
-/// Estimate of the charge, 0 to 1, linear in the voltage (V). It is too low under load and too high while charging.
+/// Estimate of the charge, 0 to 1, linear in the voltage (V). The estimate is too low under load and too high while charging.
 pub fn charge_of(voltage_v: f64) -> f64 {
     ((voltage_v - EMPTY_BATTERY_V) / (FULL_BATTERY_V - EMPTY_BATTERY_V)).clamp(0.0, 1.0)
 }
 
-/// The new state when it differs from the reported one, which it becomes.
+/// The new state if it differs from the reported one, which is then replaced.
 fn changed<T: PartialEq + Copy>(reported: &mut T, state: T) -> Option<T> {
     (*reported != state).then(|| {
         *reported = state;

@@ -1,7 +1,7 @@
 //! The thread that owns the link to a base: it reads, writes, and opens the port again after a loss.
 //!
-//! The port is closed as soon as the link counts as lost, so bytes from before the loss stay behind. The first bytes of a new connection
-//! are zero speed. Commands that come while the link is down are dropped.
+//! The port is closed when the link counts as lost, which discards bytes from before the loss. The first bytes of a new connection are zero
+//! speed. Commands that come while the link is down are dropped.
 
 use super::base_config::KobukiBaseConfig;
 use super::base_status::{Status, locked};
@@ -23,11 +23,11 @@ use trundle_core::{SensorEvent, Stamp, Twist2};
 
 /// Longest wait for bytes: 5 ms, by which a command may be late. Source: ours, a quarter of a packet's period.
 const READ_WAIT: Duration = Duration::from_millis(5);
-/// Wait between looks at the queues while the port is closed: 10 ms. Source: ours.
+/// Period of checks of the queues while the port is closed: 10 ms. Source: ours.
 const CLOSED_WAIT: Duration = Duration::from_millis(10);
 /// Time that an opened port is given to bring the first packet: 1 s. Source: ours; a base needs less after it is switched on.
 const FIRST_PACKET_LIMIT_S: f64 = 1.0;
-/// Commands taken from a queue at once: 256. Source: ours; a flood of commands must not keep packets waiting.
+/// Maximum number of commands read from a queue in one step: 256. Source: ours; a flood of commands must not delay packets.
 const MAX_COMMANDS_AT_ONCE: usize = 256;
 /// Time that the last zero speed is given to go out: 0.2 s. Source: ours.
 const STOP_LIMIT_S: f64 = 0.2;
@@ -53,9 +53,9 @@ pub(super) struct IoLoop {
     schedule: CommandSchedule,
     check: StreamCheck,
     outbox: Outbox,
-    /// Outputs as last asked for: the base discards them when it is switched off.
+    /// Last requested outputs: the base forgets them when switched off.
     outputs: Option<Outputs>,
-    /// Stamp of the newest packet \[ms\], of this connection or the one before.
+    /// Stamp of the newest packet \[ms\], of this connection or the previous one.
     last_ms: Option<u16>,
 }
 
@@ -102,12 +102,12 @@ impl IoLoop {
         }
     }
 
-    /// Reads packets, takes commands, writes.
+    /// Reads packets, stores commands, writes.
     fn exchange(&mut self, link: &mut dyn ByteLink) -> io::Result<()> {
         let before = (self.clock)();
         self.read(link)?;
         let limit = if self.state.is_up { self.config.silence_limit_s } else { FIRST_PACKET_LIMIT_S };
-        // Packets that waited while this thread stood still have been read: only the time before counts.
+        // Packets that waited during a pause of this thread have been read: only the time before counts.
         if before - self.state.since >= limit {
             return Err(io::Error::new(io::ErrorKind::TimedOut, format!("no new packet came for {limit} s")));
         }
@@ -139,7 +139,7 @@ impl IoLoop {
         if let Some(core) = feedback.core {
             self.check.on_packet(core.stamp_ms);
         }
-        // A packet with the stamp of the one before it says nothing new.
+        // A packet with the stamp of the previous one has no new content.
         let stamp_ms = feedback.core.map(|core| core.stamp_ms);
         if stamp_ms.is_some() && std::mem::replace(&mut self.last_ms, stamp_ms) != stamp_ms {
             let events = if self.state.on_packet(arrival, self.config.silence_limit_s) {
@@ -225,7 +225,7 @@ impl IoLoop {
         self.schedule.restart();
     }
 
-    /// Opens the port when its time has come.
+    /// Opens the port if the next attempt is due.
     fn reconnect(&mut self) {
         let now = (self.clock)();
         self.take_commands(now);
@@ -269,7 +269,7 @@ impl IoLoop {
         }
     }
 
-    /// Warns of another base than the one before.
+    /// Warns if the base differs from the previous one.
     fn report_identity(&self, feedback: &Feedback) {
         let known = locked(&self.queues.status).versions.unique_id;
         if let (Some(known), Some(id)) = (known, feedback.unique_id)

@@ -7,16 +7,16 @@ use thiserror::Error;
 
 /// An open link of bytes to a device.
 pub trait ByteLink: Send {
-    /// Reads what has arrived, waiting for the first byte at most `wait`. 0 means that nothing came.
+    /// Reads the available bytes; waits at most `wait` for the first one. Returns 0 if no byte arrived.
     ///
     /// # Errors
-    /// When the link is gone for good.
+    /// When the link is permanently lost.
     fn read(&mut self, buffer: &mut [u8], wait: Duration) -> io::Result<usize>;
 
     /// Writes without waiting; the number of bytes taken, 0 when the link is full.
     ///
     /// # Errors
-    /// When the link is gone for good.
+    /// When the link is permanently lost.
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize>;
 }
 
@@ -36,13 +36,13 @@ pub trait Connector: Send {
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum ConnectError {
-    /// There is no such port.
+    /// The port does not exist.
     #[error("port {} does not exist: connect the base's USB cable and switch the base on", port.display())]
     Missing {
         /// The port.
         port: PathBuf,
     },
-    /// The port is there, but no device is behind it.
+    /// The port exists, but no device is connected.
     #[error("port {} has no device behind it: connect the base's USB cable and switch the base on, or name another port", port.display())]
     NoDevice {
         /// The port.
@@ -54,7 +54,7 @@ pub enum ConnectError {
         /// The port.
         port: PathBuf,
     },
-    /// The user may not open the port.
+    /// The user has no permission to open the port.
     #[error(
         "no right to open port {}: join the group dialout with `sudo usermod -aG dialout $USER`, then log in again",
         port.display()

@@ -26,7 +26,7 @@ impl LinkState {
         Self { is_up: false, since: now, retry_s, steady: 0, needed: 1 }
     }
 
-    /// Takes the arrival of a packet. A gap is longer than `max_gap_s`. Whether the packet brings the link up.
+    /// Records the arrival of a packet. A gap is longer than `max_gap_s`. Returns whether the packet brings the link up.
     pub(super) fn on_packet(&mut self, arrival: Stamp, max_gap_s: f64) -> bool {
         let is_steady = arrival - self.since < max_gap_s;
         self.since = arrival;
@@ -34,7 +34,7 @@ impl LinkState {
         !self.is_up && self.steady >= self.needed
     }
 
-    /// Takes the loss of the link; after a silence the next link needs steady packets.
+    /// Records the loss of the link; after a silence the next link needs steady packets.
     pub(super) fn lose(&mut self, now: Stamp, is_silence: bool) {
         (self.is_up, self.since, self.steady) = (false, now, 0);
         self.needed = if is_silence { MIN_STEADY_PACKETS } else { 1 };

@@ -6,9 +6,9 @@
 //! | [`decoder`] | packets out of a damaged stream of bytes |
 //! | [`feedback_events`] | sensor events out of packets |
 //! | [`base`], [`base_config`], [`base_status`], [`start_error`] | the driver: threads, settings, counters, errors of the start |
-//! | [`base_guard`] | a process that stops the base where this one dies (Unix) |
+//! | [`base_guard`] | a process that stops the base if this process dies (Unix) |
 //! | [`stream_check`] | signs of two users of one port |
-//! | [`link`] | a link of bytes, and what opens it |
+//! | [`link`] | a link of bytes, and its opener |
 //! | [`serial_port`] | a serial port of the system (Unix) |
 //! | [`emulator`] | the device's end of the protocol |
 //! | [`pseudo_terminal`] | a serial port without hardware (Unix) |

@@ -1,4 +1,4 @@
-//! Bytes on their way to a link that may take a part of them only.
+//! Bytes queued for a link that may accept only a part of them.
 
 use super::link::ByteLink;
 use std::io;
@@ -13,12 +13,12 @@ const MAX_STUCK_S: f64 = 0.5;
 #[derive(Debug, Clone, Default)]
 pub(super) struct Outbox {
     bytes: Vec<u8>,
-    /// Since when the link takes nothing.
+    /// Time since which the link accepts no byte.
     stuck: Option<Stamp>,
 }
 
 impl Outbox {
-    /// Adds a frame; one for which there is no room is dropped whole.
+    /// Adds a frame; without enough space the whole frame is dropped.
     pub(super) fn push(&mut self, frame: &[u8]) {
         if self.bytes.len() + frame.len() <= MAX_WAITING_BYTES {
             self.bytes.extend(frame);
@@ -34,10 +34,10 @@ impl Outbox {
         self.stuck = None;
     }
 
-    /// Writes what the link takes.
+    /// Writes the bytes that the link accepts.
     ///
     /// # Errors
-    /// When the link is gone, or has taken nothing for half a second.
+    /// When the link is lost, or has accepted no byte for half a second.
     pub(super) fn write(&mut self, link: &mut dyn ByteLink, now: Stamp) -> io::Result<()> {
         if self.bytes.is_empty() {
             return Ok(());
@@ -61,7 +61,7 @@ mod tests {
     use super::*;
     use std::time::Duration;
 
-    /// A link that takes a fixed number of bytes at a time.
+    /// A link that accepts a fixed number of bytes per write.
     struct Narrow(usize, Vec<u8>);
 
     impl ByteLink for Narrow {

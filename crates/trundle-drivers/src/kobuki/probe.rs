@@ -1,4 +1,4 @@
-//! The start of a base: is there a Kobuki on the link, which one, and nothing else?
+//! The start of a base: checks that the link has exactly one Kobuki, and its version.
 
 use super::base_config::KobukiBaseConfig;
 use super::base_status::Versions;
@@ -10,13 +10,13 @@ use super::stream_check::{StreamCheck, StreamFault};
 use crate::clock::HostClock;
 use std::time::Duration;
 
-/// Packets read before the base counts as found: 12, among them two stamps of a second base. Source: ours.
+/// Number of packets read before the base counts as found: 12, enough for two stamps of a second base. Source: ours.
 const MIN_PACKETS: u64 = 12;
 /// Time between requests for the versions: 0.5 s. Source: ours.
 const REQUEST_PERIOD_S: f64 = 0.5;
-/// Bytes shown of what is not a Kobuki: 16. Source: ours.
+/// Number of bytes shown of another device's data: 16. Source: ours.
 const MAX_SHOWN_BYTES: usize = 16;
-/// Longest wait for bytes at once: 10 ms. Source: ours, half a packet's period.
+/// Longest wait per read: 10 ms. Source: ours, half a packet's period.
 const READ_WAIT: Duration = Duration::from_millis(10);
 /// Major version of the firmware with this protocol: 1. Source: the vendor's driver, compatible major version.
 const FIRMWARE_MAJOR: u8 = 1;
@@ -99,7 +99,7 @@ impl Probe<'_> {
         Ok(())
     }
 
-    /// Whether what was read is a Kobuki that can be used.
+    /// Whether the bytes read are those of a usable Kobuki.
     fn judge(&self, port: &str, waited_s: f64) -> Result<(), StartError> {
         let port = port.to_owned();
         if self.bytes == 0 {

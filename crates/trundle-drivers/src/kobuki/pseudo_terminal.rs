@@ -1,6 +1,6 @@
 //! A pseudo terminal: a serial port without hardware, that any program can open.
 //!
-//! As with a real port, bytes that are sent while no program has the port open are lost.
+//! As with a real port, bytes sent while no program has the port open are lost.
 
 use super::link::ByteLink;
 use super::serial_port::{or_none, wait_readable};
@@ -16,7 +16,7 @@ use std::os::unix::ffi::OsStringExt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// The device's end of a pseudo terminal. Dropping it is unplugging the cable.
+/// The device's end of a pseudo terminal. A drop is like unplugging the cable.
 #[derive(Debug)]
 pub struct PseudoTerminal {
     device: OwnedFd,
@@ -42,11 +42,12 @@ impl PseudoTerminal {
         Ok(Self { device, path, link: None })
     }
 
-    /// A new pseudo terminal with a symbolic link to its port at `link`. A link to a port that is gone is replaced; the link is removed at the end.
+    /// A new pseudo terminal with a symbolic link to its port at `link`. A link to a missing port is replaced; the link is removed at the
+    /// end.
     ///
     /// # Errors
-    /// When the system has no terminal left, or the link cannot be created: its folder is missing, a file is there, or a link to a port that
-    /// exists.
+    /// When the system has no free terminal, or the link cannot be created: its folder is missing, or the path is a file or a link to an
+    /// existing port.
     pub fn open_at(link: &Path) -> io::Result<Self> {
         let mut terminal = Self::open()?;
         if link.exists() {
@@ -66,7 +67,7 @@ impl PseudoTerminal {
         Ok(terminal)
     }
 
-    /// The port that a program opens: the link if there is one.
+    /// The port for programs: the link if given.
     pub fn port(&self) -> &Path {
         self.link.as_deref().unwrap_or(&self.path)
     }

@@ -1,7 +1,7 @@
 //! A serial port of the system: 115200 baud, 8 data bits, no parity, 1 stop bit, raw.
 //!
-//! The port is locked twice. TIOCEXCL keeps other programs from opening it, unless they run as root. An exclusive lock of the file keeps
-//! other users of this crate away, root too.
+//! The port has two locks. TIOCEXCL prevents other programs from opening it, except those of root. An exclusive lock of the file excludes
+//! other users of this crate, including root.
 
 use super::base_guard::BaseGuard;
 use super::link::{ByteLink, ConnectError, Connector};
@@ -34,8 +34,8 @@ impl SerialConnector {
         Self { path: path.into(), guard_program: None }
     }
 
-    /// This port, guarded while it is open by a process of `program`, which has the command
-    /// [`GUARD_COMMAND`](super::base_guard::GUARD_COMMAND): it stops the base where this program dies.
+    /// This port, guarded while open by a process of `program`, which has the command [`GUARD_COMMAND`](super::base_guard::GUARD_COMMAND).
+    /// The process stops the base if this program dies.
     #[must_use]
     pub fn guarded_by(self, program: &Path) -> Self {
         Self { guard_program: Some(program.to_owned()), ..self }
@@ -77,7 +77,7 @@ impl SerialPort {
         Ok(port)
     }
 
-    /// Starts a guard. Without one the base keeps its last command where this program is killed.
+    /// Starts a guard. Without a guard the base repeats its last command after this program is killed.
     fn start_guard(&mut self, program: &Path) {
         match BaseGuard::start(program, self.fd.as_fd()) {
             Ok(guard) => self.guard = Some(guard),
@@ -140,7 +140,7 @@ pub(super) fn wait_readable(fd: &OwnedFd, wait: Duration) -> io::Result<PollFlag
     }
 }
 
-/// Nothing, if the system says to come back later.
+/// 0 if the system reports that the call would block.
 pub(super) fn or_none(bytes: Result<usize, Errno>) -> io::Result<usize> {
     match bytes {
         Err(Errno::AGAIN | Errno::INTR) => Ok(0),

@@ -1,4 +1,4 @@
-//! Why a base cannot be started.
+//! Reason why a base cannot be started.
 
 use super::link::ConnectError;
 use super::protocol::Version;
@@ -24,7 +24,7 @@ pub enum StartError {
         /// The system's reason.
         source: std::io::Error,
     },
-    /// Nothing comes.
+    /// No byte arrives.
     #[error(
         "port {port}: no byte came within {waited_s} s, expected 50 packets per second: switch the base on, or check the cable"
     )]
@@ -59,14 +59,14 @@ pub enum StartError {
         /// The fault.
         fault: StreamFault,
     },
-    /// The firmware speaks another protocol.
+    /// The firmware has another protocol version.
     #[error(
         "port {port}: the base's firmware is {firmware}, expected 1.x: update it, see kobuki.readthedocs.io/en/devel/firmware.html"
     )]
     Firmware {
         /// The port.
         port: String,
-        /// Its version.
+        /// Version of the firmware.
         firmware: Version,
     },
     /// The system gives no thread.

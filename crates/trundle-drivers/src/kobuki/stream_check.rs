@@ -7,11 +7,11 @@ use std::fmt;
 const WINDOW_PACKETS: usize = 50;
 /// Step between the stamps of two packets below which they come from two bases: 15 ms. Source: ours; a base's step is 20 ms.
 const MIN_STEP_MS: i16 = 15;
-/// Such steps in the window that make a fault: 5. Source: ours; a base that restarts makes one.
+/// Number of such steps in the window that counts as a fault: 5. Source: ours; a restart of the base gives one.
 const MIN_SHORT_STEPS: usize = 5;
 /// Step between the stamps of two packets above which the base is slow or packets are missing: 60 ms, three periods. Source: ours.
 const MAX_STEP_MS: i16 = 60;
-/// Such steps in the window that make a fault: 5. Source: ours; a base that restarts makes one.
+/// Number of such steps in the window that counts as a fault: 5. Source: ours; a restart of the base gives one.
 const MIN_LONG_STEPS: usize = 5;
 /// Refused headers in the window that make a fault: 10. Source: ours; a sound line has none for minutes.
 const MIN_REFUSED: usize = 10;
@@ -19,21 +19,21 @@ const MIN_REFUSED: usize = 10;
 /// A fault of the stream of packets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StreamFault {
-    /// Stamps jump back and forth, or come twice as often as they should.
+    /// Stamps alternate between two sequences, or arrive at twice the expected rate.
     TwoSources {
         /// Steps of the stamp below 15 ms in the last second.
         short_steps: usize,
     },
-    /// The stamp stays the same.
+    /// The stamp is constant.
     FrozenClock {
-        /// Such packets in the last second.
+        /// Number of such packets in the last second.
         packets: usize,
     },
     /// The base sends too rarely.
     SlowBase {
         /// Steps of the stamp above 60 ms in the last 50 packets.
         long_steps: usize,
-        /// The longest of them \[ms\].
+        /// The longest gap \[ms\].
         longest_ms: i16,
     },
     /// Bytes are missing or added.
@@ -91,7 +91,7 @@ pub(super) struct StreamCheck {
 }
 
 impl StreamCheck {
-    /// Takes the stamp of a sound packet.
+    /// Records the stamp of a valid packet.
     pub(super) fn on_packet(&mut self, stamp_ms: u16) {
         let step = self.last_ms.map(|last| stamp_ms.wrapping_sub(last).cast_signed());
         self.last_ms = Some(stamp_ms);
@@ -103,12 +103,12 @@ impl StreamCheck {
         });
     }
 
-    /// Takes the number of headers refused since the last call.
+    /// Records the number of headers refused since the last call.
     pub(super) fn on_refused(&mut self, headers: u64) {
         (0..headers.min(WINDOW_PACKETS as u64)).for_each(|_| self.push(Entry::Refused));
     }
 
-    /// The fault of the last second, if there is one.
+    /// The fault of the last second; `None` for a sound stream.
     pub(super) fn fault(&self) -> Option<StreamFault> {
         let count = |kind: Entry| self.entries.iter().filter(|entry| **entry == kind).count();
         let (short_steps, refused) = (count(Entry::ShortStep), count(Entry::Refused));
@@ -133,7 +133,7 @@ impl StreamCheck {
         (long_steps >= MIN_LONG_STEPS).then_some(StreamFault::SlowBase { long_steps, longest_ms })
     }
 
-    /// The fault where the stream was sound at the last call, and how many times it became faulty so far.
+    /// The fault if the stream was sound at the last call, and the number of faults so far.
     pub(super) fn new_fault(&mut self) -> Option<(StreamFault, u64)> {
         let fault = self.fault();
         let begins = fault.is_some() && !self.is_faulty;

@@ -42,7 +42,7 @@ pub fn frame(stamp: i64, seed: u8) -> CameraFrame {
     }
 }
 
-/// Shortest time of ten runs \[ms\]: other programs lengthen the rest.
+/// Shortest time of ten runs \[ms\]; the others are longer because of other programs.
 pub fn best_ms(mut run: impl FnMut()) -> f64 {
     let mut time = || {
         let started = std::time::Instant::now();

@@ -1,4 +1,4 @@
-//! Folders that grow: pairs in order, unfinished files, and missing ones.
+//! Folders with new files: pairs in order, unfinished files, and missing ones.
 
 use crate::fixtures::info;
 use std::fs;

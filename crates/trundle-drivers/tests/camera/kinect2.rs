@@ -1,4 +1,4 @@
-//! The decoder of the Kinect V2 against its forward model, its packets, and its dumps.
+//! The decoder of the Kinect V2, its packets and dumps, compared with a forward model.
 
 use crate::fixtures::best_ms;
 use crate::kinect2_model::{HEIGHT, Random, Surface, WIDTH, camera, p0, packed_images};
@@ -56,7 +56,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// Errors \[m\] of the pixels away from edges, and the share of them without depth.
+/// Errors \[m\] of the pixels away from edges, and their share without depth.
 fn errors(depth: &DepthImage, is_of: impl Fn(usize, usize) -> bool) -> (Vec<f64>, f64) {
     let (mut errors, mut empty) = (Vec::new(), 0usize);
     for (x, y) in (2..HEIGHT - 2).flat_map(|y| (2..WIDTH - 2).map(move |x| (x, y))) {

@@ -1,4 +1,4 @@
-//! A forward model of the Kinect V2: distances to noisy measurements to packed bytes. It shares no code with the decoder.
+//! A forward model of the Kinect V2: from distances to noisy measurements to packed bytes. It shares no code with the decoder.
 
 use std::sync::LazyLock;
 use trundle_core::{Distortion, PinholeCamera, Vector2};
@@ -43,7 +43,7 @@ pub fn p0() -> [Vec<u16>; 3] {
     std::array::from_fn(|_| (0..WIDTH * HEIGHT).map(|_| random.next() as u16).collect())
 }
 
-/// A surface point: depth along the optical axis \[m\], and how much light it returns (1 is white).
+/// A surface point: depth along the optical axis \[m\], and its reflectance (1 is white).
 pub type Surface = (f64, f64);
 
 /// Nine measurements and the ambient image of each pixel, packed.

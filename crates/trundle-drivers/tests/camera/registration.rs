@@ -1,4 +1,4 @@
-//! Registration against a ray caster that renders each camera by itself.
+//! Registration compared with a ray caster that renders each camera separately.
 
 use crate::fixtures::best_ms;
 use trundle_core::{ColorImage, DepthImage, Distortion, PinholeCamera, Pose3, Stamp, Vector2, Vector3};
@@ -22,7 +22,7 @@ fn scene() -> [Panel; 3] {
     ]
 }
 
-/// The nearest panel on a ray from `origin` along `direction`: how far along, and which.
+/// The nearest panel on a ray from `origin` along `direction`: distance and index.
 fn cast(scene: &[Panel], origin: Vector3, direction: Vector3) -> Option<(f64, usize)> {
     let hits = scene.iter().enumerate().filter_map(|(index, panel)| {
         let along =
@@ -59,11 +59,11 @@ fn lens() -> Distortion {
 
 /// Shares of the output pixels that the depth camera can see.
 struct Shares {
-    /// Of those with a depth: within 1 % of the ray caster.
+    /// Share of the pixels with depth that are within 1 % of the ray caster.
     right: f64,
-    /// Of those that the depth camera sees and that are not an edge: without depth.
+    /// Share of the pixels without depth among those visible to the depth camera and away from edges.
     holes: f64,
-    /// Pixels in the middle of a near panel with a depth behind it.
+    /// Number of pixels in the middle of a near panel with a depth behind it.
     shining_through: usize,
 }
 
@@ -169,7 +169,7 @@ fn fewer_pixels_are_filled_too() {
     );
 }
 
-/// Neighbouring depth pixels on a steep wall lie up to 3 px apart in the output, though each covers only 1.5 px.
+/// Neighbouring depth pixels on a steep wall are up to 3 px apart in the output, while each covers only 1.5 px.
 #[test]
 fn a_steep_wall_seen_from_the_side_has_no_holes() {
     let (depth, output) =

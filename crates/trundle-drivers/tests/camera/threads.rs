@@ -21,7 +21,7 @@ enum Act {
     Panic,
 }
 
-/// A camera that follows a script, then stays silent or ends.
+/// A camera that follows a script, then is silent or ends.
 struct ScriptedCamera {
     info: CameraInfo,
     script: VecDeque<Act>,
@@ -58,7 +58,7 @@ impl DepthCamera for ScriptedCamera {
 
 type Events = Arc<Mutex<Vec<SensorEvent>>>;
 
-/// A thread over cameras that are opened one after the other; `None` cannot be opened. After the last one nothing can.
+/// A thread with cameras that are opened one after the other; `None` fails to open. After the last one, every opening fails.
 struct Rig {
     events: Events,
     thread: CameraThread,
@@ -291,7 +291,7 @@ fn clock() -> Arc<dyn Fn() -> Stamp + Send + Sync> {
     Arc::new(move || Stamp::default().after(start.elapsed().as_secs_f64()))
 }
 
-/// A writer that dies is a lost camera; a new writer of the same FIFO brings it back, and so does one that paused.
+/// The end of a writer is the loss of the camera; a new writer of the same FIFO restores it, as does the end of a pause.
 #[cfg(unix)]
 #[test]
 fn a_fifo_is_opened_anew_after_its_writer_ended_or_paused() {
@@ -313,7 +313,7 @@ fn a_fifo_is_opened_anew_after_its_writer_ended_or_paused() {
     let open = || StreamWriter::new(std::fs::OpenOptions::new().write(true).open(&path).unwrap(), &info());
     let first = Instant::now();
     let mut stamp = 0;
-    // Frames follow until one arrives: the first of them may go to a reader that is about to end.
+    // Frames are repeated until one arrives: the first may go to a reader that is ending.
     let mut write_until_up = |writer: &mut StreamWriter<std::fs::File>| {
         while !rig.thread.is_up() {
             assert!(first.elapsed() < Duration::from_secs(60), "{:?}", rig.thread.last_fault());

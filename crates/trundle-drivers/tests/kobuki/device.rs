@@ -1,4 +1,4 @@
-//! An emulated base that runs on a thread of its own, with faults.
+//! An emulated base on a separate thread, with faults.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard};
@@ -13,21 +13,21 @@ use trundle_drivers::kobuki::{ByteLink, EmulatedKobuki, KobukiState, PseudoTermi
 pub enum Sends {
     /// Sound packets.
     Packets,
-    /// Nothing.
+    /// No data.
     Nothing,
     /// Sound packets in pieces of seven bytes, with garbage between.
     PiecesAndGarbage,
-    /// Packets of two bases in turn.
+    /// Packets of two bases alternately.
     TwoBases,
     /// Packets of which every second one lacks a byte.
     LostBytes,
-    /// Ten packets at once.
+    /// Ten packets in one burst.
     Bursts,
     /// Message of a satellite receiver.
     OtherDevice,
 }
 
-/// The device as a test sees it.
+/// State of the device for tests.
 pub struct State {
     pub base: EmulatedKobuki,
     pub sensors: KobukiState,
@@ -98,7 +98,7 @@ fn run(state: &Mutex<State>, port: &Path, mut terminal: Option<PseudoTerminal>) 
     }
 }
 
-/// Takes the commands that have come, and sends.
+/// Handles the received commands, and sends.
 fn cycle(terminal: &mut PseudoTerminal, state: &mut State, second: &mut EmulatedKobuki) {
     let mut buffer = [0; 4096];
     let bytes = terminal.read(&mut buffer, Duration::ZERO).unwrap();

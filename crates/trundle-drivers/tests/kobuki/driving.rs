@@ -1,4 +1,4 @@
-//! Speeds go to the base, readings come back, accessories work.
+//! Speeds reach the base, readings return, accessories work.
 
 use crate::device::Sends;
 use crate::rig::{Rig, wait_for};

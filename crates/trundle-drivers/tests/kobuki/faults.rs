@@ -9,7 +9,7 @@ use trundle_drivers::kobuki::{KobukiBase, KobukiBaseConfig, SerialConnector};
 
 #[test]
 fn after_an_unplugged_cable_the_first_speed_is_zero() {
-    // Commands that hold for long: a kept one would be sent after the loss.
+    // Commands with a long timeout: a stored one would be sent after the loss.
     let rig = Rig::with("unplug", Sends::Packets, KobukiBaseConfig { command_timeout_s: 10.0, ..patient() });
     let fast = Twist2::new(0.3, 0.0);
     let outputs = Outputs { led2: Led { red: true, green: false }, ..Outputs::default() };

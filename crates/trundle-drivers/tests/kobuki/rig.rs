@@ -1,4 +1,4 @@
-//! A driver and the device it drives.
+//! A driver with its device.
 
 use crate::device::{Device, Sends};
 use std::sync::{Arc, Mutex};
@@ -11,7 +11,7 @@ use trundle_drivers::kobuki::{KobukiBase, KobukiBaseConfig, SerialConnector, Sta
 /// Longer than a loaded machine needs.
 const LIMIT: Duration = Duration::from_secs(30);
 
-/// A configuration for a machine that may stand still for seconds.
+/// A configuration for a machine that may stall for seconds.
 pub fn patient() -> KobukiBaseConfig {
     KobukiBaseConfig {
         silence_limit_s: 5.0,
@@ -79,7 +79,7 @@ impl Rig {
         self.events.lock().unwrap().iter().filter_map(is_up).collect()
     }
 
-    /// Sends a speed again and again until it arrives.
+    /// Sends a speed repeatedly until it arrives.
     #[track_caller]
     pub fn drive(&self, twist: Twist2) {
         let commands = self.base.commands();
@@ -90,7 +90,7 @@ impl Rig {
     }
 }
 
-/// Whether two twists differ by less than what the protocol cuts off.
+/// Whether two twists differ by less than the protocol's resolution.
 pub fn is_near(a: Twist2, b: Twist2) -> bool {
     (a.v - b.v).abs() < 0.004 && (a.omega - b.omega).abs() < 0.02
 }

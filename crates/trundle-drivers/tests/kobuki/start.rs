@@ -1,4 +1,4 @@
-//! A start that must fail says why.
+//! The errors of a failed start.
 
 use crate::device::{Device, Sends};
 use crate::rig::{Rig, clock, patient, start_error, wait_for};

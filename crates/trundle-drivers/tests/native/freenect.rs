@@ -16,7 +16,7 @@ const TIMEOUT: Duration = Duration::from_secs(10);
 const FRAMES: u32 = 4;
 /// Ticks between frames: 60 MHz / 30 Hz.
 const PERIOD_TICKS: u32 = 2_000_000;
-/// Ticks of the first frame: the counter starts anew after the second.
+/// Ticks of the first frame: the counter restarts after the second frame.
 const FIRST_TICKS: u32 = u32::MAX - 3_000_000;
 
 fn fakenect() -> Option<PathBuf> {

@@ -26,10 +26,10 @@ fn without_a_device_the_list_is_empty_and_opening_says_so() {
         return skip("kinect2_usb::without_a_device_the_list_is_empty_and_opening_says_so", NEEDED);
     };
     let api = UsbApi::load(Some(&library)).unwrap();
-    // Each call begins a session of the library and ends it.
+    // Each call starts and ends a session of the library.
     for _ in 0..20 {
         let devices = match list_devices(&api) {
-            // A container may have no USB at all.
+            // A container may have no USB.
             Err(error @ CameraError::LibraryFailed { .. }) if error.to_string().contains("libusb_init") => {
                 return println!("SKIPPED kinect2_usb: this machine has no USB: {error}");
             }

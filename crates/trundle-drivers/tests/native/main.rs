@@ -1,7 +1,7 @@
-//! Tests of the cameras through the libraries of their makers, with the real libraries.
+//! Tests of the cameras with the real libraries of their manufacturers.
 //!
-//! `bench/drivers/get-native-libraries.sh` gets the libraries. A test whose library is absent prints its name and is skipped; it fails instead
-//! where the environment variable `TRUNDLE_REQUIRE_NATIVE_LIBRARIES` is set.
+//! `bench/drivers/get-native-libraries.sh` downloads the libraries. A test without its library prints its name and is skipped; it fails
+//! instead if the environment variable `TRUNDLE_REQUIRE_NATIVE_LIBRARIES` is set.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "helpers of tests")]
 
 mod all_kinds;

@@ -1,4 +1,4 @@
-//! OpenNI2: its dummy device, in a process of its own.
+//! OpenNI2: its dummy device, in a separate process.
 
 use crate::support::{debian, in_child, libusb, list, skip};
 use std::path::PathBuf;

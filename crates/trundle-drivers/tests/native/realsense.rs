@@ -102,7 +102,7 @@ fn check_lens(camera: &PinholeCamera, library: &Path) {
     };
     for pixel in [[0.0, 0.0], [79.0, 59.0], [10.0, 50.0], [39.5, 30.25]] {
         let mut point = [0.0; 3];
-        // SAFETY: all arrays are alive and have the documented lengths.
+        // SAFETY: all arrays are valid and have the documented lengths.
         unsafe { deproject(point.as_mut_ptr(), &raw, pixel.as_ptr(), 2.0) };
         let expected = camera.project(Vector3::from(point.map(f64::from))).unwrap();
         let found = camera.undistort(Vector2::new(f64::from(pixel[0]), f64::from(pixel[1])));

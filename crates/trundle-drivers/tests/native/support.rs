@@ -38,7 +38,7 @@ pub fn debian(file: &str) -> Option<PathBuf> {
     machines.map(|machine| machine.path().join(file)).find(|path| path.exists())
 }
 
-/// libusb: the one of the system, else the one from the package.
+/// libusb of the system, or else from the package.
 pub fn libusb() -> Option<PathBuf> {
     let system = ["/lib", "/usr/lib"].iter().flat_map(|folder| {
         let machines = ["x86_64-linux-gnu", "aarch64-linux-gnu"];
@@ -52,7 +52,7 @@ pub fn list(files: &[PathBuf]) -> PathBuf {
     std::env::join_paths(files).unwrap().into()
 }
 
-/// Runs the test `name` again in a process of its own, with more variables in its environment; `true` in that process.
+/// Runs the test `name` again in a child process with additional environment variables; `true` in that process.
 pub fn in_child(name: &str, environment: &[(&str, &OsStr)]) -> bool {
     if std::env::var_os(CHILD).is_some() {
         return true;

@@ -21,7 +21,7 @@ pub(crate) struct GyroCalibration {
     rejected_in_row: usize,
 }
 
-/// A turn of the base that camera and gyro both measured.
+/// A turn of the base measured by both camera and gyro.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct VisualTurn {
     /// Turn by the camera, rad.
@@ -38,7 +38,8 @@ pub(crate) struct VisualTurn {
 const GATE_SIGMAS: f64 = 4.0;
 /// Random walk of the scale, 1 / sqrt(s). The scale's variance grows by its square each second. Source: ours.
 const SCALE_RANDOM_WALK: f64 = 3e-5;
-/// Smallest sigma of the scale, ratio. The filter stays open to change: errors of neighbouring turns are correlated. Source: ours.
+/// Smallest sigma of the scale, ratio. The limit lets the filter follow changes, because errors of neighbouring turns are correlated.
+/// Source: ours.
 const MIN_SCALE_SIGMA: f64 = 3e-4;
 /// Number of consecutive rejected turns that resets the filter: the gyro itself has changed. Source: ours.
 const MAX_REJECTED_TURNS: usize = 3;
@@ -134,7 +135,7 @@ impl GyroCalibration {
         }
     }
 
-    /// Whether an innovation lies within the gate.
+    /// Whether an innovation is within the gate.
     fn is_within_gate(&self, slope: RowVector2<f64>, innovation: f64, sigma: f64) -> bool {
         innovation * innovation <= GATE_SIGMAS.powi(2) * self.innovation_variance(slope, sigma)
     }
@@ -150,7 +151,7 @@ impl GyroCalibration {
         self.bias += gain.x * innovation;
         self.scale += gain.y * innovation;
         let left = Matrix2::identity() - gain * slope;
-        // Joseph's form stays symmetric and positive.
+        // Joseph's form remains symmetric and positive.
         self.covariance = left * self.covariance * left.transpose() + gain * gain.transpose() * sigma.powi(2);
         let min_variance = MIN_SCALE_SIGMA.powi(2).min(self.unknown.m22);
         self.covariance.m22 = self.covariance.m22.max(min_variance);

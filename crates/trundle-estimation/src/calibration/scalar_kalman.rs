@@ -7,7 +7,8 @@ pub(crate) struct ScalarKalman {
     variance: f64,
 }
 
-/// Smallest sigma, ratio. The filter stays open to change: errors of neighbouring measurements are correlated. Source: ours.
+/// Smallest sigma, ratio. The limit lets the filter follow changes, because errors of neighbouring measurements are correlated. Source:
+/// ours.
 const MIN_SIGMA: f64 = 3e-4;
 /// Random walk from one measurement to the next, ratio (one sigma): tyre wear, floors, temperature. Source: ours.
 const RANDOM_WALK_SIGMA: f64 = 1e-4;
@@ -24,7 +25,7 @@ impl ScalarKalman {
         self.value
     }
 
-    /// Updates by a measurement, unless it lies outside the gate.
+    /// Updates by a measurement, unless outside the gate.
     pub(crate) fn update(&mut self, measured: f64, variance: f64) {
         if self.variance == 0.0 {
             return;

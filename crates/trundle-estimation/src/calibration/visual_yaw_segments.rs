@@ -55,7 +55,7 @@ impl VisualYawSegments {
         self.interrupted = self.interrupted.max(Some(now));
     }
 
-    /// Adds the heading of an image, which may be late; returns the turn of a segment that it completes.
+    /// Adds the heading of an image, which may be late; returns the turn of the completed segment.
     pub(crate) fn add(&mut self, heading: VisualHeading) -> Option<VisualTurn> {
         if self.interrupted.is_some_and(|since| heading.stamp <= since) {
             return None;

@@ -3,10 +3,10 @@
 use crate::{calibration::scalar_kalman::ScalarKalman, odometry_config::OdometryConfig};
 use trundle_core::{Pose2, Vector3};
 
-/// Ratio of the wheels' true to nominal radii, estimated while driving by two scalar Kalman filters.
+/// Ratio of the wheels' true to nominal radii, estimated during the drive by two scalar Kalman filters.
 ///
-/// The mean ratio is measured by chords of the camera's path over the odometry's chord of the same time. The difference is
-/// measured on straight segments where wheels and gyro turn by different angles: `turn = 2 e distance / wheelbase`.
+/// The mean ratio is measured by chords of the camera's path, divided by the odometry's chord of the same time. The difference is measured
+/// on straight segments where wheels and gyro turn by different angles: `turn = 2 e distance / wheelbase`.
 #[derive(Debug, Clone)]
 pub(crate) struct WheelCalibration {
     mean: ScalarKalman,
@@ -46,9 +46,9 @@ pub(crate) struct WheelStep {
     pub(crate) by_gyro: Option<(f64, f64)>,
 }
 
-/// Smallest length of chords and straight segments, m. Shorter ones measure the radii poorly. Source: ours.
+/// Smallest length of chords and straight segments, m. Shorter ones determine the radii poorly. Source: ours.
 const MIN_DISTANCE_M: f64 = 1.0;
-/// Largest turn of a straight segment, rad. More would mistake an error of the wheelbase for one of the radii. Source: ours.
+/// Largest turn of a straight segment, rad. In a larger turn, an error of the wheelbase would appear as one of the radii. Source: ours.
 const MAX_STRAIGHT_TURN_RAD: f64 = 0.2;
 /// Noise of the camera's chord (one sigma), m. Source: ours.
 const CHORD_SIGMA_M: f64 = 0.006;

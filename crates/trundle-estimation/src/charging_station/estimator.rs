@@ -55,18 +55,18 @@ const MIN_MOTION_M: f64 = 0.01;
 const MIN_TURN_RAD: f64 = 0.026;
 /// Exponent of a reading's likelihood: readings of neighbouring places depend on each other. Source: ours.
 const LIKELIHOOD_EXPONENT: f64 = 0.3;
-/// Growth of the standard deviation with the root of the path of the receivers: position \[m/sqrt(m)\] and heading \[rad/sqrt(m)\]. The
-/// robot's own pose drifts and is corrected, and the light is not quite that of the model. Source: ours.
+/// Growth of the standard deviation with the root of the receivers' path: position \[m/sqrt(m)\] and heading \[rad/sqrt(m)\]. It covers the
+/// drift and the corrections of the robot's own pose, and errors of the light model. Source: ours.
 const DRIFT_M: f64 = 0.006;
 const DRIFT_RAD: f64 = 0.006;
 /// Mean likelihood of a reading below which it contradicts the distribution. Source: ours.
 const MIN_MEAN_LIKELIHOOD: f64 = 0.003;
-/// Contradictions in a row after which the estimate starts anew. Source: ours.
+/// Number of consecutive contradictions after which the estimate restarts. Source: ours.
 const MAX_CONTRADICTIONS: u32 = 12;
 /// Standard deviation of the pose at the charging plates \[m\], along, across; and heading \[rad\]. Source: the plates' tolerances.
 const CONTACT_SIGMA: [f64; 3] = [0.01, 0.006, 0.03];
 
-/// Estimates the pose of a charging station from the light that the robot sees along its path.
+/// Estimates the pose of a charging station from its light along the robot's path.
 #[derive(Debug, Clone)]
 pub struct StationEstimator {
     model: LightModel,
@@ -78,7 +78,7 @@ pub struct StationEstimator {
 }
 
 impl StationEstimator {
-    /// An estimator without a station; `seed` is that of its particles.
+    /// An estimator without a station; `seed` is the seed of the particles.
     ///
     /// # Errors
     /// When a number of the configuration is outside its range.
@@ -87,7 +87,7 @@ impl StationEstimator {
         Ok(Self { model, random, particles: Particles::default(), last: None, contradictions: 0 })
     }
 
-    /// The light at a pose, `map_from_base`. It is called with every pose; what adds nothing is left out.
+    /// Adds the light at a pose, `map_from_base`. It is called with every pose; readings without new information are ignored.
     pub fn add_light(&mut self, pose: Pose2, light: &DockInfrared) {
         if self.particles.is_empty() {
             if light.is_any() {
@@ -109,7 +109,7 @@ impl StationEstimator {
         }
     }
 
-    /// The robot stands on the charging plates, `map_from_station` as its pose has it.
+    /// Adds contact with the charging plates; `map_from_station` follows from the robot's pose.
     pub fn add_contact(&mut self, map_from_station: Pose2) {
         self.around(map_from_station, CONTACT_SIGMA);
     }
@@ -135,7 +135,7 @@ impl StationEstimator {
         Some(StationEstimate { pose, covariance: covariance.into() })
     }
 
-    /// Path of the receivers since the last reading that counted, m. `None` if the reading adds nothing.
+    /// Path of the receivers since the last used reading, m. `None` if the reading has no new information.
     fn motion_since_last(&self, pose: Pose2, light: &DockInfrared) -> Option<f64> {
         let Some((last, before)) = &self.last else { return Some(0.0) };
         let distance = last.distance(&pose);

@@ -71,7 +71,7 @@ impl LightModel {
         [near * left, near * center, near * right, far * left, far * center, far * right]
     }
 
-    /// A first guess of `base_from_station` by a reading with light: a receiver that sees a field, and a place of that field.
+    /// An initial guess of `base_from_station` from a reading with light: a receiver that detects a field, and a place within that field.
     pub(super) fn first_guess(&self, reading: &DockInfrared, random: &mut Random) -> Option<Pose2> {
         let seen = [reading.left, reading.center, reading.right];
         let fields: Vec<(usize, usize)> = seen
@@ -108,7 +108,7 @@ fn bits(beams: &DockBeams) -> [bool; 6] {
     [near_left, near_center, near_right, far_left, far_center, far_right]
 }
 
-/// 0 below `-width`, 1 above `width`, straight in between.
+/// 0 below `-width`, 1 above `width`, linear in between.
 fn ramp(x: f64, width: f64) -> f64 {
     (0.5 + 0.5 * x / width).clamp(0.0, 1.0)
 }

@@ -4,9 +4,9 @@ use super::random::Random;
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::{Pose2, difference_of_angles};
 
-/// Shrinkage towards the mean when the set is drawn anew: the kernel then keeps mean and covariance. Source: Liu and West 2001.
+/// Shrinkage towards the mean in resampling, with which the kernel preserves mean and covariance. Source: Liu and West 2001.
 const SHRINKAGE_FACTOR: f64 = 0.95;
-/// Part of the particles that count below which the set is drawn anew. Source: the usual half.
+/// Effective part of the particles below which resampling takes place. Source: the usual half.
 const MIN_EFFECTIVE_PART: f64 = 0.5;
 
 /// A candidate.
@@ -25,7 +25,7 @@ impl Particles {
         self.0.is_empty()
     }
 
-    /// Multiplies each weight by its likelihood; the mean likelihood, 0 if none is left.
+    /// Multiplies each weight by its likelihood; returns the mean likelihood, 0 if no weight is left.
     pub(super) fn weigh(&mut self, likelihood: impl Fn(Pose2) -> f64) -> f64 {
         for particle in &mut self.0 {
             particle.weight *= likelihood(particle.map_from_station);
@@ -42,7 +42,7 @@ impl Particles {
         1.0 / self.0.iter().map(|particle| particle.weight * particle.weight).sum::<f64>()
     }
 
-    /// Draws the set anew where few particles count, with a kernel that keeps mean and covariance.
+    /// Resamples if few particles are effective, with a kernel that preserves mean and covariance.
     pub(super) fn resample_if_needed(&mut self, random: &mut Random) {
         if self.effective_size() < MIN_EFFECTIVE_PART * self.0.len() as f64 {
             self.resample(self.0.len(), random);
@@ -107,7 +107,7 @@ fn moved(mean: Pose2, off: Vector3<f64>) -> Pose2 {
     mean * Pose2::new(off.x, off.y, off.z)
 }
 
-/// A matrix whose product with its transpose is the covariance; its diagonal where that is singular.
+/// A matrix whose product with its transpose is the covariance; of a singular covariance, the diagonal only.
 fn factor(covariance: &Matrix3<f64>) -> Matrix3<f64> {
     covariance.cholesky().map_or_else(
         || Matrix3::from_diagonal(&covariance.diagonal().map(|v| v.max(0.0).sqrt())),

@@ -34,7 +34,7 @@ fn light(station_from_base: Pose2) -> DockInfrared {
     DockInfrared { left: at(60.0), center: at(0.0), right: at(-60.0) }
 }
 
-/// The estimate after a path of poses in the station's frame; the station stands at `station` of the map.
+/// The estimate after a path of poses in the station's frame; `station` is the station's pose in the map.
 fn after(station: Pose2, seed: u64, path: &[Pose2]) -> Option<StationEstimate> {
     let mut estimator = StationEstimator::new(StationLightConfig::default(), seed).unwrap();
     for pose in path {
@@ -88,7 +88,7 @@ fn crossing_the_axis_at_two_distances_gives_the_axis() {
     {
         let estimate = after(station, seed, &survey()).unwrap();
         let error = station.inverse() * estimate.pose;
-        // Where a docked robot stands, on the estimated axis.
+        // Pose of a docked robot on the estimated axis.
         let docked = error * Pose2::new(0.18, 0.0, PI);
         let heading = difference_of_angles(docked.theta, PI).to_degrees();
         assert!(docked.y.abs() < 0.012 && heading.abs() < 1.5, "seed {seed}: {} m, {heading} deg", docked.y);

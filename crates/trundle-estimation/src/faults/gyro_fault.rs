@@ -35,8 +35,8 @@ impl GyroFault {
         self.unchanged_for > MAX_UNCHANGED_S
     }
 
-    /// Whether the gyro is frozen, at a turn rate by the wheels of `by_wheels` rad/s and a bias of `bias` rad/s. A frozen gyro
-    /// stays so until its output changes: slow turns do not contradict it.
+    /// Whether the gyro is frozen, for a turn rate by the wheels of `by_wheels` rad/s and a bias of `bias` rad/s. A frozen gyro is reported
+    /// until its output changes: slow turns do not contradict it.
     pub(crate) fn contradicts(&mut self, by_wheels: f64, bias: f64) -> bool {
         let differs = |last: GyroRate| (last.omega - bias - by_wheels).abs() > MAX_RATE_DIFFERENCE_RAD_S;
         self.is_frozen |= self.is_suspect() && self.last.is_some_and(differs);

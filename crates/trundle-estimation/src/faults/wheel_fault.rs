@@ -3,8 +3,8 @@
 use crate::odometry_noise::UnobservedMotion;
 use trundle_core::Twist2;
 
-/// Compares commanded motion with encoder counts. It separates wheels that do not respond (stuck encoders, blocked wheels, motors
-/// without power) from a robot at rest.
+/// Compares commanded motion with encoder counts. It distinguishes unresponsive wheels (stuck encoders, blocked wheels, motors without
+/// power) from a robot at rest.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WheelFault {
     command: Twist2,
@@ -27,7 +27,7 @@ struct Unanswered {
     turn: f64,
 }
 
-/// Speed of a wheel above which a command must make it roll, m/s: static friction may hold slower wheels. Source: ours.
+/// Commanded speed of a wheel above which it must roll, m/s: static friction may hold slower wheels. Source: ours.
 const MIN_ROLLING_SPEED_M_S: f64 = 0.04;
 /// Time for a commanded wheel to roll, s. Longer without a count means that the wheels do not respond. Source: ours.
 const MAX_RESPONSE_TIME_S: f64 = 0.5;
@@ -66,8 +66,7 @@ impl WheelFault {
         self.command.v.abs() + self.command.omega.abs() * half_base > MIN_ROLLING_SPEED_M_S
     }
 
-    /// Adds `dt` s in which the encoders counted something (`rolled`) or nothing. Returns the motion that the base may have made
-    /// without being counted.
+    /// Adds `dt` s in which the encoders counted (`rolled`) or did not. Returns the motion that the base may have made without counts.
     pub(crate) fn step(&mut self, half_base: f64, rolled: bool, dt: f64) -> UnobservedMotion {
         self.max_v = self.command.v.abs().max(self.max_v - MIN_DECELERATION_M_S2 * dt).max(0.0);
         self.max_omega =

@@ -18,7 +18,7 @@ pub(crate) struct Measurement {
     pub(crate) noise: Matrix3<f64>,
     /// Added to the prior's covariance before the update.
     pub(crate) prior_inflation: Matrix3<f64>,
-    /// Variances of the measurement's frame. No number of measurements in one frame makes the belief surer than its frame.
+    /// Variances of the measurement's frame. Measurements in one frame never make the belief more certain than that frame.
     pub(crate) variance_floor: Vector3<f64>,
 }
 

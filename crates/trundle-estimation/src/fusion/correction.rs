@@ -1,4 +1,4 @@
-//! Measurements of the localizer, and the use that was made of each.
+//! Measurements of the localizer, and their use.
 
 use nalgebra::Matrix6;
 use trundle_core::{Pose3, Stamp};
@@ -10,13 +10,13 @@ pub struct VisualPose {
     pub stamp: Stamp,
     /// The camera's pose in the visual frame.
     pub visual_from_camera: Pose3,
-    /// Its covariance as a right perturbation (m, m, m, rad, rad, rad); zeros leave the configured noise alone.
+    /// Covariance as a right perturbation (m, m, m, rad, rad, rad); with zeros, only the configured noise applies.
     pub covariance: Matrix6<f64>,
     /// Quality of the pose.
     pub quality: VisualQuality,
     /// Number of the visual map of the pose: each visual map has its own frame.
     pub map: u32,
-    /// Whether a place was recognised in this image (a loop closure, a relocalisation, a merge of two maps). Such a pose is
+    /// Whether the tracker recognised a place in this image (a loop closure, a relocalisation, a merge of two maps). Such a pose is
     /// accepted at any distance from the prediction.
     pub recognised: bool,
 }
@@ -54,8 +54,8 @@ pub enum Correction {
         /// Mahalanobis distance from the prediction.
         distance: f64,
     },
-    /// Consecutive visual poses outside the gate, which began with a jump that the wheels did not measure: the visual frame
-    /// moved (a loop closure, a new map). `map_from_visual` was anchored again; the estimate stays.
+    /// Consecutive visual poses are outside the gate, after a jump that the wheels did not measure: the visual frame moved (a loop closure,
+    /// a new map). The localizer anchors `map_from_visual` again and does not change the estimate.
     Reanchored,
     /// A recognised place far from the prediction, or consecutive visual poses outside the gate without a jump: the wheels
     /// slipped, or the robot was transported. The estimate moved to the visual pose.
@@ -65,12 +65,12 @@ pub enum Correction {
     },
     /// Older than the buffer: rejected.
     TooOld {
-        /// By how much, s.
+        /// Delay, s.
         by: f64,
     },
-    /// Too far ahead of the newest odometry: rejected.
+    /// The measurement is too far ahead of the newest odometry: rejected.
     TooNew {
-        /// By how much, s.
+        /// Time ahead of the odometry, s.
         by: f64,
     },
     /// No odometry has arrived: rejected.
@@ -85,7 +85,7 @@ impl Correction {
         matches!(self, Self::Applied { .. } | Self::Recovered { .. })
     }
 
-    /// Whether the measurement was used: it changed the estimate, or where the visual map stands.
+    /// Whether the measurement was used: it changed the estimate or the anchor of the visual map.
     pub fn is_used(&self) -> bool {
         self.is_applied() || matches!(self, Self::Anchored | Self::Reanchored)
     }

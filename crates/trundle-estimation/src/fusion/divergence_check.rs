@@ -23,7 +23,7 @@ pub(crate) enum DivergenceAction {
     AcceptVisual,
 }
 
-/// Longest gap between two visual poses that still shows a jump, s. A longer gap counts as a possible jump. Source: ours.
+/// Longest gap between two visual poses across which a jump can be detected, s. A longer gap counts as a possible jump. Source: ours.
 const MAX_VISUAL_GAP_S: f64 = 1.0;
 
 impl DivergenceCheck {

@@ -15,11 +15,11 @@ use trundle_core::{Invalid, Odometry, Pose2, Pose3, PoseEstimate, Stamp, Twist2}
 
 /// The pose estimate: odometry, corrected by visual poses and scan matches.
 ///
-/// Problem: the base's pose in the map frame, at the rate of the wheels, from a smooth source that drifts and slower absolute
-/// sources that arrive late. Method: an extended Kalman filter on SE(2) with right perturbations. The error lives in the base
-/// frame, a measurement is a whole pose (H = I), and odometry moves the covariance by the adjoint. Each measurement is applied
-/// at its stamp and transported forward through the later odometry. Visual errors are correlated in time, so corrections never
-/// bring a variance below a floor. Cost: one step per reading; a late correction costs one step per later entry.
+/// Problem: the base's pose in the map frame, at the rate of the wheels. One source is smooth but drifts; the absolute sources are slower
+/// and late. Method: an extended Kalman filter on SE(2) with right perturbations. The error is in the base frame, a measurement is a whole
+/// pose (H = I), and odometry moves the covariance by the adjoint. Each measurement is applied at its stamp and transported forward through
+/// the later odometry. Visual errors are correlated in time, therefore corrections never reduce a variance below a floor. Cost: one step
+/// per reading; a late correction costs one step per later entry.
 ///
 /// | symbol | here | unit |
 /// |---|---|---|
@@ -38,8 +38,8 @@ pub struct Localizer {
     divergence: DivergenceCheck,
 }
 
-/// Variances of an unknown pose, m^2, m^2, rad^2: 100 m cover a building. Smaller ones would reject a relocalisation by the
-/// gate. Source: ours.
+/// Variances of an unknown pose, m^2, m^2, rad^2: 100 m cover a building. With smaller variances the gate would reject a relocalisation.
+/// Source: ours.
 const UNKNOWN_POSE_VARIANCES: Vector3<f64> = Vector3::new(1e4, 1e4, 10.0);
 
 impl Localizer {
@@ -57,8 +57,7 @@ impl Localizer {
         Ok(Self { config, start, buffer: None, visual, divergence: DivergenceCheck::default() })
     }
 
-    /// The localizer of a resumed run in a known map: the poses of the visual maps (by number) are known, the robot's pose is
-    /// not.
+    /// The localizer of a resumed run in a known map: the poses of the visual maps (by number) are known, the robot's pose is unknown.
     #[must_use]
     pub fn resumed(mut self, visual_maps: BTreeMap<u32, VisualAnchor>) -> Self {
         self.visual.set_anchors(visual_maps);
@@ -187,7 +186,7 @@ impl Localizer {
         self.visual.base(visual)
     }
 
-    /// Anchors the frame of a visual map anew, so that this pose of it agrees with the estimate.
+    /// Anchors the frame of a visual map again, at the pose that agrees with the estimate.
     pub fn anchor_again(&mut self, visual: &VisualPose) -> Correction {
         if !visual.is_finite() {
             return Correction::NotFinite;
@@ -218,7 +217,8 @@ impl Localizer {
         self.divergence = DivergenceCheck::default();
     }
 
-    /// Discards the poses of the visual maps in the map, as after the map was replaced. Each is anchored anew by its next pose.
+    /// Discards the poses of the visual maps in the map, for example after the map was replaced. Its next pose anchors each visual map
+    /// again.
     pub fn forget_visual_maps(&mut self) {
         self.visual.set_anchors(BTreeMap::new());
     }

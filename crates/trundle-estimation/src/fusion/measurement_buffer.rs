@@ -12,8 +12,8 @@ use trundle_core::{Odometry, Pose2, Stamp};
 
 /// The last seconds of odometry and measurements, ordered by stamp, with the belief after each entry.
 ///
-/// A late measurement is inserted at its stamp, and the beliefs of all later entries are computed again. The newest belief is
-/// therefore that of all measurements in the order of their stamps, for any order of arrival.
+/// A late measurement is inserted at its stamp, and all later beliefs are computed again. The newest belief therefore uses all measurements
+/// in the order of their stamps, for any order of arrival.
 #[derive(Debug, Clone)]
 pub(crate) struct MeasurementBuffer {
     nodes: VecDeque<Node>,
@@ -73,7 +73,7 @@ impl MeasurementBuffer {
         }
     }
 
-    /// Looks a stamp up: interpolated between two readings, extrapolated at most `max_ahead` s after the last.
+    /// Looks up a stamp: interpolated between two readings, extrapolated at most `max_ahead` s after the last one.
     pub(crate) fn find(&self, stamp: Stamp, max_ahead: f64) -> Result<Moment, Correction> {
         let oldest = self.nodes[0].stamp;
         if stamp < oldest {

@@ -13,13 +13,13 @@ use trundle_core::{Pose2, Pose3};
 
 /// The estimated `map_from_visual` of each visual map.
 ///
-/// The first pose of a visual map anchors its frame, with the uncertainty of the base's pose at that stamp. Later visual poses
-/// refine the anchor where the base's pose has a smaller uncertainty by other sources. The anchor of the first visual map is certain: it
-/// defines the map's frame.
+/// The first pose of a visual map anchors its frame, with the uncertainty of the base's pose at that stamp. Later visual poses refine the
+/// anchor if other sources give the base's pose a smaller uncertainty. The anchor of the first visual map is certain: it defines the map's
+/// frame.
 #[derive(Debug, Clone)]
 pub(crate) struct VisualFrame {
     base_from_camera: Pose3,
-    /// Anchor of each visual map. A map that starts while another is lost has its own frame.
+    /// Anchor of each visual map. A map that starts while another is lost has a separate frame.
     anchors: BTreeMap<u32, Anchor>,
     /// The visual map of the last pose.
     current: u32,
@@ -53,8 +53,7 @@ struct Anchor {
     covariance: Matrix3<f64>,
 }
 
-/// Ratio of the variances of base and anchor below which a visual pose refines the anchor. Above it both share their error.
-/// Source: ours.
+/// Ratio of the variances of base and anchor below which a visual pose refines the anchor. Above it both have a common error. Source: ours.
 const MAX_VARIANCE_RATIO: f64 = 0.25;
 
 impl VisualFrame {
@@ -90,8 +89,7 @@ impl VisualFrame {
         Some((map_from_visual * visual.visual_from_camera * self.base_from_camera.inverse()).to_pose2())
     }
 
-    /// Anchors the visual frame so that a visual pose agrees with the belief of the base's pose: gravity is along the base's z
-    /// axis.
+    /// Anchors the visual frame at the pose in which a visual pose agrees with the belief: gravity is along the base's z axis.
     pub(crate) fn anchor(&mut self, belief: &Belief, visual: &VisualPose) {
         let map_from_camera = Pose3::from_pose2(belief.pose) * self.base_from_camera;
         let map_from_visual = (map_from_camera * visual.visual_from_camera.inverse()).renormalized();
@@ -103,9 +101,8 @@ impl VisualFrame {
 
     /// The measurement of the base's pose by a visual pose; `None` before its frame is anchored.
     ///
-    /// Its noise is the sum of four covariances: the pose's own and the configured one (both larger for weak poses), that of the
-    /// anchor, and the distance of the pose from the floor's plane. A visual map with a vertical error has a horizontal error of
-    /// the same size.
+    /// Noise is the sum of four covariances: that of the pose, the configured one (both larger for weak poses), that of the anchor, and the
+    /// distance of the pose from the floor's plane. A visual map with a vertical error has a horizontal error of the same size.
     pub(crate) fn measurement(
         &mut self,
         visual: &VisualPose,
@@ -128,9 +125,9 @@ impl VisualFrame {
         Some(Measurement { pose, noise: symmetric(noise), prior_inflation, variance_floor })
     }
 
-    /// Refines the anchor by a measurement that was just accepted, where the base's pose has a smaller uncertainty by other sources: a
-    /// Kalman update of `e` by the part of the innovation that the anchor's uncertainty explains. Elsewhere base and
-    /// anchor share their error, and the anchor stays.
+    /// Refines the anchor by a measurement just accepted, if other sources give the base's pose a smaller uncertainty. The update of `e` is
+    /// a Kalman update by the part of the innovation due to the anchor's uncertainty. Otherwise base and anchor have a common error, and
+    /// the anchor does not change.
     pub(crate) fn refine(&mut self, before: &Belief, measurement: &Measurement) {
         let Some(anchor) = self.anchors.get_mut(&self.current) else { return };
         let anchor_variance = measurement.variance_floor.xy().max();

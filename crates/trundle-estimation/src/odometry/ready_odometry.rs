@@ -1,8 +1,8 @@
 //! Odometry that the body computes itself, as increments of our own.
 //!
 //! Problem: a body restarts its odometry at any pose, and its stamps may jump. Idea: only the motion between two readings counts. It is
-//! evaluated as a reading of wheels is: from the past, after a gap, or too fast, it does not move the pose. The covariance grows as the body
-//! says; where its covariance does not grow, by the noise of wheels without a gyro. Cost: O(1).
+//! checked like a reading of wheels: a reading from the past, after a gap, or with too high a speed does not move the pose. The covariance
+//! grows by the growth of the body's covariance; without growth, by the noise of wheels without a gyro. Cost: O(1).
 
 use super::wheel_odometry::WheelOdometry;
 use crate::odometry::report::WheelReport;
@@ -32,7 +32,7 @@ impl Increment {
 }
 
 impl WheelOdometry {
-    /// Adds odometry that the body computed and returns the odometry after it, in a frame that never jumps. The body's pose, twist and
+    /// Adds odometry computed by the body; returns the odometry after it, in a frame that never jumps. The body's pose, twist and
     /// covariance must be finite.
     pub fn step_odometry(&mut self, given: &Odometry) -> Odometry {
         let report = match self.last.given.replace(*given) {

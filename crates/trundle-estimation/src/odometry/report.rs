@@ -17,12 +17,12 @@ pub enum WheelReport {
     },
     /// Not newer than the last reading: rejected.
     TimeWentBack {
-        /// By how much, s, 0 or more.
+        /// Difference of the stamps, s, 0 or more.
         by: f64,
     },
-    /// Too long after the last reading: the motion between is unknown. It enters the covariance, not the pose.
+    /// Too long after the last reading: the motion in the gap is unknown, and enters the covariance instead of the pose.
     Gap {
-        /// How long, s.
+        /// Length of the gap, s.
         length: f64,
     },
     /// Speed of a wheel above the limit: rejected.
@@ -30,8 +30,8 @@ pub enum WheelReport {
         /// Speed of the faster wheel, m/s.
         speed: f64,
     },
-    /// Second consecutive reading at impossible counts: the encoders were reset. The motion between is unknown. It enters the
-    /// covariance, not the pose.
+    /// Second consecutive reading at impossible counts: the encoders were reset. The motion between is unknown. The motion enters the
+    /// covariance instead of the pose.
     Restarted,
 }
 
@@ -42,9 +42,9 @@ pub struct WheelCounts {
     pub used: usize,
     /// Applied with slip.
     pub slipping: usize,
-    /// Not newer than the last reading.
+    /// Number of readings not newer than the last one.
     pub time_went_back: usize,
-    /// After a gap.
+    /// Number of readings after a gap.
     pub gaps: usize,
     /// Above the speed limit.
     pub too_fast: usize,

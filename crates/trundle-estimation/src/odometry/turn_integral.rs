@@ -4,9 +4,9 @@ use trundle_core::{GyroRate, Stamp};
 
 /// The integral of the gyro's rate, read at the stamps of the wheels.
 ///
-/// A reading is the mean rate since the one before it: a gyro's output filter passes half its own rate of readings. Trapezoids
-/// over such means would lag by half a period (a degree at the start of a turn of 100 deg/s). After the newest reading its rate
-/// is held; the next reading corrects the held part.
+/// A reading is the mean rate since the previous one: a gyro's output filter passes half its own rate of readings. Trapezoids over such
+/// means would lag by half a period (one degree at the start of a turn of 100 deg/s). After the newest reading its rate is extrapolated;
+/// the next reading corrects this part.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TurnIntegral {
     newest: Option<GyroRate>,

@@ -21,12 +21,12 @@ use trundle_core::{
 
 /// Pose of the base by wheels and gyro.
 ///
-/// Problem: integrate encoder ticks to a pose. Between two readings the base drives an arc. Its length is the mean of the two
-/// wheels' distances. Its angle is the gyro's, less its bias; without a gyro it is the difference of the distances over the
-/// wheelbase. The exponential map of SE(2) integrates the arc exactly. Counters wrap at 2^16; a difference is read as the
-/// shorter way round. Wheels at rest for [`OdometryConfig::still_time`] are a robot at rest, which calibrates the gyro's bias.
-/// Gyro and camera calibrate the wheels' radii while driving ([`WheelOdometry::add_visual_pose`]). Wheels that are commanded to
-/// roll ([`WheelOdometry::set_command`]) and count nothing are a fault: the covariance grows by the commanded motion. Cost: O(1).
+/// Problem: integrate encoder ticks to a pose. Between two readings the base drives an arc. The length of the arc is the mean of the two
+/// wheels' distances. The angle of the arc comes from the gyro without its bias; without a gyro, from the difference of the distances over
+/// the wheelbase. The exponential map of SE(2) integrates the arc exactly. Counters wrap at 2^16; a difference is read as the shorter way
+/// round. Wheels at rest for [`OdometryConfig::still_time`] are a robot at rest, which calibrates the gyro's bias. Gyro and camera
+/// calibrate the wheels' radii while driving ([`WheelOdometry::add_visual_pose`]). Wheels with a command to roll
+/// ([`WheelOdometry::set_command`]) and no counts are a fault: the covariance grows by the commanded motion. Cost: O(1).
 ///
 /// A reading from the past, after a gap, or of an impossible speed never makes the pose jump: see [`WheelReport`].
 #[derive(Debug, Clone)]
@@ -45,7 +45,7 @@ pub struct WheelOdometry {
     pub(super) path_length: f64,
     pub(super) odometry: Odometry,
     pub(super) reports: ReportLog,
-    /// Motion of the newest reading, where it counted.
+    /// Motion of the newest reading; `None` if the reading was rejected.
     pub(super) increment: Option<MotionIncrement>,
 }
 
@@ -98,7 +98,7 @@ impl WheelOdometry {
         })
     }
 
-    /// Adds a reading of the gyro; any number of them may come between two readings of the wheels.
+    /// Adds a reading of the gyro; any number of gyro readings may precede a reading of the wheels.
     pub fn step_gyro(&mut self, rate: &GyroRate) {
         if !self.integral.push(*rate, self.config.gyro_timeout) {
             self.reports.counts.gyro_refused += 1;
@@ -118,13 +118,13 @@ impl WheelOdometry {
         self.wheel_fault.set_command(twist);
     }
 
-    /// Whether the wheels are commanded to roll and count nothing: encoders are stuck, or wheels are blocked.
+    /// Whether the wheels are commanded to roll without counts: encoders are stuck, or wheels are blocked.
     pub fn wheels_are_unresponsive(&self) -> bool {
         self.wheel_fault.is_unresponsive()
     }
 
-    /// Adds a reading of the wheels and returns the odometry after it; [`WheelOdometry::report`] holds how the reading was used. A
-    /// rejected reading leaves the pose unchanged.
+    /// Adds a reading of the wheels and returns the odometry after it; [`WheelOdometry::report`] gives the use of the reading. A rejected
+    /// reading leaves the pose unchanged.
     pub fn step_wheels(&mut self, ticks: &WheelTicks) -> Odometry {
         self.increment = None;
         let report = match self.last.ticks {
@@ -143,7 +143,7 @@ impl WheelOdometry {
         &self.odometry
     }
 
-    /// Motion between the newest reading of the wheels and the one before, without calibration; `None` if the newest reading was not used.
+    /// Motion between the last two readings of the wheels, without calibration; `None` if the newest reading was not used.
     pub fn increment(&self) -> Option<&MotionIncrement> {
         self.increment.as_ref()
     }
@@ -248,12 +248,13 @@ impl WheelOdometry {
         self.resting_since = if rests { self.resting_since.or(Some(stamp)) } else { None };
         let turn_by_wheels = (wheels.right - wheels.left) / self.drive.wheelbase;
         let is_unresponsive = self.wheel_fault.is_unresponsive();
-        // Wheels that count nothing and a gyro that does not change may both be at fault: neither proves the other right.
+        // Wheels without counts and a gyro without changes may both be at fault: neither can verify the other.
         let is_frozen = self.gyro_fault.contradicts(turn_by_wheels / wheels.dt, self.gyro_calibration.bias())
             || is_unresponsive && self.gyro_fault.is_suspect();
         let measured_turn = self.measured_turn(stamp, wheels.dt).filter(|_| !is_frozen);
         let turn_by_gyro = measured_turn.map(|turn| self.gyro_calibration.corrected_turn(turn, wheels.dt));
-        // The gyro's noise does not turn a robot at rest. One reading without a tick does not show rest: slow wheels have it too.
+        // The gyro's noise does not turn a robot at rest. One reading without a tick does not prove rest: slow wheels give such readings
+        // too.
         let may_rest = rests && (self.is_at_rest(stamp) || !self.gyro_calibration.is_measured());
         let is_noise = may_rest && turn_by_gyro.is_some_and(|turn| self.is_noise(turn / wheels.dt));
         let turn = if is_noise { 0.0 } else { turn_by_gyro.unwrap_or(turn_by_wheels) };
@@ -315,7 +316,7 @@ impl WheelOdometry {
         self.resting_since.is_some_and(|since| now - since >= self.config.still_time)
     }
 
-    /// Rejects a first reading at impossible counts as broken. A second one near it means that the counters were reset.
+    /// Rejects a first reading at impossible counts as broken. A second one near it indicates a reset of the counters.
     fn reject(&mut self, ticks: &WheelTicks, dt: f64, speed: f64) -> WheelReport {
         let is_confirmed = self.last.suspect_ticks.is_some_and(|suspect| {
             let wheels = self.wheel_motion(&suspect, ticks);

@@ -1,11 +1,11 @@
 //! The calibration that the smoother estimates.
 
-/// A number with its standard deviation.
+/// A value with its standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WithSigma {
     /// The estimate.
     pub value: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the value.
     pub sigma: f64,
 }
 

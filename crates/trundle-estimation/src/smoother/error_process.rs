@@ -1,9 +1,9 @@
 //! The error of visual poses along the path, and the switch of a recognised place.
 //!
-//! Problem: errors of neighbouring visual poses are nearly the same: they come from the part of the visual map in view. Averaging them
-//! gains little, but their differences measure the motion well. Idea: the error is a state of each keyframe, a Gauss-Markov process of the
-//! path: with distance and turn it decays to zero with the covariance of the map part. A recognised place starts the process again, and a
-//! switch says whether the place is right: its weight is the posterior probability against an error of any size.
+//! Problem: errors of neighbouring visual poses are nearly equal, because they come from the part of the visual map in view. Averages of
+//! such poses gain little, but their differences measure the motion well. Idea: the error is a state of each keyframe, a Gauss-Markov
+//! process along the path. With distance and turn it decays to zero with the covariance of the map part. A recognised place restarts the
+//! process. A switch tells whether the place is right: its weight is the posterior probability against an error of any size.
 
 use super::preintegration::Preintegrated;
 use nalgebra::{Matrix3, Vector2, Vector3};
@@ -35,7 +35,7 @@ pub(crate) enum ErrorStart {
 pub(crate) struct PlaceSwitch {
     /// Probability that the place is right, 0 to 1.
     pub(crate) weight: f64,
-    /// Logarithm of the odds that it is right before any comparison.
+    /// Prior log-odds that the place is right, before any comparison.
     pub(crate) prior_log_odds: f64,
 }
 
@@ -47,9 +47,9 @@ const NEW_MAP_VARIANCE: f64 = 1e-8;
 const MIN_STEP_RATIO: f64 = 1e-4;
 
 impl ErrorStep {
-    /// The error that follows from the one before, and its derivative by it; `trust` is that in the place recognised last.
+    /// The error after a motion, and its derivative by the previous error; `trust` is that in the last recognised place.
     ///
-    /// A part of the map that is turned by an angle moves the visual pose off by the displacement turned by this angle less the displacement.
+    /// A map part rotated by an angle shifts the visual pose: by the rotated displacement minus the displacement.
     pub(crate) fn moved(
         &self,
         before: &Vector3<f64>,
@@ -67,7 +67,7 @@ impl ErrorStep {
         (moved * keep, by * keep)
     }
 
-    /// The factor of the error before; `trust` is that in the place recognised last.
+    /// The factor of the previous error; `trust` is that in the last recognised place.
     fn keep(&self, motion: &Preintegrated, trust: f64) -> f64 {
         match self.start {
             Some(_) => 0.0,
@@ -134,7 +134,7 @@ impl PlaceSwitch {
     }
 }
 
-/// Logarithm of the density of a normal distribution with mean zero; minus infinity where the covariance is not positive.
+/// Logarithm of the density of a normal distribution with mean zero; minus infinity if the covariance is not positive.
 pub(crate) fn log_density(value: &Vector3<f64>, covariance: &Matrix3<f64>) -> f64 {
     let Some(lower) = covariance.cholesky() else { return f64::NEG_INFINITY };
     let squared = value.dot(&lower.solve(value));

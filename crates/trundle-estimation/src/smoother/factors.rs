@@ -37,7 +37,7 @@ pub(crate) struct VisualFactor {
 }
 
 impl VisualFactor {
-    /// Position and heading of the measured pose less those of the predicted one, in the axes of the visual map, less the error of the
+    /// Position and heading of the measured pose minus those of the predicted one, in the axes of the visual map, minus the error of the
     /// visual pose. Exact for errors of any size.
     pub(crate) fn linearise(&self, state: &ChainState, border: &BorderState) -> Unary {
         let back = Pose2::exp(self.velocity * border.delay);
@@ -101,7 +101,7 @@ impl Unary {
 pub(crate) struct Link<'a> {
     pub(crate) motion: &'a Preintegrated,
     pub(crate) error: &'a ErrorStep,
-    /// How far the error of the visual poses is trusted to return to its mean, 0 to 1.
+    /// Trust that the error of the visual poses returns to its mean, 0 to 1.
     pub(crate) trust: f64,
     pub(crate) config: &'a OdometryConfig,
 }
@@ -159,7 +159,7 @@ impl Link<'_> {
         add_pair(system, i, (&by_from, &by_to, &by_border), &information, &residual)
     }
 
-    /// The error of the visual poses decays to its mean, with new noise.
+    /// Adds the decay of the visual poses' error to its mean, with new noise.
     fn add_errors(&self, system: &mut WindowSystem, i: usize, (from, to): (&ChainState, &ChainState)) -> f64 {
         let Some(information) = self.error.information(self.motion) else { return 0.0 };
         let (expected, by_from) = self.error.moved(&from.error, self.motion, self.trust);

@@ -30,7 +30,7 @@ pub struct Smoother {
     pub(super) start: Matrix3<f64>,
     /// Motion since the newest keyframe.
     pub(super) head: Preintegrated,
-    /// The newest keyframe as it is estimated.
+    /// Estimate of the newest keyframe.
     pub(super) newest: Option<Predicted>,
     pub(super) twist: Twist2,
     /// Number of measurements after which the window had no solution.
@@ -39,7 +39,7 @@ pub struct Smoother {
 
 /// Variances of an unknown pose, m^2, m^2, rad^2. Source: as in [`crate::Localizer`].
 const UNKNOWN_POSE_VARIANCES: Vector3<f64> = Vector3::new(1e4, 1e4, 10.0);
-/// Distance (m) below which a robot is at rest between two keyframes. Source: ours: ten ticks of a Kobuki.
+/// Distance (m) between two keyframes below which the robot is at rest. Source: ours: ten ticks of a Kobuki.
 const REST_DISTANCE_M: f64 = 1e-3;
 /// Turn (rad) below which a robot is at rest between two keyframes. Source: ours.
 const REST_TURN_RAD: f64 = 4e-3;
@@ -75,7 +75,7 @@ impl Smoother {
         })
     }
 
-    /// The smoother of a resumed run in a known map: the poses of the visual maps (by number) are known, the robot's pose is not.
+    /// The smoother of a resumed run in a known map: the poses of the visual maps (by number) are known, the robot's pose is unknown.
     #[must_use]
     pub fn resumed(mut self, visual_maps: &BTreeMap<u32, VisualAnchor>) -> Self {
         self.start = Matrix3::from_diagonal(&UNKNOWN_POSE_VARIANCES);
@@ -168,7 +168,7 @@ impl Smoother {
         self.failures
     }
 
-    /// Declares the pose unknown, as after a kidnapping. Calibration is kept, measurements are discarded.
+    /// Declares the pose unknown, as after a kidnapping. The calibration is preserved, measurements are discarded.
     pub fn set_pose_unknown(&mut self) {
         let (Some(window), Some(newest)) = (&self.window, &self.newest) else { return };
         let estimate = self.estimate();
@@ -218,7 +218,7 @@ impl Smoother {
         self.refresh();
     }
 
-    /// The step of the visual error to a keyframe, with the covariance of the map part there.
+    /// The step of the visual error to a keyframe, with the covariance of the map part at that keyframe.
     pub(super) fn error_step(
         &self,
         map_part: Matrix3<f64>,
@@ -265,8 +265,8 @@ impl Smoother {
         Pose2::new(0.0, 0.0, turn).rotate(moved)
     }
 
-    /// Inserts a keyframe with an image after keyframe `k` and solves the window. It replaces the newest keyframe where that one is
-    /// still near the one before: the newest image counts, and images with the same error count once.
+    /// Inserts a keyframe with an image after keyframe `k` and solves the window. It replaces the newest keyframe if that one is near its
+    /// predecessor: the newest image is used, and images with a common error count once.
     pub(super) fn insert_image(&mut self, k: usize, keyframe: Keyframe) {
         let Some(window) = &mut self.window else { return };
         let is_newest = k + 1 == window.keyframes.len();
@@ -288,7 +288,7 @@ impl Smoother {
         self.solve();
     }
 
-    /// Solves the window, evaluates its recognised places and removes what is too old.
+    /// Solves the window, evaluates its recognised places and removes keyframes that are too old.
     pub(super) fn solve(&mut self) {
         let Some(window) = &mut self.window else { return };
         let mut is_solved = window.optimise(&self.motions);
@@ -323,7 +323,7 @@ impl Smoother {
     }
 }
 
-/// Whether the newest keyframe has nothing but an image near that of the keyframe before.
+/// Whether the newest keyframe has only an image near that of the previous keyframe.
 fn is_provisional(config: &WindowConfig, keyframes: &[Keyframe]) -> bool {
     let [.., before, newest] = keyframes else { return false };
     let has_only_image = newest.visual.is_some() && newest.scan.is_none() && newest.error.start.is_none();

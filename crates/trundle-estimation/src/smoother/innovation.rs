@@ -1,14 +1,14 @@
-//! Innovations: how well a measurement fits the prediction.
+//! Innovations: agreement of a measurement with the prediction.
 
 use super::error_process::{log_density, wrong_place};
 use nalgebra::{Matrix3, Vector3};
 
-/// How well a measurement fits the prediction.
+/// Agreement of a measurement with the prediction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Innovation {
     /// Normalised squared innovation; expected value: [`Innovation::DEGREES_OF_FREEDOM`].
     pub squared: f64,
-    /// Logarithm of the likelihood of the measurement over that of one at any place in a room. Negative: it speaks against the estimate.
+    /// Log-likelihood of the measurement, minus that of a measurement at a random place. A negative value contradicts the estimate.
     pub log_likelihood_ratio: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Where a measurement enters the window.
+//! Place of a measurement in the window.
 
 use super::fixed_lag::Smoother;
 use super::keyframe::Keyframe;
@@ -16,7 +16,7 @@ pub(super) struct Located {
     pub(super) before: usize,
     /// The stamp, at most that of the newest motion.
     pub(super) stamp: Stamp,
-    /// How far the measurement is ahead of the newest motion, s.
+    /// Time by which the measurement is ahead of the newest motion, s.
     pub(super) lead: f64,
 }
 
@@ -37,7 +37,7 @@ pub(super) enum Target {
     },
 }
 
-/// Largest time between a measurement and a keyframe that takes it, s; the motion between them counts as exact. Source: ours: 2 mm.
+/// Largest time between a measurement and its keyframe, s; the motion in between counts as exact. Source: ours: 2 mm.
 const MAX_SHIFT_S: f64 = 0.06;
 
 /// Looks a stamp up.
@@ -100,7 +100,7 @@ pub(super) fn path_since(
     Some(path)
 }
 
-/// The estimate at a target, before its measurement; with the new keyframe where it is new.
+/// The estimate at a target, before its measurement; a new target includes its new keyframe.
 pub(super) fn predicted(
     smoother: &Smoother,
     window: &Window,

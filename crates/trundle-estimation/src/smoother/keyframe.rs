@@ -22,7 +22,7 @@ pub(crate) struct Keyframe {
 }
 
 impl Keyframe {
-    /// The trust after this keyframe, for the trust before it.
+    /// Trust after this keyframe, given the trust before.
     pub(crate) fn trust_after(&self, before: f64) -> f64 {
         match self.error.start {
             Some(ErrorStart::Place(switch)) => switch.weight,

@@ -11,7 +11,7 @@ pub struct PlanarMeasurement {
     pub stamp: Stamp,
     /// `map_from_base`.
     pub pose: Pose2,
-    /// Its covariance as a right perturbation (x m, y m, theta rad).
+    /// Covariance as a right perturbation (x m, y m, theta rad).
     pub covariance: Matrix3<f64>,
 }
 
@@ -24,23 +24,23 @@ pub enum MeasurementUse {
     Applied(Innovation),
     /// The visual pose is a recognised place, or far from the prediction: a factor with a switch.
     Switched {
-        /// How it fits the prediction.
+        /// Agreement with the prediction.
         innovation: Innovation,
         /// Probability that the place is right, 0 to 1.
         weight: f64,
     },
     /// Outside the gate: unused.
     Gated(Innovation),
-    /// Too near another measurement of its kind, whose error it shares: unused.
+    /// Too near another measurement of its kind with the same error: unused.
     Redundant,
     /// Older than the window: unused.
     TooOld {
-        /// By how much, s.
+        /// Time beyond the limit, s.
         by: f64,
     },
     /// Too far ahead of the newest motion: unused.
     TooNew {
-        /// By how much, s.
+        /// Time beyond the limit, s.
         by: f64,
     },
     /// No motion has arrived: unused.
@@ -52,7 +52,7 @@ pub enum MeasurementUse {
 }
 
 impl MeasurementUse {
-    /// The innovation, where the measurement was compared with the estimate.
+    /// The innovation; `None` if the measurement was not compared with the estimate.
     pub fn innovation(&self) -> Option<&Innovation> {
         match self {
             Self::Applied(innovation) | Self::Gated(innovation) | Self::Switched { innovation, .. } => {

@@ -1,13 +1,13 @@
-//! The fixed-lag smoother: the poses of the last seconds and the calibration, from all measurements at once.
+//! The fixed-lag smoother: the poses of the last seconds and the calibration, jointly estimated from all measurements.
 //!
-//! Problem: one pose at the rate of the wheels, with a covariance that holds, from odometry that drifts and measurements that are late,
-//! correlated and at times of a wrong place. Idea: the poses of a window, the error of the visual poses along it and the calibration are
-//! unknowns of one least-squares problem. Late measurements enter at their stamp, correlated errors are in the model, and a recognised
-//! place is evaluated again by all that follows. What leaves the window stays as a Gaussian.
+//! Problem: one pose at the rate of the wheels with a consistent covariance. Odometry drifts; measurements are late, correlated and
+//! sometimes of a wrong place. Idea: the poses of a window, the error of the visual poses along it and the calibration are unknowns of one
+//! least-squares problem. Late measurements enter at their stamp, correlated errors are in the model, and later data evaluate a recognised
+//! place again. Keyframes that leave the window remain as a Gaussian prior.
 //!
-//! The graph: a chain of keyframes, each with pose x, error e of the visual pose and bias b of the gyro. Between neighbours stand the motion
-//! by wheels and gyro, the decay of e and the walk of b. On a keyframe stand a visual pose (x, e, anchor of the visual map, delay of the
-//! camera) and a scan match (x). A border couples with all: scale of the gyro, radii, wheelbase, delay, anchors. A prior stands on the
+//! The graph: a chain of keyframes, each with pose x, error e of the visual pose and bias b of the gyro. Factors between neighbours: the
+//! motion by wheels and gyro, the decay of e and the walk of b. Factors on a keyframe: a visual pose (x, e, anchor of the visual map, delay
+//! of the camera) and a scan match (x). A border couples with all: scale of the gyro, radii, wheelbase, delay, anchors. A prior acts on the
 //! oldest keyframe and the border.
 //!
 //! | symbol | name here | unit |
@@ -19,7 +19,7 @@
 //! | prior of fixed linearisation \[Huang10\] | `Prior` | |
 //! | normal equations | `trundle_optim::ArrowSystem` | |
 //!
-//! Cost: O(K) for K keyframes and a measurement; 0.35 ms at 100 keyframes. Nothing is allocated once the window is full. The page
+//! Cost: O(K) for K keyframes and a measurement; 0.35 ms at 100 keyframes. No memory is allocated once the window is full. The page
 //! docs/algorithms/smoother.md has the equations.
 
 pub(crate) mod calibration;

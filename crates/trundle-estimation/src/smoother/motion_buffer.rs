@@ -14,7 +14,7 @@ pub(crate) struct MotionBuffer {
     increments: VecDeque<MotionIncrement>,
 }
 
-/// Increments for which there is room from the start: a window of 20 s at 100 Hz. Source: ours.
+/// Initial capacity in increments: a window of 20 s at 100 Hz. Source: ours.
 const INCREMENT_CAPACITY: usize = 2048;
 
 impl MotionBuffer {
@@ -31,7 +31,7 @@ impl MotionBuffer {
         self.increments.back()
     }
 
-    /// Appends an increment, and to `head` if there is one.
+    /// Appends an increment, and adds it to `head` if given.
     pub(crate) fn push(&mut self, increment: MotionIncrement) {
         self.increments.push_back(increment);
     }

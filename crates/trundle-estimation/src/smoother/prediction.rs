@@ -14,7 +14,7 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use trundle_core::Pose2;
 use trundle_optim::ArrowCovariance;
 
-/// A state with its covariance, and that of the border.
+/// A state with its covariance, and the covariance of the border.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Predicted {
     pub(crate) state: ChainState,
@@ -22,7 +22,7 @@ pub(crate) struct Predicted {
 }
 
 impl Predicted {
-    /// A keyframe as it is estimated.
+    /// The estimate of a keyframe.
     pub(crate) fn of(state: ChainState, covariance: &ArrowCovariance<CHAIN_SIZE, BORDER_SIZE>) -> Self {
         let mut joint = JointMatrix::zeros();
         joint.fixed_view_mut::<CHAIN_SIZE, CHAIN_SIZE>(0, 0).copy_from(&covariance.block);

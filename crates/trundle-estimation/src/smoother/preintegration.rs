@@ -42,17 +42,17 @@ pub(crate) fn spread<const R: usize>(
 /// Motion of several increments (Forster et al. 2017, for wheels and one gyro axis in the plane).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Preintegrated {
-    /// The parameters that it was integrated with.
+    /// Parameters of the integration.
     pub(crate) at: Parameters,
     /// Motion of the base.
     pub(crate) motion: Pose2,
-    /// Its derivative by the parameters, as a right perturbation.
+    /// Derivative by the parameters, as a right perturbation.
     pub(crate) by_parameters: SMatrix<f64, 3, PARAMETER_COUNT>,
-    /// Its covariance as a right perturbation.
+    /// Covariance as a right perturbation.
     pub(crate) covariance: Matrix3<f64>,
-    /// Turn by the wheels, beside that of the gyro.
+    /// Turn by the wheels, in addition to that of the gyro.
     pub(crate) wheels: WheelTurn,
-    /// Time at rest and the gyro's turn in it.
+    /// Time at rest and the gyro's turn during that time.
     pub(crate) rest: GyroAtRest,
     /// Duration, s.
     pub(crate) duration: f64,
@@ -67,13 +67,13 @@ pub(crate) struct Preintegrated {
 pub(crate) struct WheelTurn {
     /// \[rad\].
     pub(crate) turn: f64,
-    /// Its derivative by the parameters.
+    /// Derivative by the parameters.
     pub(crate) by_parameters: RowSVector<f64, PARAMETER_COUNT>,
     /// Variance without slip, rad^2.
     variance: f64,
     /// Turn by slip, rad, without sign.
     slip: f64,
-    /// Whether the gyro measured all turns beside the wheels, so that both can be compared.
+    /// Whether both gyro and wheels measured all turns and can be compared.
     is_second: bool,
 }
 
@@ -178,7 +178,7 @@ impl WheelTurn {
         self.is_second &= part.turn_by_gyro.is_some() && part.unobserved == Matrix3::zeros();
     }
 
-    /// The turn's variance where wheels and gyro can be compared, rad^2.
+    /// The turn's variance if wheels and gyro can be compared, rad^2.
     pub(crate) fn comparison_variance(&self) -> Option<f64> {
         self.is_second.then_some(self.variance + self.slip * self.slip + MIN_SIGMA * MIN_SIGMA)
     }

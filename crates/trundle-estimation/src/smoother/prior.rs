@@ -12,9 +12,9 @@ use trundle_optim::ArrowMarginal;
 
 /// The prior: information and right side at a fixed point.
 ///
-/// A keyframe that leaves the window is removed by a Schur complement at the point of that moment. The prior keeps this point: later steps
-/// move the residual and never the derivatives (a prior of fixed linearisation). The map frame is fixed by the first keyframe, so that no
-/// direction is unobservable for which mixed points would invent information (Huang et al. 2010).
+/// A keyframe that leaves the window is removed by a Schur complement at its last linearisation point. The prior keeps this point: later
+/// steps move the residual and never the derivatives (a prior of fixed linearisation). The first keyframe fixes the map frame. No direction
+/// is then unobservable, and mixed linearisation points add no false information (Huang et al. 2010).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Prior {
     information: JointMatrix,
@@ -40,14 +40,15 @@ pub(crate) struct PriorSigmas {
     pub(crate) delay: f64,
 }
 
-/// Smallest sigma of an unknown, in its unit. A calibration that is never estimated has it. Source: ours; it keeps the equations definite.
+/// Smallest sigma of an unknown, in its unit. A calibration that is never estimated has this value. Source: ours; it keeps the equations
+/// definite.
 const MIN_SIGMA: f64 = 1e-7;
 /// Sigma of the pose at power-on, m and rad: it defines the map frame. Source: ours; it keeps the equations definite.
 const START_SIGMA: f64 = 1e-5;
 /// Sigma of an anchor before any measurement, m and rad. Source: ours; no building is larger.
 const UNKNOWN_ANCHOR_SIGMA: f64 = 1e3;
-/// Random walks, ratio per sqrt(s): of the gyro's scale, of the wheels' radii and base; s per sqrt(s): of the delay; m and rad per sqrt(s):
-/// of the anchors. Source: ours; the unknowns stay open to change.
+/// Random walks, ratio per sqrt(s): gyro's scale, wheels' radii and base; s per sqrt(s): delay; m and rad per sqrt(s): anchors. Source:
+/// ours; they let the unknowns follow changes.
 const SCALE_WALK: f64 = 3e-5;
 const WHEEL_WALK: f64 = 1e-5;
 const DELAY_WALK: f64 = 1e-6;
@@ -134,7 +135,7 @@ impl Prior {
         step.dot(&moved) - 2.0 * step.dot(&self.gradient)
     }
 
-    /// Replaces what is known of the anchor in a slot: at `anchor` with this covariance, or unknown.
+    /// Replaces the estimate of the anchor in a slot: by `anchor` with this covariance, or by unknown.
     pub(crate) fn set_anchor(
         &mut self,
         slot: usize,

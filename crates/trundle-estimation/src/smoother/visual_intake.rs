@@ -18,11 +18,11 @@ use trundle_core::{Pose2, Pose3};
 
 /// Probability that a visual pose outside the gate is wrong: the visual frame jumped as likely as the base did. Source: ours.
 const JUMP_WRONG_PROBABILITY: f64 = 0.5;
-/// Weight of a place above which the estimate starts from it. Source: ours.
+/// Weight of a place above which the estimate starts from this place. Source: ours.
 const PROBABLY_RIGHT: f64 = 0.5;
 /// Variance of the first visual pose of a map, m^2 and rad^2. Source: ours; it keeps the equations definite.
 const FIRST_IMAGE_VARIANCE: f64 = 1e-9;
-/// Variance of the position above which a place sets the pose anew, m^2. Source: ours: a tenth of a room.
+/// Variance of the position above which a place resets the pose, m^2. Source: ours: a tenth of a room.
 const UNKNOWN_VARIANCE_M2: f64 = 1.0;
 
 /// A visual pose in the frame of its anchor.
@@ -83,7 +83,7 @@ fn add_visual_in(smoother: &mut Smoother, visual: &VisualPose, at: &Located, slo
     MeasurementUse::Applied(innovation)
 }
 
-/// A visual pose with its keyframe, and what is expected there.
+/// A visual pose with its keyframe, and its prediction.
 fn entry(smoother: &Smoother, window: &Window, at: &Located, (levelled, slot): (Levelled, usize)) -> Entry {
     let target = intake::target(smoother, window, at, |keyframe| keyframe.visual.is_none());
     let (predicted, keyframe) = intake::predicted(smoother, window, &target, at.stamp);
@@ -114,7 +114,7 @@ fn enter_place(smoother: &mut Smoother, mut entry: Entry, switch: PlaceSwitch) -
     MeasurementUse::Switched { innovation, weight: switch.weight }
 }
 
-/// Moves the whole window so that it agrees with a place: the derivatives at an unknown pose hold for no step of many metres.
+/// Moves the whole window to agree with a place: the derivatives at an unknown pose are not valid for steps of many metres.
 fn start_at(smoother: &mut Smoother, entry: &mut Entry) {
     let Some(window) = &mut smoother.window else { return };
     let found = window.border.anchors[entry.factor.slot] * entry.factor.pose;
@@ -125,7 +125,7 @@ fn start_at(smoother: &mut Smoother, entry: &mut Entry) {
     }
 }
 
-/// Puts a visual factor into the window and solves it.
+/// Adds a visual factor to the window and solves the window.
 fn enter(smoother: &mut Smoother, entry: Entry, start: Option<ErrorStart>, error: Option<Vector3<f64>>) {
     let moved = measured_displacement(smoother, &entry);
     let step = smoother.error_step(entry.map_part, start, Vector2::zeros());
@@ -148,7 +148,7 @@ fn enter(smoother: &mut Smoother, entry: Entry, start: Option<ErrorStart>, error
     }
 }
 
-/// Displacement from the visual pose of the keyframe before, where that one is of the same map.
+/// Displacement from the visual pose of the previous keyframe; `None` if that pose is of another map.
 fn measured_displacement(smoother: &Smoother, entry: &Entry) -> Option<Vector2<f64>> {
     let before = match entry.target {
         Target::New { k } => k,
@@ -158,7 +158,7 @@ fn measured_displacement(smoother: &Smoother, entry: &Entry) -> Option<Vector2<f
     (before.slot == entry.factor.slot).then(|| entry.factor.pose.position() - before.pose.position())
 }
 
-/// The first visual pose of a map: its anchor is where the base is.
+/// The first visual pose of a map: the anchor follows from the base's pose.
 fn anchor(smoother: &mut Smoother, visual: &VisualPose, at: &Located, slot: usize) -> MeasurementUse {
     let level_from_visual = (visual.visual_from_camera * smoother.base_from_camera.inverse()).inverse();
     let old = anchor_in(smoother, slot);
@@ -176,7 +176,7 @@ fn anchor(smoother: &mut Smoother, visual: &VisualPose, at: &Located, slot: usiz
     MeasurementUse::Anchored
 }
 
-/// Anchor and covariance in a slot, as they are estimated.
+/// Estimated anchor and covariance in a slot.
 fn anchor_in(smoother: &Smoother, slot: usize) -> (Pose2, Matrix3<f64>) {
     let place = CHAIN_SIZE + FIRST_ANCHOR_PLACE + 3 * slot;
     let covariance =
@@ -214,7 +214,7 @@ fn levelled(smoother: &Smoother, visual: &VisualPose, level_from_visual: Pose3) 
         noise: Matrix3::from_diagonal(&white),
     }
 }
-/// A visual factor on its way into the window.
+/// A visual factor to be added to the window.
 struct Entry {
     target: Target,
     predicted: Predicted,

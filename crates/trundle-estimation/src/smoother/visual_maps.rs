@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use std::collections::BTreeMap;
 use trundle_core::{Pose2, Pose3};
 
-/// Visual maps with an anchor among the unknowns, and those that had one.
+/// Visual maps with an anchor among the unknowns, and visual maps whose anchor was removed.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct VisualMaps {
     slots: [Option<Slot>; ANCHOR_SLOTS],
@@ -18,7 +18,7 @@ pub(crate) struct VisualMaps {
 #[derive(Debug, Clone, Copy)]
 struct Slot {
     map: u32,
-    /// Turns and lifts the visual map's frame so that its x-y plane is the floor.
+    /// Rotates and lifts the visual map's frame: its x-y plane becomes the floor.
     level_from_visual: Pose3,
     /// Number of the last use.
     used: u64,
@@ -30,14 +30,14 @@ pub(crate) struct StoredAnchor {
     pub(crate) level_from_visual: Pose3,
     /// `map_from_level` in the plane.
     pub(crate) anchor: Pose2,
-    /// Its covariance as a right perturbation.
+    /// Covariance as a right perturbation.
     pub(crate) covariance: Matrix3<f64>,
 }
 
 /// The slot for a visual map.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum SlotFor {
-    /// The map owns it.
+    /// The slot belongs to the map.
     Known(usize),
     /// The map owned one before; its anchor must be set again.
     Stored(usize, StoredAnchor),

@@ -31,14 +31,15 @@ pub(crate) struct Window {
 
 /// Largest number of solutions after a measurement. Source: ours; the second one changes little.
 const MAX_STEPS: usize = 3;
-/// A step below which the solution has converged, m, rad, rad/s and ratio. Source: ours: the derivatives change by a thousandth.
+/// A step below which the solution has converged, m, rad, rad/s and ratio. Source: ours; such a step changes the derivatives by a
+/// thousandth.
 const CONVERGED_STEP: f64 = 2e-3;
-/// Rise of the cost, relative, after which a step is taken back. Source: ours: above rounding.
+/// Relative rise of the cost after which a step is undone. Source: ours: above rounding.
 const MAX_COST_RISE: f64 = 1e-3;
 /// Change of a switch after which the window is solved again. Source: ours.
 const MIN_SWITCH_CHANGE: f64 = 0.01;
-/// Information on the error of a place besides all factors, relative to that of a wrong place. Source: ours; it keeps the difference of two
-/// informations definite.
+/// Minimum information on the error of a place from other factors, relative to that of a wrong place. Source: ours; it keeps the difference
+/// of two informations definite.
 const MIN_OTHER_INFORMATION: f64 = 1e-3;
 /// Damping after a step that raised the cost. Source: Levenberg and Marquardt; the number is ours.
 const FIRST_DAMPING: f64 = 0.1;
@@ -83,20 +84,20 @@ impl Window {
         self.keyframes.partition_point(|keyframe| keyframe.stamp <= stamp).checked_sub(1)
     }
 
-    /// Keyframe `k` as it is estimated.
+    /// The estimate of keyframe `k`.
     pub(crate) fn estimated(&self, k: usize) -> Predicted {
         // Keyframes may have left since the system was factorised.
         let gone = self.system.count() - self.keyframes.len();
         Predicted::of(self.keyframes[k].state, &self.system.covariance(k + gone))
     }
 
-    /// The newest keyframe as it is estimated.
+    /// The estimate of the newest keyframe.
     pub(crate) fn estimated_newest(&self) -> Predicted {
         self.estimated(self.keyframes.len() - 1)
     }
 
-    /// Finds the values that agree best with all factors, and the factor of the system there. `false` if no step can be solved: the
-    /// values are then those before.
+    /// Finds the values with the best agreement with all factors, and the factorised system at these values. `false` if no step can be
+    /// solved: the values do not change.
     pub(crate) fn optimise(&mut self, motions: &MotionBuffer) -> bool {
         self.integrate_again(motions);
         let (mut cost, mut damping, mut size) = (f64::INFINITY, 0.0, f64::INFINITY);
@@ -184,7 +185,7 @@ impl Window {
         }
     }
 
-    /// Moves all poses and anchors but one by a motion of the map frame: what is known of them relative to each other stays.
+    /// Moves all poses and anchors but one by a motion of the map frame; their relative poses do not change.
     pub(crate) fn move_all(&mut self, new_from_old: &Pose2, fixed_slot: usize) {
         self.before.clear();
         for keyframe in &mut self.keyframes {
@@ -194,7 +195,7 @@ impl Window {
         self.prior.move_all(new_from_old, fixed_slot);
     }
 
-    /// Inserts a keyframe after keyframe `k`; the motion to the one behind it is integrated again.
+    /// Inserts a keyframe after keyframe `k`; the motion to the next keyframe is integrated again.
     pub(crate) fn insert_after(&mut self, k: usize, keyframe: Keyframe, motions: &MotionBuffer) {
         self.before.clear();
         let at = parameters(keyframe.state.bias, &self.border);
@@ -205,7 +206,7 @@ impl Window {
         self.keyframes.insert(k + 1, keyframe);
     }
 
-    /// Replaces the newest keyframe, which has a keyframe before it, by a later one that was predicted from it.
+    /// Replaces the newest keyframe, which has a predecessor, by a later keyframe predicted from it.
     pub(crate) fn replace_newest(&mut self, mut keyframe: Keyframe, motions: &MotionBuffer) {
         self.before.clear();
         if let Some(replaced) = self.keyframes.pop() {
@@ -217,8 +218,8 @@ impl Window {
         self.keyframes.push(keyframe);
     }
 
-    /// Removes the oldest keyframe and keeps what it says as the prior of the next one. `false` if there is only one, or its equations
-    /// have no solution.
+    /// Removes the oldest keyframe; its information becomes the prior of the next one. `false` if the window has one keyframe, or its
+    /// equations have no solution.
     pub(crate) fn remove_oldest(&mut self, config: &OdometryConfig) -> bool {
         let Self { keyframes, border, prior, leaving, .. } = self;
         let [first, second, ..] = keyframes[..] else { return false };

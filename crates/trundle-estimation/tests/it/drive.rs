@@ -23,7 +23,7 @@ pub struct TrueCalibration {
 }
 
 impl TrueCalibration {
-    /// One drawn from the smoother's prior.
+    /// Calibration drawn from the smoother's prior.
     pub fn drawn(rng: &mut ChaCha8Rng, odometry: &OdometryConfig, config: &SmootherConfig) -> Self {
         Self {
             bias: odometry.gyro_bias_sigma * normal(rng),
@@ -104,7 +104,7 @@ impl Drive {
         }
     }
 
-    /// One step of the base, as wheels and gyro measure it.
+    /// One step of the base as measured by wheels and gyro.
     pub fn moved(&mut self, v: f64, omega: f64) -> MotionIncrement {
         let (distance, turn) = (v * STEP_S, omega * STEP_S);
         let rests = distance == 0.0 && turn == 0.0;

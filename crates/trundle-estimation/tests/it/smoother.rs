@@ -110,7 +110,7 @@ fn a_wrong_place_is_switched_off_and_a_right_one_kept() {
     let mut drive = Drive::new(5, config());
     drive.go(10.0);
     let before = drive.smoother.estimate();
-    // A look-alike place half a turn on: the truth moved by a constant motion.
+    // A look-alike place rotated by half a turn: the truth moved by a constant motion.
     let elsewhere = Pose2::new(2.9, 0.4, 2.8);
     let wrong = VisualPose { recognised: true, ..drive.visual_at(elsewhere * drive.truth, Vector3::zeros()) };
     let MeasurementUse::Switched { weight, innovation } = drive.smoother.add_visual(&wrong) else { panic!() };

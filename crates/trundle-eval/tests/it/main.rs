@@ -1,5 +1,4 @@
-//! Agreement with the PyPI tool `evo` 1.38.1 on TUM trajectories: its numbers are in `data/evo`, made by the command
-//! lines that stand there beside them.
+//! Agreement with the PyPI tool `evo` 1.38.1 on TUM trajectories: its numbers are in `data/evo`, with the command lines that made them.
 
 #![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test")]
 
@@ -8,14 +7,14 @@ use std::path::{Path, PathBuf};
 use trundle_core::{Pose3, Stamp};
 use trundle_eval::*;
 
-/// Largest difference of two programs: rounding, nothing else.
+/// Largest difference between the two programs: rounding only.
 const TOLERANCE: f64 = 1e-6;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The trajectory file, from the project's own data or, for the big ones, from beside it; `None` if absent.
+/// The trajectory file, from the project's own data or, for large ones, from the shared data; `None` if absent.
 fn trajectory(name: &str) -> Option<Vec<(Stamp, Pose3)>> {
     let folders = ["data/trajectories", "../shared/data/trajectories"];
     let path = folders.iter().map(|folder| root().join(folder).join(name)).find(|path| path.exists())?;

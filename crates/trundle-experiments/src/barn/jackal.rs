@@ -55,7 +55,7 @@ pub fn robot() -> RobotConfig {
     robot
 }
 
-/// Its body in the simulator.
+/// Simulated body of the robot.
 pub fn body(robot: &RobotConfig) -> Result<SimConfig, Invalid> {
     let mut config = simulated_body(robot, FaultSchedule::default())?;
     config.has_camera = false;

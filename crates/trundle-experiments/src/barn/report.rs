@@ -130,7 +130,7 @@ pub(super) fn pictures(trials: &[BarnTrial]) -> Vec<(String, Vec<u8>)> {
     shown(trials).into_iter().map(|(name, trial)| (format!("{name}.png"), picture(trial))).collect()
 }
 
-/// The true obstacles over the robot's map, with the path driven.
+/// The true obstacles over the robot's map, with the driven path.
 fn picture(trial: &BarnTrial) -> Vec<u8> {
     let start = BarnWorld::start();
     let map_from_world = start.inverse();
@@ -146,7 +146,7 @@ fn picture(trial: &BarnTrial) -> Vec<u8> {
         .to_png()
 }
 
-/// How many runs had a value in each of a row of bins.
+/// Number of runs with a value in each bin.
 fn histogram(title: &str, bins: &[(f64, f64)], values: impl Iterator<Item = f64>) -> Figure {
     let values: Vec<f64> = values.collect();
     let chart = bins.iter().fold(BarChart::new(title, "runs", "runs", ""), |chart, (low, high)| {

@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 use trundle_core::{OccupancyGrid, Vector2};
 use trundle_runtime::DriveState;
 
-/// Time limit of a run \[s\]; afterwards it is given up. Source: the BARN challenge.
+/// Time limit of a run \[s\]. Source: the BARN challenge.
 pub const TIME_LIMIT_S: f64 = 100.0;
-/// Distance from the goal within which it counts as reached \[m\]. Source: the BARN challenge.
+/// Distance from the goal within which the goal counts as reached \[m\]. Source: the BARN challenge.
 pub const GOAL_TOLERANCE_M: f64 = 1.0;
 /// Distance from the start at which the clock starts \[m\]. Source: the BARN challenge.
 pub const CLOCK_START_M: f64 = 0.1;
-/// Time before the limit from which a run counts as out of time \[s\]. Source: ours.
+/// A run that ends less than this time before the limit counts as out of time \[s\]. Source: ours.
 const OUT_OF_TIME_MARGIN_S: f64 = 1.0;
 
 /// A run through a world.

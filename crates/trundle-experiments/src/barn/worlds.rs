@@ -12,11 +12,11 @@ use trundle_sim::{Cuboid, Cylinder, Finish, Lights, Paint, Scene, Shape, Solid, 
 /// A world of the BARN challenge.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct BarnWorld {
-    /// Its number in the challenge.
+    /// Number of the world in the challenge.
     pub id: usize,
     /// The shortest path at 2 m/s, s.
     pub optimal_time: f64,
-    /// Middles of its cylinders, m.
+    /// Middles of the cylinders, m.
     #[serde(with = "points")]
     pub cylinders: Vec<Vector2>,
 }
@@ -32,12 +32,12 @@ impl BarnWorld {
         Pose2::new(-2.0, 3.0, std::f64::consts::FRAC_PI_2)
     }
 
-    /// Its goal, world frame.
+    /// Goal of the world, world frame.
     pub fn goal() -> Pose2 {
         Pose2::new(-2.0, 13.0, std::f64::consts::FRAC_PI_2)
     }
 
-    /// As the simulator has it: the cylinders on a floor.
+    /// The simulated scene: the cylinders on a floor.
     pub fn scene(&self) -> Result<Scene, Invalid> {
         let finish = || Finish::all(Paint::Flat { color: [150, 150, 150] });
         let floor =
@@ -64,7 +64,7 @@ impl BarnWorld {
 /// Reads `worlds.csv` and `obstacles.csv` of a folder.
 ///
 /// # Errors
-/// When a file is missing or a line is not what it should be; names file and line.
+/// When a file is missing or a line is invalid; the error names file and line.
 pub fn read(folder: &Path) -> Result<Vec<BarnWorld>, AppError> {
     let mut worlds = Vec::new();
     for row in rows(&folder.join("worlds.csv"), 4, &BARN)? {

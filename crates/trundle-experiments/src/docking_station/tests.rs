@@ -1,4 +1,4 @@
-//! The robot drives onto its station, closed loop with noise; the laser in place of the camera makes a run a few seconds long.
+//! The robot drives onto its station in closed loop with noise; the laser in place of the camera reduces a run to a few seconds.
 
 use super::*;
 use crate::laser_run::LaserRun;
@@ -6,7 +6,7 @@ use trundle_core::{Vector2, Vector3};
 use trundle_runtime::{Mission, RangeSource, ReasonKind, RobotConfig, Task};
 use trundle_sim::{Cuboid, Finish, Paint, Shape, Solid, World};
 
-/// A dock that nobody watches, with its whole run.
+/// A dock without a viewer, with its whole run.
 struct Dock {
     trial: DockTrial,
     run: LaserRun,
@@ -35,7 +35,7 @@ fn plan(scene: Scene, seed: u64) -> DockPlan {
     DockPlan { scene, robot, body, mission: docking_alone().unwrap(), seed }
 }
 
-/// Checks that a run ended on the contacts and touched nothing but the station.
+/// Checks that a run ended on the contacts and touched only the station.
 fn assert_docked(trial: &Dock) {
     let (lateral, heading) = (trial.lateral_error(), trial.heading_error().to_degrees());
     eprintln!("{} after {:.0} s, {:.1} mm, {heading:.2} deg", trial.state, trial.time, lateral * 1e3);
@@ -44,7 +44,7 @@ fn assert_docked(trial: &Dock) {
     assert!(lateral.abs() < 0.01 && heading.abs() < 3.0, "{lateral} m, {heading} deg");
 }
 
-/// Checks where each contact began: an attempt that misses the plates ends at the front of the station.
+/// Checks the place of each contact: an attempt that misses the plates ends at the front of the station.
 fn assert_touched_only_the_station(trial: &Dock) {
     for pair in trial.run.moments.windows(2).filter(|pair| pair[1].contacts > pair[0].contacts) {
         let at = station().inverse() * pair[1].pose;
@@ -110,7 +110,7 @@ fn plates_that_do_not_charge_are_tried_three_times() {
     let trial = dock(plan).unwrap();
     assert_eq!(kinds(&trial), [ReasonKind::TasksFailed, ReasonKind::NoCharging]);
     assert!(trial.state.to_string().contains("after 3 attempts"), "{}", trial.state);
-    // It pushes the station, gently, and nothing else.
+    // The robot pushes only the station, gently.
     assert_touched_only_the_station(&trial);
     assert!((1..=3).contains(&trial.contacts), "{} contacts", trial.contacts);
     let fastest =

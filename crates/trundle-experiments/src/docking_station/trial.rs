@@ -1,4 +1,4 @@
-//! One run that shall end on the charging station.
+//! A run that should end on the charging station.
 
 use crate::laser_run::{LaserPlan, LaserRun, drive, hokuyo};
 use crate::simulated::simulated_body;
@@ -10,29 +10,29 @@ use trundle_core::{Pose2, difference_of_angles};
 use trundle_runtime::{DriveState, Mission, RangeSource, RobotConfig, Task};
 use trundle_sim::{FaultSchedule, Scene, SimConfig};
 
-/// Time of the robot after which a run is given up \[s\]. Source: ours.
+/// Time limit of a run \[s\]. Source: ours.
 const TIME_LIMIT_S: f64 = 600.0;
 
 /// A run that shall end on the charging station.
 pub struct DockPlan {
-    /// The place with its station, if there is one, and the robot's start.
+    /// The place with its station, if any, and the robot's start.
     pub scene: Scene,
     /// The robot.
     pub robot: RobotConfig,
-    /// Its simulated body.
+    /// Simulated body of the robot.
     pub body: SimConfig,
     /// The mission, map frame.
     pub mission: Mission,
-    /// Of all noise.
+    /// Seed of all noise.
     pub seed: u64,
 }
 
 /// Result of a run.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct DockTrial {
-    /// Pose of the base in the station's frame at the end, in truth; identity if there is no station.
+    /// True pose of the base in the station's frame at the end; identity without a station.
     pub station_from_base: Pose2,
-    /// Separate touches: a dock touches nothing, the plates are ahead of the bumper.
+    /// Number of separate contacts: a correct dock has none, because the plates are ahead of the bumper.
     pub contacts: u32,
     /// Time, s.
     pub time: f64,
@@ -45,7 +45,7 @@ pub struct DockTrial {
 }
 
 impl DockTrial {
-    /// Whether the robot is on its station.
+    /// Whether the robot is docked.
     #[must_use]
     pub fn is_docked(&self) -> bool {
         self.state == DriveState::Arrived && self.is_charging
@@ -64,7 +64,7 @@ impl DockTrial {
     }
 }
 
-/// The simulated body of a robot: with a camera, or with a laser in place of it where that is its range source.
+/// The simulated body of a robot, with a camera, or with a laser in place of it if the laser is the range source.
 ///
 /// # Errors
 /// When a number of the robot is outside its range.

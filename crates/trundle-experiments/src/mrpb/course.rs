@@ -18,7 +18,7 @@ pub struct Course {
     map: String,
     /// The benchmark's number of the pair.
     pub test: usize,
-    /// World frame, that of the map.
+    /// Frame of the map, the world frame.
     pub start: Pose2,
     /// World frame.
     pub goal: Pose2,
@@ -32,7 +32,7 @@ const OPEN: &str = "empty_world";
 /// Every pair of a folder, those with people once with and once without them.
 ///
 /// # Errors
-/// When `start_goal.csv` or `actors.csv` is missing or a line is not what it should be.
+/// When `start_goal.csv` or `actors.csv` is missing or a line is invalid.
 pub fn read(folder: &Path) -> Result<Vec<Course>, AppError> {
     let mut courses = Vec::new();
     for row in rows(&folder.join("start_goal.csv"), 9, &MRPB)? {
@@ -59,13 +59,13 @@ impl Course {
         Self { scenario, map, test: 1, start, goal, people: Vec::new() }
     }
 
-    /// Scenario, number, and whether people are there.
+    /// Scenario, number, and whether it has people.
     pub fn name(&self) -> String {
         let with = if self.people.is_empty() { "" } else { ", with people" };
         format!("{} {}{with}", self.scenario, self.test)
     }
 
-    /// The benchmark's map, as the robot has it that stands at the start: none of the open floor.
+    /// The benchmark's map in the frame of a robot at the start; `None` for the open floor.
     ///
     /// # Errors
     /// When the map cannot be read.
@@ -80,7 +80,7 @@ impl Course {
         folder.join("maps").join(&self.map).join("map.yaml")
     }
 
-    /// As the simulator has it: the map's walls, or an open floor.
+    /// The simulated scene: the map's walls, or an open floor.
     ///
     /// # Errors
     /// When the map cannot be read, or a number is outside its range.
@@ -103,7 +103,7 @@ impl Course {
     }
 }
 
-/// The same map in cells of another size and in the frame of `world_from_map`: a cell is occupied where the map is at its middle or
+/// The same map with another cell size, in the frame of `world_from_map`: a cell is occupied if the map is occupied at its middle or
 /// halfway to a corner.
 fn laid_anew(map: &OccupancyGrid, world_from_map: Pose2, resolution: f64) -> Result<OccupancyGrid, Invalid> {
     let old = map.geometry();
@@ -137,8 +137,8 @@ fn floor() -> Solid {
     Solid { shape, finish: Finish::all(Paint::Flat { color: [150, 150, 150] }) }
 }
 
-/// The people of a scenario. The benchmark gives each way-point a time; here each walks the same path around at the mean
-/// speed of its legs and stands as long as on average.
+/// The people of a scenario. The benchmark gives each way-point a time. Here each person walks the same closed path at the mean speed of
+/// its legs, with the mean duration of stops.
 fn people(file: &Path, scenario: &str) -> Result<Vec<Person>, AppError> {
     let mut ways: Vec<(String, Vec<[f64; 3]>)> = Vec::new();
     for row in rows(file, 5, &MRPB)?.iter().filter(|row| row.text(0) == scenario) {
@@ -151,7 +151,7 @@ fn people(file: &Path, scenario: &str) -> Result<Vec<Person>, AppError> {
     Ok(ways.iter().map(|(_, way)| person(way)).collect())
 }
 
-/// One of them, of way-points (s, m, m).
+/// A person with its way-points (s, m, m).
 fn person(way: &[[f64; 3]]) -> Person {
     let (mut length, mut walking, mut standing, mut stops) = (0.0, 0.0, 0.0, 0_u32);
     let mut waypoints = vec![[way[0][1], way[0][2]]];

@@ -1,4 +1,4 @@
-//! The MRPB benchmark's metrics of one run: safety, efficiency, smoothness, and what the planner costs.
+//! The MRPB benchmark's metrics of one run: safety, efficiency, smoothness, and computation.
 
 use crate::laser_run::{LaserRun, Moment};
 use serde::{Deserialize, Serialize};
@@ -18,11 +18,11 @@ pub struct Metrics {
     pub path_roughness: f64,
     /// Smoothness of the speed: mean change of the commanded speed over time, m/s^2.
     pub speed_roughness: f64,
-    /// Computation: a control cycle (odometry, supervision, planning, control, safety), processor time, ms: mean, median, 99th percentile, maximum.
+    /// CPU time of a control cycle (odometry, supervision, planning, control, safety), ms: mean, median, 99th percentile, maximum.
     pub cycle_ms: [f64; 4],
 }
 
-/// Clearance below which the robot counts as near an obstacle \[m\]. Source: ours.
+/// Clearance below which an obstacle counts as near \[m\]. Source: ours.
 pub const NEAR_OBSTACLE_M: f64 = 0.1;
 /// Smoothness uses every second moment: 25 Hz of 50 Hz. Source: MRPB 1.0.
 const SMOOTHNESS_STRIDE: usize = 2;

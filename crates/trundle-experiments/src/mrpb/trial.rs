@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 use trundle_core::{OccupancyGrid, Vector2, difference_of_angles};
 use trundle_runtime::DriveState;
 
-/// Distance from the goal within which it counts as reached \[m\]. Source: MRPB 1.0.
+/// Distance from the goal within which the goal counts as reached \[m\]. Source: MRPB 1.0.
 pub const GOAL_TOLERANCE_M: f64 = 0.2;
-/// Angle from the goal's heading within which it counts as reached \[rad\]. Source: MRPB 1.0.
+/// Heading difference within which the goal counts as reached \[rad\]. Source: MRPB 1.0.
 pub const GOAL_TOLERANCE_RAD: f64 = 0.1;
 /// Mean time of a control cycle \[ms\]; with more the run fails. Source: ours.
 pub const MAX_MEAN_CYCLE_MS: f64 = 2.0;

@@ -27,7 +27,7 @@ pub fn shard_arguments(words: impl IntoIterator<Item = String>) -> Vec<String> {
     kept
 }
 
-/// Whether letters of short options are those of `-v`, as in `-vv`, and of `-q`.
+/// Whether the letters are those of the short options `-v`, as in `-vv`, and `-q`.
 fn is_verbosity(letters: &str) -> bool {
     !letters.is_empty() && letters.chars().all(|letter| letter == 'v' || letter == 'q')
 }

@@ -1,4 +1,4 @@
-//! The kept runs of all shards of an experiment.
+//! The stored runs of all shards of an experiment.
 
 use super::shard_folder::{RUNS_FILE, RunLine, SHARD_FILE, ShardManifest};
 use serde::de::DeserializeOwned;
@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use trundle_app::AppError;
 
-/// The kept runs of shards of one experiment.
+/// The stored runs of the shards of one experiment.
 #[derive(Debug)]
 pub struct KeptRuns {
     manifest: ShardManifest,
@@ -15,7 +15,7 @@ pub struct KeptRuns {
     results: BTreeMap<String, (Value, PathBuf)>,
 }
 
-/// Largest number of missing runs that a message names; the rest is counted. Source: ours.
+/// Maximum number of missing runs named in a message; the message counts the others. Source: ours.
 const MAX_NAMED: usize = 10;
 
 impl KeptRuns {
@@ -41,10 +41,10 @@ impl KeptRuns {
         &self.manifest
     }
 
-    /// Refuses an experiment of which a run is not kept.
+    /// Refuses an experiment with a run that is not stored.
     ///
     /// # Errors
-    /// Names the runs that are missing, and the command that makes the first of them.
+    /// When runs are missing: the error names them, and the command that executes the first of them.
     pub(crate) fn require_all(&self, names: &[String]) -> Result<(), AppError> {
         let missing: Vec<&str> =
             names.iter().filter(|name| !self.results.contains_key(*name)).map(String::as_str).collect();
@@ -64,7 +64,7 @@ impl KeptRuns {
     /// The result of a run.
     ///
     /// # Errors
-    /// When the run is not kept, or its result cannot be understood.
+    /// When the run is not stored, or its result is invalid.
     pub(crate) fn result<T: DeserializeOwned>(&self, name: &str) -> Result<T, AppError> {
         let missing = || AppError::Input(format!("run '{name}' is missing in the shards"));
         let (result, folder) = self.results.get(name).ok_or_else(missing)?;
@@ -97,7 +97,7 @@ impl KeptRuns {
         let path = folder.join(RUNS_FILE);
         let text = read_text(&path)?;
         for (i, line) in text.split_inclusive('\n').enumerate() {
-            // A shard that was killed ends within a line; its run counts as missing.
+            // A killed shard leaves an incomplete last line; the run of this line counts as missing.
             let Some(line) = line.strip_suffix('\n') else { break };
             let RunLine { run, result } = serde_json::from_str::<RunLine<Value>>(line)
                 .map_err(|error| AppError::Input(format!("{}, line {}: {error}", path.display(), i + 1)))?;

@@ -1,4 +1,4 @@
-//! Where the runs of an experiment come from, before its output folder is there.
+//! The source of an experiment's runs, before its output folder exists.
 
 use super::{KeptRuns, ShardManifest, ShardWriter};
 use crate::RunSource;
@@ -7,19 +7,19 @@ use trundle_app::{AppError, parse_robot};
 use trundle_io::OutputFolder;
 use trundle_runtime::RobotConfig;
 
-/// Where the runs of an experiment come from.
+/// The source of an experiment's runs.
 #[derive(Debug, Clone)]
 pub enum RunOrigin {
     /// Each run is made.
     Made,
-    /// A part of the runs is made and kept; with a name only the run of this name.
+    /// The program executes and stores a part of the runs; with a name, only the run of this name.
     Shard(Box<ShardManifest>, Option<String>),
-    /// The runs were kept by shards.
+    /// Shards stored the runs.
     Kept(Arc<KeptRuns>),
 }
 
 impl RunOrigin {
-    /// The robot of the experiment: that of the shards, if they kept one, else that `given` on the command line.
+    /// The robot of the experiment: the shards' robot if they stored one, otherwise the robot `given` on the command line.
     ///
     /// # Errors
     /// Those of `given`, and when the robot file of the shards cannot be accepted.

@@ -18,7 +18,7 @@ pub(super) const RUNS_FILE: &str = "runs.jsonl";
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ShardManifest {
-    /// The experiment and its options, as on the command line, without those of the shard.
+    /// The experiment and its options, as on the command line, without the options of the shard.
     pub arguments: Vec<String>,
     /// The robot file, if one was given.
     pub robot_toml: Option<String>,
@@ -33,15 +33,15 @@ pub struct ShardManifest {
 pub(super) struct RunLine<T> {
     /// Name of the run.
     pub(super) run: String,
-    /// Its result.
+    /// Result of the run.
     pub(super) result: T,
 }
 
-/// Writes the folder of a shard, a run at a time: a run that ends is in the file at once.
+/// Writes the folder of a shard, one run at a time. A finished run is in the file immediately.
 #[derive(Debug)]
 pub struct ShardWriter {
     shard: Shard,
-    /// The only run that is made, if one is asked for.
+    /// Name of the only run to execute; `None` for all runs of the shard.
     only: Option<String>,
     path: PathBuf,
     file: Mutex<File>,
@@ -49,7 +49,7 @@ pub struct ShardWriter {
 }
 
 impl ShardWriter {
-    /// Begins the files of a shard in `folder`, which is there.
+    /// Creates the files of a shard in the existing `folder`.
     ///
     /// # Errors
     /// When a file cannot be written.
@@ -68,7 +68,7 @@ impl ShardWriter {
     /// The plans of this part.
     ///
     /// # Errors
-    /// When there are none.
+    /// When the shard has no runs.
     pub(crate) fn selected<P>(
         &self,
         plans: Vec<P>,

@@ -20,17 +20,17 @@ pub struct SimDrive {
     pub distance: f64,
     /// Number of contacts.
     pub contacts: u32,
-    /// Way-points reached, and all of them.
+    /// Number of reached way-points, and of all way-points.
     pub waypoints: Option<(usize, usize)>,
-    /// Whether it came to its end, and every way-point was reached.
+    /// Whether the drive reached its end, and every way-point was reached.
     pub is_complete: bool,
-    /// Whether the user ended it.
+    /// Whether the user interrupted the drive.
     pub is_interrupted: bool,
     /// Wall-clock time, s.
     pub seconds: f64,
 }
 
-/// Drives `robot` until the driver or the `duration` (s) ends; every event goes into `recording`.
+/// Drives `robot` until the driver or the `duration` (s) ends; every event is recorded in `recording`.
 ///
 /// # Errors
 /// When the simulator, the driver or the recording fails.

@@ -8,12 +8,12 @@ use trundle_sim::{CommandScript, Following, Simulator, WaypointFollower};
 /// Time for which a robot without a driver is simulated \[s\]. Source: ours.
 const STANDING_S: f64 = 5.0;
 
-/// Time for which the simulation goes on after the last way-point, while the wheels come to rest \[s\]. Source: ours.
+/// Time for which the simulation continues after the last way-point, until the wheels are at rest \[s\]. Source: ours.
 const AFTER_ARRIVAL_S: f64 = 0.5;
 
 /// Commands the simulated robot.
 pub trait SimDriver {
-    /// The twist for a robot that truly stands at `pose`.
+    /// The twist for a robot with the true pose `pose`.
     ///
     /// # Errors
     /// When the driver's device failed.
@@ -22,7 +22,7 @@ pub trait SimDriver {
     /// When the drive is over, s, if that is known.
     fn end_s(&self) -> Option<f64>;
 
-    /// Way-points reached and way-points in all, if there are any.
+    /// Number of reached way-points and of all way-points; `None` without way-points.
     fn waypoints(&self) -> Option<(usize, usize)> {
         None
     }

@@ -3,7 +3,7 @@
 use trundle_core::{Stamp, Twist2};
 use trundle_runtime::{OperatorCommand, TELEOP_SILENCE_S};
 
-/// The last twist of those who watch. Without a new one for [`TELEOP_SILENCE_S`] the robot stops.
+/// The last twist of the viewers. Without a new twist for [`TELEOP_SILENCE_S`] the robot stops.
 #[derive(Debug, Default)]
 pub struct Hand {
     wanted: Option<(Twist2, Stamp)>,

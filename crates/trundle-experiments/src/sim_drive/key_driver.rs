@@ -18,7 +18,7 @@ impl KeyDriver {
     /// The keys in a sentence.
     pub const HELP: &'static str = "Arrows or WASD: faster, slower, left, right. Space: stop. Q: quit.";
 
-    /// Refuses to drive by keys where there is no terminal to read them from.
+    /// Refuses keyboard driving without a terminal.
     ///
     /// # Errors
     /// When standard input is no terminal.

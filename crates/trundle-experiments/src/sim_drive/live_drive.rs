@@ -1,4 +1,4 @@
-//! A drive that is shown to those who watch, in real time, and driven by them where nobody else drives.
+//! A drive displayed to viewers, in real time, which they steer if no other driver is given.
 
 use super::driver::SimDriver;
 use super::hand::Hand;
@@ -9,7 +9,7 @@ use trundle_app::real_time::RealTimePacer;
 use trundle_core::{OccupancyGrid, Pose2, RgbdImage, Scan, Stamp, Twist2};
 use trundle_sim::Simulator;
 
-/// Shows a drive, and drives by the requests of those who watch where there is no other driver.
+/// Displays a drive; follows the requests of viewers if no other driver is given.
 pub struct LiveDrive<'d> {
     driver: Option<Box<dyn SimDriver + 'd>>,
     hand: Hand,
@@ -84,7 +84,7 @@ impl SimDriver for LiveDrive<'_> {
 
     fn show_scan(&mut self, scan: &Scan, robot: &Simulator) {
         if self.link.is_watched() {
-            // A sweep bears the time of its end. Of a base that turns it is bent, as the robot receives it.
+            // A sweep has the stamp of its end. The sweep of a turning base is distorted, as received by the robot.
             self.scan = Some((robot.true_pose(), Arc::new(scan.clone())));
         }
     }

@@ -99,7 +99,7 @@ impl<'f> DriveRecording<'f> {
         self.folder.is_incomplete()
     }
 
-    /// Writes what is left, with the true map; the caller commits the folder.
+    /// Writes the remaining files, with the true map; the caller commits the folder.
     ///
     /// # Errors
     /// When a file cannot be written.

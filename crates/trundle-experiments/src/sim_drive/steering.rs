@@ -7,11 +7,11 @@ const SPEED_STEP_M_S: f64 = 0.05;
 /// Change of turn rate by one press \[rad/s\]. Source: ours.
 const TURN_RATE_STEP_RAD_S: f64 = 0.2;
 
-/// Steps forward: 0.5 m/s. Further presses change nothing. Source: ours.
+/// Maximum number of steps forward: 0.5 m/s. Further presses have no effect. Source: ours.
 const MAX_STEPS_FORWARD: i32 = 10;
-/// Steps backward: 0.3 m/s. Further presses change nothing. Source: ours.
+/// Maximum number of steps backward: 0.3 m/s. Further presses have no effect. Source: ours.
 const MAX_STEPS_BACKWARD: i32 = 6;
-/// Steps to either side: 1.4 rad/s. Further presses change nothing. Source: ours.
+/// Maximum number of steps to either side: 1.4 rad/s. Further presses have no effect. Source: ours.
 const MAX_STEPS_ASIDE: i32 = 7;
 
 /// The command of the keys: each press is a step faster, slower or to a side.

@@ -6,7 +6,7 @@ use std::io::IsTerminal;
 use std::time::Duration;
 use trundle_app::AppError;
 
-/// The terminal in raw mode: each key at once, without echo. Dropping restores it.
+/// The terminal in raw mode: each key is delivered immediately, without echo. A drop restores the terminal.
 #[derive(Debug)]
 pub struct RawTerminal(());
 

@@ -1,4 +1,4 @@
-//! The simulated body of a robot, and what its start, goals and time are checked against.
+//! The simulated body of a robot, and checks of start, goals and time.
 
 use trundle_app::AppError;
 use trundle_app::real_time::{CAMERA_HZ, COMMAND_TIMEOUT_S};
@@ -6,20 +6,20 @@ use trundle_core::{Invalid, Pose2};
 use trundle_runtime::{Mission, RobotConfig, Task};
 use trundle_sim::{FaultSchedule, HeightBand, Scene, SimConfig};
 
-/// Time of the robot after which a task is given up \[s\]. A search for another path through seven rooms takes 300 s, and then the
-/// robot waits. Source: ours.
+/// Time limit of a task, simulated time \[s\]. A search for another path through seven rooms takes 300 s, and then the robot waits. Source:
+/// ours.
 const TASK_LIMIT_S: f64 = 600.0;
-/// Time of the robot after which an exploration is given up \[s\]. Source: ours.
+/// Time limit of an exploration, simulated time \[s\]. Source: ours.
 const EXPLORE_LIMIT_S: f64 = 1800.0;
 
-/// Time of the robot after which a mission is given up \[s\].
+/// Time limit of a mission, simulated time \[s\].
 #[must_use]
 pub fn time_limit(mission: &Mission) -> f64 {
     let limit = |task: &Task| if *task == Task::Explore { EXPLORE_LIMIT_S } else { TASK_LIMIT_S };
     mission.tasks().iter().map(limit).sum()
 }
 
-/// Refuses a pose (`name`d, world frame) where no robot can stand: outside the scene, or in an obstacle.
+/// Refuses a pose (`name`d, world frame) outside the scene or in an obstacle.
 ///
 /// # Errors
 /// Names the pose, the scene and the distance.

@@ -1,4 +1,4 @@
-//! A simulated camera that writes its frames into a FIFO, in the form of `docs/camera-stream.md`.
+//! A simulated camera that writes its frames into a FIFO, in the format of `docs/camera-stream.md`.
 
 use rustix::fs::{CWD, FileType, Mode, OFlags, fcntl_setfl, mknodat};
 use std::fs::OpenOptions;
@@ -36,7 +36,7 @@ struct Shared {
     not_taken: AtomicU64,
 }
 
-/// The simulated camera as a driver describes it: depth registered to colour.
+/// Description of the simulated camera for a driver: depth registered to colour.
 pub fn camera_info(config: &SimConfig) -> CameraInfo {
     let stream = |format| StreamInfo { format, camera: config.camera, rate_hz: config.camera_rate_hz };
     CameraInfo {
@@ -54,10 +54,10 @@ pub fn camera_info(config: &SimConfig) -> CameraInfo {
 }
 
 impl CameraServer {
-    /// A server at the FIFO `path`, which is made if it is not there.
+    /// A server at the FIFO `path`, which is created if missing.
     ///
     /// # Errors
-    /// When the FIFO cannot be created, or something else is at `path`.
+    /// When the FIFO cannot be created, or `path` is another kind of file.
     pub fn start(path: &Path, info: CameraInfo) -> Result<Self, AppError> {
         make_fifo(path)?;
         Ok(Self { path: path.to_owned(), info, shared: Arc::default(), shots: None, thread: None })
@@ -78,7 +78,7 @@ impl CameraServer {
         Ok(self)
     }
 
-    /// Takes a shot; where the last one is still being taken, this one is dropped and counted.
+    /// Takes a shot; while the last one is in progress, the new one is dropped and counted.
     pub fn take(&mut self, shot: Shot) {
         if self.shots.as_ref().is_some_and(|shots| shots.try_send(shot).is_err()) {
             self.shared.not_taken.fetch_add(1, Ordering::Relaxed);
@@ -95,7 +95,7 @@ impl Drop for CameraServer {
     fn drop(&mut self) {
         self.shared.is_over.store(true, Ordering::Relaxed);
         self.shots = None;
-        // The thread may wait in a write; a reader that has gone ends it.
+        // The thread may wait in a write; the departure of the reader ends the wait.
         if let Some(thread) = self.thread.take().filter(JoinHandle::is_finished) {
             let _ = thread.join();
         }
@@ -135,12 +135,12 @@ fn serve(mut camera: CameraAside, shots: &Receiver<Shot>, path: &Path, info: &Ca
     }
 }
 
-/// The FIFO with its header written, where a program reads it.
+/// The FIFO with its header written; `None` without a reader.
 fn open(path: &Path, info: &CameraInfo, shared: &Shared) -> Option<StreamWriter<std::fs::File>> {
     if shared.is_over.load(Ordering::Relaxed) {
         return None;
     }
-    // Without a reader a FIFO does not open for writing without waiting.
+    // Without a reader, a FIFO cannot be opened for writing without waiting.
     let Ok(file) = OpenOptions::new().write(true).custom_flags(nonblocking()).open(path) else {
         std::thread::sleep(READER_POLL);
         return None;

@@ -1,6 +1,6 @@
 //! The simulator behind the wires of a real robot: a Kobuki at a pseudo terminal, a camera at a stream of frames.
 //!
-//! Any program that speaks to a Kobuki drives it. It keeps the time of the wall clock: a packet every 20 ms.
+//! Any program for a Kobuki can drive it. It runs in wall-clock time: a packet every 20 ms.
 
 use super::camera_server::CameraServer;
 use std::path::Path;
@@ -14,7 +14,7 @@ use trundle_drivers::kobuki::protocol::Charger;
 use trundle_drivers::kobuki::pseudo_terminal::PseudoTerminal;
 use trundle_sim::Simulator;
 
-/// Bytes of commands read at once. Source: ours; a command has 10 bytes.
+/// Maximum number of bytes of commands per read. Source: ours; a command has 10 bytes.
 const READ_BYTES: usize = 4096;
 
 /// The simulator behind the wires of a real robot.
@@ -45,7 +45,7 @@ pub struct EmulationCounts {
 }
 
 impl EmulatedRobot {
-    /// The base of `simulator` at `terminal`, its camera at `camera_stream`, a FIFO that is made if it is not there.
+    /// The base of `simulator` at `terminal`, and its camera at the FIFO `camera_stream`, which is created if missing.
     ///
     /// # Errors
     /// When the FIFO cannot be created.
@@ -113,7 +113,7 @@ impl EmulatedRobot {
         EmulationCounts { images, images_not_taken, ..self.counts }
     }
 
-    /// Runs by the wall clock until `is_over` is true, which is asked every millisecond with the simulator.
+    /// Runs in real time until `is_over`, evaluated every millisecond, is true.
     ///
     /// # Errors
     /// When the pseudo terminal breaks.

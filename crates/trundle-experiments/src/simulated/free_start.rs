@@ -13,7 +13,7 @@ const SEARCH_STEP: f64 = 0.25;
 /// Largest number of positions that are tried. Source: ours.
 const MAX_POSITIONS: usize = 100_000;
 
-/// The place nearest to the world's middle where the robot has room; `None` if there is none near enough.
+/// The free pose nearest to the world's middle; `None` if none is near enough.
 pub fn free_start(world: &World) -> Result<Option<Pose2>, AppError> {
     let body = SimConfig::default().kobuki;
     let footprint = Footprint::disc(body.footprint_radius)?;

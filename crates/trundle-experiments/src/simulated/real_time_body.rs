@@ -1,4 +1,4 @@
-//! The simulator in real time beside the robot: a thread for the base, one for the camera.
+//! The simulator in real time in parallel with the robot: a thread for the base, one for the camera.
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use trundle_runtime::Histogram;
 use trundle_runtime::real_time::{InboxItem, InboxSender, ThreadPlacement};
 use trundle_sim::{CameraAside, Shot, Simulator};
 
-/// The simulator in real time beside the robot: a thread for the base, one for the camera.
+/// The simulator in real time in parallel with the robot: a thread for the base, one for the camera.
 pub struct SimulatedRealTimeBody {
     commands: Sender<Twist2>,
     stop: Arc<AtomicBool>,
@@ -44,7 +44,7 @@ impl SimulatedRealTimeBody {
         events: InboxSender<TimedEvent>,
         place: ThreadPlacement,
     ) -> Result<Self, AppError> {
-        // The base is hardware to the robot: it keeps its time whatever the camera does.
+        // The base acts like hardware: its timing is independent of the camera.
         let pools = [pool("camera", place)?, pool("base", ThreadPlacement { is_first: true, ..place })?];
         let stop = Arc::<AtomicBool>::default();
         let contacts = Arc::<AtomicU32>::default();
@@ -65,7 +65,7 @@ impl SimulatedRealTimeBody {
         let (end, ended) = channel();
         pools[1].spawn(move || {
             let base = live(body, &orders, shots, &shared);
-            // Without a camera there are no ages.
+            // Without a camera, no ages exist.
             let ages = aged.recv().unwrap_or_else(|_| Ok(Histogram::default()));
             let report = base.and_then(|report| with_ages(report, &ages?));
             let _ = end.send(report);
@@ -99,7 +99,7 @@ fn pool(name: &'static str, place: ThreadPlacement) -> Result<ThreadPool, AppErr
     pool.map_err(|error| AppError::Environment(format!("cannot start a thread: {error}")))
 }
 
-/// The base: a millisecond at a time.
+/// The base, in steps of one millisecond.
 fn live(
     mut body: Simulator,
     orders: &Receiver<Twist2>,
@@ -149,7 +149,7 @@ fn send(event: &SensorEvent, events: &InboxSender<TimedEvent>) -> Result<(), App
     Ok(())
 }
 
-/// The camera: an image at a time; how old they were when they left, ms.
+/// The camera, one image at a time; returns the images' ages at delivery, ms.
 fn take(mut camera: CameraAside, shots: &Receiver<Shot>, shared: &Shared) -> Result<Histogram, AppError> {
     let mut ages = Histogram::default();
     for shot in shots {

@@ -10,10 +10,10 @@ use trundle_sim::import::{GltfOptions, RaisedMap, UpAxis};
 use trundle_sim::scenes::file::{BaseLoader, SceneFile};
 use trundle_sim::{Lights, Scene, SimConfig, Simulator, World};
 
-/// Files that the command line names are relative to where the program runs.
+/// Files on the command line are relative to the working folder.
 const HERE: SceneFiles = SceneFiles { folder: PathBuf::new() };
 
-/// How a scene is made of its name.
+/// Options for a scene given by name.
 #[derive(Debug, Clone, Copy)]
 pub struct SceneOptions {
     /// Seed of all random numbers.
@@ -26,7 +26,7 @@ pub struct SceneOptions {
     pub station: Option<Pose2>,
 }
 
-/// How a mesh becomes a scene.
+/// Options for a scene made from a mesh.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct MeshOptions {
     /// The axis of the file that points up.
@@ -47,7 +47,7 @@ impl MeshOptions {
 /// The scene of a name: built in, or from a file.
 ///
 /// # Errors
-/// When there is none of that name, or a file is not what it should be; names the file and the item.
+/// When no scene has this name, or a file is invalid; the error names the file and the item.
 pub fn load_scene(name: &str, args: SceneOptions) -> Result<Scene, AppError> {
     let file = Path::new(name);
     let mut scene = match file_kind(name)? {
@@ -75,7 +75,7 @@ pub fn load_scene(name: &str, args: SceneOptions) -> Result<Scene, AppError> {
     })
 }
 
-/// A robot in the scene of a name; the options' seed is that of the noise too.
+/// A robot in the scene of a name; the options' seed is also the seed of the noise.
 ///
 /// # Errors
 /// Those of [`load_scene`], and when the robot does not fit at the start.
@@ -84,7 +84,7 @@ pub fn load_simulator(name: &str, options: SceneOptions, robot: SimConfig) -> Re
     Simulator::new(scene, robot, options.seed).map_err(|error| AppError::Input(format!("{name}: {error}")))
 }
 
-/// The kind of the file that a scene's name stands for; `None` for a name that is not a file.
+/// The kind of the file, if a scene's name is a file; else `None`.
 fn file_kind(name: &str) -> Result<Option<FileKind>, AppError> {
     let is_file = !Scene::NAMES.contains(&name) && (name.contains(['.', '/']) || Path::new(name).exists());
     Ok(if is_file { Some(Expected::Scene.check(Path::new(name))?) } else { None })
@@ -120,7 +120,7 @@ fn warn_of_tall_scene(file: &Path, world: &World) {
     }
 }
 
-/// The scene of a file without a start: without one in the arguments, the robot starts where there is room.
+/// The scene of a file without a start: without a start in the arguments, the robot starts at a free pose.
 fn bare(args: SceneOptions, file: &Path, world: World) -> Result<Scene, AppError> {
     let start = match args.start {
         Some(start) => start,

@@ -1,4 +1,4 @@
-//! The files that a scene is made of.
+//! The files of a scene.
 
 use std::path::{Path, PathBuf};
 use trundle_app::read_map;
@@ -18,9 +18,9 @@ pub fn import_mesh(file: &Path, options: &GltfOptions) -> Result<Mesh, ImportErr
     Ok(scene.mesh)
 }
 
-/// Reads the files that a scene is made of.
+/// Reads the files of a scene.
 pub(super) struct SceneFiles {
-    /// Folder to which their names are relative.
+    /// Folder to which the names are relative.
     pub(super) folder: PathBuf,
 }
 

@@ -1,4 +1,4 @@
-//! Where images come from: recorded folders and simulated scenes.
+//! Sources of images: recorded folders and simulated scenes.
 
 use crate::IndexRange;
 use std::path::PathBuf;
@@ -27,7 +27,7 @@ impl ImageSources {
     /// Refuses sources without any image.
     ///
     /// # Errors
-    /// When neither a folder nor a scene is named.
+    /// When neither a folder nor a scene is given.
     pub fn require_any(&self) -> Result<(), AppError> {
         if self.folders.is_empty() && self.scenes.is_empty() {
             return Err(AppError::Input("no images: name a TUM RGB-D folder or a --scene".to_owned()));

@@ -1,4 +1,4 @@
-//! Camera placements in a world, drawn by a seed where a robot has clearance.
+//! Camera placements in a world, drawn with a seed at poses with clearance.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -15,9 +15,9 @@ const CAMERA_HEIGHTS_M: std::ops::Range<f64> = 0.2..1.5;
 /// Downward tilts of the cameras \[rad\]. Source: ours.
 const CAMERA_TILTS_RAD: std::ops::Range<f64> = -0.3..0.3;
 
-/// Lowest height at which something is an obstacle \[m\]. Source: ours.
+/// Lower limit of the obstacle height band \[m\]. Source: ours.
 const OBSTACLE_LOW_M: f64 = 0.05;
-/// Largest height at which something is an obstacle \[m\]. Source: ours.
+/// Upper limit of the obstacle height band \[m\]. Source: ours.
 const OBSTACLE_HIGH_M: f64 = 1.6;
 
 /// Offset of a second view from the first, along x and along y \[m\]. Source: ours.
@@ -25,7 +25,7 @@ const MAX_SECOND_VIEW_OFFSET_M: f64 = 0.5;
 /// Turn of a second view from the first \[rad\]. Source: ours.
 const MAX_SECOND_VIEW_TURN_RAD: f64 = 20.0 / 180.0 * std::f64::consts::PI;
 
-/// Placements drawn for one with clearance. After these the world counts as full. Source: ours.
+/// Maximum number of attempts for one placement with clearance. After these the world counts as full. Source: ours.
 const MAX_DRAWN_PLACEMENTS: usize = 10_000;
 
 /// Draws camera placements in a world.
@@ -53,7 +53,7 @@ impl CameraPlacement {
 }
 
 impl PlacementSampler {
-    /// The placements of a world: the same seed draws the same ones in the same order.
+    /// The placements of a world: equal seeds give equal placements in equal order.
     pub fn of(world: &World, seed: u64) -> Result<Self, AppError> {
         let (low, high) = world.bounds();
         Ok(Self {
@@ -64,7 +64,7 @@ impl PlacementSampler {
         })
     }
 
-    /// A placement with clearance; `None` if the world has hardly any.
+    /// A placement with clearance; `None` if nearly the whole world is occupied.
     pub fn draw(&mut self) -> Option<CameraPlacement> {
         let [low, high] = self.corners;
         (0..MAX_DRAWN_PLACEMENTS).find_map(|_| {

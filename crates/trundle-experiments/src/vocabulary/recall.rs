@@ -1,4 +1,4 @@
-//! How often a place is recognised by a vocabulary: recall at 1.
+//! Place recognition rate of a vocabulary: recall at 1.
 
 use super::image_sources::ImageSources;
 use super::rendered_scene::RenderedScene;
@@ -8,9 +8,9 @@ use trundle_app::{AppError, StepProgress};
 use trundle_core::Pose3;
 use trundle_vision::{PlaceIndex, Vocabulary};
 
-/// Distance of two views of the same place \[m\]. Farther apart they count as different places. Source: ours.
+/// Largest distance between two views of the same place \[m\]. Farther apart they count as different places. Source: ours.
 const MAX_SAME_PLACE_M: f64 = 0.75;
-/// Angle between two views of the same place \[rad\]. Beyond it they count as different places. Source: ours.
+/// Largest angle between two views of the same place \[rad\]. Views with a larger angle count as different places. Source: ours.
 const MAX_SAME_PLACE_RAD: f64 = 25.0 / 180.0 * std::f64::consts::PI;
 
 /// Frames of a sequence from one place to the next; the frame halfway between is the second view. Source: ours.
@@ -28,7 +28,7 @@ struct ViewPairs {
 pub struct PlaceRecall {
     /// The source: a folder, or a scene with its seed.
     pub name: String,
-    /// Places in it.
+    /// Number of places.
     pub places: usize,
     /// For each vocabulary, the share of second views whose most similar view shows the same place, 0 to 1.
     pub recall: Vec<f64>,
@@ -38,7 +38,7 @@ impl PlaceRecall {
     /// Measures `vocabularies` on each folder and on each scene with each seed.
     ///
     /// # Errors
-    /// When there is no source, a folder has no ground truth or too few frames, or a scene cannot be rendered.
+    /// When no source is given, a folder has no ground truth or too few frames, or a scene cannot be rendered.
     pub fn measure(
         vocabularies: &[Arc<Vocabulary>],
         sources: &ImageSources,

@@ -9,7 +9,7 @@ use trundle_sim::{Lights, Scene, SceneSnapshot, World};
 
 /// A world and its lights.
 pub struct RenderedScene {
-    /// Its name, with its seed if it has one.
+    /// Name of the scene, with its seed if any.
     pub name: String,
     /// The solids and meshes.
     pub world: World,
@@ -20,7 +20,7 @@ impl RenderedScene {
     /// A built-in scene by its name and seed, or a glTF file.
     ///
     /// # Errors
-    /// When there is no such scene, or the file cannot be read as glTF.
+    /// When no such scene exists, or the file cannot be read as glTF.
     pub fn open(name: &str, seed: u64, z_up: bool) -> Result<Self, AppError> {
         let file = Path::new(name);
         if matches!(FileKind::of(file), Ok(FileKind::Glb | FileKind::Gltf)) {

@@ -8,7 +8,7 @@ use trundle_app::vocabulary_file::read_descriptors;
 use trundle_app::{AppError, StepProgress};
 use trundle_vision::{Descriptor, Vocabulary, VocabularyConfig};
 
-/// Descriptors for each child of a node. With fewer a word is an accident of the images. Source: ours.
+/// Minimum number of descriptors per child of a node. With fewer, a word depends on single images. Source: ours.
 const MIN_DESCRIPTORS_PER_CHILD: usize = 2;
 
 /// The images to train on and the shape of the vocabulary.
@@ -24,7 +24,7 @@ pub struct VocabularyTraining {
     pub seed: u64,
 }
 
-/// A vocabulary and the amount of data that it was trained on.
+/// A vocabulary, and the amount of its training data.
 #[derive(Debug)]
 pub struct TrainedVocabulary {
     /// The vocabulary.

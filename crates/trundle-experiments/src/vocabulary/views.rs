@@ -16,21 +16,21 @@ const MAX_EMPTY_SHARE: f64 = 0.3;
 /// Features of a view. A view with fewer, as of a blank wall, is drawn again. Source: ours.
 const MIN_VIEW_FEATURES: usize = 100;
 
-/// Views drawn for one with surfaces and features. After these the scene is refused. Source: ours.
+/// Maximum number of attempts for one view with surfaces and features. After these the scene is refused. Source: ours.
 const MAX_DRAWN_VIEWS: usize = 100;
 
 /// The features of an image.
 pub struct DescribedView {
     /// `world_from_camera`, if it is known.
     pub pose: Option<Pose3>,
-    /// Its features.
+    /// Descriptors of the view.
     pub descriptors: Vec<Descriptor>,
 }
 
 /// All images of the sources: folder by folder, scene by scene, seed by seed.
 ///
 /// # Errors
-/// When there is no source, a folder or scene cannot be read, or a scene has no placement for a camera.
+/// When no source is given, a folder or scene cannot be read, or a scene has no placement for a camera.
 pub fn described_views(
     sources: &ImageSources,
     progress: &dyn StepProgress,
@@ -54,7 +54,7 @@ pub fn described_views(
     Ok(views)
 }
 
-/// The frames asked for of a TUM RGB-D folder.
+/// The requested frames of a TUM RGB-D folder.
 pub fn folder_views(
     folder: &Path,
     sources: &ImageSources,
@@ -91,7 +91,7 @@ fn extractor(features: usize) -> Result<OrbExtractor, AppError> {
     Ok(OrbExtractor::new(OrbConfig { features, ..OrbConfig::default() })?)
 }
 
-/// Renders noisy views of a scene by Kinect V2 and v1 in turn.
+/// Renders noisy views of a scene by Kinect V2 and v1 alternately.
 pub struct ViewRenderer<'s> {
     scene: &'s RenderedScene,
     placements: PlacementSampler,

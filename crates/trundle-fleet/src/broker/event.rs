@@ -5,11 +5,11 @@ use serde::Serialize;
 /// A message to a broker.
 #[derive(Debug, Clone)]
 pub struct Publication {
-    /// Where.
+    /// Topic of the message.
     pub topic: String,
-    /// What.
+    /// Payload of the message.
     pub payload: Vec<u8>,
-    /// Whether the broker keeps it for those who join later.
+    /// Whether the broker stores it for later subscribers.
     pub is_retained: bool,
 }
 
@@ -31,9 +31,9 @@ pub enum BrokerEvent {
     Joined,
     /// A message on a topic that the robot listens to.
     Message {
-        /// Where.
+        /// Topic of the message.
         topic: String,
-        /// What.
+        /// Payload of the message.
         payload: Vec<u8>,
     },
     /// The connection ended, or could not begin.

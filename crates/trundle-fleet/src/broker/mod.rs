@@ -13,7 +13,7 @@ pub use event::{BrokerEvent, Publication};
 pub(crate) use reader::LINK_NICENESS;
 pub use session::SessionOptions;
 
-/// A connection that begins again when it ends.
+/// A connection that is restored after its end.
 pub struct Broker {
     options: SessionOptions,
     session: Option<Session>,
@@ -22,13 +22,13 @@ pub struct Broker {
 }
 
 impl Broker {
-    /// A connection that begins at the first look at it.
+    /// A connection that starts at the first call of [`Broker::events`].
     #[must_use]
     pub fn new(options: SessionOptions) -> Self {
         Self { options, session: None, back_off: BackOff::default(), due: Instant::now() }
     }
 
-    /// Waits up to `wait` for events; at most `max` are taken, so that a flood cannot hold the caller.
+    /// Waits up to `wait` for events; returns at most `max`, so a flood cannot block the caller.
     pub fn events(&mut self, wait: Duration, max: usize) -> Vec<BrokerEvent> {
         let until = Instant::now() + wait;
         if self.session.is_none() && Instant::now() >= self.due {
@@ -51,19 +51,19 @@ impl Broker {
         events
     }
 
-    /// Ends the session; the next one begins after a while.
+    /// Ends the session; the next one begins after a pause.
     fn lose(&mut self, reason: String) -> BrokerEvent {
         self.session = None;
         self.due = Instant::now() + self.back_off.next_wait();
         BrokerEvent::Lost(reason)
     }
 
-    /// Sends a message. Returns whether there was room for it. The call does not wait.
+    /// Sends a message. Returns whether the queue had space. The call does not wait.
     pub fn publish(&self, publication: Publication) -> bool {
         self.session.as_ref().is_some_and(|session| session.publish(publication))
     }
 
-    /// Says goodbye with a last message, waiting a moment for it to leave.
+    /// Sends a last message and disconnects, with a short wait for its delivery.
     pub fn leave(mut self, last: Publication) {
         if let Some(session) = self.session.take() {
             session.leave(last);

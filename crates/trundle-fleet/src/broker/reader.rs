@@ -8,9 +8,9 @@ use trundle_runtime::real_time::ThreadPlacement;
 /// Niceness of the threads of this crate above that of the robot's threads. Source: ours.
 pub(crate) const LINK_NICENESS: i32 = 10;
 
-/// Carries a session until its first error, or until its events have no reader. A full queue holds the broker back.
+/// Runs a session until its first error, or until its events have no reader. A full queue stops reading from the broker.
 pub fn read(mut connection: Connection, events: &SyncSender<BrokerEvent>) {
-    // If the system refuses the niceness, the session goes on all the same.
+    // If the system refuses the niceness, the session continues without it.
     _ = ThreadPlacement { nice: LINK_NICENESS, ..ThreadPlacement::default() }.take();
     for event in connection.iter() {
         let event = match event {

@@ -1,4 +1,4 @@
-//! One session with a broker: from the connection to its end.
+//! A session with a broker: from the connection to its end.
 
 use super::event::{BrokerEvent, Publication};
 use super::reader::read;
@@ -7,7 +7,7 @@ use rumqttc::{Client, LastWill, MqttOptions, QoS, SubscribeFilter};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant};
 
-/// Messages that wait for the robot. Where they are full, the broker is not read. Source: ours.
+/// Maximum number of messages waiting for the robot. While the queue is full, the broker is not read. Source: ours.
 const MAX_WAITING_EVENTS: usize = 64;
 /// Messages that wait for the broker; more are not taken. Source: ours.
 const MAX_WAITING_PUBLICATIONS: usize = 64;
@@ -15,7 +15,7 @@ const MAX_WAITING_PUBLICATIONS: usize = 64;
 const MAX_PACKET_BYTES: usize = 1024 * 1024;
 /// Largest packet that is sent \[bytes\]: a picture of a map of 3000 x 3000 cells. Source: ours.
 const MAX_SENT_BYTES: usize = 16 * 1024 * 1024;
-/// Time after which each side asks whether the other is there. Source: ours.
+/// Time of silence after which each side checks the other. Source: ours.
 const KEEP_ALIVE: Duration = Duration::from_secs(10);
 /// Time in which the last message leaves.
 const FAREWELL_TIME: Duration = Duration::from_secs(1);
@@ -23,7 +23,7 @@ const FAREWELL_TIME: Duration = Duration::from_secs(1);
 /// Parts of a session.
 #[derive(Debug, Clone)]
 pub struct SessionOptions {
-    /// Name of this client, one at a time on a broker.
+    /// Name of this client, unique on a broker.
     pub client_id: String,
     /// The broker.
     pub address: BrokerAddress,
@@ -35,7 +35,7 @@ pub struct SessionOptions {
     pub last_will: Publication,
 }
 
-/// One session with a broker.
+/// A session with a broker.
 pub struct Session {
     client: Client,
     events: Receiver<BrokerEvent>,
@@ -43,7 +43,7 @@ pub struct Session {
 }
 
 impl Session {
-    /// Begins to connect, in a thread of its own.
+    /// Starts to connect, on a thread.
     ///
     /// # Errors
     /// When the system refuses the thread.
@@ -79,7 +79,7 @@ impl Session {
         self.client.try_subscribe_many(self.topics.iter().map(filter)).is_ok()
     }
 
-    /// Sends a message. Returns whether there was room for it. What is retained arrives at least once.
+    /// Sends a message. Returns whether the queue had space. A retained message is delivered at least once.
     pub fn publish(&self, publication: Publication) -> bool {
         let Publication { topic, payload, is_retained } = publication;
         let quality = if is_retained { QoS::AtLeastOnce } else { QoS::AtMostOnce };

@@ -23,7 +23,7 @@ pub enum HomeCommand {
     Return,
     /// Drive onto the charging station.
     Dock,
-    /// Drive to the charging station if it is known, else to the pose at power-on.
+    /// Drive to the charging station if known, else to the pose at power-on.
     GoHome,
     /// Drive to a pose in the map frame.
     GoTo(Pose2),

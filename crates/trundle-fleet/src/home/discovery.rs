@@ -1,4 +1,4 @@
-//! Home Assistant's discovery: one message that describes the robot and what it offers.
+//! Home Assistant's discovery: one message with a description of the robot and its entities.
 //!
 //! Source: Home Assistant, "MQTT": discovery of a device; "MQTT vacuum", "MQTT sensor", "MQTT button", "MQTT image", "MQTT select".
 
@@ -45,7 +45,7 @@ fn object_id(name: &RobotName) -> String {
     format!("{}_{}", name.manufacturer, name.serial_number)
 }
 
-/// The discovery of a robot that knows `places`.
+/// The discovery of a robot with the named places `places`.
 pub fn discovery(name: &RobotName, facts: &RobotFacts, topics: &DiscoveryTopics, places: &[String]) -> Value {
     let id = object_id(name);
     json!({
@@ -86,7 +86,7 @@ fn components(id: &str, topics: &DiscoveryTopics, places: &[String]) -> Map<Stri
             json!({ "platform": "button", "name": title, "command_topic": topics.command, "payload_press": key }),
         );
     }
-    // A component without all but its platform takes an earlier one away.
+    // A component with only its platform removes an earlier one.
     let place = if places.is_empty() { json!({ "platform": "select" }) } else { select(topics, places) };
     if places.is_empty() {
         all.insert("place".to_owned(), place);

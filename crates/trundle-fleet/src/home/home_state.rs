@@ -7,11 +7,11 @@ use trundle_runtime::{DriveState, MotionHold, Task};
 /// The state of a robot for a home.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HomeState {
-    /// One of Home Assistant's words for a vacuum cleaner.
+    /// Home Assistant's state of a vacuum cleaner.
     state: &'static str,
     /// Activity of the robot, in one or two words.
     doing: &'static str,
-    /// Why it does not move on.
+    /// Reason why the robot does not move.
     reason: Option<String>,
     /// The present task.
     task: Option<String>,
@@ -47,7 +47,7 @@ impl HomeState {
         }
     }
 
-    /// Whether nothing changed that a person wants to know at once.
+    /// Whether both states are equal except for details that are not urgent.
     pub fn is_like(&self, other: &Self) -> bool {
         (self.state, &self.task, self.charging) == (other.state, &other.task, other.charging)
     }

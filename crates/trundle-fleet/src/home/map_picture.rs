@@ -9,7 +9,7 @@ use trundle_viz::{Color, MapPicture, PoseStyle};
 /// Shortest time between two pictures. Source: ours; a picture of a house takes 20 ms.
 const PICTURE_PERIOD: Duration = Duration::from_secs(5);
 
-/// Makes pictures of the map, where the map or the pose changed.
+/// Makes pictures of the map if the map or the pose changed.
 #[derive(Debug, Default)]
 pub struct MapPictures {
     since_picture: Duration,
@@ -18,19 +18,19 @@ pub struct MapPictures {
 }
 
 impl MapPictures {
-    /// The next picture is sent even if nothing changed.
+    /// Makes the next picture due even without changes.
     pub fn begin_anew(&mut self) {
         self.last = None;
         self.since_picture = PICTURE_PERIOD;
     }
 
-    /// Whether it is time for a picture.
+    /// Whether a picture is due.
     #[must_use]
     pub fn is_due(&self) -> bool {
         self.since_picture >= PICTURE_PERIOD
     }
 
-    /// A PNG, where it is time for one and it differs from the last.
+    /// A PNG if one is due and differs from the last one.
     pub fn due(
         &mut self,
         passed: Duration,

@@ -38,7 +38,7 @@ pub struct Home {
 }
 
 impl Home {
-    /// The robot `name`. The broker says on `connection_topic` whether the robot is connected.
+    /// The robot `name`. The broker publishes the robot's connection state on `connection_topic`.
     pub fn new(
         name: &RobotName,
         facts: RobotFacts,
@@ -69,14 +69,14 @@ impl Home {
         self.pictures.is_due()
     }
 
-    /// The broker accepted the robot: all is sent anew.
+    /// The broker accepted the robot: all messages are sent again.
     pub fn on_joined(&mut self) {
         self.is_new = true;
         self.sent = None;
         self.pictures.begin_anew();
     }
 
-    /// Takes a message; what is refused is answered with the reason.
+    /// Handles a message; a refused one is answered with the reason.
     pub fn on_message(
         &mut self,
         topic: &str,

@@ -6,7 +6,7 @@ use crate::robot_commands::RobotCommands;
 use crate::robot_glance::RobotGlance;
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task};
 
-/// Carries out a command; in words what the robot does now.
+/// Carries out a command; returns the robot's activity in words.
 ///
 /// # Errors
 /// Why the robot cannot carry the command out.

@@ -1,4 +1,4 @@
-//! Abilities of a robot for a master, and requests that it must refuse.
+//! Abilities of a robot for a master, and requests that the robot must refuse.
 
 use super::message::{Action, ErrorReport, Order, OrderEdge, OrderNode};
 use crate::robot_facts::RobotFacts;
@@ -6,13 +6,13 @@ use crate::robot_facts::RobotFacts;
 /// An action that the robot can do.
 #[derive(Debug)]
 pub struct Ability {
-    /// Its name.
+    /// Type of the action.
     pub action_type: &'static str,
     /// In a sentence.
     pub description: &'static str,
-    /// Whether it may stand at a node.
+    /// Whether the action is allowed at a node.
     pub at_node: bool,
-    /// Whether it may be done at once.
+    /// Whether the action is allowed as an instant action.
     pub at_once: bool,
     /// Parameters: name, type, whether it may be absent.
     pub parameters: &'static [(&'static str, &'static str, bool)],
@@ -71,10 +71,10 @@ const MAX_WAIT_S: f64 = 3600.0;
 /// Lowest speed limit of an edge \[m/s\]. Source: the range of the robot's setting.
 const MIN_EDGE_SPEED_M_S: f64 = 0.05;
 
-/// Checks that the robot can do all that an order asks for.
+/// Checks that the robot can carry out all parts of an order.
 ///
 /// # Errors
-/// The first thing that it cannot do, with the field.
+/// The first impossible part, with its field.
 pub fn require_able(order: &Order, facts: &RobotFacts, map_id: &str) -> Result<(), ErrorReport> {
     order.nodes.iter().try_for_each(|node| require_able_at(node, map_id))?;
     order.edges.iter().try_for_each(|edge| require_able_on(edge, facts))

@@ -19,14 +19,14 @@ pub struct Drive {
     is_due: bool,
 }
 
-/// How far a drive is.
+/// State of a drive.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DriveEnd {
     /// Under way.
     Open,
     /// The node is reached.
     Arrived,
-    /// It is not, for this reason.
+    /// The drive failed for this reason.
     Failed(String),
 }
 
@@ -48,13 +48,13 @@ impl Drive {
         self.mission
     }
 
-    /// Whether the drive failed a while ago: it should begin again.
+    /// Whether the pause after a failed drive is over and the drive should start again.
     #[must_use]
     pub fn is_due_again(&self) -> bool {
         self.is_due
     }
 
-    /// Looks how far the drive is.
+    /// Updates and returns the state of the drive.
     pub fn step(&mut self, passed: Duration, view: &RobotGlance) -> DriveEnd {
         if let Some(since) = &mut self.failed {
             *since += passed;
@@ -75,7 +75,7 @@ impl Drive {
     }
 }
 
-/// The pose of a node. Without a heading the robot keeps the one in which it comes from `pose`.
+/// The pose of a node. Without a heading the robot retains its heading of arrival from `pose`.
 fn goal_of(node: &OrderNode, pose: Pose2) -> Option<Pose2> {
     let position = node.node_position.as_ref()?;
     let (dx, dy) = (position.x - pose.x, position.y - pose.y);

@@ -1,18 +1,18 @@
-//! The errors that a robot reports until it accepts an order.
+//! The errors reported until the robot accepts an order.
 
 use super::message::ErrorReport;
 
-/// Largest number of errors of a state. Source: ours; older ones are dropped.
+/// Maximum number of errors in a state. Source: ours; older ones are dropped.
 const MAX_ERRORS: usize = 10;
 
-/// The errors that a robot reports until it accepts an order.
+/// The errors reported until the robot accepts an order.
 #[derive(Debug, Default)]
 pub struct ErrorBook {
     errors: Vec<ErrorReport>,
 }
 
 impl ErrorBook {
-    /// Adds an error; one that is there already is moved to the end.
+    /// Adds an error; an existing one moves to the end.
     pub fn add(&mut self, error: ErrorReport) {
         tracing::debug!("VDA 5050: {}: {}", error.error_type, error.error_description);
         self.errors.retain(|known| *known != error);
@@ -22,7 +22,7 @@ impl ErrorBook {
         }
     }
 
-    /// Adds an error in place of the others of its type.
+    /// Adds an error and removes the others of its type.
     pub fn replace(&mut self, error: ErrorReport) {
         self.remove(&error.error_type.clone());
         self.add(error);

@@ -132,7 +132,7 @@ impl Vehicle {
         Ok(PoseGuess { pose, position_sigma, heading_sigma })
     }
 
-    /// Ends the actions that have come to their end.
+    /// Ends the finished actions.
     pub(super) fn follow_instant_actions(&mut self, view: &RobotGlance) {
         let is_paused = view.hold == Some(MotionHold::Paused);
         for action in std::mem::take(&mut self.pending) {

@@ -1,17 +1,17 @@
 //! VDA 5050, version 2.1: a robot under a master control.
 //!
-//! [`Vehicle`] takes orders and instant actions and gives commands to the robot, one node at a time. It knows no network and no clock, so
-//! that its tests and the fuzzer need none. Source: VDA 5050, version 2.1, "Interface for the communication between automated guided
-//! vehicles (AGV) and a master control".
+//! [`Vehicle`] accepts orders and instant actions and gives commands to the robot, one node at a time. It uses no network and no clock, so
+//! its tests and the fuzzer need none. Source: VDA 5050, version 2.1, "Interface for the communication between automated guided vehicles
+//! (AGV) and a master control".
 //!
-//! | part | what it does |
+//! | part | purpose |
 //! |---|---|
 //! | `message` | the messages |
-//! | `order_check` | whether a message is of the standard's form |
-//! | `order_decision` | whether an order is accepted |
-//! | `abilities` | what the robot can do, and what it must refuse |
-//! | `order_book` | what is left of an order, and the states of its actions |
-//! | `drive`, `node_action` | the drive to a node and what is done there |
+//! | `order_check` | check of a message against the standard's format |
+//! | `order_decision` | acceptance of an order |
+//! | `abilities` | abilities of the robot, and refused requests |
+//! | `order_book` | the rest of an order, and the states of its actions |
+//! | `drive`, `node_action` | the drive to a node and the actions at the node |
 //! | `instant` | instant actions |
 //! | `state_message` | the state that a master reads |
 

@@ -7,7 +7,7 @@ use crate::robot_glance::RobotGlance;
 use std::time::Duration;
 use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task, TaskEnd};
 
-/// An action at a node, under way.
+/// An action in progress at a node.
 #[derive(Debug)]
 pub struct NodeAction {
     action: Action,
@@ -24,14 +24,14 @@ enum Work {
     Charge(u64),
 }
 
-/// How far an action is.
+/// State of an action.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ActionEnd {
     /// Under way.
     Open,
     /// Done.
     Done,
-    /// Not done, for this reason.
+    /// The action failed for this reason.
     Failed(String),
 }
 
@@ -45,7 +45,7 @@ impl NodeAction {
     /// Begins an action; the number of its mission, if it has one.
     ///
     /// # Errors
-    /// Why it cannot begin.
+    /// Reason why the action cannot start.
     pub fn begin(action: Action, robot: &mut dyn RobotCommands) -> Result<(Self, Option<u64>), String> {
         let (work, mission) = match action.action_type.as_str() {
             "wait" => (Work::Wait(Duration::from_secs_f64(wait_s(&action).ok_or("no duration")?)), None),
@@ -66,7 +66,7 @@ impl NodeAction {
         &self.action
     }
 
-    /// Goes on with the action, `passed` after the last step. A pause stops its time.
+    /// Continues the action, `passed` after the last step. A pause stops its time.
     pub fn step(&mut self, passed: Duration, view: &RobotGlance) -> ActionEnd {
         match &mut self.work {
             Work::Nothing => ActionEnd::Done,

@@ -1,9 +1,9 @@
-//! The present order: what is left of it, and the states of its actions.
+//! The present order: its remaining parts, and the states of its actions.
 
 use super::message::{Action, ActionState, ActionStatus, Order, OrderEdge, OrderNode};
 use std::collections::VecDeque;
 
-/// Largest number of ended instant actions that are kept. Source: ours.
+/// Maximum number of stored ended instant actions. Source: ours.
 const MAX_ENDED_INSTANT_ACTIONS: usize = 32;
 
 /// The present or last order.
@@ -27,7 +27,7 @@ impl OrderBook {
         &self.order_id
     }
 
-    /// Its last update.
+    /// Number of the last update.
     #[must_use]
     pub fn update_id(&self) -> u32 {
         self.update_id
@@ -56,13 +56,13 @@ impl OrderBook {
         self.actions.iter().chain(&self.instant_actions)
     }
 
-    /// Whether an order is carried out or waits for its continuation.
+    /// Whether an order is in progress or waits for its continuation.
     #[must_use]
     pub fn is_active(&self) -> bool {
         !self.nodes.is_empty() || self.actions.iter().any(|action| !action.action_status.is_over())
     }
 
-    /// The next node, where it may be driven to, and the edge that leads there.
+    /// The next released node, and the edge to this node.
     #[must_use]
     pub fn next_stop(&self) -> Option<(&OrderNode, Option<&OrderEdge>)> {
         let node = self.nodes.front().filter(|node| node.released)?;
@@ -81,7 +81,7 @@ impl OrderBook {
         self.nodes.back().is_some_and(|node| !node.released)
     }
 
-    /// Where an update must begin: the last node that may be driven to.
+    /// Required start of an update: the last released node.
     #[must_use]
     pub fn end_of_base(&self) -> Option<(&str, u32)> {
         let released = self.nodes.iter().rev().find(|node| node.released);
@@ -113,7 +113,7 @@ impl OrderBook {
         self.edges.extend(order.edges);
     }
 
-    /// Actions of an update's first node that are new come after those that the node has.
+    /// New actions of an update's first node are appended to the actions of the existing node.
     fn stitch(&mut self, stitch: OrderNode) {
         match self.nodes.back_mut() {
             Some(end) => {
@@ -172,12 +172,12 @@ impl OrderBook {
         self.at_node.pop_front()
     }
 
-    /// A master or a person says at which node the robot stands.
+    /// Sets the robot's node, given by a master or a person.
     pub fn set_last_node(&mut self, node_id: &str) {
         self.last_node = Some((node_id.to_owned(), 0));
     }
 
-    /// Nodes and edges that are left are dropped. The name of the order is kept.
+    /// Drops the remaining nodes and edges. The name of the order remains.
     pub fn drop_nodes(&mut self) {
         self.nodes.clear();
         self.edges.clear();
@@ -206,7 +206,7 @@ impl OrderBook {
         self.action_states().any(|state| state.action_id == action_id)
     }
 
-    /// Sets how far an action is.
+    /// Sets the state of an action.
     pub fn set_status(&mut self, action_id: &str, status: ActionStatus, result: Option<String>) {
         let states = self.actions.iter_mut().chain(&mut self.instant_actions);
         for state in states.filter(|state| state.action_id == action_id) {

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use trundle_core::MAX_COORDINATE_M;
 
-/// Reads an order and checks its form: numbers, names, sequence of nodes and edges.
+/// Reads an order and checks its format: numbers, names, sequence of nodes and edges.
 ///
 /// # Errors
 /// Error of a message that is not of the standard's form.
@@ -24,7 +24,7 @@ pub fn read_order(payload: &[u8]) -> Result<Order, ErrorReport> {
 /// Checks the size of a message.
 ///
 /// # Errors
-/// When it is too large.
+/// When the payload is too large.
 pub fn require_size(payload: &[u8], topic: Topic) -> Result<(), ErrorReport> {
     let bytes = payload.len();
     if bytes <= MAX_MESSAGE_BYTES {
@@ -58,7 +58,7 @@ fn check(order: &Order) -> Result<(), String> {
     check_actions(order)
 }
 
-/// Sequence numbers run over nodes and edges in turn; the base comes before the horizon.
+/// Sequence numbers alternate between nodes and edges; the base precedes the horizon.
 fn check_sequence(order: &Order) -> Result<(), String> {
     let mut next = order.nodes[0].sequence_id;
     let mut is_released = true;

@@ -1,27 +1,27 @@
-//! Whether an order is accepted. Source: VDA 5050 2.1, figure 8; the numbers in brackets are those of the figure.
+//! Decides whether an order is accepted. Source: VDA 5050 2.1, figure 8; the numbers in brackets are those of the figure.
 
 use super::message::{ErrorReport, Order, OrderNode};
 use super::order_book::OrderBook;
 use trundle_core::{Pose2, difference_of_angles};
 
-/// Deviation within which the robot stands at the first node of a new order that allows none \[m\]. Source: ours, a robot's radius.
+/// Largest distance of the robot from the first node of a new order without an allowed deviation \[m\]. Source: ours, a robot's radius.
 const START_DEVIATION_M: f64 = 0.2;
 
 /// Result of an order of the standard's form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OrderDecision {
-    /// It replaces the last order, which has ended.
+    /// A new order after the last one has ended.
     New,
-    /// It continues the present order, or the last one.
+    /// An update of the present or the last order.
     Update,
-    /// It is here already.
+    /// A repetition of a received order.
     Discard,
 }
 
 /// Decides about an order for a robot at `pose`.
 ///
 /// # Errors
-/// Why it is rejected.
+/// Reason for the rejection.
 pub fn decide(order: &Order, book: &OrderBook, pose: Pose2) -> Result<OrderDecision, ErrorReport> {
     if order.order_id != book.order_id() {
         return decide_new(order, book, pose);
@@ -64,14 +64,14 @@ fn decide_new(order: &Order, book: &OrderBook, pose: Pose2) -> Result<OrderDecis
     Err(ErrorReport::warning("noRouteError", text).about("nodeId", &first.node_id))
 }
 
-/// Whether a robot stands at a node of which the heading does not matter.
+/// Whether a robot is at a node, independent of its heading.
 fn stands_at(node: &OrderNode, pose: Pose2) -> bool {
     let Some(position) = &node.node_position else { return false };
     let deviation = position.allowed_deviation_xy.unwrap_or(0.0).max(START_DEVIATION_M);
     (position.x - pose.x).hypot(position.y - pose.y) <= deviation
 }
 
-/// Whether a robot has reached a node by its deviations. Without an allowed one the robot must drive to the pose itself.
+/// Whether a robot is within the allowed deviations of a node. Without allowed deviations the robot must drive to the pose itself.
 #[must_use]
 pub fn is_within_deviation(node: &OrderNode, pose: Pose2) -> bool {
     let Some(position) = &node.node_position else { return false };

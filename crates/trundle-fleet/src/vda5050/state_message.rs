@@ -1,4 +1,4 @@
-//! The state of a robot as its master reads it.
+//! The state of a robot in its master's format.
 
 use super::instant::is_at_rest;
 use super::message::{
@@ -11,7 +11,7 @@ use crate::robot_glance::RobotGlance;
 use trundle_core::wrap_angle;
 use trundle_runtime::{DriveState, MotionHold};
 
-/// Charge of a battery that does not report one \[%\]. Source: VDA 5050 2.1: 80 % stands for "good".
+/// Charge of a battery that does not report one \[%\]. Source: VDA 5050 2.1: 80 % means "good".
 const UNKNOWN_CHARGE: f64 = 80.0;
 
 /// The state of a vehicle after a view of the run.
@@ -52,7 +52,7 @@ fn order_progress(book: &OrderBook) -> OrderProgress {
     }
 }
 
-/// Where the robot is.
+/// Pose of the robot.
 #[must_use]
 pub fn robot_position(view: &RobotGlance, map_id: &str) -> RobotPosition {
     let (pose, covariance) = (view.estimate.pose, view.estimate.covariance);
@@ -68,7 +68,7 @@ pub fn robot_position(view: &RobotGlance, map_id: &str) -> RobotPosition {
     }
 }
 
-/// How fast the robot moves.
+/// Velocity of the robot.
 #[must_use]
 pub fn velocity(view: &RobotGlance) -> Velocity {
     let twist = view.estimate.twist;
@@ -84,7 +84,7 @@ fn battery_state(view: &RobotGlance) -> ChargeState {
     }
 }
 
-/// Stops by safety: conditions of the body, but for a pause.
+/// Safety stops: conditions of the body, without pauses.
 fn safety_state(view: &RobotGlance) -> SafetyState {
     let field_violation = view.hold.is_some_and(|hold| hold != MotionHold::Paused);
     SafetyState { e_stop: "NONE", field_violation }

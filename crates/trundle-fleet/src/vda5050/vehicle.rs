@@ -27,7 +27,7 @@ pub struct Vehicle {
     pub(super) charging: Option<NodeAction>,
     /// Instant actions that have not ended.
     pub(super) pending: Vec<Action>,
-    /// Number of the last mission that this robot began for its master, or that ran when the order came.
+    /// Number of the last mission started for the master, or of the one that ran when the order came.
     own_mission: u64,
     /// Speed limit that was sent \[m/s\].
     speed: f64,
@@ -56,12 +56,12 @@ impl Vehicle {
         }
     }
 
-    /// Whether a master asked for the state since the last call.
+    /// Whether a master requested the state since the last call.
     pub fn take_state_wish(&mut self) -> bool {
         std::mem::take(&mut self.wants_state)
     }
 
-    /// Whether a master asked for the factsheet since the last call.
+    /// Whether a master requested the factsheet since the last call.
     pub fn take_factsheet_wish(&mut self) -> bool {
         std::mem::take(&mut self.wants_factsheet)
     }
@@ -120,7 +120,7 @@ impl Vehicle {
         self.own_mission = self.own_mission.max(mission);
     }
 
-    /// Controller of the robot: a person where another front end gave the present mission.
+    /// Controller of the robot: a person if another front end gave the present mission.
     #[must_use]
     pub fn mode(&self, view: &RobotGlance) -> OperatingMode {
         let is_foreign = view.mission.id > self.own_mission;
@@ -128,7 +128,7 @@ impl Vehicle {
         if is_foreign && is_open { OperatingMode::Manual } else { OperatingMode::Automatic }
     }
 
-    /// Whether the robot still follows a mission of the master, or the one that it began with.
+    /// Whether the robot still follows a mission of the master, or its initial mission.
     fn is_under_way(&self, view: &RobotGlance) -> bool {
         view.mission.id != self.own_mission || (view.mission.task.is_some() && !view.mission.is_over)
     }
@@ -156,14 +156,14 @@ impl Vehicle {
         self.errors.add(error.about("orderId", order_id).about("orderUpdateId", update_id));
     }
 
-    /// Ends the drive and the actions of the order. Its nodes stay until the robot is at rest.
+    /// Ends the drive and the actions of the order. Its nodes remain until the robot is at rest.
     pub(super) fn begin_cancel(&mut self) {
         (self.drive, self.action) = (None, None);
         self.errors.remove("driveError");
         self.book.fail_actions();
     }
 
-    /// Drops what is left of the order.
+    /// Drops the rest of the order.
     pub(super) fn drop_order(&mut self) {
         self.begin_cancel();
         self.book.drop_nodes();
@@ -233,7 +233,7 @@ impl Vehicle {
         self.book.reach();
     }
 
-    /// The robot did not come to a node: it tries again after a while.
+    /// Reports that the robot did not reach a node; the next attempt follows after a pause.
     fn report_obstruction(&mut self, reason: &str) {
         let node = self.book.nodes().front().map(|node| node.node_id.clone()).unwrap_or_default();
         let text = format!("node {node} was not reached: {reason}");
@@ -251,7 +251,7 @@ impl Vehicle {
             && !present.into_iter().chain(self.book.next_action()).any(blocks)
     }
 
-    /// Begins the drive to the next node of the base, or reaches it at once.
+    /// Starts the drive to the next node of the base; a node that is already reached ends immediately.
     fn drive_on(&mut self, view: &RobotGlance, robot: &mut dyn RobotCommands) {
         let Some((node, edge)) = self.book.next_stop() else { return };
         if !self.is_under_way(view) && is_within_deviation(node, view.estimate.pose) {

@@ -1,4 +1,4 @@
-//! Tests of the fleet's protocols on views of a run that is not there.
+//! Tests of the fleet's protocols on simulated views of a run.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod instant;

@@ -94,7 +94,7 @@ fn a_node_that_cannot_be_reached_is_reported_and_tried_again() {
     assert!(errors(&robot.arrive()).is_empty());
 }
 
-/// A state after one order on a new robot, and what the order was changed by.
+/// A state after one order to a new robot; `change` modifies the order.
 fn rejected(change: impl Fn(&mut Value)) -> Value {
     let mut robot = TestRobot::new();
     let mut order = order("a", 0, 0, &[0.0, 2.0], 2);

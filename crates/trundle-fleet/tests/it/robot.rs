@@ -1,4 +1,4 @@
-//! A robot that acts at once, and messages to it.
+//! A robot that acts immediately, and messages to it.
 
 use serde_json::{Value, json};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task, TaskEnd, TaskR
 /// The map of the tests.
 pub const MAP: &str = "hall";
 
-/// A robot that acts at once but drives only when a test says so.
+/// A robot that acts immediately but drives only at a test's request.
 pub struct TestRobot {
     pub vehicle: Vehicle,
     pub view: RobotGlance,
@@ -106,7 +106,7 @@ impl TestRobot {
         }
     }
 
-    /// The robot comes to its goal; the state after two steps.
+    /// Moves the robot to its goal; returns the state after two steps.
     pub fn arrive(&mut self) -> Value {
         self.view.estimate.pose = self.goal().unwrap();
         self.end_task(TaskEnd::Done);
@@ -139,8 +139,8 @@ pub fn with_header(mut message: Value) -> Value {
     message
 }
 
-/// An order over the x axis: nodes at these positions, the first `released` of them in the base. `first` is the place of the first
-/// node among all nodes of the order.
+/// An order along the x axis with nodes at these positions; the first `released` are the base. `first` is the index of the first node among
+/// all nodes of the order.
 pub fn order(id: &str, update: u32, first: u32, positions: &[f64], released: usize) -> Value {
     let nodes: Vec<Value> =
         positions.iter().enumerate().map(|(i, x)| node(first + i as u32, *x, i < released)).collect();

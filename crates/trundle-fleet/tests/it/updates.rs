@@ -1,4 +1,4 @@
-//! Updates of an order, its horizon, and other orders beside it.
+//! Updates of an order, its horizon, and other orders during it.
 
 use crate::robot::{TestRobot, errors, nodes, order};
 use serde_json::json;

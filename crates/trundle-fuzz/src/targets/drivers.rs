@@ -11,9 +11,9 @@ use trundle::drivers::camera::pipe::{FrameLimits, FrameParser, parse_header};
 use trundle::drivers::camera::pixels::{color_from_raw, depth_from_raw};
 use trundle::drivers::kobuki::fuzz_decoder;
 
-/// Packets of zeros that one input may ask for. Source: ours; two frames of depth, and a rest.
+/// Maximum number of packets of zeros for one input. Source: ours; two frames of depth, and a rest.
 const MAX_ZERO_PACKETS: usize = 32;
-/// Bytes of zeros for each step of their length: 37,312 of them are an image of depth.
+/// Number of zero bytes for each step of their length: 37,312 of them are an image of depth.
 const ZERO_STEP_BYTES: usize = 8;
 
 /// The serial stream of a Kobuki, both ways.

@@ -7,7 +7,7 @@ use trundle::fleet::vda5050::{Vehicle, vehicle_state};
 use trundle::fleet::{RobotCommands, RobotFacts, RobotGlance, read_home_command};
 use trundle::runtime::OperatorCommand;
 
-/// A robot that takes every command and does nothing.
+/// A robot that accepts every command without effect.
 #[derive(Default)]
 struct Obedient(u64);
 

@@ -38,7 +38,7 @@ pub fn file_kind(bytes: &[u8]) {
     let _ = with_file("anything", bytes, |path| Expected::LaserLog.check(path));
 }
 
-/// One message of a ROS 2 bag, read as each of the types that are known.
+/// A message of a ROS 2 bag, read as each of the known types.
 pub fn cdr(bytes: &[u8]) {
     bag(&bag_of(bytes).expect("invariant: a bag in memory can be written"));
 }

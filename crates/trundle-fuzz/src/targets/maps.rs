@@ -5,12 +5,12 @@ use crate::seeds::{MAP_YAML, SMALL_PGM};
 use std::path::Path;
 use trundle::io::{read_annotations, read_graph, read_keep_out_mask, read_map, read_places, read_speed_mask};
 
-/// The YAML file of a map, beside a small picture.
+/// The YAML file of a map, with a small picture.
 pub fn map_yaml(bytes: &[u8]) {
     with_files(&[("map.yaml", bytes), ("map.pgm", SMALL_PGM)], |folder| all_maps(&folder.join("map.yaml")));
 }
 
-/// The picture of a map, beside a fixed YAML file.
+/// The picture of a map, with a fixed YAML file.
 pub fn map_picture(bytes: &[u8]) {
     let files = [("map.yaml", MAP_YAML.as_bytes()), ("map.pgm", bytes)];
     with_files(&files, |folder| all_maps(&folder.join("map.yaml")));

@@ -1,4 +1,4 @@
-//! Files that trundle itself saved: each is read as it stands, and with its checksum set right.
+//! Files saved by trundle: each is read unchanged, and with a corrected checksum.
 
 use crate::seeds::small_camera;
 use trundle::runtime::Checkpoint;

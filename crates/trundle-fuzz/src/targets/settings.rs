@@ -14,7 +14,7 @@ pub fn robot_toml(bytes: &[u8]) {
     let _ = std::str::from_utf8(bytes).map(|text| RobotFile::parse(text, &[]));
 }
 
-/// A scene file. The files that its base names are absent.
+/// A scene file. The files of its base are absent.
 pub fn scene_toml(bytes: &[u8]) {
     let file = std::str::from_utf8(bytes).ok().and_then(|text| toml::from_str::<SceneFile>(text).ok());
     let _ = file.map(|file| file.build(&NoFiles, 1));
@@ -52,7 +52,7 @@ pub fn corridor_problem(bytes: &[u8]) {
     let _ = corridor::parse_answers(text);
 }
 
-/// A glTF file. The files that it names are absent.
+/// A glTF file. Its separate files are absent.
 pub fn gltf(bytes: &[u8]) {
     let absent = |_: &str| Err(Error::from(ErrorKind::NotFound));
     let _ = gltf_from_bytes("room.glb", bytes, &GltfOptions::default(), &absent);

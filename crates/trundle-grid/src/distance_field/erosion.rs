@@ -1,10 +1,10 @@
-//! Of one row, the squared distances: the lowest of the parabolas that stand on the vertical edges of its cells.
+//! Squared distances of one row: the minimum of parabolas at the vertical edges of its cells.
 //!
-//! The nearest point of a square seen from another column's centre lies on its near edge. Therefore width + 1 parabolas, each as high
-//! as the nearer of the two columns beside it, give distances to squares instead of centres. A cell tries the edges 1/2, 3/2,
-//! ... cells off, to either side, until the parabola's foot alone is farther than the best distance. Whole blocks of cells are processed
-//! at once, without a branch \[Huang94\]. The lower envelope of \[Felzenszwalb12\] tries fewer edges on free floor, but has a branch at
-//! each. Lengths are in half cells, so squares are whole numbers: exact in f32 up to 2048 cells.
+//! The point of a square nearest to the centre of another column is on the square's near edge. Therefore width + 1 parabolas give distances
+//! to squares instead of centres; the height of each comes from the nearer of its two columns. A cell tries the edges at 1/2, 3/2, ...
+//! cells on either side, until the edge itself is farther than the best distance. Whole blocks of cells are processed without a branch
+//! \[Huang94\]. The lower envelope of \[Felzenszwalb12\] tries fewer edges on free floor, but has a branch at each. Lengths are in half
+//! cells, so squares are whole numbers: exact in f32 up to 2048 cells.
 
 use std::ops::Range;
 
@@ -27,9 +27,9 @@ pub(super) struct Erosion {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gaps<'a> {
     pub(super) of: &'a [u16],
-    /// From this count on there is no obstacle in the column.
+    /// Smallest count that means a column without an obstacle.
     pub(super) none: u16,
-    /// Of the columns beside the row.
+    /// Count of the columns outside the grid.
     pub(super) border: u16,
 }
 
@@ -50,10 +50,10 @@ impl Erosion {
         }
     }
 
-    /// Heights of the edges that the cells from `first` on see, each that of the nearer of its two columns. The border is one column:
-    /// what lies beyond is further.
+    /// Heights of the edges for the cells from `first` on, each from the nearer of its two columns. The border is one column: further
+    /// columns are farther away.
     fn fill_edges(&mut self, gaps: Gaps<'_>, first: usize, cells: usize, reach: usize) {
-        // From the column left of the first edge to the one right of the last.
+        // From the column left of the first edge to the column right of the last.
         let before = (reach + 1).saturating_sub(first);
         let begin = (first + before) - (reach + 1);
         let end = (first + cells + reach + 1).min(gaps.of.len());
@@ -90,7 +90,7 @@ fn looks(squared: f32, at_most: usize) -> usize {
     ((looks as usize).min(at_most) + 1).next_multiple_of(EDGES_PER_CHECK)
 }
 
-/// Of the cells from the one with the left edge `edge[at]` on, that have `reach` more edges on either side.
+/// Processes the cells from the one with the left edge `edge[at]` on; all have `reach` more edges on either side.
 fn erode_block(block: &mut [f32; CELLS_PER_BLOCK], edge: &[f32], at: usize, reach: usize) {
     let mut best = *block;
     for begin in (0..reach).step_by(EDGES_PER_CHECK) {

@@ -1,4 +1,4 @@
-//! Distances to the squares themselves: what a promise of clearance rests on.
+//! Distances to the squares themselves, the basis of guaranteed clearances.
 
 use super::{DistanceField, UnknownIs};
 use trundle_core::{GridGeometry, Vector2};
@@ -28,7 +28,7 @@ impl DistanceField {
         self.nearest_square(point, best).min(self.border_gap(point))
     }
 
-    /// Whether a disc of `radius` about `point` touches no obstacle: by interpolation where that is certain, else by cell squares.
+    /// Whether a disc of `radius` around `point` is free of contact: by interpolation if that is certain, else by cell squares.
     #[inline]
     pub fn keeps(&self, point: Vector2, radius: f64) -> bool {
         let quick = self.distance(point);
@@ -40,8 +40,8 @@ impl DistanceField {
             && self.clearance(point, radius + resolution) >= radius - FIELD_ROUNDING_M
     }
 
-    /// By how much [`DistanceField::distance`] may exceed the truth where that is near `radius`: a distance's second
-    /// derivative is at most 1 / distance, and bilinear interpolation errs by res^2 / 8 of it along either axis.
+    /// Largest excess of [`DistanceField::distance`] over the truth near `radius`. A distance's second derivative is at most 1 / distance,
+    /// and bilinear interpolation errs by res^2 / 8 of it along either axis.
     #[inline]
     pub fn overestimate(&self, radius: f64) -> f64 {
         let resolution = self.geometry.resolution;
@@ -55,7 +55,7 @@ impl DistanceField {
         (origin, origin + Vector2::new(width as f64, height as f64) * resolution)
     }
 
-    /// Whether everything outside the grid is an obstacle.
+    /// Whether the space outside the grid is an obstacle.
     #[inline]
     pub fn is_walled(&self) -> bool {
         self.unknown == UnknownIs::Obstacle
@@ -68,8 +68,8 @@ impl DistanceField {
         if inside { self.distance[(row * width + col) as usize] == 0.0 } else { self.is_walled() }
     }
 
-    /// Visits the centres of obstacle cells that lie in the box (`low`, `high`) and have a free neighbour: the nearest
-    /// square to anything free is one of them.
+    /// Visits the centres of obstacle cells in the box (`low`, `high`) that have a free neighbour: the square nearest to any free point is
+    /// among them.
     pub fn for_obstacle_rims_in(&self, low: Vector2, high: Vector2, mut visit: impl FnMut(Vector2)) {
         let (width, cells) = (self.geometry.width, self.distance.len());
         self.for_obstacles_in(low, high, |linear| {
@@ -98,8 +98,8 @@ impl DistanceField {
         }
     }
 
-    /// Of each column, the nearest square is as many rows from the point's row as its gap says, above or below: a square further
-    /// off on the other side is no nearer to any point of the row.
+    /// In each column, the nearest square is above or below the point's row by the column's gap. A square farther away on the other side is
+    /// not nearer to any point of the row.
     fn nearest_square(&self, point: Vector2, cap: f64) -> f64 {
         let GridGeometry { resolution, origin, width, height } = self.geometry;
         let at = (point - origin) / resolution;
@@ -124,7 +124,7 @@ impl DistanceField {
         (best.sqrt() * resolution).min(cap)
     }
 
-    /// How far the point is inside the grid where outside counts as an obstacle, m.
+    /// Distance of the point from the grid's border if the outside is an obstacle, m.
     #[inline]
     pub fn border_gap(&self, point: Vector2) -> f64 {
         if self.unknown == UnknownIs::Free {

@@ -1,8 +1,8 @@
 //! Distance to the nearest obstacle, exact at the centres of all cells.
 //!
-//! Problem: each step of planning needs the distance to the nearest obstacle at a point, and its gradient. Idea: the distance from
-//! the centre of each cell to the nearest occupied square is computed exactly, first along columns and then along rows \[Felzenszwalb12\].
-//! Between centres it is interpolated bilinearly. Where a guarantee is needed, the squares themselves are measured
+//! Problem: each step of planning needs the distance to the nearest obstacle at a point, and its gradient. Idea: the distance from the
+//! centre of each cell to the nearest occupied square is computed exactly, first along columns and then along rows \[Felzenszwalb12\].
+//! Between centres the distance is interpolated bilinearly. Guarantees use the distances to the squares themselves
 //! ([`DistanceField::clearance`]). A field can be limited to a reach, which bounds the effect of a change. Cost: O(cells x reach) for a
 //! map, the same for the cells near a change, O(1) for a lookup.
 
@@ -20,16 +20,16 @@ use transform::Transform;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
 use window::Window;
 
-/// The distance given if a map has no obstacle at all, m.
+/// Distance in a map without obstacles, m.
 pub const NO_OBSTACLE_DISTANCE_M: f64 = 1e6;
 
-/// State that unknown cells, and everything outside the grid, count as.
+/// State assumed for unknown cells and the space outside the grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UnknownIs {
     /// Passable.
     Free,
-    /// As good as a wall.
+    /// Counts as an obstacle.
     Obstacle,
 }
 
@@ -46,13 +46,13 @@ impl UnknownIs {
 
 /// From the first to the last cell of a row that changed between obstacle and no obstacle.
 fn differing(was: &[bool], cells: &[Cell], unknown: UnknownIs) -> Option<Range<usize>> {
-    /// Number of cells that are compared at once, without a branch.
+    /// Number of cells that are compared together, without a branch.
     const CHUNK: usize = 256;
     let unknown_blocks = unknown == UnknownIs::Obstacle;
     let differ = |(was, cell): (&bool, &Cell)| {
         ((*cell == Cell::Occupied) | ((*cell == Cell::Unknown) & unknown_blocks)) ^ *was
     };
-    // In bytes, so that many are compared by one instruction.
+    // Bytes, many of which are compared by one instruction.
     let any = |(was, cells): (&[bool], &[Cell])| {
         was.iter().zip(cells).fold(0_u8, |any, pair| any | u8::from(differ(pair))) != 0
     };
@@ -84,26 +84,26 @@ pub struct DistanceField {
 }
 
 impl DistanceField {
-    /// The field of a grid. Outside the grid counts as unknown.
+    /// The field of a grid. The outside of the grid counts as unknown.
     pub fn from_grid(grid: &OccupancyGrid, unknown: UnknownIs) -> Self {
         Self::over(*grid.geometry(), grid, unknown, NO_OBSTACLE_DISTANCE_M)
     }
 
-    /// [`DistanceField::from_grid`] with distances up to `reach` m only, a few cells at least: farther cells have this distance. It is
-    /// made and updated the faster for it.
+    /// [`DistanceField::from_grid`] with distances up to `reach` m, at least a few cells; farther cells have this distance. A smaller reach
+    /// makes creation and updates faster.
     pub fn up_to(reach: f64, grid: &OccupancyGrid, unknown: UnknownIs) -> Self {
         Self::over(*grid.geometry(), grid, unknown, reach)
     }
 
-    /// The field of `grid` over another `geometry` of the same lattice (same resolution, origins whole cells apart), up to
-    /// `reach` m; cells that the grid does not reach are unknown.
+    /// The field of `grid` over another `geometry` of the same lattice (same resolution, origins whole cells apart), up to `reach` m; cells
+    /// outside the grid are unknown.
     pub fn over(geometry: GridGeometry, grid: &OccupancyGrid, unknown: UnknownIs, reach: f64) -> Self {
         /// Fewer cells a blocks' middle, and a step of the search, would not see.
         const MIN_REACH_CELLS: f64 = 4.0;
         let (distance, gap) = (vec![0.0; geometry.len()], vec![0; geometry.len()]);
         let per_metre = geometry.resolution.recip();
         let reach = reach.max(MIN_REACH_CELLS * geometry.resolution).min(NO_OBSTACLE_DISTANCE_M);
-        // Saturates where columns are longer than the reach.
+        // Saturates for columns longer than the reach.
         let none = ((reach * per_metre).ceil() as u16).saturating_add(2);
         let blocks = BlockMaxima::default();
         let is_obstacle = vec![false; geometry.len()];
@@ -114,8 +114,8 @@ impl DistanceField {
         field
     }
 
-    /// Brings the field up to date with a grid on the same lattice, exactly, at a cost that goes with the changed area.
-    /// Returns the number of cells in the box around all changes, 0 when there were none.
+    /// Updates the field exactly to a grid on the same lattice, at a cost proportional to the changed area. Returns the number of cells in
+    /// the box around all changes, 0 without changes.
     pub fn update(&mut self, grid: &OccupancyGrid) -> usize {
         let Some(dirty) = self.changed(grid) else { return 0 };
         self.refresh(grid, &dirty);
@@ -176,7 +176,7 @@ impl DistanceField {
         &self.blocks
     }
 
-    /// Where the cells lie.
+    /// Position of the cells.
     #[inline]
     pub fn geometry(&self) -> &GridGeometry {
         &self.geometry
@@ -196,21 +196,21 @@ impl DistanceField {
 
     /// The distance to the nearest obstacle at a point of the map frame, m, bilinear between cell centres.
     ///
-    /// Never more than res^2 / 4d above the truth, d the distance. Outside the grid: the border's value where unknown
-    /// is free (a lower bound), 0 where unknown is an obstacle. NaN: 0.
+    /// Exceeds the truth by at most res^2 / 4d, d the distance. Outside the grid: the border's value if unknown is free (a lower bound), 0
+    /// if unknown is an obstacle. NaN: 0.
     #[inline]
     pub fn distance(&self, point: Vector2) -> f64 {
         self.among_centres(point).unwrap_or_else(|| self.distance_anywhere(point))
     }
 
-    /// [`DistanceField::distance`] between four centres; `None` if there are none around the point.
+    /// [`DistanceField::distance`] between four centres; `None` outside of them.
     #[inline]
     fn among_centres(&self, point: Vector2) -> Option<f64> {
         let GridGeometry { origin, width, .. } = self.geometry;
         let (x, y) =
             ((point.x - origin.x) * self.per_metre - 0.5, (point.y - origin.y) * self.per_metre - 0.5);
         let (col, row) = (x as usize, y as usize);
-        // A whole column and row further on, so that neither wraps.
+        // The next column and row must exist, which prevents a wrap to the next row.
         if !(x >= 0.0 && y >= 0.0 && col + 1 < width) {
             return None;
         }
@@ -273,7 +273,7 @@ impl DistanceField {
 
 /// The four cell centres around a point.
 struct Stencil {
-    /// Their distances, by row then column.
+    /// Distances at the corners, by row then column.
     corners: [[f64; 2]; 2],
     /// Fraction along x.
     u: f64,
@@ -283,7 +283,8 @@ struct Stencil {
     beyond: Vector2,
 }
 
-/// Along one axis: the lower centre, the fraction towards the next, and how far `at` (cells) lies beyond the outermost.
+/// Position along one axis: the lower centre, the fraction towards the next one, and the distance of `at` (cells) outside the outermost
+/// centres.
 fn place(at: f64, size: usize) -> (usize, f64, f64) {
     let clamped = at.clamp(0.0, size as f64 - 1.0);
     let low = (clamped as usize).min(size.saturating_sub(2));

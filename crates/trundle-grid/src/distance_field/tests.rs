@@ -168,7 +168,7 @@ proptest! {
         prop_assert!(free.border_gap(point).is_infinite());
     }
 
-    /// A disc that keeps clear is one whose clearance is its radius.
+    /// A disc is clear exactly if its radius is at most the clearance.
     #[test]
     fn a_disc_keeps_clear_exactly_when_its_clearance_reaches_its_radius(
         grid in any_grid(), x in -0.3..1.3, y in 0.7..2.3, radius in 0.02..0.6_f64,
@@ -193,7 +193,7 @@ proptest! {
         prop_assert!(field.distance(point) <= truth + field.overestimate(truth) + 1e-6);
     }
 
-    /// The maximum of a block is the greatest distance of its cells.
+    /// The maximum of a block equals the largest distance of its cells.
     #[test]
     fn the_maximum_of_a_block_is_that_of_its_cells(grid in any_grid(), obstacle in any::<bool>()) {
         let unknown = if obstacle { UnknownIs::Obstacle } else { UnknownIs::Free };

@@ -3,9 +3,9 @@
 //! Two sweeps over the columns count the rows to the nearest obstacle, then each row is eroded by parabolas
 //! ([`super::erosion`]).
 //!
-//! After a change inside a box, only cells can change that are no nearer to their old obstacle than to the box. These cells form a star
-//! around the box: the line from such a cell to the box crosses such cells only. Rows are therefore processed from the box outward until
-//! one has none. A cell of slack covers the distance between two centres.
+//! After a change inside a box, only cells can change whose old obstacle is at least as far as the box. These cells form a star around the
+//! box: the line from such a cell to the box crosses only such cells. Rows are therefore processed from the box outward until a row has no
+//! such cell. A cell of slack covers the distance between two centres.
 
 use super::erosion::{Erosion, Gaps};
 use super::window::Window;
@@ -17,20 +17,20 @@ use trundle_core::GridGeometry;
 pub(super) struct Transform<'a> {
     pub(super) geometry: &'a GridGeometry,
     pub(super) is_obstacle: &'a [bool],
-    /// Whether everything outside the grid is an obstacle.
+    /// Whether the space outside the grid is an obstacle.
     pub(super) outside: bool,
-    /// Of each cell, rows to the nearest obstacle of its column, at most `none`; 0 in obstacles.
+    /// For each cell, rows to the nearest obstacle of its column, at most `none`; 0 in obstacles.
     pub(super) gap: &'a mut [u16],
     /// From centres to squares, m, at most `reach`.
     pub(super) distance: &'a mut [f32],
-    /// The count of rows that stands for "none in this column".
+    /// The count of rows that means a column without an obstacle.
     pub(super) none: u16,
     /// Largest stored distance, m.
     pub(super) reach: f64,
 }
 
 impl Transform<'_> {
-    /// Brings gaps and distances up to date after obstacles changed inside `dirty`; returns where distances may have.
+    /// Updates gaps and distances after obstacles changed inside `dirty`; returns the window of possible changes.
     pub(super) fn update(&mut self, dirty: &Window) -> Window {
         let whole = *dirty == Window::whole(self.geometry);
         let rows = if whole { 0..self.geometry.height } else { self.rows_of_gaps(dirty) };
@@ -54,7 +54,7 @@ impl Transform<'_> {
         touched
     }
 
-    /// The rows where a column's gap may change: those no nearer to their old obstacle than to the box.
+    /// The rows in which a column's gap may change: those whose old obstacle is at least as far as the box.
     fn rows_of_gaps(&self, dirty: &Window) -> Range<usize> {
         let width = self.geometry.width;
         let reaches = |row: usize, off: usize| {
@@ -71,8 +71,8 @@ impl Transform<'_> {
         low..high
     }
 
-    /// Counts the cells to the nearest occupied one in the same column. The gap beside the rows bounds what comes from
-    /// beyond them, and is the truth where it matters.
+    /// Counts the cells to the nearest occupied one in the same column. The gap next to the rows bounds the effect of obstacles outside
+    /// them, and is exact for the cells that can change.
     fn sweep(&mut self, cols: Range<usize>, rows: Range<usize>) {
         let (width, none) = (self.geometry.width, self.none);
         let beyond = vec![if self.outside { 0 } else { none }; cols.len()];
@@ -94,7 +94,7 @@ impl Transform<'_> {
         }
     }
 
-    /// The columns of a row where distances may change, a cell of slack included.
+    /// The columns of a row in which distances may change, including one cell of slack.
     fn cols_of_row(&self, dirty: &Window, row: usize) -> Option<Range<usize>> {
         let GridGeometry { width, resolution, .. } = *self.geometry;
         let off = |at: usize, low: usize, high: usize| {

@@ -96,7 +96,7 @@ mod tests {
             others in prop::collection::vec((-70..70_i32, -70..70_i32), 0..60),
         ) {
             let (mut mask, mut other) = (CellMask::default(), CellMask::default());
-            // A former use leaves nothing behind.
+            // The mask contains no bits of an earlier use.
             mask.cover((0, 0), (500, 500));
             mask.set(400, 20);
             mask.cover((-70, -70), (70, 70));

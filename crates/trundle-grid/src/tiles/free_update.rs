@@ -5,7 +5,7 @@ use super::{
     tile::{Tile, TileMap},
 };
 
-/// Subtracts the log-odds of a free ray from the cells of a mask, a row of a tile at a time.
+/// Subtracts the log-odds of a free ray from the cells of a mask, one row of a tile per step.
 #[derive(Debug, Clone)]
 pub(super) struct FreeUpdate {
     /// Log-odds subtracted from a cell.
@@ -19,7 +19,7 @@ pub(super) struct FreeUpdate {
 /// Log-odds of a row of a tile.
 type Row = [i8; Tile::SIDE];
 
-/// For each byte: eight bytes, 255 where the bit is set.
+/// For each byte: eight bytes, 255 for each set bit.
 const SPREAD: [[u8; 8]; 256] = {
     let mut all = [[0; 8]; 256];
     let mut byte = 0;
@@ -72,7 +72,7 @@ impl FreeUpdate {
     ) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has the one feature that the function is compiled for.
+            // SAFETY: the processor has the only feature that the function is compiled for.
             return unsafe { self.update_tile_by_avx2(tile, cells, most, removed) };
         }
         self.update_rows(tile, cells, most, removed);
@@ -110,8 +110,8 @@ impl FreeUpdate {
         }
     }
 
-    /// Updates the cells of a row whose bits are set. The loop has no branch, so that the compiler vectorises it: log-odds plus
-    /// 128 are unsigned bytes, and saturating difference and maximum of unsigned bytes are single instructions.
+    /// Updates the cells of a row whose bits are set. The loop has no branch, which lets the compiler vectorise it. Log-odds plus 128 are
+    /// unsigned bytes, and saturating difference and maximum of unsigned bytes are single instructions.
     #[inline(always)]
     fn update_row(&self, row: &mut Row, word: u32, most: u8) {
         let mut selected = [0_u8; Tile::SIDE];

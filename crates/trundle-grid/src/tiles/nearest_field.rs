@@ -3,14 +3,14 @@
 use super::tile::{NearestObstacle, Tile, TileMap};
 use std::ops::RangeInclusive;
 
-/// Field of nearest obstacles, updated as obstacles appear and disappear. Matching a point against it costs one lookup.
+/// Field of nearest obstacles, updated as obstacles appear and disappear. The comparison of a point with the field costs one lookup.
 ///
-/// Every cell within `reach` cells of an obstacle stores the vector to the nearest obstacle point, to 1/16 cell. Cells at even
-/// coordinates also store a likelihood of that distance, for the coarse search.
+/// Every cell within `reach` cells of an obstacle stores the vector to the nearest obstacle point, in 1/16 cell. Cells at even coordinates
+/// also store a likelihood of that distance, for the coarse search.
 #[derive(Debug, Clone)]
 pub struct NearestField {
     reach: i32,
-    /// Likelihood, 0 to 255, by squared distance in quarters of a cell squared; the last entry is that of no obstacle.
+    /// Likelihood, 0 to 255, by squared distance in quarters of a cell squared; the last entry applies without an obstacle.
     coarse: [u8; NOT_IN_REACH + 1],
 }
 
@@ -28,8 +28,8 @@ impl NearestField {
         Self { reach: reach.clamp(2, Self::MAX_REACH_CELLS), coarse }
     }
 
-    /// Inserts or moves the obstacle point of a cell: updates the cells for which it is the nearest, and the cells that stored its
-    /// former position. `own` is its position in the cell.
+    /// Inserts or moves the obstacle point of a cell. It updates the cells nearest to this point, and the cells that stored its former
+    /// position. `own` is the point's position in the cell.
     pub fn insert(&self, map: &mut TileMap, cell: (i32, i32), own: NearestObstacle) {
         let inside = |v: i32| {
             let within = v.rem_euclid(Tile::SIDE as i32);
@@ -53,11 +53,11 @@ impl NearestField {
         });
     }
 
-    /// Compares an obstacle with the stored ones of these columns and rows of a tile.
+    /// Compares an obstacle with the stored ones in a part of a tile.
     fn offer(&self, tile: &mut Tile, part: Part, cell: (i32, i32), own: NearestObstacle) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has the one feature that the function is compiled for.
+            // SAFETY: the processor has the only feature that the function is compiled for.
             return unsafe { self.offer_by_avx2(tile, part, cell, own) };
         }
         self.offer_portable(tile, part, cell, own);
@@ -82,8 +82,8 @@ impl NearestField {
         }
     }
 
-    /// Removes the obstacles of `cells` from the field. The obstacles of neighbouring cells are offered to the cells that lose their
-    /// nearest one: a Voronoi region is divided among its neighbours.
+    /// Removes the obstacles of `cells` from the field. Cells that lose their nearest obstacle are compared with the obstacles of
+    /// neighbouring cells: a Voronoi region is divided among its neighbours.
     pub fn remove(&self, map: &mut TileMap, cells: &[(i32, i32)]) {
         let mut lost = Vec::new();
         for &cell in cells {
@@ -114,11 +114,11 @@ impl NearestField {
         }
     }
 
-    /// Compares an obstacle with the stored ones of a row of a tile. `step` is the vector from the first cell to the centre of the
+    /// Compares an obstacle with the stored ones in a row of a tile. `step` is the vector from the first cell to the centre of the
     /// obstacle's cell.
     ///
-    /// The loops have no branches and use 16-bit arithmetic, so that the compiler vectorises them. Squares stay below 2^15 within
-    /// reach, and the square of `NONE` is 2^15.
+    /// The loops have no branches and use 16-bit arithmetic, which lets the compiler vectorise them. Squares are below 2^15 within reach,
+    /// and the square of `NONE` is 2^15.
     #[inline(always)]
     fn offer_row(
         &self,
@@ -226,7 +226,7 @@ fn mask(condition: bool) -> i16 {
     -i16::from(condition)
 }
 
-/// Whether an offset may lie in its own cell, as a mask.
+/// Whether an offset may be within its own cell, as a mask.
 #[inline]
 fn within(v: i16) -> i16 {
     mask(v <= NearestObstacle::MAX_OWN_OFFSET as i16) & mask(v >= -NearestObstacle::MAX_OWN_OFFSET as i16)
@@ -297,7 +297,7 @@ mod tests {
                             .min(),
                     };
                     let found = nearest(&map, (x, y));
-                    // No removed obstacle is stored. The nearest obstacle is exact but for corners of Voronoi regions.
+                    // No removed obstacle is stored. The nearest obstacle is exact except at corners of Voronoi regions.
                     if let Some(cell) = target((x, y), found) {
                         prop_assert!(left.contains_key(&cell), "{cell:?} was removed");
                     }

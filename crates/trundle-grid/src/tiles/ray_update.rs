@@ -106,7 +106,7 @@ impl RayUpdate {
         cells
     }
 
-    /// Sets a cell to the clamp of its class in an occupancy grid. An unknown cell is left as it is.
+    /// Sets a cell to the clamp of its class in an occupancy grid. An unknown cell is not changed.
     pub fn set(&self, map: &mut TileMap, (x, y): (i32, i32), cell: Cell) {
         let log_odds = match cell {
             Cell::Unknown => return,
@@ -161,7 +161,7 @@ impl RayUpdate {
 const MEAN_HIT_RATE: f64 = 0.1;
 
 impl RayUpdateScratch {
-    /// Finds the ends of the rays and covers them with the masks. Returns the origin of the rays, cells.
+    /// Computes the ends of the rays and the masks that cover them. Returns the origin of the rays, cells.
     fn find_ends(&mut self, pose: Pose2, scan: &ScanRays, is_blind: bool) -> (f64, f64) {
         let (s, c) = pose.theta.sin_cos();
         let put = |x: f32, y: f32| {
@@ -184,7 +184,7 @@ impl RayUpdateScratch {
                 weight: ray.hit_weight,
             });
         }
-        // One cell more: a cell of a ray may lie beside the ray's end.
+        // One extra cell: a cell of a ray may be next to the ray's end.
         let (low, high) = (cell_of(low), cell_of(high));
         let near = is_blind.then_some(&mut self.near);
         for mask in [&mut self.surface, &mut self.free].into_iter().chain(near) {
@@ -269,7 +269,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// One ray along +x that ends `range_m` ahead, with free stretches in m, in cells of 5 cm.
+    /// One ray along +x that ends `range_m` ahead, with free spans in m, in cells of 5 cm.
     fn ahead(range_m: f32, hit: bool, free_m: Option<&[(f32, f32)]>, hit_weight: f32) -> ScanRays {
         let ray =
             ScanRay { x: range_m / 0.05, y: 0.0, hit, joined: false, whole: free_m.is_none(), hit_weight };
@@ -331,7 +331,7 @@ mod tests {
     }
 
     proptest! {
-        /// Each update moves a cell by at most one hit or one free ray, whatever the number of rays through it.
+        /// Each update changes a cell by at most one hit or one free ray, for any number of rays through it.
         #[test]
         fn a_cell_changes_once_a_scan_and_stays_within_the_clamps(
             ends in prop::collection::vec((-40.0..40.0_f32, -40.0..40.0_f32, any::<bool>()), 1..40),

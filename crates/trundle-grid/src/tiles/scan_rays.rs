@@ -20,11 +20,11 @@ pub struct ScanRay {
     pub y: f32,
     /// Whether the ray ends at an obstacle.
     pub hit: bool,
-    /// Whether the end lies on one surface with the end of the ray before.
+    /// Whether the end and the end of the previous ray are on one surface.
     pub joined: bool,
-    /// Whether the whole ray was seen free. Otherwise the scan's spans list its free stretches.
+    /// Whether the whole ray was observed free. Otherwise the scan's spans list its free parts.
     pub whole: bool,
-    /// Weight of the hit in its cell, 0 to 1: below 1 where the range noise spreads the hit over several cells.
+    /// Weight of the hit in its cell, 0 to 1; below 1 if the range noise spreads the hit over several cells.
     pub hit_weight: f32,
 }
 

@@ -4,8 +4,8 @@ use super::{cell_mask::CellMask, tile::Tile};
 
 /// Cells from a start point up to, but without, the cell of the end point.
 ///
-/// Each step along the longer axis gives one cell: the one that the line passes at the centre of that column or row. A line that
-/// cuts off the corner of a cell does not clear that cell; [`crate::ray_cells`] gives those cells too.
+/// Each step along the longer axis gives one cell: the cell on the line at the centre of that column or row. A line through the corner of a
+/// cell does not clear that cell; [`crate::ray_cells`] gives those cells too.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SteppedRay {
     /// Cell along the longer axis.
@@ -115,7 +115,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     proptest! {
-        /// The mask holds exactly the cells of the stepwise traversal, and each lies within half a cell of the line.
+        /// The mask contains exactly the cells of the stepwise traversal, and each is within half a cell of the line.
         #[test]
         fn the_mask_holds_the_cells_of_the_steps(
             x in -90.0..90.0_f64, y in -90.0..90.0_f64, u in -90.0..90.0_f64, v in -90.0..90.0_f64,

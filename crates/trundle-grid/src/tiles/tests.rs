@@ -47,7 +47,7 @@ proptest! {
     /// An update moved by whole tiles gives the map moved by whole tiles.
     #[test]
     fn the_map_moves_with_the_robot(rays in any_rays(), pose in any_pose(), cols in -40..40_i32, rows in -40..40_i32) {
-        // Positions of 1/64 cells stay exact.
+        // Positions that are multiples of 1/64 cell are exact.
         let grid = |v: f64| (v * 64.0).round() / 64.0;
         let pose = Pose2 { x: grid(pose.x), y: grid(pose.y), theta: 0.0 };
         let rays = ScanRays {
@@ -65,7 +65,7 @@ proptest! {
         prop_assert!(moved == bytes(&b));
     }
 
-    /// Buffers of an earlier scan leave nothing behind.
+    /// Buffers have no effect on later scans.
     #[test]
     fn reused_buffers_change_nothing(first in any_rays(), rays in any_rays(), pose in any_pose(), other in any_pose()) {
         let model = update(0.3);
@@ -99,7 +99,7 @@ proptest! {
         let model = update(0.0);
         let (mut map, mut scratch) = (TileMap::default(), RayUpdateScratch::default());
         model.apply(&mut map, &mut scratch, pose, &rays);
-        // Rays twice as long, so that each crosses the cell where it ended.
+        // Rays of twice the length, each of which crosses the cell of its former end.
         let free = rays.rays.iter().map(|r| ScanRay { x: 2.0 * r.x, y: 2.0 * r.y, hit: false, joined: false, ..*r });
         let free = ScanRays { rays: free.collect(), ..rays.clone() };
         let obstacles = |map: &TileMap| {
@@ -110,7 +110,7 @@ proptest! {
         for _ in 0..20 {
             model.apply(&mut map, &mut scratch, pose, &free);
         }
-        // A ray of cells may pass beside the cell of a hit by half a cell; the others are gone.
+        // A ray of cells may miss the cell of a hit by half a cell; all others are removed.
         let after = obstacles(&map);
         prop_assert!(after * 2 <= before, "{after} of {before} are left");
         for (at, _) in bytes(&map) {
@@ -123,7 +123,7 @@ proptest! {
         }
     }
 
-    /// The coarse likelihood that is kept up to date is the one that follows from the nearest obstacles.
+    /// The updated coarse likelihood equals the one computed from the nearest obstacles.
     #[test]
     fn the_coarse_likelihood_follows_from_the_nearest_obstacles(
         scans in prop::collection::vec((any_rays(), any_pose()), 1..4),

@@ -4,7 +4,7 @@ use crate::tile_grid::{TileData, TileGrid, TileIndex};
 
 /// Vector from the centre of a cell to the nearest obstacle point, in 1/16 cells.
 ///
-/// x is the low byte and y the high byte of one number, so that vector instructions load a whole row of cells.
+/// x is the low byte and y the high byte of one number, so a vector instruction loads a whole row of cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(transparent)]
 pub struct NearestObstacle(i16);
@@ -14,8 +14,8 @@ impl NearestObstacle {
     pub const NONE: Self = Self::new(i8::MIN, i8::MIN);
     /// Units per cell.
     pub const PER_CELL: i32 = 16;
-    /// Maximum offset of an obstacle point from the centre of its own cell, in 1/16 cells. A larger offset would stand for
-    /// a point of the neighbouring cell. Source: ours.
+    /// Maximum offset of an obstacle point from the centre of its own cell, in 1/16 cells. A larger offset is a point of the neighbouring
+    /// cell. Source: ours.
     pub const MAX_OWN_OFFSET: i32 = 7;
 
     /// Vector (x, y), in 1/16 cells.
@@ -52,7 +52,7 @@ impl NearestObstacle {
         self.x() == i8::MIN
     }
 
-    /// Whether the obstacle lies in the cell itself.
+    /// Whether the obstacle is in the cell itself.
     pub fn is_own(self) -> bool {
         i32::from(self.x()).abs() <= Self::MAX_OWN_OFFSET && i32::from(self.y()).abs() <= Self::MAX_OWN_OFFSET
     }
@@ -73,11 +73,11 @@ impl NearestObstacle {
 /// Map of one particle: log-odds in bytes, with the nearest obstacle of each cell.
 pub type TileMap = TileGrid<Tile>;
 
-/// Tile of every place where nothing is known.
+/// Tile for every unknown place.
 pub(super) static UNKNOWN_TILE: Tile = Tile::UNKNOWN;
 
 impl TileMap {
-    /// Tile at these tile coordinates; a tile of unknown cells where none is stored.
+    /// Tile at these tile coordinates; a tile of unknown cells if none is stored.
     pub fn tile(&self, tile: TileIndex) -> &Tile {
         self.stored(tile).unwrap_or(&UNKNOWN_TILE)
     }
@@ -127,7 +127,7 @@ impl Tile {
         log_odds.chain(x).chain(y)
     }
 
-    /// Tile from its bytes, 3 a cell, with an empty coarse likelihood. Panics on fewer bytes.
+    /// Tile from its bytes, 3 per cell, with an empty coarse likelihood. Panics for too few bytes.
     pub fn from_bytes(bytes: &[u8]) -> Self {
         let mut tile = Self::UNKNOWN;
         for i in 0..Self::CELLS {

@@ -46,7 +46,7 @@ impl<'a> TilePools<'a> {
     }
 }
 
-/// Maps of these tiles and chunks. The numbers of tiles and chunks must be in range.
+/// Maps made from these tiles and chunks. The numbers of tiles and chunks must be in range.
 pub fn assemble(tiles: Vec<Tile>, chunks: &[ChunkParts], maps: &[Vec<u32>]) -> Vec<TileMap> {
     let tiles: Vec<Arc<Tile>> = tiles.into_iter().map(Arc::new).collect();
     let chunks: Vec<_> = chunks

@@ -34,7 +34,7 @@ impl<'a> TileWindow<'a> {
         &self.tiles
     }
 
-    /// Tile and index in it of a cell counted from the window's corner. Outside the window: a tile of unknown cells.
+    /// Tile and index of a cell, whose coordinates are relative to the window's corner. Outside the window: a tile of unknown cells.
     #[inline]
     pub fn at(&self, x: i32, y: i32) -> (&'a Tile, usize) {
         let (col, row) = ((x >> Tile::BITS) as u32 as usize, (y >> Tile::BITS) as u32 as usize);

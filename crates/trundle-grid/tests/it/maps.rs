@@ -59,7 +59,7 @@ proptest! {
         prop_assert!(!nearest(&after, extra).is_own());
         for cell in (-45..45).flat_map(|x| (-45..45).map(move |y| (x, y))) {
             let (was, is) = (nearest(&before, cell), nearest(&after, cell));
-            // No obstacle is invented, and none is nearer than the true one.
+            // The update adds no obstacle, and none is nearer than the true one.
             prop_assert!(is.is_none() || (!was.is_none() && is.squared() >= was.squared()), "cell {:?}", cell);
         }
     }

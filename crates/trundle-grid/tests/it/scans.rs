@@ -73,7 +73,7 @@ proptest! {
         let open: BTreeSet<_> = without_surfaces.free.iter().copied().chain(far).collect();
         prop_assert!(cut.free.iter().all(|cell| open.contains(cell)));
         prop_assert!(cut.hits.len() <= without_surfaces.hits.len());
-        // Cells between two hits of one surface are not cleared: never more, maybe fewer.
+        // Cells between two hits of one surface are not cleared: the number of cleared cells never increases.
         prop_assert!(whole.iter().all(|cell| open.contains(cell)));
     }
 

@@ -8,7 +8,7 @@ pub const TUM_DEPTH_SCALE: f64 = 5000.0;
 /// Depth units per metre in the depth images of a Kinect V2, of ROS (REP 118) and of trundle's recordings: millimetres.
 pub const KINECT_V2_DEPTH_SCALE: f64 = 1000.0;
 
-/// Depth scale below which a file holds its inverse \[units per metre\]: RealSense's 0.001 is metres per unit. Source: ours.
+/// Depth scale below which a file gives the inverse \[units per metre\]: RealSense's 0.001 is in metres per unit. Source: ours.
 const MIN_DEPTH_SCALE: f64 = 1.0;
 
 /// Depth scale above which no camera's is \[units per metre\]. Source: ours.

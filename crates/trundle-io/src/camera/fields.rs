@@ -1,4 +1,4 @@
-//! The numbers of a camera file, of whatever form.
+//! The numbers of a camera file of any format.
 
 use super::depth_scale::checked_depth_scale;
 use trundle_core::{Distortion, Invalid, PinholeCamera};
@@ -17,7 +17,7 @@ pub(super) struct CameraFields {
 }
 
 impl CameraFields {
-    /// The camera, where the numbers make one.
+    /// The camera, if the numbers are valid.
     pub(super) fn camera(&self) -> Result<PinholeCamera, Invalid> {
         self.depth_scale.map_or(Ok(1.0), checked_depth_scale)?;
         let camera = PinholeCamera::new(self.size, self.focal, self.centre, self.lens)?;
@@ -27,7 +27,7 @@ impl CameraFields {
     }
 }
 
-/// Refuses a principal point beside the image.
+/// Refuses a principal point outside the image.
 fn require_inside(name: &str, value: f64, side: usize) -> Result<(), Invalid> {
     let last = side as f64 - 1.0;
     if (0.0..=last).contains(&value) {

@@ -7,7 +7,7 @@ use trundle_core::Invalid;
 /// Longest side of an image \[px\]. A file with a longer one is refused. Source: ours.
 const MAX_IMAGE_SIDE_PX: f64 = 65_536.0;
 
-/// A side of the images by the first of its names that is there, px.
+/// A side of the image, by the first of its names that exists, px.
 pub(super) fn image_side(document: &YamlDocument<'_>, names: &[&str]) -> Result<usize, IoError> {
     let name = document.first_of(names);
     let value = document.number(name, "the size of the images, px")?;

@@ -17,7 +17,7 @@ pub(super) struct CameraMatrix {
 }
 
 impl CameraMatrix {
-    /// Reads the nine numbers of the matrix `name`. All but focal lengths and principal point are those of a pinhole camera
+    /// Reads the nine numbers of the matrix `name`. All numbers but focal lengths and principal point must be those of a pinhole camera
     /// without skew.
     pub(super) fn parse(name: &str, numbers: &[f64], order: MatrixOrder) -> Result<Self, Invalid> {
         let &[fx, a, b, c, fy, d, e, f, scale] = numbers else {

@@ -2,14 +2,14 @@
 
 use trundle_core::Distortion;
 
-/// Parts of the names of models whose image is not a pinhole camera's, also with all numbers 0: there the angle from the optical
-/// axis, not its tangent, is the distance in the image. Source: ROS REP 118's image_geometry, Kalibr.
+/// Parts of the names of models that are not a pinhole camera, even with all numbers 0: the distance in the image is the angle from the
+/// optical axis, not its tangent. Source: ROS REP 118's image_geometry, Kalibr.
 const FISHEYE_MODELS: [&str; 5] = ["equidist", "fisheye", "kannala", "omni", "spherical"];
 
 /// Accepted lenses, and the remedy for another lens.
 const EXPECTED: &str = "plumb_bob with up to 5 numbers: rectify the images and give the rectified camera";
 
-/// The lens of model plumb_bob: k1, k2, p1, p2, k3. Other models but fisheyes pass where all that they add is 0.
+/// The lens of model plumb_bob: k1, k2, p1, p2, k3. Other models, except fisheyes, are accepted if all their additional numbers are 0.
 ///
 /// # Errors
 /// The accepted lens, if the lens is another.

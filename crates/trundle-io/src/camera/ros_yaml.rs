@@ -33,7 +33,7 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<CameraFields, IoError> {
     Ok(fields)
 }
 
-/// The lens of model plumb_bob: k1, k2, p1, p2, k3. Other models but fisheyes pass where all that they add is 0.
+/// The lens of model plumb_bob: k1, k2, p1, p2, k3. Other models, except fisheyes, are accepted if all their additional numbers are 0.
 fn lens(document: &YamlDocument<'_>) -> Result<Distortion, IoError> {
     let key = document.first_of(&["distortion_coefficients.data", "D", "d"]);
     let numbers = if document.get(key).is_some() {
@@ -52,5 +52,5 @@ fn lens(document: &YamlDocument<'_>) -> Result<Distortion, IoError> {
     })
 }
 
-/// A model whose name is not text: its lens passes where all numbers are 0.
+/// A model whose name is not text: its lens is accepted if all numbers are 0.
 const UNNAMED_MODEL: &str = "unnamed";

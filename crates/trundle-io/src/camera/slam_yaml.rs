@@ -7,10 +7,10 @@ use crate::yaml_document::{YamlDocument, YamlValue};
 use std::path::Path;
 use trundle_core::{Distortion, Invalid};
 
-/// Camera models that are a pinhole, by the names that the programs give them.
+/// Names of pinhole models in the programs' files.
 const PINHOLES: [&str; 3] = ["pinhole", "rectified", "perspective"];
 
-/// The numbers of a settings file. `Camera1.fx` is ORB-SLAM3's, `Camera.fx` that of the others, flat or in a table.
+/// The numbers of a settings file. `Camera1.fx` is ORB-SLAM3's key, `Camera.fx` that of the other programs, flat or in a table.
 pub(super) fn parse(path: &Path, text: &str) -> Result<CameraFields, IoError> {
     let document = YamlDocument::parse(path, text)?;
     refuse_other_lens(&document)?;

@@ -53,7 +53,7 @@ impl CameraFile {
     }
 }
 
-/// The numbers of a file, all of them accepted.
+/// The numbers of a file, all of them validated.
 pub(super) fn parse(path: &Path, text: &str) -> Result<CameraFields, IoError> {
     let file: CameraFile = parse_toml(path, text)?;
     let fields = file.fields();

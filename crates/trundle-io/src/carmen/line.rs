@@ -23,33 +23,33 @@ pub(super) enum Line {
     Other,
 }
 
-/// A laser's sweep as the log has it.
+/// A laser's sweep as given in the log.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct LaserLine {
     pub stamp: Stamp,
     pub ranges: Vec<f64>,
-    /// The angle of the first beam and the step between beams, rad, where the line has them.
+    /// The angle of the first beam and the step between beams, rad; `None` if absent from the line.
     pub angles: Option<[f64; 2]>,
-    /// The laser's own limit, m, where the line has it.
+    /// Maximum range of the laser, m; `None` if absent from the line.
     pub max_range: Option<f64>,
-    /// `odom_from_laser` and `odom_from_base`, where the line has them.
+    /// `odom_from_laser` and `odom_from_base`; `None` if absent from the line.
     pub poses: Option<[Pose2; 2]>,
 }
 
-/// The names of lines with a sweep: of the front laser, the rear one and others.
+/// The names of lines with a sweep: front laser, rear laser and others.
 const LASERS: [&str; 8] =
     ["FLASER", "RLASER", "ROBOTLASER1", "ROBOTLASER2", "RAWLASER1", "RAWLASER2", "RAWLASER3", "RAWLASER4"];
 
 /// Largest resolution that is read as radians \[rad\]: 2.9 deg. A larger one is read as degrees, as CARMEN writes it. Source: ours.
 const MAX_RESOLUTION_RAD: f64 = 0.05;
 
-/// The name of the line where it holds a sweep.
+/// The name of the line if the line contains a sweep.
 pub(super) fn laser_name(line: &str) -> Option<&'static str> {
     let name = line.split_ascii_whitespace().next()?;
     LASERS.into_iter().find(|laser| *laser == name)
 }
 
-/// Content of a line, or a sentence on what is wrong with it.
+/// Content of a line, or a sentence about its fault.
 pub(super) fn parse(line: &str) -> Result<Line, String> {
     let mut fields = Fields { rest: line.split_ascii_whitespace() };
     match fields.rest.next() {

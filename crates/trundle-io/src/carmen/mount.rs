@@ -19,7 +19,8 @@ pub(super) fn mount(
     Pose2::new(x, known.y, theta)
 }
 
-/// The front laser points ahead from its offset, the rear one back from the base; others sit on the base.
+/// Mount by the line's name: the front laser points ahead at its offset, the rear laser points back at the base's origin, others are at the
+/// base's origin.
 fn mount_by_name(name: &str, front_offset: f64) -> Pose2 {
     match name {
         "RLASER" | "ROBOTLASER2" | "RAWLASER2" => Pose2::new(0.0, 0.0, PI),
@@ -44,7 +45,7 @@ fn mount_by_poses(lasers: &[(usize, &LaserLine)]) -> Option<Pose2> {
     (away && first.position().norm() < 2.0 && lasers.iter().all(|(_, laser)| agree(laser))).then_some(first)
 }
 
-/// The scan of a line, its beams from right to left; a range from `limit` m on, or a bad one, saw nothing.
+/// The scan of a line, beams from right to left; a range of at least `limit` m, or an invalid one, has no return.
 ///
 /// # Errors
 /// When the log's parameters give more than a turn for this number of beams.

@@ -1,4 +1,4 @@
-//! The ranges of a CARMEN log: those that a laser can measure, and the reading that means no return.
+//! The ranges of a CARMEN log: measurable ones, and the reading for a missing return.
 
 use super::line::LaserLine;
 
@@ -10,12 +10,12 @@ pub(super) fn is_range(range: f64) -> bool {
 /// Readings so far below the greatest are the limit too, m. Source: ours.
 const LIMIT_BAND_M: f64 = 0.25;
 
-/// The range from which on a beam of a laser with this limit met nothing, m, at least 0.
+/// The range from which a beam of a laser with this limit has no return, m, at least 0.
 pub(super) fn no_return_from(limit: f64) -> f64 {
     (limit - LIMIT_BAND_M).max(0.0)
 }
 
-/// The greatest reading, m, where many beams end about it: a laser without a return says its limit, give or take.
+/// The largest reading, m, if many beams end near it: a laser without a return reports approximately its limit.
 pub(super) fn limit(lasers: &[(usize, &LaserLine)]) -> Option<f64> {
     /// Least part of all beams.
     const SHARE: f64 = 0.001;

@@ -6,8 +6,8 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-/// Longest line \[bytes\]. A longer one is refused: it bounds the memory that a compressed file can ask for. A scan of the largest
-/// number of beams is shorter. Source: ours.
+/// Longest line \[bytes\]. A longer line is refused, which bounds the memory requested by a compressed file. A scan of the largest number
+/// of beams is shorter. Source: ours.
 const MAX_LINE_BYTES: u64 = 1 << 23;
 /// The first bytes of a gzip file (RFC 1952).
 const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
@@ -48,7 +48,7 @@ impl TextLines {
         Ok(None)
     }
 
-    /// Reads the next line into the buffer. Returns whether there was one.
+    /// Reads the next line into the buffer. Returns whether a line was read.
     fn read_line(&mut self) -> Result<bool, IoError> {
         self.buffer.clear();
         let mut limited = self.reader.by_ref().take(MAX_LINE_BYTES);
@@ -78,7 +78,7 @@ impl TextLines {
 fn broken_gzip(line: usize, error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::UnexpectedEof => format!("the gzip file is cut off after line {line}"),
-        // flate2 names a stream that ends too early by this text only.
+        // flate2 reports a stream that ends too early only by this text.
         _ if error.to_string().contains("incomplete") => {
             format!("the gzip file is cut off after line {line}")
         }
@@ -86,7 +86,7 @@ fn broken_gzip(line: usize, error: &std::io::Error) -> String {
     }
 }
 
-/// The first byte of a line that says something and the one past the last; equal where the line says nothing.
+/// Positions of the first and one past the last content byte of a line; equal for a line without content.
 fn content(line: &str) -> (usize, usize) {
     let rest = line.trim_start_matches(BYTE_ORDER_MARK).trim_start();
     let text = rest.trim_end();

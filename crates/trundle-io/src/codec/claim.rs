@@ -1,8 +1,8 @@
-//! Check of the size that an image claims against the bytes that are there.
+//! Checks the claimed size of an image against the number of its bytes.
 
 use super::error::CodecError;
 
-/// Longest side of an image that is read \[px\]: bounds what a broken header can ask for. Source: ours.
+/// Longest side of an image that is read \[px\]: a bound for broken headers. Source: ours.
 pub(super) const MAX_SIDE: u32 = 16_384;
 /// Largest number of pixels of an image that is read. Source: ours.
 pub(super) const MAX_PIXELS: usize = 1 << 26;

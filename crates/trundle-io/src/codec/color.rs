@@ -10,10 +10,11 @@ use trundle_core::ColorImage;
 /// Bits of a pixel of a colour image. Source: three channels of 8 bits.
 const COLOR_BITS_PER_PIXEL: usize = 24;
 
-/// A colour image from the bytes of a JPEG or PNG; grey ones become grey colours, alpha is dropped.
+/// A colour image from the bytes of a JPEG or PNG; grey images become grey colours, alpha is dropped.
 ///
 /// # Errors
-/// When the bytes are neither, end too early, claim more pixels than they can hold, or hold an image above 16,384 px a side or 67 Mpx.
+/// When the bytes are neither format, are truncated, claim too many pixels for their number, or contain an image above 16,384 px per side
+/// or 67 Mpx.
 pub fn decode_color(bytes: &[u8]) -> Result<ColorImage, CodecError> {
     let failed = |problem: &str| CodecError::decode("colour", problem);
     let format = image::guess_format(bytes).map_err(|_| failed("neither JPEG nor PNG"))?;
@@ -39,7 +40,7 @@ pub fn decode_color(bytes: &[u8]) -> Result<ColorImage, CodecError> {
     Ok(ColorImage::new(width, height, pixels)?)
 }
 
-/// Whether the end marker is there: the decoder fills the missing part of a truncated JPEG with grey, silently.
+/// Whether the end marker exists: the decoder silently fills the missing part of a truncated JPEG with grey.
 fn jpeg_is_whole(bytes: &[u8]) -> bool {
     let padding = bytes.iter().rev().take_while(|&&byte| byte == 0 || byte == b'\n').count();
     bytes[..bytes.len() - padding].ends_with(&[0xff, 0xd9])

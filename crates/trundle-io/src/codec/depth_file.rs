@@ -8,7 +8,7 @@ use crate::pgm::Pgm;
 use image::ImageFormat;
 use trundle_core::{DepthImage, Image};
 
-/// A depth image in metres, 0 if there is no depth. `depth_scale`: units per metre of whole-numbered pixels; floats are metres.
+/// A depth image in metres, 0 for unknown depth. `depth_scale`: units per metre of whole-numbered pixels; floats are metres.
 ///
 /// # Errors
 /// When the bytes are no such image, end too early, or hold more than 67 Mpx.
@@ -43,7 +43,7 @@ pub(crate) fn decode_depth_file(bytes: &[u8], depth_scale: f64) -> Result<DepthI
     })
 }
 
-/// Whether the first bytes are those of a depth image: 16-bit grey PNG, or a format that colour images do not have here.
+/// Whether the first bytes are those of a depth image: 16-bit grey PNG, or a format that is not used for colour.
 pub(crate) fn is_depth_image(head: &[u8]) -> bool {
     match image::guess_format(head) {
         Ok(ImageFormat::Png) => head.get(24..26) == Some(&[16, 0]),

@@ -1,9 +1,9 @@
-//! Why an image cannot be decoded or encoded.
+//! Reason why an image cannot be decoded or encoded.
 
 use thiserror::Error;
 use trundle_core::Invalid;
 
-/// Why an image cannot be decoded or encoded.
+/// Reason why an image cannot be decoded or encoded.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum CodecError {
     /// The bytes are not an image, or not a whole one.
@@ -42,7 +42,7 @@ pub enum CodecError {
     Invalid(#[from] Invalid),
 }
 
-/// Why a format of few bits is refused.
+/// Reason why a format with few bits is refused.
 fn coarse(found: &str) -> &'static str {
     if found.starts_with("8-bit ") { ": 8 bits are too coarse for a depth" } else { "" }
 }

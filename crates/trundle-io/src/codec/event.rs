@@ -1,14 +1,14 @@
-//! Sensor events with compressed images, as they are sent and recorded.
+//! Sensor events with compressed images, in the form in which they are sent and recorded.
 
 use super::{CodecError, JPEG_QUALITY, decode_color, decode_depth, encode_color, encode_depth_rvl};
 use trundle_core::{
     BodyEvent, Cliff, GyroRate, Odometry, Pose2, RgbdImage, Scan, SensorEvent, Stamp, Touch, WheelTicks,
 };
 
-/// An RGB-D image as it travels: colour as JPEG, depth in millimetres as RVL.
+/// An RGB-D image as sent and recorded: colour as JPEG, depth in millimetres as RVL.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EncodedRgbd {
-    /// When it was taken.
+    /// Stamp of the image.
     pub stamp: Stamp,
     /// The bytes of a JPEG.
     pub color_jpeg: Vec<u8>,
@@ -29,7 +29,7 @@ impl EncodedRgbd {
         })
     }
 
-    /// Encodes an image, with colour as the JPEG that it was decoded from.
+    /// Encodes an image with the JPEG from which its colour was decoded.
     ///
     /// # Errors
     /// When a side is 0 or above 65,535 px.
@@ -37,10 +37,10 @@ impl EncodedRgbd {
         Ok(Self { stamp: image.stamp(), color_jpeg, depth: encode_depth_rvl(image.depth())? })
     }
 
-    /// The decoded image: the one that the robot and a replay receive.
+    /// The decoded image: the robot and a replay receive this one.
     ///
     /// # Errors
-    /// When the bytes are not images or their sizes differ.
+    /// When the bytes are not images or the image sizes differ.
     pub fn decode(&self) -> Result<RgbdImage, CodecError> {
         let (color, depth) = (decode_color(&self.color_jpeg)?, decode_depth(&self.depth)?);
         Ok(RgbdImage::new(self.stamp, color, depth)?)
@@ -114,7 +114,7 @@ impl EncodedEvent {
         })
     }
 
-    /// When it happened.
+    /// Stamp of the event.
     pub fn stamp(&self) -> Stamp {
         match self {
             Self::Wheels(ticks) => ticks.stamp,

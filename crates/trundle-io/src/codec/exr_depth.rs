@@ -7,7 +7,7 @@ use exr::prelude::{ReadChannels, ReadLayers, read};
 use std::io::Cursor;
 use trundle_core::Image;
 
-/// Names of the channel of depths, the first that is there; a single channel may have any name.
+/// Names of the depth channel, in order of preference; a single channel may have any name.
 const DEPTH_CHANNELS: [&str; 7] = ["Z", "depth", "Depth", "depth.Z", "Y", "V", "R"];
 
 /// The channel of depths of the first layer.

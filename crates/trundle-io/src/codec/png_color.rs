@@ -5,7 +5,7 @@ use super::png_writer::{PngFormat, encode_png};
 use png::{BitDepth, ColorType, Filter};
 use trundle_core::ColorImage;
 
-/// A colour image as 8-bit RGB PNG: every pixel comes back as it was.
+/// A colour image as 8-bit RGB PNG, without loss.
 ///
 /// # Errors
 /// When a side is 0 or above 2^31 px.

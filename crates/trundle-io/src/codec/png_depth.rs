@@ -9,10 +9,10 @@ use png::{BitDepth, ColorType, Decoder, Filter, Limits};
 use std::io::Cursor;
 use trundle_core::{DepthImage, Image};
 
-/// First bytes of a PNG. As a width of RVL they are beyond what is read.
+/// First bytes of a PNG. Read as a width of RVL, these bytes exceed the limit.
 const PNG_MAGIC: &[u8] = b"\x89PNG";
 
-/// Depth in metres of a whole number of millimetres: the one place where the unit of the wire becomes ours.
+/// Depth in metres from a whole number of millimetres: the only conversion from the recorded unit.
 fn metres(millimetres: u16) -> f32 {
     f32::from(millimetres) * 0.001
 }
@@ -23,7 +23,7 @@ fn millimetres(metres: f32) -> u16 {
     if rounded > 0.0 && rounded <= f64::from(u16::MAX) { rounded as u16 } else { 0 }
 }
 
-/// A depth image (m, 0 if there is none) as 16-bit grey PNG in millimetres.
+/// A depth image (m, 0 for unknown) as 16-bit grey PNG in millimetres.
 ///
 /// # Errors
 /// When a side is 0 or above 2^31 px.
@@ -31,7 +31,7 @@ pub fn encode_depth(image: &DepthImage) -> Result<Vec<u8>, CodecError> {
     encode_grey16(image, millimetres)
 }
 
-/// A depth image (m) as 16-bit grey PNG of the numbers that `unit` makes of it.
+/// A depth image (m) as 16-bit grey PNG; `unit` converts a depth to its number.
 pub(crate) fn encode_grey16(image: &DepthImage, unit: impl Fn(f32) -> u16) -> Result<Vec<u8>, CodecError> {
     let data: Vec<u8> = image.data().iter().flat_map(|&depth| unit(depth).to_be_bytes()).collect();
     // Sub: on a real depth image a sixth smaller than Up, and no slower.
@@ -39,7 +39,7 @@ pub(crate) fn encode_grey16(image: &DepthImage, unit: impl Fn(f32) -> u16) -> Re
     encode_png("depth", (image.width(), image.height()), &format, &data)
 }
 
-/// A depth image (m, 0 if there is none) in millimetres as width, height and stream of RVL.
+/// A depth image (m, 0 for unknown) in millimetres as width, height and stream of RVL.
 ///
 /// # Errors
 /// When a side is 0.
@@ -61,7 +61,7 @@ pub fn decode_depth(bytes: &[u8]) -> Result<DepthImage, CodecError> {
     Ok(DepthImage::new(raw.width(), raw.height(), data)?)
 }
 
-/// The 16-bit numbers of a grey PNG, in whatever unit the camera had.
+/// The 16-bit numbers of a grey PNG, in the unit of the camera.
 ///
 /// # Errors
 /// When the bytes are not a PNG, end too early, have another pixel format, or hold more than 67 Mpx.

@@ -3,7 +3,7 @@
 use super::CodecError;
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
-/// How the pixels of a PNG are written.
+/// Format of a PNG's pixels.
 pub(super) struct PngFormat {
     pub(super) color: ColorType,
     pub(super) depth: BitDepth,

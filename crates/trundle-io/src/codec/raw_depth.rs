@@ -1,8 +1,8 @@
-//! The pixels of a depth image as its file holds them.
+//! The pixels of a depth image in the numbers of its file.
 
 use trundle_core::Image;
 
-/// The pixels of a depth image as its file holds them.
+/// The pixels of a depth image in the numbers of its file.
 pub(super) enum RawDepth {
     /// In units of the camera.
     Units(Image<u16>),

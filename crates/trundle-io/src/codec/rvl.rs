@@ -5,8 +5,8 @@ use trundle_core::Image;
 
 /// Bytes of the width and the height in front of the stream, as `compressed_depth_image_transport` has them.
 const SIZE_BYTES: usize = 8;
-/// Largest number of pixels of an RVL image that is read: 8.4 Mpx, above 3840 x 2160. A run of zeros takes a few bytes at any length, so the
-/// number of bytes bounds nothing. Source: ours.
+/// Largest number of pixels of an RVL image that is read: 8.4 Mpx, above 3840 x 2160. A run of zeros takes a few bytes at any length, so
+/// the number of bytes is no bound. Source: ours.
 const MAX_RVL_PIXELS: usize = 1 << 23;
 /// Number of groups that a word of the stream holds.
 const GROUPS_PER_WORD: u32 = 8;
@@ -69,7 +69,7 @@ pub(crate) fn decode_rvl(bytes: &[u8]) -> Result<Image<u16>, CodecError> {
     Ok(Image::new(width, height, values)?)
 }
 
-/// Writes numbers as groups of three bits, low ones first; the fourth bit says that another group follows.
+/// Writes numbers as groups of three bits, low ones first; the fourth bit is set if another group follows.
 struct GroupWriter {
     bytes: Vec<u8>,
     word: u32,

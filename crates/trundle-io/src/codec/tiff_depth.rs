@@ -43,7 +43,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<RawDepth, CodecError> {
     }
 }
 
-/// Whether each field of the first directory holds at most as many values as the file has bytes: the decoder takes memory for all of
+/// Whether each field of the first directory claims at most as many values as the file has bytes: the decoder allocates memory for all of
 /// them. A file without a directory passes: the decoder refuses it.
 fn are_counts_possible(bytes: &[u8]) -> bool {
     let is_little = bytes.starts_with(b"II");
@@ -58,21 +58,21 @@ fn are_counts_possible(bytes: &[u8]) -> bool {
     counts.all(|count| count <= bytes.len())
 }
 
-/// Where the header has the offset of the first directory \[bytes\]. Source: TIFF 6.0.
+/// Position of the first directory's offset in the header \[bytes\]. Source: TIFF 6.0.
 const DIRECTORY_OFFSET_AT: usize = 4;
 /// Length of a field of a directory \[bytes\]. Source: TIFF 6.0.
 const FIELD_BYTES: usize = 12;
-/// Where a field has the number of its values \[bytes\]. Source: TIFF 6.0.
+/// Position of the number of values in a field \[bytes\]. Source: TIFF 6.0.
 const COUNT_AT: usize = 4;
 
-/// How numbers of pixels are written where the TIFF does not say it, and whole numbers from 0 (TIFF 6.0, `SampleFormat`).
+/// Sample format of a TIFF without this field: unsigned whole numbers (TIFF 6.0, `SampleFormat`).
 const UNSIGNED_FORMAT: u16 = 1;
 /// Whole numbers with a sign (TIFF 6.0, `SampleFormat`).
 const SIGNED_FORMAT: u16 = 2;
 /// Floating-point numbers (TIFF 6.0, `SampleFormat`).
 const FLOAT_FORMAT: u16 = 3;
 
-/// How the numbers of the pixels are written.
+/// Format of the pixels' numbers.
 fn sample_format(decoder: &mut Decoder<Cursor<&[u8]>>) -> u16 {
     let formats = decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat).ok().flatten();
     formats.and_then(|formats| formats.first().copied()).unwrap_or(UNSIGNED_FORMAT)

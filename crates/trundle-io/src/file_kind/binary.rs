@@ -44,7 +44,7 @@ const MAGICS: &[(&[u8], FileKind)] = &[
 /// First bytes of an MCAP file.
 pub(super) const MCAP_MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
-/// The kind of a binary file, or of a text file with a mark of its own in its first bytes.
+/// The kind of a binary file, or of a text file with a signature in its first bytes.
 pub(super) fn kind_of(head: &[u8], len: u64) -> Option<FileKind> {
     if head.starts_with(MCAP_MAGIC) {
         return Some(of_mcap(head));
@@ -53,7 +53,7 @@ pub(super) fn kind_of(head: &[u8], len: u64) -> Option<FileKind> {
     known.or_else(|| netpbm(head)).or_else(|| container(head)).or_else(|| stl(head, len))
 }
 
-/// MCAP names the profile of its messages and the library that wrote it in its first record.
+/// The first record of an MCAP file has the profile of its messages and the library of its writer.
 fn of_mcap(head: &[u8]) -> FileKind {
     let mut rest = head.get(MCAP_MAGIC.len() + 9..).unwrap_or_default(); // opcode and length of the record
     let profile = text_of(&mut rest);

@@ -43,11 +43,11 @@ pub enum Expected {
 }
 
 impl Expected {
-    /// Refuses a file or folder that is surely of another kind; the kind of the others. A file without a mark of its kind passes: its reader
-    /// decides.
+    /// Refuses a file or folder that is certainly of another kind; returns the kind of an accepted one. A file without a signature is
+    /// accepted: its reader decides.
     ///
     /// # Errors
-    /// When the file cannot be read, or is of another kind: the message names the kind and what to do.
+    /// When the file cannot be read, or is of another kind: the message gives the kind and the remedy.
     pub fn check(self, path: &Path) -> Result<FileKind, IoError> {
         let found = FileKind::of(path)?;
         if self.takes(found) {

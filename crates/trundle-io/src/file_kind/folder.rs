@@ -24,7 +24,7 @@ pub(super) fn kind_of(dir: &Path) -> Result<FileKind, IoError> {
     })
 }
 
-/// The kind of a folder by the recordings in it.
+/// The kind of a folder by its recordings.
 fn of_files(members: &[PathBuf]) -> FileKind {
     if members.iter().any(|member| is_bag_file(member)) {
         FileKind::Ros2BagFolder
@@ -35,7 +35,7 @@ fn of_files(members: &[PathBuf]) -> FileKind {
     }
 }
 
-/// Whether a path is a file of a ROS 2 bag. For a zstd file only the name shows its content.
+/// Whether a path is a file of a ROS 2 bag. The content of a zstd file is only recognised by its name.
 pub(crate) fn is_bag_file(path: &Path) -> bool {
     match kind_of_file(path) {
         Some(FileKind::Ros2Mcap | FileKind::Ros2Sqlite | FileKind::OtherMcap) => true,

@@ -1,6 +1,6 @@
 //! The kinds of files and folders.
 
-/// The kind of a file or folder. The name of the file plays no part in it.
+/// The kind of a file or folder. The name of the file has no influence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the words of each kind are its Display text")]

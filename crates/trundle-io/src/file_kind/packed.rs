@@ -9,8 +9,8 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
-/// Refuses a packed file with anything inside that a command reads only unpacked. A file that cannot be unpacked passes: its reader
-/// knows more.
+/// Refuses a packed file whose content a command only reads unpacked. A file that cannot be unpacked is accepted: its reader gives a better
+/// error.
 pub(super) fn check(path: &Path, found: FileKind, expected: &str) -> Result<(), IoError> {
     let (packing, unpack, read) = match found {
         FileKind::Gzip => ("gzip", "gunzip", &[FileKind::CarmenLog, FileKind::Text, FileKind::Empty][..]),
@@ -28,11 +28,11 @@ pub(super) fn check(path: &Path, found: FileKind, expected: &str) -> Result<(), 
     Err(IoError::malformed(path, problem))
 }
 
-/// The first bytes inside a packed file, as far as it can be unpacked.
+/// The first bytes inside a packed file, up to the first error.
 fn unpacked_head(path: &Path, found: FileKind) -> Vec<u8> {
     let mut head = Vec::new();
     let Ok(file) = File::open(path).map(BufReader::new) else { return head };
-    // What was unpacked ahead of a break stays in `head`.
+    // The bytes unpacked before an error remain in `head`.
     let _ = match found {
         FileKind::Gzip => MultiGzDecoder::new(file).take(HEAD_BYTES).read_to_end(&mut head),
         _ => match StreamingDecoder::<_, FrameDecoder>::new(file) {

@@ -44,7 +44,7 @@ pub(super) fn kind_of(head: &[u8]) -> FileKind {
     }
 }
 
-/// The text of the bytes, where they are text: the last character may be cut.
+/// The text of the bytes, if they are text; the last character may be truncated.
 fn as_text(head: &[u8]) -> Option<&str> {
     let text = match std::str::from_utf8(head) {
         Ok(text) => text,
@@ -79,7 +79,7 @@ fn of_xml(text: &str) -> FileKind {
     }
 }
 
-/// Files of YAML by their keys, at any depth.
+/// Kinds of YAML files by their keys, at any depth.
 fn of_yaml(lines: &[&str]) -> Option<FileKind> {
     let has = |key: &str| {
         let is_it = |line: &&str| {
@@ -150,7 +150,7 @@ fn is_bare_key(key: &str) -> bool {
         && key.parse::<f64>().is_err()
 }
 
-/// Tables of numbers by the number of their columns; the first line may be a header.
+/// Kinds of number tables by their number of columns; the first line may be a header.
 fn of_numbers(text: &str, content: &[&str]) -> Option<FileKind> {
     if is_dbow2(content) {
         return Some(FileKind::Dbow2Vocabulary);
@@ -179,13 +179,13 @@ fn of_numbers(text: &str, content: &[&str]) -> Option<FileKind> {
     }
 }
 
-/// The text form of DBoW2: four numbers of the whole tree, then one line per node: parent, whether it is a leaf, 32 bytes, weight.
+/// The text format of DBoW2: four numbers of the whole tree, then one line per node: parent, whether it is a leaf, 32 bytes, weight.
 fn is_dbow2(content: &[&str]) -> bool {
     let [head, node, ..] = content else { return false };
     numbers(head) == Some(4) && numbers(node) == Some(35)
 }
 
-/// How many numbers a line holds, where it holds nothing else.
+/// The number of numbers in a line; `None` for a line with other content.
 fn numbers(line: &str) -> Option<usize> {
     let fields = line.split(|c: char| c.is_whitespace() || c == ',').filter(|field| !field.is_empty());
     fields.map(|field| field.parse::<f64>().ok()).try_fold(0, |count, number| number.map(|_| count + 1))

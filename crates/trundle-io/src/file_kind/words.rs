@@ -1,9 +1,9 @@
-//! Names of the kinds, and what can be done with a file of a kind that a command does not take.
+//! Names of the kinds, and the remedy for a file of the wrong kind.
 
 use super::FileKind;
 use FileKind as K;
 
-/// Name of a kind and what to do with a file of it; empty if no general advice exists.
+/// Name of a kind and the remedy for a file of this kind; empty without general advice.
 const WORDS: &[(FileKind, &str, &str)] = &[
     (
         K::Ros1Bag,
@@ -99,7 +99,7 @@ pub(super) fn name(kind: FileKind) -> &'static str {
     words(kind).0
 }
 
-/// Remedy for a file of this kind where another was expected; `wants_map`: whether a map was expected.
+/// Remedy for a file of this kind if another was expected; `wants_map`: whether a map was expected.
 pub(super) fn remedy(kind: FileKind, wants_map: bool) -> &'static str {
     match words(kind).1 {
         "" if wants_map && is_picture(kind) => "give the map's YAML file, which names the picture",

@@ -1,17 +1,17 @@
-//! The likely cause where a log gives no map: its ranges, its odometry, their units.
+//! The likely cause of an empty map: the log's ranges, its odometry, or their units.
 
 use super::LaserLog;
 use trundle_core::Beam;
 
-/// Median of the ranges of a log \[m\]. Beyond it they are in another unit. Source: ours; the medians of the shared logs are below
-/// 10 m, and no indoor laser reaches far beyond 80 m (SICK LMS200).
+/// Median of the ranges of a log \[m\]. A larger median means another unit. Source: ours; the medians of the shared logs are below 10 m,
+/// and no indoor laser reaches far beyond 80 m (SICK LMS200).
 const MAX_MEDIAN_RANGE_M: f64 = 50.0;
 /// Median of the ranges \[m\] from which on centimetres are ruled out: a room would be 10 m and more around the robot. Source: ours.
 const MAX_CENTIMETRE_MEDIAN: f64 = 1000.0;
-/// Median way by odometry between two scans \[m\]. Beyond it the odometry is in another unit. Source: ours.
+/// Median distance by odometry between two scans \[m\]. A larger median means another unit. Source: ours.
 const MAX_MEDIAN_STEP_M: f64 = 3.0;
 
-/// Problem of the unit of a log's ranges, where they show it.
+/// Problem of the unit of a log's ranges; `None` if the ranges are plausible.
 #[must_use]
 pub fn range_unit_hint(log: &LaserLog) -> Option<String> {
     let median = median(hit_ranges(log))?;
@@ -23,7 +23,7 @@ pub fn range_unit_hint(log: &LaserLog) -> Option<String> {
     })
 }
 
-/// Why nothing is in a map of a log, evaluated by its ranges.
+/// The likely cause of an empty map of a log, by its ranges.
 #[must_use]
 pub fn empty_map_cause(log: &LaserLog) -> String {
     if log.scans_without_return() == log.scans.len() {
@@ -33,7 +33,7 @@ pub fn empty_map_cause(log: &LaserLog) -> String {
         .unwrap_or_else(|| format!("{} of {} scans met nothing", log.scans_without_return(), log.scans.len()))
 }
 
-/// Why the scans of a log do not overlap with the map of it, evaluated by ranges and odometry.
+/// The likely cause if the scans of a log do not overlap with their map, by ranges and odometry.
 #[must_use]
 pub fn no_overlap_cause(log: &LaserLog) -> String {
     if log.scans_without_return() == log.scans.len() && !log.scans.is_empty() {
@@ -45,7 +45,7 @@ pub fn no_overlap_cause(log: &LaserLog) -> String {
     })
 }
 
-/// Problem of the unit of a log's odometry, where its steps show it.
+/// Problem of the unit of a log's odometry; `None` if the steps are plausible.
 fn odometry_unit_hint(log: &LaserLog) -> Option<String> {
     let steps = log.scans.windows(2).map(|pair| pair[0].odom_from_base.distance(&pair[1].odom_from_base));
     let median = median(steps.collect())?;
@@ -57,7 +57,7 @@ fn odometry_unit_hint(log: &LaserLog) -> Option<String> {
     })
 }
 
-/// Why a log whose beams all met nothing gives no map.
+/// The likely cause if no beam of a log has a return.
 #[must_use]
 pub fn no_return_cause(log: &LaserLog) -> String {
     if let Some(problem) = &log.depth_problem {
@@ -83,7 +83,7 @@ fn hit_ranges(log: &LaserLog) -> Vec<f64> {
     beams.filter_map(|beam| if let Beam::Hit { range } = beam { Some(*range) } else { None }).collect()
 }
 
-/// The upper median; `None` of nothing.
+/// The upper median; `None` without values.
 fn median(mut values: Vec<f64>) -> Option<f64> {
     let middle = values.len() / 2;
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)

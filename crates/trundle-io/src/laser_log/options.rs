@@ -12,7 +12,7 @@ pub struct LaserLogOptions {
     pub laser_turn: Option<f64>,
     /// The laser hangs upside down: its beams run from left to right.
     pub upside_down: bool,
-    /// Range from which on a reading counts as no return, m. Default: the line's, else the range at which many beams end.
+    /// Smallest range that counts as no return, m. Default: the line's limit, else the range at which many beams end.
     pub max_range: Option<f64>,
     /// The topic of the scans, in a CARMEN log the name of the lines; by default that with the most scans.
     pub scan_topic: Option<String>,

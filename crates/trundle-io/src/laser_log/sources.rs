@@ -1,22 +1,22 @@
-//! The topics that a log was made of, and the choice among them.
+//! The topics used for a log, and their selection.
 
 use std::collections::BTreeMap;
 
 /// The topics of a bag, or the lines of a CARMEN log, that made a laser log.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct LaserLogSources {
-    /// Of the scans; empty if the log has no topics.
+    /// Topic of the scans; empty if the log has no topics.
     pub scans: String,
-    /// Of the odometry.
+    /// Topic of the odometry.
     pub odometry: String,
     /// Unused topics of scans or odometry, with the number of their messages.
     pub left: Vec<(String, usize)>,
 }
 
-/// The requested topic, or else the one with the most messages, the first of equals.
+/// The requested topic, or else the one with the most messages, the first in case of equality.
 ///
 /// # Errors
-/// Names the topics of the file when the requested one is none of them.
+/// Names the topics of the file when the requested one does not exist.
 pub(crate) fn chosen(
     counts: &BTreeMap<String, usize>,
     asked: Option<&str>,

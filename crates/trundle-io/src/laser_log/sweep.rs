@@ -2,16 +2,14 @@
 
 use std::f64::consts::TAU;
 
-/// Largest angle of the first beam \[rad\]. Beyond it the file is taken to hold degrees. One turn with room for rounding.
-/// Source: ours.
+/// Largest angle of the first beam \[rad\]. A larger angle means degrees. One turn with room for rounding. Source: ours.
 const MAX_FIRST_ANGLE_RAD: f64 = TAU + 0.01;
-/// Largest sweep of the beams, number times step \[rad\]. Beyond it the file is taken to hold degrees. One turn and a few steps.
-/// Source: ours.
+/// Largest sweep of the beams, number times step \[rad\]. A larger sweep means degrees. One turn and a few steps. Source: ours.
 const MAX_SWEEP_RAD: f64 = 7.0;
-/// Largest number of beams of a scan. Beyond it the scan is refused. Source: ours.
+/// Largest number of beams of a scan. A scan with more beams is refused. Source: ours.
 pub(crate) const MAX_BEAMS: usize = 100_000;
 
-/// Refuses the angles of a sweep that are not radians within one turn; `names` are those of first angle and step in the file.
+/// Refuses the angles of a sweep that are not radians within one turn; `names` are the file's names of first angle and step.
 pub(crate) fn check_sweep(
     names: [&str; 2],
     first_rad: f64,

@@ -9,9 +9,9 @@ use trundle_core::{MapAnnotations, NamedPlace, Pose2, Zone, ZoneKind};
 
 /// Zones and named places of a map, from a GeoJSON file (RFC 7946) with coordinates of the map frame in m.
 ///
-/// Each feature has a whole number as `id`, and in `properties` a `kind` and a `name`. A zone is a `Polygon` of one ring, its kind
-/// `no_go`, `slow` (with `speed_m_s`) or `area`. A place is a `Point`, its kind `place`, with `heading_deg`. Other properties are
-/// refused, as the file is written anew after each change.
+/// Each feature has a whole number as `id`, and in `properties` a `kind` and a `name`. A zone is a `Polygon` of one ring; its kind is
+/// `no_go`, `slow` (with `speed_m_s`) or `area`. A place is a `Point` of kind `place`, with `heading_deg`. Other properties are refused,
+/// because each change rewrites the file.
 ///
 /// ```json
 /// {"type": "FeatureCollection", "features": [

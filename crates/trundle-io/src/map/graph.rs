@@ -12,7 +12,7 @@ use trundle_core::{Vector2, require_in};
 /// A way-point graph of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GraphFile {
-    /// Where the nodes are, map frame, m; in the order of the file.
+    /// Positions of the nodes, map frame, m; in the order of the file.
     pub nodes: Vec<Vector2>,
     /// Lanes, driven from the first node to the second: places in `nodes`.
     pub lanes: Vec<(usize, usize)>,
@@ -49,7 +49,7 @@ impl Feature {
         self.geometry["type"].as_str().unwrap_or("without geometry")
     }
 
-    /// The id as text, so that 7, 7.0 and "7" are one; the feature's own where its properties have none.
+    /// The id as text, so 7, 7.0 and "7" are equal; the feature's own id if its properties have none.
     fn id(&self) -> Option<String> {
         id_text(&self.properties["id"]).or_else(|| id_text(&self.id))
     }
@@ -70,7 +70,7 @@ impl Feature {
     }
 }
 
-/// Number of characters of a kind's name that are kept. Source: ours.
+/// Maximum length of a kind's name, in characters; the rest is cut. Source: ours.
 const MAX_KIND_CHARS: usize = 40;
 
 fn id_text(value: &Value) -> Option<String> {
@@ -87,14 +87,14 @@ fn id_text(value: &Value) -> Option<String> {
 
 /// A way-point graph from a GeoJSON file in the form of Nav2's route server.
 ///
-/// A `Point` feature with an id (in `properties`, or its own) is a node, its coordinates `[x, y]` or `[x, y, height]` in m,
-/// `properties.frame`, if any, `map`. A `MultiLineString` (or `LineString`) feature with `properties.startid` and `endid` is a
-/// lane: straight, and in this direction only; two lanes give both directions. Ids are numbers or texts. Other properties (costs,
-/// operations) are ignored, and so are other features: [`GraphFile::left`] counts them.
+/// A `Point` feature with an id (in `properties`, or its own) is a node. Its coordinates are `[x, y]` or `[x, y, height]` in m;
+/// `properties.frame`, if given, is `map`. A `MultiLineString` (or `LineString`) feature with `properties.startid` and `endid` is a
+/// straight one-way lane; two lanes give both directions. Ids are numbers or texts. Other properties (costs, operations) and other features
+/// are ignored; [`GraphFile::left`] counts these features.
 ///
 /// # Errors
-/// When the file cannot be read or is no such JSON, has no node, an id comes twice, a lane ends at no node, coordinates are not
-/// finite numbers, or a frame is not `map`.
+/// When the file cannot be read or is no such JSON, has no node, repeats an id, a lane ends at no node, coordinates are not finite numbers,
+/// or a frame is not `map`.
 pub fn read_graph(path: &Path) -> Result<GraphFile, IoError> {
     Expected::Graph.check(path)?;
     let text = read_text(path)?;

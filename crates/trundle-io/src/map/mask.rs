@@ -18,14 +18,14 @@ const LETHAL_VALUE: u8 = 100;
 /// Read from the mask's own YAML, whose keys `type`, `base` and `multiplier` map_server leaves alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct FilterInfo {
-    /// 1: per cent of the robot's highest speed; 2: m/s.
+    /// 1: per cent of the robot's maximum speed; 2: m/s.
     kind: u8,
     base: f64,
     multiplier: f64,
 }
 
 impl FilterInfo {
-    /// Of a mask's YAML; by default 1, 100 and -1.
+    /// Reads the values of a mask's YAML; defaults 1, 100 and -1.
     fn of(document: &YamlDocument<'_>) -> Result<Self, IoError> {
         let kind = document.number_or("type", 1.0, "1 (per cent) or 2 (m/s)")?;
         let base = document.number_or("base", 100.0, "a number")?;
@@ -42,7 +42,7 @@ impl FilterInfo {
         Ok(Self { kind: if kind == 1.0 { 1 } else { 2 }, base, multiplier })
     }
 
-    /// The limit of a value, m/s; infinite if there is none: value 0, unknown, and what Nav2 calls out of range.
+    /// The limit of a value, m/s; infinite for no limit: value 0, unknown, and values that Nav2 reports as out of range.
     fn limit(self, value: Option<u8>, full_speed: f64) -> f32 {
         let Some(value) = value.filter(|value| *value > 0) else { return f32::INFINITY };
         let limit = self.base + self.multiplier * f64::from(value);
@@ -58,28 +58,27 @@ impl FilterInfo {
 /// A keep-out mask of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeepOutFile {
-    /// Occupied where the robot must not be, else free.
+    /// Occupied in forbidden cells, else free.
     pub forbidden: OccupancyGrid,
-    /// Cost of each of its cells, 0 to 100; 0 if it is forbidden or unknown.
+    /// Cost of each cell, 0 to 100; 0 if the cell is forbidden or unknown.
     pub costs: Vec<u8>,
 }
 
 /// A speed mask of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpeedFile {
-    /// Where its cells lie.
+    /// Geometry of the cells.
     pub geometry: GridGeometry,
-    /// Of each cell, row by row from the lowest y, the highest speed, m/s; infinite if it sets none.
+    /// Maximum speed of each cell, row by row from the lowest y, m/s; infinite without a limit.
     pub limits: Vec<f32>,
-    /// How many cells have a value above 0 and set no limit all the same: what comes out is not above 0, or above 100 %.
+    /// Number of cells with a value above 0 and no limit, because the computed limit is not above 0, or is above 100 %.
     pub out_of_range: usize,
 }
 
-/// A keep-out mask from its YAML file and the picture that it names: where the robot must not be, and where it should not.
+/// A keep-out mask from its YAML file and the picture named in it: forbidden and costly cells.
 ///
-/// As Nav2's keep-out filter has it: a value of 100 forbids (in mode `trinary` and `scale` what is darker than
-/// `occupied_thresh`, in mode `raw` a pixel of 100), values of 1 to 99 (modes `scale` and `raw`) make a cell costly; what is unknown
-/// is free.
+/// Semantics of Nav2's keep-out filter. A value of 100 forbids a cell: darker than `occupied_thresh` in modes `trinary` and `scale`, 100 in
+/// mode `raw`. Values of 1 to 99 (modes `scale` and `raw`) make a cell costly; unknown cells are free.
 ///
 /// # Errors
 /// As [`read_map`](crate::read_map).
@@ -91,12 +90,11 @@ pub fn read_keep_out_mask(yaml_path: &Path) -> Result<KeepOutFile, IoError> {
     Ok(KeepOutFile { forbidden: forbidden.map_err(IoError::field(yaml_path))?, costs })
 }
 
-/// A speed mask from its YAML file and the picture that it names.
+/// A speed mask from its YAML file and the picture named in it.
 ///
-/// As Nav2's speed filter has it: values are 0 to 100, limit = base + multiplier * value, value 0 and unknown set none. `type`
-/// (1: per cent of `full_speed`, m/s; 2: m/s), `base` and `multiplier` are read from the same YAML; without them 1, 100
-/// and -1: white is full speed, the darker the slower. Limits that are not above 0, or above 100 %, set none, as in Nav2: so
-/// black (100) sets none.
+/// Semantics of Nav2's speed filter: values are 0 to 100, limit = base + multiplier * value; value 0 and unknown set no limit. `type` (1:
+/// per cent of `full_speed`, m/s; 2: m/s), `base` and `multiplier` are read from the same YAML. Defaults are 1, 100 and -1: white is full
+/// speed, darker is slower. As in Nav2, a limit that is not above 0, or is above 100 %, sets no limit: black (100) therefore sets none.
 ///
 /// # Errors
 /// As [`read_map`](crate::read_map); when `type` is neither 1 nor 2, `full_speed` is not above 0, or a number is not finite.
@@ -112,8 +110,9 @@ pub fn read_speed_mask(yaml_path: &Path, full_speed: f64) -> Result<SpeedFile, I
     Ok(SpeedFile { geometry, limits, out_of_range })
 }
 
-/// Writes a speed mask as `NAME.pgm` and `NAME.yaml` for Nav2's speed filter: mode `scale`, per cent of `full_speed` \[m/s\] by
-/// `type` 1, `base` 100 and `multiplier` -1, so the filter needs no other numbers. A limit is rounded down to a whole per cent, 1 at least.
+/// Writes a speed mask as `NAME.pgm` and `NAME.yaml` for Nav2's speed filter, which then needs no other numbers. The mode is `scale`, in
+/// per cent of `full_speed` \[m/s\] by `type` 1, `base` 100 and `multiplier` -1. A limit is rounded down to a whole per cent, with a
+/// minimum of 1.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -151,7 +150,7 @@ fn values(source: &MapSource) -> Result<(GridGeometry, Vec<Option<u8>>), IoError
     let MapSource { yaml, picture, .. } = source;
     let values = picture.indices().map(|i| value(yaml, picture, i)).collect();
     let (geometry, yaml_path) = (source.geometry()?, &source.yaml_path);
-    // Of a turned picture, what a cell touches that is darkest.
+    // For a rotated picture, the darkest value that a cell touches.
     let rank = |value: Option<u8>| value.map_or(u8::MAX, |value| LETHAL_VALUE - value.min(LETHAL_VALUE));
     straightened(geometry, values, yaml.yaw, None, rank).map_err(IoError::field(yaml_path))
 }

@@ -16,7 +16,7 @@ pub(super) struct Picture {
     /// White, 1 to 65,535.
     pub maxval: u16,
     pub values: Vec<u16>,
-    /// Of each pixel, whether it lets through what is behind it; empty if none does.
+    /// Whether each pixel is transparent; empty if none is.
     pub transparent: Vec<bool>,
 }
 
@@ -46,7 +46,7 @@ impl Picture {
     }
 }
 
-/// Width and height of a map's picture by its first bytes, as far as they tell \[px\]: what it claims, before it is decoded.
+/// Width and height of a map's picture according to its first bytes \[px\], before decoding.
 #[must_use]
 pub fn picture_size(bytes: &[u8]) -> Option<(usize, usize)> {
     match image::guess_format(bytes).ok()? {
@@ -111,7 +111,7 @@ fn of_bmp(bytes: &[u8]) -> Result<Picture, String> {
     Ok(of_samples((width as usize, height as usize), 3, false, &samples, 255))
 }
 
-/// The grey picture of samples, some a pixel, the last of them perhaps alpha.
+/// The grey picture of samples; the last sample of a pixel may be alpha.
 fn of_samples(
     (width, height): (usize, usize),
     per_pixel: usize,
@@ -122,7 +122,7 @@ fn of_samples(
     let colors = per_pixel - usize::from(has_alpha);
     let pixels = samples.chunks_exact(per_pixel);
     let sum = |pixel: &[u16]| pixel[..colors].iter().map(|&sample| u32::from(sample)).sum::<u32>();
-    // Of 8 bits the sum itself is kept: an average would be rounded.
+    // For 8 bits the sum itself is stored, because an average would be rounded.
     let is_sum = white == 255;
     let divisor = if is_sum { 1 } else { colors as u32 };
     let values = pixels.clone().map(|pixel| (sum(pixel) / divisor) as u16).collect();

@@ -1,4 +1,4 @@
-//! The two files of a map or mask: its YAML and the picture that this names.
+//! The two files of a map or mask: the YAML, and the picture named in it.
 
 use super::picture::Picture;
 use super::yaml::MapYaml;
@@ -8,7 +8,7 @@ use crate::{Expected, IoError};
 use std::path::{Path, PathBuf};
 use trundle_core::GridGeometry;
 
-/// A map or mask as its files hold it.
+/// A map or mask in the form of its files.
 pub(super) struct MapSource {
     pub yaml_path: PathBuf,
     yaml_text: String,
@@ -18,7 +18,7 @@ pub(super) struct MapSource {
 }
 
 impl MapSource {
-    /// Reads the YAML and the picture that it names.
+    /// Reads the YAML and its picture.
     pub(super) fn read(yaml_path: &Path) -> Result<Self, IoError> {
         Expected::Map.check(yaml_path)?;
         let description = MapDescription::parse(yaml_path, read_text(yaml_path)?)?;
@@ -36,7 +36,7 @@ impl MapSource {
         YamlDocument::parse(&self.yaml_path, &self.yaml_text)
     }
 
-    /// Where the picture lies, before it is turned.
+    /// Geometry of the picture before its rotation.
     pub(super) fn geometry(&self) -> Result<GridGeometry, IoError> {
         let (yaml, picture) = (&self.yaml, &self.picture);
         GridGeometry::new(yaml.resolution, yaml.origin, picture.width, picture.height)
@@ -64,7 +64,7 @@ impl MapDescription {
         Ok(Self { yaml_path: yaml_path.to_owned(), yaml_text, yaml, picture_path })
     }
 
-    /// The picture that it names; it may be anywhere.
+    /// Path of the picture; any folder is allowed.
     #[must_use]
     pub fn picture_path(&self) -> &Path {
         &self.picture_path

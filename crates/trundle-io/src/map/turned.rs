@@ -1,4 +1,4 @@
-//! Pictures that are turned around their lower-left corner: resampled on a lattice along the map's axes.
+//! Rotated pictures, resampled on a lattice along the map's axes.
 
 use trundle_core::{GridGeometry, Invalid, Vector2};
 
@@ -7,9 +7,9 @@ const SAMPLES_PER_SIDE: usize = 3;
 /// Turns below this are none, rad: 1 um at 10 km.
 const MAX_STRAIGHT_TURN_RAD: f64 = 1e-10;
 
-/// The values of a picture with this geometry, turned by `yaw` rad around its origin: along the axes, as fine as before. Of the values
-/// that a new cell touches, the one that is first by `rank` counts: walls stay closed, and become up to a cell thicker. Cells
-/// beside the picture have the value `beyond`.
+/// The values of a picture with this geometry, rotated by `yaw` rad around its origin, on cells along the axes with the same resolution. A
+/// new cell gets the value that is first by `rank` among those it touches: walls remain closed, and become up to a cell thicker. Cells
+/// outside the picture have the value `beyond`.
 ///
 /// # Errors
 /// When the new grid would have too many cells.
@@ -29,7 +29,7 @@ pub(super) fn straightened<T: Copy>(
     let side = Vector2::new(width as f64, height as f64) * resolution;
     let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]
         .map(|(x, y)| turned(Vector2::new(x * side.x, y * side.y)) / resolution);
-    // Right angles leave the lattice where it is.
+    // A right angle leaves the lattice unchanged.
     let low = corners.iter().fold(corners[0], |low, c| low.inf(c)).map(|c| (c + 1e-6).floor());
     let high = corners.iter().fold(corners[0], |high, c| high.sup(c)).map(|c| (c - 1e-6).ceil());
     let size = high - low;

@@ -17,7 +17,7 @@ pub(super) struct MapYaml {
     pub resolution: f64,
     /// Lower-left corner of the picture, map frame, m.
     pub origin: Vector2,
-    /// How far the picture is turned around that corner, counter-clockwise, rad.
+    /// Rotation of the picture around that corner, counter-clockwise, rad.
     pub yaw: f64,
     negate: bool,
     occupied: f64,

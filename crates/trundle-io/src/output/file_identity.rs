@@ -12,21 +12,21 @@ type Inner = (u64, u64);
 type Inner = PathBuf;
 
 impl FileIdentity {
-    /// `None` if nothing is.
+    /// `None` if the path does not exist.
     #[cfg(unix)]
     pub(super) fn of(path: &Path) -> Option<Self> {
         use std::os::unix::fs::MetadataExt;
         std::fs::metadata(path).ok().map(|meta| Self((meta.dev(), meta.ino())))
     }
 
-    /// `None` if nothing is.
+    /// `None` if the path does not exist.
     #[cfg(not(unix))]
     pub(super) fn of(path: &Path) -> Option<Self> {
         std::fs::canonicalize(path).ok().map(Self)
     }
 }
 
-/// The path from the root, links followed as far as there is something.
+/// The absolute path, with links followed as far as the path exists.
 pub(super) fn resolved(path: &Path) -> PathBuf {
     let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let found = absolute.ancestors().find_map(|part| Some((part, std::fs::canonicalize(part).ok()?)));
@@ -49,14 +49,14 @@ pub(super) fn is_same(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// Whether the two folders lie on different disks, so that nothing can be renamed from one to the other.
+/// Whether the two folders are on different disks, between which a rename fails.
 #[cfg(unix)]
 pub(super) fn is_on_other_disk(a: &Path, b: &Path) -> bool {
     let disk = |path| FileIdentity::of(path).map(|identity| identity.0.0);
     matches!((disk(a), disk(b)), (Some(a), Some(b)) if a != b)
 }
 
-/// Whether the two folders lie on different disks, if the system reports it.
+/// Whether the two folders are on different disks, if the system reports it.
 #[cfg(not(unix))]
 pub(super) fn is_on_other_disk(_a: &Path, _b: &Path) -> bool {
     false

@@ -1,4 +1,4 @@
-//! The content of a file in short: by it an edited file is known.
+//! Checksum of a file's content, which detects edited files.
 
 use std::fmt;
 use std::fs::File;
@@ -6,8 +6,8 @@ use std::io::{self, Read, Seek, SeekFrom};
 use std::path::Path;
 use std::str::FromStr;
 
-/// Length of the beginning and of the end of a file that the checksum covers \[bytes\]. An edit in between that keeps the length is not
-/// seen. Source: ours, a map has less.
+/// Length of the beginning and of the end of a file covered by the checksum \[bytes\]. An edit in between that preserves the length is not
+/// detected. Source: ours, a map has less.
 const COVERED_BYTES: u64 = 8 << 20;
 
 /// Length and checksum of a file.
@@ -21,7 +21,7 @@ impl Fingerprint {
     /// The fingerprint of a file.
     ///
     /// # Errors
-    /// When it cannot be read.
+    /// When the file cannot be read.
     pub(super) fn of(path: &Path) -> io::Result<Self> {
         let mut file = File::open(path)?;
         let bytes = file.metadata()?.len();

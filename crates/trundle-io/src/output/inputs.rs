@@ -12,13 +12,13 @@ pub struct InputFiles {
     paths: Vec<PathBuf>,
 }
 
-/// Endings of text files that name other files, as a map names its picture.
+/// Extensions of text files that refer to other files, for example a map to its picture.
 const NAMING: [&str; 5] = ["yaml", "yml", "toml", "txt", "gltf"];
-/// Size of a text file that is searched for names of other files \[bytes\]. A larger one is not searched. Source: ours.
+/// Maximum size of a text file that is searched for names of other files \[bytes\]. Larger files are not searched. Source: ours.
 const MAX_NAMING_BYTES: u64 = 1 << 20;
 
 impl InputFiles {
-    /// These inputs, and the files that they name.
+    /// These inputs, and the files that they refer to.
     pub fn new(paths: impl IntoIterator<Item = PathBuf>) -> Self {
         let mut files = Self::default();
         for path in paths {
@@ -28,14 +28,14 @@ impl InputFiles {
         files
     }
 
-    /// These inputs, and the files `files`.
+    /// These inputs, and additional `files`.
     #[must_use]
     pub fn and(mut self, files: impl IntoIterator<Item = PathBuf>) -> Self {
         self.paths.extend(files);
         self
     }
 
-    /// Refuses `place`, a folder whose files will be moved or replaced, where it is or holds an input.
+    /// Refuses `place`, a folder whose files will be moved or replaced, if it is or contains an input.
     pub(super) fn require_apart(&self, place: &Path) -> Result<(), IoError> {
         if let Some(input) = self.paths.iter().find(|input| is_within(input, place)) {
             return Err(holds(place, input));
@@ -49,7 +49,7 @@ impl InputFiles {
         shared.map_or(Ok(()), |input| Err(holds(place, input)))
     }
 
-    /// Refuses `path`, a file that will be replaced, where it is an input or lies where one does.
+    /// Refuses `path`, a file that will be replaced, if it is an input or contains one.
     pub(super) fn require_other_than(&self, path: &Path) -> Result<(), IoError> {
         match self.paths.iter().find(|input| is_same(input, path)) {
             Some(input) => {
@@ -63,7 +63,7 @@ impl InputFiles {
         }
     }
 
-    /// Every input, and every file below one that is a folder, but for those in `place`.
+    /// Every input, and every file below an input folder, without those in `place`.
     fn identities(&self, place: &Path) -> HashMap<FileIdentity, PathBuf> {
         let place = resolved(place);
         let below = |path: &PathBuf| {
@@ -75,13 +75,13 @@ impl InputFiles {
     }
 }
 
-/// Whether `path` is `place` or lies in it, by its name or by where its links lead.
+/// Whether `path` is `place` or inside it, by its name or after following links.
 fn is_within(path: &Path, place: &Path) -> bool {
     let (absolute, real) = (without_parent_parts(path), resolved(path));
     absolute.ancestors().chain(real.ancestors()).any(|part| is_same(part, place))
 }
 
-/// The path from the root; each `..` is the folder above that where the path before it leads, other links are not followed.
+/// The absolute path; each `..` is the parent of the resolved preceding path, other links are not followed.
 fn without_parent_parts(path: &Path) -> PathBuf {
     let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     absolute.components().fold(PathBuf::new(), |before, part| match part {
@@ -99,7 +99,7 @@ fn holds(place: &Path, input: &Path) -> IoError {
     IoError::malformed(place, problem)
 }
 
-/// The files that a text file names, or the text files of a folder name, wherever they lie.
+/// The files named in a text file, or in the text files of a folder, at any location.
 fn named_in(path: &Path) -> Vec<PathBuf> {
     let texts: Vec<PathBuf> = if path.is_dir() {
         let entries = std::fs::read_dir(path).into_iter().flatten().flatten();
@@ -121,8 +121,8 @@ fn named_in_text(path: &Path) -> Vec<PathBuf> {
     files.filter(|file| file.is_file()).collect()
 }
 
-/// Possible names of a file in a line: each word, and, since names may hold blanks, what is between quotes or marks, and the
-/// rest of the line from a word on.
+/// Possible file names in a line. They are each word, quoted or marked text (names may contain blanks), and the rest of the line from each
+/// word on.
 fn names_in_line(line: &str) -> impl Iterator<Item = &str> {
     let words = line.split(|c: char| c.is_whitespace() || MARKS.contains(c));
     let pieces = line.split(|c: char| MARKS.contains(c)).map(str::trim);

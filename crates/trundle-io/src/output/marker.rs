@@ -1,4 +1,4 @@
-//! The file that marks a folder as written by trundle, with the list of what it wrote there.
+//! The file that marks a folder as written by trundle, with a list of the written files.
 
 use super::fingerprint::Fingerprint;
 use super::tree::files_below;
@@ -6,30 +6,30 @@ use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Name of the file that marks a folder as written by trundle: a list of what it wrote there.
+/// Name of the file that marks a folder as written by trundle; it lists the written files.
 pub(super) const MARKER_FILE: &str = ".trundle-run";
 
 /// The first line of the marker file.
 const TITLE: &str = "# A folder of results of trundle.";
-/// The line of a marker of results of which only a part may be there: a commit that was interrupted leaves it.
+/// The line of a marker of possibly incomplete results, left by an interrupted commit.
 const UNFINISHED: &str = "# Unfinished.";
-/// Between the path of a file and its content in the marker.
+/// Separator between the path of a file and its checksum in the marker.
 const SEPARATOR: char = '\t';
-/// The rest of its head.
+/// The rest of the marker's head.
 const HEAD: &str =
     "# The next run into this folder keeps these files in a folder beside it, whose name ends in .1.\n";
 
-/// The files that a run wrote into its folder, by their paths in it.
+/// The files of a run, by their paths in its folder.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct RunMarker {
     /// `None` if the content is not known.
     files: BTreeMap<PathBuf, Option<Fingerprint>>,
-    /// Whether only a part of the files may be there.
+    /// Whether the files may be incomplete.
     pub(super) is_unfinished: bool,
 }
 
 impl RunMarker {
-    /// The marker of everything below `folder`.
+    /// The marker of all files below `folder`.
     ///
     /// # Errors
     /// When the folder cannot be read.
@@ -40,12 +40,12 @@ impl RunMarker {
         Ok(Self { files, is_unfinished: false })
     }
 
-    /// The marker of a folder in which the files of `self` give place to those of `next`, at any moment of that.
+    /// The marker of a folder during the replacement of the files of `self` by those of `next`.
     pub(super) fn giving_place_to(self, next: Self) -> Self {
         Self { files: self.files.into_iter().chain(next.files).collect(), is_unfinished: true }
     }
 
-    /// The marker in `folder`; `None` if there is none of trundle's.
+    /// The marker in `folder`; `None` without a marker by trundle.
     pub(super) fn read(folder: &Path) -> Option<Self> {
         let text = std::fs::read_to_string(folder.join(MARKER_FILE)).ok()?;
         let mut lines = text.lines();
@@ -57,7 +57,7 @@ impl RunMarker {
     /// Writes the marker into `folder`.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// When the marker cannot be written.
     pub(super) fn write(&self, folder: &Path) -> io::Result<()> {
         let lines = self.files.iter().map(|(path, content)| {
             let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
@@ -69,7 +69,7 @@ impl RunMarker {
         std::fs::write(folder.join(MARKER_FILE), text)
     }
 
-    /// The files of `folder` that are other than the run wrote them. Files of unknown content are taken as unchanged.
+    /// The files of `folder` that were changed after the run. Files without a checksum count as unchanged.
     pub(super) fn changed_files(&self, folder: &Path) -> Vec<PathBuf> {
         let is_changed = |path: &PathBuf, content: &Fingerprint| {
             Fingerprint::of(&folder.join(path)).is_ok_and(|found| found != *content)

@@ -1,4 +1,4 @@
-//! The place of a folder of results: what may be replaced there, and where the last run is kept.
+//! The place of a folder of results: the files that may be replaced, and the folder of the last run.
 
 use super::inputs::InputFiles;
 use super::marker::{MARKER_FILE, RunMarker};
@@ -13,19 +13,19 @@ use std::path::{Path, PathBuf};
 /// The place of a folder of results.
 #[derive(Debug)]
 pub(super) struct OutputPlace {
-    /// The folder as it was named.
+    /// The folder as named by the user.
     pub target: PathBuf,
-    /// The same folder, where it is a link what it leads to.
+    /// The same folder, with links followed.
     pub real: PathBuf,
-    /// Whether an earlier run is there that has to be kept.
+    /// Whether the folder contains an earlier run that must be preserved.
     pub holds_run: bool,
 }
 
 impl OutputPlace {
-    /// The place `target`, if nothing foreign and no input is lost when its content is replaced.
+    /// The place `target`, if a replacement of its content loses no foreign file and no input.
     ///
     /// # Errors
-    /// When it is a file, holds an input or a file that trundle did not write, or the last run cannot be kept.
+    /// When the target is a file, contains an input or a file not written by trundle, or the last run cannot be preserved.
     pub fn check(target: &Path, inputs: &InputFiles) -> Result<Self, IoError> {
         if target.as_os_str().is_empty() {
             return Err(IoError::malformed(target, "the name of the output folder is empty"));
@@ -42,12 +42,12 @@ impl OutputPlace {
         Ok(place)
     }
 
-    /// Where the last run is kept: the folder's name with `.1` behind it.
+    /// Folder of the last run: the folder's name with the suffix `.1`.
     pub fn last_run(&self) -> PathBuf {
         self.real.with_file_name(with_ending(&self.real, ".1"))
     }
 
-    /// Whether `folder` holds a run of trundle, and nothing else.
+    /// Whether `folder` contains only a run of trundle.
     fn require_own(&self, folder: &Path) -> Result<bool, IoError> {
         let unreadable = |error| IoError::system(folder, "read")(error);
         if !folder.exists() {
@@ -67,7 +67,7 @@ impl OutputPlace {
         foreign.first().map_or(Ok(true), |first| Err(self.foreign(folder, first, foreign.len())))
     }
 
-    /// Refuses the kept run, which the next one deletes, where a file of it was edited since trundle wrote it.
+    /// Refuses the stored last run, which the next run deletes, if one of its files was edited after trundle wrote it.
     fn require_unchanged(&self, last: &Path) -> Result<(), IoError> {
         let changed = RunMarker::read(last).map(|marker| marker.changed_files(last)).unwrap_or_default();
         let Some(first) = changed.first() else { return Ok(()) };
@@ -89,11 +89,11 @@ impl OutputPlace {
         IoError::malformed(if folder == self.real { &self.target } else { folder }, problem)
     }
 
-    /// Moves everything in the stage of `scratch`, which has its marker, to the place; what a run left there goes to
-    /// [`OutputPlace::last_run`]. At whatever moment the process is killed, the last run is whole in one of the two folders.
+    /// Moves all files of the stage of `scratch`, which has its marker, to the place; a previous run moves to [`OutputPlace::last_run`]. If
+    /// the process is killed at any moment, the last run is complete in one of the two folders.
     ///
     /// # Errors
-    /// When the folder has got foreign files meanwhile, or something cannot be moved.
+    /// When foreign files appeared in the folder since the check, or a file cannot be moved.
     pub fn fill(&self, scratch: &Scratch) -> Result<(), IoError> {
         if !self.real.exists() {
             return fs::rename(scratch.stage(), &self.real).map_err(IoError::system(&self.target, "write"));
@@ -105,13 +105,14 @@ impl OutputPlace {
         self.replace_content(scratch).map_err(IoError::system(&self.target, "write"))
     }
 
-    /// Whether a run is at the place that has to be kept. One whose commit was interrupted is none: the run before it is kept.
+    /// Whether the place contains a run that must be preserved. A run with an interrupted commit does not count: the previous run is
+    /// preserved.
     fn holds_whole_run(&self) -> Result<bool, IoError> {
         let is_unfinished = || RunMarker::read(&self.real).is_some_and(|marker| marker.is_unfinished);
         Ok(self.require_own(&self.real)? && !is_unfinished())
     }
 
-    /// The last run in the folder that keeps it, and still at its place too.
+    /// Copies the last run to its folder; the run also remains at its place.
     pub fn keep_last_run(&self, scratch: &Scratch) -> io::Result<()> {
         let last = self.last_run();
         link_tree(&self.real, &scratch.kept())?;
@@ -121,8 +122,8 @@ impl OutputPlace {
         fs::rename(scratch.kept(), &last)
     }
 
-    /// The results in the place of what is there. The folder itself stays, so that a shell in it stays in it. Until all is there its
-    /// marker lists the old files and the new ones.
+    /// Replaces the present content by the results. The folder itself remains, so a shell in this folder is not affected. Until the
+    /// replacement is complete, the marker lists both old and new files.
     pub fn replace_content(&self, scratch: &Scratch) -> io::Result<()> {
         let (stage, marker) = (scratch.stage(), self.real.join(MARKER_FILE));
         let [old, new] = [&self.real, &stage].map(|folder| RunMarker::read(folder));
@@ -142,14 +143,14 @@ impl OutputPlace {
     }
 }
 
-/// The first of the names of `path` with `.1`, `.2`, ... behind it at which nothing is.
+/// The first free name among `path` with the suffixes `.1`, `.2`, ...
 pub(super) fn free_name(path: &Path) -> PathBuf {
     let is_free = |name: &PathBuf| !name.exists() && !name.is_symlink();
     let names = (1..).map(|n: u64| path.with_file_name(with_ending(path, &format!(".{n}"))));
     names.into_iter().find(is_free).unwrap_or_else(|| path.to_owned())
 }
 
-/// The name of `path` with `ending` behind it.
+/// The name of `path` with the suffix `ending`.
 pub(super) fn with_ending(path: &Path, ending: &str) -> OsString {
     let mut name = path.file_name().unwrap_or_default().to_owned();
     name.push(ending);
@@ -187,7 +188,7 @@ fn remove_entries(folder: &Path) -> io::Result<()> {
     })
 }
 
-/// A folder `to` with the files of `from` under a second name, or copied if the disk has no second names.
+/// A folder `to` with hard links to the files of `from`, or copies if the disk has no hard links.
 fn link_tree(from: &Path, to: &Path) -> io::Result<()> {
     fs::create_dir(to)?;
     for file in files_below(from)? {

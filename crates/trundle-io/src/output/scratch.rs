@@ -1,4 +1,4 @@
-//! The hidden folder that results are written to before they appear, and the sweeping of one that a killed run left.
+//! The hidden folder of results before they appear, and the removal of one left by a killed run.
 
 use super::file_identity::resolved;
 use super::unfinished;
@@ -9,18 +9,18 @@ use tempfile::TempDir;
 
 /// The name of every hidden folder begins so.
 const PREFIX: &str = ".trundle-";
-/// A file that a run keeps locked: without the lock, the run has ended. It holds the results' place.
+/// A file that a run locks: without the lock, the run has ended. It contains the results' place.
 const OWNER_FILE: &str = "owner";
-/// The folder in the hidden one that holds the results, so that they get the user's usual permissions.
+/// The folder of the results inside the hidden one; it has the user's usual permissions.
 const STAGE: &str = "out";
 /// The folder in the hidden one that is made to keep the last run.
 const KEPT: &str = "kept";
-/// The folder in the hidden one that takes the run which was kept until then, until it is removed.
+/// The folder inside the hidden one for the previously stored run, until its removal.
 const REPLACED: &str = "replaced";
-/// The folder in the hidden one that holds the marker of an unfinished commit until it is complete.
+/// The folder inside the hidden one for the marker of an unfinished commit, until the marker is complete.
 const UNFINISHED: &str = "unfinished";
 
-/// A hidden folder for results; it goes with its value.
+/// A hidden folder for results; a drop removes it.
 #[derive(Debug)]
 pub(super) struct Scratch {
     dir: TempDir,
@@ -29,14 +29,14 @@ pub(super) struct Scratch {
 }
 
 impl Scratch {
-    /// A hidden folder in the folder `beside` for the results of `target`.
+    /// Creates a hidden folder in the folder `beside` for the results of `target`.
     ///
     /// # Errors
-    /// When it cannot be created.
+    /// When the folder cannot be created.
     pub(super) fn create(beside: &Path, target: &Path) -> io::Result<Self> {
         let dir = unfinished::begin(|| tempfile::Builder::new().prefix(PREFIX).tempdir_in(beside))?;
         let mut owner = File::create(dir.path().join(OWNER_FILE))?;
-        // On a file system without locks nothing is swept either.
+        // Without locks on the file system, no hidden folder is removed either.
         let _ = owner.try_lock();
         owner.write_all(resolved(target).to_string_lossy().as_bytes())?;
         fs::create_dir(dir.path().join(STAGE))?;
@@ -48,35 +48,35 @@ impl Scratch {
         self.dir.path().join(STAGE)
     }
 
-    /// Where the folder that keeps the last run is made.
+    /// Path at which the folder of the last run is prepared.
     pub(super) fn kept(&self) -> PathBuf {
         self.dir.path().join(KEPT)
     }
 
-    /// Where the run that was kept until then goes.
+    /// Path for the previously stored run.
     pub(super) fn replaced(&self) -> PathBuf {
         self.dir.path().join(REPLACED)
     }
 
-    /// Where the marker of an unfinished commit is made.
+    /// Path at which the marker of an unfinished commit is prepared.
     pub(super) fn unfinished(&self) -> PathBuf {
         self.dir.path().join(UNFINISHED)
     }
 
-    /// Removes it with all that is in it.
+    /// Removes the folder with its content.
     pub(super) fn remove(&self) {
         let _ = fs::remove_dir_all(self.dir.path());
         unfinished::forget(self.dir.path());
     }
 }
 
-/// Whether this is a hidden folder of a run, alive or not.
+/// Whether this is a hidden folder of a running or ended run.
 pub(super) fn is_scratch(path: &Path) -> bool {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     name.starts_with(PREFIX) && path.join(OWNER_FILE).is_file()
 }
 
-/// Removes the hidden folders in `beside` that killed runs into `target` left; their paths. One whose run lives stays.
+/// Removes the hidden folders in `beside` left by killed runs into `target`; returns their paths. The folder of a running run remains.
 pub(super) fn sweep(beside: &Path, target: &Path) -> Vec<PathBuf> {
     let place = resolved(target);
     let entries = fs::read_dir(beside).into_iter().flatten().flatten();

@@ -1,4 +1,4 @@
-//! A single file of results, which appears whole or not at all and replaces no other.
+//! A single file of results, which appears complete or not at all and replaces no other file.
 
 use super::inputs::InputFiles;
 use super::place::free_name;
@@ -10,8 +10,7 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// A single file of results, which appears whole or not at all. A file of other content that is there is kept: see
-/// [`keep_aside`].
+/// A single file of results, which appears complete or not at all. An existing file with other content is preserved: see [`keep_aside`].
 #[derive(Debug)]
 pub struct OutputFile {
     path: PathBuf,
@@ -22,10 +21,10 @@ pub struct OutputFile {
 }
 
 impl OutputFile {
-    /// Prepares to write `path`; nothing is visible there before [`OutputFile::write`].
+    /// Prepares to write `path`; no file is visible there before [`OutputFile::write`].
     ///
     /// # Errors
-    /// Those of [`OutputFile::check`], and when nothing can be written there.
+    /// Those of [`OutputFile::check`], and when the folder is not writable.
     pub fn create_apart_from(inputs: &InputFiles, path: &Path) -> Result<Self, IoError> {
         Self::check(inputs, path)?;
         if path.exists() && !path.is_file() {
@@ -44,7 +43,7 @@ impl OutputFile {
     /// Refuses a file that cannot be replaced.
     ///
     /// # Errors
-    /// When `path` names no file, a folder, or one of `inputs`.
+    /// When `path` is no file name, a folder, or one of `inputs`.
     pub fn check(inputs: &InputFiles, path: &Path) -> Result<(), IoError> {
         if path.is_dir() {
             return Err(IoError::malformed(path, "this is a folder, expected the name of a file"));
@@ -55,7 +54,7 @@ impl OutputFile {
         inputs.require_other_than(path)
     }
 
-    /// Writes the file; another that was there is kept aside.
+    /// Writes the file; an existing one is renamed.
     ///
     /// # Errors
     /// [`IoError::Incomplete`] when it cannot be written.
@@ -89,10 +88,10 @@ impl Drop for OutputFile {
     }
 }
 
-/// Renames a file that is about to be replaced: the first of the names with `.1`, `.2`, ... behind it that is free.
+/// Renames a file before its replacement: to the first free name with the suffix `.1`, `.2`, ...
 ///
 /// # Errors
-/// When it cannot be renamed.
+/// When the file cannot be renamed.
 pub fn keep_aside(path: &Path) -> Result<(), IoError> {
     keep(path).map_err(IoError::system(path, "rename"))
 }

@@ -1,4 +1,4 @@
-//! Tests of an output folder: it appears whole, and nothing is lost.
+//! Tests of an output folder: it appears complete, and no file is lost.
 
 use super::*;
 
@@ -227,7 +227,7 @@ fn three_runs(target: &Path) -> OutputFolder {
     third
 }
 
-/// Whether `folder` holds the run of that content whole.
+/// Whether `folder` contains the complete run of that content.
 fn holds(folder: &Path, content: &str) -> bool {
     ["a", "b", "sub/c"].iter().all(|name| fs::read(folder.join(name)).is_ok_and(|b| b == content.as_bytes()))
 }

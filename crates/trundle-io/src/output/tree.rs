@@ -4,8 +4,7 @@ use super::scratch::is_scratch;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// The files and links below `folder` in the order of their names. Folders behind a link, and the hidden ones of running runs,
-/// are not entered.
+/// The files and links below `folder` in the order of their names. Folders behind links, and hidden folders of running runs, are skipped.
 ///
 /// # Errors
 /// When a folder cannot be read.

@@ -22,7 +22,7 @@ fn unfinished() -> MutexGuard<'static, Unfinished> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Makes a hidden folder by `create` and notes it; no ending of the process falls between.
+/// Creates a hidden folder by `create` and records it; the process cannot end between both steps.
 pub(super) fn begin<E>(create: impl FnOnce() -> Result<TempDir, E>) -> Result<TempDir, E> {
     let mut unfinished = unfinished();
     let folder = create()?;
@@ -35,7 +35,7 @@ pub(super) fn forget(folder: &Path) {
     unfinished().folders.retain(|known| known != folder);
 }
 
-/// Moves results to their place by `complete`; no ending of the process falls between.
+/// Moves results to their place by `complete`; the process cannot end during the move.
 pub(super) fn complete<T, E>(complete: impl FnOnce() -> Result<T, E>) -> Result<T, E> {
     let mut unfinished = unfinished();
     let result = complete();
@@ -43,8 +43,8 @@ pub(super) fn complete<T, E>(complete: impl FnOnce() -> Result<T, E>) -> Result<
     result
 }
 
-/// Removes all unfinished results, for a process that ends: nothing is moved to its place after this. Returns false, and removes
-/// nothing, where results are complete: such a process ends by itself.
+/// Removes all unfinished results, for a process that ends: no result is moved to its place afterwards. Returns false without any removal
+/// if results are complete: such a process is already ending.
 pub fn abandon_outputs() -> bool {
     let unfinished = unfinished();
     if unfinished.is_any_complete {
@@ -54,7 +54,7 @@ pub fn abandon_outputs() -> bool {
     true
 }
 
-/// Removes all unfinished results, for a process that ends: nothing is moved to its place after this. Complete results stay.
+/// Removes all unfinished results, for a process that ends: no result is moved to its place afterwards. Complete results remain.
 pub fn abandon_unfinished() {
     abandon_all(unfinished());
 }
@@ -64,7 +64,7 @@ fn abandon_all(unfinished: MutexGuard<'static, Unfinished>) {
     std::mem::forget(unfinished); // the lock is held until the process ends, so that no result is begun or completed
 }
 
-/// Removes a hidden folder. A thread that still writes files finds no folder at the old name, so that none appears during the removal.
+/// Removes a hidden folder. A thread that is still writing finds no folder at the old name, so no file appears during the removal.
 fn abandon(folder: &Path) {
     let mut name = folder.as_os_str().to_owned();
     name.push(ABANDONED);
@@ -73,8 +73,8 @@ fn abandon(folder: &Path) {
     let _ = fs::remove_dir_all(if is_renamed { &abandoned } else { folder });
 }
 
-/// Waits for the end of a process whose results are abandoned; else returns at once. An error of a writer that lost its folder by that is
-/// no result of the command.
+/// Waits for the end of a process whose results are abandoned; else returns immediately. An error of a writer caused by the removal is no
+/// result of the command.
 pub fn wait_for_abandonment() {
     drop(unfinished());
 }

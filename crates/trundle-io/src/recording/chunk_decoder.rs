@@ -7,17 +7,17 @@ use std::io::{self, Read};
 /// A record: its opcode and its content.
 pub(super) type OwnedRecord = (u8, Vec<u8>);
 
-/// Length of a decoded chunk \[bytes\]. A longer one is refused: it bounds what a broken chunk can ask for. Source: ours, chunks are some MB.
+/// Length of a decoded chunk \[bytes\]. A longer chunk is refused, a bound for broken chunks. Source: ours, chunks are some MB.
 const MAX_CHUNK: u64 = 1 << 28;
-/// Bytes of a record before its content: opcode and length.
+/// Length of a record's head: opcode and length \[bytes\].
 pub(super) const HEAD_BYTES: usize = 1 + 8;
-/// Bytes of a chunk before the name of its compression: times, size, checksum.
+/// Length of a chunk's head before the name of its compression: times, size, checksum \[bytes\].
 pub(super) const CHUNK_HEAD_BYTES: usize = 8 + 8 + 8 + 4;
 
 /// The records of a whole chunk.
 ///
 /// # Errors
-/// When it cannot be decoded, has another checksum or length than it says, or its last record is not whole.
+/// When the chunk cannot be decoded, has another checksum or length than declared, or its last record is truncated.
 pub(super) fn records_of_chunk(chunk: &[u8]) -> McapResult<Vec<OwnedRecord>> {
     let (head, packed) = match parse_record(op::CHUNK, require_compression(chunk)?)? {
         Record::Chunk { header, data } => (header, data),
@@ -35,7 +35,7 @@ pub(super) fn records_of_chunk(chunk: &[u8]) -> McapResult<Vec<OwnedRecord>> {
     if rest.is_empty() { Ok(records) } else { Err(McapError::UnexpectedEoc) }
 }
 
-/// The chunk, where the name of its compression lies within it.
+/// The chunk, if the name of its compression is within it.
 fn require_compression(chunk: &[u8]) -> McapResult<&[u8]> {
     let length =
         chunk.get(CHUNK_HEAD_BYTES..).and_then(<[u8]>::first_chunk).ok_or(McapError::UnexpectedEof)?;
@@ -44,7 +44,7 @@ fn require_compression(chunk: &[u8]) -> McapResult<&[u8]> {
     Ok(chunk)
 }
 
-/// The whole records at the beginning of the bytes, and what is left.
+/// The complete records at the beginning of the bytes, and the rest.
 pub(super) fn split_records(mut bytes: &[u8]) -> (Vec<OwnedRecord>, &[u8]) {
     let mut records = Vec::new();
     while let Some((head, rest)) = bytes.split_at_checked(HEAD_BYTES) {
@@ -71,7 +71,7 @@ fn decoded(compression: &str, packed: &[u8]) -> McapResult<Vec<u8>> {
 /// The decodable beginning of a chunk; `None` if the compression is unknown.
 pub(super) fn decoded_prefix(compression: &[u8], bytes: &[u8]) -> Option<Vec<u8>> {
     let mut decoded = Vec::new();
-    // The error is the cut itself; what comes before it is there.
+    // The error is the cut itself; the data before the cut is available.
     let _ = decoder(compression)?(bytes, &mut decoded);
     Some(decoded)
 }
@@ -79,7 +79,7 @@ pub(super) fn decoded_prefix(compression: &[u8], bytes: &[u8]) -> Option<Vec<u8>
 /// Decodes bytes into a buffer.
 type Decode = fn(&[u8], &mut Vec<u8>) -> io::Result<()>;
 
-/// The decoder of a compression that MCAP names.
+/// The decoder of an MCAP compression.
 fn decoder(compression: &[u8]) -> Option<Decode> {
     match compression {
         b"" => Some(plain),

@@ -11,11 +11,11 @@ use record::RecordWriter;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
-/// Size at which the open chunks are written \[bytes\]. A program that is killed loses what is in them. The places of the chunks are kept for
-/// the index: in an hour of 30 images per second some 20 MB. Source: ours.
+/// Size at which the open chunks are written \[bytes\]. A killed program loses the content of open chunks. The index stores the positions
+/// of all chunks: some 20 MB for an hour of 30 images per second. Source: ours.
 const FLUSH_BYTES: usize = 1 << 20;
 
-/// Writes messages into three chunks at a time, one a [`Group`], so that each is packed as its content needs.
+/// Writes messages into three open chunks, one per [`Group`], each with the compression that suits its content.
 pub(super) struct Container<W: Write> {
     writer: W,
     /// Bytes written so far.
@@ -80,12 +80,12 @@ impl<W: Write> Container<W> {
         entry.messages += 1;
         chunk.push_message(channel, entry.messages as u32, time, data);
         let is_full = self.open.iter().map(Chunk::len).sum::<usize>() >= FLUSH_BYTES;
-        // The first message is the configuration, without which a file that is cut is worth nothing.
+        // The first message is the configuration; a truncated file is useless without it.
         let is_first = self.places.is_empty() && !self.open[Group::Rest as usize].is_empty();
         if is_full || is_first { self.flush_chunks() } else { Ok(()) }
     }
 
-    /// Writes the open chunks, that of the rest last: its messages say where the images of the others came.
+    /// Writes the open chunks, the chunk of other messages last: its messages give the positions of the images.
     fn flush_chunks(&mut self) -> io::Result<()> {
         for group in Group::ALL {
             let chunk = std::mem::take(&mut self.open[group as usize]);
@@ -99,7 +99,7 @@ impl<W: Write> Container<W> {
         Ok(())
     }
 
-    /// Writes the rest and the index; the writer again.
+    /// Writes the rest and the index; returns the writer.
     pub(super) fn finish(mut self) -> io::Result<W> {
         self.flush_chunks()?;
         let end = RecordWriter::default().u32(0).record(op::DATA_END);
@@ -121,7 +121,7 @@ impl<W: Write> Container<W> {
         Ok(self.writer)
     }
 
-    /// The records of the summary by their kind.
+    /// The records of the summary, with their opcodes.
     fn summary(&self) -> [(u8, Vec<u8>); 4] {
         let used = |id: usize| self.channels.iter().any(|channel| usize::from(channel.schema) == id + 1);
         let schemas = self.schemas.iter().enumerate().filter(|(id, _)| used(*id));

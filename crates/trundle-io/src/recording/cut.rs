@@ -1,4 +1,4 @@
-//! Where an MCAP file was cut, and the whole records of the chunk that it was cut in.
+//! Position at which an MCAP file was cut, and the complete records of the cut chunk.
 
 use super::chunk_decoder::{CHUNK_HEAD_BYTES, HEAD_BYTES, OwnedRecord, decoded_prefix, split_records};
 use mcap::records::op;
@@ -49,7 +49,7 @@ pub(super) fn whole_part(file: &mut File, len: u64) -> io::Result<WholePart> {
     Ok(if is_whole { WHOLE } else { WholePart { end, is_cut: true } })
 }
 
-/// The whole records of the chunk that begins at `start` and is cut: opcodes and contents. Empty if another record is there.
+/// The complete records of the cut chunk that begins at `start`: opcodes and contents. Empty if another record is at this position.
 ///
 /// # Errors
 /// When the file cannot be read.

@@ -10,7 +10,7 @@ pub(super) const SCHEMA: &str = "sensor_msgs/msg/CompressedImage";
 
 /// Bytes in front of the image of a `compressedDepth` message.
 const DEPTH_HEADER_BYTES: usize = 12;
-/// Number of images that wait for their place; more are not a recording of ours. Source: ours, ten times those of a chunk.
+/// Maximum number of images that wait for their place; a recording by trundle never exceeds it. Source: ours, ten times those of a chunk.
 const MAX_WAITING: usize = 4096;
 
 /// An image's bytes and the stamp of its message.
@@ -50,7 +50,7 @@ impl WaitingImages {
     /// Keeps a colour image, or a depth image.
     ///
     /// # Errors
-    /// When it is one too many.
+    /// When the number of waiting images exceeds the limit.
     pub(super) fn push(&mut self, image: ImageBytes, is_color: bool) -> Result<(), String> {
         let waiting = if is_color { &mut self.colors } else { &mut self.depths };
         waiting.push_back(image);

@@ -51,7 +51,7 @@ pub(super) struct OdometryMessage {
     covariance: [[f64; 3]; 3],
 }
 
-/// An event of a body besides its motion and its images.
+/// An event of a body other than motion and images.
 #[derive(Serialize, Deserialize)]
 pub(super) struct BodyEventMessage {
     stamp: Time,
@@ -65,9 +65,9 @@ pub(super) struct ScanMessage {
     origin_m: [f64; 2],
     angle_min_rad: f64,
     angle_increment_rad: f64,
-    /// `null` if nothing is known.
+    /// `null` if unknown.
     ranges_m: Vec<Option<f64>>,
-    /// Whether an obstacle is at the range; else the beam is free up to it.
+    /// Whether an obstacle is at the range; otherwise the beam is free up to the range.
     hits: Vec<bool>,
     /// When the first beam was measured, after the stamp, and the time between beams; none if all were measured at the stamp.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -93,7 +93,7 @@ pub(super) struct JsonImage {
     data: String,
 }
 
-/// A sensor event as the messages that stand for it.
+/// The messages of a sensor event.
 pub(super) enum EventMessages {
     Wheels(WheelTicksMessage),
     Gyro(GyroRateMessage),

@@ -5,8 +5,8 @@ use crate::EncodedEvent;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose2, Pose3, Stamp};
 
-/// A message of the schema `foxglove.PoseInFrame`, with the heading beside it where the pose is planar, because a
-/// heading does not survive its quaternion to the last bit.
+/// A message of the schema `foxglove.PoseInFrame`. A planar pose also has its heading, because its quaternion does not preserve the last
+/// bit of the heading.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PoseInFrame {
     timestamp: Time,
@@ -17,7 +17,7 @@ pub struct PoseInFrame {
 }
 
 impl PoseInFrame {
-    /// The name of its schema.
+    /// Name of the schema.
     pub const SCHEMA: &str = "foxglove.PoseInFrame";
 
     /// A pose in space: `frame_from_body`, m.
@@ -30,7 +30,7 @@ impl PoseInFrame {
         Self { theta: Some(pose.theta), ..Self::new(stamp, frame_id, Pose3::from_pose2(pose)) }
     }
 
-    /// The planar pose again, exact; `None` if it was made of a pose in space.
+    /// The exact planar pose; `None` for a message made from a pose in space.
     pub fn pose2(&self) -> Option<Pose2> {
         let Xyz { x, y, .. } = self.pose.position;
         self.theta.map(|theta| Pose2 { x, y, theta })
@@ -46,7 +46,7 @@ pub struct PosesInFrame {
 }
 
 impl PosesInFrame {
-    /// The name of its schema.
+    /// Name of the schema.
     pub const SCHEMA: &str = "foxglove.PosesInFrame";
 
     /// Poses in the plane: `frame_from_body` each.

@@ -22,18 +22,18 @@ pub enum RecordedMessage {
     Event(EncodedEvent),
     /// Anything else.
     Json {
-        /// Where it was recorded.
+        /// Topic of the message.
         topic: String,
-        /// The name of its schema.
+        /// Name of the schema.
         schema: String,
-        /// When.
+        /// Stamp of the message.
         stamp: Stamp,
         /// The message.
         value: Value,
     },
 }
 
-/// Reads a recording message by message, in the order in which it was written; a few messages are in memory at a time.
+/// Reads a recording message by message, in the order of writing; only a few messages are in memory.
 pub struct RecordingReader {
     stream: MessageStream,
     config: Option<Value>,
@@ -43,7 +43,7 @@ pub struct RecordingReader {
 }
 
 impl RecordingReader {
-    /// Opens a recording and reads the configuration of its run, where that is its first message.
+    /// Opens a recording and reads the configuration of its run if that is the first message.
     ///
     /// # Errors
     /// When the file cannot be read or is not an MCAP recording.
@@ -84,12 +84,12 @@ impl RecordingReader {
         self.config.as_ref()
     }
 
-    /// Where the recording was cut, when it is read to there.
+    /// Position of the cut, once reading has reached it.
     pub fn cut(&self) -> Option<RecordingCut> {
         self.stream.cut()
     }
 
-    /// How much of the file has been read, 0 to 1.
+    /// Share of the file that was read, 0 to 1.
     pub fn progress(&self) -> f64 {
         self.stream.progress()
     }
@@ -97,8 +97,7 @@ impl RecordingReader {
     /// The next message that is not the configuration; `None` at the end.
     ///
     /// # Errors
-    /// When the file is truncated or broken here, or a message is not what its topic promises. Reading on makes no
-    /// sense then.
+    /// When the file is truncated or broken here, or a message does not match its topic. Further reading is impossible then.
     pub fn next_message(&mut self) -> Result<Option<RecordedMessage>, IoError> {
         let Some(raw) = self.next_raw()? else { return Ok(None) };
         let path = self.stream.path();
@@ -147,7 +146,7 @@ impl RecordingReader {
         }
     }
 
-    /// The next message of ours, its JSON unwrapped. Images wait for their place; other messages of ROS 2 are passed over.
+    /// The next message of ours, its JSON unwrapped. Images wait for their place; other messages of ROS 2 are skipped.
     fn next_own(&mut self) -> Result<Option<RawMessage>, IoError> {
         while let Some(raw) = self.stream.next_message()? {
             let path = self.stream.path();
@@ -173,7 +172,7 @@ impl RecordingReader {
         Ok(None)
     }
 
-    /// The image of a colour message and the depth message behind it; `None` if the recording was cut between both.
+    /// The image of a colour message and the following depth message; `None` if the recording was cut between both.
     fn image(&mut self, color: &RawMessage) -> Result<Option<RecordedMessage>, IoError> {
         let next = self.stream.next_message()?;
         if next.is_none() && self.cut().is_some() {

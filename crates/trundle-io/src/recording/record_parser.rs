@@ -1,4 +1,4 @@
-//! Parser of the MCAP records that a reader of messages needs: every length is checked before memory is taken for it.
+//! Parser of the MCAP records that a reader of messages needs: every length is checked before memory is allocated.
 
 use mcap::records::{Record, op};
 use mcap::{McapError, McapResult, parse_record};
@@ -6,7 +6,7 @@ use mcap::{McapError, McapResult, parse_record};
 /// A schema, channel or message; `None` of any other record.
 ///
 /// # Errors
-/// When the record is broken, or a text in it is longer than the record.
+/// When the record is broken, or a text is longer than the record.
 pub(super) fn parse_needed_record(opcode: u8, data: &[u8]) -> McapResult<Option<Record<'_>>> {
     match opcode {
         op::SCHEMA => require_texts(opcode, data, 2, 2)?,

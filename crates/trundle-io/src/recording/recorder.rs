@@ -15,14 +15,14 @@ use trundle_core::{FrameId, Invalid, PinholeCamera, Pose2, Pose3, Scan, Stamp};
 
 /// Writes a recording: MCAP with the profile `ros2`, every message in CDR.
 ///
-/// The data of a replay are on topics below `/trundle` as JSON in `std_msgs/msg/String`, exact to the last bit. What other programs show
-/// stands beside it in messages of ROS 2. The bytes depend on nothing but what is recorded: no clock, no chance; log time and publish
-/// time are the stamp.
+/// The data of a replay are on topics below `/trundle` as JSON in `std_msgs/msg/String`, exact to the last bit. Messages of ROS 2 for other
+/// programs are recorded in addition. The bytes depend only on the recorded data: no clock, no random numbers; log time and publish time
+/// are the stamp.
 pub struct Recorder<W: Write> {
     container: Container<W>,
     path: PathBuf,
     channels: BTreeMap<String, Channel>,
-    /// Numbers of the schemas by their names.
+    /// Numbers of the schemas, by name.
     schemas: BTreeMap<&'static str, u16>,
     camera: Option<PinholeCamera>,
 }
@@ -50,7 +50,7 @@ impl<W: Write> Recorder<W> {
     /// A recording into `writer`, called `path` in errors.
     ///
     /// # Errors
-    /// When nothing can be written.
+    /// When the writer fails.
     pub fn new(writer: W, path: &Path) -> Result<Self, IoError> {
         Self::named(writer, path, super::LIBRARY)
     }
@@ -58,7 +58,7 @@ impl<W: Write> Recorder<W> {
     /// A ROS 2 bag that is not a recording of a run, into `writer`, called `path` in errors.
     ///
     /// # Errors
-    /// When nothing can be written.
+    /// When the writer fails.
     pub fn bag(writer: W, path: &Path) -> Result<Self, IoError> {
         Self::named(writer, path, BAG_LIBRARY)
     }
@@ -77,12 +77,12 @@ impl<W: Write> Recorder<W> {
     /// Records a sensor event, exact, and the message of ROS 2 that shows it.
     ///
     /// # Errors
-    /// When its stamp is before the epoch, a number is not finite, or it cannot be written.
+    /// When the stamp is before the epoch, a number is not finite, or the writer fails.
     pub fn record_event(&mut self, event: &EncodedEvent) -> Result<(), IoError> {
         check_finite(event).map_err(IoError::field(&self.path))?;
         let stamp = event.stamp();
         if let EncodedEvent::Rgbd(image) = event {
-            // Ahead of their place: what is flushed between them is then read in time.
+            // Images precede their place in the order, so a flush in between does not delay them.
             self.record_images(image)?;
         }
         match EventMessages::of(event) {
@@ -99,7 +99,7 @@ impl<W: Write> Recorder<W> {
         self.show(event)
     }
 
-    /// Records what other programs show of an event beside its images.
+    /// Records the messages for other programs, except images.
     fn show(&mut self, event: &EncodedEvent) -> Result<(), IoError> {
         let base = FrameId::Base.to_string();
         match event {
@@ -119,7 +119,7 @@ impl<W: Write> Recorder<W> {
     /// Records a sweep for other programs: its message on `topic`, and the pose of its `frame`, which is at the sweep's origin.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// When the writer fails.
     pub fn record_scan(&mut self, topic: &str, frame: &str, scan: &Scan) -> Result<(), IoError> {
         let stamp = scan.stamp();
         let origin = Pose3::from_pose2(Pose2::new(scan.origin().x, scan.origin().y, 0.0));
@@ -197,7 +197,7 @@ impl<W: Write> Recorder<W> {
     /// Writes the index and gives the writer back.
     ///
     /// # Errors
-    /// When it cannot be written.
+    /// When the writer fails.
     pub fn finish(self) -> Result<W, IoError> {
         let Self { container, path, .. } = self;
         container.finish().map_err(|error| failed(&path, error))

@@ -15,13 +15,13 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use trundle_core::Stamp;
 
-/// Longest record that is read, bytes: bounds what a broken length can ask for.
+/// Longest record that is read, bytes: a bound for broken lengths.
 const MAX_RECORD: usize = 1 << 28;
 
-/// Largest ratio of a record to the packed file it is in. It bounds what a broken length can ask for. Source: ours.
+/// Largest ratio of a record to its packed file. A bound for broken lengths. Source: ours.
 const MAX_PACKING: u64 = 256;
 
-/// A message as it stands in the file.
+/// A message with the bytes of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct RawMessage {
     pub topic: String,
@@ -37,19 +37,19 @@ pub(crate) struct RawMessage {
 pub(crate) enum Encoding {
     /// Trundle's own: JSON, or CDR of ROS 2; any other message is an error.
     Own,
-    /// Those of ROS 2; others are passed over.
+    /// Messages of ROS 2; others are skipped.
     Cdr,
 }
 
-/// The messages of an MCAP file in the order of the file; one chunk is in memory at a time.
+/// The messages of an MCAP file in the order of the file; one chunk is in memory.
 pub(crate) struct MessageStream {
     path: PathBuf,
     file: Box<dyn Read + Send>,
     is_packed: bool,
     reader: LinearReader,
-    /// Where a cut file was cut, when it is read to there.
+    /// Position of the cut, once reading has reached it.
     cut: Option<RecordingCut>,
-    /// Records that are read and not taken yet, of one chunk.
+    /// Records of one chunk that are read but not yet delivered.
     records: VecDeque<OwnedRecord>,
     /// Records of the chunk that the file was cut in.
     last_records: VecDeque<OwnedRecord>,
@@ -67,11 +67,11 @@ struct ChannelName {
     topic: String,
     schema: u16,
     is_json: bool,
-    /// The schema of the JSON in its texts.
+    /// Schema of the JSON in the channel's texts.
     json_schema: Option<String>,
 }
 
-/// Where a recording was cut.
+/// Position at which a recording was cut.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RecordingCut {
     /// Length of the file \[bytes\].
@@ -79,7 +79,7 @@ pub struct RecordingCut {
 }
 
 impl RecordingCut {
-    /// The cut in a sentence; `seconds`: how much was read before it.
+    /// The cut in one sentence; `seconds`: duration of the data before the cut.
     #[must_use]
     pub fn report(&self, seconds: f64) -> String {
         format!("the recording was cut at byte {}; {seconds:.2} s of it were read", self.byte)
@@ -87,7 +87,7 @@ impl RecordingCut {
 }
 
 impl MessageStream {
-    /// The messages of a whole file; a cut one is an error where it was cut.
+    /// The messages of a complete file; a cut file gives an error at the cut.
     pub fn open(path: &Path, encoding: Encoding) -> Result<Self, IoError> {
         Self::open_file(path, encoding, false)
     }
@@ -139,17 +139,17 @@ impl MessageStream {
         &self.path
     }
 
-    /// Where the file was cut, when it is read to there.
+    /// Position of the cut, once reading has reached it.
     pub fn cut(&self) -> Option<RecordingCut> {
         self.cut
     }
 
-    /// How much of the file is read, 0 to 1.
+    /// Share of the file that is read, 0 to 1.
     pub fn progress(&self) -> f64 {
         if self.len == 0 { 1.0 } else { (self.read as f64 / self.len as f64).min(1.0) }
     }
 
-    /// Ends the stream: there are no further messages.
+    /// Ends the stream: no further messages follow.
     pub fn stop(&mut self) {
         self.stopped = true;
     }
@@ -169,7 +169,7 @@ impl MessageStream {
         Ok(None)
     }
 
-    /// Reads the next record, of a chunk all of its records. Returns whether there was one.
+    /// Reads the next record; for a chunk, all its records. Returns whether a record was read.
     fn read_records(&mut self) -> Result<bool, IoError> {
         loop {
             let Some(event) = self.reader.next_event() else {
@@ -215,7 +215,7 @@ impl MessageStream {
         IoError::malformed(&self.path, problem)
     }
 
-    /// Remembers schemas and channels, gives messages their names.
+    /// Stores schemas and channels, and assigns their names to messages.
     fn take(&mut self, record: Record<'static>) -> Result<Option<RawMessage>, IoError> {
         match record {
             Record::Schema { header, .. } => drop(self.schemas.insert(header.id, header.name)),

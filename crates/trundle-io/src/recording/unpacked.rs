@@ -1,4 +1,4 @@
-//! The bytes of a file, unpacked where it is packed with zstd.
+//! The bytes of a file, decompressed if the file is packed with zstd.
 
 use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 use std::fs::File;
@@ -18,7 +18,7 @@ pub(super) fn unpacked(file: File) -> io::Result<(Box<dyn Read + Send>, bool)> {
 
 /// The bytes of all frames of a zstd file, piece by piece.
 struct ZstdFrames {
-    /// Of the frame that is being read; `None` after the last one.
+    /// Decoder of the present frame; `None` after the last one.
     decoder: Option<Decoder>,
 }
 

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 pub(in crate::ros) struct Bag {
     files: std::vec::IntoIter<PathBuf>,
     open: Option<Storage>,
-    /// Where files were cut, in sentences.
+    /// Positions of cuts, one sentence per file.
     pub(in crate::ros) cuts: Vec<String>,
 }
 
@@ -26,7 +26,7 @@ enum Storage {
 }
 
 impl Bag {
-    /// Opens a folder with its `metadata.yaml`, or else all files of a bag in it, or a single file.
+    /// Opens a folder with its `metadata.yaml`, or all bag files of a folder, or a single file.
     pub(in crate::ros) fn open(path: &Path) -> Result<Self, IoError> {
         let files = if path.is_dir() { files_of(path)? } else { vec![path.to_owned()] };
         let mut bag = Self { files: files.into_iter(), open: None, cuts: Vec::new() };
@@ -50,7 +50,7 @@ impl Bag {
         }
     }
 
-    /// How the messages of the open file are written.
+    /// Serialisation format of the open file's messages.
     pub(in crate::ros) fn wire(&self) -> Wire {
         if matches!(self.open, Some(Storage::Ros1(_))) { Wire::Ros1 } else { Wire::Cdr }
     }
@@ -74,7 +74,7 @@ impl Bag {
     }
 }
 
-/// A bag's `metadata.yaml`, as far as it is used.
+/// The used part of a bag's `metadata.yaml`.
 #[derive(Deserialize)]
 struct Metadata {
     rosbag2_bagfile_information: Information,

@@ -2,33 +2,33 @@
 
 use thiserror::Error;
 
-/// Why a message cannot be read.
+/// Reason why a message cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{message}: {field} at byte {offset}: {problem}")]
 pub(crate) struct CdrError {
     /// The type of the message.
     pub message: &'static str,
-    /// Which of its fields.
+    /// Name of the field.
     pub field: &'static str,
-    /// Where it begins in the message.
+    /// Offset of the field in the message.
     pub offset: usize,
     /// The problem.
     pub problem: String,
 }
 
-/// How messages are written.
+/// Serialisation format of messages.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wire {
-    /// As the middleware of ROS 2 does.
+    /// The format of ROS 2's middleware.
     Cdr,
-    /// As ROS 1 does: little endian, nothing aligned.
+    /// The format of ROS 1: little endian, without alignment.
     Ros1,
 }
 
 /// Reads a message in the Common Data Representation of DDS: version 1, and version 2 of final types, little or big endian.
 ///
-/// The first four bytes hold version and byte order. The rest is aligned to its own size, counted from their end (at most to 4 in
-/// version 2). Source: OMG DDS-XTypes 1.3, section 7.4.
+/// The first four bytes hold version and byte order. Every following value is aligned to its own size, counted from the end of these bytes
+/// (at most to 4 in version 2). Source: OMG DDS-XTypes 1.3, section 7.4.
 #[derive(Debug, Clone)]
 pub(crate) struct CdrReader<'a> {
     message: &'static str,
@@ -36,12 +36,12 @@ pub(crate) struct CdrReader<'a> {
     at: usize,
     little: bool,
     max_aligned: usize,
-    /// Where what is aligned begins.
+    /// Start of the alignment.
     start: usize,
     wire: Wire,
 }
 
-/// Bytes of the header that holds the encoding of the rest.
+/// Length of the header with the encoding of the rest \[bytes\].
 const HEADER_BYTES: usize = 4;
 
 impl<'a> CdrReader<'a> {
@@ -54,7 +54,7 @@ impl<'a> CdrReader<'a> {
         Ok(reader)
     }
 
-    /// How the message is written.
+    /// Serialisation format of the message.
     pub(crate) fn wire(&self) -> Wire {
         self.wire
     }
@@ -124,8 +124,8 @@ impl<'a> CdrReader<'a> {
         Ok(text.to_owned())
     }
 
-    /// How many elements follow, each at least `least` bytes long: more than the rest of the message holds is an error, so
-    /// that a broken length asks for no memory.
+    /// The number of following elements, each at least `least` bytes long. A number too large for the rest of the message is an error,
+    /// which prevents a large allocation.
     pub(crate) fn count(&mut self, field: &'static str, least: usize) -> Result<usize, CdrError> {
         let count = self.u32(field)? as usize;
         let rest = self.bytes.len() - self.at;

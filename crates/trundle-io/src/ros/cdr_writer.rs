@@ -25,7 +25,7 @@ impl CdrWriter {
         self.0
     }
 
-    /// A stamp; one that 32 bits of seconds do not hold becomes the nearest that they do.
+    /// A stamp; a stamp outside the range of 32-bit seconds becomes the nearest one inside.
     pub(in crate::ros) fn stamp(self, stamp: Stamp) -> Self {
         let seconds = stamp.nanos.div_euclid(NANOS_PER_S).clamp(i64::from(i32::MIN), i64::from(i32::MAX));
         let nanos = stamp.nanos.rem_euclid(NANOS_PER_S) as u32; // below 1e9

@@ -12,10 +12,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use trundle_core::{Pose3, Stamp};
 
-/// Number of topics that a message names; further ones are counted. Source: ours.
+/// Maximum number of topics named in a message; further topics are counted. Source: ours.
 const MAX_TOPICS_NAMED: usize = 20;
 
-/// All messages of a bag that say something to us, with their numbers in it, by topic.
+/// All usable messages of a bag, by topic, with their indices in the bag.
 #[derive(Default)]
 pub(in crate::ros) struct Contents {
     scans: BTreeMap<String, Vec<(usize, LaserScan)>>,
@@ -56,7 +56,7 @@ impl Contents {
                     }
                 }
                 Ok(None) => break,
-                // A recording that broke off is worth what it holds.
+                // A recording that breaks off is used up to the break.
                 Err(error) if !contents.scans.is_empty() => {
                     contents.skipped.push(LaserLogSkip { line: number, problem: error.to_string() });
                     break;
@@ -113,7 +113,7 @@ impl Contents {
         }
     }
 
-    /// The scans of the requested topic, or of the one with the most, and the topic.
+    /// The scans of the requested topic, or of the one with the most scans; and the topic.
     pub(in crate::ros) fn scans(
         &mut self,
         asked: Option<&str>,
@@ -130,7 +130,7 @@ impl Contents {
         Ok((topic, scans))
     }
 
-    /// Whether there is odometry, or transforms below `odom`.
+    /// Whether the bag has odometry, or transforms below `odom`.
     pub(in crate::ros) fn has_motion(&self) -> bool {
         !self.odometry.is_empty() || self.moving.iter().any(|(_, _, t)| t.parent.ends_with("odom"))
     }
@@ -140,7 +140,7 @@ impl Contents {
         self.fixed.between(to, from).or_else(|_| self.all.between(to, from))
     }
 
-    /// The base's motion by the requested topic, or by the one with the most odometry, or by transforms.
+    /// The base's motion by the requested topic, or by the topic with the most odometry, or by transforms.
     pub(in crate::ros) fn motion(&mut self, asked: Option<&str>) -> Result<BagMotion, String> {
         let (topic, poses) = self.odometry_poses(asked)?;
         let base = poses.iter().map(|pose| pose.child.clone()).find(|base| !base.is_empty());
@@ -198,7 +198,7 @@ impl Contents {
         poses.into_iter().filter(|pose| Some(&pose.child) == base.as_ref()).collect()
     }
 
-    /// Mount of the laser: the options, and the transforms for the rest.
+    /// Mount of the laser from the options; missing values come from the transforms.
     pub(in crate::ros) fn base_from_laser(
         &self,
         base: &str,
@@ -211,7 +211,7 @@ impl Contents {
         if laser_x.is_none() && laser_turn.is_none() {
             return recorded;
         }
-        // Without a transform, values that were not given are zero.
+        // Without a transform, missing values are zero.
         let roll = if upside_down { std::f64::consts::PI } else { 0.0 };
         let own = |_| Pose3::new(UnitQuaternion::from_euler_angles(roll, 0.0, 0.0), Default::default());
         let Pose3 { rotation, mut translation } = recorded.unwrap_or_else(own);
@@ -249,7 +249,7 @@ impl Contents {
     }
 }
 
-/// The pose with the laser's z axis down, its x axis as it is.
+/// The pose rotated around the laser's x axis, with its z axis down.
 fn upside_down_at(pose: Pose3) -> Pose3 {
     if pose.rotate(nalgebra::Vector3::z()).z < 0.0 {
         return pose;

@@ -7,9 +7,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use trundle_core::Stamp;
 
-/// The messages of a rosbag2 `.db3` file in the order in which they were written.
+/// The messages of a rosbag2 `.db3` file in the order of writing.
 ///
-/// Its tables: `topics` (id, name, type, serialization_format, ...) and `messages` (id, topic_id, timestamp, data).
+/// Tables of the file: `topics` (id, name, type, serialization_format, ...) and `messages` (id, topic_id, timestamp, data).
 pub(super) struct BagDatabase {
     path: PathBuf,
     sqlite: Sqlite,

@@ -1,4 +1,4 @@
-//! Definitions (ros2msg) of the messages that recordings hold: names and types of fields of the published interfaces of ROS 2.
+//! Definitions (ros2msg) of the recorded messages: names and types of fields of the published interfaces of ROS 2.
 
 /// A type and its fields, one per line.
 const FIELDS: &[(&str, &str)] = &[
@@ -88,11 +88,11 @@ const FIELDS: &[(&str, &str)] = &[
     ),
 ];
 
-/// Separator between the definition of a message and those of the messages in it.
+/// Separator between the definition of a message and those of its members.
 const SEPARATOR: &str =
     "================================================================================\nMSG: ";
 
-/// The definition of a type and of all types in it; empty for a type that is not in the table.
+/// The definition of a type and of all its members' types; empty for an unknown type.
 pub(crate) fn definition(kind: &str) -> String {
     let (mut text, mut open, mut done) = (fields(kind).to_owned(), inner(kind), Vec::new());
     while !open.is_empty() {

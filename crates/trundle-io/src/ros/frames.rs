@@ -11,12 +11,12 @@ pub(in crate::ros) struct Frames {
     parents: BTreeMap<String, (String, MessagePose)>,
 }
 
-/// Why one frame's place in another is not known.
+/// Reason why the pose of one frame in another is unknown.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::ros) enum NoTransform {
     /// No transforms lead from one to the other.
     Unconnected,
-    /// A transform between them is none: which, and why.
+    /// A transform between them is invalid: its name and the reason.
     Broken(String),
 }
 
@@ -33,7 +33,7 @@ impl Frames {
         }
     }
 
-    /// `to_from_from`: where one frame sits in another, when transforms lead from both to one frame.
+    /// `to_from_from`: the pose of frame `from` in frame `to`, if transforms lead from both to a common frame.
     pub(in crate::ros) fn between(&self, to: &str, from: &str) -> Result<Pose3, NoTransform> {
         let (up_to, up_from) = (self.chain(to), self.chain(from));
         let meeting = up_from.iter().find_map(|(name, meet_from_from)| {
@@ -45,7 +45,7 @@ impl Frames {
         Ok(good(meet_from_to)?.inverse() * good(meet_from_from)?)
     }
 
-    /// A frame and all above it, each with its pose `above_from_frame`, or the broken transform on the path.
+    /// A frame and all its ancestors, each with its pose `above_from_frame`, or the broken transform on the path.
     fn chain(&self, frame: &str) -> Vec<(String, MessagePose)> {
         let mut chain = vec![(frame.to_owned(), Ok(Pose3::identity()))];
         while let Some((last, pose)) = chain.last().filter(|_| chain.len() < MAX_FRAME_CHAIN) {

@@ -26,7 +26,7 @@ impl RosMessage {
         Self { kind, bytes: writer.finish() }
     }
 
-    /// The name of its type, as `nav_msgs/msg/Path`.
+    /// Name of the type, as `nav_msgs/msg/Path`.
     #[must_use]
     pub fn kind(&self) -> &'static str {
         self.kind

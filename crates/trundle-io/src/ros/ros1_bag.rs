@@ -14,21 +14,21 @@ const MESSAGE_OP: u8 = 2;
 const CHUNK_OP: u8 = 5;
 const CONNECTION_OP: u8 = 7;
 
-/// Longest chunk as unpacked \[bytes\]. A longer one is refused. It bounds what a broken file can ask for. Source: ours.
+/// Longest chunk as unpacked \[bytes\]. A longer one is refused. The limit is a bound for broken files. Source: ours.
 const MAX_CHUNK_BYTES: u64 = 1 << 28;
-/// Longest first line, which names the format \[bytes\].
+/// Longest first line, which contains the format \[bytes\].
 const MAX_VERSION_BYTES: u64 = 64;
 
-/// The messages of a ROS 1 bag in the order of the file, a chunk in memory at a time.
+/// The messages of a ROS 1 bag in the order of the file, with one chunk in memory.
 pub(super) struct Ros1Bag {
     path: PathBuf,
     file: BufReader<File>,
-    /// Bytes of the file that are not yet read.
+    /// Number of unread bytes of the file.
     left: u64,
     /// By id: topic and type.
     connections: BTreeMap<u32, (String, String)>,
     chunk: Vec<u8>,
-    /// Where the next record of the chunk begins.
+    /// Start of the next record in the chunk.
     at: usize,
     /// Note behind the last whole record, if the file breaks off in the chunk.
     cut: Option<IoError>,
@@ -54,7 +54,7 @@ impl Ros1Bag {
         Ok(Self { path: path.to_owned(), file, left, connections, chunk, at: 0, cut: None })
     }
 
-    /// The next message; of a bag that is cut, those that are whole come ahead of the error.
+    /// The next message; in a cut bag, the complete messages precede the error.
     pub(super) fn next_message(&mut self) -> Result<Option<RawMessage>, IoError> {
         loop {
             if self.at < self.chunk.len() {
@@ -77,7 +77,7 @@ impl Ros1Bag {
         }
     }
 
-    /// Reads records of the file up to the next chunk. Returns whether there is one.
+    /// Reads records of the file up to the next chunk. Returns whether a chunk was found.
     fn next_chunk(&mut self) -> Result<bool, IoError> {
         if let Some(cut) = self.cut.take() {
             return Err(cut);
@@ -99,7 +99,7 @@ impl Ros1Bag {
         Ok(false)
     }
 
-    /// The data behind a header. Of a chunk that the file breaks off in, what is there; then `cut` says so.
+    /// The data after a header. For a chunk truncated by the end of the file, the available part; `cut` is set then.
     fn data_to_cut(&mut self, header: &[u8]) -> Result<Vec<u8>, IoError> {
         let length = self.length()?;
         let is_chunk = Ros1Record::of_parts(header, &[]).is_ok_and(|record| record.kind() == Some(CHUNK_OP));
@@ -167,7 +167,7 @@ fn take(
     }
 }
 
-/// The records of a chunk; of one that is cut, as far as it can be unpacked.
+/// The records of a chunk; for a cut chunk, up to the first decompression error.
 fn unpacked(record: &Ros1Record<'_>, is_cut: bool) -> Result<Vec<u8>, String> {
     match record.text("compression")?.as_str() {
         "none" => Ok(record.data.to_vec()),

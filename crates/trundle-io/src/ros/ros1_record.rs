@@ -8,7 +8,7 @@ pub(super) struct Ros1Record<'a> {
 }
 
 impl<'a> Ros1Record<'a> {
-    /// The record at `at`, and where the next one begins.
+    /// The record at `at`, and the start of the next one.
     pub(super) fn parse(bytes: &'a [u8], at: usize) -> Result<(Self, usize), String> {
         let (header, at) = part(bytes, at)?;
         let (data, at) = part(bytes, at)?;
@@ -52,7 +52,7 @@ fn missing(name: &str, expected: &str) -> String {
     format!("a record is broken: field '{name}' is missing, expected {expected}")
 }
 
-/// The bytes behind a length, and where they end.
+/// The bytes after a length, and their end.
 fn part(bytes: &[u8], at: usize) -> Result<(&[u8], usize), String> {
     let rest = bytes.get(at..).unwrap_or_default();
     let (length, rest) = rest.split_first_chunk::<4>().ok_or("a record is broken: it ends in a length")?;

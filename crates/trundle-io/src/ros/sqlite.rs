@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-/// Reads the tables of an SQLite file, row by row in the order of their ids; nothing else of SQL.
+/// Reads the tables of an SQLite file, row by row in the order of their ids, without other features of SQL.
 ///
 /// Source: the file format as SQLite documents it (`sqlite.org/fileformat.html`, sections 1.3 and 1.6).
 pub(super) struct Sqlite {
@@ -37,7 +37,7 @@ pub(super) struct TableRows {
 }
 
 impl TableRows {
-    /// Before the first row of the table whose tree begins at page `root`.
+    /// Position before the first row of the table whose tree begins at page `root`.
     pub(super) fn new(root: u32) -> Self {
         Self { path_down: Vec::new(), next_page: Some(root), read: 0 }
     }
@@ -75,7 +75,7 @@ impl Sqlite {
         Ok(Self { path: path.to_owned(), file, page_size, usable, pages })
     }
 
-    /// The page where a table's tree begins.
+    /// The first page of a table's tree.
     pub(super) fn table(&mut self, name: &str) -> Result<Option<u32>, IoError> {
         let mut rows = TableRows::new(1);
         while let Some((_, values)) = self.next_row(&mut rows)? {
@@ -185,7 +185,7 @@ impl Node {
     }
 }
 
-/// How much of a row stands on its own page.
+/// Number of a row's bytes on its own page.
 fn local_bytes(length: usize, usable: usize) -> usize {
     let most = usable - 35;
     if length <= most {
@@ -304,7 +304,7 @@ mod tests {
 
     #[test]
     fn a_row_longer_than_the_file_is_refused_before_it_is_read() {
-        // A row of 2^27 bytes whose overflow page is its own next.
+        // A row of 2^27 bytes whose overflow page is its own successor.
         let long = |page: &mut [u8]| {
             (page[0], page[4]) = (0x0d, 1);
             page[8..10].copy_from_slice(&100_u16.to_be_bytes());

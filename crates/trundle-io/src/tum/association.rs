@@ -2,9 +2,9 @@
 
 use trundle_core::Stamp;
 
-/// Pairs (index of colour, index of depth) by rising time: each colour image with the depth image nearest in time, the
-/// earlier of two equally near, if it is within `max_difference` s. A depth image may serve two colour images: where the
-/// depth camera dropped one, its neighbour is still the best there is. Both lists rise.
+/// Pairs (index of colour, index of depth) in order of time. Each colour image is paired with the nearest depth image in time, the earlier
+/// of two equally near ones, within `max_difference` s. A depth image may be paired with two colour images: after a dropped depth image,
+/// its neighbour is the best one. Both lists are sorted by time.
 pub(crate) fn pair_nearest(color: &[Stamp], depth: &[Stamp], max_difference: f64) -> Vec<(usize, usize)> {
     let limit = (max_difference * 1e9).round() as u64;
     let gap = |c: &Stamp, j: usize| depth[j].nanos.abs_diff(c.nanos);

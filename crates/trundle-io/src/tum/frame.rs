@@ -4,22 +4,22 @@ use crate::codec::encode_grey16;
 use crate::{CodecError, TUM_DEPTH_SCALE, encode_color_png};
 use trundle_core::{RgbdImage, Stamp};
 
-/// An RGB-D image as the two files of a TUM folder. Encoding is most of the work of writing one, and needs no folder:
-/// several may be encoded at a time.
+/// An RGB-D image as the two files of a TUM folder. Encoding is most of the work and needs no folder, so several images may be encoded in
+/// parallel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TumFrame {
-    /// When it was taken.
+    /// Stamp of the image.
     pub stamp: Stamp,
     /// Columns and rows, px.
     pub size: (usize, usize),
-    /// The bytes of an 8-bit RGB PNG: every pixel as it is.
+    /// The bytes of an 8-bit RGB PNG, without loss.
     pub color_png: Vec<u8>,
     /// The bytes of a 16-bit grey PNG in units of 1 / [`TUM_DEPTH_SCALE`] m (0.2 mm), 0 = none.
     pub depth_png: Vec<u8>,
 }
 
 impl TumFrame {
-    /// Encodes an image; what is deeper than 13.107 m, which 16 bits do not hold, becomes none.
+    /// Encodes an image; a depth above 13.107 m, the limit of 16 bits, becomes 0.
     ///
     /// # Errors
     /// When a side is 0 or above 2^31 px.

@@ -1,4 +1,4 @@
-//! Trajectories in the form of the KITTI odometry benchmark: a matrix a row, times in a file beside it.
+//! Trajectories in the format of the KITTI odometry benchmark: a matrix per row, with times in a second file.
 
 use super::rows::{BrokenRows, number};
 use super::trajectory_form::KITTI_COLUMNS;
@@ -9,7 +9,8 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use std::path::Path;
 use trundle_core::{Pose3, Stamp, Vector3};
 
-/// How far the columns of a rotation matrix may be from unit length and right angles: files with three decimals pass. Source: ours.
+/// Largest deviation of a rotation matrix's columns from unit length and right angles: files with three decimals are accepted. Source:
+/// ours.
 const ORTHOGONALITY_TOLERANCE: f64 = 0.02;
 
 /// The poses of a KITTI file, in the order of the rows.
@@ -23,7 +24,7 @@ pub(super) fn read_poses(
     for (line, content) in table_rows(text) {
         match pose(content) {
             Ok(pose) => poses.push(pose),
-            // A row is known by its number alone: without one of them the others have no time.
+            // A row is identified by its number only: after a missing row the others have no time.
             Err(problem) if broken_rows == BrokenRows::Refused => {
                 return Err(IoError::line(path, line, problem));
             }
@@ -39,12 +40,12 @@ pub(super) fn read_poses(
 /// The times of a file's rows.
 pub(super) struct Times {
     pub stamps: Vec<Stamp>,
-    /// Whether they are only the numbers of the rows.
+    /// Whether the times are only the numbers of the rows.
     pub is_indexed: bool,
     pub warnings: Warnings,
 }
 
-/// The times of the rows: `times.txt` beside the file, else the number of the row in seconds, with a warning.
+/// The times of the rows: `times.txt` in the same folder, else the number of the row in seconds, with a warning.
 pub(super) fn times(path: &Path, rows: usize) -> Result<Times, IoError> {
     let mut warnings = Warnings::default();
     let beside = path.with_file_name("times.txt");

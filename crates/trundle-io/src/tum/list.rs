@@ -8,7 +8,7 @@ use crate::{IoError, Warnings};
 use std::path::{Path, PathBuf};
 use trundle_core::Stamp;
 
-/// One image of a list.
+/// An image of a list.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ListedImage {
     pub stamp: Stamp,
@@ -16,8 +16,8 @@ pub(super) struct ListedImage {
     pub file: PathBuf,
 }
 
-/// The images of a list by rising stamp: lines of `timestamp filename`, `#` for comments. A line that repeats one is skipped:
-/// published sequences have such. Of other images of one stamp the first is taken.
+/// The images of a list by rising stamp: lines of `timestamp filename`, `#` for comments. A repeated line is skipped, as in some published
+/// sequences. Of several images with one stamp, the first is used.
 pub(super) fn parse_list(
     path: &Path,
     text: &str,

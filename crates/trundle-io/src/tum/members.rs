@@ -19,9 +19,9 @@ const MAX_NAMED_LISTS: usize = 4;
 pub(super) struct Members {
     /// Colour and depth images.
     pub frames: Vec<(ListedImage, ListedImage)>,
-    /// How many colour images have no depth image near enough.
+    /// Number of colour images without a near enough depth image.
     pub unpaired: usize,
-    /// How many colour images the list names, those left out among them.
+    /// Number of colour images in the list, including those left out.
     pub listed: usize,
     pub warnings: Warnings,
 }
@@ -62,7 +62,7 @@ impl Members {
         Ok(Self { frames, unpaired, listed, warnings })
     }
 
-    /// The pairs as they are listed; which column holds depth is seen in the first images.
+    /// The pairs of the list; the first images determine which column is depth.
     fn of_associations(dir: &Path) -> Result<Self, IoError> {
         let mut warnings = Warnings::default();
         let path = dir.join("associations.txt");
@@ -81,7 +81,7 @@ impl Members {
     }
 }
 
-/// Names of text files that may be lists under another name, with the advice to rename them; empty if there are none.
+/// Names of text files that may be lists under another name, with the advice to rename them; empty without such files.
 fn other_lists(dir: &Path) -> String {
     let entries = std::fs::read_dir(dir).into_iter().flatten().flatten();
     let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());

@@ -1,4 +1,4 @@
-//! Reader and writer of odometry text files beside a TUM sequence.
+//! Reader and writer of odometry text files of a TUM sequence.
 
 use super::odometry_units::{OdometryRow, unit_problems};
 use super::rows::{BrokenRows, Table};
@@ -12,17 +12,17 @@ use trundle_core::{Pose2, Stamp};
 /// Farther off no robot gets, m, and rad.
 const MAX_COORDINATE_M: f64 = 1e6;
 
-/// Odometry beside a TUM sequence: lines of `timestamp x y theta` (s, m, m, rad), or of a TUM trajectory, the pose
-/// `odom_from_base`, `#` for comments.
+/// Odometry of a TUM sequence: lines of `timestamp x y theta` (s, m, m, rad), or of a TUM trajectory, the pose `odom_from_base`, `#` for
+/// comments.
 ///
 /// # Errors
-/// With the line, when a field is missing, too many or not a finite number, or when a pose is farther off than any robot gets.
+/// With the line, when a field is missing, superfluous or not a finite number, or when a pose is implausibly distant.
 pub fn read_odometry(path: &Path) -> Result<Vec<(Stamp, Pose2)>, IoError> {
     Ok(read_odometry_file(path)?.0)
 }
 
-/// Odometry, with warnings about what was changed: rows that are sorted, a second row of a stamp that is left out, stamps in ms, us or ns; and what
-/// seems to be in another unit.
+/// Odometry with warnings about changes: sorted rows, a dropped second row of a stamp, stamps in ms, us or ns, and values that seem to be
+/// in another unit.
 pub(super) fn read_odometry_file(path: &Path) -> Result<(Vec<(Stamp, Pose2)>, Warnings), IoError> {
     parse_odometry(path, &read_text(path)?)
 }
@@ -60,10 +60,10 @@ fn columns(text: &str) -> usize {
     table_rows(text).first().map_or(0, |(_, line)| fields(line).count())
 }
 
-/// The planar pose of a row, and its heading as it stands there.
+/// The planar pose of a row, and its heading as given.
 fn row(form: Form, numbers: &[f64]) -> Result<OdometryRow, String> {
     let pose = match (form, numbers) {
-        // Without a quaternion in between: every bit of the file is kept.
+        // The row has no quaternion: every bit of the file is preserved.
         (Form::Planar, &[x, y, theta]) => Pose2 { x, y, theta },
         _ => form.pose(numbers)?.to_pose2(),
     };

@@ -19,7 +19,7 @@ const MAX_CONTRADICTION: f64 = 0.5;
 /// A row of odometry.
 pub(super) struct OdometryRow {
     pub pose: Pose2,
-    /// The heading as the file has it, not within one turn \[rad\].
+    /// The heading as given in the file, not wrapped \[rad\].
     pub heading: f64,
 }
 
@@ -35,9 +35,9 @@ struct Step {
     duration: f64,
     /// m.
     distance: f64,
-    /// Direction of the way, rad.
+    /// Direction of motion, rad.
     way: f64,
-    /// Of the file, rad.
+    /// Heading in the file, rad.
     heading: f64,
     /// Change of the heading, rad, at least 0; a jump by one turn is none.
     turn: f64,
@@ -53,7 +53,7 @@ impl Step {
         (duration > 0.0).then_some(step)
     }
 
-    /// How well heading and way agree in this step, weighed by its distance. Backwards is as good as forwards.
+    /// Agreement of heading and direction of motion in this step, weighted by its distance. Backward motion counts like forward motion.
     fn agreement(&self, heading: f64) -> f64 {
         self.distance * (2.0 * (self.way - heading)).cos()
     }
@@ -77,7 +77,7 @@ fn wrong_headings(rows: &[(Stamp, OdometryRow)], steps: &[Step]) -> Option<Strin
     })
 }
 
-/// Whether the robot drives where it looks if its headings are degrees, and not if they are radians.
+/// Whether the direction of motion agrees with headings in degrees, and not with headings in radians.
 fn follows_way_in_degrees(steps: &[Step]) -> bool {
     let way: f64 = steps.iter().map(|step| step.distance).sum();
     let as_radians: f64 = steps.iter().map(|step| step.agreement(step.heading)).sum();
@@ -100,7 +100,7 @@ fn fast(rates: impl Iterator<Item = f64>, limit: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    /// A robot that turns by half a turn every 10 s as it drives at 0.3 m/s, its positions and headings in these units.
+    /// A robot that turns by half a turn every 10 s at a speed of 0.3 m/s, with positions and headings in these units.
     fn drive(metre: f64, radian: f64, turn_rate: f64) -> Vec<String> {
         let mut pose = Pose2::IDENTITY;
         let mut rows = Vec::new();

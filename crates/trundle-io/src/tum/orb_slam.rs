@@ -3,13 +3,13 @@
 use crate::CameraModel;
 use trundle_core::Distortion;
 
-/// The baseline at which ORB-SLAM takes a depth camera for a stereo one, m: that of its TUM settings, 40 px / 525 px.
+/// The baseline at which ORB-SLAM models a depth camera as a stereo camera, m: that of its TUM settings, 40 px / 525 px.
 const STEREO_BASELINE_M: f64 = 40.0 / 525.0;
 
 /// Depths above this many baselines are "far" to ORB-SLAM, as in its TUM settings.
 const FAR_BASELINES: f64 = 40.0;
 
-/// Extractor and viewer: what has to be there, with the values of ORB-SLAM's TUM settings.
+/// Required keys of extractor and viewer, with the values of ORB-SLAM's TUM settings.
 const REST: &str = r#"
 ORBextractor.nFeatures: 1000
 ORBextractor.scaleFactor: 1.2
@@ -29,8 +29,8 @@ Viewer.ViewpointZ: -1.8
 Viewer.ViewpointF: 500.0
 "#;
 
-/// The settings file with which ORB-SLAM2 and ORB-SLAM3 run on a folder of this camera at `rate_hz`, in OpenCV's YAML
-/// with the keys of both programs. Real numbers have a decimal point, which both programs require.
+/// The settings file for ORB-SLAM2 and ORB-SLAM3 on a folder of this camera at `rate_hz`, in OpenCV's YAML with the keys of both programs.
+/// Real numbers have a decimal point, which both programs require.
 pub(super) fn orb_slam_yaml(model: &CameraModel, rate_hz: f64) -> String {
     let mut text = String::from("%YAML:1.0\n---\nFile.version: \"1.0\"\n\nCamera.type: \"PinHole\"\n");
     let mut set = |key: &str, value: String| text.push_str(&format!("{key}: {value}\n"));

@@ -16,7 +16,7 @@ pub(super) enum BrokenRows {
     LeftOut,
 }
 
-/// A text table and how it is read.
+/// A text table and its reading options.
 #[derive(Clone, Copy)]
 pub(super) struct Table<'a> {
     pub path: &'a Path,
@@ -31,7 +31,7 @@ pub(super) struct Table<'a> {
 }
 
 impl Table<'_> {
-    /// The rows by rising stamp, each made of its numbers. Stamps in another unit and rows out of order are warned of.
+    /// The rows sorted by stamp, each made from its numbers. Stamps in another unit and rows out of order give a warning.
     pub(super) fn read<T>(
         &self,
         row: impl Fn(&[f64]) -> Result<T, String>,

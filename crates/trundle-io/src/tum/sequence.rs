@@ -13,9 +13,9 @@ use trundle_core::{Pose2, Pose3, RgbdImage, Stamp, require_finite};
 
 /// A recorded RGB-D sequence in TUM's form, its images still on disk.
 ///
-/// The folder holds `rgb.txt` and `depth.txt` (lines of `timestamp filename`), or `associations.txt` alone, the images they
-/// name (PNG or JPEG colour; depth registered to it of 16 bits, or of 32-bit floats in metres), and may hold
-/// `groundtruth.txt` (a trajectory) and `odometry.txt` (lines of `timestamp x y theta`, or of a TUM trajectory).
+/// The folder contains `rgb.txt` and `depth.txt` (lines of `timestamp filename`), or `associations.txt` alone, and their images. Colour is
+/// PNG or JPEG; depth is registered to colour, with 16 bits, or 32-bit floats in metres. Optional files are `groundtruth.txt` (a
+/// trajectory) and `odometry.txt` (lines of `timestamp x y theta`, or of a TUM trajectory).
 #[derive(Debug, Clone)]
 pub struct TumSequence {
     dir: PathBuf,
@@ -30,11 +30,11 @@ pub struct TumSequence {
 }
 
 impl TumSequence {
-    /// How far apart in time a colour and a depth image of one frame may be, s: 0.02, as in TUM's tools.
+    /// Largest time difference between the colour and the depth image of a frame, s: 0.02, as in TUM's tools.
     pub const MAX_DIFFERENCE: f64 = 0.02;
 
-    /// Opens a folder: reads its lists and pairs each colour image with the depth image nearest in time, at most
-    /// `max_difference` s apart. `depth_scale` is what a depth of 1 m is in the depth images (5000 for TUM).
+    /// Opens a folder: reads its lists and pairs each colour image with the depth image nearest in time, at most `max_difference` s apart.
+    /// `depth_scale` is the number of a depth of 1 m in the depth images (5000 for TUM).
     ///
     /// # Errors
     /// When the folder or a list is missing, a line is wrong, no images can be paired, or the depth scale is none.
@@ -74,22 +74,22 @@ impl TumSequence {
         self.frames.len()
     }
 
-    /// Whether there is no frame; never so.
+    /// Whether the sequence is empty; always false.
     pub fn is_empty(&self) -> bool {
         self.frames.is_empty()
     }
 
-    /// How many colour images have no depth image near enough and are left out.
+    /// Number of colour images without a near enough depth image, which are left out.
     pub fn unpaired(&self) -> usize {
         self.unpaired
     }
 
-    /// How many colour images are listed, those left out among them.
+    /// Number of listed colour images, including those left out.
     pub fn listed(&self) -> usize {
         self.listed
     }
 
-    /// The stamp of frame `i`, that of its colour image. Panics beyond the last.
+    /// The stamp of frame `i`, that of its colour image. Panics for an index beyond the last frame.
     pub fn stamp(&self, i: usize) -> Stamp {
         self.frames[i].0.stamp
     }
@@ -107,13 +107,13 @@ impl TumSequence {
     /// Reads and decodes frame `i`; depth becomes metres. Panics beyond the last.
     ///
     /// # Errors
-    /// When one of its files is missing, truncated, of a wrong kind or size: the caller may go on with the next.
+    /// When one of the frame's files is missing, truncated, of a wrong kind or size: the caller may continue with the next frame.
     pub fn load(&self, i: usize) -> Result<RgbdImage, FrameError> {
         let (color, depth) = &self.frames[i];
         self.image(color, depth).map_err(|source| FrameError { index: i, stamp: color.stamp, source })
     }
 
-    /// All frames in order, broken ones as errors.
+    /// All frames in order; broken frames are errors.
     pub fn frames(&self) -> impl ExactSizeIterator<Item = Result<RgbdImage, FrameError>> + '_ {
         (0..self.len()).map(|i| self.load(i))
     }
@@ -131,7 +131,7 @@ impl TumSequence {
     }
 }
 
-/// The ground truth, if there is one. Poses without times are those of the images, where they are as many.
+/// The ground truth; `None` without its file. Poses without times get the stamps of the images if their numbers are equal.
 fn ground_truth(
     dir: &Path,
     frames: &[(ListedImage, ListedImage)],
@@ -150,7 +150,7 @@ fn ground_truth(
     (!file.poses.is_empty()).then_some(file.poses)
 }
 
-/// The odometry, if there is one.
+/// The odometry; `None` without its file.
 fn odometry(dir: &Path, warnings: &mut Warnings) -> Result<Option<Vec<(Stamp, Pose2)>>, IoError> {
     let path = dir.join("odometry.txt");
     if !path.exists() {

@@ -31,16 +31,16 @@ pub fn read_trajectory(path: &Path) -> Result<Vec<(Stamp, Pose3)>, IoError> {
     Ok(read_trajectory_file(path)?.poses)
 }
 
-/// A trajectory in one of these forms, recognised by its columns; `#` for comments, a first line of words is skipped.
+/// A trajectory in one of these formats, recognised by its columns; `#` for comments, a header line of words is skipped.
 ///
-/// TUM: `timestamp tx ty tz qx qy qz qw` (s, m, unit quaternion). EuRoC: `timestamp px py pz qw qx qy qz ...`. Planar:
-/// `timestamp x y theta`. KITTI: the twelve numbers of a matrix, times in `times.txt` beside it. Stamps are exact to the
-/// nanosecond and may repeat, as TUM's ground truth does. Rows out of order are sorted, and stamps in ms, us or ns
-/// recognised by their magnitude, each with a warning.
+/// TUM: `timestamp tx ty tz qx qy qz qw` (s, m, unit quaternion). EuRoC: `timestamp px py pz qw qx qy qz ...`. Planar: `timestamp x y
+/// theta`. KITTI: the twelve numbers of a matrix, with times in `times.txt` in the same folder. Stamps are exact to the nanosecond and may
+/// repeat, as TUM's ground truth does. Rows out of order are sorted, and stamps in ms, us or ns recognised by their magnitude, each with a
+/// warning.
 ///
 /// # Errors
-/// With the line, when a field is missing, too many, not a finite number, or when a quaternion is not of unit length
-/// within 0.02; and when there is no pose at all.
+/// With the line, when a field is missing, superfluous or not a finite number, or a quaternion's length differs from 1 by more than 0.02;
+/// and when the file has no pose.
 pub fn read_trajectory_file(path: &Path) -> Result<TrajectoryFile, IoError> {
     Expected::Trajectory.check(path)?;
     parse_trajectory(path, &read_text(path)?, BrokenRows::Refused)
@@ -81,8 +81,7 @@ fn parse_trajectory(path: &Path, text: &str, broken_rows: BrokenRows) -> Result<
     Ok(file)
 }
 
-/// The text of a trajectory in TUM's form: stamps with all nine digits, metres and quaternion to 1e-9, always the
-/// same bytes for the same poses.
+/// The text of a trajectory in TUM's format: stamps with nine decimals, metres and quaternion to 1e-9. Equal poses give equal bytes.
 pub fn trajectory_text(poses: &[(Stamp, Pose3)]) -> String {
     let mut text = String::from("# timestamp tx ty tz qx qy qz qw\n");
     for (stamp, pose) in poses {

@@ -5,7 +5,7 @@ use crate::stamp_unit::StampUnit;
 use nalgebra::Quaternion;
 use trundle_core::{Pose2, Pose3};
 
-/// How far the norm of a quaternion may be from 1: files with two decimals or more pass, and are normalised.
+/// Largest deviation of a quaternion's norm from 1: files with two decimals or more are accepted and normalised.
 const NORM_TOLERANCE: f64 = 0.02;
 
 /// Number of columns of EuRoC's states: with velocity, and with biases.
@@ -65,7 +65,7 @@ impl Form {
     }
 }
 
-/// Whether a header names the quaternion's real part first.
+/// Whether a header has the quaternion's real part first.
 fn names_w_first(text: &str) -> bool {
     let header =
         text.lines().take_while(|line| line.starts_with('#') || line.starts_with(char::is_alphabetic)).last();

@@ -7,8 +7,8 @@ use trundle_core::{PinholeCamera, Pose2, Pose3, Stamp};
 
 /// Writes a TUM RGB-D folder that [`crate::TumSequence`], evo and ORB-SLAM programs read directly.
 ///
-/// Images go to disk as they come; the lists, ground truth, odometry and calibration at [`TumWriter::finish`], each by
-/// rising stamp in whatever order it came. Names of images sort as their stamps do.
+/// Images are written immediately; the lists, ground truth, odometry and calibration at [`TumWriter::finish`], each sorted by stamp. Names
+/// of images sort like their stamps.
 #[derive(Debug)]
 pub struct TumWriter<'f> {
     folder: &'f OutputFolder,
@@ -29,7 +29,7 @@ impl<'f> TumWriter<'f> {
     /// Writes an image, `rgb/STAMP.png` and `depth/STAMP.png`.
     ///
     /// # Errors
-    /// When its size is not the camera's, an image of the same stamp is there already, or a file cannot be written.
+    /// When the size differs from the camera's, an image with the same stamp exists, or a file cannot be written.
     pub fn frame(&mut self, frame: &TumFrame) -> Result<(), IoError> {
         let name = file_name("rgb", frame.stamp);
         let expected = (self.camera.width(), self.camera.height());
@@ -50,7 +50,7 @@ impl<'f> TumWriter<'f> {
         Ok(())
     }
 
-    /// Notes where the camera truly was, `world_from_camera`, the camera in its optical frame (x right, y down, z ahead).
+    /// Adds the true camera pose, `world_from_camera`, of the optical frame (x right, y down, z ahead).
     pub fn ground_truth(&mut self, stamp: Stamp, world_from_camera: Pose3) {
         self.ground_truth.push((stamp, world_from_camera));
     }
@@ -60,10 +60,10 @@ impl<'f> TumWriter<'f> {
         self.odometry.push((stamp, odom_from_base));
     }
 
-    /// Writes the lists, `groundtruth.txt` and `odometry.txt` (if there is any), `camera.toml` and `orb_slam.yaml`.
+    /// Writes the lists, `groundtruth.txt` and `odometry.txt` (if not empty), `camera.toml` and `orb_slam.yaml`.
     ///
     /// # Errors
-    /// When there was no image, or a file cannot be written.
+    /// When no image was written, or a file cannot be written.
     pub fn finish(mut self) -> Result<(), IoError> {
         if self.frames.is_empty() && self.folder.is_incomplete() {
             return Ok(()); // the disk took none: the commit names it
@@ -96,7 +96,7 @@ fn by_stamp<T>(mut poses: Vec<(Stamp, T)>) -> Vec<(Stamp, T)> {
     poses
 }
 
-/// Seconds are padded, so that names sort as stamps do for any program that lists the folder.
+/// Seconds are padded, so names sort like stamps in any program that lists the folder.
 fn file_name(folder: &str, stamp: Stamp) -> String {
     format!("{folder}/{:0>20}.png", stamp.to_string())
 }

@@ -66,7 +66,7 @@ fn on_disk(bytes: &[u8]) -> tempfile::NamedTempFile {
     file
 }
 
-/// Everything in a file, or what is wrong with it, its path called FILE.
+/// All messages of a file, or its error; the path is replaced by FILE.
 fn read(bytes: &[u8]) -> Result<Vec<RecordedMessage>, String> {
     let file = on_disk(bytes);
     let all = RecordingReader::open(file.path()).and_then(Iterator::collect);
@@ -133,7 +133,7 @@ fn broken_files_are_named_with_their_fault() {
     }
 }
 
-/// A recording as earlier versions wrote it: JSON, with images in JSON (base64) or in CDR, depth as PNG.
+/// A recording of an earlier version: JSON, with images in JSON (base64) or in CDR, depth as PNG.
 fn old_form(is_base64: bool) -> (Vec<u8>, EncodedEvent) {
     use base64::Engine;
     let image = frame(stamp(33), 64, 48);
@@ -186,7 +186,7 @@ fn recordings_of_earlier_versions_are_read_too() {
     }
 }
 
-/// Reads a recording to where it is cut: its messages, and the byte.
+/// Reads a recording up to its cut: its messages, and the position of the cut.
 fn read_to_cut(bytes: &[u8]) -> Result<(Vec<RecordedMessage>, Option<u64>), String> {
     let file = on_disk(bytes);
     let reader = RecordingReader::open_to_cut(file.path()).map_err(|error| error.to_string())?;
@@ -279,7 +279,7 @@ fn a_recording_in_an_output_folder_appears_at_commit() {
     assert_eq!(RecordingReader::open(&folder.join("recording.mcap")).unwrap().events().count(), 10);
 }
 
-/// The least of many times, ms: what the work costs when nobody disturbs.
+/// The minimum of many times, ms: the cost without disturbance by other programs.
 fn min_ms(mut work: impl FnMut()) -> f64 {
     let times = (0..15).map(|_| {
         let start = Instant::now();

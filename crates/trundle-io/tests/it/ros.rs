@@ -380,7 +380,7 @@ fn a_database_with_an_unfinished_log_says_so() {
     assert!(refusal(&file).contains("its last messages are in a -wal file"), "{}", refusal(&file));
 }
 
-/// A message as ROS 1 writes it: a number before the header, nothing aligned, no zero behind texts.
+/// A message in the format of ROS 1: a number before the header, no alignment, no zero after texts.
 mod ros1 {
     pub fn header(seconds: u32, nanos: u32, frame: &str) -> Vec<u8> {
         let numbers = [7, seconds, nanos, frame.len() as u32];
@@ -419,7 +419,7 @@ mod ros1 {
         record(&[("op", &[2]), ("conn", &id.to_le_bytes()), ("time", &[0; 8])], data)
     }
 
-    /// A bag with one chunk, packed as `compression` says.
+    /// A bag with one chunk, compressed by `compression`.
     pub fn bag(records: &[Vec<u8>], compression: &str) -> Vec<u8> {
         let chunk = records.concat();
         let packed = if compression == "lz4" { lz4(&chunk) } else { chunk.clone() };

@@ -217,7 +217,7 @@ fn shared(name: &str) -> Option<PathBuf> {
 fn pairs_and_reads_a_real_sequence() {
     let Some(dir) = shared("tum_fr1_rpy_400") else { return };
     let sequence = TumSequence::open(&dir, 5000.0, 0.02).unwrap().with_size(640, 480);
-    // As in its associations.txt, 16 depth images serve two colour images each.
+    // As in the folder's associations.txt, 16 depth images are paired with two colour images each.
     let listed = fs::read_to_string(dir.join("associations.txt")).unwrap();
     let colors: Vec<Stamp> =
         listed.lines().map(|line| parse_stamp(line.split(' ').next().unwrap()).unwrap()).collect();

@@ -22,7 +22,7 @@ fn poses() -> Vec<(Stamp, Pose3)> {
     (0..5).map(|i| (Stamp::from_nanos(i * 20_000_000), pose(i))).collect()
 }
 
-/// The folder as it is written, its parts handed over in an order that is not that of time.
+/// A complete folder, whose parts were added in an order other than that of time.
 fn written() -> TempDir {
     let dir = tempfile::tempdir().unwrap();
     let folder = OutputFolder::create(&dir.path().join("run")).unwrap();

@@ -9,13 +9,13 @@ use std::time::Duration;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::sync::Semaphore;
 
-/// Most connections at once that have not become a viewer's link. More are closed at once. Source: ours.
+/// Maximum number of simultaneous connections that are not yet a viewer's link. Further ones are closed immediately. Source: ours.
 const MAX_CONNECTIONS: usize = 48;
 /// Longest wait for the head of a request, also between two requests. Source: ours.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(5);
 /// Longest head of a request \[bytes\].
 const MAX_HEAD_BYTES: usize = 16 * 1024;
-/// Wait after a refused accept, as where no file descriptor is left.
+/// Pause after a refused accept, for example without free file descriptors.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 
 /// Serves the routes until the task is dropped.

@@ -1,4 +1,4 @@
-//! The map as files, for viewers who save it, and the names of maps that may be loaded.
+//! The map as files for viewers, and the names of maps to load.
 
 use crate::page_state::PageState;
 use axum::extract::{Path, State};
@@ -26,7 +26,7 @@ pub async fn file(
     }
 }
 
-/// The names of the maps that may be loaded, as JSON; for every valid token.
+/// The names of the maps to load, as JSON; for every valid token.
 pub async fn maps(State(state): State<Arc<PageState>>, headers: HeaderMap) -> Response {
     if !may_look(&state, &headers) {
         return (StatusCode::FORBIDDEN, "this link may not look").into_response();

@@ -18,8 +18,8 @@ pub async fn check(State(state): State<Arc<PageState>>, request: Request, next: 
     with_headers(next.run(request).await, &host)
 }
 
-/// Whether a request comes from the page itself: a page of another origin says so in this header. A request without it is none of a
-/// browser's page and is refused too.
+/// Whether a request comes from the page itself: browsers report a page of another origin in this header. A request without the header does
+/// not come from a browser's page and is refused too.
 pub fn is_own_origin(headers: &HeaderMap) -> bool {
     let origin = headers.get(header::ORIGIN).and_then(|origin| origin.to_str().ok());
     let own = host_of(headers).map(|host| format!("http://{host}"));
@@ -30,7 +30,8 @@ fn host_of(headers: &HeaderMap) -> Option<&str> {
     headers.get(header::HOST)?.to_str().ok()
 }
 
-/// Whether a Host names this machine. A page that rebinds its own name to this machine sends that name. An address cannot be rebound.
+/// Whether a Host is a name of this machine. A page that rebinds its own name to this machine would send that name. An address cannot be
+/// rebound.
 fn is_own_host(host: &str, is_shared: bool) -> bool {
     let (name, port) = match host.strip_prefix('[') {
         Some(rest) => rest.split_once(']').unwrap_or_default(),

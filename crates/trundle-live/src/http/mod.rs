@@ -1,4 +1,4 @@
-//! HTTP: the page's files, the link to a viewer, the stop that needs no link.
+//! HTTP: the page's files, the link to a viewer, and the stop without a link.
 
 mod assets;
 mod connections;

@@ -1,4 +1,4 @@
-//! Whether the robot could stand at a goal, by the present map and its zones.
+//! Check of a goal against the present map and its zones.
 
 use super::refusal::CommandRefusal;
 use trundle_core::{MapAnnotations, OccupancyGrid, Pose2, ZoneKind};
@@ -11,7 +11,7 @@ const CM_PER_M: f64 = 100.0;
 /// reason: the robot observes it when it comes near.
 ///
 /// # Errors
-/// When it does; names the zone.
+/// When the goal is in a no-go zone; the error names the zone.
 pub fn require_free(
     grid: &OccupancyGrid,
     annotations: &MapAnnotations,

@@ -48,7 +48,7 @@ impl RunSteering {
         Self { operator, kind, check, limits, maps, reading, is_paused_here: AtomicBool::new(false) }
     }
 
-    /// Carries out a request; requests that are not for the robot do nothing, nor do those for a map, which is read first.
+    /// Carries out a request for the robot; ignores others, and requests for a map, which is read first.
     ///
     /// # Errors
     /// When the robot cannot carry the request out: a goal in a wall, a number out of range, a run that is over.
@@ -86,7 +86,7 @@ impl RunSteering {
         }
     }
 
-    /// Refuses where no robot runs.
+    /// Refuses requests without a robot.
     ///
     /// # Errors
     /// When the run has no missions and maps.
@@ -97,7 +97,7 @@ impl RunSteering {
         Err(CommandRefusal::of("Nothing here has missions, poses or zones: drive by hand, or stop."))
     }
 
-    /// The robot stops at once, and the mission is dropped.
+    /// The robot stops immediately, and the mission is dropped.
     ///
     /// # Errors
     /// When the run is over.
@@ -107,7 +107,7 @@ impl RunSteering {
         self.send(OperatorCommand::cancel())
     }
 
-    /// The one who drove by hand is gone: the robot stops.
+    /// Stops the robot after the departure of its driver.
     pub fn end_of_hand(&self) {
         if self.is_paused_here.load(Ordering::Relaxed) && self.send(OperatorCommand::Pause).is_err() {
             tracing::debug!("live page: the run is over");
@@ -132,7 +132,7 @@ impl RunSteering {
         self.begin(left.into_iter().chain(goals.iter().map(|goal| Task::Go(goal.pose()))).collect())
     }
 
-    /// A zone beside the map is a slip of the hand.
+    /// A zone outside the map is assumed to be a mistake.
     fn set_zone(&self, zone: &Zone) -> Result<(), CommandRefusal> {
         let zone = zone.clone().validated()?;
         let view = self.operator.glance();
@@ -155,12 +155,12 @@ impl RunSteering {
         self.send(OperatorCommand::Change(setting))
     }
 
-    /// The names of the maps that may be loaded.
+    /// The names of the maps to load.
     pub fn map_names(&self) -> Vec<String> {
         self.maps.as_ref().map_or_else(Vec::new, MapFolder::names)
     }
 
-    /// The right to read a map, one at a time.
+    /// The permission to read a map, for one request at a time.
     ///
     /// # Errors
     /// When another map is being read.
@@ -182,7 +182,7 @@ impl RunSteering {
     /// Gives the robot a map.
     ///
     /// # Errors
-    /// When it cannot take it, or the run is over.
+    /// When the robot refuses the map, or the run is over.
     pub fn load_map(&self, grid: OccupancyGrid) -> Result<(), CommandRefusal> {
         self.send(OperatorCommand::LoadMap(Box::new(grid)))
     }

@@ -1,9 +1,9 @@
-//! Why a command is refused.
+//! Reason why a command is refused.
 
 use trundle_app::operator::OperatorError;
 use trundle_core::Invalid;
 
-/// Why a command is refused.
+/// Reason why a command is refused.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CommandRefusal {
     /// In a sentence.

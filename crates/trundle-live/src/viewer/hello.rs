@@ -16,7 +16,7 @@ const OTHER_VERSION: u16 = 4406;
 /// Close code of a link without hello.
 const NO_HELLO: u16 = 4408;
 
-/// Receives the hello and welcomes the viewer; `None` if it may not look.
+/// Receives the hello and welcomes the viewer; `None` without the permission to view.
 pub async fn receive(socket: &mut WebSocket, state: &PageState, id: ViewerId) -> Option<Access> {
     let first = tokio::time::timeout(HELLO_TIMEOUT, socket.recv()).await;
     let Ok(Some(Ok(Message::Text(text)))) = first else {

@@ -1,4 +1,4 @@
-//! One browser: its hello, then what it is sent beside what it asks.
+//! A browser: its hello, then the data sent to it and its requests.
 
 mod hello;
 mod outbox;
@@ -16,10 +16,10 @@ use progress::ViewProgress;
 use std::sync::Arc;
 use tokio::sync::mpsc;
 
-/// Most answers that wait for a viewer. A viewer with more is slower than its own requests, and its link ends. Source: ours.
+/// Maximum number of answers waiting for a viewer. A viewer with more is too slow for its own requests, and its link ends. Source: ours.
 const MAX_WAITING_ANSWERS: usize = 64;
 
-/// Serves a viewer until it goes, is silent or breaks a rule.
+/// Serves a viewer until it disconnects, is silent or breaks a rule.
 pub async fn serve(mut socket: WebSocket, state: Arc<PageState>, id: ViewerId) {
     if let Some(access) = hello::receive(&mut socket, &state, id).await {
         let (sink, stream) = socket.split();

@@ -6,7 +6,7 @@ use futures_util::stream::SplitSink;
 use serde::Serialize;
 use std::time::Duration;
 
-/// Longest time of one message: a viewer that takes none within it is gone. Source: ours.
+/// Longest time for the delivery of one message: a viewer that takes longer counts as lost. Source: ours.
 const SEND_TIMEOUT: Duration = Duration::from_secs(20);
 /// Close code of a viewer that broke a rule. Source: RFC 6455, 7.4.1.
 const POLICY_CLOSE_CODE: u16 = 1008;
@@ -14,7 +14,7 @@ const POLICY_CLOSE_CODE: u16 = 1008;
 /// Close code of a program that ends. Source: RFC 6455, 7.4.1.
 const GOING_AWAY_CLOSE_CODE: u16 = 1001;
 
-/// Why a link is closed.
+/// The reason for closing a link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Close {
     /// The viewer broke a rule, or went.
@@ -51,12 +51,12 @@ impl Outbox {
         Self { sink }
     }
 
-    /// Sends bytes. Returns whether the viewer took them.
+    /// Sends bytes. Returns whether the viewer received them.
     pub async fn send_bytes(&mut self, bytes: Vec<u8>) -> bool {
         self.send(Message::Binary(bytes.into())).await
     }
 
-    /// Sends a value as JSON. Returns whether the viewer took it.
+    /// Sends a value as JSON. Returns whether the viewer received it.
     pub async fn send_json(&mut self, value: &impl Serialize) -> bool {
         match serde_json::to_string(value) {
             Ok(text) => self.send(Message::Text(text.into())).await,

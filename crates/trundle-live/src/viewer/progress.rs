@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64};
 pub struct ViewProgress {
     /// Number of the last view that the page has drawn.
     pub seen: AtomicU64,
-    /// Whether the page wants images.
+    /// Whether the page requests images.
     pub wants_images: AtomicBool,
-    /// Whether the page wants the visual map.
+    /// Whether the page requests the visual map.
     pub wants_visual_map: AtomicBool,
 }

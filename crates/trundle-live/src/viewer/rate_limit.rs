@@ -1,10 +1,10 @@
-//! Limits how fast a viewer may ask.
+//! Limits the rate of a viewer's requests.
 
 use std::time::Instant;
 
 /// Requests per second that a viewer may send on average: ten views seen and ten twists per second, and clicks. Source: ours.
 const RATE_HZ: f64 = 50.0;
-/// Requests that may come at once. Source: ours; a page that wakes up sends what waited.
+/// Maximum number of requests in a burst. Source: ours; a browser page that resumes sends its waiting requests.
 const BURST_REQUESTS: f64 = 150.0;
 
 /// A bucket of permissions that fills with time.
@@ -20,7 +20,7 @@ impl RateLimit {
         Self { left: BURST_REQUESTS, filled: now }
     }
 
-    /// Takes one permission. Returns whether there was one.
+    /// Takes one permission. Returns whether one was available.
     pub fn take(&mut self, now: Instant) -> bool {
         let seconds = now.saturating_duration_since(self.filled).as_secs_f64();
         self.left = (self.left + seconds * RATE_HZ).min(BURST_REQUESTS);

@@ -20,17 +20,17 @@ use tokio::task::spawn_blocking;
 /// Longest silence of a viewer: it answers ten views per second. Source: ours; a tab in the background answers once per second at least.
 const SILENCE_TIMEOUT: Duration = Duration::from_secs(60);
 
-/// A viewer that asks.
+/// A viewer with its requests.
 pub struct Viewer<'a> {
     /// Shared state.
     pub state: &'a Arc<PageState>,
-    /// Its number.
+    /// Number of the viewer.
     pub id: ViewerId,
-    /// Its permissions.
+    /// Permissions of the viewer.
     pub access: Access,
-    /// How far it has seen.
+    /// Views drawn by the viewer so far.
     pub progress: &'a ViewProgress,
-    /// Where answers go.
+    /// Queue of answers.
     pub answers: Sender<Reply>,
 }
 
@@ -63,7 +63,7 @@ pub async fn receive(mut stream: SplitStream<WebSocket>, viewer: Viewer<'_>) -> 
 }
 
 impl Viewer<'_> {
-    /// Carries out a request; the answer, if there is one.
+    /// Carries out a request; returns its answer, if any.
     fn reply(&self, request: &Request) -> Option<Reply> {
         match request {
             Request::Seen { batch } => {
@@ -99,7 +99,7 @@ impl Viewer<'_> {
         self.state.steering.claim_reading()
     }
 
-    /// Loads a map beside the page's thread, which goes on: it serves every viewer and the stop. The answer comes when the map is read.
+    /// Loads a map outside the page's thread, which continues to serve viewers and the stop. The answer follows after the map is read.
     fn begin_loading(&self, id: u64, name: String, claim: OwnedSemaphorePermit) {
         let (state, viewer, answers) = (Arc::clone(self.state), self.id, self.answers.clone());
         tokio::spawn(async move {
@@ -109,7 +109,7 @@ impl Viewer<'_> {
                 reader.steering.read_map(&name)
             });
             let read = read.await;
-            // Who asked may be gone, or without the wheel, by now: the map of a moment ago is then no longer wanted.
+            // The requesting viewer may have left or lost control; the map is then discarded.
             if answers.is_closed() {
                 return;
             }
@@ -142,7 +142,7 @@ impl Viewer<'_> {
         let state = self.state;
         self.require_drive()?;
         match request {
-            // Whoever may drive may stop.
+            // Every viewer with driving permission may stop.
             Request::Stop { .. } => {}
             Request::TakeWheel { .. } => {
                 state.roster().take(self.id);
@@ -160,13 +160,13 @@ impl Viewer<'_> {
     }
 }
 
-/// Gives a viewer the free wheel, or refuses where another holds it.
+/// Gives free control to a viewer, or refuses if another viewer is in control.
 fn require_wheel(state: &PageState, id: ViewerId) -> Result<(), CommandRefusal> {
     let free = state.roster().require(id);
     free.map_err(|holder| CommandRefusal::of(format!("{holder} holds the wheel. Take it over first.")))
 }
 
-/// The answer to a request, if there is one: without a number only a refusal is told.
+/// The answer to a request, if any: a request without a number is only answered by a refusal.
 fn answer(id: Option<u64>, result: Result<(), CommandRefusal>) -> Option<Reply> {
     let (refusal, goal) = match result {
         Ok(()) => (None, None),

@@ -1,4 +1,4 @@
-//! Data sent to a viewer: the newest of each kind, and never more than it takes.
+//! Data sent to a viewer: the newest of each kind, at the viewer's own rate.
 
 use super::outbox::Outbox;
 use super::progress::ViewProgress;
@@ -19,12 +19,12 @@ use trundle_runtime::RunSetting;
 
 /// Period of views.
 const VIEW_PERIOD: Duration = Duration::from_millis(100);
-/// Views on the way that the page has not drawn yet. Beyond it nothing is sent, so that a slow network holds no old views. Source: ours;
-/// three views hide a delay of 0.3 s.
+/// Maximum number of sent views not yet drawn by the page. Above it no view is sent, which keeps old views out of a slow network. Source:
+/// ours; three views hide a delay of 0.3 s.
 const MAX_UNSEEN: u64 = 3;
 /// Period of images.
 const IMAGE_PERIOD: Duration = Duration::from_millis(180);
-/// Longest time without a message where nothing changes: the page then knows that the link is well.
+/// Longest time without a message during a constant state: the page then knows that the link works.
 const QUIET_PERIOD: Duration = Duration::from_secs(1);
 
 /// Sends answers and views until the viewer takes none; why it ends.
@@ -73,7 +73,7 @@ struct Updates {
     states: usize,
 }
 
-/// What a viewer has been sent as notes beside the state.
+/// Versions of the notes sent to a viewer in addition to the state.
 #[derive(Default)]
 struct SentNotes {
     annotations: Option<Arc<MapAnnotations>>,
@@ -82,7 +82,7 @@ struct SentNotes {
 }
 
 impl SentNotes {
-    /// Zones, places, settings and series, where they changed.
+    /// Zones, places, settings and series that changed.
     fn changed(&mut self, view: &RunView, state: &PageState) -> Vec<Reply> {
         let annotations = state.operator.annotations();
         let is_new = self.annotations.as_ref().is_none_or(|known| !Arc::ptr_eq(known, &annotations));
@@ -132,7 +132,7 @@ impl Updates {
         outbox.send_bytes(trail).await
     }
 
-    /// Sends what is new, where the viewer has drawn what came before. Returns whether it took it.
+    /// Sends new data, if the viewer has drawn the previous data. Returns whether the viewer received it.
     async fn send(&mut self, outbox: &mut Outbox, state: &PageState, progress: &ViewProgress) -> bool {
         if self.batch.saturating_sub(progress.seen.load(Ordering::Relaxed)) >= MAX_UNSEEN {
             return true;
@@ -174,7 +174,7 @@ impl Updates {
         StateMessage::of(view, self.batch, wheel, roster.count())
     }
 
-    /// The messages of bytes with what the viewer lacks.
+    /// The binary messages with the parts that the viewer lacks.
     fn parts(&mut self, view: &RunView, state: &PageState, progress: &ViewProgress) -> Vec<Vec<u8>> {
         let mut parts = Vec::new();
         parts.extend(self.scan_part(view));
@@ -225,7 +225,7 @@ impl Updates {
         Some(image_message(image))
     }
 
-    /// The depth goes with its image: only then.
+    /// The depth is only sent together with its image.
     fn depth_part(&mut self, view: &RunView) -> Option<Vec<u8>> {
         let depth = view.perception.depth.as_ref()?;
         (self.image_batch == self.batch).then(|| depth_message(depth))

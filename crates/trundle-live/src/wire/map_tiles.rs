@@ -1,11 +1,11 @@
-//! The map in tiles: a viewer is sent the tiles that it lacks, not the map.
+//! The map in tiles: a viewer receives only the tiles that it lacks.
 //!
 //! | bytes | content |
 //! |---|---|
 //! | 1 | kind |
 //! | 1 | 0 |
 //! | 2 | number of tiles |
-//! | 4 | generation: at another one the page drops all tiles |
+//! | 4 | generation: if it changes, the page drops all tiles |
 //! | 8, 8, 8 | side of a cell \[m\]; corner of cell (0, 0), map frame: x, y \[m\] |
 //! | 4, 4, 1024 each | column and row of the tile; its cells, 2 bits each, from the lowest row: 0 unknown, 1 free, 2 occupied |
 
@@ -34,7 +34,7 @@ pub struct MapTiles {
     tiles: BTreeMap<(i32, i32), Tile>,
 }
 
-/// Where the cells lie. Cell (0, 0) of the tiles stays at one place while the map grows.
+/// Geometry of the cells. Cell (0, 0) of the tiles does not move while the map grows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Layout {
     resolution: f64,
@@ -55,7 +55,7 @@ pub struct TileCursor {
 }
 
 impl MapTiles {
-    /// Takes a map over, where it is another one than the last.
+    /// Replaces the map if it differs from the last one.
     pub fn update(&mut self, map: &Arc<MapView>) {
         if self.map.as_ref().is_some_and(|known| Arc::ptr_eq(known, map)) {
             return;
@@ -184,7 +184,7 @@ mod tests {
         assert_eq!(all.message(&mut cursor), None);
         all.update(&map((-1.0, -1.0), 100, 64, &[(0.02, 0.02)]));
         assert_eq!(tiles(&all.message(&mut cursor).unwrap()), [(0, 0)]);
-        // One tile more to the left and below: 64 cells are 3.2 m.
+        // One more tile to the left and below: 64 cells are 3.2 m.
         all.update(&map((-4.2, -4.2), 164, 128, &[(0.02, 0.02)]));
         let grown = tiles(&all.message(&mut cursor).unwrap());
         assert!(grown.iter().all(|&(column, row)| column == -1 || row == -1), "{grown:?}");

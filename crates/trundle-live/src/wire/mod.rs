@@ -1,7 +1,7 @@
 //! The messages of the page: text as JSON, large parts as bytes.
 //!
 //! The page sends [`Request`]s as JSON. The server sends [`Reply`]s as JSON, and messages of bytes, little-endian, whose first byte is
-//! their [`Kind`]. Frames: map frame where nothing else is said; m and rad.
+//! their [`Kind`]. Unless stated otherwise, data is in the map frame; m and rad.
 
 mod depth;
 mod features;
@@ -27,7 +27,7 @@ pub use scan::scan_message;
 pub use state::{StateMessage, WheelText};
 pub use visual_map::visual_map_message;
 
-/// Version of the messages. A page of another version loads itself anew.
+/// Version of the messages. A page of another version reloads itself.
 pub const WIRE_VERSION: u32 = 3;
 
 /// First byte of a message of bytes.
@@ -46,7 +46,7 @@ pub enum Kind {
     Trail = 5,
     /// Keyframes and landmarks.
     VisualMap = 6,
-    /// Features of the last image, and how often loops were closed.
+    /// Features of the last image, and the number of closed loops.
     Features = 7,
     /// The depth of an image.
     Depth = 8,

@@ -7,7 +7,7 @@ use trundle_core::{Pose2, Trajectory};
 /// Most points of a planned path; a longer one is thinned. Source: ours.
 const MAX_PLAN_POINTS: usize = 400;
 
-/// The message of a planned path; without points where there is none.
+/// The message of a planned path; without points for `None`.
 pub fn path_message(plan: Option<&Trajectory>) -> Vec<u8> {
     let points = plan.map_or(&[][..], Trajectory::points);
     let stride = points.len().div_ceil(MAX_PLAN_POINTS).max(1);

@@ -14,9 +14,9 @@ pub enum Reply {
     Welcome(Box<Welcome>),
     /// The answer to a request.
     Answer {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
-        /// Why the request is refused; `None` for one that is carried out.
+        /// Reason for the refusal; `None` for an accepted request.
         #[serde(skip_serializing_if = "Option::is_none")]
         refusal: Option<String>,
         /// Number of the goal that is refused, from 0.
@@ -25,21 +25,21 @@ pub enum Reply {
     },
     /// A request without an answer is refused.
     Refused {
-        /// Why.
+        /// Reason for the refusal.
         refusal: String,
     },
     /// Zones and named places of the map.
     Annotations {
-        /// All of them.
+        /// All zones and places.
         #[serde(flatten)]
         annotations: MapAnnotations,
     },
     /// The settings that may change while the robot runs.
     Settings {
-        /// With their present values.
+        /// All settings with their present values.
         settings: Vec<SettingText>,
     },
-    /// How far the series has come that the run is a part of.
+    /// Progress of the series that contains the run.
     Series(SeriesText),
     /// States of the robot since some time ago.
     States {
@@ -61,7 +61,7 @@ pub struct Welcome {
     pub drives: bool,
     /// Whether the run takes commands.
     pub is_steered: bool,
-    /// What the run is.
+    /// Kind of the run.
     pub kind: RunKind,
     /// Outline of the robot.
     pub footprint: FootprintText,
@@ -76,30 +76,30 @@ pub struct Welcome {
 /// A series of steps or runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SeriesText {
-    /// What is counted.
+    /// Name of the counted things.
     pub unit: &'static str,
-    /// Number of those that are done.
+    /// Number of finished ones.
     pub done: usize,
-    /// Number of all, where it is known.
+    /// Total number; `None` if unknown.
     pub total: Option<usize>,
     /// Number of runs that were shown before this one.
     pub number: u64,
-    /// The run that is shown; empty where there is one alone.
+    /// Name of the displayed run; empty for a single run.
     pub shown: String,
     /// Number of runs that have ended.
     pub ended: usize,
-    /// The last of them, in the order of their ends.
+    /// The last finished runs, in the order of their ends.
     pub last: Vec<EndedRunText>,
 }
 
 /// A run that has ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct EndedRunText {
-    /// Its name.
+    /// Name of the run.
     pub name: String,
-    /// Whether it is as it should be.
+    /// Whether the run succeeded.
     pub is_success: bool,
-    /// Its result in a sentence.
+    /// Result of the run, in one sentence.
     pub text: String,
 }
 
@@ -136,14 +136,14 @@ pub enum FootprintText {
     Polygon(Vec<[f64; 2]>),
 }
 
-/// A state of the robot and when it began.
+/// A state of the robot and its start.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct StateEntry {
     /// Time of the robot \[s\].
     pub time: f64,
     /// The state in one or two words.
     pub name: String,
-    /// Why the robot does not move on.
+    /// Reason why the robot does not move.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
 }

@@ -3,17 +3,17 @@
 use serde::Deserialize;
 use trundle_core::{NamedPlace, Zone};
 
-/// A request of a page. `id` names it in the answer.
+/// A request of a page. `id` identifies the request in the answer.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Request {
     /// First of all: version and token.
     Hello {
-        /// Version of the messages that the page speaks.
+        /// Version of the page's messages.
         version: u32,
         /// The token of the link.
         token: String,
-        /// How others shall see this viewer.
+        /// Display name of this viewer.
         #[serde(default)]
         name: String,
     },
@@ -29,47 +29,47 @@ pub enum Request {
     },
     /// Send the visual map, or do not.
     VisualMap {
-        /// Whether to send it.
+        /// Whether to send the visual map.
         on: bool,
     },
     /// Drive to goals, one after the other.
     Go {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
         /// The goals.
         goals: Vec<Goal>,
-        /// Whether they come after the tasks that are left.
+        /// Whether the goals follow the remaining tasks.
         #[serde(default)]
         append: bool,
     },
     /// Explore until the map is complete.
     Explore {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
     },
     /// Drive back to the start.
     Return {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
     },
     /// Drive onto the charging station.
     Dock {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
     },
-    /// Stop at once and drop the mission.
+    /// Stop immediately and drop the mission.
     Stop {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
     },
     /// Stop and keep the mission.
     Pause {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
     },
     /// Go on after a pause.
     Continue {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
     },
     /// Drive by hand. Silence of 0.3 s stops the robot.
@@ -79,65 +79,65 @@ pub enum Request {
         /// Part of the highest turn rate, -1 to 1, to the left positive.
         omega: f64,
     },
-    /// Where the robot stands.
+    /// Sets the pose of the robot.
     SetPose {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
         /// The pose.
         pose: Goal,
     },
-    /// A zone in place of that with its number; number 0: a new one.
+    /// Replaces the zone with the same number; number 0 adds a zone.
     SetZone {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
         /// The zone.
         zone: Zone,
     },
     /// Delete a zone.
     RemoveZone {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
-        /// Of the zone.
+        /// Number of the zone.
         number: u32,
     },
-    /// A named place in place of that with its number; number 0: a new one.
+    /// Replaces the named place with the same number; number 0 adds a place.
     SetPlace {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
         /// The place.
         place: NamedPlace,
     },
     /// Delete a named place.
     RemovePlace {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
-        /// Of the place.
+        /// Number of the place.
         number: u32,
     },
     /// Change a setting.
     Change {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
-        /// Its key in the robot file.
+        /// Key of the setting in the robot file.
         key: String,
-        /// Its value, in the unit of the key.
+        /// Value of the setting, in the unit of the key.
         value: f64,
     },
     /// Another map of the folder of maps in place of the present one.
     LoadMap {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
-        /// Its name.
+        /// Name of the map.
         name: String,
     },
     /// Take control, from the viewer that has it.
     TakeWheel {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
     },
     /// Leave the wheel to others.
     LeaveWheel {
-        /// Of the request.
+        /// Number of the request.
         id: u64,
     },
 }
@@ -155,7 +155,7 @@ pub struct Goal {
 }
 
 impl Request {
-    /// Number by which the answer names the request; `None` for a request without an answer.
+    /// Number of the request in its answer; `None` for a request without an answer.
     pub fn id(&self) -> Option<u64> {
         match self {
             Self::Hello { .. }

@@ -8,9 +8,9 @@ use trundle_runtime::settings::reference;
 /// A setting that may change while the robot runs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SettingText {
-    /// Its key in the robot file.
+    /// Key of the setting in the robot file.
     pub key: &'static str,
-    /// Its meaning, as the reference of settings has it.
+    /// Meaning of the setting, from the reference of settings.
     pub text: &'static str,
     /// Unit.
     pub unit: &'static str,

@@ -30,9 +30,9 @@ pub struct StateMessage {
     pub counts: [u64; 4],
     /// The stages of the robot with the time of each by the clock so far \[s\].
     pub stages: Vec<(&'static str, f64)>,
-    /// Loops that were closed: time \[s\], and where the robot stood \[m\].
+    /// Closed loops: time \[s\], and position of the robot \[m\].
     pub loops: Vec<[f64; 3]>,
-    /// The viewer in control; `None` if there is none.
+    /// The viewer in control; `None` without one.
     pub wheel: Option<WheelText>,
     /// Number of viewers.
     pub viewers: usize,
@@ -56,7 +56,7 @@ pub struct MotionText {
 pub struct ActivityText {
     /// The state in one or two words.
     pub state: &'static str,
-    /// Why the robot does not move on.
+    /// Reason why the robot does not move.
     pub reason: Option<String>,
     /// The condition under which no wheel may turn.
     pub hold: Option<String>,
@@ -84,9 +84,9 @@ pub struct PowerText {
 /// The viewer who drives.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WheelText {
-    /// How the viewer is called.
+    /// Name of the viewer.
     pub name: String,
-    /// Whether the reader of this message holds it.
+    /// Whether the reader of this message is in control.
     pub is_you: bool,
 }
 
@@ -95,7 +95,7 @@ pub struct WheelText {
 pub struct TaskText {
     /// In words.
     pub text: String,
-    /// Its goal: x \[m\], y \[m\], heading \[rad\].
+    /// Goal of the task: x \[m\], y \[m\], heading \[rad\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub goal: Option<[f64; 3]>,
 }

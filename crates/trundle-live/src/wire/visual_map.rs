@@ -15,7 +15,7 @@ const CM_PER_M: f64 = 100.0;
 /// Parts of a radian that a heading is sent in.
 const HEADING_PARTS_PER_RAD: f64 = 1e4;
 
-/// The message of a visual map. What is farther than 327 m is sent there.
+/// The message of a visual map. Points farther than 327 m are clamped to this distance.
 pub fn visual_map_message(map: &VisualMapView) -> Vec<u8> {
     let mut bytes = vec![Kind::VisualMap as u8, 0, 0, 0];
     bytes.extend((map.keyframes.len() as u32).to_le_bytes());

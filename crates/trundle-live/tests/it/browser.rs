@@ -1,4 +1,4 @@
-//! A small browser: plain HTTP, and a link that speaks for a page.
+//! A small browser: plain HTTP, and a link in place of a page.
 
 use crate::live_run::LiveRun;
 use futures_util::{SinkExt, StreamExt};
@@ -25,11 +25,11 @@ pub fn fetch(address: SocketAddr, request: &str, headers: &[(&str, &str)]) -> (S
     (head.to_owned(), body.to_owned())
 }
 
-/// A page with its link. What a test does not ask for is dropped.
+/// A page with its link. Messages that a test does not request are dropped.
 pub struct Browser {
     runtime: Runtime,
     socket: WebSocketStream<MaybeTlsStream<tokio::net::TcpStream>>,
-    /// Whether it says which views it has drawn.
+    /// Whether the browser confirms drawn views.
     pub draws: bool,
     last_id: u64,
 }
@@ -47,7 +47,7 @@ impl Browser {
         Ok(Self { runtime, socket, draws: true, last_id: 0 })
     }
 
-    /// Opens a link and says hello.
+    /// Opens a link and sends the hello.
     pub fn enter(run: &LiveRun, access: Access, name: &str) -> Self {
         let mut browser = Self::connect(run, None).unwrap();
         browser.hello(run.token(access), name);
@@ -70,7 +70,7 @@ impl Browser {
         self.runtime.block_on(self.socket.send(Message::Text(text.into())))
     }
 
-    /// Sends a request and waits for its answer: the refusal, where it is refused.
+    /// Sends a request and waits for its answer; returns the refusal, if any.
     pub fn ask(&mut self, mut request: Value) -> Option<String> {
         self.last_id += 1;
         request["id"] = self.last_id.into();
@@ -83,7 +83,7 @@ impl Browser {
         }
     }
 
-    /// The next message; the code and the reason where the server closes the link.
+    /// The next message; the code and the reason if the server closes the link.
     pub fn next(&mut self) -> Result<Message, (u16, String)> {
         let next = async { tokio::time::timeout(Duration::from_secs(10), self.socket.next()).await };
         match self.runtime.block_on(next).expect("the server is silent") {

@@ -1,4 +1,4 @@
-//! Access: hosts, origins, tokens, and what a viewer must not send.
+//! Access: hosts, origins, tokens, and forbidden messages of viewers.
 
 use crate::browser::{Browser, fetch};
 use crate::live_run::LiveRun;
@@ -88,7 +88,7 @@ fn broken_large_and_many_messages_end_the_link_and_not_the_server() {
     let bomb = format!(r#"{{"type":"go","id":1,"goals":{}"#, "[".repeat(8000));
     for text in [large, bomb, "{}".to_owned(), "\u{0}".to_owned()] {
         let mut browser = Browser::enter(&run, Access::Drive, "fuzzer");
-        // The server may close while a large message is still on its way.
+        // The server may close the link during the transfer of a large message.
         _ = browser.send_text(text);
         browser.wait_for_close();
     }

@@ -12,7 +12,7 @@ use trundle_io::OutputFolder;
 use trundle_live::{Access, LiveOptions, LivePage, RunFacts, Tokens};
 use trundle_runtime::{Mission, RobotConfig};
 
-/// A base that stands still: wheels at 50 Hz of real time, until it is over.
+/// A base at rest: wheels at 50 Hz of real time, until the end.
 struct PacedBody {
     step: i64,
     is_over: Arc<AtomicBool>,
@@ -34,7 +34,7 @@ impl RobotBody for PacedBody {
     }
 }
 
-/// A run with its live page. Dropping it ends the run.
+/// A run with its live page. A drop ends the run.
 pub struct LiveRun {
     pub page: LivePage,
     pub operator: Operator,
@@ -78,7 +78,7 @@ impl LiveRun {
         self.tokens.of(access)
     }
 
-    /// Waits until the run is as it should be, at most 5 s.
+    /// Waits until the view satisfies `is`, at most 5 s.
     pub fn wait_for(&self, what: &str, is: impl Fn(&RunView) -> bool) {
         let start = Instant::now();
         while !self.operator.glance().is_some_and(|view| is(&view)) {

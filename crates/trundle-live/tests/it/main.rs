@@ -1,4 +1,4 @@
-//! Tests of the live page as a browser and as an attacker see it, on a run of a base at rest.
+//! Tests of the live page from a browser's and an attacker's view, on a run of a base at rest.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod browser;

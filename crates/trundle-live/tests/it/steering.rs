@@ -1,4 +1,4 @@
-//! Commands of a page reach the robot, and refusals come back.
+//! Commands of a page reach the robot, and refusals return.
 
 use crate::browser::Browser;
 use crate::live_run::LiveRun;

@@ -1,4 +1,4 @@
-//! Several viewers: one holds the wheel, others look, a slow one delays nobody.
+//! Several viewers: one is in control, others view, and a slow one delays no other.
 
 use crate::browser::Browser;
 use crate::live_run::LiveRun;

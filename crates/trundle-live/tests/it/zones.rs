@@ -110,7 +110,7 @@ fn a_map_of_the_folder_is_loaded_and_another_name_is_refused() {
 fn while_a_large_map_is_read_the_robot_stops_and_other_viewers_go_on() {
     let run = LiveRun::start();
     run.wait_for("a step", |view| view.odometry.is_some());
-    // 96 MB of zeros that take no place on the disk, turned, so that every cell is computed; no robot here has such cells.
+    // 96 MB of zeros in a sparse file, with a yaw that requires every cell to be computed; no robot here has such cells.
     let mut picture = File::create(run.place.path().join("large.pgm")).unwrap();
     picture.write_all(b"P5 6000 8000 65535\n").unwrap();
     picture.set_len(19 + 2 * 6000 * 8000).unwrap();
@@ -132,13 +132,13 @@ fn while_a_large_map_is_read_the_robot_stops_and_other_viewers_go_on() {
     assert!(head.starts_with("HTTP/1.1 200"), "{head} {body}");
     assert_eq!(other.ask(json!({"type": "stop"})), None);
     let stopped = start.elapsed();
-    // The answer comes last, to the one who asked.
+    // The answer comes last, to the requesting viewer.
     let first = page.wait_for("answer");
     let read = start.elapsed();
     assert_eq!(first["id"], 71, "{first}");
     assert!(first["refusal"].as_str().unwrap().contains("Map 'large': "), "{first}");
     assert!(stopped < read / 2, "stopped after {stopped:?}, read after {read:?}");
-    // One after the other is read.
+    // Maps are read one after the other.
     assert!(page.ask(json!({"type": "load_map", "name": "attic"})).unwrap().contains("no map 'attic'"));
 }
 

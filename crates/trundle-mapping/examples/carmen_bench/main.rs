@@ -1,6 +1,6 @@
-//! How well a laser log is mapped, over several seeds:
-//! `cargo run --release -p trundle-mapping --example carmen_bench -- LOG [--seeds N] [--particles N] [--laser-x M] [--pgm FILE] [--traj FILE]
-//! [--but A..B]`: the mean error without relations that touch these poses of the reference as well.
+//! Quality of the map of a laser log over several seeds: `cargo run --release -p trundle-mapping --example carmen_bench -- LOG [--seeds N]
+//! [--particles N] [--laser-x M] [--pgm FILE] [--traj FILE] [--but A..B]`. With `--but` it also prints the mean error without relations
+//! that touch these poses of the reference.
 //!
 //! Beside `X.log` a `X.ref.traj` (`t x y theta` lines) is taken as the reference.
 #![allow(clippy::print_stdout, clippy::unwrap_used, missing_docs, reason = "a measurement for the terminal")]
@@ -14,7 +14,7 @@ use trundle_mapping::{ParticleConfig, ParticleMapper, ScanUpdate, propagate_traj
 
 /// Time on the processor, ms: others may be at work too.
 fn processor_ms() -> f64 {
-    // Yielding brings the kernel's account up to date, which else goes by ticks of 4 ms.
+    // A yield updates the kernel's CPU time, which otherwise advances in ticks of 4 ms.
     std::thread::yield_now();
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
     text.split(' ').next().unwrap().parse::<f64>().unwrap() * 1e-6

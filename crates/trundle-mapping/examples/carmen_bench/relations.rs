@@ -1,5 +1,5 @@
-//! The relations of \[Kuemmerle09\]: errors of relative poses against the reference's, so that one wrong turn does not
-//! spoil all that follows.
+//! The relations of \[Kuemmerle09\]: errors of relative poses against the reference's, in which one wrong turn does not affect all later
+//! poses.
 
 use trundle_core::{Pose2, Stamp, Vector2, wrap_angle};
 
@@ -22,7 +22,7 @@ pub struct Relation {
     poses: (usize, usize),
 }
 
-/// Those that a reference trajectory has.
+/// The relations of a reference trajectory.
 pub fn relations(reference: &[(Stamp, Pose2)]) -> Vec<Relation> {
     let mut found = Vec::new();
     let relation = |kind, i: usize, j: usize| {
@@ -47,7 +47,7 @@ pub fn relations(reference: &[(Stamp, Pose2)]) -> Vec<Relation> {
                 break;
             }
         }
-        // Of each visit to this place more than 40 m of way later, the pose that comes nearest.
+        // For each later visit of this place, after more than 40 m of path, the nearest pose.
         let mut way = 0.0;
         let mut nearest: Option<(f64, usize)> = None;
         for j in i + 1..reference.len() {
@@ -68,11 +68,11 @@ pub fn relations(reference: &[(Stamp, Pose2)]) -> Vec<Relation> {
 /// Errors of a relation, m and deg.
 type Error = (f64, f64);
 
-/// How well an estimate agrees with a reference.
+/// Agreement of an estimate with a reference.
 pub struct Agreement {
     by_kind: [Vec<Error>; 3],
     all: Vec<Error>,
-    /// Those of relations that do not touch the poses left out.
+    /// Errors of relations that do not touch the excluded poses.
     rest: Option<Vec<Error>>,
     /// RMSE of the positions, m.
     absolute: f64,
@@ -119,7 +119,7 @@ impl Agreement {
         self.all.iter().map(|e| e.0).sum::<f64>() / self.all.len().max(1) as f64
     }
 
-    /// How many relations of loops are so far off that the loop is not closed.
+    /// Number of loop relations with an error so large that the loop is not closed.
     pub fn open_loops(&self) -> usize {
         self.by_kind[2].iter().filter(|e| e.0 > OPEN).count()
     }

@@ -1,4 +1,4 @@
-//! Findings along each bearing of one depth image, and the scan made of them.
+//! Readings along each bearing of one depth image, and the scan made from them.
 
 use super::{
     mount::{BeamView, Mount},
@@ -34,7 +34,7 @@ struct Point {
 struct Surface {
     sum: f64,
     count: u32,
-    /// Height of its lowest point, m.
+    /// Height of the obstacle's lowest point, m.
     lowest: f32,
 }
 
@@ -42,9 +42,10 @@ impl Surface {
     const EMPTY: Self = Self { sum: 0.0, count: 0, lowest: f32::INFINITY };
 }
 
-/// Minimum clearance under an overhang above the highest floor point \[m\]. A lower surface counts as standing. Source: ours.
+/// Minimum clearance under an overhang above the highest floor point \[m\]. A lower surface counts as an obstacle that reaches the floor.
+/// Source: ours.
 const MIN_CLEARANCE_M: f32 = 0.05;
-/// Maximum gap between seen floor and the foot of an obstacle \[bins\]. A gap up to this size counts as free. Source: ours.
+/// Maximum gap between visible floor and the foot of an obstacle \[bins\]. A gap up to this size counts as free. Source: ours.
 const FOOT_GAP_BINS: usize = 2;
 
 impl Bearings {
@@ -90,7 +91,7 @@ impl Bearings {
         }
     }
 
-    /// The nearest of many noisy points is too near: the range is the mean of the surface that it belongs to.
+    /// The nearest of many noisy points has a bias towards the camera: the range is the mean over the surface of this point.
     pub(super) fn average_surfaces(&mut self, model: &PixelModel) {
         for point in &self.points {
             let beam = usize::from(point.beam);
@@ -136,7 +137,7 @@ impl Bearings {
         }
     }
 
-    /// The obstacle of a bearing, if there is one.
+    /// The obstacle of a bearing; `None` without one.
     fn hit(&self, i: usize, model: &PixelModel) -> Option<(f64, ObstacleKind)> {
         let surface = self.surfaces[i];
         let drop = self.drop[i];
@@ -149,7 +150,7 @@ impl Bearings {
         Some((range, kind))
     }
 
-    /// Whether the floor goes on under the obstacle of a bearing: rays below its lowest point reached the floor behind it.
+    /// Whether the floor continues under the obstacle of a bearing: rays below its lowest point reached the floor behind it.
     fn hangs(&self, i: usize, range: f32, model: &PixelModel) -> bool {
         let lowest = self.surfaces[i].lowest;
         if lowest < model.floor_edge(1.0, range, range) + MIN_CLEARANCE_M {
@@ -166,13 +167,13 @@ impl Bearings {
     fn cleared(&self, i: usize, view: &BeamView, model: &PixelModel, hit: Option<f64>) -> SpanBits {
         let before_hit = hit.map(|range| ((range as f32 * model.bins_per_metre) as usize + 1).min(BIN_COUNT));
         let below_band = model.camera_height < model.high;
-        // A ray passed through the band before its hit.
+        // A ray that passed through the band in front of its hit.
         let passed = self.passed[i] | before_hit.filter(|_| below_band).map_or(0, |to| BELOW[to]);
         let mut bits = bridged(self.floor[i] | passed & !view.floor & !BELOW[view.begin.min(BIN_COUNT)]);
         if view.floor == 0 {
             bits |= passed;
         }
-        // Floor too near to be seen counts as free when the first visible floor is.
+        // Floor too near to be visible counts as free if the first visible floor is free.
         if bits & bins(view.begin, view.begin + 2) != 0 {
             bits |= BELOW[(view.begin + 1).min(BIN_COUNT)];
         }
@@ -183,7 +184,7 @@ impl Bearings {
     }
 }
 
-/// One sigma of a range, m: the noise of its depth over the floor.
+/// Standard deviation of a range, m: the noise of its depth over the floor.
 fn sigma(range: f32, view: &BeamView, model: &PixelModel) -> f32 {
     if view.run > 0.0 { view.run * model.noise.sigma(range / view.run) } else { model.noise.sigma(range) }
 }

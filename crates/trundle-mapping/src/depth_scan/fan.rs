@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{PinholeCamera, Pose3, Vector3, wrap_angle};
 
-/// The fan of beams that the pixels fall into. A pixel's bearing does not depend on its depth.
+/// The fan of beams over the pixels. A pixel's bearing does not depend on its depth.
 #[derive(Debug, Clone)]
 pub(super) struct Fan {
     /// The beam of each pixel, row by row.
@@ -17,7 +17,7 @@ pub(super) struct Fan {
     pub(super) angle_increment: f64,
 }
 
-/// Maximum angle between neighbouring beams \[rad\]. It is reached by a camera that points straight down. Source: ours.
+/// Maximum angle between neighbouring beams \[rad\]. A camera that points straight down reaches this angle. Source: ours.
 const MAX_BEAM_INCREMENT_RAD: f64 = 0.035;
 /// Minimum angle between neighbouring beams \[rad\]. A full circle of beams is counted in 16 bits. Source: ours.
 const MIN_BEAM_INCREMENT_RAD: f64 = 1e-4;
@@ -103,7 +103,7 @@ impl PixelBearings<'_> {
     }
 }
 
-/// The angle of (x, y) to within [`MAX_NEAR_ERROR_RAD`], at a fifth of the cost of `atan2`: a polynomial over an eighth of the turn
+/// The angle of (x, y) within [`MAX_NEAR_ERROR_RAD`], at a fifth of the cost of `atan2`: a polynomial over an eighth of a turn
 /// \[Abramowitz64, 4.4.49\].
 fn nearly_atan2(y: f64, x: f64) -> f64 {
     let (ax, ay) = (x.abs(), y.abs());
@@ -117,8 +117,8 @@ fn nearly_atan2(y: f64, x: f64) -> f64 {
     half.copysign(y)
 }
 
-/// The greatest difference of bearing between neighbouring pixels, rad, in the middle of the image and of its sides: a
-/// finer beam would fall between the columns.
+/// The largest difference of bearing between neighbouring pixels, rad, in the middle of the image and of its sides. A finer beam would fall
+/// between the columns.
 fn widest_pixel(camera: &PinholeCamera, bearing: impl Fn(f64, f64) -> f64) -> f64 {
     let (right, bottom) = (camera.width() as f64 - 1.0, camera.height() as f64 - 1.0);
     let (cx, cy) = (right / 2.0, bottom / 2.0);
@@ -130,7 +130,7 @@ fn widest_pixel(camera: &PinholeCamera, bearing: impl Fn(f64, f64) -> f64) -> f6
     [(cx, cy), (cx, 0.0), (cx, bottom), (0.0, cy), (right, cy)].into_iter().map(width_at).fold(0.0, f64::max)
 }
 
-/// Bearing of the optical axis, base frame, rad; of the image's top where the camera points straight up or down.
+/// Bearing of the optical axis, base frame, rad; bearing of the image's top if the camera points straight up or down.
 fn forward_bearing(base_from_camera: &Pose3) -> f64 {
     let axis = base_from_camera.rotate(Vector3::z());
     let top = base_from_camera.rotate(-Vector3::y());

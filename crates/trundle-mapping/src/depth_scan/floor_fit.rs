@@ -11,6 +11,6 @@ pub struct FloorFit {
     pub height: f64,
     /// Bound on the error of the rise, m/m: three sigmas plus the unevenness of floors.
     pub rise_error: f64,
-    /// Fraction of the sampled points near the expected floor that lie on the plane, 0 to 1.
+    /// Fraction of the sampled points near the expected floor that fit the plane, 0 to 1.
     pub share: f64,
 }

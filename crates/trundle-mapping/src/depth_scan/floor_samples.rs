@@ -23,7 +23,7 @@ struct SamplePixel {
 /// A measured point near the expected floor.
 #[derive(Debug, Clone, Copy)]
 struct FloorPoint {
-    /// (ahead, left, 1): the height of a floor there is its product with (rise_ahead, rise_left, height).
+    /// (ahead, left, 1): the product with (rise_ahead, rise_left, height) is the height of the floor at this place.
     place: Column<f64>,
     height: f64,
     sigma: f64,
@@ -55,7 +55,7 @@ const MIN_POINTS: usize = 60;
 const MIN_INLIER_FRACTION: f64 = 0.5;
 /// Maximum distance of a point from the plane \[sigmas\]. A farther point is an outlier. Source: ours.
 const MAX_RESIDUAL_SIGMAS: f64 = 4.0;
-/// Sigma of a height beside the depth noise \[m\]: unevenness of the floor. Source: ours.
+/// Standard deviation of a height in addition to the depth noise \[m\]: unevenness of the floor. Source: ours.
 const HEIGHT_SIGMA_M: f64 = 0.002;
 /// Unevenness of floors and lens distortion that the fit does not see \[m/m\]; added to the bound of the rise. Source: ours.
 const FLOOR_UNEVENNESS: f64 = 0.007;
@@ -84,8 +84,8 @@ impl FloorSamples {
         Self { points: Vec::with_capacity(pixels.len()), pixels, limits }
     }
 
-    /// Floor of an image: RANSAC \[Fischler81\] with fixed draws, then least squares with Tukey's weights and the mount as prior.
-    /// `None` if too few points lie near the floor, or the plane is beyond its limits.
+    /// Floor of an image: RANSAC \[Fischler81\] with fixed draws, then least squares with Tukey's weights and the mount as prior. `None` if
+    /// too few points are near the floor, or the plane exceeds its limits.
     pub(super) fn fit(&mut self, depth: &DepthImage, model: &PixelModel) -> Option<FloorFit> {
         if self.limits.rise <= 0.0 {
             return None;

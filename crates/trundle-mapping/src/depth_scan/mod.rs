@@ -1,4 +1,4 @@
-//! From a depth image to a laser-like scan: of each bearing the nearest obstacle, and where nothing stands for certain.
+//! Converts a depth image to a laser-like scan: for each bearing the nearest obstacle, and the ranges that are certainly free.
 
 mod bearings;
 mod config;

@@ -19,18 +19,18 @@ pub(super) struct Mount {
     pub(super) views: Vec<BeamView>,
     pub(super) samples: FloorSamples,
     pub(super) blind_range: f64,
-    /// Whether some beam covers the band where it does not cover the floor.
+    /// Whether a beam covers the height band at ranges at which it does not cover the floor.
     pub(super) passes_matter: bool,
 }
 
 /// View of a beam, by the mount.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct BeamView {
-    /// Where its pixels would see the floor.
+    /// Bins in which the beam's pixels observe the floor.
     pub(super) floor: SpanBits,
-    /// The first bin in which they do.
+    /// First bin in which the beam's pixels observe the floor.
     pub(super) begin: usize,
-    /// Mean distance over the floor of its rays, m for each m of depth.
+    /// Mean distance over the floor along the beam's rays, m per m of depth.
     pub(super) run: f32,
 }
 
@@ -67,11 +67,11 @@ struct Survey {
 /// The rays of a beam.
 #[derive(Debug, Clone, Copy)]
 struct SurveyedBeam {
-    /// Of the floor.
+    /// Bins of the floor.
     floor: SpanBits,
     /// Range bins in which rays pass through the band.
     band: SpanBits,
-    /// Where the band's lower edge is seen first, m.
+    /// Smallest range at which the band's lower edge is visible, m.
     first: f64,
     /// Sum and number of the rays' distances over the floor for each m of depth.
     runs: f64,
@@ -118,7 +118,7 @@ impl Survey {
         self.beams.iter().map(view).collect()
     }
 
-    /// Whether more than one beam in fifty passes through bins that it does not see the floor of.
+    /// Whether more than one beam in fifty passes through bins without visible floor.
     fn passes_matter(&self) -> bool {
         let gaps = self.beams.iter().filter(|SurveyedBeam { floor, band, .. }| {
             let first = floor.trailing_zeros() as usize;
@@ -127,7 +127,7 @@ impl Survey {
         gaps.count() * 50 > self.beams.len()
     }
 
-    /// Range beyond which every bearing with the band's lower edge in view has it in view.
+    /// Smallest range above which every bearing that shows the band's lower edge at all shows it.
     fn blind_range(&self, max_range: f64) -> f64 {
         let seen = self.beams.iter().map(|beam| beam.first).filter(|range| range.is_finite());
         seen.reduce(f64::max).unwrap_or(max_range).min(max_range)

@@ -20,7 +20,7 @@ pub(super) struct PixelModel {
     pub(super) floor_sigmas: f32,
     /// Unknown rise of the floor, m/m.
     pub(super) tilt: f32,
-    /// Depth below the floor at which a point counts as a hole, m.
+    /// Depth below the floor from which a point counts as a hole, m.
     pub(super) drop_depth: f32,
     pub(super) bins_per_metre: f32,
     pub(super) min_support: NeighbourSupport,
@@ -103,15 +103,15 @@ impl PixelModel {
         self.low.max(self.floor_sigmas * rise.abs() * self.noise.sigma(depth) + self.tilt * range)
     }
 
-    /// Fraction of a floor point's range at which its ray enters the height band from above. Beyond it the ray proves free space:
-    /// an obstacle of the band would block the ray.
+    /// Fraction of a floor point's range at which its ray enters the height band from above. From this range on the ray proves free space:
+    /// an obstacle in the band would block the ray.
     pub(super) fn floor_share(&self) -> f32 {
         (1.0 - self.low / self.camera_height).max(0.0)
     }
 }
 
 impl DepthNoise {
-    /// One sigma of a depth, m.
+    /// Standard deviation of a depth, m.
     #[inline(always)]
     pub(super) fn sigma(self, depth: f32) -> f32 {
         self.base + self.growth * depth * depth

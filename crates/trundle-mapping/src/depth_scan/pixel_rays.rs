@@ -2,7 +2,7 @@
 
 use trundle_core::{PinholeCamera, Vector2, Vector3};
 
-/// The rays of a camera's pixels in its own frame, row by row: (u, v, 1) m at one m of depth, its lens distortion undone.
+/// The rays of a camera's pixels in the camera frame, row by row, without lens distortion: (u, v, 1) m at one m of depth.
 #[derive(Debug, Clone)]
 pub(super) struct LensRays {
     camera: PinholeCamera,
@@ -40,7 +40,7 @@ impl LensRays {
         Vector3::new(f64::from(self.u[i]), f64::from(self.v[i]), 1.0)
     }
 
-    /// How many pixels there are.
+    /// Number of pixels.
     pub(super) fn len(&self) -> usize {
         self.u.len()
     }

@@ -23,7 +23,7 @@ pub(super) mod kind {
     pub const DOUBTFUL: u32 = 2;
     /// The floor.
     pub const FLOOR: u32 = 3;
-    /// Its ray went through the band and ended above or behind it.
+    /// The ray passed through the band and ended above or behind the band.
     pub const PASSING: u32 = 4;
     /// Far below the floor.
     pub const DROP: u32 = 5;
@@ -44,11 +44,11 @@ impl ClassifiedRow {
         self.heights.resize(width, 0.0);
     }
 
-    /// Classifies the pixels of a row except its first and last. `PASSES`: whether rays that pass through the band are a class.
+    /// Classifies the pixels of a row except the first and the last. `PASSES`: whether rays that pass through the band are a class.
     pub(super) fn classify<const PASSES: bool>(&mut self, model: &PixelModel, input: &RowInput<'_>) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has the one feature that the function is compiled for.
+            // SAFETY: the processor has the only feature that the function is compiled for.
             return unsafe { self.classify_avx2::<PASSES>(model, input) };
         }
         self.classify_scalar::<PASSES>(model, input);
@@ -65,7 +65,7 @@ impl ClassifiedRow {
         self.classify_all::<PASSES>(model, input);
     }
 
-    /// Loop without a branch, so that the compiler can vectorise it. No sum is reordered: vector and scalar code give the same bits.
+    /// Loop without a branch, which the compiler can vectorise. No sum is reordered: vector and scalar code give the same bits.
     #[inline(always)]
     fn classify_all<const PASSES: bool>(&mut self, m: &PixelModel, input: &RowInput<'_>) {
         let inner = self.marks.len().saturating_sub(2);
@@ -101,7 +101,7 @@ impl ClassifiedRow {
             // Range at which the ray crosses the floor.
             let fall = m.camera_height - height;
             let crossing = range * m.camera_height / fall;
-            // Flying pixels lie between two surfaces, so none lies below the floor.
+            // Flying pixels are between two surfaces, therefore none is below the floor.
             let drop = valid & (height < -greater(edge, m.drop_depth)) & (crossing <= m.max_range) & seen;
 
             let mut mark = pick(in_band, pick(hit, kind::OBSTACLE, kind::DOUBTFUL), kind::NOTHING);
@@ -119,7 +119,7 @@ impl ClassifiedRow {
     }
 }
 
-/// Whether a ray that ended above or behind the band passed through it, and from where to where.
+/// Whether a ray that ended above or behind the band passed through the band; and the ranges of entry and exit.
 #[inline(always)]
 fn passage(m: &PixelModel, rise: f32, (range, height): (f32, f32), run: f32) -> (bool, f32, f32) {
     let headroom = m.high - m.camera_height;
@@ -137,7 +137,7 @@ fn passage(m: &PixelModel, rise: f32, (range, height): (f32, f32), run: f32) -> 
     }
 }
 
-/// The bin that holds a range: the last but one is 127, what is farther 128.
+/// The bin of a range: the last bin but one is 127; larger ranges are in 128.
 #[inline(always)]
 fn bin(range: f32, m: &PixelModel) -> u32 {
     // Rounding down by the rounding of floating-point addition, as no instruction does it for whole vectors.
@@ -148,7 +148,7 @@ fn bin(range: f32, m: &PixelModel) -> u32 {
     (within + MAGIC).to_bits() & 255
 }
 
-/// The greater of two, the second where the first is not a number.
+/// The greater of two values; the second if the first is not a number.
 #[inline(always)]
 fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
@@ -166,7 +166,7 @@ mod tests {
     use proptest::prelude::*;
     use trundle_core::{Pose3, Vector3};
 
-    /// A level camera at this height that points ahead; v is how far a ray falls per metre of depth.
+    /// A level camera at this height that points ahead; v is the descent of a ray per metre of depth.
     fn model(height: f64) -> PixelModel {
         let ahead = nalgebra::Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
         PixelModel::new(
@@ -175,7 +175,7 @@ mod tests {
         )
     }
 
-    /// Class of a pixel among equal neighbours, its range, and the bins that it clears.
+    /// Class of a pixel among equal neighbours, its range, and the bins that it shows free.
     fn classified(height: f64, rise: f32, z: f32) -> (u32, f32, (u32, u32)) {
         let mut row = ClassifiedRow::default();
         row.resize(3);
@@ -194,7 +194,7 @@ mod tests {
     #[test]
     fn the_band_is_an_obstacle_and_the_floor_is_not() {
         assert_eq!(classified(0.4, 0.0, 2.0).0, kind::OBSTACLE);
-        // The floor: what is 0.05 m high hides it from 7/8 of its range on.
+        // The floor: an object of 0.05 m height hides this point from 7/8 of its range on.
         assert_eq!(classified(0.4, -0.2, 2.0), (kind::FLOOR, 2.0, (at(1.75), at(2.0))));
         let (kind, range, _) = classified(0.4, -0.4, 2.0);
         assert_eq!((kind, range), (kind::DROP, 1.0), "a hole 0.4 m deep, from 1 m on at the latest");

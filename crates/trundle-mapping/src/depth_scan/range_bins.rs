@@ -3,7 +3,7 @@
 /// A set of stretches of a beam, as 128 bins of equal length up to the greatest range.
 pub(super) type SpanBits = u128;
 
-/// How many bins a beam has.
+/// Number of bins of a beam.
 pub(super) const BIN_COUNT: usize = 128;
 
 /// `BELOW[n]`: the first `n` bins.
@@ -28,7 +28,7 @@ pub(super) fn bridged(bits: SpanBits) -> SpanBits {
     bits | ((bits << 1) & (bits >> 1))
 }
 
-/// The stretches of neighbouring bins, each as its first bin and the one behind its last.
+/// The runs of neighbouring bins, each as its first bin and the bin after its last.
 pub(super) fn spans(mut bits: SpanBits) -> impl Iterator<Item = (usize, usize)> {
     let mut shifted = 0;
     std::iter::from_fn(move || {

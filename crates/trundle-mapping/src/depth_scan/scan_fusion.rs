@@ -7,7 +7,7 @@ use trundle_core::{
     Beam, FreeSpan, Invalid, ObstacleKind, Pose2, Scan, ScanParts, Stamp, Vector2, require_in, wrap_angle,
 };
 
-/// How scans are fused.
+/// Settings of the fusion of scans.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ScanFusionConfig {
@@ -29,7 +29,7 @@ impl ScanFusionConfig {
     /// Passes a valid configuration through.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range of its field.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("beams", self.beams as f64, "", 16.0, 7200.0)?;
         require_in("max_range", self.max_range, "m", 0.5, 100.0)?;
@@ -40,9 +40,9 @@ impl ScanFusionConfig {
 
 /// Fuses the scans of several sensors into one of the full circle around the base's origin.
 ///
-/// Of each bearing the nearest obstacle that any sensor saw; free is what any of them saw free and none a nearer obstacle in.
-/// Beams of sensors that sit elsewhere cross the fused ones, so what they cleared is laid out point by point. Cost: the
-/// number of beams times bins of range.
+/// For each bearing the nearest obstacle of any sensor. A range is free if a sensor observed it free and no sensor has a nearer obstacle.
+/// Beams of sensors at other positions cross the fused beams, so their free spans are converted point by point. Cost: the number of beams
+/// times bins of range.
 #[derive(Debug, Clone)]
 pub struct ScanFusion {
     config: ScanFusionConfig,
@@ -71,8 +71,8 @@ impl ScanFusion {
         Ok(Self { config: config.validated()?, nearest: Vec::new(), free: Vec::new() })
     }
 
-    /// One scan of several, with the newest one's stamp. Each has the pose of the base at its own stamp relative to the base at that stamp:
-    /// the identity for sensors that measure at once. A scan whose pose is not finite is left out.
+    /// One scan made of several, with the stamp of the newest one. Each scan comes with the pose of the base at the scan's stamp, relative
+    /// to the base at the newest stamp: the identity for simultaneous scans. A scan whose pose is not finite is left out.
     pub fn fuse<'a>(&mut self, scans: impl IntoIterator<Item = (Pose2, &'a Scan)>) -> Scan {
         let beams = self.config.beams;
         self.nearest.clear();
@@ -166,7 +166,7 @@ impl ScanFusion {
     }
 }
 
-/// The obstacle points of a scan with their beams, moved.
+/// The obstacle points of a scan with their beams, transformed.
 fn hits<'a>(pose: Pose2, scan: &'a Scan) -> impl Iterator<Item = (usize, Vector2)> + 'a {
     scan.beams().iter().enumerate().filter_map(move |(i, beam)| match beam {
         Beam::Hit { range } => Some((i, pose.transform(scan.point(i, *range)))),

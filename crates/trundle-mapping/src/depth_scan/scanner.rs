@@ -10,13 +10,13 @@ use super::{
 };
 use trundle_core::{DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Scan, ScanParts, Stamp, Vector2};
 
-/// Makes scans of depth images: for each bearing the nearest obstacle in the robot's height band (docs/methods.md A2), and the free
-/// spans up to it and beyond.
+/// Converts depth images to scans: for each bearing the nearest obstacle in the robot's height band (docs/methods.md A2), and the free
+/// spans in front of and behind it.
 ///
-/// A pixel's bearing is fixed by the camera and its mount. Its height and its distance over the floor are products of its depth with
-/// fixed factors. Heights are along the base's z axis (gravity), above the floor that is fitted to the image where enough of it is in
-/// view. Camera height, tilt and roll may be any. Cost: one pass over the image, in vectors where the processor has AVX2. After the
-/// first image there is no allocation.
+/// The camera and its mount determine a pixel's bearing. A pixel's height and distance over the floor are its depth times constant factors.
+/// Heights are along the base's z axis (gravity), above the floor plane fitted to the image, or above the nominal floor if too little floor
+/// is visible. Camera height, tilt and roll may be any. Cost: one pass over the image, vectorised on processors with AVX2. After the first
+/// image, no memory is allocated.
 ///
 /// | symbol | here | unit |
 /// |---|---|---|
@@ -56,19 +56,19 @@ impl DepthScanner {
     /// Moves the camera to `base_from_camera`: for a hand-held camera, or a mount with a new calibration.
     ///
     /// # Errors
-    /// When the mount is not finite or the camera is not above the floor; then it stays where it was.
+    /// When the mount is not finite or the camera is not above the floor; the mount is then unchanged.
     pub fn remount(&mut self, base_from_camera: Pose3) -> Result<(), Invalid> {
         self.mount = Mount::new(&self.lens, &base_from_camera, &self.config)?;
         Ok(())
     }
 
-    /// The scan of an image: base frame, from the camera's place on the floor, beams at equal angles across the field
-    /// of view, about as many as columns.
+    /// The scan of an image: base frame, origin below the camera on the floor, beams at equal angles across the field of view, about one
+    /// per column.
     ///
-    /// A beam is a hit at the nearest surface in the height band, or at the nearest edge of a hole. Else it is free as far as the floor was
-    /// in view or, where the camera does not cover the floor, as far as rays passed through the band. Else it is unseen. Its free spans
-    /// have a gap where neither was in view: a missing depth is never free space. Its sigma grows with the square of the depth. An image of
-    /// another size than the camera's is unseen altogether.
+    /// A beam is a hit at the nearest surface in the height band, or at the nearest edge of a hole. Without a hit, a beam is free up to the
+    /// end of the visible floor. At ranges without visible floor, it is free up to the end of the rays that passed through the band. All
+    /// other beams are unseen. The free spans have gaps at ranges without visible floor or passing rays: a missing depth is never free
+    /// space. The sigma of a beam grows with the square of the depth. A scan of an image with a wrong size is completely unseen.
     pub fn scan(&mut self, image: &RgbdImage) -> Scan {
         let mut scan = nothing(image.stamp());
         self.scan_into(image, &mut scan);
@@ -98,8 +98,8 @@ impl DepthScanner {
             .expect("invariant: ranges come from finite depths and rays, spans from rising bins");
     }
 
-    /// Over the floor from the camera, m: what is nearer may be too near for the depth camera, or so low that it hides
-    /// under the field of view; a beam that passes over it proves nothing. For `MapperConfig::blind_range`.
+    /// Distance over the floor from the camera below which a beam proves nothing, m: an obstacle may be too near for the depth camera, or
+    /// below its field of view. For `MapperConfig::blind_range`.
     pub fn blind_range(&self) -> f64 {
         self.mount.blind_range
     }

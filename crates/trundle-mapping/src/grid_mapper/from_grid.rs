@@ -11,7 +11,7 @@ impl GridMapper {
     /// since a saved grid does not store them. The error of a wall is up to half a cell, alike for all scans, until new hits arrive.
     ///
     /// # Errors
-    /// When the configuration is out of range, or the grid has another resolution, an origin off the multiples of the resolution, or
+    /// When the configuration is out of range. Also when the grid has another resolution, an origin off the multiples of the resolution, or
     /// an extent beyond `half_extent`.
     pub fn from_grid(config: MapperConfig, grid: &OccupancyGrid) -> Result<Self, Invalid> {
         let mut mapper = Self::new(config)?;

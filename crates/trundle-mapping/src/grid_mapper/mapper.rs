@@ -7,10 +7,10 @@ use trundle_grid::{
 
 /// Occupancy grid from scans at known poses.
 ///
-/// Problem: which cells of the floor are occupied, given noisy scans and known poses? Each cell is an independent binary variable,
-/// and every scan adds its log-odds (Moravec and Elfes 1985; Thrun, Probabilistic Robotics, ch. 9). A hit raises its cell, a free
-/// ray lowers the cells that it passes, and each cell changes at most once a scan. Cost: one step for each cell that a ray passes.
-/// The cost of a scan does not grow with the run, except that a larger bounding box needs a new layout of the published grid.
+/// Problem: which cells of the floor are occupied, given noisy scans and known poses? Each cell is an independent binary variable, and
+/// every scan adds its log-odds (Moravec and Elfes 1985; Thrun, Probabilistic Robotics, ch. 9). A hit raises the log-odds of its cell; a
+/// free ray lowers those of the cells that it passes. Each cell changes at most once per scan. Cost: one step per cell along each ray. The
+/// cost of a scan does not grow with the run, except that a larger bounding box needs a new layout of the published grid.
 ///
 /// | symbol | here | unit |
 /// |---|---|---|
@@ -113,7 +113,7 @@ impl GridMapper {
         }
     }
 
-    /// Clears the map and inserts scans at corrected poses. The bounding box stays.
+    /// Clears the map and inserts scans at corrected poses. The bounding box does not change.
     pub fn redraw<'a>(&mut self, scans: impl IntoIterator<Item = (Pose2, &'a Scan)>) {
         let (low, high) = self.corners();
         self.evidence = LogOddsGrid::default();
@@ -142,8 +142,8 @@ impl GridMapper {
         self.published.changes_since(revision)
     }
 
-    /// Map with the settings and the bounding box of this one and with other evidence. It publishes nothing until
-    /// [`GridMapper::replace_with`] takes it over.
+    /// Map with the settings and the bounding box of this one and with other evidence. The map publishes no cell before
+    /// [`GridMapper::replace_with`] adopts it.
     pub(crate) fn with_evidence(&self, mut evidence: LogOddsGrid) -> Self {
         let (low, high) = self.corners();
         evidence.reach(low);
@@ -161,7 +161,7 @@ impl GridMapper {
         self.evidence = other.evidence;
     }
 
-    /// Evidence of all cells. A clone shares its tiles.
+    /// Evidence of all cells. A clone shares the tiles.
     pub fn evidence(&self) -> &LogOddsGrid {
         &self.evidence
     }
@@ -171,13 +171,13 @@ impl GridMapper {
         &self.config
     }
 
-    /// Log-odds of occupancy at a point of the map frame (m); 0 where nothing is known.
+    /// Log-odds of occupancy at a point of the map frame (m); 0 for unknown.
     pub fn log_odds_at(&self, point: Vector2) -> f64 {
         let cell = GridCell::containing(point / self.config.resolution);
         f64::from(self.evidence.log_odds(cell))
     }
 
-    /// Probability of occupancy at a point of the map frame (m); 0.5 if nothing is known.
+    /// Probability of occupancy at a point of the map frame (m); 0.5 for unknown.
     pub fn probability_at(&self, point: Vector2) -> f64 {
         probability(self.log_odds_at(point))
     }
@@ -222,7 +222,7 @@ impl GridMapper {
         self.published.reach(first, (first.0 + cols as i32 - 1, first.1 + rows as i32 - 1));
     }
 
-    /// Publishes all cells of `evidence`, whose bounding box is that of the published grid.
+    /// Publishes all cells of `evidence`, whose bounding box equals that of the published grid.
     fn publish_all(&mut self, evidence: &LogOddsGrid) {
         let (corner, (cols, rows)) = evidence.bounds();
         for (row, col) in (0..rows as i32).flat_map(|row| (0..cols as i32).map(move |col| (row, col))) {
@@ -259,7 +259,8 @@ impl GridMapper {
         });
     }
 
-    /// Sets a cell to certain evidence of its class; `surface` adds a hit at the centre of the cell. The bounding box must contain it.
+    /// Sets a cell to the clamped evidence of its class; `surface` adds a hit at the centre of the cell. The bounding box must contain the
+    /// cell.
     pub(super) fn set_known(&mut self, cell: GridCell, value: Cell, surface: bool) {
         let log_odds = match value {
             Cell::Unknown => return,

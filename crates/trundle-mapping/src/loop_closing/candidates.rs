@@ -12,20 +12,20 @@ pub(crate) struct Candidate {
     pub(crate) range: Range<usize>,
     /// The one that is most likely near.
     pub(crate) nearest: usize,
-    /// How far it is, in standard deviations.
+    /// Distance of the candidate, in standard deviations.
     pub(crate) distance: f64,
-    /// How surely the robot is known from there.
+    /// Uncertainty of the robot's pose relative to the candidate.
     pub(crate) reached: RelativeUncertainty,
 }
 
-/// Minimum path length of a loop \[m\]. Shorter loops lie within the map of one particle. Source: ours.
+/// Minimum path length of a loop \[m\]. Shorter loops are within the map of one particle. Source: ours.
 const MIN_LOOP_LENGTH_M: f64 = 20.0;
 /// Distance between two poses that observe the same place \[m\]. Source: ours.
 const VIEW_RADIUS_M: f64 = 4.0;
 /// Maximum radius of a loop search \[m\]: the drift of one minute of failing odometry. Source: ours.
 pub(crate) const MAX_SEARCH_RADIUS_M: f64 = 40.0;
 
-/// The parts of the trajectory that the last pose may be near, the likeliest first. `ways` is the distance travelled at each pose, m.
+/// The parts of the trajectory that may be near the last pose, the likeliest first. `ways` is the distance travelled at each pose, m.
 pub(crate) fn candidates(
     poses: &[Pose2],
     ways: &[f64],
@@ -52,7 +52,7 @@ pub(crate) fn candidates(
     found
 }
 
-/// How far a pose is in standard deviations, when that is little enough.
+/// Distance of a pose in standard deviations; `None` if it is too large.
 fn feasible(
     pose: Pose2,
     last: Pose2,

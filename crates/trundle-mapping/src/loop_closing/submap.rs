@@ -20,7 +20,7 @@ pub(crate) struct Submaps {
 const POINT_SPACING_CELLS: f64 = 3.0;
 
 impl Submaps {
-    /// The map that the scans `which` give at `poses` (m), with all hits of them, map frame.
+    /// The map drawn from the scans `which` at `poses` (m), and all hits of these scans, map frame.
     pub(crate) fn draw(
         &mut self,
         models: &FilterModels,
@@ -42,7 +42,7 @@ impl Submaps {
     }
 }
 
-/// Of the poses from the end of a range backwards (or onwards), those that are at least `apart` m or half a radian from the one before.
+/// Selects poses from the end of a range backwards (or forwards), each at least `apart` m or half a radian from the previous one.
 pub(crate) fn thinned(
     poses: &[Pose2],
     range: impl Iterator<Item = usize>,

@@ -31,7 +31,7 @@ impl Writer {
         self.u64(value.to_bits());
     }
 
-    /// How many things follow.
+    /// Writes the number of following elements.
     pub(crate) fn count(&mut self, value: usize) {
         self.u32(u32::try_from(value).expect("invariant: fewer than 2^32 things are kept"));
     }
@@ -88,7 +88,7 @@ impl<'a> Reader<'a> {
         Ok(value)
     }
 
-    /// How many things of `least` bytes or more follow, which the rest must be able to hold.
+    /// Reads the number of following elements of at least `least` bytes; the rest of the bytes must be able to hold them.
     pub(crate) fn count(&mut self, least: usize) -> Read<usize> {
         let count = self.u32()? as usize;
         if count.saturating_mul(least) > self.rest.len() {

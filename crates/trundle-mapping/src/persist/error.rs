@@ -2,7 +2,7 @@
 
 use trundle_core::Invalid;
 
-/// Why a saved filter was not loaded.
+/// Reason why a saved filter was not loaded.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FilterFileError {
     /// The file is not a filter of this program.
@@ -11,9 +11,9 @@ pub enum FilterFileError {
     /// Made by a version that this one does not read.
     #[error("map of version {found}, expected {expected}")]
     Version {
-        /// Of the bytes.
+        /// Version of the bytes.
         found: u8,
-        /// Of this program.
+        /// Version of this program.
         expected: u8,
     },
     /// The checksum does not match: the file is damaged.
@@ -28,17 +28,17 @@ pub enum FilterFileError {
     /// The map was made with another cell size or sensor model.
     #[error("the map was made with {name} {saved}, not {given}")]
     Mismatch {
-        /// Which setting.
+        /// Name of the setting.
         name: &'static str,
         /// Value in the file.
         saved: f64,
         /// Value in the configuration.
         given: f64,
     },
-    /// The checksum is right, and yet a number cannot be.
+    /// The checksum is right, but a number is impossible.
     #[error("the map contradicts itself: {what}")]
     Content {
-        /// Which number.
+        /// Name of the number.
         what: &'static str,
     },
     /// The configuration given is out of range.

@@ -32,7 +32,7 @@ use trundle_grid::tiles::{TileMap, TilePools, assemble};
 
 const MAGIC: &[u8; 7] = b"trundlF";
 const FORMAT_VERSION: u8 = 4;
-/// Bytes before those that the checksum covers.
+/// Number of bytes before those covered by the checksum.
 const HEADER_BYTES: usize = 16;
 
 /// Settings that must be equal in file and configuration.
@@ -94,8 +94,8 @@ impl ParticleMapper {
     /// [`ParticleMapper::kidnapped`] after it.
     ///
     /// # Errors
-    /// When the configuration is out of range, or the bytes are not a filter, of another version, damaged, cut off, made with
-    /// other cells or another sensor model, or contradict themselves. No bytes make it panic.
+    /// When the configuration is out of range, or the bytes are not a filter, of another version, damaged, cut off, made with other cells
+    /// or another sensor model, or inconsistent. No input causes a panic.
     pub fn load(bytes: &[u8], config: ParticleConfig) -> Result<Self, FilterFileError> {
         let mut body = checked_body(bytes)?;
         let mut mapper = Self::new(config, 0)?;
@@ -163,7 +163,7 @@ impl ParticleMapper {
     }
 }
 
-/// Which of the saved particles go on: where fewer are wanted the heaviest, in their order; where more, all of them in turn.
+/// Indices of the saved particles to load. If fewer are wanted, the heaviest in their order; if more, all of them cyclically.
 fn chosen(log_weights: &[f64], wanted: usize) -> Vec<usize> {
     let count = log_weights.len();
     let mut order: Vec<usize> = (0..count).collect();
@@ -223,7 +223,7 @@ fn read_ancestry(bytes: &mut Reader<'_>) -> Result<Ancestry, FilterFileError> {
             poses.push(bytes.pose("a pose of the trajectory")?);
             parents.push(bytes.u16()?);
         }
-        // Filters may go on with more or fewer particles.
+        // The number of particles may change between runs.
         let before = ancestry.columns.last().map_or(usize::MAX, |column| column.poses.len());
         bytes.require(parents.iter().all(|p| usize::from(*p) < before), "the parent of a pose")?;
         ancestry.push_column(stamp, poses, parents);

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::loop_closing::stored_scan::{PackedRay, PackedSpan, StoredScan};
 
-/// A stored scan: where its beams begin, the beams, their sigmas and free stretches.
+/// Writes a stored scan: origin of the beams, beams, their sigmas and free spans.
 pub(crate) fn write(out: &mut Writer, scan: &StoredScan) {
     out.u32(scan.origin.0.to_bits());
     out.u32(scan.origin.1.to_bits());

@@ -1,4 +1,4 @@
-//! Saved filters: what comes back, and what is refused.
+//! Saved filters: the loaded state, and refused files.
 
 use super::bytes::{Reader, Writer};
 use super::*;
@@ -57,7 +57,7 @@ fn a_saved_filter_comes_back_byte_for_byte() {
     assert_eq!(signed(bytes.clone()), bytes);
 }
 
-/// A file that ends anywhere is refused, also when its checksum fits what is left.
+/// A truncated file is refused at every length, also with a checksum that fits the rest.
 #[test]
 fn every_truncation_is_an_error() {
     let bytes = filter().save();
@@ -74,7 +74,7 @@ fn every_truncation_is_an_error() {
     assert!(matches!(error, FilterFileError::Content { .. }), "{error}");
 }
 
-/// A wrong number with the right checksum is refused or read; it never panics, and what is read can be saved and used.
+/// A wrong number with the right checksum is refused or read, without a panic; a filter that was read can be saved and used.
 #[test]
 fn no_changed_byte_makes_loading_panic() {
     let bytes = filter().save();

@@ -6,7 +6,7 @@ use super::{
 };
 use trundle_grid::tiles::{ChunkParts, Tile, TilePools};
 
-/// The tiles of all maps: what they share is written once.
+/// Writes the tiles of all maps; shared tiles are written once.
 pub(crate) fn write(out: &mut Writer, pools: &TilePools<'_>) {
     out.count(pools.tiles.len());
     for tile in &pools.tiles {
@@ -66,7 +66,7 @@ pub(crate) fn read(bytes: &mut Reader<'_>) -> Result<ReadPools, FilterFileError>
     Ok(ReadPools { tiles, chunks, maps })
 }
 
-/// Run-length code. A count c below 128 precedes c + 1 single bytes; from 128 on it precedes one byte that stands c - 125 times.
+/// Run-length code. A count c below 128 precedes c + 1 single bytes; a count from 128 on precedes one byte that repeats c - 125 times.
 fn pack(out: &mut Writer, bytes: impl Iterator<Item = u8>) {
     let mut literals: Vec<u8> = Vec::new();
     let flush = |out: &mut Writer, literals: &mut Vec<u8>| {

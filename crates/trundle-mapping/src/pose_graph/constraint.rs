@@ -10,9 +10,9 @@ pub(crate) struct Constraint {
     pub(crate) from: u32,
     /// Number of the second pose.
     pub(crate) to: u32,
-    /// Where the second is in the frame of the first, m and rad.
+    /// Pose of the second in the frame of the first, m and rad.
     pub(crate) from_to: Pose2,
-    /// Covariance of a right perturbation of it: m, m, rad.
+    /// Covariance as a right perturbation: m, m, rad.
     pub(crate) covariance: Matrix3<f64>,
 }
 
@@ -22,7 +22,7 @@ impl Constraint {
         (self.from as usize, self.to as usize)
     }
 
-    /// How far the poses are from the measurement, in the measured second pose's frame: m, m, rad.
+    /// Difference of the poses from the measurement, in the measured second pose's frame: m, m, rad.
     pub(crate) fn residual(&self, from: Pose2, to: Pose2) -> Vector3<f64> {
         let off = self.from_to.inverse() * (from.inverse() * to);
         Vector3::new(off.x, off.y, wrap_angle(off.theta))

@@ -30,7 +30,7 @@ pub(crate) fn solve(mut poses: Vec<Pose2>, constraints: &[Constraint]) -> Option
     Some(poses)
 }
 
-/// Maximum number of Gauss-Newton steps. The last poses are returned beyond it. Source: ours.
+/// Maximum number of Gauss-Newton steps. After this number the last poses are returned. Source: ours.
 const MAX_ITERATIONS: usize = 12;
 /// Step length at which the iteration ends \[m, rad\]. Source: ours.
 const MIN_STEP: f64 = 1e-3;

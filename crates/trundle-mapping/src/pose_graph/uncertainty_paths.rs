@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use trundle_core::Pose2;
 
-/// How surely a pose is known relative to another.
+/// Uncertainty of a pose relative to another.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RelativeUncertainty {
     /// Covariance (m, m, rad) in the map's axes.
@@ -15,7 +15,7 @@ pub(crate) struct RelativeUncertainty {
     pub(crate) way: f64,
 }
 
-/// Covariance of every pose relative to pose `from`, composed along the path of ties with the smallest covariance (\[Olson09b\]): an
+/// Covariance of every pose relative to pose `from`, composed along the path of constraints with the smallest covariance (\[Olson09b\]): an
 /// upper bound of the true one. `None` for a pose without such a path. Cost: n log n.
 pub(crate) fn reach(
     poses: &[Pose2],
@@ -49,7 +49,7 @@ impl RelativeUncertainty {
     const HERE: Self =
         Self { covariance: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), way: 0.0 };
 
-    /// Position and heading in one number: a radian counts as a metre.
+    /// Position and heading in one number: one radian counts as one metre.
     fn cost(&self) -> f64 {
         self.covariance.trace()
     }
@@ -57,7 +57,7 @@ impl RelativeUncertainty {
     fn through(&self, here: Pose2, there: Pose2, constraint: &Constraint, forward: bool) -> Self {
         let way = there.position() - here.position();
         let lever = Matrix3::new(1.0, 0.0, -way.y, 0.0, 1.0, way.x, 0.0, 0.0, 1.0);
-        // The measurement's covariance is that of a perturbation at its second pose.
+        // The covariance of the measurement is a perturbation at its second pose.
         let at = if forward { there } else { here };
         let (s, c) = at.theta.sin_cos();
         let turn = Matrix2::new(c, -s, s, c);
@@ -81,7 +81,7 @@ struct FirstTies {
     constraints: Vec<u32>,
 }
 
-/// Which ties touch each pose.
+/// The constraints at each pose.
 fn first_ties(count: usize, constraints: &[Constraint]) -> FirstTies {
     let mut first = vec![0; count + 1];
     for constraint in constraints {

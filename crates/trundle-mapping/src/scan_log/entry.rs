@@ -10,7 +10,7 @@ use trundle_core::{Pose2, Stamp, Vector2};
 pub(crate) struct LogEntry {
     pub(crate) stamp: Stamp,
     pub(crate) map_from_base: Pose2,
-    /// Where the first was taken in whose place this one is kept.
+    /// Pose at which the first replaced scan was taken.
     pub(crate) anchor: Pose2,
     pub(crate) data: EntryData,
 }
@@ -40,7 +40,8 @@ impl EntryData {
     }
 }
 
-/// Minimum distance from the last entry of its kind at which an entry is logged \[m\]. A nearer one adds to the map only. Source: ours.
+/// Minimum distance from the last entry of its kind at which an entry is logged \[m\]. A nearer scan is added to the map only. Source:
+/// ours.
 const MIN_ENTRY_DISTANCE_M: f64 = 0.1;
 /// Minimum turn from the last entry of its kind at which an entry is logged \[rad\]. Source: ours.
 const MIN_ENTRY_TURN_RAD: f64 = 0.1;
@@ -56,20 +57,20 @@ const MAX_SCANS_PER_SQUARE: u32 = 5;
 const MIN_ENTRY_COST_CELLS: usize = 200;
 
 impl LogEntry {
-    /// Which of `kept` is from so near `map_from_base` that one of `kind` need not be kept beside it: the last of its kind; a touch is
-    /// always kept.
+    /// The stored entry that makes a new one of `kind` at `map_from_base` unnecessary: the last of its kind, if near enough. A touch is
+    /// always stored.
     pub(crate) fn repeated(kept: &[Self], map_from_base: Pose2, kind: EntryKind) -> Option<usize> {
         let last = kept.iter().rposition(|kept| kept.data.kind() == kind)?;
         (kind != EntryKind::Contact && is_near(kept[last].anchor, map_from_base)).then_some(last)
     }
 
-    /// Takes it to where it was taken by now.
+    /// Moves the entry to its corrected pose.
     pub(crate) fn shift(&mut self, now: Pose2) {
         self.anchor = now * (self.map_from_base.inverse() * self.anchor);
         self.map_from_base = now;
     }
 
-    /// Draws it; what that cost, cells.
+    /// Draws the entry; returns the cost in cells.
     pub(crate) fn draw(&self, mapper: &mut GridMapper) -> usize {
         match &self.data {
             EntryData::Scan(scan) => {
@@ -82,7 +83,7 @@ impl LogEntry {
         MIN_ENTRY_COST_CELLS
     }
 
-    /// Its kind, place and direction, and how many of these are enough.
+    /// Kind, place and direction of the entry, and the sufficient number of such entries.
     fn place(&self) -> (Place, u32) {
         let (kind, side, enough) = match self.data {
             EntryData::Scan(_) => (0, SCAN_SQUARE_M, MAX_SCANS_PER_SQUARE),
@@ -98,8 +99,7 @@ impl LogEntry {
 /// Kind, column, row and direction.
 type Place = (u8, i64, i64, i64);
 
-/// Drops entries that newer ones repeat often enough, in the same place and direction. The log then grows with the floor, not with
-/// the time.
+/// Drops entries with enough newer ones at the same place and in the same direction. The log then grows with the area, not with time.
 pub(crate) fn thin(kept: &mut Vec<LogEntry>) {
     let mut newer: HashMap<Place, u32> = HashMap::new();
     let mut stays: Vec<bool> = kept
@@ -115,7 +115,7 @@ pub(crate) fn thin(kept: &mut Vec<LogEntry>) {
     kept.retain(|_| stays.pop().expect("invariant: one word for each thing kept"));
 }
 
-/// Lets every second scan and disc of the older half go. Returns whether there was one.
+/// Drops every second scan and disc of the older half. Returns whether any was dropped.
 pub(crate) fn halve_the_older_half(kept: &mut Vec<LogEntry>) -> bool {
     let (before, half) = (kept.len(), kept.len() / 2);
     let (mut i, mut scans, mut discs) = (0, 0, 0);

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use trundle_core::{CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
 use trundle_grid::{LogOddsGrid, MapperConfig};
 
-/// A live map that follows corrections of its trajectory.
+/// A live map that follows corrections of the trajectory.
 ///
-/// Problem: a loop closure moves poses of scans that were drawn minutes ago. The scans are kept. [`LiveMapper::correct`] sets their
-/// corrected poses, and [`LiveMapper::work`] redraws them beside the map in use, in slices of a budget in cells. Drawing begins at
-/// the last snapshot before the first scan that moved, not at the first scan. Snapshots share their tiles, so a snapshot costs what
-/// changed since the one before. At the end the new map replaces the old one. Cost of a call: its budget, and two passes over
-/// the grid for a whole redrawing.
+/// Problem: a loop closure moves poses of scans drawn minutes ago. The log stores the scans. [`LiveMapper::correct`] sets their corrected
+/// poses, and [`LiveMapper::work`] redraws them into a second map, in slices with a budget in cells. Drawing begins at the last snapshot
+/// before the first scan that moved, not at the first scan. Snapshots share their tiles: a snapshot costs only the changes since the
+/// previous one. At the end the new map replaces the old one. Cost of a call: its budget, and two passes over the grid for a whole
+/// redrawing.
 #[derive(Debug, Clone)]
 pub struct LiveMapper {
     front: GridMapper,
@@ -22,7 +22,7 @@ pub struct LiveMapper {
     snapshots: Vec<Snapshot>,
     /// Kept things between snapshots.
     every: usize,
-    /// Number of kept entries at which they are thinned.
+    /// Number of stored entries at which the log is thinned.
     thin_at: usize,
     redrawing: Option<Redrawing>,
 }
@@ -45,7 +45,7 @@ struct Redrawing {
 pub struct Redrawn {
     /// Cells drawn.
     pub cells: usize,
-    /// Scans that are still to be drawn; 0: the map is that of the corrected poses.
+    /// Number of scans left to draw; 0: the map is that of the corrected poses.
     pub left: usize,
 }
 
@@ -55,7 +55,7 @@ const MIN_THINNING_SIZE: usize = 1024;
 const MAX_LOG_ENTRIES: usize = 30_000;
 /// Number of log entries between two snapshots. Source: ours.
 const SNAPSHOT_INTERVAL: usize = 64;
-/// Maximum number of snapshots. Beyond it, the interval doubles. Source: ours.
+/// Maximum number of snapshots. At this number, the interval doubles. Source: ours.
 const MAX_SNAPSHOTS: usize = 16;
 
 impl LiveMapper {
@@ -67,7 +67,7 @@ impl LiveMapper {
         Ok(Self::over(GridMapper::new(config)?))
     }
 
-    /// A map that goes on from a saved one, which no correction moves.
+    /// A map that continues from a saved one, which corrections do not move.
     ///
     /// # Errors
     /// As [`GridMapper::from_grid`].
@@ -88,20 +88,20 @@ impl LiveMapper {
         }
     }
 
-    /// Draws `scan`, taken with the base at `map_from_base`, and keeps it when its pose differs enough from the last kept one.
+    /// Draws `scan`, taken with the base at `map_from_base`; logs the scan if its pose differs enough from the last logged one.
     pub fn insert(&mut self, map_from_base: Pose2, scan: &Scan) -> Insertion {
         let insertion = self.front.insert(map_from_base, scan);
         self.keep(scan.stamp(), map_from_base, EntryKind::Scan, || EntryData::Scan(Arc::new(scan.into())));
         insertion
     }
 
-    /// As [`GridMapper::mark_free_disc`]; it moves with the scan before it.
+    /// As [`GridMapper::mark_free_disc`]; corrections move the disc with the previous scan.
     pub fn mark_free_disc(&mut self, map_from_base: Pose2, radius: f64) {
         self.front.mark_free_disc(map_from_base, radius);
         self.keep(self.last_stamp(), map_from_base, EntryKind::FreeDisc, || EntryData::FreeDisc { radius });
     }
 
-    /// As [`GridMapper::mark_occupied`]; it moves with the scan before it.
+    /// As [`GridMapper::mark_occupied`]; corrections move the points with the previous scan.
     pub fn mark_occupied(&mut self, map_from_base: Pose2, points: &[Vector2]) {
         self.front.mark_occupied(map_from_base, points);
         self.keep(self.last_stamp(), map_from_base, EntryKind::Contact, || EntryData::Contact {
@@ -109,8 +109,8 @@ impl LiveMapper {
         });
     }
 
-    /// Takes over corrected poses: `pose` gives, for the stamp of a scan and the pose at which it was drawn, where it was taken
-    /// by now. How many scans have moved; [`LiveMapper::work`] redraws them.
+    /// Sets corrected poses: `pose` maps the stamp of a scan and the pose of its drawing to the corrected pose. Returns the number of moved
+    /// scans; [`LiveMapper::work`] redraws them.
     pub fn correct(&mut self, pose: impl Fn(Stamp, Pose2) -> Pose2) -> usize {
         let (mut moved, mut first) = (0, None);
         for (i, kept) in self.kept.iter_mut().enumerate() {
@@ -134,7 +134,7 @@ impl LiveMapper {
         self.work_within(budget, usize::MAX)
     }
 
-    /// Redraws about `budget` cells, and at least the share of the rest with which `calls` calls finish.
+    /// Redraws about `budget` cells, or the share of the rest that finishes within `calls` calls if that is more.
     pub fn work_within(&mut self, budget: usize, calls: usize) -> Redrawn {
         let mut cells = 0;
         let Some(mut redrawing) = self.redrawing.take() else { return Redrawn { cells, left: 0 } };
@@ -163,7 +163,7 @@ impl LiveMapper {
         &self.front
     }
 
-    /// Its three-valued grid.
+    /// Three-valued grid of the map.
     pub fn grid(&self) -> &OccupancyGrid {
         self.front.grid()
     }
@@ -183,17 +183,17 @@ impl LiveMapper {
         self.front.log_odds_at(point)
     }
 
-    /// When the scans were taken that are kept for redrawing: others no correction moves.
+    /// Stamps of the scans in the log; corrections move only these.
     pub fn logged_stamps(&self) -> impl Iterator<Item = Stamp> {
         self.kept.iter().map(|kept| kept.stamp)
     }
 
-    /// Scans and free discs kept for redrawing.
+    /// Number of scans and free discs in the log.
     pub fn kept(&self) -> usize {
         self.kept.len()
     }
 
-    /// Keeps what was just drawn; what is from where the last of its kind is, in its place, while no snapshot holds that.
+    /// Adds the entry just drawn to the log. An entry near the last of its kind replaces it, unless a snapshot contains that one.
     fn keep(
         &mut self,
         stamp: Stamp,
@@ -221,7 +221,7 @@ impl LiveMapper {
         }
     }
 
-    /// Whether a snapshot, or the map that is being redrawn, holds one of the kept things.
+    /// Whether a snapshot, or the map being redrawn, contains one of the logged entries.
     fn is_drawn_elsewhere(&self, kept: usize) -> bool {
         self.snapshots.last().is_some_and(|snapshot| snapshot.drawn > kept)
             || self.redrawing.as_ref().is_some_and(|redrawing| redrawing.drawn > kept)
@@ -231,7 +231,7 @@ impl LiveMapper {
         self.kept.last().map_or(Stamp::default(), |kept| kept.stamp)
     }
 
-    /// Takes a snapshot when it is time.
+    /// Takes a snapshot if one is due.
     fn note(&mut self, drawn: usize, evidence: &LogOddsGrid) {
         if drawn.is_multiple_of(self.every) {
             self.snapshots.push(Snapshot { drawn, evidence: evidence.clone() });
@@ -257,7 +257,7 @@ impl LiveMapper {
         self.redrawing = Some(Redrawing { back: self.front.with_evidence(evidence), drawn });
     }
 
-    /// Drops entries that newer ones of the same place repeat, with the snapshots that count them.
+    /// Drops entries repeated by newer ones of the same place, with the snapshots that contain them.
     fn thin(&mut self) {
         thin(&mut self.kept);
         while self.kept.len() > MAX_LOG_ENTRIES / 2 && halve_the_older_half(&mut self.kept) {}

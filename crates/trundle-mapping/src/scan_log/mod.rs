@@ -1,4 +1,4 @@
-//! Log of scans: the map can be drawn again from it at corrected poses.
+//! Log of scans, from which the map can be redrawn at corrected poses.
 
 mod entry;
 mod live_mapper;

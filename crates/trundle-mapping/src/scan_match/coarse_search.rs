@@ -21,27 +21,27 @@ const MAX_SEARCH_POINTS: usize = 80;
 /// The correlative search: all poses of a lattice about a guess, on the coarse field (\[Olson09\]).
 #[derive(Debug, Clone, Default)]
 pub(crate) struct CoarseSearch {
-    /// The coarse field in one piece, row by row, a tile's margin about it. Zero but for the tiles laid out.
+    /// The coarse field as one array, row by row, with a margin of one tile. Zero outside the copied tiles.
     field: Vec<u8>,
     stride: usize,
     rows: usize,
-    /// Which tiles (margin counted) are laid out, and where they begin.
+    /// Whether each tile (margin included) is copied.
     laid: Vec<bool>,
     firsts: Vec<usize>,
-    /// Which tiles are laid out with those right of them, above and both.
+    /// Whether each tile is copied together with its right, upper and upper right neighbours.
     blocks: Vec<bool>,
     /// The points of the search, base frame, cells.
     points: Vec<(f32, f32)>,
     best: Vec<(f64, Pose2)>,
 }
 
-/// Where to search, and what speaks against going far.
+/// Start of the search, and the penalty for distant poses.
 pub(crate) struct SearchPrior {
     /// Inverse covariance of the guess: cells, rad.
     pub(crate) information: Matrix3<f64>,
-    /// One sigma of the guess, cells.
+    /// Standard deviation of the guess, cells.
     pub(crate) sigma: f64,
-    /// One sigma of its heading, rad.
+    /// Standard deviation of the guess's heading, rad.
     pub(crate) sigma_turn: f64,
     /// Gain of a point that fits over one that does not, nats.
     pub(crate) gain: f64,
@@ -52,8 +52,7 @@ type Sums = [[u16; LANES]; 2 * MAX_REACH_SAMPLES + 1];
 const NO_SUMS: Sums = [[0; LANES]; 2 * MAX_REACH_SAMPLES + 1];
 
 impl CoarseSearch {
-    /// The best poses, at most one for each heading, the best first; all that are less than `margin` nats worse than it.
-    /// `guess` in cells of the window.
+    /// The best poses, at most one per heading, the best first; all within `margin` nats of the best one. `guess` in cells of the window.
     pub(crate) fn search(
         &mut self,
         window: &TileWindow<'_>,
@@ -71,7 +70,7 @@ impl CoarseSearch {
         self.points.clear();
         self.points.extend(shape.points.iter().step_by(every).map(|p| (p.x, p.y)));
         let gain = prior.gain * every as f64 / 255.0;
-        // From the middle outwards: the bound soon rules the rest out.
+        // Order from the middle outwards: the bound then soon excludes the rest.
         let outwards = (0..=turns).flat_map(|turn| [turn, -turn]).skip(1);
         let mut top = f64::NEG_INFINITY;
         for turn in outwards {
@@ -109,7 +108,7 @@ impl CoarseSearch {
         self.blocks.resize((cols + 2) * (rows + 2), false);
     }
 
-    /// Copies a tile (margin counted) to its place, if it is one of the window and was not copied before.
+    /// Copies a tile (margin included) to its place, unless outside the window or copied before.
     fn lay_out(&mut self, window: &TileWindow<'_>, (col, row): (usize, usize)) {
         let (cols, rows) = window.size();
         let laid = &mut self.laid[row * (cols + 2) + col];
@@ -127,7 +126,7 @@ impl CoarseSearch {
         }
     }
 
-    /// Lays out a tile (margin counted), and those right of it, above and both: what a point's shifts can touch.
+    /// Copies a tile (margin included) and its right, upper and upper right neighbours: the tiles that shifts of a point can reach.
     #[cold]
     fn lay_out_block(&mut self, window: &TileWindow<'_>, (col, row): (usize, usize)) {
         let (cols, rows) = window.size();
@@ -156,7 +155,7 @@ impl CoarseSearch {
     fn sum_rows<const ROWS: usize>(&mut self, window: &TileWindow<'_>, pose: Pose2, sums: &mut Sums) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has the one feature that the function is compiled for.
+            // SAFETY: the processor has the only feature that the function is compiled for.
             return unsafe { self.sum_rows_by_avx2::<ROWS>(window, pose, sums) };
         }
         self.sum_rows_plainly::<ROWS>(window, pose, sums);
@@ -173,7 +172,7 @@ impl CoarseSearch {
         self.sum_rows_each::<ROWS>(window, pose, sums);
     }
 
-    /// `ROWS` is known when compiled, so that the sums stay in registers from point to point.
+    /// `ROWS` is known at compile time, which keeps the sums in registers.
     #[inline(always)]
     fn sum_rows_each<const ROWS: usize>(&mut self, window: &TileWindow<'_>, pose: Pose2, all: &mut Sums) {
         let reach = (ROWS / 2) as i32;

@@ -5,16 +5,16 @@ use crate::scan_match::scan_points::ScanPoints;
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::{Pose2, Vector2};
 
-/// The directions that a scan holds and those that it does not, as along a bare corridor (\[Zhang16\]).
+/// The directions determined by a scan and the degenerate ones, as along a bare corridor (\[Zhang16\]).
 ///
-/// Displacements y are those of the hits' centroid, with turns in cells at the hits' mean distance from it, so that
-/// directions can be compared; x = `pose_from_y` * y is the displacement of the base (cells, cells, rad) in the map.
+/// Displacements y are those of the hits' centroid. Turns are in cells at the hits' mean distance from the centroid, for comparable
+/// directions. x = `pose_from_y` * y is the displacement of the base in the map (cells, cells, rad).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct HeldDirections {
     pub(crate) pose_from_y: Matrix3<f64>,
     /// Projection onto the directions with information.
     pub(crate) held: Matrix3<f64>,
-    /// How many are not.
+    /// Number of degenerate directions.
     pub(crate) degenerate: usize,
 }
 

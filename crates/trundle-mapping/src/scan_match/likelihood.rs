@@ -7,17 +7,17 @@ use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
 use trundle_grid::tiles::{NearestObstacle, TileWindow};
 
-/// How well a hit agrees with the map, by its distance to the nearest obstacle in sigmas: a Gaussian and outliers.
+/// Likelihood of a hit by its distance to the nearest obstacle in sigmas: a Gaussian and outliers.
 ///
-/// p(e) = outliers + (1 - outliers) exp(-e / 2) with e the squared distance in sigmas; where the map is unknown the
-/// floor is the square root of the outliers': a hit in free space contradicts the map, one in the unknown does not.
+/// p(e) = outliers + (1 - outliers) exp(-e / 2), with e the squared distance in sigmas. In unknown space the minimum is the square root of
+/// that of the outliers: a hit in free space contradicts the map, a hit in unknown space does not.
 #[derive(Debug, Clone)]
 pub(crate) struct Likelihood {
     /// ln p on free and on unknown ground, in steps of 1/16.
     log: [[f32; TABLE_STEPS]; 2],
     /// The Gaussian's part of p.
     share: [f32; TABLE_STEPS],
-    /// Hits may lie this far along a wall from the next obstacle point of it, cells.
+    /// Distance along a wall from the next obstacle point of that wall that counts as zero, cells.
     slack: f32,
 }
 
@@ -47,7 +47,7 @@ struct Residuals {
     dy: [f32; LANES],
     /// Table entry of the squared distance.
     step: [u32; LANES],
-    /// 0 where the hit is on free ground, else 1.
+    /// 0 for a hit on free ground, else 1.
     ground: [u32; LANES],
 }
 
@@ -86,11 +86,11 @@ impl Likelihood {
         sums.equations()
     }
 
-    /// Gives all points to a sink, eight at a time.
+    /// Passes all points to a sink, eight at a time.
     fn tell<L: PointSink>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanPoints, pose: Pose2) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has the one feature that the function is compiled for.
+            // SAFETY: the processor has the only feature that the function is compiled for.
             return unsafe { self.tell_by_avx2(to, window, shape, pose) };
         }
         self.tell_plainly(to, window, shape, pose);
@@ -184,7 +184,7 @@ trait PointSink {
     fn take(&mut self, likelihood: &Likelihood, group: &PointGroup, found: &Residuals);
 }
 
-/// The sum of their ln p.
+/// Sum of the points' ln p.
 impl PointSink for f32 {
     #[inline(always)]
     fn take(&mut self, likelihood: &Likelihood, group: &PointGroup, found: &Residuals) {
@@ -194,7 +194,7 @@ impl PointSink for f32 {
     }
 }
 
-/// Where they pull.
+/// Sums of the points' gradients.
 impl PointSink for Sums {
     #[inline(always)]
     fn take(&mut self, likelihood: &Likelihood, group: &PointGroup, r: &Residuals) {

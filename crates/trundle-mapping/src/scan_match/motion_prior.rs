@@ -14,14 +14,14 @@ pub(crate) struct MotionPrior {
 }
 
 impl MotionPrior {
-    /// Of a motion with this covariance in the base's frame, begun at `heading`.
+    /// The prior of a motion with this covariance in the base's frame, begun at `heading`.
     pub(crate) fn new(guess: Pose2, heading: f64, covariance: &Matrix3<f64>) -> Self {
         let (s, c) = heading.sin_cos();
         let turn = Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0);
         Self::with(guess, turn * covariance * turn.transpose())
     }
 
-    /// With this covariance, cells and rad, map frame.
+    /// The prior with this covariance, cells and rad, map frame.
     pub(crate) fn with(guess: Pose2, covariance: Matrix3<f64>) -> Self {
         let information =
             covariance.try_inverse().expect("invariant: the least sigmas of the odometry are positive");

@@ -3,8 +3,8 @@
 use nalgebra::Matrix3;
 use trundle_core::Vector2;
 
-/// Thins points in the order of the beams: a point nearer than `spacing` to the last kept one is dropped, so that near walls have the
-/// same weight as far ones. Yields the indices of the kept points.
+/// Thins points in the order of the beams: a point within `spacing` of the last selected one is dropped, which gives near and far walls the
+/// same weight. Yields the indices of the selected points.
 pub(crate) fn thinned(points: impl Iterator<Item = Vector2>, spacing: f64) -> impl Iterator<Item = usize> {
     let mut kept: Option<Vector2> = None;
     points.enumerate().filter_map(move |(k, point)| {

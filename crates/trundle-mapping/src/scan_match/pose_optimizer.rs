@@ -11,8 +11,8 @@ use trundle_grid::tiles::TileWindow;
 
 /// Optimiser of the pose of scan points in a map of tiles.
 ///
-/// The residual of a point is its distance to the nearest obstacle along the normal of its surface. Degenerate directions are
-/// moved by the prior alone \[Zhang16\].
+/// The residual of a point is its distance to the nearest obstacle along the normal of its surface. Only the prior moves degenerate
+/// directions \[Zhang16\].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PoseOptimizer<'a> {
     pub(crate) config: &'a ParticleConfig,
@@ -30,7 +30,7 @@ pub(crate) struct Optimum {
     pub(crate) log_posterior: f64,
 }
 
-/// Maximum number of Gauss-Newton steps. The last pose is used beyond it. Source: ours.
+/// Maximum number of Gauss-Newton steps. After this number the last pose is used. Source: ours.
 const MAX_ITERATIONS: usize = 10;
 /// Step length at which the iteration ends \[cells\]. Source: ours.
 const MIN_STEP_CELLS: f64 = 0.01;

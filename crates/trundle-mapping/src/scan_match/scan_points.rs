@@ -21,7 +21,7 @@ pub(crate) struct ScanPoints {
     hits: Vec<(usize, Vector2, f64)>,
     /// The numbers of the rays' beams.
     pub(crate) beams: Vec<usize>,
-    /// One sigma of each ray's range, m; empty if the sensor gives none.
+    /// Standard deviation of each ray's range, m; empty if the sensor gives none.
     pub(crate) sigmas: Vec<f32>,
 }
 
@@ -30,7 +30,7 @@ pub(crate) struct ScanPoints {
 pub(crate) struct ScanPoint {
     pub(crate) x: f32,
     pub(crate) y: f32,
-    /// The normal of its surface; zero if there is none.
+    /// Normal of the point's surface; zero without one.
     pub(crate) normal: (f32, f32),
     /// 1 / sigma^2, 1 / cells^2.
     pub(crate) information: f32,
@@ -46,10 +46,10 @@ pub(crate) struct PointGroup {
     pub(crate) y: [f32; LANES],
     pub(crate) normal_x: [f32; LANES],
     pub(crate) normal_y: [f32; LANES],
-    /// 1 if there is a normal, else 0.
+    /// 1 for a point with a normal, else 0.
     pub(crate) wall: [f32; LANES],
     pub(crate) information: [f32; LANES],
-    /// How many of them are points.
+    /// Number of lanes with points.
     pub(crate) count: usize,
 }
 
@@ -77,7 +77,7 @@ const NORMAL_BASELINE_M: f64 = 0.2;
 const POINT_SPACING_CELLS: f64 = 1.5;
 /// Minimum lever of the points \[cells\]. Points nearer to each other do not determine the heading. Source: ours.
 const MIN_LEVER_CELLS: f64 = 2.0;
-/// Maximum RMS distance from a fitted line \[sigmas\]. Points beyond it have no normal. Source: ours.
+/// Maximum RMS distance from a fitted line \[sigmas\]. Points with a larger distance have no normal. Source: ours.
 const MAX_LINE_RESIDUAL_SIGMAS: f64 = 3.0;
 
 impl ScanPoints {
@@ -135,7 +135,7 @@ impl ScanPoints {
         self.find_points(config, origin);
     }
 
-    /// Notes what was seen to be free of beam `i`, the next ray, up to `range`. Returns whether that is all of it.
+    /// Adds the free spans of beam `i`, the next ray, up to `range`. Returns whether the spans cover the whole range.
     fn take_spans(&mut self, scan: &Scan, i: usize, range: f64) -> bool {
         let (ray, first) = (self.rays.rays.len() as u32, self.rays.spans.len());
         for (from, to) in scan.free_spans(i).filter(|(from, _)| *from < range) {
@@ -216,7 +216,7 @@ impl ScanPoints {
         self.finish();
     }
 
-    /// The normal of the straight surface about hit `k`, if there is one.
+    /// The normal of the straight surface around hit `k`; `None` without one.
     fn normal(&self, k: usize, sigma: f64) -> Option<Vector2> {
         let (_, here, _) = self.hits[k];
         let reach = |step: isize| {
@@ -258,8 +258,8 @@ impl ScanPoints {
     }
 }
 
-/// The part of a Gaussian of `sigma` cells that lies within half a cell of its middle, relative to that of half a cell's sigma. A hit
-/// that may as well lie in a neighbouring cell has less weight.
+/// The part of a Gaussian of `sigma` cells within half a cell of its middle, relative to that of a sigma of half a cell. A hit that may
+/// also belong to a neighbouring cell has less weight.
 fn hit_weight(sigma: f32) -> f32 {
     // Within h sigmas: tanh(0.8 h) to 0.02.
     let within = |sigma: f32| (0.4 / sigma).tanh();

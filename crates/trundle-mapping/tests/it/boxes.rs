@@ -14,7 +14,7 @@ impl Solid {
         Self { low: low.into(), high: high.into() }
     }
 
-    /// A wall across the way, `x` m ahead, of this height.
+    /// A wall across the path, `x` m ahead, of this height.
     pub fn wall(x: f64, height: f64) -> Self {
         Self::new([x, -20.0, 0.0], [x + 0.1, 20.0, height])
     }
@@ -48,7 +48,7 @@ pub fn mounted(position: [f64; 3], yaw_deg: f64, tilt_deg: f64, roll_deg: f64) -
     Pose3::from_matrix(turn.into_inner() * body_from_optical, position.into())
 }
 
-/// The depth image of `solids` on the floor (its height 0 beyond nothing), m; 0 if the ray meets nothing within 12 m.
+/// The depth image of `solids` on a floor of height 0, m; 0 for a ray without a surface within 12 m.
 pub fn depth_of(
     camera: &PinholeCamera,
     base_from_camera: &Pose3,

@@ -6,7 +6,7 @@ use trundle_core::{Beam, Pose2, Scan, Stamp, Vector2, wrap_angle};
 /// Free space as a union of rectangles: x0, y0, x1, y1.
 pub struct Building {
     rooms: Vec<[f64; 4]>,
-    /// Corners of the way.
+    /// Corners of the path.
     way: Vec<(f64, f64)>,
 }
 
@@ -148,8 +148,7 @@ impl Building {
         }
     }
 
-    /// Drives the way with a laser of 180 beams. The odometry is 2 % short, turns 0.3 deg/m, is noisy, and one step in 150 is
-    /// lost.
+    /// Drives the path with a laser of 180 beams. The odometry is 2 % short, turns 0.3 deg/m, is noisy, and loses one step in 150.
     pub fn drive(&self, seed: u64) -> Drive {
         let truth = self.poses();
         let mut odom = vec![Pose2::IDENTITY];

@@ -197,7 +197,7 @@ fn a_remounted_scanner_is_a_new_one() {
     assert_eq!(scanner.scan(&rgbd(depth.clone())), scan_of(small_camera(), there, depth));
 }
 
-/// The free spans of the beam that looks ahead.
+/// The free spans of the beam straight ahead.
 fn spans_ahead(scan: &Scan) -> Vec<(f64, f64)> {
     scan.free_spans(index_ahead(scan)).collect()
 }
@@ -208,7 +208,7 @@ fn index_ahead(scan: &Scan) -> usize {
 
 #[test]
 fn an_object_without_depth_is_not_cleared_though_the_wall_behind_it_is_seen() {
-    // A black box, 0.3 m high: it gives no depth, and hides the floor behind it as far as 2.35 / (1 - 0.3 / 0.45) m.
+    // A black box, 0.3 m high: it gives no depth and hides the floor behind it up to 2.35 / (1 - 0.3 / 0.45) m.
     let (camera, base_from_camera) = (small_camera(), mount(0.45, 8.0));
     let black = Solid::new([1.0, -0.3, 0.0], [1.2, 0.3, 0.3]);
     let wall = Solid::wall(5.0, 2.0);
@@ -220,17 +220,17 @@ fn an_object_without_depth_is_not_cleared_though_the_wall_behind_it_is_seen() {
     let scan = scan_of(camera, base_from_camera, depth);
     let Beam::Hit { range } = ahead(&scan) else { panic!("{:?}", ahead(&scan)) };
     assert!((range - 4.95).abs() < 0.01, "{range}");
-    // The camera sits 0.05 m ahead of the base: the box begins at 0.95 m and hides the floor up to 3 x 1.15 m.
+    // The camera is 0.05 m ahead of the base: the box begins at 0.95 m and hides the floor up to 3 x 1.15 m.
     let spans = spans_ahead(&scan);
     assert_eq!(spans.len(), 2, "{spans:?}");
     assert!(spans[0].0 == 0.0 && (0.8..=0.96).contains(&spans[0].1), "{spans:?}");
-    // What stands in the gap behind the box and is higher than 0.05 m would be seen from 8/9 of its end on.
+    // An object in the gap behind the box, higher than 0.05 m, would be visible from 8/9 of the gap's end on.
     assert!((2.95..3.6).contains(&spans[1].0) && spans[1].1 == range, "{spans:?}");
 }
 
 #[test]
 fn a_hole_in_the_floor_is_an_obstacle_of_its_own_kind() {
-    // The floor ends 2 m ahead of the base; 0.5 m below it goes on.
+    // The floor ends 2 m ahead of the base and continues 0.5 m lower.
     let (camera, base_from_camera) = (small_camera(), mount(0.45, 8.0));
     let mut depth = depth_of(&camera, &base_from_camera, &[], true);
     let lower = mount(0.95, 8.0);
@@ -244,7 +244,7 @@ fn a_hole_in_the_floor_is_an_obstacle_of_its_own_kind() {
     let scan = scan_of(camera, base_from_camera, depth);
     let Beam::Hit { range } = ahead(&scan) else { panic!("{:?}", ahead(&scan)) };
     assert_eq!(scan.obstacle(index_ahead(&scan)), Some(ObstacleKind::Drop));
-    // A row of floor is 0.1 m deep there.
+    // A row of floor has a depth of 0.1 m at this range.
     assert!((1.94..2.1).contains(&range), "{range}");
     assert!(spans_ahead(&scan).iter().all(|span| span.1 <= range + 1e-9));
     let drops = (0..scan.beams().len()).filter(|&i| scan.obstacle(i) == Some(ObstacleKind::Drop)).count();
@@ -283,7 +283,7 @@ fn the_noise_of_a_beam_grows_with_the_square_of_its_depth() {
 fn a_camera_that_never_sees_the_floor_clears_what_its_rays_pass() {
     let scan = scan(mount(0.3, -35.0), &[Solid::wall(4.0, 3.0)]);
     let Beam::Free { range } = ahead(&scan) else { panic!("{:?}", ahead(&scan)) };
-    // Its lowest ray climbs at 5 deg: out of the band, 0.35 m higher, at 4 m.
+    // The lowest ray climbs at 5 deg: it leaves the band, 0.35 m higher, at 4 m.
     assert!(range > 2.5 && range < 4.0, "{range}");
 }
 
@@ -301,7 +301,7 @@ proptest! {
         let mut scanner = DepthScanner::new(camera, mount(0.45, 8.0), DepthScanConfig::default()).unwrap();
         let scan = scanner.scan(&rgbd(depth));
         let floor = scanner.floor().unwrap();
-        // Looking lower than estimated, the floor seems nearer, so that it seems to rise.
+        // With a camera pitched lower than estimated, the floor appears nearer and therefore rising.
         prop_assert!((floor.rise_ahead.atan().to_degrees() - tilt_error).abs() < 0.3, "{:?}", floor);
         prop_assert!((floor.height + height_error).abs() < 0.01, "{:?} {}", floor, height_error);
         for point in scan.hits() {
@@ -335,7 +335,7 @@ fn two_cameras_make_one_scan() {
     };
     assert!(seen.len() > 60 && seen.iter().all(on), "{seen:?}");
     assert!(seen.iter().any(|p| p.y > 0.7 && p.x < 1.1) && seen.iter().any(|p| p.y < -1.0));
-    // Free is what one of them saw: 1 m ahead to the left and right, not behind, nor behind the block.
+    // Floor is free if a sensor observed it: 1 m ahead to the left and right, but not behind the robot or the block.
     let free_at = |p: Vector2| {
         let i = (0..360).min_by(|&a, &b| {
             let off = |i: usize| trundle_core::wrap_angle(fused.angle(i) - p.y.atan2(p.x)).abs();

@@ -10,7 +10,7 @@ fn noise(i: usize) -> f64 {
     (crate::boxes::mix(i as u64) >> 11) as f64 / 2_f64.powi(53) - 0.5
 }
 
-/// A ring of corridors 2 m wide about a block of 16 x 10 m, with niches so that places differ.
+/// A ring of corridors 2 m wide around a block of 16 x 10 m, with niches that distinguish places.
 pub fn ring() -> FlatRoom {
     FlatRoom::new(&[
         &[
@@ -126,7 +126,7 @@ fn a_lap_of_corridors_ends_where_it_began() {
         for ((_, pose), truth) in found.iter().zip(&poses) {
             worst = worst.max(pose.distance(&(poses[0].inverse() * *truth)));
         }
-        // One per cent of the way before the loop closes.
+        // One per cent of the path before the loop closes.
         assert!(worst < 0.6, "seed {seed}: {worst} m off at worst");
         let end = found.last().unwrap().1.distance(&(poses[0].inverse() * *poses.last().unwrap()));
         assert!(end < 0.25, "seed {seed}: {end} m off at the end");
@@ -178,7 +178,7 @@ fn a_wild_pose_is_refused_and_the_next_one_is_not() {
     }
     assert!(matches!(mapper.update(poses[24], &laser(&room, poses[24], 24)), ScanUpdate::Processed(_)));
     assert!(mapper.pose().distance(&(poses[0].inverse() * poses[24])) < 0.05);
-    // At 5 m/s it can have got there while nothing was told of it.
+    // At 5 m/s the robot may have reached this pose during the gap.
     let late = laser(&room, poses[60], 60 + 100);
     assert!(matches!(mapper.update(poses[60], &late), ScanUpdate::Processed(done) if done.jumped));
     assert!(mapper.pose().distance(&(poses[0].inverse() * poses[60])) < 0.05);
@@ -197,7 +197,7 @@ fn wild_poses_that_agree_five_times_are_believed() {
     assert!(matches!(update(&mut mapper, 29, 300.0), ScanUpdate::Processed(done) if done.jumped));
     let way = mapper.pose().distance(&(poses[0].inverse() * poses[29]));
     assert!((way - 300.0).abs() < 0.05, "{way} m");
-    // Of steps alone a jump says nothing, and the scans tell.
+    // A jump in the odometry is reported explicitly; afterwards the scans determine the pose.
     mapper.kidnapped();
     assert!(!is_refused(update(&mut mapper, 30, 0.0)));
 }
@@ -314,12 +314,12 @@ fn bad_input_is_refused_by_name() {
         ScanUpdate::Refused(Refusal::TimeGoesBack)
     );
     assert_eq!(mapper.update(Pose2::new(0.01, 0.0, 0.0), &scan(6)), ScanUpdate::Still);
-    // Wheels that jump 50 m: the robot stays where the scan says it is.
+    // The odometry jumps by 50 m: the pose remains where the scan fits.
     let ScanUpdate::Processed(done) = mapper.update(Pose2::new(50.0, 0.0, 0.0), &scan(7)) else {
         panic!("not processed")
     };
     assert!(done.jumped && mapper.pose().position().norm() < 0.1, "{:?}", mapper.pose());
-    // Nothing seen, and another number of beams.
+    // No returns, and another number of beams.
     let blind = Scan::new(scan(8).stamp(), Vector2::zeros(), 0.0, 0.1, vec![Beam::Unseen; 3]).unwrap();
     let ScanUpdate::Processed(done) = mapper.update(Pose2::new(50.5, 0.0, 0.0), &blind) else {
         panic!("not processed")

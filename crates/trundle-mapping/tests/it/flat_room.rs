@@ -28,7 +28,7 @@ impl FlatRoom {
         ])
     }
 
-    /// Two parallel walls 1.5 m apart, 40 m long, and nothing else.
+    /// Two parallel walls 1.5 m apart, 40 m long, without other objects.
     pub fn corridor() -> Self {
         Self {
             walls: vec![

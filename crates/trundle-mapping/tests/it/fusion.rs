@@ -63,7 +63,7 @@ proptest! {
         }
     }
 
-    /// Every hit of a sensor within range lies at or behind the fused hit of its bearing.
+    /// Every hit of a sensor within range is at or behind the fused hit of its bearing.
     #[test]
     fn no_obstacle_is_lost(a in any_scan(), at in any_pose()) {
         let config = ScanFusionConfig::default();

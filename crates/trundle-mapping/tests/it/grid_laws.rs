@@ -56,7 +56,7 @@ proptest! {
         prop_assert_eq!(done.ignored_beams, 0);
     }
 
-    /// A live map without corrections is the map of its scans, and a correction to the same poses moves nothing.
+    /// A live map without corrections equals the map of its scans, and a correction to the same poses moves no scan.
     #[test]
     fn a_live_map_without_corrections_is_the_plain_map(poses in prop::collection::vec(any_pose(), 1..6)) {
         let room = FlatRoom::furnished();
@@ -84,7 +84,7 @@ proptest! {
             let beams = room_scan(&room, *pose).beams().to_vec();
             live.insert(*pose, &Scan::new(Stamp::from_nanos(i as i64), Vector2::zeros(), -3.0, 0.017, beams).unwrap());
         }
-        // Twice, so that both maps are redrawn from the logged scans.
+        // Two corrections: both maps are then redrawn from the log.
         let by = Pose2::new(0.2, -0.1, theta);
         let mut cells = Vec::new();
         for _ in 0..2 {

@@ -1,4 +1,4 @@
-//! Maps that outlive the run: saved, gone on with, and localised in.
+//! Maps that are saved, extended by another run, and used for localization.
 
 use crate::filter::{config, lap, laser, odometry, ring};
 use crate::flat_room::FlatRoom;
@@ -19,7 +19,7 @@ pub fn hall() -> FlatRoom {
     ])
 }
 
-/// A room that looks alike from two sides: turned by half a turn it looks as before.
+/// A room with rotational symmetry: it looks the same after half a turn.
 fn twins() -> FlatRoom {
     FlatRoom::new(&[
         &[(-10.0, -10.0), (10.0, -10.0), (10.0, 10.0), (-10.0, 10.0)],
@@ -125,7 +125,7 @@ fn a_kidnapped_robot_finds_itself_and_the_map_stays_as_it_was() {
         .enumerate()
     {
         let mut localizer = MapLocalizer::load(&bytes, config(10), 3).unwrap();
-        // It turns on the spot; its odometry begins anywhere.
+        // The robot turns on the spot; its odometry begins at any pose.
         let mut known = None;
         for k in 0..10 {
             let turned = pose * Pose2::new(0.0, 0.0, 0.5 * f64::from(k));
@@ -183,7 +183,7 @@ fn another_run_goes_on_with_an_old_map() {
     let mut mapper = ParticleMapper::load(&bytes, config(5)).unwrap();
     mapper.kidnapped();
     let before = mapper.grid().clone();
-    // From a place that the first run saw, with odometry of its own.
+    // The second run starts at a place of the first run, with its own odometry.
     let start = half - 20;
     let odom_from_world = Pose2::new(7.0, -3.0, 1.3) * poses[start].inverse();
     let mut found = 0;

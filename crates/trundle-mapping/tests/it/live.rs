@@ -8,7 +8,7 @@ fn config() -> MapperConfig {
     MapperConfig { blind_range: 0.0, max_range: 15.0, ..MapperConfig::default() }
 }
 
-/// Scans along a lap, where they were taken, and where a drifting estimate has them.
+/// Scans along a lap, their true poses, and their poses in a drifting estimate.
 fn run() -> Vec<(Scan, Pose2, Pose2)> {
     let room = ring();
     let mut drift = Pose2::IDENTITY;
@@ -34,7 +34,7 @@ fn a_corrected_map_is_redrawn_in_slices() {
     for (scan, _, drifted) in &run {
         live.insert(*drifted, scan);
     }
-    // From the middle on the poses are corrected: the first half stays.
+    // The poses of the second half are corrected; those of the first half do not change.
     let middle = run.len() / 2;
     let now = |i: usize| if i < middle { run[i].2 } else { run[i].1 };
     let index = |stamp| run.iter().position(|(scan, _, _)| scan.stamp() == stamp).unwrap();
@@ -43,7 +43,7 @@ fn a_corrected_map_is_redrawn_in_slices() {
     let before = live.grid().clone();
     let (mut slices, mut most) = (0, 0);
     loop {
-        // While it is redrawn the map in use stays and takes in more.
+        // During the redrawing the map in use is still published and receives new scans.
         assert_eq!(live.grid(), &before);
         let done = live.work(20_000);
         most = most.max(done.cells);
@@ -53,7 +53,7 @@ fn a_corrected_map_is_redrawn_in_slices() {
         }
     }
     assert!(slices > 10 && most < 20_000 + 30_000, "{slices} slices, at most {most} cells");
-    // As if it had been drawn so at once; scans nearer than 0.1 m to another are not redrawn.
+    // The result equals a map drawn at the corrected poses; scans nearer than 0.1 m to another are not redrawn.
     let mut fresh = GridMapper::new(config()).unwrap();
     for (i, (scan, _, _)) in run.iter().enumerate() {
         fresh.insert(now(i), scan);
@@ -76,7 +76,7 @@ fn all_is_redrawn_within_the_calls_asked_for() {
         live.insert(*drifted, scan);
     }
     let truth = |stamp, old| run.iter().find(|(scan, _, _)| scan.stamp() == stamp).map_or(old, |r| r.1);
-    // As if scans were drawn meanwhile, each of which is to be redrawn too.
+    // Simulates scans that arrive during the redrawing and are redrawn too.
     let mut all = Vec::new();
     for (calls, budget) in [(20, 0), (20, usize::MAX), (1, 0), (0, 0)] {
         let mut mapper = live.clone();

@@ -1,4 +1,4 @@
-//! One binary of tests against worlds drawn here: the crate does not know the simulator, and must not.
+//! One test binary with its own worlds: the crate must not depend on the simulator.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 

@@ -21,7 +21,7 @@ fn ascii(grid: &OccupancyGrid) -> String {
     (bottom..=top).rev().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// Moves the walls from the borders of cells into their middles.
+/// Moves the walls from the borders of cells to their middles.
 const INTO_CELLS: Pose2 = Pose2 { x: 0.1, y: 0.1, theta: 0.0 };
 
 fn coarse() -> GridMapper {
@@ -56,7 +56,7 @@ fn one_place_with_a_narrow_view() {
     ");
 }
 
-// Corner cells of 0.2 m, half of them free, may end up as either.
+// Corner cells of 0.2 m that are half free may become free or occupied.
 #[test]
 fn the_whole_room_after_a_walk() {
     let mut mapper = coarse();

@@ -21,7 +21,7 @@ fn room_map() -> GridMapper {
     map_of(&FlatRoom::furnished(), circle())
 }
 
-/// A way around the furnished room.
+/// A path around the furnished room.
 fn circle() -> impl Iterator<Item = Pose2> {
     (0..40).map(|i| f64::from(i) / 40.0 * TAU).map(|t| Pose2::new(2.5 * t.cos(), 1.5 * t.sin(), t))
 }
@@ -55,7 +55,7 @@ fn a_wrong_guess_is_pulled_back() {
 #[test]
 fn a_map_that_was_brought_along_is_matched_with_from_the_first_scan() {
     let room = FlatRoom::furnished();
-    // However the walls lie to the cells.
+    // Several positions of the walls relative to the cells.
     for (shift, turn) in [(0.0, 0.0), (0.0125, 0.0), (0.0375, 0.0), (0.0, FRAC_PI_4), (0.01, 0.3)] {
         let map_from_room = Pose2::new(shift, shift, turn);
         let mut drawn = GridMapper::new(MapperConfig::default()).unwrap();

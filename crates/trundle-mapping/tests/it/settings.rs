@@ -1,4 +1,4 @@
-//! Settings out of their ranges are refused by name.
+//! Settings outside their ranges are refused by name.
 
 use trundle_mapping::{
     DepthScanConfig, MotionConfig, ParticleConfig, ParticleMapper, PosePriorConfig, ScanFusionConfig,

@@ -7,11 +7,11 @@ use nalgebra::{ArrayStorage, SMatrix};
 /// Joint covariance of a block and the border.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArrowCovariance<const N: usize, const B: usize> {
-    /// Of the block.
+    /// Covariance of the block.
     pub block: SMatrix<f64, N, N>,
-    /// Of the block (rows) with the border (columns).
+    /// Covariance of the block (rows) with the border (columns).
     pub cross: SMatrix<f64, N, B>,
-    /// Of the border.
+    /// Covariance of the border.
     pub border: SMatrix<f64, B, B>,
 }
 
@@ -48,7 +48,7 @@ fn newest<const N: usize, const B: usize>(
     finish(&link.diagonal, inner, through, border)
 }
 
-/// The covariance of block `i` from that of block `i + 1`.
+/// The covariance of block `i`, computed from that of block `i + 1`.
 fn before<const N: usize, const B: usize>(
     system: &ArrowSystem<N, B>,
     i: usize,

@@ -1,4 +1,4 @@
-//! Cholesky factor of the arrow, and the solution by it.
+//! Cholesky factor of the arrow, and the solution of its equations.
 
 use super::system::{ArrowSystem, Link};
 use crate::block::{
@@ -6,11 +6,11 @@ use crate::block::{
     subtract_transposed_product,
 };
 
-/// Turns a system into its Cholesky factor. Returns whether it is positive definite.
+/// Turns a system into its Cholesky factor. Returns whether the system is positive definite.
 pub(super) fn factorise<const N: usize, const B: usize>(system: &mut ArrowSystem<N, B>) -> bool {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx") {
-        // SAFETY: the processor has the one feature that the function is compiled for.
+        // SAFETY: the processor has the only feature that the function is compiled for.
         return unsafe { factorise_by_avx(system) };
     }
     factorise_plainly(system)

@@ -10,9 +10,9 @@ use nalgebra::{ArrayStorage, SMatrix, SVector};
 pub struct ArrowMarginal<const N: usize, const B: usize> {
     /// Information of the next block.
     pub block: SMatrix<f64, N, N>,
-    /// Of the next block (rows) with the border (columns).
+    /// Coupling of the next block (rows) with the border (columns).
     pub coupling: SMatrix<f64, N, B>,
-    /// Of the border.
+    /// Information of the border.
     pub border: SMatrix<f64, B, B>,
     /// Right side of the next block.
     pub gradient: SVector<f64, N>,

@@ -6,7 +6,7 @@ use super::marginal::{self, ArrowMarginal};
 use super::system::ArrowSystem;
 
 impl<const N: usize, const B: usize> ArrowSystem<N, B> {
-    /// Turns the system into its Cholesky factor; `false` when it is not positive definite.
+    /// Replaces the system by its Cholesky factor; `false` if the system is not positive definite.
     pub fn factorise(&mut self) -> bool {
         factor::factorise(self)
     }
@@ -21,8 +21,8 @@ impl<const N: usize, const B: usize> ArrowSystem<N, B> {
         covariance::of_block(self, k)
     }
 
-    /// Removes the first of two blocks and returns what is known of the second one and the border; `None` if the first block is not
-    /// positive definite, or there are not two blocks. The system is used up.
+    /// Removes the first of two blocks and returns the information on the second one and the border; `None` if the first block is not
+    /// positive definite, or the system does not have two blocks. The call destroys the system.
     pub fn marginalise_first(&mut self) -> Option<ArrowMarginal<N, B>> {
         marginal::of_first(self)
     }

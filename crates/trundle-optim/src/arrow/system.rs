@@ -24,7 +24,7 @@ use nalgebra::{SMatrix, SVector};
 #[derive(Debug, Clone)]
 pub struct ArrowSystem<const N: usize, const B: usize> {
     pub(super) links: Vec<Link<N, B>>,
-    /// How many of the links are in use.
+    /// Number of links in use.
     pub(super) count: usize,
     /// Coupling of the border with itself; its lower factor once factorised.
     pub(super) border: Block<B>,

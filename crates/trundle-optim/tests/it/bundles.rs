@@ -18,7 +18,7 @@ struct Scene {
     observations: Vec<BundleObservation>,
 }
 
-/// Five cameras in a row before 60 points; the first two fixed. `noise`: of pixels and depths in standard deviations; `off`: of the
+/// Five cameras in a row before 60 points; the first two fixed. `noise`: of pixels and depths in standard deviations; `off`: error of the
 /// start, m and rad.
 fn scene(noise: f64, off: f64) -> Scene {
     let mut rng = ChaCha8Rng::seed_from_u64(31);

@@ -12,7 +12,7 @@ fn constraint(from: usize, to: usize, from_to: Pose3, weight: f64) -> PoseConstr
     PoseConstraint { from, to, from_to, information: Matrix6::identity() * weight }
 }
 
-/// A ring of twelve poses whose constraints contradict each other a little, and a start beside the solution.
+/// A ring of twelve poses with slightly contradictory constraints, and a start near the solution.
 fn ring() -> (Vec<Pose3>, Vec<PoseConstraint>) {
     let mut rng = ChaCha8Rng::seed_from_u64(21);
     let mut shake = |size: f64| Pose3::exp(Vector6::from_fn(|_, _| rng.random_range(-size..size)));

@@ -23,7 +23,7 @@ proptest! {
         let Some((fused, _)) = prior(pose, a).fused_with(other, &(Matrix6::identity() * b * b), 1.0) else { return Ok(()) };
         let whole = gap(pose, other);
         prop_assert!((gap(pose, fused) + gap(fused, other) - whole).abs() < 1e-3 * whole + 1e-9);
-        // Nearer to the one that is known better.
+        // The result is nearer to the pose with the smaller covariance.
         prop_assert!((gap(pose, fused) < gap(fused, other)) == (a < b) || (a - b).abs() < 1e-3);
     }
 

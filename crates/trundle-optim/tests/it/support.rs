@@ -26,7 +26,7 @@ pub fn normal(rng: &mut ChaCha8Rng) -> f64 {
     (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0
 }
 
-/// Points as a camera at `truth` sees them with `noise` standard deviations of noise, all with a depth.
+/// Observations of points by a camera at `truth` with `noise` standard deviations of noise, all with a depth.
 pub fn seen_from(truth: Pose3, count: usize, noise: f64, seed: u64) -> Vec<(Vector3, PointObservation)> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let see = |_| {

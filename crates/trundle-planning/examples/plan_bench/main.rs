@@ -1,9 +1,9 @@
-//! Way-points, curve and timing on the maps of ../shared/data/nav, in numbers:
-//! `cargo run --release -p trundle-planning --example plan_bench [-- --csv PAIRS.csv] [--seed N]`.
+//! Benchmark of way-points, curve and timing on the maps of ../shared/data/nav: `cargo run --release -p trundle-planning --example
+//! plan_bench [-- --csv PAIRS.csv] [--seed N]`.
 //!
-//! Each map has the questions that come with it and random ones between connected places. Each is asked 20 times
-//! with the distance field up to date, and the best CPU time of the thread counts: it says something on a busy machine too.
-//! `--only-plans`, `--only-updates`, `--only-large` and `--only-printed` leave out the rest. Every trajectory is evaluated by the tests' independent checker.
+//! Each map has its own queries, and random queries between connected places. Each query runs 20 times on an up-to-date distance field. The
+//! result is the best CPU time of the thread, which is meaningful on a busy machine too. `--only-plans`, `--only-updates`, `--only-large`
+//! and `--only-printed` select one part. Every trajectory is evaluated by the tests' independent checker.
 
 #![expect(
     clippy::print_stdout,
@@ -34,13 +34,13 @@ const RADIUS: f64 = 0.26;
 /// Questions a map.
 const QUESTIONS: usize = 60;
 const ROUNDS: usize = 20;
-/// The planner's own margin: room beyond the footprint that it keeps where it can, m.
+/// The planner's clearance margin beyond the footprint, used if space allows, m.
 const MARGIN: f64 = 0.05;
 
 struct Row {
     ms: f64,
     length: f64,
-    /// Of the way-points.
+    /// Time for the way-points.
     way: f64,
     /// The shortest any-angle length for the footprint.
     shortest: f64,
@@ -109,7 +109,7 @@ fn main() {
     printed(&data);
 }
 
-/// A row a question, or what it took to find no way, ms.
+/// One row per query, or the time to find that no path exists, ms.
 fn measure(grid: &OccupancyGrid, pairs: &[(Pose2, Pose2)]) -> Vec<Result<Row, f64>> {
     let field = DistanceField::from_grid(grid, UnknownIs::Free);
     let mut planner = support::planner(support::at_home(), RADIUS);
@@ -254,7 +254,7 @@ fn all_maps() -> impl Iterator<Item = (&'static str, String)> {
     nav2.into_iter().chain(mrpb.map(|map| (map, format!("mrpb/maps/{map}/map.yaml"))))
 }
 
-/// A warehouse of 200 x 200 m: boxes of a metre, shifted from row to row; across it from nothing.
+/// A warehouse of 200 x 200 m with boxes of 1 m, shifted from row to row. The plan crosses it with a new planner.
 fn large() {
     const SIZE: usize = 4000;
     let geometry = GridGeometry::new(0.05, Vector2::zeros(), SIZE, SIZE).unwrap();
@@ -274,7 +274,7 @@ fn large() {
     println!("\n{SIZE} x {SIZE} cells, field and plan: {ms:.0} ms CPU, {peak} at most resident; {plan}");
 }
 
-/// How often the printed potential is trapped, over questions of all maps; of BARN's worlds the one question that each has.
+/// Number of trapped descents of the printed potential over the queries of all maps; one query per BARN world.
 fn printed(data: &std::path::Path) {
     println!("\n| map | questions | found | printed potential trapped |");
     println!("|---|---|---|---|");

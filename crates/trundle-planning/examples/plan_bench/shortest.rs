@@ -1,10 +1,10 @@
-//! The shortest any-angle path, by a search that shares nothing with the planner but the distances: Theta*.
+//! The shortest any-angle path by Theta*, a search that shares only the distances with the planner.
 
 use std::{cmp::Ordering, collections::BinaryHeap};
 use trundle_core::{GridGeometry, Vector2};
 use trundle_planning::DistanceField;
 
-/// Spacing of the looks along a line of sight, cells.
+/// Spacing of the samples along a line of sight, cells.
 const LOOK: f64 = 0.2;
 /// Tolerance of the checks, m: rounding of the stored distances and the interpolation's error.
 const SLACK: f64 = 1e-3;
@@ -26,8 +26,8 @@ impl PartialOrd for Entry {
     }
 }
 
-/// The length of a Theta* path \[Nash07\] of a disc's centre that was then pulled taut, m; infinite where
-/// there is none. An upper bound of the shortest length, in practice within a few per mille of it.
+/// The length of a Theta* path \[Nash07\] of a disc's centre after string pulling, m; infinite without a path. An upper bound of the
+/// shortest length, in practice within a few per mille.
 pub fn shortest(field: &DistanceField, radius: f64, from: Vector2, to: Vector2) -> f64 {
     let geometry = *field.geometry();
     let (Some(first), Some(last)) = (geometry.cell_at(from), geometry.cell_at(to)) else {
@@ -76,7 +76,7 @@ fn trace(parent: &[usize], first: usize, last: usize) -> Vec<usize> {
     way
 }
 
-/// Moves corners towards the line between their neighbours while that stays free.
+/// Moves corners towards the line between their neighbours while that line is free.
 fn taut(field: &DistanceField, radius: f64, mut way: Vec<Vector2>) -> f64 {
     for _ in 0..20 {
         for i in 1..way.len().saturating_sub(1) {

@@ -1,4 +1,4 @@
-//! Cost of a change of 6 x 6 m for the distance field: CPU time, each change the best of several, the worst of all changes.
+//! Cost of a change of 6 x 6 m for the distance field: CPU time, the best of several runs of each change, the worst of all changes.
 
 use super::support::cpu_ms;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
@@ -12,10 +12,10 @@ pub const REACH: f64 = 1.46;
 /// Side of the changed window, m.
 const WINDOW: f64 = 6.0;
 
-/// A way to change the cells of a window: what cell `i` of `side` x `side` becomes.
+/// A change of the cells of a window: the new state of cell `i` of `side` x `side`.
 type Change = fn(i: usize, side: usize, k: usize, was: Cell) -> Cell;
 
-/// As a scan changes a map: clutter, and a wall across.
+/// Changes like those of a scan: clutter, and a wall across the map.
 fn sensor(i: usize, side: usize, k: usize, was: Cell) -> Cell {
     let (col, row) = (i % side, i / side);
     let is_wall = row == (side / 2 + col / 7) % side || i == 0 || i + 1 == side * side;
@@ -27,13 +27,13 @@ fn sensor(i: usize, side: usize, k: usize, was: Cell) -> Cell {
     }
 }
 
-/// Everything else than it was.
+/// Every cell changes.
 fn replaced(i: usize, _: usize, k: usize, was: Cell) -> Cell {
     let is_far = !(i / 13 + k).is_multiple_of(5);
     if was == Cell::Occupied || is_far && was == Cell::Unknown { Cell::Free } else { Cell::Occupied }
 }
 
-/// Cleared: distances grow up to the largest one that is kept.
+/// All cells cleared: distances grow up to the largest stored one.
 fn cleared(_: usize, _: usize, _: usize, _: Cell) -> Cell {
     Cell::Free
 }
@@ -55,7 +55,7 @@ pub fn print(name: &str, grid: &OccupancyGrid) {
     }
 }
 
-/// The best time of each change, there and back, ms.
+/// The best time of each change, forth and back, ms.
 fn changes(grid: &OccupancyGrid, change: Change) -> Vec<f64> {
     let GridGeometry { width, height, resolution, .. } = *grid.geometry();
     let side = (WINDOW / resolution) as usize;
@@ -91,7 +91,7 @@ fn timed<T>(work: impl FnOnce() -> T) -> f64 {
     spent
 }
 
-/// A hall with nothing in it but a pillar of a number of cells square.
+/// An empty hall with one square pillar of a given number of cells.
 pub fn hall(size: usize, resolution: f64) -> OccupancyGrid {
     let geometry = GridGeometry::new(resolution, Vector2::zeros(), size, size).unwrap();
     let mut grid = OccupancyGrid::filled(geometry, Cell::Free);

@@ -5,8 +5,8 @@ use crate::curve::half_plane::HalfPlane;
 use crate::geometry::bearing;
 use trundle_core::{Pose2, Twist2, Vector2};
 
-/// An analytic curve: polynomial pieces that meet in position, heading and curvature. Its parameter s is the chord length along
-/// the waypoints, m, from 0 to [`Curve::span`].
+/// An analytic curve: polynomial pieces that meet in position, heading and curvature. The parameter s is the chord length along the
+/// waypoints, m, from 0 to [`Curve::span`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
     pieces: Vec<BezierPiece>,
@@ -20,11 +20,11 @@ pub struct Curve {
 /// A corridor's side that constrains a control point: without it the curve would differ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ActiveRow {
-    /// Which piece.
+    /// Index of the piece.
     pub piece: usize,
-    /// Which of its control points.
+    /// Index of the control point in its piece.
     pub control: usize,
-    /// Which side of the piece's corridor.
+    /// Index of the half-plane in the piece's corridor.
     pub plane: usize,
     /// The Lagrange multiplier, m^2: the decrease of the objective (m^3) per metre of clearance.
     pub multiplier: f64,
@@ -66,8 +66,8 @@ impl Curve {
         Self::new(vec![BezierPiece::new(vec![from, to], (to - from).norm())])
     }
 
-    /// The arc of constant `curvature` (1/m) that leaves `start` and is `length` m long, as the quintic that agrees with
-    /// it at both ends in position, heading and curvature.
+    /// The arc of constant `curvature` (1/m) from `start`, `length` m long, as a quintic. The quintic equals the arc at both ends in
+    /// position, heading and curvature.
     pub(crate) fn arc(start: Pose2, curvature: f64, length: f64) -> Self {
         let end = start.advance(Twist2::new(length, curvature * length), 1.0);
         let near = |pose: Pose2, side: f64| {
@@ -85,7 +85,7 @@ impl Curve {
         &self.pieces
     }
 
-    /// The convex free polygon of each piece: its control points, and so the piece, lie inside. Empty for straight lines and
+    /// The convex free polygon of each piece: the control points are inside, and therefore the piece too. Empty for straight lines and
     /// braking arcs, whose clearance is checked directly.
     pub fn corridors(&self) -> &[Vec<HalfPlane>] {
         &self.corridors
@@ -123,7 +123,7 @@ impl Curve {
         self.pose_and_curvature(s).1
     }
 
-    /// [`Curve::pose`] and [`Curve::curvature`] at once.
+    /// [`Curve::pose`] and [`Curve::curvature`] together.
     pub(crate) fn pose_and_curvature(&self, s: f64) -> (Pose2, f64) {
         let (piece, u) = self.locate(s);
         let jet = piece.jet(u);

@@ -4,7 +4,7 @@ use trundle_core::Vector2;
 
 /// One polynomial piece of a curve in the Bernstein basis: a Bezier curve over `span` metres of chord.
 ///
-/// Its control points bound it: the piece lies in their convex hull. Its parameter is u = s / span in \[0, 1\].
+/// The piece is inside the convex hull of its control points. The parameter is u = s / span in \[0, 1\].
 #[derive(Debug, Clone, PartialEq)]
 pub struct BezierPiece {
     control: Vec<Vector2>,
@@ -34,7 +34,7 @@ impl BezierPiece {
         &self.control
     }
 
-    /// The chord length that the piece stands for, m.
+    /// Chord length of the piece, m.
     pub fn span(&self) -> f64 {
         self.span
     }

@@ -1,9 +1,9 @@
 //! A convex free polygon around a straight segment of a path.
 //!
-//! Idea: between the segment and each occupied cell, both convex, the nearest pair of points spans a separating line. Moved off
-//! the obstacle by the clearance wanted, and never past the segment, it bounds a region in which every point keeps that
-//! clearance from that obstacle. Obstacles are processed nearest first; one behind an existing line is skipped. A Bezier piece
-//! with its control points inside keeps the clearance as a whole, by the convex hull property.
+//! Idea: between the segment and each occupied cell, both convex, the nearest pair of points spans a separating line. The line is shifted
+//! from the obstacle by the wanted clearance, but never past the segment. Every point on the segment's side of the line has this clearance
+//! from the obstacle. Obstacles are processed nearest first; one behind an existing line is skipped. A Bezier piece with its control points
+//! inside the polygon has the clearance everywhere, by the convex hull property.
 
 use crate::curve::half_plane::HalfPlane;
 use crate::search::configuration_space::ConfigurationSpace;
@@ -11,8 +11,8 @@ use trundle_collision::Segment;
 use trundle_collision::square::segment_to_square;
 use trundle_core::Vector2;
 
-/// The polygon around the free segment `a`-`b` within `reach` m of its bounding box. It keeps a clearance of `want` m wherever
-/// the segment itself has more, else most of the segment's own clearance.
+/// The polygon around the free segment `a`-`b` within `reach` m of its bounding box. The clearance is `want` m if the segment itself has
+/// more, else most of the segment's own clearance.
 pub(crate) fn corridor(
     space: &ConfigurationSpace<'_>,
     a: Vector2,
@@ -44,7 +44,7 @@ pub(crate) fn corridor(
 /// the path on the curve. Source: ours.
 const MAX_SPARE_SHARE: f64 = 0.6;
 
-/// The clearance kept by a side at `distance` m from the segment: `want`, or less where the segment itself has little more.
+/// The clearance of a side at `distance` m from the segment: `want`, or less if the segment itself has only slightly more.
 fn kept(space: &ConfigurationSpace<'_>, distance: f64, want: f64) -> f64 {
     let spare = (distance - space.radius).max(0.0);
     want.min(distance - spare * (1.0 - MAX_SPARE_SHARE))

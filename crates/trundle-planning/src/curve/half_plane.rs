@@ -1,4 +1,4 @@
-//! Half-planes, and the polygons that they bound.
+//! Half-planes, and the polygons bounded by half-planes.
 
 use trundle_core::Vector2;
 
@@ -15,8 +15,8 @@ pub struct HalfPlane {
 const OPEN_SIDE_M: f64 = 1e4;
 
 impl HalfPlane {
-    /// The corners of the polygon bounded by half-planes, in order; empty if they have nothing in common. Open sides end
-    /// `OPEN_SIDE_M` away.
+    /// The corners of the polygon bounded by half-planes, in order; empty if their intersection is empty. Open sides end `OPEN_SIDE_M`
+    /// away.
     pub fn outline(planes: &[Self]) -> Vec<Vector2> {
         let square = [
             (-OPEN_SIDE_M, -OPEN_SIDE_M),

@@ -10,7 +10,7 @@ pub enum Phase {
     Turn {
         /// Pose before the turn, map frame.
         from: Pose2,
-        /// Angle, counter-clockwise, rad; beyond +-pi where the shorter turn is blocked.
+        /// Angle, counter-clockwise, rad; outside +-pi if the shorter turn is blocked.
         angle: f64,
     },
     /// A drive along a curve, forward.

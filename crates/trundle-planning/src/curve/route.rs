@@ -1,8 +1,8 @@
 //! From waypoints to phases: turns in place and verified curves.
 //!
-//! A curve that meets both headings is tried first. Where it has not the clearance, the robot turns in place at the end, at the
-//! start, or at both. Where even that fails, the path is split at its sharpest corner. A segment between two waypoints is a
-//! straight line, which is free already: so there always is a route.
+//! A curve with both headings is tried first. Without clearance along that curve, the robot turns in place at the end, at the start, or at
+//! both. If these fail too, the path is split at its sharpest corner. The last resort is a straight line between two waypoints, which is
+//! free: a route always exists.
 
 use crate::curve::analytic_curve::{Curve, CurveSample};
 use crate::curve::fit::config::CurveConfig;
@@ -14,16 +14,16 @@ use crate::polygon::robot_shape::RobotShape;
 use crate::search::configuration_space::ConfigurationSpace;
 use trundle_core::{Pose2, Vector2, difference_of_angles};
 
-/// Factor on the smoothing length of the second fit where the first curve is too long. Source: ours.
+/// Factor on the smoothing length of the second fit if the first curve is too long. Source: ours.
 const CLOSER_FACTOR: f64 = 0.4;
-/// Factor on the smoothing length of the second fit where the first curve is not drivable. Source: ours.
+/// Factor on the smoothing length of the second fit if the first curve is not drivable. Source: ours.
 const SMOOTHER_FACTOR: f64 = 2.0;
 /// Spacing of the checks along a curve, m: between two, the distance to an obstacle dips by at most spacing^2 / 8 radius.
 /// Source: ours.
 const CHECK_SPACING_M: f64 = 0.01;
 /// Parametric speed below which a curve is rejected, ratio: a cusp is near. Source: ours.
 const MIN_PARAMETRIC_SPEED: f64 = 0.1;
-/// Missing clearance that counts as rounding of the solver, m. Source: ours.
+/// Missing clearance that counts as rounding error of the solver, m. Source: ours.
 const CLEARANCE_TOLERANCE_M: f64 = 1e-4;
 
 /// Everything that a curve is checked against.
@@ -34,8 +34,8 @@ pub(crate) struct RouteContext<'a> {
     pub(crate) config: &'a CurveConfig,
 }
 
-/// The phases from `start` to `goal` along the free waypoints `path`. `moving`: the curvature of a motion under way at `start`; then
-/// `None` if no curve continues it. From rest a disc always has a route; a polygon has `None` if it touches something.
+/// The phases from `start` to `goal` along the free waypoints `path`. `moving`: the curvature of a present motion at `start`; the result is
+/// then `None` if no curve continues it. From rest a disc always has a route; the result for a polygon is `None` after a contact.
 pub(crate) fn route(
     context: &RouteContext<'_>,
     path: &[Vector2],
@@ -60,7 +60,7 @@ pub(crate) fn route(
         if arriving { &[Tangent::Heading(goal.theta), Tangent::Free] } else { &[Tangent::Free] };
     for start_tangent in starts {
         for end_tangent in ends {
-            // A curve into a heading must be hardly longer; else the robot turns in place.
+            // A curve that meets the final heading must be hardly longer; else the robot turns in place.
             let into =
                 matches!(start_tangent, Tangent::Heading(_)) || matches!(end_tangent, Tangent::Heading(_));
             let tangents = (*start_tangent, *end_tangent);
@@ -80,8 +80,8 @@ pub(crate) fn route(
     with_turns(context, split(context, path)?, start.theta, goal)
 }
 
-/// A curve no longer than `longest` m that was checked and found free: smoother where the first one exceeds the curvature, nearer to the
-/// path if it is too long.
+/// A checked free curve no longer than `longest` m. The fit is smoother if the first curve exceeds the curvature, and nearer to the path if
+/// the first curve is too long.
 fn verified_curve(
     context: &RouteContext<'_>,
     segments: &[PathSegment],
@@ -118,7 +118,7 @@ pub(crate) fn is_drivable(context: &RouteContext<'_>, curve: &Curve) -> bool {
         && context.shape.is_none_or(|shape| sweeps(space, shape, &samples))
 }
 
-/// Whether the polygon touches nothing along the samples.
+/// Whether the polygon is free of contact along the samples.
 fn sweeps(space: &ConfigurationSpace<'_>, shape: &RobotShape, samples: &[CurveSample]) -> bool {
     samples.windows(2).all(|pair| {
         let (from, to) = (pair[0].pose, pair[1].pose);
@@ -159,7 +159,7 @@ fn sharpest_corner(path: &[Vector2]) -> usize {
     (1..path.len() - 1).max_by(|i, j| turn(*i).total_cmp(&turn(*j))).expect("invariant: an inner path-point")
 }
 
-/// The curves, with turns wherever one's end heading is not the next one's start heading.
+/// The curves, with a turn between two curves whose headings differ.
 fn with_turns(
     context: &RouteContext<'_>,
     curves: Vec<Curve>,
@@ -178,7 +178,7 @@ fn with_turns(
     Some(phases)
 }
 
-/// A turn at a pose, nothing where the angle is 0; `None` if the polygon has not the clearance.
+/// A turn at a pose, empty for an angle of 0; `None` if the polygon has too little clearance.
 pub(crate) fn turn(context: &RouteContext<'_>, at: Pose2, from: f64, to: f64) -> Option<Option<Phase>> {
     /// Angle below which no turn is needed, rad. Source: ours.
     const MIN_TURN_RAD: f64 = 1e-6;
@@ -194,7 +194,7 @@ pub(crate) fn turn(context: &RouteContext<'_>, at: Pose2, from: f64, to: f64) ->
     Some(Some(Phase::Turn { from, angle }))
 }
 
-/// The phases through poses of which each is reached from the one before by a turn or straight ahead.
+/// The phases through poses; each pose is reached from the previous one by a turn or straight ahead.
 pub(crate) fn straight(context: &RouteContext<'_>, poses: &[Pose2]) -> Option<Vec<Phase>> {
     let mut phases = Vec::new();
     for pair in poses.windows(2) {

@@ -1,9 +1,9 @@
 //! Exploration: the next viewpoint until no reachable frontier is left.
 //!
-//! Problem: an empty map and no goal. Idea: the border between free and unknown space, the frontier \[Yamauchi97\], is where new
-//! space is. The robot drives to a viewpoint of a frontier, scans, and repeats until no frontier is left that can be viewed. The
-//! next viewpoint is the nearest by path length, minus the value of the frontier's length; it is kept until the frontier is gone
-//! or viewed, so that the robot does not alternate. Cost: O(cells log cells) per choice.
+//! Problem: an empty map and no goal. Idea: new space begins at the frontier, the border between free and unknown space \[Yamauchi97\]. The
+//! robot drives to a viewpoint of a frontier, scans, and repeats until no frontier can be viewed. The next viewpoint has the smallest path
+//! length minus the value of the frontier's length. It remains the target until the frontier has vanished or was viewed, which prevents
+//! alternation. Cost: O(cells log cells) per choice.
 
 use crate::exploration::config::ExploreConfig;
 use crate::exploration::frontier::{Frontier, frontiers};
@@ -29,7 +29,7 @@ pub enum Exploration {
     Next(Viewpoint),
     /// Every frontier that can be viewed has been viewed.
     Complete {
-        /// Number of remaining frontiers: those that cannot be viewed, and those that a view did not change.
+        /// Number of remaining frontiers: those without a viewpoint, and those that a view did not change.
         left: usize,
     },
 }
@@ -45,7 +45,7 @@ pub struct Explorer {
     current: Option<Vector2>,
 }
 
-/// Clearance beyond the robot's radius that a viewpoint should have, m. Less adds to its cost. Source: ours.
+/// Wanted clearance of a viewpoint beyond the robot's radius, m. A smaller clearance adds to the viewpoint's cost. Source: ours.
 const VIEWPOINT_CLEARANCE_M: f64 = 0.25;
 /// Cost of a metre of missing clearance, in metres of path. Source: ours.
 const MISSING_CLEARANCE_COST: f64 = 3.0;
@@ -79,7 +79,7 @@ impl Explorer {
         best.map_or(Exploration::Complete { left: total }, Exploration::Next)
     }
 
-    /// Notes that this frontier was viewed from its viewpoint, or that the viewpoint cannot be reached.
+    /// Marks a frontier as viewed from its viewpoint, or its viewpoint as unreachable.
     pub fn mark_viewed(&mut self, frontier: &Frontier) {
         self.viewed.push(frontier.middle);
         self.current = None;
@@ -90,8 +90,8 @@ impl Explorer {
         frontier.middle.norm() <= self.config.reach && looks < self.config.looks as usize
     }
 
-    /// The nearest cell by path length from which the frontier's middle is visible, with a cost for missing clearance: an obstacle
-    /// of which only one side was observed may extend into a free cell. `clearance` is the distance to occupied or unknown cells.
+    /// The nearest cell by path length with a view of the frontier's middle. Missing clearance adds a cost: an obstacle observed from one
+    /// side only may extend into a free cell. `clearance` is the distance to occupied or unknown cells.
     fn view(
         &self,
         grid: &OccupancyGrid,
@@ -121,7 +121,7 @@ impl Explorer {
     }
 }
 
-/// Whether nothing occupied lies between two points.
+/// Whether no occupied cell is between two points.
 fn is_visible(grid: &OccupancyGrid, from: Vector2, to: Vector2) -> bool {
     let steps = ((to - from).norm() / (0.5 * grid.geometry().resolution)).ceil().max(1.0) as usize;
     (0..=steps).all(|i| grid.at(from + (to - from) * (i as f64 / steps as f64)) != Cell::Occupied)
@@ -193,7 +193,7 @@ mod tests {
         let wide = corridor(12);
         let view = look(&wide, 0.75);
         assert!(clearance_at(&view, &wide) > 0.37 && view.pose.x > 1.0, "{view:?}");
-        // Without clearance anywhere the viewpoint is near, and the missing clearance is not part of the path length.
+        // In a narrow corridor the viewpoint is near, and the missing clearance is not part of the path length.
         let view = look(&corridor(5), 0.35);
         assert!(view.path_length < 0.4, "{view:?}");
     }

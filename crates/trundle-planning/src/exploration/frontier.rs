@@ -2,12 +2,12 @@
 
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
 
-/// A connected line of free cells beside unknown ones.
+/// A connected line of free cells with unknown neighbours.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frontier {
     /// The frontier cell nearest to the frontier's mean, map frame, m.
     pub middle: Vector2,
-    /// Its cells times the resolution, m.
+    /// Number of cells times the resolution, m.
     pub length: f64,
 }
 

@@ -14,7 +14,7 @@ pub(super) struct TravelDistances {
 const UNREACHED: u32 = u32::MAX;
 /// Factor on the length of a step through unknown space: it may hold a wall. Source: ours.
 const UNKNOWN_STEP_FACTOR: u32 = 3;
-/// Distance around the robot in which the search starts, m: the robot may stand nearer to an obstacle than a path. Source: ours.
+/// Distance around the robot in which the search starts, m: the robot may be nearer to an obstacle than a path. Source: ours.
 const START_RADIUS_M: f64 = 0.3;
 
 impl TravelDistances {

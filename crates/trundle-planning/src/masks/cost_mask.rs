@@ -15,7 +15,7 @@ impl CostMask {
     /// A mask of `values`, row by row from the lowest y.
     ///
     /// # Errors
-    /// When there are not as many values as cells, or one is above 100.
+    /// When the number of values differs from the number of cells, or a value is above 100.
     pub fn new(geometry: GridGeometry, values: Vec<u8>) -> Result<Self, Invalid> {
         if values.len() != geometry.len() {
             let expected = geometry.len().to_string();

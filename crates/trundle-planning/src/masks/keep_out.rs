@@ -3,8 +3,8 @@
 use crate::area::area;
 use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, Pose2, Vector2};
 
-/// The grid with every cell occupied that a keep-out mask touches; the mask may have its own lattice. With `grow`, the grid is
-/// extended to hold the mask's occupied cells beside it.
+/// The grid with every cell occupied that a keep-out mask touches; the mask may have another lattice. With `grow`, the grid is extended to
+/// contain the mask's occupied cells.
 ///
 /// # Errors
 /// When the extended grid would have too many cells.
@@ -31,7 +31,7 @@ pub(crate) fn kept_out(
     Ok(merged)
 }
 
-/// The grid over another geometry of its lattice; cells outside it are unknown.
+/// The grid over another geometry of its lattice; added cells are unknown.
 pub(crate) fn cut(grid: &OccupancyGrid, geometry: GridGeometry) -> OccupancyGrid {
     if geometry == *grid.geometry() {
         return grid.clone();

@@ -15,7 +15,7 @@ pub fn forbid(grid: &mut OccupancyGrid, zone: &Zone) {
     }
 }
 
-/// The keep-out mask of zones over a map's cells: occupied where a no-go zone touches the cell, else free.
+/// The keep-out mask of zones over a map's cells: a cell is occupied if a no-go zone touches it, else free.
 #[must_use]
 pub fn forbidden_cells<'z>(
     geometry: GridGeometry,
@@ -26,8 +26,8 @@ pub fn forbidden_cells<'z>(
     mask
 }
 
-/// The speed limits of zones, with cells of `resolution` \[m\] or larger ones if a zone is large; `None` without a slow zone. Where
-/// zones overlap the lowest limit counts.
+/// The speed limits of zones, with cells of `resolution` \[m\], or larger cells for a large zone; `None` without a slow zone. The lowest
+/// limit applies where zones overlap.
 #[must_use]
 pub fn slow_speeds<'z>(
     resolution: f64,
@@ -53,10 +53,10 @@ pub fn slow_speeds<'z>(
     SpeedMask::new(geometry, limits).ok()
 }
 
-/// Checks that a zone lies on the map, at least in part.
+/// Checks that a zone overlaps the map.
 ///
 /// # Errors
-/// When it lies wholly beside it.
+/// When the zone is completely outside the map.
 pub fn require_on_map(zone: &Zone, map: &GridGeometry) -> Result<(), Invalid> {
     let (low, high) = zone.bounds();
     let end = map.origin + Vector2::new(map.width as f64, map.height as f64) * map.resolution;
@@ -95,7 +95,8 @@ fn cells_between(low: f64, high: f64, geometry: &GridGeometry, cells: usize) -> 
     first..((last + 1.0) as usize).max(first)
 }
 
-/// The intervals of x \[m\] in which an outline or its inside touches a row of cells, from `bottom` on \[m\], as high as a cell.
+/// The intervals of x \[m\] in which an outline or its inside touches a row of cells; the row starts at y = `bottom` \[m\] and has the
+/// height of a cell.
 fn spans(corners: &[Vector2], bottom: f64, height: f64) -> Vec<(f64, f64)> {
     let top = bottom + height;
     let sides = || corners.iter().zip(corners.iter().cycle().skip(1));

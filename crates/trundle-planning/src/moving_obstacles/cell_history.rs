@@ -4,7 +4,7 @@ use trundle_core::Vector2;
 
 /// Side of a cell, m.
 pub(super) const CELL_SIDE_M: f64 = 0.05;
-/// Time of free observations after which a hit cell counts as left, s: walls flicker. Source: ours.
+/// Time of free observations after which a hit cell counts as left, s: measurements of walls flicker. Source: ours.
 const MAX_FLICKER_S: f64 = 0.5;
 /// Distance from static objects within which no arrival is detected, cells: pose and range are not exact. Source: ours.
 const STATIC_MARGIN_CELLS: i32 = 2;
@@ -64,7 +64,7 @@ impl CellHistory {
     /// Adds a free observation.
     pub(super) fn free(&mut self, point: Vector2, time: f64) {
         let seen = self.slot_mut(key_of(point));
-        // A beam beside a hit may pass the same cell.
+        // A beam next to a hit may pass through the same cell.
         if seen.hit_at < time {
             seen.free_at = time;
         }
@@ -82,7 +82,7 @@ impl CellHistory {
         (seen.hit_at, seen.hit) = (time, point);
     }
 
-    /// Whether the object hit at a point arrived recently, with no static object beside it.
+    /// Whether the object hit at a point arrived recently, without a static object next to the point.
     pub(super) fn has_arrived(&self, point: Vector2, time: f64) -> bool {
         let key = key_of(point);
         self.observed(key).is_some_and(|seen| seen.arrived && time - seen.since <= self.memory)
@@ -100,7 +100,7 @@ impl CellHistory {
         self.observed(key_of(point)).is_some_and(|seen| time - seen.hit_at <= MAX_FLICKER_S)
     }
 
-    /// Whether a point was seen free recently, with no static object there.
+    /// Whether a point was observed free recently, without a static object at the point.
     pub(super) fn is_open(&self, point: Vector2, time: f64) -> bool {
         let key = key_of(point);
         self.observed(key).is_some_and(|seen| time - seen.free_at <= 2.0 * self.memory)
@@ -112,8 +112,8 @@ impl CellHistory {
         self.observed(key_of(point)).is_some_and(|seen| seen.free_at > time)
     }
 
-    /// Hits within `reach` m of a point since a time, of objects that arrived, with no static object beside and not seen free since. A
-    /// single hit is noise.
+    /// Hits within `reach` m of a point since a time, from objects that arrived. Hits next to a static object, hits observed free since
+    /// then and single hits (noise) are left out.
     pub(super) fn unconfirmed_hits(&self, point: Vector2, reach: f64, since: f64) -> Vec<Vector2> {
         let is_there = |seen: &&Observed| seen.arrived && seen.is_hit_last() && seen.hit_at >= since;
         let there = |key: CellKey| self.observed(key).filter(is_there);
@@ -133,7 +133,7 @@ impl CellHistory {
         self.observed(key_of(point)).is_some_and(|seen| seen.hit_at > time)
     }
 
-    /// Whether a static object is at a point or beside it: one that did not arrive while observed.
+    /// Whether a static object, one that did not arrive during observation, is at or next to a point.
     pub(super) fn is_wall(&self, point: Vector2) -> bool {
         let stays = |seen: &Observed| seen.is_hit_last() && !seen.arrived;
         around(key_of(point), 1).any(|key| self.observed(key).is_some_and(stays))
@@ -194,7 +194,7 @@ mod tests {
         cells.hit(here, 0.1);
         cells.hit(wall, 0.1);
         assert!(cells.has_arrived(here, 0.1) && !cells.has_arrived(wall, 0.1));
-        // Beside a wall no arrival is detected, not even where the wall flickers.
+        // Next to a wall no arrival is detected, even if measurements of the wall flicker.
         let beside = wall + Vector2::new(0.05, 0.0);
         cells.free(beside, 0.1);
         cells.hit(beside, 0.2);

@@ -10,7 +10,7 @@ pub(super) struct Cluster {
     pub(super) radius: f64,
 }
 
-/// Groups hits (in the order of their bearings) that are at most `gap` m from another.
+/// Groups hits (in the order of their bearings) with gaps of at most `gap` m.
 pub(super) fn clusters(hits: &[Vector2], sensor: Vector2, gap: f64) -> Vec<Cluster> {
     let mut groups: Vec<Vec<Vector2>> = Vec::new();
     for hit in hits {
@@ -19,7 +19,7 @@ pub(super) fn clusters(hits: &[Vector2], sensor: Vector2, gap: f64) -> Vec<Clust
             None => groups.push(vec![*hit]),
         }
     }
-    // Legs, and objects partly hidden by something thin, are joined.
+    // Legs, and objects behind a thin occluder, are joined.
     let mut whole: Vec<Cluster> = Vec::new();
     for group in groups {
         let mut found = disc(group, sensor);
@@ -38,7 +38,7 @@ fn are_one(a: &Cluster, b: &Cluster, gap: f64) -> bool {
         && a.hits.iter().any(|p| b.hits.iter().any(|q| (p - q).norm() <= gap))
 }
 
-/// The disc whose near side the hits are: as deep as it is wide.
+/// The disc whose near side is formed by the hits; its depth equals its width.
 fn disc(hits: Vec<Vector2>, sensor: Vector2) -> Cluster {
     let mean = hits.iter().sum::<Vector2>() / hits.len() as f64;
     let away = (mean - sensor).try_normalize(1e-9).unwrap_or_else(Vector2::x);

@@ -7,10 +7,10 @@ use trundle_core::{
 
 /// Horizon of the constant-velocity forecast, s. Later motion is unknown. Source: ours.
 pub(crate) const FORECAST_HORIZON_S: f64 = 2.0;
-/// Time for which a person who stopped may walk on, s. A longer stop counts as static. Source: ours.
+/// Time for which a stopped person may continue to walk, s. A longer stop counts as static. Source: ours.
 pub(crate) const MAX_PAUSE_S: f64 = 10.0;
-/// Extra clearance of a new plan from moving obstacles, m: the velocities of the next scan differ a little, and must not
-/// invalidate a new plan. Source: ours.
+/// Extra clearance of a new plan from moving obstacles, m: small differences of velocity in the next scan must not invalidate the plan.
+/// Source: ours.
 const NEW_PLAN_MARGIN_M: f64 = 0.05;
 /// Time between two checks for an encounter, s. Source: ours.
 const CHECK_PERIOD_S: f64 = 0.02;
@@ -60,8 +60,8 @@ impl MovingObstacle {
     }
 }
 
-/// Time of the first encounter, s from now: a disc of `radius` m follows the trajectory, `from` seconds into it now, and overlaps an
-/// obstacle within the forecast horizon. An obstacle that overlaps already counts only while it comes nearer.
+/// Time of the first encounter, s from now. A disc of `radius` m follows the trajectory, from `from` s on, and overlaps an obstacle within
+/// the forecast horizon. An obstacle that overlaps at the start counts only while it approaches.
 pub(crate) fn first_encounter_of(
     trajectory: &Trajectory,
     from: f64,
@@ -117,8 +117,8 @@ pub(crate) fn delayed(
     paused(trajectory, 0.0, obstacles, radius)
 }
 
-/// The trajectory with the shortest wait at `stop` s, where it is at rest, after which it meets no obstacle within the horizon; and
-/// the wait, s.
+/// The trajectory with the shortest wait at `stop` s that then meets no obstacle within the horizon, and the wait, s. The trajectory is at
+/// rest at `stop`.
 pub(crate) fn paused(
     trajectory: &Trajectory,
     stop: f64,

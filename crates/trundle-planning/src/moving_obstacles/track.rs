@@ -19,19 +19,19 @@ pub(super) struct Track {
     seen: Vec<Observation>,
     sightings: usize,
     pub(super) velocity: Vector2,
-    /// Middle and radius of the hidden region where the object may be.
+    /// Middle and radius of the hidden region that may contain the object.
     hidden: Option<(Vector2, f64)>,
     /// Time and velocity of the last walk.
     walk: Option<(f64, Vector2)>,
 }
 
-/// Time for which an object that was not seen to leave is kept in the blind zone, s. Source: ours.
+/// Time for which an object in the blind zone counts as present unless observed to leave, s. Source: ours.
 pub(super) const MAX_HIDDEN_S: f64 = 10.0;
 /// Time for which scans may miss a visible person, s. Source: ours.
 const MAX_MISSED_S: f64 = 0.2;
 /// Distance from the sensor below which a person does not fit, m. Source: ours.
 const MIN_HIDDEN_RANGE_M: f64 = 0.35;
-/// Distance from the sensor above which it is not blind, m. Source: ours.
+/// Distance from the sensor above which no blind zone is assumed, m. Source: ours.
 const MAX_HIDDEN_RANGE_M: f64 = 0.8;
 /// Largest speed at which a person is assumed to walk on, m/s: a brisk walk. Source: ours.
 const MAX_WALKING_SPEED_M_S: f64 = 2.0;
@@ -68,8 +68,8 @@ impl Track {
         }
     }
 
-    /// Whether the track is kept at `time`. It is kept while it was observed a moment ago, or moved or stood in the present blind range
-    /// without a sighting outside. After an arrival in the blind range it is kept too: its motion there is not observable.
+    /// Whether the track continues at `time`. A track continues if it was just observed, or if it moved or stopped in the present blind
+    /// range without a sighting outside. A track that arrived in the blind range continues as well: its motion there is not observable.
     pub(super) fn is_kept(
         &mut self,
         time: f64,
@@ -86,7 +86,7 @@ impl Track {
         !self.is_lost(time, config) || self.hidden.is_some() || self.is_waiting(time, cells)
     }
 
-    /// Whether it walked recently, stopped, and was not seen to leave: half of its hits were not seen free since.
+    /// Whether the object walked recently, stopped, and was not observed to leave: half of its hits were not observed free since then.
     fn is_waiting(&self, time: f64, cells: &CellHistory) -> bool {
         let left = self.hits.iter().filter(|hit| cells.is_free_since(**hit, self.last_seen())).count();
         self.walked(time).is_some_and(|velocity| self.has_stopped(velocity)) && 2 * left <= self.hits.len()
@@ -97,7 +97,7 @@ impl Track {
         self.walk.filter(|(last, _)| time - last < MAX_PAUSE_S).map(|(_, velocity)| velocity)
     }
 
-    /// Whether it stopped, or is about to: a velocity over a second lags behind.
+    /// Whether the object has stopped or is stopping: a velocity over one second lags behind.
     fn has_stopped(&self, walk: Vector2) -> bool {
         2.0 * self.velocity.norm() < walk.norm()
     }
@@ -117,8 +117,8 @@ impl Track {
         Some((last, walk * (MAX_WALKING_SPEED_M_S / walk.norm()).min(1.0)))
     }
 
-    /// The path that a person who walked recently and stopped may take: overlapping discs (middle, no velocity, radius). It ends
-    /// at a wall and at the sensor.
+    /// The possible path of a person who walked recently and stopped: overlapping discs (middle, zero velocity, radius). The path ends at a
+    /// wall and at the sensor.
     pub(super) fn possible_path<'a>(
         &'a self,
         time: f64,
@@ -140,7 +140,7 @@ impl Track {
         })
     }
 
-    /// The part of its expected path that is near the sensor and was not seen free since, as a disc.
+    /// The part of the expected path near the sensor that was not observed free since then, as a disc.
     fn hidden_region(
         &self,
         sensor: Vector2,
@@ -154,7 +154,7 @@ impl Track {
         } else if 2 * self.hits.iter().filter(|hit| cells.is_hit_since(**hit, last.time)).count()
             > self.hits.len()
         {
-            // The object is visible and was there before: more than its edge is hit.
+            // The object is visible and was present before: more than its edge is hit.
             return None;
         } else {
             Vector2::zeros()
@@ -181,12 +181,12 @@ impl Track {
         }
     }
 
-    /// Whether it has not been observed for a window.
+    /// Whether the track had no observation for a window.
     pub(super) fn is_lost(&self, time: f64, config: &ObstacleTrackerConfig) -> bool {
         time - self.last_seen() > config.window
     }
 
-    /// Expected position of its middle.
+    /// Expected position of the object's middle.
     pub(super) fn expected(&self, time: f64) -> Vector2 {
         let last = self.last();
         last.at + self.velocity * (time - last.time)
@@ -202,7 +202,7 @@ impl Track {
 
     pub(super) fn add(&mut self, time: f64, cluster: Cluster, config: &ObstacleTrackerConfig) {
         if self.is_lost(time, config) {
-            // A new observation there may be another object.
+            // A new observation in the hidden region may be another object.
             (self.sightings, self.from, self.first) = (0, cluster.middle, cluster.hits.clone());
             self.seen.clear();
         }
@@ -219,19 +219,19 @@ impl Track {
         self.recent(config.window).iter().map(|sighting| sighting.radius).fold(config.smallest, f64::max)
     }
 
-    /// Discs that it occupied within the memory time.
+    /// Discs that the object occupied within the memory time.
     pub(super) fn trail(&self, config: &ObstacleTrackerConfig) -> impl Iterator<Item = (Vector2, f64)> + '_ {
         let radius = self.radius(config);
         self.seen.iter().map(move |sighting| (sighting.at, radius))
     }
 
-    /// Whether it may be in the blind zone.
+    /// Whether the object may be in the blind zone.
     pub(super) fn is_hidden(&self) -> bool {
         self.hidden.is_some()
     }
 
-    /// Whether it moves: it has left the position of its first observation by more than its radius. Other sides of an object that was
-    /// put down come into view, which shifts its middle by less.
+    /// Whether the object moves: its distance from the position of its first observation exceeds its radius. A static object shifts by less
+    /// when further sides of the object come into view.
     pub(super) fn moves(&self, cells: &CellHistory, config: &ObstacleTrackerConfig) -> bool {
         let left = self.first.iter().filter(|hit| !cells.is_hit(**hit, self.last_seen())).count();
         self.sightings >= config.sightings

@@ -1,13 +1,14 @@
 //! Moving obstacles in successive scans.
 //!
-//! Problem: a scan shows where an object is, not that it moves. Idea: a grid around the robot keeps for each cell when it was last
-//! seen free and since when it has been hit. A hit where the cell was free a moment ago belongs to an object that arrived. Such
-//! hits, near each other, are a cluster, taken for the near side of a disc. Clusters are associated with tracks by their expected
-//! positions; a line through a track's last positions, by least squares, is its velocity. A track counts as moving when it has
-//! left the position of its first observation. Cost: O(beams x reach / cell) per scan.
+//! Problem: a scan shows the position of an object, but not its motion. Idea: a grid around the robot stores for each cell the last time it
+//! was free, and the time since which it is hit. A hit in a recently free cell belongs to an object that arrived. Such hits, near each
+//! other, form a cluster, the near side of a disc. Clusters are associated with tracks by their expected positions. The velocity of a track
+//! is a least-squares line through its last positions. A track moves if it has left the position of its first observation. Cost: O(beams x
+//! reach
+//! / cell) per scan.
 //!
-//! A cell that was never seen free is not new: a wall that comes into view does not move. An object that stops may move on for
-//! 10 s. An object that arrived in the sensor's blind zone and was not seen to leave is kept there for up to 10 s.
+//! A cell that was never observed free is not new: a wall that comes into view does not move. An object that stops may move on for 10 s. An
+//! object that arrived in the sensor's blind zone counts as present for up to 10 s unless observed to leave.
 
 use crate::moving_obstacles::cell_history::{CELL_SIDE_M, CellHistory};
 use crate::moving_obstacles::cluster::{Cluster, clusters};
@@ -32,7 +33,7 @@ pub struct MovingObstacleTracker {
     /// Position of the sensor at the last scan, map frame.
     sensor: Vector2,
     tracks: Vec<Track>,
-    /// Hits of a scan within reach, map frame; kept as a buffer.
+    /// Hits of a scan within reach, map frame; the buffer is reused.
     hits: Vec<Vector2>,
 }
 
@@ -93,8 +94,8 @@ impl MovingObstacleTracker {
         self.begin.map_or(0.0, |begin| stamp - begin)
     }
 
-    /// Moving obstacles at `now`, a short time after the last scan. A person who walked within the last 10 s and stopped may walk on:
-    /// discs at rest cover the path of the next 2 s, so that plans pass behind, or wait.
+    /// Moving obstacles at `now`, a short time after the last scan. A person who walked within the last 10 s and stopped may continue:
+    /// discs at rest cover the path of the next 2 s. Plans then pass behind the person, or wait.
     pub fn moving_obstacles(&self, now: Stamp) -> Vec<MovingObstacle> {
         let now = self.seconds(now);
         let moving = self.moving().map(|track| track.state_at(now, &self.config));
@@ -107,9 +108,9 @@ impl MovingObstacleTracker {
         moving.chain(stopped).filter_map(obstacle).collect()
     }
 
-    /// Hits within `reach` m of a point, map frame, that may still be occupied: of objects that arrived while observed, last seen at
-    /// most 10 s before `now`, and not seen to leave, in view or in the blind zone. The map takes longer to show them. Empty for a
-    /// point that is not finite.
+    /// Hits within `reach` m of a point, map frame, that may still be occupied. They come from objects that arrived during observation,
+    /// were last observed at most 10 s before `now`, and were not observed to leave, in view or in the blind zone. The map shows such
+    /// objects only later. Empty for a point that is not finite.
     pub fn unconfirmed_hits(&self, now: Stamp, near: Vector2, reach: f64) -> Vec<Vector2> {
         if !near.iter().all(|n| is_coordinate(*n)) || reach.is_nan() {
             return Vec::new();
@@ -117,8 +118,8 @@ impl MovingObstacleTracker {
         self.cells.unconfirmed_hits(near, reach.min(self.config.reach), self.seconds(now) - MAX_HIDDEN_S)
     }
 
-    /// The grid without moving obstacles, and without the cells that they left and that were seen free since: a plan among moving
-    /// obstacles must not take them for walls.
+    /// The grid without moving obstacles, and without the cells that they left and that were observed free since then. A plan among moving
+    /// obstacles must not treat these cells as walls.
     pub fn static_grid(&self, grid: &OccupancyGrid) -> OccupancyGrid {
         let mut still = grid.clone();
         for track in self.moving() {
@@ -155,8 +156,8 @@ impl MovingObstacleTracker {
         }
     }
 
-    /// Marks the cells that beams passed. Near the sensor every second, fourth, ... beam is enough; where beams are far apart, the
-    /// range that both neighbours passed is free between them too.
+    /// Marks the cells that beams passed. Near the sensor every second, fourth, ... beam is enough. Between distant neighbouring beams, the
+    /// range passed by both counts as free.
     fn add_free(&mut self, map_from_base: Pose2, sensor: Vector2, scan: &Scan) {
         let step = scan.angle_increment();
         let between = (self.config.reach * step / CELL_SIDE_M).ceil().clamp(1.0, MAX_RAYS_BETWEEN) as usize;
@@ -165,7 +166,7 @@ impl MovingObstacleTracker {
                 let angle = map_from_base.theta + scan.angle(i) + part * step;
                 Vector2::new(angle.cos(), angle.sin())
             };
-            // Nearer than this the beams i +- 2^k with more zeros lie within a cell's side of each other.
+            // At smaller ranges the beams i +- 2^k with more zeros are within a cell's side of each other.
             let apart = step * (1_u64 << (i | 1 << 16).trailing_zeros()) as f64;
             let near = if between == 1 { CELL_SIDE_M / (4.0 * apart) } else { 0.0 };
             let end = self.passed(scan, i);
@@ -197,8 +198,8 @@ impl MovingObstacleTracker {
         }
     }
 
-    /// Associates clusters with tracks, nearest first, visible tracks before hidden ones; remaining clusters start tracks. Tracks
-    /// without an observation for a window end, except those in the blind zone, and those that stopped and were not seen to leave.
+    /// Associates clusters with tracks, nearest first, visible tracks before hidden ones; remaining clusters start tracks. Tracks without
+    /// an observation for a window end, except those in the blind zone and stopped ones that were not observed to leave.
     fn associate(&mut self, clusters: Vec<Cluster>) {
         let (time, sensor, config) = (self.time, self.sensor, self.config);
         let mut pairs = Vec::new();
@@ -232,10 +233,10 @@ fn is_coordinate(coordinate: f64) -> bool {
     coordinate.abs() < 1e6
 }
 
-/// Frees the occupied cells of a disc where `may` holds for the cell's centre.
+/// Frees the occupied cells of a disc for which `may` accepts the cell's centre.
 fn free_disc(grid: &mut OccupancyGrid, (middle, radius): (Vector2, f64), may: impl Fn(Vector2) -> bool) {
     let geometry = *grid.geometry();
-    // One cell more: the map marks the cells that hold the hits.
+    // The radius has one extra cell: the map marks the cells that contain the hits.
     let reach = radius + geometry.resolution * std::f64::consts::SQRT_2;
     let index =
         |at: f64, size: usize| (at / geometry.resolution).floor().clamp(0.0, size as f64 - 1.0) as usize;

@@ -29,8 +29,8 @@ const LANE_HALF_WIDTH_M: f64 = 0.2;
 
 /// Plans waypoints, a verified curve and a trajectory from a grid, a pose and a goal.
 ///
-/// The robot is the circumscribed disc of its footprint where that fits, else the polygon. Deterministic: equal requests give
-/// equal results, bit for bit.
+/// The robot is the circumscribed disc of its footprint if this disc fits, else the polygon. Deterministic: equal requests give equal
+/// results, bit for bit.
 #[derive(Debug)]
 pub struct Planner {
     core: PlannerCore,
@@ -77,7 +77,7 @@ impl Planner {
         })
     }
 
-    /// Limits the forward speed of the next plans, m/s, above 0. The robot's own limit stays.
+    /// Limits the forward speed of the next plans, m/s, above 0. The robot's own limit still applies.
     pub fn limit_speed(&mut self, speed: f64) {
         self.core.drive.limits.v = speed.min(self.full_speed);
     }
@@ -92,13 +92,13 @@ impl Planner {
         self.core.times
     }
 
-    /// Sets the keep-out mask: its occupied cells are obstacles too. The mask may have its own resolution and extent: every cell of
-    /// the grid that it touches is forbidden.
+    /// Sets the keep-out mask: its occupied cells are obstacles too. The mask may have its own resolution and extent: every cell of the
+    /// grid that overlaps an occupied cell of the mask is forbidden.
     pub fn set_keep_out(&mut self, mask: Option<OccupancyGrid>) {
         self.core.keep_out = mask;
     }
 
-    /// Sets the cost mask: a path through its costs is taken only where it saves more than they add.
+    /// Sets the cost mask: a path through costly cells is taken only if the detour costs more.
     pub fn set_cost_mask(&mut self, mask: Option<CostMask>) {
         self.core.cost_mask = mask;
     }
@@ -110,8 +110,8 @@ impl Planner {
 
     /// Plans from `start`, moving with `start_twist`, to rest at `goal` (map frame).
     ///
-    /// A robot that moves forward gets a trajectory that continues its motion. Where no curve does, it brakes on its arc first.
-    /// Where even that has no clearance, the plan starts from rest and is marked so ([`PlanResult::is_continuous`]).
+    /// A robot that moves forward gets a trajectory that continues its motion. Without such a curve, the robot first brakes on its arc. If
+    /// the arc has no clearance either, the plan starts from rest, which [`PlanResult::is_continuous`] reports.
     pub fn plan(&mut self, grid: &OccupancyGrid, start: Pose2, start_twist: Twist2, goal: Pose2) -> Plan {
         self.core.plan_on(grid, None, start, start_twist, goal)
     }
@@ -131,7 +131,7 @@ impl Planner {
     /// Plans through `goals` in order, at rest at each.
     ///
     /// # Errors
-    /// The number of the goal that cannot be reached from the one before, and the reason; goal 0 and a refusal without goals.
+    /// The number of the first goal that cannot be reached from the previous one, and the reason; without goals, number 0 and a refusal.
     pub fn plan_multi_goal(
         &mut self,
         grid: &OccupancyGrid,
@@ -157,9 +157,10 @@ impl Planner {
         self.multi_goal(grid, Some(graph), (start, start_twist), goals)
     }
 
-    /// Like [`Planner::plan`], among moving obstacles. Each is forecast at constant velocity for 2 s; obstacles at rest are treated
-    /// as static where that costs less than 10 s. The result passes them, or waits: at the start, or at a stop on the path for a
-    /// moving robot, whichever arrives earlier. Where both fail: [`Plan::Blocked`] at the start, and the robot should stop.
+    /// Like [`Planner::plan`], among moving obstacles. Each is forecast at constant velocity for 2 s; obstacles at rest are treated as
+    /// static if that costs less than 10 s. The result passes the obstacles, or waits: at the start, or at a stop on the path for a moving
+    /// robot. The variant with the earlier arrival is chosen. If both fail, the result is [`Plan::Blocked`] at the start, and the robot
+    /// should stop.
     pub fn plan_among_moving(
         &mut self,
         grid: &OccupancyGrid,
@@ -183,7 +184,7 @@ impl Planner {
         {
             return Plan::Found(plan);
         }
-        // Plan again: the distance field is that of the closed grid.
+        // Plans again: the distance field is that of the closed grid.
         match self.plan(grid, start, start_twist, goal) {
             Plan::Found(plan) => self.past(grid, obstacles, plan, start_twist, goal),
             none => none,
@@ -220,8 +221,8 @@ impl Planner {
         }
     }
 
-    /// The grid closed at the resting obstacles, and a plan on it: continuous, to the goal itself, and short enough compared with the
-    /// `direct` one (s) that waiting until the obstacles are static is not faster.
+    /// A plan on the grid closed at the resting obstacles. It is continuous, leads to the goal itself, and is faster than a wait until the
+    /// obstacles are static, compared with the `direct` plan (s).
     fn clear_of_standing(
         &mut self,
         grid: &OccupancyGrid,
@@ -240,8 +241,8 @@ impl Planner {
         is_good.then_some((closed, plan))
     }
 
-    /// Decides, `time` seconds into the plan `current`, whether it holds after changes of map, goal or moving obstacles. Its rest is
-    /// kept while it leads to `goal` and stays free. Otherwise the new plan starts at its reference pose and twist: continuous in
+    /// Decides, `time` seconds into the plan `current`, whether the plan is valid after changes of map, goal or moving obstacles. The rest
+    /// of the plan remains while it leads to `goal` and is free. Otherwise a new plan starts at its reference pose and twist: continuous in
     /// position, heading, curvature and speed (see [`PlanResult::is_continuous`]).
     pub fn replan(
         &mut self,
@@ -265,8 +266,8 @@ impl Planner {
     /// Whether the rest of `trajectory`, from `from` seconds on, is free on a newer grid and the keep-out mask.
     ///
     /// # Errors
-    /// The first contact of the footprint. A footprint that overlaps an obstacle already may continue as long as it comes no deeper,
-    /// near there only, like a plan that starts there.
+    /// The first contact of the footprint. A footprint that overlaps an obstacle at the start may continue near the start while its overlap
+    /// does not grow, like a plan from such a start.
     pub fn validate_trajectory(
         &self,
         grid: &OccupancyGrid,
@@ -279,7 +280,7 @@ impl Planner {
         validate_layers(&layers, trajectory, from, &shape, |pose| self.escape(grid, pose, &shape))
     }
 
-    /// The escape of a shape from what it overlaps at a pose, on the grid and the mask.
+    /// The escape of a shape from its overlap at a pose, on the grid and the mask.
     fn escape(&self, grid: &OccupancyGrid, pose: Pose2, shape: &RobotShape) -> Option<ShapeEscape> {
         let around = cells_around(grid.geometry(), pose.position(), max_overlap(shape), shape.radius);
         let mut around = cut(grid, around);
@@ -329,7 +330,7 @@ impl Planner {
         Ok(MultiGoalPlan::new(legs))
     }
 
-    /// The direct plan with a stop on its first curve, and a wait there, that lets the obstacles pass; and the wait, s.
+    /// The direct plan with a stop and a wait on its first curve while the obstacles pass; and the wait, s.
     fn with_yield_stop(
         &self,
         grid: &OccupancyGrid,
@@ -342,7 +343,7 @@ impl Planner {
         with_yield_stop(&query, direct, obstacles)
     }
 
-    /// A plan past the moving obstacles: the cells of each encounter are closed around its time, until there is none.
+    /// A plan around the moving obstacles: the cells of each encounter are closed around its time, until the plan has no encounter.
     fn plan_around(
         &mut self,
         grid: &OccupancyGrid,

@@ -104,7 +104,7 @@ impl PlannerCore {
         plan
     }
 
-    /// For a goal off the map: to the reachable point on the map that is nearest to the goal's nearest cell, where the tolerance allows it.
+    /// Plan for a goal outside the map: to the reachable point nearest to the goal's nearest cell, if within the tolerance.
     fn plan_to_the_edge(&mut self, grid: &OccupancyGrid, q: Request<'_>, beyond: f64) -> Plan {
         let edge = nearest_centre(grid.geometry(), q.goal.position());
         let goal = Pose2::new(edge.x, edge.y, q.goal.theta);
@@ -120,7 +120,7 @@ impl PlannerCore {
         }
     }
 
-    /// A plan by other points of cells than their centres: of cells of half the side, if these are not too many.
+    /// A plan with other points of cells than their centres, or with cells of half the side if their number allows it.
     fn plan_finely(
         &mut self,
         grid: &OccupancyGrid,
@@ -166,7 +166,7 @@ impl PlannerCore {
         }
     }
 
-    /// The distance field over `geometry`: the last one, updated, where it covers the same cells.
+    /// The distance field over `geometry`: the last field, updated, if it covers the same cells.
     fn updated_field(
         &self,
         last: Option<DistanceField>,

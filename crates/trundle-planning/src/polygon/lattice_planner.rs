@@ -1,8 +1,8 @@
 //! A search over straight moves and turns in place for a polygonal footprint, each motion swept without contact.
 //!
-//! Problem: the circumscribed disc of a long robot does not fit where the robot does at the right heading. Idea: search over cell
-//! and heading at once: a step along the heading, or a turn to the next of 16 headings, each motion checked exactly; the heuristic
-//! is the [`CoarseHeuristic`] of the inscribed disc. Complete on its lattice. Cost: O(16 cells reached).
+//! Problem: the circumscribed disc of a long robot does not fit through a gap that the robot passes at the right heading. Idea: a joint
+//! search over cell and heading. A motion is a step along the heading or a turn to the next of 16 headings, and is checked exactly. The
+//! heuristic is the [`CoarseHeuristic`] of the inscribed disc. Complete on its lattice. Cost: O(16 cells reached).
 
 use crate::geometry::bearing;
 use crate::polygon::robot_shape::RobotShape;
@@ -27,15 +27,15 @@ const SEED_MARK: u8 = 3;
 #[derive(Debug, Default)]
 pub(crate) struct LatticePlanner {
     cost: Vec<u32>,
-    /// How a state was reached. 0: by a step; 1, 2: by a turn to the left, to the right; [`SEED_MARK`].
+    /// Motion by which each state was reached. 0: a step; 1, 2: a turn to the left, to the right; [`SEED_MARK`].
     arrival: Vec<u8>,
     queue: BucketQueue,
     heuristic: CoarseHeuristic,
 }
 
 impl LatticePlanner {
-    /// Poses from `start` to `goal`, each reached from the one before by a turn in place or a straight move along its heading; or
-    /// the reachable point nearest to the goal. Both ends must be free.
+    /// Poses from `start` to `goal`, each reached from the previous one by a turn in place or a straight move along its heading; or the
+    /// reachable point nearest to the goal. Both ends must be free.
     pub(crate) fn run(
         &mut self,
         space: &ConfigurationSpace<'_>,
@@ -47,7 +47,7 @@ impl LatticePlanner {
         if !inside(start) || !inside(goal) {
             return Err(start.position());
         }
-        // Along a wall that it touches, a robot moves straight or not at all.
+        // A robot that touches a wall moves straight along it or not at all.
         if let Some(straight) = link(space, shape, start, goal) {
             return Ok(std::iter::once(start).chain(straight).collect());
         }
@@ -211,8 +211,8 @@ const ENTRY_DISTANCE_M: f64 = 1.5;
 /// Step of the search for the entry, m. Source: ours.
 const ENTRY_STEP_M: f64 = 0.05;
 
-/// The entry into the lattice from `pose`, or the exit for it (`side` -1: behind it): the nearest cells that `links` reaches from
-/// the pose, or from a pose straight ahead; that pose, and the cells.
+/// The entry into the lattice from `pose`, or the exit to it (`side` -1: behind it). The result is the cells that `links` reaches from the
+/// pose or from a pose straight ahead, and that pose.
 fn lattice_entry(
     space: &ConfigurationSpace<'_>,
     shape: &RobotShape,

@@ -1,8 +1,8 @@
 //! The robot's footprint among the occupied cells: exact gaps, and motions without contact.
 //!
-//! Problem: is a motion free of contact, also between the poses that are checked? Idea: a footprint with a gap g may move until
-//! one of its points has moved by g (conservative advancement, \[Mirtich96\]). Steps below [`MIN_ADVANCE_M`] are not taken, so an
-//! overlap deeper than half of it is never missed. Cost: O(cells near the footprint) per check.
+//! Problem: is a motion free of contact, also between the checked poses? Idea: a footprint with a gap g may move until one of its points
+//! has moved by g (conservative advancement, \[Mirtich96\]). The shortest step is [`MIN_ADVANCE_M`]: an overlap deeper than half of this
+//! step is always found. Cost: O(cells near the footprint) per check.
 
 use crate::search::escape::Escape;
 use trundle_collision::CONTACT_TOLERANCE_M;
@@ -11,7 +11,7 @@ use trundle_collision::square::{point_to_square, polygon_to_square};
 use trundle_core::{Footprint, Pose2, Vector2};
 use trundle_grid::DistanceField;
 
-/// Shortest advance between two checks, m. An overlap of less than half of it may be missed. Source: ours.
+/// Shortest advance between two checks, m. An overlap below half of this may be missed. Source: ours.
 const MIN_ADVANCE_M: f64 = 4e-4;
 
 /// Largest overlap that is measured for a polygon, m; or to the axle. A deeper one is not planned out of. Source: ours.
@@ -31,15 +31,15 @@ pub(crate) struct RobotShape {
     leaving: Option<Box<Leaving>>,
 }
 
-/// A footprint that leaves what it overlaps at the start.
+/// A footprint that leaves its overlap at the start.
 #[derive(Debug, Clone, PartialEq)]
 struct Leaving {
     escape: Escape,
-    /// The footprint, shrunk until it touches nothing at the start.
+    /// The footprint, shrunk until it is free at the start.
     slim: RobotShape,
 }
 
-/// By how much a disc overlaps obstacles, m; `None` if it touches none.
+/// Overlap of a disc with obstacles, m; `None` if the disc is free.
 pub(crate) fn missing_about_disc(field: &DistanceField, at: Vector2, radius: f64) -> Option<f64> {
     (!field.keeps(at, radius)).then(|| radius - field.clearance(at, radius))
 }
@@ -70,7 +70,7 @@ impl RobotShape {
         }
     }
 
-    /// The shape with its boundary `by` m further in; `None` if nothing remains, or a side vanishes.
+    /// The shape with its boundary moved inwards by `by` m; `None` if no area remains, or a side vanishes.
     pub(crate) fn shrunk(&self, by: f64) -> Option<Self> {
         if self.is_disc() {
             let radius = self.radius - by;
@@ -83,7 +83,7 @@ impl RobotShape {
         })
     }
 
-    /// Depth of the overlap at a pose, m: the amount by which the shape must shrink to be free; at most `cap`.
+    /// Depth of the overlap at a pose, m: the shape shrunk by this amount is free; at most `cap`.
     pub(crate) fn overlap(&self, field: &DistanceField, pose: Pose2, cap: f64) -> f64 {
         const ROUNDS: usize = 12;
         if self.is_disc() {
@@ -101,7 +101,7 @@ impl RobotShape {
         (0..ROUNDS).fold((0.0, cap), halve).1
     }
 
-    /// By how much the shape overlaps obstacles at a goal, m; `None` if it stands free there. The one decision behind
+    /// Overlap of the shape with obstacles at a goal, m; `None` if the shape is free. The one decision behind
     /// [`Plan::GoalInObstacle`](crate::Plan::GoalInObstacle).
     pub(crate) fn missing_at_goal(&self, field: &DistanceField, goal: Pose2) -> Option<f64> {
         if self.is_disc() {
@@ -111,7 +111,8 @@ impl RobotShape {
         (!is_free).then(|| self.overlap(field, goal, self.inner.max(MAX_OVERLAP_M)))
     }
 
-    /// The same shape, treated as `by` m smaller near `start` against what it overlaps there: it may leave that, and come no deeper.
+    /// The same shape, treated near `start` as `by` m smaller against the obstacles that it overlaps there: it may leave the overlap but
+    /// not deepen it.
     pub(crate) fn leaving(&self, field: &DistanceField, start: Pose2, by: f64) -> Option<Self> {
         let slim = self.shrunk(by)?;
         let (outline, half) = (self.outline(start), field.geometry().resolution / 2.0);
@@ -123,7 +124,7 @@ impl RobotShape {
         Some(Self { leaving: Some(Box::new(Leaving { escape, slim })), ..self.clone() })
     }
 
-    /// Depth inside what it leaves, m; 0 if it leaves nothing.
+    /// Depth of the overlap that the shape leaves, m; 0 without one.
     pub(crate) fn depth(&self) -> f64 {
         self.leaving.as_ref().map_or(0.0, |leaving| leaving.escape.depth)
     }
@@ -137,7 +138,7 @@ impl RobotShape {
         self.corners.is_empty()
     }
 
-    /// Distance from obstacles that counts as free, m: of the axle for a disc, of the boundary for a polygon.
+    /// Required distance from obstacles, m: of the axle for a disc, of the boundary for a polygon.
     pub(crate) fn needs(&self) -> f64 {
         if self.is_disc() { self.radius } else { MIN_ADVANCE_M }
     }
@@ -149,8 +150,8 @@ impl RobotShape {
         self.corners.iter().map(|c| pose.position() + along * c.x + across * c.y).collect()
     }
 
-    /// The exact distance between the footprint at a pose and the nearest obstacle, at most `cap` m; 0 if they meet. While it
-    /// leaves an overlap: the distance that it may still come nearer.
+    /// The exact distance between the footprint at a pose and the nearest obstacle, at most `cap` m; 0 if they meet. While the shape leaves
+    /// an overlap: the distance by which it may still approach.
     pub(crate) fn gap(&self, field: &DistanceField, pose: Pose2, cap: f64) -> f64 {
         match &self.leaving {
             Some(leaving) if leaving.escape.covers(pose.position()) => {

@@ -9,8 +9,7 @@ use crate::search::configuration_space::ConfigurationSpace;
 use crate::search::geodesic_search::SearchOutcome;
 use trundle_core::{Pose2, Twist2};
 
-/// Path, curve and timing, or the reason why there is none: for the circumscribed disc first, and where that does not fit, for
-/// the polygon.
+/// Path, curve and timing, or the reason for their absence: for the circumscribed disc first; if the disc does not fit, for the polygon.
 pub(crate) fn plan(
     query: &PlanQuery<'_>,
     memory: &mut SearchBuffers,
@@ -75,8 +74,8 @@ fn plan_disc_or_polygon(
     }
 }
 
-/// Whether a path between the cell centres may lead to the goal, or near enough to a blocked one. Every point of such a path
-/// lies within half a cell's diagonal of a centre, whose clearance is at most that much smaller. With graphs too.
+/// Whether a path between the cell centres may lead to the goal, or near enough to a blocked goal. Every point of such a path is within
+/// half a cell's diagonal of a centre, and the centre's clearance is smaller by at most this distance. The test also holds for graphs.
 pub(crate) fn may_be_tight(
     query: &PlanQuery<'_>,
     memory: &mut SearchBuffers,

@@ -12,7 +12,7 @@ use crate::search::grid_path::GridPath;
 use crate::timing::trajectory::can_follow;
 use trundle_core::{Pose2, Twist2, Vector2};
 
-/// To the goal, or to the reachable point nearest to it, at most `tolerance` m off.
+/// Plan to the goal, or to the reachable point nearest to it, within `tolerance` m.
 pub(crate) fn plan_disc(
     query: &PlanQuery<'_>,
     search: &mut GeodesicSearch,
@@ -52,7 +52,7 @@ pub(crate) fn plan_disc(
     Plan::Found(plan)
 }
 
-/// Along a path: continuing the motion under way, or after braking, or from rest.
+/// Plan along a path: continuing the present motion, or after braking, or from rest.
 fn plan_along(
     query: &PlanQuery<'_>,
     search: &mut GeodesicSearch,
@@ -74,7 +74,7 @@ fn plan_along(
     let still = twist.v.abs() <= REST_SPEED_M_S;
     match query.route(&context, &path.points, start, goal, None) {
         Some(phases) => query.timed(path, phases, start, 0.0, still),
-        // A polygon that leaves a wall, or turns beside it, may touch what its disc would not.
+        // A polygon that leaves a wall, or turns next to it, may touch it while its disc would not.
         None => Plan::Blocked { nearest: start.position() },
     }
 }
@@ -101,7 +101,7 @@ pub(crate) fn turn_only(query: &PlanQuery<'_>, start: Pose2, twist: Twist2, goal
     }
 }
 
-/// Brakes along the present arc, then plans from there.
+/// Brakes along the present arc, then plans from its end.
 fn brake_first(
     query: &PlanQuery<'_>,
     search: &mut GeodesicSearch,

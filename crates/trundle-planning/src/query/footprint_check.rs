@@ -1,4 +1,4 @@
-//! Whether a robot could stand at a pose, by a map alone.
+//! Check of a pose against a map, without a plan.
 
 use crate::masks::keep_out::cut;
 use crate::masks::zone_cells::forbidden_cells;
@@ -7,8 +7,8 @@ use crate::search::escape::cells_around;
 use trundle_core::{Footprint, GridGeometry, OccupancyGrid, Pose2, Zone};
 use trundle_grid::{DistanceField, UnknownIs};
 
-/// Whether a robot could stand at a pose: the planner's own decision behind [`Plan::GoalInObstacle`](crate::Plan::GoalInObstacle),
-/// without a plan. Costs as much as the cells around the robot.
+/// Check whether the robot fits at a pose: the planner's own decision for [`Plan::GoalInObstacle`](crate::Plan::GoalInObstacle), without a
+/// plan. The cost is proportional to the number of cells around the robot.
 #[derive(Debug, Clone)]
 pub struct FootprintCheck {
     shape: RobotShape,
@@ -21,8 +21,8 @@ impl FootprintCheck {
         Self { shape: RobotShape::new(footprint) }
     }
 
-    /// By how much the footprint overlaps occupied cells at a pose of the map frame, m; 0 if it stands free. Unknown floor and floor
-    /// outside the map are free. A pose that is not finite overlaps nothing.
+    /// Depth of the footprint's overlap with occupied cells at a pose of the map frame, m; 0 if free. Unknown floor and floor outside the
+    /// map are free. A pose that is not finite gives 0.
     #[must_use]
     pub fn overlap(&self, grid: &OccupancyGrid, pose: Pose2) -> f64 {
         if !(pose.x.is_finite() && pose.y.is_finite() && pose.theta.is_finite()) {
@@ -34,8 +34,8 @@ impl FootprintCheck {
         self.shape.missing_at_goal(&field, pose).unwrap_or(0.0)
     }
 
-    /// By how much the footprint reaches into a no-go zone at a pose of the map frame, m; 0 if it does not. The zone covers every cell
-    /// of the lattice that it touches, as on the map that plans are made on.
+    /// Depth of the footprint's overlap with a no-go zone at a pose of the map frame, m; 0 without overlap. The zone covers every cell of
+    /// the lattice that it touches, as in the planner's map.
     #[must_use]
     pub fn overlap_with_zone(&self, zone: &Zone, lattice: &GridGeometry, pose: Pose2) -> f64 {
         let (low, high) = zone.bounds();

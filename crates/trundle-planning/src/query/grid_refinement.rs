@@ -2,7 +2,7 @@
 
 use trundle_core::{GridGeometry, OccupancyGrid};
 
-/// Largest number of cells of a refined grid. Larger ones are not tried: memory and time grow with the cells. Source: ours.
+/// Largest number of cells of a refined grid. Larger grids are not tried: memory and time grow with the cells. Source: ours.
 const MAX_REFINED_CELLS: usize = 16_000_000;
 
 /// The same grid in cells of half the side; `None` if it would have too many.

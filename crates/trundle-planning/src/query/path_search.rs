@@ -11,12 +11,12 @@ use trundle_core::Vector2;
 
 /// Number of graph nodes that are tried as entry and as exit. Source: ours.
 const GRAPH_ENTRIES: usize = 3;
-/// Largest ratio of an entry's distance to that of the nearest node; the robot would leave the lanes unused. Source: ours.
+/// Largest ratio of an entry's distance to that of the nearest node; with a larger one the robot would not use the lanes. Source: ours.
 const MAX_ENTRY_RATIO: f64 = 1.5;
 /// Distance of an entry added to that ratio, m. Source: ours.
 const MAX_ENTRY_EXTRA_M: f64 = 1.0;
 
-/// The path to the goal: over the waypoint graph if there is one.
+/// The path to the goal, over the waypoint graph if one is given.
 pub(crate) fn find_path(
     query: &PlanQuery<'_>,
     search: &mut GeodesicSearch,
@@ -73,7 +73,7 @@ fn along_lanes(
     Ok(path)
 }
 
-/// Waypoints by the configured method; the reachable point nearest to the goal when there is no path.
+/// Waypoints by the configured method; without a path, the reachable point nearest to the goal.
 fn path_leg(
     query: &PlanQuery<'_>,
     search: &mut GeodesicSearch,

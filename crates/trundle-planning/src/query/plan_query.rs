@@ -26,7 +26,7 @@ use trundle_grid::DistanceField;
 pub(crate) const SAME_PLACE_M: f64 = 1e-3;
 /// Speed below which a robot counts as at rest, m/s. Source: ours.
 pub(crate) const REST_SPEED_M_S: f64 = 0.01;
-/// Smallest radius of a search, m: an axle outside the footprint has no clearance of its own. Source: ours.
+/// Smallest radius of a search, m; used for an axle outside the footprint, whose clearance is 0. Source: ours.
 pub(crate) const MIN_SEARCH_RADIUS_M: f64 = 0.01;
 
 /// One planning request on one distance field.
@@ -40,7 +40,7 @@ pub(crate) struct PlanQuery<'a> {
     pub(crate) cost_mask: Option<&'a CostMask>,
     pub(crate) graph: Option<&'a WaypointGraph>,
     pub(crate) timer: &'a StageTimer,
-    /// Whether cells have other points than their centres: on the second attempt, for gaps that the robot just fits.
+    /// Whether cells use other points than their centres: on the second attempt, for gaps that just fit the robot.
     pub(crate) is_fine: bool,
 }
 
@@ -80,7 +80,7 @@ impl PlanQuery<'_> {
         RouteContext { space, shape, config: &self.config.curve }
     }
 
-    /// Whether the footprint touches nothing.
+    /// Whether the footprint is free of contact.
     pub(crate) fn fits(&self, pose: Pose2) -> bool {
         self.shape.gap(self.field, pose, 1e-3) > 0.0
     }
@@ -147,8 +147,8 @@ impl PlanQuery<'_> {
         near.min(exploring).min(self.speeds.map_or(f64::INFINITY, |mask| mask.limit(at)))
     }
 
-    /// The smallest exact clearance beside the robot along the trajectory, m; cells are measured only where the interpolated distance
-    /// could make it smaller.
+    /// The smallest exact clearance of the robot along the trajectory, m. Cells are measured only if the interpolated distance could reduce
+    /// it.
     fn smallest_clearance(&self, trajectory: &Trajectory) -> f64 {
         if self.shape.depth() > 0.0 {
             return -self.shape.depth();

@@ -1,4 +1,4 @@
-//! Plans for a polygonal footprint where its circumscribed disc does not fit.
+//! Plans for a polygonal footprint whose circumscribed disc does not fit.
 
 use crate::curve::phase::Phase;
 use crate::curve::route::{RouteContext, is_drivable, straight};
@@ -21,9 +21,8 @@ struct PolygonPath {
     path: GridPath,
 }
 
-/// By straight moves and turns of the polygon; along a curve if one is free. A moving robot continues along a curve, or
-/// brakes on its arc first; where neither is free, the plan starts from rest and is marked so. `by_disc`: the plan of the
-/// circumscribed disc.
+/// Plans straight moves and turns of the polygon, or a curve if one is free. A moving robot continues along a curve, or brakes on its arc
+/// first. If neither is free, the plan starts from rest and is not continuous. `by_disc`: the plan of the circumscribed disc.
 pub(crate) fn plan_polygon(
     query: &PlanQuery<'_>,
     memory: &mut SearchBuffers,
@@ -68,8 +67,8 @@ pub(crate) fn plan_polygon(
     }
 }
 
-/// Whether not even the largest inscribed disc passes, smaller by half a cell's diagonal, as it would on any path between cell
-/// centres: a quick test, where the search over headings would expand everything.
+/// Whether even the largest inscribed disc, reduced by half a cell's diagonal, has no path. This quick test avoids a search over headings
+/// that would expand everything.
 fn is_disconnected(query: &PlanQuery<'_>, search: &mut GeodesicSearch, start: Pose2, goal: Pose2) -> bool {
     let geometry = query.field.geometry();
     let (middle, radius) = query.shape.inscribed;
@@ -84,8 +83,7 @@ fn is_disconnected(query: &PlanQuery<'_>, search: &mut GeodesicSearch, start: Po
     matches!(search.run(&space, from, to), SearchOutcome::Unreachable(_))
 }
 
-/// Whether a path between cell centres may lead to the goal: the polygon passes where its boundary is half a cell's diagonal
-/// further in.
+/// Whether a path between cell centres may lead to the goal: the polygon is tested with its boundary half a cell's diagonal further in.
 pub(crate) fn may_pass(query: &PlanQuery<'_>, memory: &mut SearchBuffers, start: Pose2, goal: Pose2) -> bool {
     if !(query.fits(start) && query.fits(goal)) || is_disconnected(query, &mut memory.search, start, goal) {
         return false;
@@ -151,7 +149,7 @@ fn phases_from_rest(
         .or_else(|| straight(context, &polygon_path.poses))
 }
 
-/// Brakes along the present arc, where its sweep is free, then plans from there.
+/// Brakes along the present arc if its sweep is free, then plans from its end.
 fn brake_then_plan(
     query: &PlanQuery<'_>,
     lattice_planner: &mut LatticePlanner,

@@ -43,7 +43,7 @@ impl StageTimer {
         self.times.get()
     }
 
-    /// Does `work` and adds its time to a stage.
+    /// Runs `work` and adds its time to a stage.
     pub(crate) fn time<T>(&self, stage: fn(&mut PlanningTimes) -> &mut f64, work: impl FnOnce() -> T) -> T {
         let Some(clock) = self.clock else { return work() };
         let begin = clock();

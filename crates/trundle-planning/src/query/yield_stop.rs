@@ -1,4 +1,4 @@
-//! A stop on the path that lets a moving obstacle pass.
+//! A stop on the path until a moving obstacle has passed.
 
 use crate::curve::phase::Phase;
 use crate::moving_obstacles::forecast::{MovingObstacle, first_encounter_of, paused};
@@ -10,8 +10,8 @@ use trundle_core::Trajectory;
 /// Number of stop positions that are tried, from the earliest possible stop to the encounter. Source: ours.
 const STOP_CANDIDATES: usize = 8;
 
-/// The plan's phases with a stop on the first curve and a wait there, after which no moving obstacle is met; and the wait, s. Of
-/// the candidates, the one that arrives first.
+/// The plan's phases with a stop and a wait on the first curve, after which no moving obstacle is met; and the wait, s. Among the
+/// candidates, the one with the earliest arrival is chosen.
 pub(crate) fn with_yield_stop(
     query: &PlanQuery<'_>,
     plan: &PlanResult,

@@ -1,13 +1,13 @@
 //! A bucket queue \[Dial69\]: whole-numbered keys that never decrease, one list per key, in a ring.
 
-/// A cell and the cost at which it was reached.
+/// A cell and its cost when queued.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Entry {
     pub(crate) cell: u32,
     pub(crate) cost: u32,
 }
 
-/// A monotone bucket queue. Of equal keys, the newest entry comes first.
+/// A monotone bucket queue. Among equal keys, the newest entry comes first.
 #[derive(Debug, Default)]
 pub(crate) struct BucketQueue {
     lists: Vec<Vec<Entry>>,

@@ -1,4 +1,4 @@
-//! Points that stand for cells in a search: their centres, their corners, or of nine points of each a chosen one.
+//! Representative points of cells in a search: their centres, their corners, or one of nine points of each.
 
 use trundle_core::Vector2;
 
@@ -8,7 +8,7 @@ pub(crate) const OFFSETS: [(i8, i8); 9] =
 /// Marks a cell without a free point.
 pub(crate) const NO_POINT: u8 = u8::MAX;
 
-/// The point that stands for each cell.
+/// The representative point of each cell.
 pub(crate) enum CellPoints {
     Centres,
     UpperCorners,
@@ -20,7 +20,7 @@ pub(crate) enum CellPoints {
 pub(crate) struct FreePoints(pub(crate) Vec<u8>);
 
 impl CellPoints {
-    /// The point that stands for a cell, relative to its centre, half cells.
+    /// The representative point of a cell, relative to its centre, half cells.
     pub(crate) fn offset(&self, cell: usize) -> Vector2 {
         let choice = match self {
             Self::Centres => 0,

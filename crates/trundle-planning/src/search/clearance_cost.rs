@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
-/// Clearance wanted around the footprint, and its costs.
+/// Wanted clearance around the footprint, and its costs.
 ///
 /// A metre of path costs 1, more near obstacles and in unknown space. A path exists whenever the footprint itself fits: these are
 /// costs, not obstacles. A path is at most 1 + `comfort_weight` times longer than the shortest one that keeps `margin`.
@@ -45,7 +45,7 @@ impl Default for ClearanceCostConfig {
 }
 
 impl ClearanceCostConfig {
-    /// The cost of a known metre at this clearance beside the footprint (m): 1 or more.
+    /// The cost per metre of known floor at this clearance of the footprint (m): 1 or more.
     pub(crate) fn density(&self, clearance: f64) -> f64 {
         let clearance = clearance.max(0.0);
         let mut cost = 1.0;

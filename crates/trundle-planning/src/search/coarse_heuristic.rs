@@ -1,9 +1,9 @@
 //! A lower bound of the cost to the goal on a coarse grid: the heuristic of the search.
 //!
-//! Problem: a search led by the straight distance expands every dead end on its path. Idea: search first over blocks of cells,
-//! each as free, and as cheap, as its best cell. Such a search is small, and its costs are (up to a block's side) a lower bound of
-//! the true ones that includes walls and dead ends. It runs from the goal towards the start (A*) and a little farther, so that it
-//! covers all blocks that the fine search may reach. Cost: O(blocks between start and goal).
+//! Problem: a search led by the straight distance expands every dead end on its path. Idea: search first over blocks of cells; each block
+//! is as free and as cheap as its best cell. This search is small. Its costs are, up to a block's side, a lower bound of the true ones that
+//! includes walls and dead ends. The search runs from the goal towards the start (A*) and slightly farther, to cover all blocks that the
+//! fine search may reach. Cost: O(blocks between start and goal).
 
 use crate::search::bucket_queue::{BucketQueue, Entry};
 use crate::search::configuration_space::ConfigurationSpace;
@@ -61,7 +61,7 @@ impl CoarseHeuristic {
         BLOCK_LENGTH * lattice::between((col.abs_diff(self.towards.0), row.abs_diff(self.towards.1)))
     }
 
-    /// Runs until every block has its cost through which the path to the block `last` costs little more than the cheapest.
+    /// Runs until every block has its cost if the path through it to the block `last` costs little more than the cheapest path.
     fn spread(&mut self, last: usize) {
         let beyond = 4 * LONGEST_STEP * BLOCK_LENGTH;
         let mut limit = UNREACHED;
@@ -121,9 +121,9 @@ impl CoarseHeuristic {
         if self.found { straight.max(self.interpolated(col, row)) } else { straight }
     }
 
-    /// Bilinear between the middles of blocks; a block that was not reached counts as the cheapest of its neighbours.
+    /// Bilinear interpolation between the middles of blocks; a block without a cost counts as the cheapest of its neighbours.
     fn interpolated(&self, col: u32, row: u32) -> u32 {
-        // In eighths of a block, from the middle of the one to the lower left.
+        // Offset in eighths of a block, from the middle of the lower left block.
         let place = |at: u32, size: usize| {
             let eighths = (2 * at + 1) as i32 - BLOCK_SIDE_CELLS as i32;
             let low = eighths.div_euclid(2 * BLOCK_SIDE_CELLS as i32);

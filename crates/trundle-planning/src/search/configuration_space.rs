@@ -8,10 +8,10 @@ use trundle_collision::square::point_to_square;
 use trundle_core::{Cell, OccupancyGrid, Vector2};
 use trundle_grid::DistanceField;
 
-/// Difference of two clearances that counts as rounding, m. Source: ours.
+/// Difference of two clearances that counts as rounding error, m. Source: ours.
 const CLEARANCE_TOLERANCE_M: f64 = 1e-6;
-/// Dip of the clearance between two checks along a straight line, m: step^2 / 8 radius, because the second derivative of the distance
-/// to a convex obstacle is at most 1 / distance. Source: ours.
+/// Loss of clearance between two checks along a straight line, m: step^2 / 8 radius, because the second derivative of the distance to a
+/// convex obstacle is at most 1 / distance. Source: ours.
 const MAX_DIP_M: f64 = 1e-4;
 /// Number of cost steps per cell of clearance. Source: ours.
 const COSTS_PER_CELL: f64 = 8.0;
@@ -22,13 +22,13 @@ const MAX_CHECK_STEP_CELLS: f64 = 0.2;
 pub(crate) struct ConfigurationSpace<'a> {
     pub(crate) field: &'a DistanceField,
     pub(crate) costs: ClearanceCostConfig,
-    /// Radius of the disc that must stay free, m.
+    /// Radius of the disc that must be free, m.
     pub(crate) radius: f64,
     grid: &'a OccupancyGrid,
     /// Zone around a start with less clearance than the radius.
     escape: Option<Escape>,
     surely: f64,
-    /// Cost of a unit of length by clearance, in 1/256, falling; each is that of the smallest clearance it stands for.
+    /// Cost per length by clearance, in 1/256, decreasing; each entry is the cost of the smallest clearance in its interval.
     prices: Vec<u16>,
     /// Number of costs per metre of clearance.
     per_price: f64,
@@ -39,7 +39,7 @@ pub(crate) struct ConfigurationSpace<'a> {
     check_step: f64,
     /// Whole cells from the grid's origin to the field's; `None` if the two are equal.
     shift: Option<(i64, i64)>,
-    /// The point that stands for each cell.
+    /// The representative point of each cell.
     points: CellPoints,
 }
 
@@ -89,7 +89,8 @@ impl<'a> ConfigurationSpace<'a> {
         Self { cost_mask, ..self }
     }
 
-    /// The same space for a robot that is this disc: leaving `start`, it keeps its radius from all that it does not overlap there.
+    /// The same space for a robot that is this disc and leaves `start`: the disc has its full radius against all obstacles that it does not
+    /// overlap there.
     pub(crate) fn with_clearance_from_others(self, start: Vector2) -> Self {
         let (radius, half) = (self.radius, self.field.geometry().resolution / 2.0);
         let gap = |centre| (point_to_square(start, centre, half).norm() - radius).max(0.0);
@@ -97,7 +98,7 @@ impl<'a> ConfigurationSpace<'a> {
         Self { escape, ..self }
     }
 
-    /// The same space with other points for its cells than their centres.
+    /// The same space with other representative points than the cells' centres.
     pub(crate) fn with_points(self, points: CellPoints) -> Self {
         Self { points, ..self }
     }
@@ -120,7 +121,7 @@ impl<'a> ConfigurationSpace<'a> {
             && escape.others().is_none_or(|others| others.keeps(point, self.radius - short))
     }
 
-    /// Whether the robot may be at the point that stands for a cell.
+    /// Whether the robot may be at the representative point of a cell.
     pub(crate) fn is_free_cell(&self, linear: usize) -> bool {
         match &self.points {
             CellPoints::Centres => self.is_free_centre(linear),
@@ -136,7 +137,7 @@ impl<'a> ConfigurationSpace<'a> {
             || (self.escape.is_some() && distance > 0.0 && self.is_free(self.centre(linear)))
     }
 
-    /// Whether the straight move between neighbouring free cells `length` m apart stays free.
+    /// Whether the straight move between neighbouring free cells `length` m apart is free.
     pub(crate) fn joins(&self, from: usize, to: usize, length: f64) -> bool {
         let least = self.field.at_linear(from).min(self.field.at_linear(to));
         if least * least >= self.radius * self.radius + length * length / 4.0 {
@@ -187,7 +188,7 @@ impl<'a> ConfigurationSpace<'a> {
         price + (self.mask_density(self.point_of(linear)) * 256.0) as u16
     }
 
-    /// The cost in known space where no cell centre is farther than `distance` from obstacles; 0 if the robot does not fit.
+    /// The cost in known space if no cell centre is farther than `distance` from obstacles; 0 if the robot does not fit.
     pub(crate) fn price_of_room(&self, distance: f32) -> u16 {
         let more = if matches!(self.points, CellPoints::Centres) { 0.0 } else { self.half_diagonal() };
         if f64::from(distance) + more < self.radius - CLEARANCE_TOLERANCE_M {
@@ -227,7 +228,7 @@ impl<'a> ConfigurationSpace<'a> {
         sum / steps * length
     }
 
-    /// The point that stands for a cell, map frame, m.
+    /// The representative point of a cell, map frame, m.
     pub(crate) fn point_of(&self, linear: usize) -> Vector2 {
         match &self.points {
             CellPoints::Centres => self.centre(linear),

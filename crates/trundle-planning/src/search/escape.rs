@@ -1,8 +1,8 @@
-//! Leaving a start with too little clearance: one rule for discs, for polygons, and for plans that are under way.
+//! Leaving a start with too little clearance: one rule for discs, for polygons, and for plans of a moving robot.
 //!
-//! Near the start the robot may overlap what it overlaps there, no deeper; from all other obstacles it keeps its clearance, and
-//! farther away from all obstacles. What it overlaps is more than the cells that it covers: a wall continues on both sides, so
-//! connected obstacle cells belong to it, up to two cells beside the robot. Cost: a distance field of the cells around.
+//! Near the start the robot may overlap the obstacles that it overlaps at the start, but no deeper. All other obstacles, and all obstacles
+//! farther away, require the full clearance. The overlapped obstacle is larger than the covered cells, as a wall continues on both sides.
+//! Connected obstacle cells therefore belong to it, up to two cells from the robot. Cost: a distance field of the cells around.
 
 use trundle_core::{Cell, GridGeometry, OccupancyGrid, Vector2};
 use trundle_grid::{DistanceField, UnknownIs};
@@ -11,7 +11,7 @@ use trundle_grid::{DistanceField, UnknownIs};
 const ESCAPE_ZONE_M: f64 = 0.2;
 /// The same distance in coarse maps, cells; the larger of the two counts. Source: ours.
 const ESCAPE_ZONE_CELLS: f64 = 3.0;
-/// Distance beside the robot up to which a connected cell belongs to the overlapped obstacle, cells. Source: ours.
+/// Distance from the robot up to which a connected cell belongs to the overlapped obstacle, cells. Source: ours.
 const SAME_OBSTACLE_CELLS: f64 = 2.0;
 /// Margin of cells for interpolation in the distance field. Source: ours.
 const INTERPOLATION_MARGIN_CELLS: f64 = 3.0;
@@ -21,21 +21,21 @@ const INTERPOLATION_MARGIN_CELLS: f64 = 3.0;
 pub(crate) struct Escape {
     start: Vector2,
     zone: f64,
-    /// Depth of the overlap, m: against what it overlaps the robot counts as that much smaller.
+    /// Depth of the overlap, m: the robot counts as smaller by this amount against the overlapped obstacles.
     pub(crate) depth: f64,
     /// All obstacles around except the overlapped one; `None` if any obstacle may be overlapped by `depth`.
     others: Option<DistanceField>,
 }
 
 impl Escape {
-    /// A zone for a robot that overlaps an obstacle by `depth` m with its axle at `start`. Near there it may overlap any obstacle
+    /// A zone for a robot that overlaps an obstacle by `depth` m with its axle at `start`. Near this position it may overlap any obstacle
     /// by that depth.
     pub(crate) fn new(start: Vector2, depth: f64, resolution: f64) -> Self {
         Self { start, zone: zone(depth, resolution), depth, others: None }
     }
 
-    /// The same zone with full clearance from all that is not overlapped at the start. `gap` is the distance between the footprint
-    /// there and a cell with this centre, m, 0 if they overlap; no point is farther than `radius` m from the axle.
+    /// The same zone with full clearance from all obstacles that are not overlapped at the start. `gap` is the distance between the
+    /// footprint at the start and a cell with this centre, m, 0 if they overlap. No point is farther than `radius` m from the axle.
     pub(crate) fn with_clearance_from_others(
         self,
         field: &DistanceField,
@@ -52,7 +52,7 @@ impl Escape {
         (at - self.start).norm() <= self.zone
     }
 
-    /// Obstacles that must keep their full clearance; `None` if all may be overlapped.
+    /// Obstacles that require full clearance; `None` if all may be overlapped.
     pub(crate) fn others(&self) -> Option<&DistanceField> {
         self.others.as_ref()
     }
@@ -127,7 +127,7 @@ mod tests {
     use super::*;
     use trundle_collision::square::point_to_square;
 
-    /// A wall below, overlapped; a separate box; a bar on the wall, farther along.
+    /// An overlapped wall at the bottom, a separate box, and a bar on the wall farther along.
     const AROUND: &str = "
         ...............
         ...............

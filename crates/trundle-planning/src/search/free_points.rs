@@ -1,8 +1,8 @@
 //! Cells that are free by any of nine of their points, not only by their centres.
 //!
-//! Problem: on the middle line of a gap of an even number of cells lie no cell centres, so a search over centres finds no path
-//! for a robot that fits with less than half a cell to spare. Between square obstacles the clearance is smallest midway between
-//! two faces, two corners, or a face and a corner. Those points are centres, middles of edges, or corners of cells.
+//! Problem: the middle line of a gap with an even number of cells contains no cell centres. A search over centres then finds no path for a
+//! robot that fits with less than half a cell to spare. Between square obstacles the clearance is smallest midway between two faces, two
+//! corners, or a face and a corner. These points are centres, middles of edges, or corners of cells.
 
 use crate::search::cell_points::{CellPoints, FreePoints, NO_POINT, OFFSETS, vector};
 use crate::search::configuration_space::ConfigurationSpace;

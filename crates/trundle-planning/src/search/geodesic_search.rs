@@ -1,10 +1,10 @@
 //! The geodesic search: waypoints around obstacles without local minima.
 //!
-//! Problem: the artificial potential has local minima. Idea: replace the straight distance in the attraction by the geodesic one,
-//! and the repulsion by higher costs near obstacles. Such a potential has one minimum, and descending it is following the search
-//! back. The search is A* (\[Hart68\]) led by the [`CoarseHeuristic`], on the 16-neighbour lattice of cells where the robot fits; every step
-//! is checked against the occupied cells. Complete: if the lattice connects, the path is found. Costs are whole numbers, so a list
-//! per key makes a queue without comparisons (\[Dial69\]). Cost: O(cells reached).
+//! Problem: the artificial potential has local minima. Idea: replace the straight distance in the attraction by the geodesic one, and the
+//! repulsion by higher costs near obstacles. Such a potential has one minimum, and its descent is the search's own path back. The search is
+//! A* (\[Hart68\]) with the [`CoarseHeuristic`], on the 16-neighbour lattice of cells that fit the robot; every step is checked against the
+//! occupied cells. Complete: a path that exists on the lattice is found. Costs are whole numbers: one list per key makes a queue without
+//! comparisons (\[Dial69\]). Cost: O(cells reached).
 
 use crate::search::bucket_queue::{BucketQueue, Entry};
 use crate::search::coarse_heuristic::CoarseHeuristic;
@@ -17,14 +17,14 @@ use trundle_core::Vector2;
 pub(crate) enum SearchOutcome {
     /// The cheapest path: start, cell centres, goal.
     Found(Vec<Vector2>),
-    /// The goal cannot be reached; the reachable point nearest to it.
+    /// The goal is unreachable; contains the reachable point nearest to it.
     Unreachable(Vector2),
 }
 
 /// The search with its buffers, reused from plan to plan.
 #[derive(Debug, Default)]
 pub(crate) struct GeodesicSearch {
-    /// Lowest cost so far, in units; [`UNREACHED`] where the search has not been.
+    /// Lowest cost so far, in units; [`UNREACHED`] for a cell without a cost.
     cost: Vec<u32>,
     /// The step of [`STEPS`] that led here, [`SEED_MARK`] for the first entry_cells.
     step: Vec<u8>,
@@ -150,7 +150,7 @@ impl GeodesicSearch {
         points
     }
 
-    /// Of all reached cells the one nearest to the goal.
+    /// The reached cell nearest to the goal.
     fn nearest(&self, space: &ConfigurationSpace<'_>, start: Vector2, goal: Vector2) -> Vector2 {
         let reached = (0..self.cost.len())
             .filter(|cell| self.cost[*cell] != UNREACHED)
@@ -172,7 +172,7 @@ fn entry_cost(space: &ConfigurationSpace<'_>, point: Vector2, cell: usize) -> u3
     (space.cost(point, space.point_of(cell)) / resolution * f64::from(SIDE)) as u32
 }
 
-/// The free cells around a point that it reaches straight.
+/// The free cells around a point that are reachable from it along a straight line.
 fn entry_cells(space: &ConfigurationSpace<'_>, point: Vector2) -> Vec<usize> {
     let geometry = space.field.geometry();
     let Some(middle) = geometry.cell_at(point) else { return Vec::new() };

@@ -14,7 +14,7 @@ impl GridPath {
         Self { raw, points, fell_back: false }
     }
 
-    /// Appends a path that begins where this one ends.
+    /// Appends a path that begins at the end of this one.
     pub(crate) fn extend(&mut self, next: Self) {
         self.raw.extend(next.raw.into_iter().skip(1));
         self.points.extend(next.points.into_iter().skip(1));

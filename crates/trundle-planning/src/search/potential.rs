@@ -1,8 +1,8 @@
 //! The artificial potential field \[Ge00, Li18\], and gradient descent on it.
 //!
-//! Problem: waypoints from a pose to a goal past obstacles. Idea: a quadratic potential attracts to the goal, obstacles repel
-//! within rho_0, and the repulsion fades with the distance to the goal (n = 2), so that the goal is the global minimum. The robot
-//! follows the force in steps of one length. Local minima remain (U shapes); they are detected and reported. Cost: O(steps).
+//! Problem: waypoints from a pose to a goal past obstacles. Idea: a quadratic potential attracts to the goal, and obstacles repel within
+//! rho_0. The repulsion fades with the distance to the goal (n = 2), which makes the goal the global minimum. The robot follows the force
+//! in steps of one length. Local minima remain (U shapes); they are detected and reported. Cost: O(steps).
 //! | paper | here | unit |
 //! |---|---|---|
 //! | q | `point` | m |
@@ -20,9 +20,9 @@ use trundle_grid::DistanceField;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PotentialKind {
-    /// Gradient descent on the potential of \[Ge00\]; where it is trapped, the geodesic search takes over.
+    /// Gradient descent on the potential of \[Ge00\]; if the descent is trapped, the geodesic search takes over.
     Printed,
-    /// Geodesic search: attraction by the geodesic distance, repulsion by higher costs near obstacles. It has no local minima.
+    /// Geodesic search: attraction by the geodesic distance, repulsion by higher costs near obstacles. The field has no local minima.
     Geodesic,
 }
 

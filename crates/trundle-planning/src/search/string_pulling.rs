@@ -70,7 +70,7 @@ fn halve(from: usize, mut good: usize, mut bad: usize, skips: impl Fn(usize, usi
     good
 }
 
-/// Moves each inner point towards the line between its neighbours, as far as that is free and reduces the cost.
+/// Moves each inner point towards the line between its neighbours while this is free and reduces the cost.
 fn relax(space: &ConfigurationSpace<'_>, points: &mut [Vector2]) {
     for i in 1..points.len().saturating_sub(1) {
         let (before, here, after) = (points[i - 1], points[i], points[i + 1]);

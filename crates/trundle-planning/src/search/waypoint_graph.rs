@@ -2,7 +2,7 @@
 
 use trundle_core::{Invalid, Vector2};
 
-/// Waypoints and the straight lanes between them, to which a robot is confined.
+/// Waypoints and the straight lanes between them, which the robot must follow.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WaypointGraph {
     nodes: Vec<Vector2>,
@@ -16,7 +16,7 @@ impl WaypointGraph {
     /// A graph of `nodes` (map frame, m) and `lanes` between them, driven in both directions.
     ///
     /// # Errors
-    /// When there is no node, one is not finite, or a lane ends at no node.
+    /// When the graph has no node, a node is not finite, or an end of a lane is no node.
     pub fn new(nodes: Vec<Vector2>, lanes: Vec<(usize, usize)>) -> Result<Self, Invalid> {
         if nodes.is_empty() {
             return Err(Invalid::new("nodes of the waypoint graph", 0, "", "1 or more"));
@@ -38,7 +38,7 @@ impl WaypointGraph {
         }
     }
 
-    /// A graph whose lanes are driven from their first node to their second only; two opposite lanes make both directions.
+    /// A graph of one-way lanes, from their first node to their second; two opposite lanes allow both directions.
     ///
     /// # Errors
     /// As [`WaypointGraph::new`].

@@ -1,8 +1,8 @@
 //! Speed over time along one curve, with an optional bound of the jerk.
 //!
-//! Problem: the fastest speed profile jumps in acceleration. Idea: average the motion over a window of T = 2 a / jerk seconds. The
-//! mean of motions with acceleration at most a has a jerk of at most 2 a / T. It is never faster than the fastest in its window,
-//! so limits that hold for the distance covered in T hold for the mean. It ends in the same place, T later. Cost: O(samples).
+//! Problem: the fastest speed profile jumps in acceleration. Idea: average the motion over a window of T = 2 a / jerk seconds. The mean of
+//! motions with acceleration at most a has a jerk of at most 2 a / T. The averaged motion is never faster than the fastest in its window:
+//! limits that hold for the distance covered in T hold for the mean. The averaged motion ends at the same place, T later. Cost: O(samples).
 
 use crate::curve::analytic_curve::CurveSample;
 use crate::timing::speeds::{DriveModel, speeds};
@@ -14,7 +14,7 @@ pub(super) struct SpeedProfile {
     knots: Vec<Knot>,
     /// Length of the averaging window, s; 0: none.
     window: f64,
-    /// Start of the window before the time asked for, s.
+    /// Start of the window before the queried time, s.
     lead: f64,
 }
 
@@ -30,8 +30,8 @@ struct Knot {
 }
 
 impl SpeedProfile {
-    /// From `v_start` m/s to rest. A motion under distance without the space to hold its speed for half a window is timed without a bound
-    /// of the jerk.
+    /// The profile from `v_start` m/s to rest. A moving robot without the space to hold its speed for half a window gets a profile without
+    /// a bound of the jerk.
     pub(super) fn new(
         samples: &[CurveSample],
         v_start: f64,
@@ -53,7 +53,7 @@ impl SpeedProfile {
         if from + 1 < samples.len() {
             let after = speeds(&samples[from..], v_start, drive, &ceiling, reach);
             let free = speeds(samples, v_start, drive, &ceiling, reach);
-            // The speed is held for the first segment, if nothing slows there.
+            // The speed is constant for the first segment if no limit reduces it there.
             if free[..=from].iter().all(|v| *v >= v_start - 1e-9) {
                 let held = std::iter::repeat_n(v_start, from).chain(after).collect::<Vec<_>>();
                 return Self { window, lead: window / 2.0, ..Self::without_jerk_bound(samples, &held) };

@@ -17,12 +17,12 @@ pub(crate) struct DriveModel {
 pub(super) const MIN_SAMPLE_PERIOD_S: f64 = 1e-4;
 /// Speed that counts as rest, m/s. Source: rounding.
 const REST_SPEED_M_S: f64 = 1e-6;
-/// Largest ratio of the speed of a motion under distance to a ceiling: the noise of a measured twist. A reference on a planned curve
-/// never exceeds its ceiling. Source: ours.
+/// Largest ratio of the speed of a moving robot to a ceiling: the noise of a measured twist. A reference on a planned curve never exceeds
+/// its ceiling. Source: ours.
 const MAX_CEILING_RATIO: f64 = 1.05;
 
 impl DriveModel {
-    /// The largest acceleration at a curvature, m/s^2: half of the angular acceleration is available for it.
+    /// The largest acceleration at a curvature, m/s^2; half of the angular acceleration is available.
     pub(crate) fn acceleration(&self, curvature: f64) -> f64 {
         let turning = self.limits.angular_acceleration / 2.0 / curvature.abs().max(1e-9);
         self.limits.acceleration.min(turning)
@@ -39,8 +39,8 @@ impl DriveModel {
     }
 }
 
-/// The speed at each sample, m/s: `v_start` at the first, 0 at the last. Where `v_start` exceeds a ceiling, the robot brakes as
-/// hard as allowed, and harder only where the curve is too short to stop on. Limits hold for `window` m around where they apply.
+/// The speed at each sample, m/s: `v_start` at the first, 0 at the last. If `v_start` exceeds a ceiling, the robot brakes as hard as
+/// allowed, and harder only if the curve is too short for a stop. A limit also applies `window` m before and after its place.
 pub(super) fn speeds(
     samples: &[CurveSample],
     v_start: f64,

@@ -1,9 +1,9 @@
 //! Time along a route within the limits of the drive.
 //!
-//! Problem: the speed along each curve. Idea: the speed has a ceiling at each point (speed, turn rate, wheel speed, change of
-//! curvature, clearance). A pass backward from rest at the end and a pass forward from the start's speed lower it until every
-//! acceleration is allowed (\[Bobrow85\], on a path with decoupled bounds). Half of the angular acceleration is reserved for the
-//! change of curvature, half for the change of speed. Cost: O(samples).
+//! Problem: the speed along each curve. Idea: the speed has a ceiling at each point (speed, turn rate, wheel speed, change of curvature,
+//! clearance). A pass backward from rest at the end and a pass forward from the start's speed lower the speed until every acceleration is
+//! allowed (\[Bobrow85\], on a path with decoupled bounds). Half of the angular acceleration is reserved for the change of curvature, half
+//! for the change of speed. Cost: O(samples).
 
 use crate::curve::analytic_curve::{Curve, CurveSample};
 use crate::curve::phase::Phase;
@@ -15,8 +15,8 @@ use trundle_core::{Pose2, Trajectory, TrajectoryPoint, Twist2};
 /// Spacing of the points of the speed profile, m. Source: ours.
 const PROFILE_SPACING_M: f64 = 0.01;
 
-/// The trajectory through `phases`: at `v_start` m/s first, at rest between phases and at the end. `ceiling` is the highest speed
-/// at a pose by its surroundings, m/s. A trajectory of one point where there are no phases.
+/// The trajectory through `phases`: at `v_start` m/s first, at rest between phases and at the end. `ceiling` is the highest speed at a
+/// pose, given its surroundings, m/s. Without phases the trajectory has one point.
 pub(crate) fn trajectory(
     start: Pose2,
     phases: &[Phase],
@@ -29,8 +29,8 @@ pub(crate) fn trajectory(
     Trajectory::new(points).expect(TIMES_RISE)
 }
 
-/// Like [`trajectory`], with a stop `arc` m along the first phase, which must be a curve; and the time of the stop, s. `None` where
-/// the robot cannot stop there.
+/// Like [`trajectory`], with a stop after `arc` m of the first phase, which must be a curve; and the time of the stop, s. `None` if the
+/// robot cannot stop there.
 pub(crate) fn trajectory_with_stop(
     start: Pose2,
     phases: &[Phase],
@@ -55,8 +55,8 @@ pub(crate) fn trajectory_with_stop(
     Some((Trajectory::new(points).expect(TIMES_RISE), stands))
 }
 
-/// The sample of a stop `arc` m along, or just before the end. From rest to rest at least one sample lies between: only there has
-/// the robot any speed.
+/// The sample of a stop after `arc` m, or just before the end. Between two rests at least one sample is needed, because only that sample
+/// has a speed.
 fn stop_among(samples: &[CurveSample], arc: f64) -> usize {
     let last = samples.len() - 1;
     match samples.partition_point(|sample| sample.arc < arc).clamp(2.min(last), last) {
@@ -85,7 +85,7 @@ fn time_phases(
     }
 }
 
-/// Whether a robot at `v` m/s can drive the first of `phases` within its limits, and come to rest on it.
+/// Whether a robot at `v` m/s can drive the first of `phases` within its limits and stop on it.
 pub(crate) fn can_follow(phases: &[Phase], v: f64, drive: &DriveModel) -> bool {
     match phases.first() {
         Some(Phase::Drive(curve)) => can_follow_samples(&curve.samples(PROFILE_SPACING_M), v, drive),
@@ -93,8 +93,8 @@ pub(crate) fn can_follow(phases: &[Phase], v: f64, drive: &DriveModel) -> bool {
     }
 }
 
-/// Appends samples a period apart over the part of the curve that `samples` cover; the last one exactly at its end. Nothing for a
-/// part without length.
+/// Appends samples a period apart over the part of the curve that `samples` cover; the last one exactly at its end. A part without length
+/// adds no samples.
 fn time_curve(
     curve: &Curve,
     samples: &[CurveSample],

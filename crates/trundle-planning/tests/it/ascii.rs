@@ -22,7 +22,7 @@ const TRAP: &str = "
     #............................#
     ##############################";
 
-/// The map with the driven way drawn over it.
+/// The map with the driven path drawn over it.
 fn drawn(grid: &OccupancyGrid, art: &str, plan: &trundle_planning::PlanResult) -> String {
     let lines: Vec<&str> = art.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
     let mut picture: Vec<Vec<char>> = lines.iter().map(|line| line.chars().collect()).collect();

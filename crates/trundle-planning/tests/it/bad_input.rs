@@ -107,7 +107,7 @@ fn a_start_within_the_clearance_is_planned_out_of() {
     for missing in [0.01, 0.03, 0.059] {
         let start = Pose2::new(0.5, 0.05 + 0.17 - missing, 0.0);
         let plan = found(planner(at_home(), 0.17).plan(&grid, start, Twist2::ZERO, goal));
-        // Never nearer than it stands, and clear of the wall once it has left.
+        // The robot never comes nearer than at the start, and is clear of the wall after leaving it.
         judge(&grid, &plan, start, goal, 0.17 - missing);
         let far = plan.trajectory.points().iter().filter(|p| p.pose.distance(&start) > missing + 0.16);
         assert!(far.map(|p| room(&grid, p.pose.position())).fold(9.0, f64::min) >= 0.17 - 2e-4);
@@ -135,7 +135,7 @@ fn unknown_space_is_allowed_dear_or_forbidden() {
             ..at_home()
         };
         let plan = found(planner(config, 0.17).plan(&grid, start, Twist2::ZERO, goal));
-        // The way keeps out of what is expensive; the curve may cut its corners.
+        // The path avoids costly cells; the curve may cut their corners.
         let deep =
             |at: Vector2| [at, at - Vector2::new(0.0, 0.17)].iter().all(|p| grid.at(*p) == Cell::Unknown);
         let unseen = plan.trajectory.points().iter().filter(|p| deep(p.pose.position())).count();

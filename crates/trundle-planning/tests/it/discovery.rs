@@ -1,4 +1,4 @@
-//! A robot that learns its map on the way: unknown at first, seen within a radius, planned anew every second.
+//! A robot that discovers its map during the drive: unknown at first, observed within a radius, with a new plan every second.
 
 use crate::support::{found, planner, room};
 use trundle_core::{Cell, OccupancyGrid, Pose2, Twist2, Vector2};
@@ -30,7 +30,7 @@ const HOUSE: &str = "
     #............................#.............................#
     ############################################################";
 
-/// Copies what lies within 1.5 m, walls or not.
+/// Copies all cells within 1.5 m, without regard to walls.
 fn look(world: &OccupancyGrid, from: Vector2, map: &mut OccupancyGrid) {
     let geometry = *world.geometry();
     for linear in 0..geometry.len() {

@@ -50,7 +50,7 @@ fn a_plan_is_no_longer_free_where_a_mask_forbids_it_since() {
     assert!(around.is_continuous && planner.validate_trajectory(&grid, &around.trajectory, 0.0).is_ok());
     planner.set_keep_out(None);
     assert!(planner.validate_trajectory(&grid, &plan.trajectory, 0.0).is_ok());
-    // Seen from another frame: beside everything, it forbids nothing.
+    // The same mask in another frame has no overlap and forbids no cell.
     let elsewhere = GridGeometry::new(0.03, Vector2::new(500.0, -80.0), 9, 9).unwrap();
     planner.set_keep_out(Some(OccupancyGrid::filled(elsewhere, Cell::Occupied)));
     assert_eq!(planner.replan(&grid, &[], &plan, 2.0, goal), Replan::Keep);
@@ -213,7 +213,7 @@ fn expensive_cells_are_avoided_if_the_detour_is_small() {
     let (around, longer) = within(90);
     assert!(through > 0 && (straight - 8.0).abs() < 0.01, "{through} {straight}");
     assert!(around == 0 && longer > 8.03 && longer < 9.5, "{around} {longer}");
-    // If there is no way around, it is not a wall.
+    // A speed or cost mask everywhere is not a wall: a path exists.
     let everywhere = GridGeometry::new(1.0, Vector2::zeros(), 10, 6).unwrap();
     let mut planner = planner(at_home(), RADIUS);
     planner.set_cost_mask(Some(CostMask::new(everywhere, vec![99; 60]).unwrap()));

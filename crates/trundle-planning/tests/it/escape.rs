@@ -1,4 +1,4 @@
-//! Starts that are too near to something: out, no deeper, and off everything else; on every size of cell.
+//! Starts too near to an obstacle, on every cell size: the path leads out, no deeper, and keeps clear of all other obstacles.
 
 use crate::support::{at_home, found, planner, room};
 use proptest::prelude::*;
@@ -18,7 +18,8 @@ fn squares(grid: &OccupancyGrid, point: Vector2) -> Vec<(usize, f64)> {
     occupied.map(|i| (i, gap(i))).filter(|(_, d)| *d < 1.0).collect()
 }
 
-/// Near the start: no nearer to what the disc is too near to there, and the radius off the rest; further on: off everything.
+/// Near the start: the clearance from the near obstacle does not shrink, and the full radius applies to all others. Farther away: the full
+/// radius applies to all.
 fn judge_escape(grid: &OccupancyGrid, plan: &PlanResult, start: Pose2) {
     const ROUNDING: f64 = 3e-4;
     let resolution = grid.geometry().resolution;
@@ -134,7 +135,7 @@ fn coarse_cells_do_not_cause_a_livelock() {
     }
 }
 
-/// Only what is overlapped may be: a gap that is too narrow is no way, though the robot leaves a wall just before it.
+/// Only the obstacle of the start may be overlapped: a too narrow gap is closed even for a robot that has just left a wall.
 #[test]
 fn leaving_a_wall_does_not_open_a_gap_that_is_too_narrow() {
     let mut grid = beside_a_wall(0.1);

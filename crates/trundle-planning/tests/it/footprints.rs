@@ -1,4 +1,4 @@
-//! Robots that are not discs: long ones, whose axle is not in the middle.
+//! Robots that are not discs: long ones with an axle outside the middle.
 
 use crate::support::{HALF_BASE, LIMITS, at_home, found};
 use trundle_core::{
@@ -17,8 +17,8 @@ fn cart_planner(config: PlannerConfig) -> Planner {
     Planner::new(config, &footprint, LIMITS, DifferentialDrive::KOBUKI).unwrap()
 }
 
-/// Whether the outline, half a millimetre smaller, meets an occupied square: points of the outline 5 mm apart, and
-/// the squares' corners. Shares nothing with the planner.
+/// Whether the outline, half a millimetre smaller, meets an occupied square: points of the outline 5 mm apart, and the squares' corners.
+/// This check shares no code with the planner.
 fn touches(grid: &OccupancyGrid, outline: &[Vector2], pose: Pose2) -> bool {
     let at = |p: Vector2| {
         let (s, c) = pose.theta.sin_cos();
@@ -69,7 +69,7 @@ fn judge_cart(grid: &OccupancyGrid, result: &PlanResult, start: Pose2, goal: Pos
     }
 }
 
-/// Two rooms of 1.5 x 1.7 m and a corridor between them, its width in cells of 0.1 m.
+/// Two areas of 1.5 x 1.7 m with a corridor between them, `corridor` cells of 0.1 m wide.
 fn two_rooms(corridor: usize) -> OccupancyGrid {
     let row = |r: usize| {
         let open = r > 0 && r < 18;
@@ -170,13 +170,13 @@ fn below_a_wall() -> OccupancyGrid {
 #[test]
 fn an_outline_may_touch_a_wall_and_go_along_it() {
     let grid = below_a_wall();
-    // Its left side exactly on the wall, at both ends.
+    // The left side is exactly on the wall at both ends.
     let (start, goal) = (Pose2::new(0.8, 2.7, 0.0), Pose2::new(2.0, 2.7, 0.0));
     let mut planner = cart_planner(at_home());
     let result = found(planner.plan(&grid, start, Twist2::ZERO, goal));
     judge_cart(&grid, &result, start, goal);
     assert!(planner.validate_trajectory(&grid, &result.trajectory, 0.0).is_ok());
-    // A wall that it would drive into is seen although it touches one.
+    // A wall across the path is detected although the robot touches another wall.
     let mut barred = grid.clone();
     (20..29).for_each(|row| barred.set(trundle_core::CellIndex { col: 18, row }, Cell::Occupied));
     assert!(planner.validate_trajectory(&barred, &result.trajectory, 0.0).is_err());
@@ -187,21 +187,21 @@ fn an_outline_within_a_wall_is_planned_out_of_it_or_refused_with_the_depth() {
     let grid = below_a_wall();
     let goal = Pose2::new(2.0, 1.0, 0.0);
     for depth in [0.005, 0.03, 0.055] {
-        // Its back in the wall.
+        // The back is inside the wall.
         let start = Pose2::new(0.8, 2.8 + depth, -std::f64::consts::FRAC_PI_2);
         let mut planner = cart_planner(at_home());
         let result = found(planner.plan(&grid, start, Twist2::ZERO, goal));
         assert!(result.trajectory.end().distance(&goal) < 1.1e-3);
         let left = result.trajectory.points().iter().filter(|p| p.pose.distance(&start) > depth + 0.31);
         assert_eq!(left.filter(|p| touches(&grid, &cart(), p.pose)).count(), 0, "{depth}");
-        // Never deeper than at the start: a footprint smaller by that depth touches nothing.
+        // The overlap never exceeds that of the start: a footprint smaller by this depth is free.
         let (long, wide) = (0.3 - depth - 5e-4, 0.2 - depth - 5e-4);
         let slim = [(long, wide), (-long, wide), (-long, -wide), (long, -wide)]
             .map(|(x, y)| Vector2::new(0.2 + x, y));
         assert!(result.trajectory.points().iter().all(|p| !touches(&grid, &slim, p.pose)), "{depth}");
         assert!(planner.validate_trajectory(&grid, &result.trajectory, 0.0).is_ok(), "{depth}");
     }
-    // Its side in the wall, it can neither turn nor back out.
+    // With its side inside the wall, the robot can neither turn nor back out.
     let wedged = Pose2::new(0.8, 2.71, 0.0);
     let plan = cart_planner(at_home()).plan(&grid, wedged, Twist2::ZERO, goal);
     assert!(matches!(plan, Plan::Blocked { .. }), "{plan}");
@@ -212,7 +212,7 @@ fn an_outline_within_a_wall_is_planned_out_of_it_or_refused_with_the_depth() {
     assert!(matches!(plan, Plan::GoalInObstacle { clearance } if (clearance + 0.1).abs() < 1e-3), "{plan}");
 }
 
-/// A goal in a closed room is told quickly, however large the rest of the map is for the search over headings.
+/// A goal in a closed area is refused quickly, independent of the map's size for the search over headings.
 #[test]
 fn a_closed_room_is_detected_without_searching_all_cells() {
     let geometry = GridGeometry::new(0.05, Vector2::zeros(), 600, 600).unwrap();
@@ -231,7 +231,7 @@ fn a_closed_room_is_detected_without_searching_all_cells() {
     assert!((nearest - goal.position()).norm() > 1.0 && nearest.x + nearest.y > 30.0, "{nearest}");
     eprintln!("a closed room: {spent:.0} ms CPU");
     assert!(spent < 1000.0, "{spent} ms");
-    // With a door that it passes, the way is found.
+    // With a wide enough opening, the path is found.
     (415..=425).for_each(|row| grid.set(CellIndex { col: 400, row }, Cell::Free));
     found(planner.plan(&grid, start, Twist2::ZERO, goal));
 }

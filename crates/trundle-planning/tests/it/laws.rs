@@ -28,7 +28,7 @@ prop_compose! {
     }
 }
 
-/// Cells that a robot on 4-neighbour moves between free centres can reach: an oracle that knows no distance field.
+/// Cells that a robot on 4-neighbour moves between free centres can reach: an oracle without a distance field.
 fn flood(grid: &OccupancyGrid, from: Vector2, radius: f64) -> Vec<bool> {
     let geometry = grid.geometry();
     let free: Vec<bool> =
@@ -59,7 +59,7 @@ proptest! {
         let (from, to) = (geometry.cell(from), geometry.cell(to));
         let pose = |cell, heading| { let p: Vector2 = geometry.center(cell); Pose2::new(p.x, p.y, heading) };
         let (start, goal) = (pose(from, a), pose(to, b));
-        // A move between two centres dips by this much below them where a corner stands between.
+        // A move between two centres loses this much clearance at a corner between them.
         let sure = (RADIUS * RADIUS + 0.0025_f64).sqrt();
         let connected = flood(&grid, start.position(), sure)[geometry.linear(to)];
         let plan = planner(at_home(), RADIUS).plan(&grid, start, Twist2::ZERO, goal);

@@ -1,4 +1,4 @@
-//! The planner as its user sees it.
+//! The planner through its public interface.
 
 #![expect(clippy::unwrap_used, reason = "test helpers")]
 #![expect(clippy::print_stderr, reason = "measured numbers and skip lines")]

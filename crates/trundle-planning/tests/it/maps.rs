@@ -1,4 +1,4 @@
-//! Real maps, where they are at hand.
+//! Real maps, if they are available.
 
 use crate::nav_data::{data, mrpb_pairs, pairs, read_map};
 use crate::support::{at_home, cpu_ms, judge, planner};
@@ -71,7 +71,7 @@ fn nav2_pairs_are_all_found() {
         let pairs = pairs(&data.join(format!("nav2/nav2_{map}.csv")), 1);
         let tally = run(&format!("{map} {radius}"), &grid, &pairs, at_home(), radius);
         assert_eq!(tally.found, pairs.len());
-        // Against the shortest way that the search finds when room costs nothing.
+        // Compared with the shortest path of a search without clearance costs.
         let room = ClearanceCostConfig { margin: 0.0, comfort: 0.0, ..ClearanceCostConfig::default() };
         let tight = run("  without comfort", &grid, &pairs, PlannerConfig { room, ..at_home() }, radius);
         let ratio = |i: usize| tally.lengths[i] / tight.way_lengths[i];

@@ -1,4 +1,4 @@
-//! Things that move: passed, or let pass.
+//! Moving obstacles: the robot passes them or waits for them.
 
 use crate::support::{at_home, found, judge, planner};
 use trundle_core::{OccupancyGrid, Pose2, Trajectory, Twist2, Vector2};
@@ -51,7 +51,7 @@ fn someone_who_crosses_is_let_pass_or_gone_around() {
 #[test]
 fn a_robot_that_moves_stops_for_someone_who_crosses_and_goes_on() {
     let mut grid = hall(12);
-    // A door on either side, through which someone comes and goes.
+    // An opening on either side, through which a person enters and leaves.
     (0..14).filter(|row| *row == 0 || *row == 13).for_each(|row| {
         (28..36).for_each(|col| grid.set(trundle_core::CellIndex { col, row }, trundle_core::Cell::Free));
     });

@@ -1,4 +1,4 @@
-//! Real maps and questions, where they are at hand: ../shared/data/nav.
+//! Real maps and queries, if available: ../shared/data/nav.
 
 use std::path::{Path, PathBuf};
 use trundle_core::{Cell, GridGeometry, OccupancyGrid, Pose2, Vector2};
@@ -60,7 +60,7 @@ pub fn pairs(csv: &Path, skip: usize) -> Vec<(Pose2, Pose2)> {
     rows.map(|n| (Pose2::new(n[0], n[1], n[2]), Pose2::new(n[3], n[4], n[5]))).collect()
 }
 
-/// The questions of MRPB for one of its maps.
+/// The queries of MRPB for one of its maps.
 pub fn mrpb_pairs(data: &Path, map: &str) -> Vec<(Pose2, Pose2)> {
     let text = std::fs::read_to_string(data.join("mrpb/start_goal.csv")).unwrap();
     let rows = text.lines().skip(1).filter(|line| line.split(',').nth(1) == Some(map));

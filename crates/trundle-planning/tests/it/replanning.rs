@@ -1,4 +1,4 @@
-//! Plans from a motion under way.
+//! Plans that start from a motion.
 
 use crate::support::{at_home, found, judge, planner};
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Twist2};

@@ -6,7 +6,7 @@ use trundle_planning::{PlanResult, PlannerConfig, PotentialConfig, PotentialKind
 
 const RADIUS: f64 = 0.1755;
 
-/// A corridor 12 m long along x, its width in cells of 5 cm, its walls rough: a cell of it sticks out here and there.
+/// A corridor 12 m long along x, `wide` cells of 5 cm wide; rough walls have single protruding cells.
 fn corridor(wide: usize, rough: bool) -> OccupancyGrid {
     let geometry = GridGeometry::new(0.05, Vector2::zeros(), 240, wide + 4).unwrap();
     let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
@@ -19,7 +19,7 @@ fn corridor(wide: usize, rough: bool) -> OccupancyGrid {
     grid
 }
 
-/// How often the curve changes the side to which it bends, with bends of less than a degree left out.
+/// Number of changes of the bend's side along the curve, without bends below one degree.
 fn swings(result: &PlanResult) -> usize {
     let (mut side, mut bend, mut count) = (0.0_f64, 0.0, 0);
     for curve in result.curves() {
@@ -75,7 +75,7 @@ fn the_same_question_gives_the_same_bytes_whatever_was_asked_before() {
     let mut used = planner(at_home(), RADIUS);
     let mut other = grid.clone();
     for k in 0..5 {
-        // Other questions, other maps, another extent.
+        // Other queries, other maps, another extent.
         other.set(CellIndex { col: 40 + 30 * k, row: 12 }, Cell::Occupied);
         let _ =
             used.plan(&other, Pose2::new(6.0, 0.7, 1.0), Twist2::new(0.3, 0.1), Pose2::new(0.5, 0.6, 0.0));
@@ -103,7 +103,7 @@ fn speed_goes_with_the_room_beside_the_robot() {
     }
 }
 
-/// The robot has seen 2.5 m ahead: wherever it goes beyond that it goes slowly, and it is slow before it comes there.
+/// The robot has observed 2.5 m ahead: it drives slowly beyond this distance, and has slowed down before.
 #[test]
 fn speed_is_limited_by_what_has_been_seen() {
     let limit = TimingConfig::default().unknown_speed;

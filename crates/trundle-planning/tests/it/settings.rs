@@ -1,4 +1,4 @@
-//! Settings and input out of their range are refused with key, value, unit and range.
+//! Settings and input outside their range are refused with key, value, unit and range.
 
 use trundle_core::{Footprint, GridGeometry, Invalid, Vector2};
 use trundle_planning::{
@@ -9,7 +9,7 @@ use trundle_planning::{
 /// A setting: key, unit, lowest and highest value, and how it is set.
 type Setting<C> = (&'static str, &'static str, f64, f64, fn(&mut C, f64));
 
-/// Both ends of each range are accepted; beyond either end, and not a number, are refused by name.
+/// Both ends of each range are accepted; values outside and not-a-number are refused by name.
 fn refuses<C: Clone>(
     prefix: &str,
     good: &C,

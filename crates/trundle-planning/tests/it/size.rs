@@ -3,7 +3,7 @@
 use crate::support::{at_home, found, judge, planner};
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
 
-/// Walls every 100 cells with a door at alternating ends: the way is long.
+/// Walls every 100 cells with an opening at alternating ends: the path is long.
 fn meander(size: usize) -> OccupancyGrid {
     let geometry = GridGeometry::new(0.05, Vector2::zeros(), size, size).unwrap();
     let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
@@ -60,8 +60,8 @@ fn a_thousand_cells_square() {
     across(1000);
 }
 
-/// 200 x 200 m in cells of 5 cm, from nothing: field and plan in a second of a core and 400 MB. The best of two, for the machine may be
-/// busy; the peak is that of the whole process, whatever other tests take meanwhile.
+/// 200 x 200 m in cells of 5 cm with a new planner: field and plan within one second of a core and 400 MB. The time is the best of two,
+/// because the machine may be busy; the peak memory is that of the whole process with all its tests.
 #[test]
 fn sixteen_million_cells_in_a_second() {
     let grid = warehouse(4000);

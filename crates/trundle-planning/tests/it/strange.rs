@@ -220,7 +220,7 @@ fn the_tiniest_and_the_thinnest_maps_have_answers() {
     }
 }
 
-/// A hall with a wall across, and a gap of a number of cells in it.
+/// A hall with a wall across, and a gap of `wide` cells in the wall.
 fn gap(wide: usize) -> (OccupancyGrid, Pose2, Pose2) {
     let geometry = GridGeometry::new(0.1, Vector2::zeros(), 60, 30).unwrap();
     let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
@@ -229,7 +229,7 @@ fn gap(wide: usize) -> (OccupancyGrid, Pose2, Pose2) {
     (grid, Pose2::new(1.0, 1.0, 0.0), Pose2::new(5.0, 2.0, 0.5))
 }
 
-/// The finer lattice is tried for discs whatever is asked: with a tolerance, for a goal that does not fit, and along a graph.
+/// The finer lattice is tried for discs in all cases: with a tolerance, for a goal that does not fit, and along a graph.
 #[test]
 fn a_tight_gap_is_passed_whatever_else_is_allowed() {
     let (mut grid, start, goal) = gap(4);
@@ -253,7 +253,7 @@ fn a_tight_gap_is_passed_whatever_else_is_allowed() {
     assert!(matches!(plan.instead_of, Some(Plan::GoalInObstacle { .. })), "{:?}", plan.instead_of);
 }
 
-/// The fields of both lattices are kept and brought up to date: the same bytes as from a new planner.
+/// The fields of both lattices are updated: the result equals that of a new planner byte for byte.
 #[test]
 fn the_finer_field_follows_the_map() {
     let (mut grid, start, goal) = gap(4);
@@ -266,7 +266,7 @@ fn the_finer_field_follows_the_map() {
     }
 }
 
-/// A polygon passes every gap that it fits along the lattice's lines: the centres of cells, their corners, the middles of edges.
+/// A polygon passes every gap that fits it along the lattice's lines: the centres of cells, their corners, the middles of edges.
 #[test]
 fn an_outline_passes_what_its_lattice_passes() {
     let cart = |half: f64| {

@@ -1,4 +1,4 @@
-//! A robot, and a checker that shares nothing with the planner: it measures trajectories against the grid's squares.
+//! A robot, and a checker that shares no code with the planner: it measures trajectories against the grid's squares.
 
 use trundle_core::{
     Cell, DifferentialDrive, DriveLimits, Footprint, OccupancyGrid, Pose2, Twist2, Vector2, wrap_angle,
@@ -58,7 +58,7 @@ pub fn min_clearance(grid: &OccupancyGrid, result: &PlanResult) -> f64 {
     least
 }
 
-/// Everything that must hold of any plan: ends, limits, rest, room, and that pose and twist tell one story.
+/// Checks the properties of every plan: ends, limits, rest, clearance, and the agreement of pose and twist.
 pub fn judge(grid: &OccupancyGrid, result: &PlanResult, start: Pose2, goal: Pose2, radius: f64) {
     let points = result.trajectory.points();
     let (first, last) = (points[0], points[points.len() - 1]);
@@ -92,7 +92,7 @@ pub fn judge(grid: &OccupancyGrid, result: &PlanResult, start: Pose2, goal: Pose
     }
 }
 
-/// Time that this thread spent on a core, ms: says something on a busy machine too.
+/// CPU time of this thread, ms; meaningful on a busy machine too.
 pub fn cpu_ms() -> f64 {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     time.tv_sec as f64 * 1e3 + time.tv_nsec as f64 * 1e-6

@@ -37,7 +37,7 @@ fn planned(grid: &OccupancyGrid, start: Pose2, goal: Pose2) -> Box<PlanResult> {
     plan
 }
 
-/// Both plans are as long and as slow, up to the choice between equal paths.
+/// Both plans are equally long and fast, up to the choice between equal paths.
 fn assert_alike(a: &PlanResult, b: &PlanResult) {
     let (times, lengths) = ([a, b].map(|plan| plan.trajectory.duration()), [a, b].map(|plan| plan.length));
     assert!((lengths[0] - lengths[1]).abs() < 0.03 * lengths[0], "{lengths:?} m");

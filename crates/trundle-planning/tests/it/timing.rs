@@ -1,4 +1,4 @@
-//! Speeds over time: jerk, and what was never seen.
+//! Speed profiles: jerk, and the limit on unobserved floor.
 
 use crate::support::{LIMITS, at_home, found, judge, planner};
 use trundle_core::{Cell, OccupancyGrid, Pose2, Twist2};

@@ -71,7 +71,7 @@ fn tracker() -> MovingObstacleTracker {
     MovingObstacleTracker::new(ObstacleTrackerConfig::default()).unwrap()
 }
 
-/// So many seconds of scans, ten per second, from where the robot stands.
+/// `seconds` of scans from the robot's pose, ten per second.
 fn watched(
     tracker: &mut MovingObstacleTracker,
     world: &mut World,
@@ -99,7 +99,7 @@ fn two_people_are_found_where_they_are_and_will_be() {
         let obstacles = watched(&mut tracker(), &mut world, Pose2::new(1.0, 3.0, 0.0), 2.5, sensor);
         assert_eq!(obstacles.len(), 2, "{sensor:?} {obstacles:?}");
         for (from, v) in things {
-            // Where it is, and where it will be in two seconds.
+            // The present position of the obstacle, and its forecast for two seconds later.
             for (ahead, near) in [(0.0, 0.12), (2.0, 0.4)] {
                 let true_place = from + v * (2.5 + ahead);
                 let off = obstacles.iter().map(|m| (m.at(ahead) - true_place).norm()).fold(9.0, f64::min);
@@ -119,7 +119,7 @@ fn someone_who_comes_straight_at_the_robot_is_seen_soon() {
         tracker.add_scan(pose, &world.scan(pose, time, CAMERA));
         !tracker.moving_obstacles(stamp(time)).is_empty()
     });
-    // Who was there from the beginning is first seen to be new where it comes to.
+    // A person who was present from the beginning is first detected in cells that were observed free before.
     assert!(first.is_some_and(|k| k <= 12), "{first:?}");
 }
 
@@ -226,8 +226,8 @@ fn who_is_lost_from_sight_soon_after_they_stopped_is_remembered() {
     assert!(obstacles.iter().any(|m| (m.at(0.0) - on).norm() < 0.3), "they may go on to {on}: {obstacles:?}");
 }
 
-/// Somebody came from the right, stopped in the way and may go on to the left: the robot passes behind, and when another comes along
-/// behind as well, it waits.
+/// A person comes from the right, stops in the path and may continue to the left: the robot passes behind. If a second person comes along
+/// behind as well, the robot waits.
 #[test]
 fn whoever_passes_one_who_stopped_goes_behind() {
     let grid = OccupancyGrid::filled(GridGeometry::new(0.05, at(0.0, 0.0), 200, 120).unwrap(), Cell::Free);
@@ -252,7 +252,7 @@ fn whoever_passes_one_who_stopped_goes_behind() {
     }
 }
 
-/// A camera that is blind nearer than `blind` (m) looks on, ten times per second, at those who walk until `stop` (s).
+/// A camera with a blind range of `blind` (m) observes, ten times per second, people who walk until `stop` (s).
 fn dim(
     tracker: &mut MovingObstacleTracker,
     world: &mut World,
@@ -282,7 +282,7 @@ fn lately(tracker: &MovingObstacleTracker, now: f64) -> Vec<Vector2> {
 #[test]
 fn who_steps_to_where_the_camera_is_blind_stands_there_until_seen_to_leave() {
     let mut tracker = tracker();
-    // At 1.5 s somebody stops before the camera, at 0.4 m, within the blind range.
+    // At 1.5 s a person stops before the camera, at 0.4 m, within the blind range.
     let mut world = World::new(&[(at(1.5, 4.2), at(0.0, -0.8))]);
     dim(&mut tracker, &mut world, (0.0, 1.5, 1.5), 0.5);
     for (from, until) in [(1.6, 2.0), (2.1, 3.5), (3.6, 9.0)] {
@@ -292,7 +292,7 @@ fn who_steps_to_where_the_camera_is_blind_stands_there_until_seen_to_leave() {
             "{until} s: {obstacles:?}"
         );
     }
-    // Nobody is there any more: seen free, it is free.
+    // The person has left: cells observed free are free.
     assert!(!lately(&tracker, 9.0).is_empty());
     world.people.clear();
     assert!(dim(&mut tracker, &mut world, (9.1, 9.5, 1.5), 0.5).is_empty());
@@ -301,7 +301,7 @@ fn who_steps_to_where_the_camera_is_blind_stands_there_until_seen_to_leave() {
 
 #[test]
 fn who_hides_is_as_large_as_they_ever_looked() {
-    // Of somebody who stops beside the blind zone their edge alone is seen at last.
+    // Of a person who stops next to the blind zone, only the edge remains visible.
     let (mut tracker, mut world) = (tracker(), World::new(&[(at(1.5, 4.2), at(0.0, -0.8))]));
     dim(&mut tracker, &mut world, (0.0, 1.5, 1.5), 0.5);
     for k in 16..80 {
@@ -406,7 +406,7 @@ fn scans_from_the_past_and_wrong_numbers_change_nothing() {
     );
 }
 
-/// The room as the map has it, with what the map drew of people.
+/// The map of the area, with the cells drawn for people.
 fn map(drawn: &[(Vector2, f64)]) -> OccupancyGrid {
     let geometry = GridGeometry::new(0.05, Vector2::zeros(), 200, 120).unwrap();
     let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
@@ -429,7 +429,7 @@ fn someone_seen_to_cross_is_let_pass() {
     let obstacles = watched(&mut tracker, &mut world, pose, 2.0, LASER);
     assert_eq!(obstacles.len(), 1);
     let now = crosses.0 + crosses.1 * 2.0;
-    // The map has drawn them where they are, and still shows where they were.
+    // The map contains the people at their present and their earlier positions.
     let seen = map(&[(now, PERSON), (now - at(0.0, 0.5), PERSON)]);
     let still = tracker.static_grid(&seen);
     let left = still.cells().iter().zip(map(&[]).cells()).filter(|(a, b)| a != b).count();

@@ -22,10 +22,10 @@ pub const MAX_ODOM_SILENCE: Duration = Duration::from_millis(500);
 /// Silence of a laser after which it counts as lost: five sweeps at 5 Hz. Source: ours.
 pub const MAX_SCAN_SILENCE: Duration = Duration::from_secs(1);
 
-/// Wait for transforms of sensors from the start on. Source: ours; two heartbeats of Fast DDS (3 s each), which bring `/tf_static` where
-/// its first copy got lost.
+/// Wait for transforms of sensors from the start on. Source: ours; two heartbeats of Fast DDS (3 s each), which repeat `/tf_static` after a
+/// loss of its first copy.
 pub(super) const FRAME_WAIT: Duration = Duration::from_secs(7);
-/// Readings of odometry that are kept: 2 s at 50 Hz. Source: ours.
+/// Maximum number of stored odometry readings: 2 s at 50 Hz. Source: ours.
 const ODOMETRY_HISTORY: usize = 100;
 
 /// Receives events; replaced when a run begins.
@@ -37,7 +37,7 @@ pub struct Shared {
     pub sink: Mutex<Option<Sink>>,
     /// Frames.
     pub frames: Mutex<FrameTree>,
-    /// The newest odometry as it came, `odom_from_base`, in the order of arrival.
+    /// The newest odometry as received, `odom_from_base`, in the order of arrival.
     pub odometry: Mutex<VecDeque<Odometry>>,
     /// Whether a usable gyro reading has come.
     pub has_gyro: AtomicBool,
@@ -49,19 +49,19 @@ pub struct Shared {
     pub clock: RosClock,
     /// Conditions of topics.
     pub diagnostics: Diagnostics,
-    /// When the topics were subscribed.
+    /// Time of the subscription.
     pub start: Instant,
 }
 
 impl Shared {
-    /// Sends an event into the run, where one goes.
+    /// Sends an event into the run, if one is active.
     pub fn send(&self, event: SensorEvent) {
         if let Some(sink) = &*lock(&self.sink) {
             sink(event);
         }
     }
 
-    /// The run's stamp of a message, or a report that names the topic. A message before the first of `/clock` has no time.
+    /// The run's stamp of a message, or a report with the topic. A message before the first of `/clock` has no time.
     pub(super) fn stamp(&self, topic: &str, time: &Time) -> Option<Stamp> {
         if !self.clock.has_begun() {
             return None;
@@ -69,12 +69,12 @@ impl Shared {
         self.accept(topic, stamp::from_ros(time).and_then(|ros| self.clock.checked_to_run(ros)))
     }
 
-    /// The value, or a report that names the topic.
+    /// The value, or a report with the topic.
     pub(super) fn accept<T>(&self, topic: &str, value: Result<T, Invalid>) -> Option<T> {
         value.map_err(|error| self.diagnostics.warn(topic, error.to_string())).ok()
     }
 
-    /// The pose of the frame of `header` on the base, or a report that names the topic.
+    /// The pose of the header's frame on the base, or a report with the topic.
     fn base_from(&self, topic: &str, base: &str, header: &Header) -> Option<Pose3> {
         let pose = lock(&self.frames).pose(base, &header.frame_id);
         if pose.is_none() && header.frame_id != base && self.start.elapsed() > FRAME_WAIT {
@@ -93,9 +93,9 @@ pub fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Monitors of the topics without which the base counts as lost.
+/// Monitors of the topics required by the base.
 pub struct BaseMonitors {
-    /// The time, where a simulator gives it.
+    /// Monitor of the time, if a simulator publishes it.
     pub clock: Option<Arc<TopicMonitor>>,
     /// Odometry.
     pub odom: Arc<TopicMonitor>,
@@ -167,7 +167,8 @@ fn note(history: &mut VecDeque<Odometry>, newest: Odometry) {
     history.push_back(newest);
 }
 
-/// Odometry of another frame of the base (`base_footprint`) as that of `base`: both turn alike, and lie above each other as a rule.
+/// Odometry of another frame of the base (`base_footprint`), used as that of `base`: both have the same heading, and usually the same
+/// position on the floor.
 fn on_base(own: Odometry, child: &str, base: &str, shared: &Shared) -> Option<Odometry> {
     let offset = lock(&shared.frames).pose(child, base).map_or(Pose2::IDENTITY, |pose| pose.to_pose2());
     Some(Odometry { pose: own.pose * offset, ..own })

@@ -12,10 +12,10 @@ use std::sync::Arc;
 use std::time::Duration;
 use trundle_core::Stamp;
 
-/// Silence of images after which their topic counts as stalled. Source: that of the drivers' cameras, `max_silence_s`.
+/// Silence of images after which their topic counts as stalled. Source: the value of the drivers' cameras, `max_silence_s`.
 const MAX_IMAGE_SILENCE: Duration = Duration::from_secs(1);
 
-/// Subscribes to colour, depth and intrinsics. Images are best effort: reliable streams of large messages stall where packets get lost.
+/// Subscribes to colour, depth and intrinsics. Images are best effort: reliable streams of large messages stall after packet loss.
 ///
 /// # Errors
 /// When a topic cannot be created.

@@ -1,4 +1,4 @@
-//! Commands for the base as messages, from a thread of their own.
+//! Commands for the base as messages, from a separate thread.
 
 use super::BodySettings;
 use crate::Ros2Error;
@@ -13,11 +13,11 @@ use std::time::Duration;
 use trundle_app::real_time::COMMAND_TIMEOUT_S;
 use trundle_core::Twist2;
 
-/// Longest wait for a command before the time since the newest one is looked at. Source: ours.
+/// Longest wait for a command before the age of the newest one is checked. Source: ours.
 const CHECK_PERIOD: Duration = Duration::from_millis(20);
 /// Messages of standstill at the end: one may get lost. Source: ours.
 const LAST_STOPS: usize = 5;
-/// Time between them. Source: ours.
+/// Period of the last stops. Source: ours.
 const LAST_STOP_PERIOD: Duration = Duration::from_millis(20);
 
 /// Publishes commands in either form.
@@ -68,7 +68,7 @@ impl CommandPublisher {
     }
 }
 
-/// The thread that publishes commands. Without a command for 0.2 s of the robot's time, and at its end, it commands standstill.
+/// The thread that publishes commands. Without a command for 0.2 s of the robot's time, and at its end, it commands zero speed.
 pub struct CommandThread {
     commands: Option<Sender<Twist2>>,
     thread: Option<JoinHandle<()>>,
@@ -86,7 +86,7 @@ impl CommandThread {
         Ok(Self { commands: Some(commands), thread: Some(thread) })
     }
 
-    /// Where commands go.
+    /// Sender for commands.
     #[must_use]
     pub fn commands(&self) -> Sender<Twist2> {
         self.commands.clone().unwrap_or_else(|| channel().0)
@@ -107,7 +107,7 @@ impl Drop for CommandThread {
 
 /// Publishes each command until the end, which is a command that is not a number.
 fn publish_all(publisher: &CommandPublisher, commands: &Receiver<Twist2>) {
-    // The time of the newest command, where it moves the robot.
+    // Time of the newest command with motion.
     let mut moving_since = None;
     loop {
         match commands.recv_timeout(CHECK_PERIOD) {

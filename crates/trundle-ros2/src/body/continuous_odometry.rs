@@ -1,4 +1,4 @@
-//! Odometry that goes on where the base's driver was started anew.
+//! Odometry that continues after a restart of the base's driver.
 
 use trundle_core::{Odometry, Pose2};
 
@@ -8,7 +8,7 @@ pub const MAX_STEP_M: f64 = 0.5;
 /// Takes jumps out of odometry: a jump is not motion.
 #[derive(Debug, Default)]
 pub struct ContinuousOdometry {
-    /// The newest pose as it came, and without jumps.
+    /// The newest pose as received, and without jumps.
     newest: Option<(Pose2, Pose2)>,
 }
 

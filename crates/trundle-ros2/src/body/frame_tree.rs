@@ -5,12 +5,12 @@ use crate::generated::geometry_msgs::TransformStamped;
 use std::collections::BTreeMap;
 use trundle_core::{Invalid, Pose3};
 
-/// Largest number of frames between a frame and its root: more is a loop. Source: ours.
+/// Maximum number of frames between a frame and its root: more indicate a loop. Source: ours.
 const MAX_DEPTH: usize = 64;
 /// Largest number of frames: a robot has some 50. Source: ours.
 const MAX_FRAMES: usize = 1000;
 
-/// The newest pose of each frame in its parent's.
+/// The newest pose of each frame in its parent's frame.
 #[derive(Debug, Default)]
 pub struct FrameTree {
     /// Child to its parent and `parent_from_child`.
@@ -21,7 +21,7 @@ impl FrameTree {
     /// Takes a transform up.
     ///
     /// # Errors
-    /// When its numbers are not finite, its rotation was never set, or there are too many frames.
+    /// When its numbers are not finite, its rotation was never set, or the number of frames is at its limit.
     pub fn add(&mut self, stamped: &TransformStamped) -> Result<(), Invalid> {
         let (parent, child) = (bare(&stamped.header.frame_id), bare(&stamped.child_frame_id));
         let named = |error: Invalid| Invalid {
@@ -62,7 +62,7 @@ impl FrameTree {
     }
 }
 
-/// A frame's name without the slash that ROS 1 put before it.
+/// A frame's name without the leading slash of ROS 1.
 fn bare(frame: &str) -> &str {
     frame.strip_prefix('/').unwrap_or(frame)
 }

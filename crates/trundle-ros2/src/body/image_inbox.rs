@@ -7,7 +7,7 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use trundle_core::Stamp;
 
-/// An image as it came.
+/// An image as received.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ImageMessage {
     /// Pixels.
@@ -17,7 +17,7 @@ pub enum ImageMessage {
 }
 
 impl ImageMessage {
-    /// Name of its frame.
+    /// Name of the image's frame.
     #[must_use]
     pub fn frame(&self) -> &str {
         match self {

@@ -5,7 +5,7 @@ use trundle_core::Stamp;
 
 /// Largest difference of the stamps of a pair \[s\]: at 1 rad/s and 525 px focal length, 5 px. Source: ours.
 pub const MAX_PAIR_GAP_S: f64 = 0.01;
-/// Images of either kind that wait for their other half: 0.3 s at 30 Hz. Source: ours.
+/// Maximum number of images of either kind waiting for their partner: 0.3 s at 30 Hz. Source: ours.
 const MAX_WAITING: usize = 10;
 
 /// Pairs images of two kinds by their stamps.
@@ -24,7 +24,7 @@ impl<C, D> Default for ImagePairs<C, D> {
 }
 
 impl<C, D> ImagePairs<C, D> {
-    /// Adds a colour image; the pair that it completes.
+    /// Adds a colour image; returns the completed pair, if any.
     pub fn add_color(&mut self, stamp: Stamp, color: C) -> Option<(C, D)> {
         let found = take_nearest(&mut self.depths, stamp, &mut self.unpaired);
         match found {
@@ -39,7 +39,7 @@ impl<C, D> ImagePairs<C, D> {
         }
     }
 
-    /// Adds a depth image; the pair that it completes.
+    /// Adds a depth image; returns the completed pair, if any.
     pub fn add_depth(&mut self, stamp: Stamp, depth: D) -> Option<(C, D)> {
         let found = take_nearest(&mut self.colors, stamp, &mut self.unpaired);
         match found {
@@ -54,7 +54,7 @@ impl<C, D> ImagePairs<C, D> {
         }
     }
 
-    /// The smallest difference of the stamps \[s\] where many images in a row found no other half though both kinds come.
+    /// The smallest difference of the stamps \[s\] if many consecutive images found no partner although both kinds arrive.
     #[must_use]
     pub fn smallest_gap(&self) -> Option<f64> {
         let (count, gap) = self.unpaired;

@@ -9,10 +9,10 @@ use std::time::Duration;
 use trundle_core::{BodyEvent, BodyEventKind, Device, Link, SensorEvent};
 use trundle_drivers::camera::camera_thread::CameraThread;
 
-/// Time between two looks at the links. Source: ours.
+/// Period of checks of the links. Source: ours.
 const LINK_PERIOD: Duration = Duration::from_millis(50);
 
-/// Reports the loss and the return of base and laser, faults of the camera, and the death of the node.
+/// Reports the loss and the return of base and laser, faults of the camera, and a crash of the node.
 pub(super) struct LinkWatch {
     is_over: Arc<AtomicBool>,
     thread: Option<std::thread::JoinHandle<()>>,
@@ -55,7 +55,7 @@ impl Drop for LinkWatch {
     }
 }
 
-/// A device and the topics that it needs.
+/// A device and its required topics.
 struct WatchedLink {
     device: Device,
     monitors: Vec<Arc<TopicMonitor>>,

@@ -22,9 +22,9 @@ use trundle_core::{DifferentialDrive, Odometry, PinholeCamera, Pose3, Stamp};
 use trundle_drivers::camera::camera_thread::{CameraThread, CameraThreadConfig, CameraThreadParts};
 use trundle_runtime::real_time::InboxSender;
 
-/// Time between two looks for transforms. Source: ours.
+/// Period of queries for transforms. Source: ours.
 const FRAME_PERIOD: Duration = Duration::from_millis(50);
-/// Wait of the camera's thread for images when it opens the camera again. Source: ours.
+/// Wait for images when the camera's thread reopens the camera. Source: ours.
 const REOPEN_WAIT: Duration = Duration::from_secs(2);
 /// Silence of `/clock` on the computer's clock after which the base counts as lost. Source: ours; a simulator of 50 Hz at a fiftieth of
 /// real time.
@@ -39,12 +39,12 @@ pub struct Ros2Body {
     commands: CommandPublisher,
 }
 
-/// Facts of the robot when all its topics have begun.
+/// Facts of the robot, once all its topics have started.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyDescription {
     /// The colour camera.
     pub camera: PinholeCamera,
-    /// `base_from_camera`, of the colour camera's optical frame; `None` if no transform says.
+    /// `base_from_camera`, of the colour camera's optical frame; `None` without a transform.
     pub base_from_camera: Option<Pose3>,
     /// The depth camera's pose in the colour camera's frame; `None` if depth is registered to colour.
     pub color_from_depth: Option<Pose3>,
@@ -89,16 +89,16 @@ impl Ros2Body {
         self.shared.clock.clone()
     }
 
-    /// Reads the newest odometry as the robot gave it, from any thread.
+    /// A reader of the newest odometry as received, for any thread.
     #[must_use]
     pub fn odometry(&self) -> OdometryReader {
         OdometryReader(Arc::clone(&self.shared))
     }
 
-    /// Waits until clock, odometry and camera have begun; what they say. `is_cancelled` is asked every 0.1 s.
+    /// Waits until clock, odometry and camera have started; returns their facts. `is_cancelled` is called every 0.1 s.
     ///
     /// # Errors
-    /// Names the topics on which nothing usable came within `timeout`, and why it was not usable.
+    /// Names the topics without a usable message within `timeout`, and the reason.
     pub fn wait(
         &self,
         timeout: Duration,
@@ -164,7 +164,7 @@ impl Ros2Body {
         BodyDescription { camera, base_from_camera: self.base_from_camera(), color_from_depth }
     }
 
-    /// Whether a gyro has messages, none of them usable so far.
+    /// Whether a gyro has sent messages, none of them usable so far.
     fn awaits_gyro(&self) -> bool {
         let has_messages = self.monitors.imu.as_ref().is_some_and(|monitor| monitor.has_begun());
         has_messages && !self.shared.has_gyro.load(Ordering::Relaxed)
@@ -242,7 +242,7 @@ impl Ros2Body {
     }
 }
 
-/// `base_from_camera` with the height over the floor, which `base_footprint` lies on where the robot has this frame \[REP 120\].
+/// `base_from_camera` with the height over the floor; `base_footprint` is on the floor, if the robot has this frame \[REP 120\].
 fn above_floor(frames: &FrameTree, base: &str, camera: &str) -> Option<Pose3> {
     let mut pose = frames.pose(base, camera)?;
     if let Some(on_floor) = frames.pose("base_footprint", camera) {
@@ -251,7 +251,7 @@ fn above_floor(frames: &FrameTree, base: &str, camera: &str) -> Option<Pose3> {
     Some(pose)
 }
 
-/// Reads the newest odometry as the robot gave it.
+/// Reads the newest odometry as received.
 #[derive(Clone)]
 pub struct OdometryReader(Arc<Shared>);
 

@@ -22,13 +22,13 @@ const DEPTH_UNIT_M: f64 = 0.001;
 /// Settings to open the camera.
 #[derive(Clone)]
 pub struct RosCameraSource {
-    /// Where its messages come in.
+    /// Queue of the camera's messages.
     pub inbox: Arc<ImageInbox>,
     /// Topics.
     pub settings: BodySettings,
     /// The depth camera's pose in the colour camera's frame; `None` if depth is registered to colour.
     pub color_from_depth: Option<Pose3>,
-    /// Where broken images are reported.
+    /// Receiver of reports on broken images.
     pub diagnostics: Diagnostics,
 }
 
@@ -42,7 +42,7 @@ impl RosCameraSource {
     /// Opens the camera: waits for its intrinsics and a first pair of images.
     ///
     /// # Errors
-    /// Names the topic on which nothing usable came within `timeout`.
+    /// Names the topic without a usable message within `timeout`.
     pub fn open(&self, timeout: Duration) -> Result<RosCamera, CameraError> {
         let end = Instant::now() + timeout;
         let no_device = |topic: &str| CameraError::NoDevice { kind: format!("ROS 2 topic {topic}") };
@@ -86,7 +86,7 @@ impl RosCameraSource {
     /// The intrinsics of colour and depth.
     ///
     /// # Errors
-    /// When they have not come or are unusable.
+    /// When they have not arrived or are unusable.
     pub fn cameras(&self) -> Result<(PinholeCamera, PinholeCamera), CameraError> {
         let (color, depth) = self.inbox.infos();
         let missing = || CameraError::NoDevice { kind: format!("ROS 2 topic {}", self.settings.camera_info) };
@@ -127,7 +127,7 @@ impl RosCameraSource {
         })
     }
 
-    /// The error with its topic, reported.
+    /// The error with its topic, after a report.
     fn named(&self, topic: &str, error: Invalid) -> Invalid {
         self.diagnostics.warn(topic, error.to_string());
         Invalid { field: format!("{} of {topic}", error.field), ..error }
@@ -154,7 +154,7 @@ impl DepthCamera for RosCamera {
         let known: [PixelFormat; 2] = [self.info.color.format, self.info.depth.format];
         let (color, _) = self.source.cameras()?;
         if [frame.color.format, frame.depth.format] != known || color != self.info.color.camera {
-            // The driver opens the camera anew, with the new size and form.
+            // The driver reopens the camera with the new size and format.
             return Err(CameraError::StreamsUnavailable {
                 device: self.info.name.clone(),
                 wanted: format!("{} with the intrinsics of the start", known[0]),

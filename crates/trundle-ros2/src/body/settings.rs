@@ -7,7 +7,7 @@ use crate::convert::camera_info::Rectification;
 pub struct BodySettings {
     /// Odometry, `nav_msgs/Odometry`.
     pub odom: String,
-    /// Gyro, `sensor_msgs/Imu`. Where messages come, they give the heading; else that of the odometry is used as it is.
+    /// Gyro, `sensor_msgs/Imu`. If messages arrive, they give the heading; otherwise the heading of the odometry is used.
     pub imu: Option<String>,
     /// Laser, `sensor_msgs/LaserScan`.
     pub scan: Option<String>,
@@ -19,7 +19,7 @@ pub struct BodySettings {
     pub depth: String,
     /// Intrinsics of the colour camera.
     pub camera_info: String,
-    /// Intrinsics of the depth camera, where depth is not registered to colour.
+    /// Intrinsics of the depth camera, if depth is not registered to colour.
     pub depth_info: Option<String>,
     /// Commands for the base.
     pub cmd_vel: String,

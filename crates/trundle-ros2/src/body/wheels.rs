@@ -11,7 +11,7 @@ pub struct WheelsFromOdometry {
     travel: [f64; 2],
 }
 
-/// Turn below which an arc is as long as its chord \[rad\]. Source: ours; the difference is below 1e-12.
+/// Turn below which an arc has the length of its chord \[rad\]. Source: ours; the difference is below 1e-12.
 const MIN_TURN_RAD: f64 = 1e-6;
 
 impl WheelsFromOdometry {
@@ -26,7 +26,7 @@ impl WheelsFromOdometry {
         let motion = self.last.map_or(Pose2::IDENTITY, |last| last.inverse() * odometry.pose);
         self.last = Some(odometry.pose);
         let turn = motion.theta * self.drive.wheelbase / 2.0;
-        // The chord of an arc lies half its turn beside the heading, and is shorter than the arc.
+        // The direction of an arc's chord differs from the heading by half the turn, and the chord is shorter than the arc.
         let half = motion.theta / 2.0;
         let chord = motion.position().dot(&Pose2::new(0.0, 0.0, half).direction());
         let ahead = if half.abs() > MIN_TURN_RAD { chord * half / half.sin() } else { chord };

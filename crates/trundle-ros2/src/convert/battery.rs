@@ -4,7 +4,7 @@ use super::stamp;
 use crate::generated::sensor_msgs::BatteryState;
 use trundle_core::{Battery, Invalid, PowerSource, Stamp, require_in};
 
-/// The battery as a message. What is not known is NaN, as the message's definition asks.
+/// The battery as a message. Unknown quantities are NaN, as the message's definition requires.
 #[must_use]
 pub fn to_ros(battery: &Battery, at: Stamp, frame: &str) -> BatteryState {
     let is_on_charger = battery.source != PowerSource::Battery;

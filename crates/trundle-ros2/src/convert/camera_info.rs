@@ -12,14 +12,14 @@ const RATIONAL: &str = "rational_polynomial";
 /// Whether images are rectified: then the projection matrix `p` counts, else `k` and the distortion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rectification {
-    /// As the lens made them.
+    /// With lens distortion.
     Raw,
     /// Without distortion.
     Rectified,
 }
 
 impl Rectification {
-    /// By the name of an image's topic, as `image_pipeline` names them: `image_rect`, `image_rect_color`, `depth/image_rect_raw`.
+    /// The kind by the name of an image's topic, as in `image_pipeline`: `image_rect`, `image_rect_color`, `depth/image_rect_raw`.
     #[must_use]
     pub fn of_topic(topic: &str) -> Self {
         if topic.contains("rect") { Self::Rectified } else { Self::Raw }

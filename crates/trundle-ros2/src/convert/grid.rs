@@ -24,7 +24,7 @@ pub fn to_ros(grid: &OccupancyGrid, at: Stamp, frame: &str) -> Message {
     Message { header: stamp::header(at, frame), info: info(grid.geometry(), at), data }
 }
 
-/// Where the cells lie, as a message.
+/// Geometry of the cells, as a message.
 #[must_use]
 pub fn info(geometry: &GridGeometry, at: Stamp) -> MapMetaData {
     let origin = Pose {
@@ -78,7 +78,7 @@ pub fn update(
     })
 }
 
-/// The grid of a message; its frame must not be turned.
+/// The grid of a message; its frame must not be rotated.
 ///
 /// # Errors
 /// When size, resolution or origin is not allowed, or the number of cells does not fit.

@@ -6,13 +6,13 @@ use crate::generated::sensor_msgs::Imu;
 use nalgebra::UnitQuaternion;
 use trundle_core::{GyroRate, Invalid, Stamp, Vector3, require_finite};
 
-/// The covariance element that says that a quantity is not measured \[REP 145, sensor_msgs/Imu\].
+/// The covariance element for a quantity that is not measured \[REP 145, sensor_msgs/Imu\].
 const NOT_MEASURED: f64 = -1.0;
 
 /// The turn rate around the base's vertical axis, at `stamp` of the run. `base_from_imu` is the rotation of the sensor on the base.
 ///
 /// # Errors
-/// When the message says that it has no turn rate, or a rate is not finite.
+/// When the message declares no turn rate, or a rate is not finite.
 pub fn from_ros(imu: &Imu, stamp: Stamp, base_from_imu: &UnitQuaternion<f64>) -> Result<GyroRate, Invalid> {
     let rate = &imu.angular_velocity;
     if imu.angular_velocity_covariance[0] == NOT_MEASURED {

@@ -1,5 +1,5 @@
-//! ROS 2 messages to core types and back: one file for each family of messages. What is not finite, not normal or of an unknown form
-//! is refused with its field and value; the caller names the topic.
+//! ROS 2 messages to core types and back: one file for each family of messages. A value that is not finite, not normalised or of an unknown
+//! format is refused with its field; the caller adds the topic.
 
 pub mod battery;
 pub mod camera_info;

@@ -11,8 +11,8 @@ pub fn to_ros(poses: &[Pose2], at: Stamp, frame: &str) -> Path {
     Path { header: stamp::header(at, frame), poses }
 }
 
-/// The poses of a path that keep its form best: its ends, and again and again the pose farthest from the line between its neighbours
-/// that are kept \[Douglas73\]. At most `count` poses, but always the ends.
+/// The poses that preserve the path's shape best \[Douglas73\]: its ends, then repeatedly the pose farthest from the line between its
+/// selected neighbours. At most `count` poses, but always the ends.
 #[must_use]
 pub fn thinned(poses: &[Pose2], count: usize) -> Vec<Pose2> {
     let mut kept: Vec<usize> = [0, poses.len().saturating_sub(1)].into_iter().take(poses.len()).collect();

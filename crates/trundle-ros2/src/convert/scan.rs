@@ -7,11 +7,11 @@ use trundle_core::{Beam, BeamTimes, Invalid, Pose2, Scan, Stamp, require_finite,
 /// Largest number of beams of a sweep. Source: ours; a sweep of 0.01 deg has 36,000.
 const MAX_BEAMS: usize = 100_000;
 
-/// The sweep of a laser that sits at `base_from_laser` on the base, at `stamp` of the run. Beams without echo are free up to the
-/// laser's range where they are infinite, and unseen where they are NaN or outside the range \[REP 117\].
+/// The sweep of a laser with pose `base_from_laser` on the base, at `stamp` of the run. Beams without echo are free up to the laser's range
+/// if infinite, and unseen if NaN or outside the range \[REP 117\].
 ///
 /// # Errors
-/// When an angle or a limit is not finite, or there is no beam.
+/// When an angle or a limit is not finite, or the scan has no beam.
 pub fn from_ros(message: &LaserScan, stamp: Stamp, base_from_laser: &Pose2) -> Result<Scan, Invalid> {
     let increment = require_finite("angle_increment", f64::from(message.angle_increment), "rad")?;
     let (near, far) = (f64::from(message.range_min), f64::from(message.range_max));
@@ -40,8 +40,8 @@ pub fn from_ros(message: &LaserScan, stamp: Stamp, base_from_laser: &Pose2) -> R
     Ok(if times.step_s == 0.0 { scan } else { scan.clone().with_beam_times(times).unwrap_or(scan) })
 }
 
-/// The scan as a message in the frame `frame`, which stands at the scan's origin with the axes of the base. `far` is the range of beams
-/// without obstacle \[m\].
+/// The scan as a message in the frame `frame`, at the scan's origin with the axes of the base. `far` is the range of beams without obstacle
+/// \[m\].
 #[must_use]
 pub fn to_ros(scan: &Scan, at: Stamp, frame: &str, far: f64) -> LaserScan {
     let range = |beam: &Beam| match beam {

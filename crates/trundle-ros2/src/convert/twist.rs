@@ -9,7 +9,7 @@ const MAX_COMMAND: f64 = 10.0;
 /// The twist of a two-wheeled base: speed ahead and turn rate.
 ///
 /// # Errors
-/// When a number is not finite or above 10, or the command asks for motion sideways, up, or a tilt.
+/// When a number is not finite or above 10, or the command contains sideways or vertical motion, or a tilt.
 pub fn from_ros(twist: &Twist) -> Result<Twist2, Invalid> {
     let (linear, angular) = (&twist.linear, &twist.angular);
     for (name, value, unit) in [("linear.x", linear.x, "m/s"), ("angular.z", angular.z, "rad/s")] {

@@ -13,7 +13,7 @@ use trundle_runtime::{Mission, OperatorCommand, Reason, Task, TaskEnd};
 const FEEDBACK_PERIOD: Duration = Duration::from_millis(100);
 /// Longest wait for standstill after a cancel. Source: ours; from 0.7 m/s at 0.5 m/s^2 it takes 1.4 s.
 const STANDSTILL_TIMEOUT: Duration = Duration::from_secs(3);
-/// Speed below which the robot stands \[m/s, rad/s\]. Source: ours.
+/// Speed below which the robot counts as at rest \[m/s, rad/s\]. Source: ours.
 const STANDSTILL_SPEED: f64 = 0.02;
 /// Wait for the run to take a mission up. Source: ours; it takes one request a step.
 const START_TIMEOUT: Duration = Duration::from_secs(5);
@@ -23,36 +23,36 @@ pub trait RunningGoal: Send {
     /// Sends feedback.
     fn feedback(&mut self, view: &RunView, progress: &GoalProgress);
 
-    /// Whether the client asked to cancel it.
+    /// Whether the client requested its cancellation.
     fn is_canceling(&self) -> bool;
 
-    /// Ends it.
+    /// Ends the goal.
     fn end(self: Box<Self>, end: GoalEnd, outcome: &NavigationOutcome);
 }
 
-/// How long a goal has been worked on.
+/// Progress of a goal.
 #[derive(Debug, Clone, Copy)]
 pub struct GoalProgress {
-    /// Time since its start \[s\].
+    /// Time since the start \[s\].
     pub time_s: f64,
-    /// `map_from_base` at its start.
+    /// `map_from_base` at the start.
     pub start: trundle_core::Pose2,
 }
 
 struct Active {
     goal: Box<dyn RunningGoal>,
-    /// The number of its mission.
+    /// Number of the goal's mission.
     request: u64,
     since: Instant,
     start: trundle_core::Pose2,
-    /// Time after which it has failed.
+    /// Time after which the goal fails.
     time_limit: Option<Duration>,
-    /// When the robot was asked to stop for good, and how the goal ends then.
+    /// Time of the final stop request, and the end and result of the goal after the stop.
     stopping: Option<(Instant, GoalEnd, NavigationOutcome)>,
     feedback_due: Instant,
 }
 
-/// The one goal that the robot works on. Clones share it.
+/// The goal in progress, at most one. Clones share it.
 #[derive(Clone)]
 pub struct ActiveGoal {
     operator: Operator,
@@ -80,7 +80,7 @@ impl ActiveGoal {
         self.clock.clone()
     }
 
-    /// Begins a mission for a goal. The goal before it ends as aborted, as Nav2's servers do.
+    /// Starts a mission for a goal. The previous goal ends as aborted, as in Nav2's servers.
     ///
     /// # Errors
     /// Why the goal is refused.
@@ -109,7 +109,7 @@ impl ActiveGoal {
     /// Begins a mission that no action follows: a click in RViz.
     ///
     /// # Errors
-    /// Why it is refused.
+    /// Reason for the refusal.
     pub fn begin_without_action(&self, tasks: Vec<Task>) -> Result<(), String> {
         let mission = Mission::new(tasks).map_err(|error| error.to_string())?;
         self.send(OperatorCommand::Begin(mission)).map_err(|error| error.to_string())?;
@@ -138,7 +138,7 @@ impl ActiveGoal {
         }
     }
 
-    /// One look at a goal; its end.
+    /// One check of a goal; returns its end, if any.
     fn step(
         &self,
         active: &mut Active,
@@ -169,7 +169,7 @@ impl ActiveGoal {
         None
     }
 
-    /// Takes the mission away where the client cancels or the time is over.
+    /// Cancels the mission if the client requested it or the time is over.
     fn stop_where_asked(&self, active: &mut Active, now: Instant) {
         let is_late = active.time_limit.is_some_and(|limit| now - active.since > limit);
         let (end, outcome) = if active.goal.is_canceling() {
@@ -198,7 +198,7 @@ fn is_standing(view: &RunView) -> bool {
     v.abs() < STANDSTILL_SPEED && omega.abs() < STANDSTILL_SPEED
 }
 
-/// How a goal ended whose mission is over.
+/// End of a goal whose mission is over.
 fn end_of(view: &RunView) -> (GoalEnd, NavigationOutcome) {
     let reason = |end: &TaskEnd| match end {
         TaskEnd::GivenUp { reason } => Some(reason.clone()),

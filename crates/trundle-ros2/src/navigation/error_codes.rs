@@ -5,7 +5,7 @@ use crate::generated::nav2_msgs::{
 };
 use trundle_runtime::{NoPath, Reason, ReasonKind};
 
-/// The error code of `NavigateToPose` for a reason: as Nav2's navigator, that of the planner or controller that failed.
+/// Returns the error code of `NavigateToPose` for a reason. As in Nav2's navigator, it is the code of the failed planner or controller.
 #[must_use]
 pub fn of_reason(reason: &Reason) -> u16 {
     if let Reason::NoPath { cause, .. } = reason {

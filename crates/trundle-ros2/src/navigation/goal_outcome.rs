@@ -5,9 +5,9 @@ use trundle_runtime::Reason;
 /// Outcome of a goal, for its result.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct NavigationOutcome {
-    /// The problem, in words; empty if there is none.
+    /// The problem, in words; empty without one.
     pub message: String,
-    /// Why the robot gave up.
+    /// Reason why the robot failed.
     pub reason: Option<Reason>,
     /// Tasks of the goal that are undone.
     pub missed: Vec<(usize, Reason)>,
@@ -22,7 +22,7 @@ impl NavigationOutcome {
         Self { message: message.to_owned(), ..Self::default() }
     }
 
-    /// Another goal replaced it.
+    /// The outcome of a goal replaced by another.
     #[must_use]
     pub fn replaced() -> Self {
         Self::failed("a newer goal replaced it")
@@ -34,7 +34,7 @@ impl NavigationOutcome {
         Self { is_timeout: true, ..Self::failed("the time that was allowed is over") }
     }
 
-    /// The error code: `none` of a success, `timeout`, or that of the reason.
+    /// The error code: `none` for a success, `timeout`, or that of the reason.
     #[must_use]
     pub fn code(&self, timeout: u16, of_reason: impl Fn(&Reason) -> u16, unknown: u16) -> u16 {
         match (&self.reason, self.is_timeout, self.message.is_empty()) {

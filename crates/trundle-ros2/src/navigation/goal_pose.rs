@@ -6,10 +6,10 @@ use crate::outputs::FrameNames;
 use trundle_app::operator::RunView;
 use trundle_core::{Invalid, Pose2};
 
-/// Why a goal pose cannot be taken up.
+/// Reason why a goal pose is refused.
 #[derive(Debug, Clone, PartialEq)]
 pub enum GoalPoseError {
-    /// Its numbers are broken: the goal is refused.
+    /// A number is invalid: the goal is refused.
     Invalid(Invalid),
     /// Its frame is unknown: the goal fails.
     Frame(String),

@@ -1,4 +1,4 @@
-//! Services that tools of Nav2 ask before they give goals: states of its servers, and their manager.
+//! Services that tools of Nav2 call before they send goals: states of its servers, and their manager.
 
 use super::active_goal::ActiveGoal;
 use crate::Ros2Error;
@@ -60,13 +60,13 @@ fn state(active: &ActiveGoal) -> State {
     State { id, label: label.to_owned() }
 }
 
-/// Carries out a command of the manager. Returns whether it could.
+/// Carries out a command of the manager. Returns whether it succeeded.
 fn manage(active: &ActiveGoal, command: u8) -> bool {
     let command = match command {
         ManageLifecycleNodesRequest::STARTUP | ManageLifecycleNodesRequest::CONFIGURE => return true,
         ManageLifecycleNodesRequest::PAUSE => OperatorCommand::Pause,
         ManageLifecycleNodesRequest::RESUME => OperatorCommand::Continue,
-        // The process goes on: it stops the robot and waits for goals.
+        // The process continues: it stops the robot and waits for goals.
         ManageLifecycleNodesRequest::RESET
         | ManageLifecycleNodesRequest::SHUTDOWN
         | ManageLifecycleNodesRequest::CLEANUP => OperatorCommand::cancel(),

@@ -47,7 +47,7 @@ pub fn offer(
         })
     })?;
     for costmap in ["global_costmap", "local_costmap"] {
-        // The costs follow the map at each second: there is nothing to clear.
+        // The costs follow the map every second, so a clear has no effect.
         let clear = |service: &str| format!("{costmap}/{service}_{costmap}");
         node.serve::<ClearEntireCostmap>(&clear("clear_entirely"), |_| {
             ClearEntireCostmapResponse::default()
@@ -62,7 +62,7 @@ pub fn offer(
     Ok(())
 }
 
-/// The map of the topic, as far as a reply has room for it. The frame of an empty map names the topic that has it.
+/// The map of the topic, if it fits into a reply. Otherwise an empty map, whose frame is the name of the topic.
 fn get(published: &PublishedMap, frame: &str, diagnostics: &Diagnostics) -> GetMapResponse {
     let map = published.newest().map(|(map, at)| grid::to_ros(&map.grid, at, frame)).unwrap_or_default();
     let had_none = map.data.is_empty();
@@ -73,7 +73,7 @@ fn get(published: &PublishedMap, frame: &str, diagnostics: &Diagnostics) -> GetM
     GetMapResponse { map }
 }
 
-/// Writes the map of the topic to `map_url.yaml` and its picture beside it.
+/// Writes the map of the topic to `map_url.yaml`, with its picture in the same folder.
 fn save(request: &SaveMapRequest, published: &PublishedMap) -> Result<(), String> {
     let url = Path::new(request.map_url.trim_start_matches("file://"));
     let name = url.file_name().and_then(|name| name.to_str());
@@ -95,11 +95,11 @@ fn save(request: &SaveMapRequest, published: &PublishedMap) -> Result<(), String
         .map_err(|error| error.to_string())
 }
 
-/// Why a map is not loaded: the code of Nav2 and the sentence.
+/// Reason why a map is not loaded: Nav2's code and a sentence.
 type LoadRefusal = (u8, String);
 
-/// Gives the robot the map of a file in place of its own. The other services have it at once, the topic as soon as the robot has it; the
-/// reply has it where it has room for it.
+/// Replaces the robot's map by the map of a file. The other services have the new map immediately, the topic once the robot has it; the
+/// reply contains the map if it fits.
 fn load(
     request: &LoadMapRequest,
     robot: &ActiveGoal,
@@ -134,7 +134,7 @@ fn read_for(map_url: &str, config: &RobotConfig) -> Result<OccupancyGrid, LoadRe
     Ok(grid)
 }
 
-/// The map where a reply has room for it; else an empty one, whose frame names the topic that has it.
+/// The map if it fits into a reply; else an empty one, whose frame is the name of the topic.
 fn fitting(map: RosGrid) -> RosGrid {
     if arrives(&map) {
         return map;

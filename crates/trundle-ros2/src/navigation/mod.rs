@@ -1,4 +1,4 @@
-//! Nav2's interface of goals: actions, goal and initial pose, services that its tools ask.
+//! Nav2's interface of goals: actions, goal and initial pose, services for its tools.
 
 mod actions;
 mod active_goal;
@@ -27,7 +27,7 @@ use crate::node::RosNode;
 use crate::outputs::{FrameNames, PublishedMap};
 use trundle_runtime::RobotConfig;
 
-/// Offers everything by which Nav2's users and tools give goals.
+/// Offers all actions, topics and services by which Nav2's users and tools send goals.
 ///
 /// # Errors
 /// When a topic, service or action cannot be created.

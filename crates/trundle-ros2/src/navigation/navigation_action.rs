@@ -19,12 +19,12 @@ pub struct GoalContext<'c> {
     pub view: Option<&'c RunView>,
 }
 
-/// Why a goal is not performed.
+/// Reason why a goal is not carried out.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NavigationRefusal<R> {
-    /// It is refused.
+    /// The goal is refused.
     Refused(String),
-    /// It is accepted and fails with this result.
+    /// The goal is accepted and fails with this result.
     Failed(R),
 }
 
@@ -72,7 +72,7 @@ pub fn offer<A: NavigationAction>(
         .map(drop)
 }
 
-/// The result of a goal whose pose cannot be taken up; `failed` makes it of the message.
+/// The result of a goal with an invalid pose; `failed` makes the result from the message.
 pub fn pose_error<R>(error: GoalPoseError, failed: impl FnOnce(String) -> R) -> NavigationRefusal<R> {
     match error {
         GoalPoseError::Invalid(error) => NavigationRefusal::Refused(error.to_string()),
@@ -106,7 +106,7 @@ impl<A: NavigationAction> GoalHandler<A> for Handler<A> {
     }
 
     fn on_cancel(&mut self, _id: GoalId) {
-        // The tick asks `is_canceling`.
+        // The tick calls `is_canceling`.
     }
 }
 

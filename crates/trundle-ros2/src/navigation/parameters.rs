@@ -19,7 +19,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use trundle_runtime::settings::reference;
 use trundle_runtime::{OperatorCommand, RobotConfig, RunSetting};
 
-/// Why a parameter is not set.
+/// Reason why a parameter is not set.
 const READ_ONLY: &str =
     "this setting cannot change while the robot runs: set it in the robot file and start trundle anew";
 
@@ -29,7 +29,7 @@ struct Parameter {
     value: ParameterValue,
     description: String,
     constraints: String,
-    /// Smallest and largest value, where it may change while the robot runs.
+    /// Smallest and largest value, if the parameter may change during a run.
     range: Option<(f64, f64)>,
 }
 
@@ -108,7 +108,7 @@ impl Parameters {
         SetParametersResult { successful: change.is_ok(), reason: change.err().unwrap_or_default() }
     }
 
-    /// The change that is asked for, or why it cannot be made.
+    /// The requested change, or the reason for its refusal.
     fn change(&self, asked: &ParameterMessage) -> Result<RunSetting, String> {
         let (name, value) = (&asked.name, &asked.value);
         let all = self.all();
@@ -193,7 +193,7 @@ fn type_name(kind: u8) -> &'static str {
     }
 }
 
-/// The range of a setting of `robot`: its speed is never above that of the robot file.
+/// The range of a setting of `robot`: its speed never exceeds that of the robot file.
 fn range(setting: RunSetting, robot: &RobotConfig) -> (f64, f64) {
     let (min, max) = setting.range();
     match setting {
@@ -202,7 +202,7 @@ fn range(setting: RunSetting, robot: &RobotConfig) -> (f64, f64) {
     }
 }
 
-/// A value of the settings as a parameter. What has no type of its own is its JSON text.
+/// A value of the settings as a parameter. A value without a parameter type is given as JSON text.
 fn value_of(value: &Value) -> ParameterValue {
     let mut own = ParameterValue::default();
     match value {

@@ -1,4 +1,4 @@
-//! `ComputePathToPose`: a plan on the robot's newest map, made in a thread of its own.
+//! `ComputePathToPose`: a plan on the robot's newest map, made on a separate thread.
 
 use super::active_goal::ActiveGoal;
 use super::error_codes::of_no_path;
@@ -23,12 +23,12 @@ use trundle_runtime::{NoPath, RobotConfig};
 const MAX_WAITING_PLANS: usize = 4;
 /// Names of the planner: none, and Nav2's default.
 const PLANNER_IDS: [&str; 2] = ["", "GridBased"];
-/// Largest number of poses in a result, where its reply has room for them. Source: ours.
+/// Maximum number of poses in a result, if they fit into its reply. Source: ours.
 const MAX_POSES: usize = 24;
-/// Bytes of a reply beside the path. Source: its identity, status, time and code are 24 bytes.
+/// Bytes of a reply in addition to the path. Source: its identity, status, time and code are 24 bytes.
 const REPLY_OVERHEAD_BYTES: usize = 32;
 
-/// A plan that is wanted.
+/// A requested plan.
 struct Wanted {
     id: GoalId,
     start: Pose2,
@@ -86,7 +86,7 @@ impl Handler {
     }
 }
 
-/// Why no plan is made.
+/// Reason why no plan is made.
 enum GoalFailure {
     Refused(String),
     Failed(u16, String),
@@ -144,7 +144,7 @@ fn plan_all(
     }
 }
 
-/// Why there is no plan.
+/// The refusal of a plan.
 fn refusal(plan: &Plan) -> Outcome {
     let cause = NoPath::of(plan);
     let error_code = cause.as_ref().map_or(Outcome::UNKNOWN, of_no_path);
@@ -152,7 +152,7 @@ fn refusal(plan: &Plan) -> Outcome {
     Outcome { error_code, error_msg, ..Outcome::default() }
 }
 
-/// As many poses of a path as its reply has room for.
+/// As many poses of a path as fit into its reply.
 fn small_path(poses: &[Pose2], at: Stamp, frame: &str) -> crate::generated::nav_msgs::Path {
     let of_count = |count| path::to_ros(&path::thinned(poses, count), at, frame);
     let fits = |path: &crate::generated::nav_msgs::Path| arrives(&(path, [0_u8; REPLY_OVERHEAD_BYTES]));

@@ -53,7 +53,7 @@ fn begin(active: &ActiveGoal, goal: &PoseStamped, frames: &FrameNames) -> Result
     active.begin_without_action(vec![Task::Go(pose)])
 }
 
-/// Tells the robot where it stands.
+/// Sets the robot's pose.
 fn set_pose(
     active: &ActiveGoal,
     message: &PoseWithCovarianceStamped,

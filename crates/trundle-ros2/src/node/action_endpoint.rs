@@ -19,7 +19,7 @@ use std::io;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// Requests that are taken from a queue at once. Source: ours.
+/// Maximum number of requests handled in one step. Source: ours.
 const MAX_TAKEN_AT_ONCE: usize = 1000;
 
 type Server<A> =
@@ -27,13 +27,13 @@ type Server<A> =
 
 /// Decides about the goals of an action. Called in the node's thread.
 pub trait GoalHandler<A: ActionType>: Send {
-    /// Accepts a goal, or says why it is refused.
+    /// Accepts a goal, or returns the reason for its refusal.
     ///
     /// # Errors
     /// Why the goal is refused.
     fn on_goal(&mut self, id: GoalId, goal: A::Goal) -> Result<(), String>;
 
-    /// The client of a goal asks to cancel it.
+    /// The client of a goal requests its cancellation.
     fn on_cancel(&mut self, id: GoalId);
 }
 
@@ -79,7 +79,7 @@ where
         Ok(handle)
     }
 
-    /// Ends a goal with its result. A goal that has ended stays as it is.
+    /// Ends a goal with its result. A goal that has ended does not change.
     pub fn end(&self, id: &GoalId, end: GoalEnd, result: A::Result) {
         let mut inner = self.lock();
         let Some((waiting, status)) = inner.goals.end(id, end, result.clone(), Instant::now()) else {
@@ -101,7 +101,7 @@ where
         }
     }
 
-    /// Whether the client of a goal asked to cancel it.
+    /// Whether the client of a goal requested its cancellation.
     #[must_use]
     pub fn is_canceling(&self, id: &GoalId) -> bool {
         self.lock().goals.is_canceling(id)
@@ -167,7 +167,7 @@ impl<A: ActionType + 'static> ActionEndpoint<A>
 where
     A::Result: Default,
 {
-    /// Takes one goal. Returns whether there was one.
+    /// Handles one goal request; returns whether one was queued.
     fn take_goal(&mut self) -> bool {
         let taken = self.handle.lock().server.receive_goal();
         let (request, SendGoalRequest { goal_id, goal }) = match taken {
@@ -198,7 +198,7 @@ where
         true
     }
 
-    /// Takes one request to cancel. Returns whether there was one.
+    /// Handles one cancellation request; returns whether one was queued.
     fn take_cancel(&mut self) -> bool {
         let mut inner = self.handle.lock();
         let (request, asked) = match inner.server.receive_cancel_request() {
@@ -222,7 +222,7 @@ where
         true
     }
 
-    /// Takes one request for a result. Returns whether there was one.
+    /// Handles one result request; returns whether one was queued.
     fn take_result_request(&mut self) -> bool {
         let mut inner = self.handle.lock();
         let (request, asked) = match inner.server.receive_result_request() {

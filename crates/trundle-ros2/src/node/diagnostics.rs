@@ -6,15 +6,15 @@ use std::time::{Duration, Instant};
 
 /// Time after which a condition that did not come again is over. Source: ours.
 const CONDITION_LIFETIME: Duration = Duration::from_secs(5);
-/// Largest number of conditions that are kept: a peer may invent names. Source: ours.
+/// Maximum number of stored conditions: a peer may send arbitrary names. Source: ours.
 const MAX_CONDITIONS: usize = 256;
 
-/// How bad a condition is.
+/// Severity of a condition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Level {
     /// All is well.
     Ok,
-    /// Something is amiss; the robot goes on.
+    /// A problem with which the robot continues.
     Warning,
     /// Something does not work.
     Error,
@@ -23,11 +23,11 @@ pub enum Level {
 /// A condition of a topic or device.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Condition {
-    /// How bad it is.
+    /// Severity of the condition.
     pub level: Level,
-    /// One sentence: what, value, expected, what to do.
+    /// One sentence: what, value, expected, remedy.
     pub message: String,
-    /// Reports since it began.
+    /// Number of reports since the condition began.
     pub count: u64,
 }
 

@@ -8,7 +8,7 @@ use ros2_client::{Message, RmwRequestId, Server, Subscription};
 use std::io;
 use std::sync::Arc;
 
-/// Messages that are taken from a queue at once: other topics wait meanwhile. Source: ours.
+/// Maximum number of messages handled in one step, during which other topics wait. Source: ours.
 const MAX_TAKEN_AT_ONCE: usize = 1000;
 
 /// A subscription and its handler.
@@ -44,7 +44,7 @@ impl<M: Message + Send + 'static, F: FnMut(M) + Send> Endpoint for Subscribed<M,
     }
 }
 
-/// A service server and its handler. The handler answers by the server, at once or later.
+/// A service server and its handler. The handler answers through the server, immediately or later.
 pub(super) struct Served<Req: Message, Resp: Message, F> {
     pub server: Arc<ServerHandle<Req, Resp>>,
     pub handler: F,
@@ -64,7 +64,7 @@ impl<Req: Message + Clone + 'static, Resp: Message + Default + 'static> ServerHa
         Arc::new(Self { server: std::sync::Mutex::new(server), name, diagnostics })
     }
 
-    /// Answers a request: with an empty response where this one is too large to arrive.
+    /// Answers a request; a response too large for delivery is replaced by an empty one.
     pub fn answer(&self, request: RmwRequestId, response: Resp) {
         let excess = reply::excess(&response);
         excess.into_iter().for_each(|bytes| self.diagnostics.warn(&self.name, reply::message(bytes)));

@@ -11,22 +11,22 @@ use std::time::{Duration, Instant};
 
 /// Longest wait for a message: periodic work is done at least this often. Source: ours.
 const TICK_PERIOD: Duration = Duration::from_millis(20);
-/// Readiness events taken at once. Source: ours.
+/// Maximum number of readiness events per step. Source: ours.
 const EVENT_CAPACITY: usize = 256;
 
-/// One end of a topic or service, with its handler.
+/// An endpoint of a topic or service, with its handler.
 pub(super) trait Endpoint: Send {
-    /// Registers it for readiness.
+    /// Registers the endpoint for readiness.
     fn register(&mut self, registry: &Registry, token: Token) -> io::Result<()>;
 
-    /// Handles everything that has come.
+    /// Handles all queued messages.
     fn take_all(&mut self);
 }
 
 /// Work that is done at each tick.
 pub(super) type Ticker = Box<dyn FnMut(Instant) + Send>;
 
-/// A running node. Dropping it ends its thread.
+/// A running node. A drop ends its thread.
 pub struct NodeThread {
     is_over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -47,7 +47,7 @@ impl NodeThread {
         let over = Arc::clone(&is_over);
         let run = move || {
             let _guard = guard;
-            // What came before the registration makes no event.
+            // Messages before the registration cause no event.
             endpoints.iter_mut().for_each(|endpoint| endpoint.take_all());
             run_loop(poll, &mut endpoints, &mut tickers, &over);
         };
@@ -55,7 +55,7 @@ impl NodeThread {
         Ok(Self { is_over, thread: Some(thread) })
     }
 
-    /// Which thread of the node or of the middleware has ended: by a panic, as long as the node is not dropped. `None` while all run.
+    /// The thread of the node or the middleware that has ended: by a panic, as long as the node is not dropped. `None` while all run.
     #[must_use]
     pub fn death(&self) -> Option<String> {
         let own = self.thread.as_ref().is_none_or(JoinHandle::is_finished);

@@ -11,16 +11,16 @@ use std::time::{Duration, Instant};
 /// Identity of a goal.
 pub type GoalId = [u8; 16];
 
-/// Time that the result of a goal is kept after its end. Source: ours; a client asks at once.
+/// Time for which the result of a goal is stored after its end. Source: ours; a client requests it immediately.
 const RESULT_LIFETIME: Duration = Duration::from_secs(60);
 /// Largest number of goals accepted within a second. Source: ours; a person clicks less often, a program has no reason to.
 pub const MAX_GOALS_PER_SECOND: usize = 20;
-/// Largest number of goals that are kept. Source: ours; that of [`RESULT_LIFETIME`] at one goal per second, and some.
+/// Maximum number of stored goals. Source: ours; enough for [`RESULT_LIFETIME`] at one goal per second, with a margin.
 const MAX_GOALS: usize = 100;
 /// Largest number of requests that wait for one result. Source: ours.
 const MAX_WAITING: usize = 16;
 
-/// How a goal ended.
+/// End of a goal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GoalEnd {
     /// Reached.
@@ -44,7 +44,7 @@ impl GoalEnd {
 
 #[derive(Debug)]
 struct Goal<R> {
-    /// When it was accepted, on the ROS clock \[ns\].
+    /// Time of acceptance, on the ROS clock \[ns\].
     stamp: i64,
     status: i8,
     result: Option<R>,
@@ -55,9 +55,9 @@ struct Goal<R> {
 /// The answer to a request for a result.
 #[derive(Debug, PartialEq)]
 pub enum ResultAnswer<R> {
-    /// Status and result, at once.
+    /// Status and result, immediately.
     Now(i8, R),
-    /// When the goal ends.
+    /// The result follows at the end of the goal.
     Later,
 }
 
@@ -79,7 +79,7 @@ impl<R: Clone + Default> Goals<R> {
     /// Accepts a goal that came at `now`, `stamp` on the ROS clock \[ns\].
     ///
     /// # Errors
-    /// When its id is in use, or goals come too fast.
+    /// When its id is in use, or goals arrive too fast.
     pub fn accept(&mut self, id: GoalId, stamp: i64, now: Instant) -> Result<(), String> {
         self.forget_old(now);
         if self.goals.contains_key(&id) {
@@ -111,7 +111,7 @@ impl<R: Clone + Default> Goals<R> {
         self.goals.remove(id);
     }
 
-    /// Marks the goals that a request asks to cancel; the answer, and their ids.
+    /// Marks the goals of a cancellation request; returns the answer, and their ids.
     pub fn cancel(&mut self, request: &CancelGoalRequest) -> (CancelGoalResponse, Vec<GoalId>) {
         let GoalInfo { goal_id, stamp } = &request.goal_info;
         let (id, before) = (goal_id.uuid, i64::from(stamp.sec) * 1_000_000_000 + i64::from(stamp.nanosec));
@@ -142,7 +142,7 @@ impl<R: Clone + Default> Goals<R> {
         (response, asked)
     }
 
-    /// Ends a goal; those who wait for its result, and its status. `None` if it is unknown or has ended.
+    /// Ends a goal; returns the requests waiting for its result, and its status. `None` if the goal is unknown or has ended.
     pub fn end(
         &mut self,
         id: &GoalId,
@@ -157,7 +157,7 @@ impl<R: Clone + Default> Goals<R> {
         Some((std::mem::take(&mut goal.waiting), goal.status))
     }
 
-    /// Whether a goal was asked to be cancelled and has not ended.
+    /// Whether a cancellation of the goal was requested and the goal has not ended.
     #[must_use]
     pub fn is_canceling(&self, id: &GoalId) -> bool {
         self.goals.get(id).is_some_and(|goal| goal.status == GoalStatus::STATUS_CANCELING)
@@ -189,7 +189,7 @@ impl<R: Clone + Default> Goals<R> {
         self.goals.retain(|_, goal| goal.ended.is_none_or(|ended| now - ended < RESULT_LIFETIME));
     }
 
-    /// Discards the goal that ended first. Returns whether there was one.
+    /// Discards the goal with the earliest end. Returns whether one existed.
     fn forget_oldest_ended(&mut self) -> bool {
         let ended = self.goals.iter().filter_map(|(id, goal)| Some((goal.ended?, *id)));
         let Some((_, id)) = ended.min() else { return false };

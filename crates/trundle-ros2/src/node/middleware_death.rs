@@ -1,12 +1,12 @@
 //! Whether a thread of the middleware has died.
 //!
-//! RustDDS has no interface that says so: its threads end by a panic, and sockets and topics stay as they are, silent.
+//! RustDDS has no interface for this condition: its threads end by a panic, while sockets and topics remain and are silent.
 
 use std::collections::BTreeSet;
 use std::panic::{self, PanicHookInfo};
 use std::sync::{Mutex, Once, PoisonError};
 
-/// Beginning of the names of the middleware's threads.
+/// Prefix of the middleware's thread names.
 const THREAD_PREFIX: &str = "RustDDS";
 
 /// Names of threads that died by a panic.
@@ -47,7 +47,7 @@ mod tests {
             let thread = std::thread::Builder::new().name(name.to_owned());
             thread.spawn(|| panic!("as a test wants it")).unwrap().join().unwrap_err();
         };
-        // A prefix of its own: other tests of this process have nodes.
+        // A unique prefix: other tests of this process have nodes.
         died("test of RustDDS 1");
         died("something else");
         assert_eq!(dead_thread_of("test of "), Some("test of RustDDS 1".to_owned()));

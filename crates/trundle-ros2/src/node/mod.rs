@@ -1,4 +1,4 @@
-//! A ROS 2 node in a thread of its own: topics, services, actions, names, conditions.
+//! A ROS 2 node on its own thread: topics, services, actions, names, conditions.
 
 mod action_endpoint;
 mod diagnostics;

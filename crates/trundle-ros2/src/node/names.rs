@@ -21,7 +21,8 @@ impl Names {
         Self { namespace: "/".to_owned(), node: node.to_owned(), rules: Vec::new() }
     }
 
-    /// The full name of a topic or service: `odom` is `/robot1/odom` in the namespace `/robot1`, `/tf` stays, `~/x` begins with the node.
+    /// The full name of a topic or service: `odom` is `/robot1/odom` in the namespace `/robot1`, `/tf` is unchanged, `~/x` is below the
+    /// node's name.
     #[must_use]
     pub fn resolve(&self, name: &str) -> String {
         let full = self.full(name);
@@ -29,7 +30,7 @@ impl Names {
         rule.map_or(full, |(_, to)| self.full(to))
     }
 
-    /// The resolved name as the client library takes it.
+    /// The resolved name in the client library's type.
     ///
     /// # Errors
     /// When the name has characters that ROS 2 does not allow.

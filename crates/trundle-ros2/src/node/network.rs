@@ -3,7 +3,7 @@
 use std::net::{IpAddr, Ipv4Addr};
 use std::str::FromStr;
 
-/// Networks that a node uses. DDS has no authentication: everybody on one of them may read every topic and drive the robot.
+/// Networks that a node uses. DDS has no authentication: every computer on such a network may read every topic and drive the robot.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Networks {
     /// This computer alone.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether other nodes read a topic. Clones share it.
+/// Whether other nodes subscribe to a topic. Clones share it.
 #[derive(Debug, Clone)]
 pub struct Readers {
     /// Full name of the topic.

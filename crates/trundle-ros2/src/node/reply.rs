@@ -1,22 +1,22 @@
-//! How large the reply of a service may be.
+//! Size limit of a service's reply.
 //!
-//! RustDDS 0.15 writes the first byte of an option in front of the list of parameters of each `DATA_FRAG` submessage that has one
-//! (`messages/submessages/data_frag.rs`: `write_value` of an `Option`). Replies have such a list: it names the request. Receivers refuse
-//! the submessage, ask for it again, and take no later reply of the same service. A reply that fits into one datagram is a `DATA`
-//! submessage, which is whole.
+//! RustDDS 0.15 writes the first byte of an option before the parameter list of each `DATA_FRAG` submessage with such a list
+//! (`messages/submessages/data_frag.rs`: `write_value` of an `Option`). Replies have such a list, which identifies the request. Receivers
+//! refuse the submessage, request it again, and accept no later reply of the same service. A reply that fits into one datagram is a `DATA`
+//! submessage, which is correct.
 
 use ros2_client::dds::rustdds::RepresentationIdentifier;
 use ros2_client::dds::rustdds::serialization::to_writer_with_rep_id;
 use serde::Serialize;
 use std::io::{self, Write};
 
-/// Largest reply \[bytes\] that RustDDS sends in one datagram to every peer: the smallest MTU of IPv6, 1280 bytes, less the headers of
-/// IP, UDP and RTPS (48), of a heartbeat (32) and of the submessage (48). Larger replies do not arrive.
+/// Largest reply \[bytes\] that RustDDS sends in one datagram to every peer. The size is the smallest MTU of IPv6, 1280 bytes, minus the
+/// headers of IP, UDP and RTPS (48), of a heartbeat (32) and of the submessage (48). Larger replies are not delivered.
 pub const MAX_REPLY_BYTES: usize = 1152;
-/// Bytes in front of a message that name its encoding \[DDSI-RTPS 10.2\].
+/// Bytes before a message with its encoding \[DDSI-RTPS 10.2\].
 const ENCAPSULATION_BYTES: usize = 4;
 
-/// The size of a reply on the wire \[bytes\] if it is too large to arrive.
+/// The size of a reply on the wire \[bytes\] if it is too large for delivery.
 pub(super) fn excess(reply: &impl Serialize) -> Option<usize> {
     let mut counter = Counter(ENCAPSULATION_BYTES);
     // A reply that cannot be written is refused by the middleware.

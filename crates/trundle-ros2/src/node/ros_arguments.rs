@@ -8,7 +8,7 @@ use crate::Ros2Error;
 pub struct RosArguments {
     /// Namespace, node name and rules.
     pub names: Names,
-    /// Parameters by name, as they were written.
+    /// Parameters by name, as given.
     pub parameters: Vec<(String, String)>,
 }
 

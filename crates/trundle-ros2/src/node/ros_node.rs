@@ -16,7 +16,7 @@ use ros2_client::{
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How a node joins the network.
+/// Settings of a node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NodeSettings {
     /// Namespace, node name, remapping rules.
@@ -34,7 +34,7 @@ const RECEIVE_BUFFER_BYTES: usize = 4 << 20;
 /// Period of the checks for stalled topics and foreign types. Source: ours.
 const CHECK_PERIOD: Duration = Duration::from_secs(1);
 
-/// The server of an action as the library has it.
+/// The server of an action in the library's type.
 pub(super) type RawActionServer<A> =
     ActionServer<<A as ActionType>::Goal, <A as ActionType>::Result, <A as ActionType>::Feedback>;
 
@@ -94,7 +94,7 @@ impl RosNode {
         self.diagnostics.clone()
     }
 
-    /// Measures the silence of topics by this clock, for subscriptions from here on. At first it is the computer's.
+    /// Measures the silence of topics by this clock, for later subscriptions. The default is the computer's clock.
     pub fn measure_silence_by(&mut self, clock: RosClock) {
         self.clock = clock;
     }
@@ -126,8 +126,8 @@ impl RosNode {
         readers
     }
 
-    /// Calls `handler` in the node's thread with each message of a topic. After its first message a topic with a `limit` counts as
-    /// stalled when no message comes for that time.
+    /// Calls `handler` on the node's thread with each message of a topic. After its first message, a topic with a `limit` counts as stalled
+    /// if no message arrives for that time.
     ///
     /// # Errors
     /// When the name is not allowed or the topic cannot be created.
@@ -208,7 +208,7 @@ impl RosNode {
         self.tickers.push(Box::new(work));
     }
 
-    /// Runs the node in a thread of its own.
+    /// Runs the node on its own thread.
     ///
     /// # Errors
     /// When the system refuses a thread.

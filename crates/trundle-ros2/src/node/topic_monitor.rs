@@ -1,18 +1,18 @@
-//! Silence of topics: which topic stopped, and for how long.
+//! Silence of topics: name of the stalled topic, and duration.
 
 use crate::clock::RosClock;
 use std::sync::Mutex;
 use std::time::Duration;
 use trundle_core::Stamp;
 
-/// When a topic's newest message came.
+/// Time of a topic's newest message.
 #[derive(Debug)]
 pub struct TopicMonitor {
     /// Full name.
     pub name: String,
     /// Type, as `sensor_msgs/msg/Image`.
     pub type_name: String,
-    /// Silence after which the topic counts as stalled; `None`: it may be silent.
+    /// Silence after which the topic counts as stalled; `None` for no limit.
     limit: Option<Duration>,
     /// Measures the silence. A slow simulator is not silent.
     clock: RosClock,

@@ -1,9 +1,9 @@
-//! Views of the map as Nav2's costmaps: what the robot's body may not enter, for people who look at them.
+//! Views of the map as Nav2's costmaps: the forbidden space of the robot's body, for display.
 
 use trundle_core::{Cell, GridGeometry, OccupancyGrid, Pose2, Vector2};
 use trundle_grid::{DistanceField, UnknownIs};
 
-/// Distance beyond the body within which a cell costs something \[m\]. Source: Nav2's default `inflation_radius`, 0.55 m.
+/// Distance from the body within which a cell has a cost \[m\]. Source: Nav2's default `inflation_radius`, 0.55 m.
 const INFLATION_M: f64 = 0.55;
 /// Decay of the cost with the distance from the body \[1/m\]. Source: Nav2's default `cost_scaling_factor`.
 const DECAY_PER_M: f64 = 3.0;
@@ -14,8 +14,8 @@ const LETHAL_COST: i8 = 100;
 /// Cost of a cell on which the middle of the robot would touch an obstacle.
 const INSCRIBED_COST: i8 = 99;
 
-/// Costs of all cells, row by row from the lowest y: 100 occupied, 99 within the body's radius, falling beyond it, -1 unknown.
-/// `radius` is that of the largest disc in the body \[m\].
+/// Costs of all cells, row by row from the lowest y: 100 occupied, 99 within the body's radius, decreasing outside, -1 unknown. `radius` is
+/// the radius of the largest disc inside the body \[m\].
 #[must_use]
 pub fn costs(grid: &OccupancyGrid, radius: f64) -> Vec<i8> {
     let field =
@@ -32,7 +32,7 @@ pub fn costs(grid: &OccupancyGrid, radius: f64) -> Vec<i8> {
     grid.cells().iter().enumerate().map(cost).collect()
 }
 
-/// The part of the costs around the robot: where it lies, and its cells.
+/// The part of the costs around the robot: its geometry, and its cells.
 #[must_use]
 pub fn local(geometry: &GridGeometry, costs: &[i8], robot: &Pose2) -> Option<(GridGeometry, Vec<i8>)> {
     let half = LOCAL_SIDE_M / 2.0;

@@ -11,7 +11,7 @@ pub struct FrameNames {
     pub base: String,
     /// The camera's optical frame.
     pub camera: String,
-    /// The frame of the scan that is made of depth: the axes of the base, at the camera's place over the floor.
+    /// The frame of the scan from depth images: the axes of the base, at the camera's position on the floor.
     pub scan: String,
 }
 

@@ -20,16 +20,16 @@ pub struct OutputSettings {
     pub node: String,
     /// Whether the body is trundle's own: odometry, its transform and the battery are published too.
     pub has_own_body: bool,
-    /// Whether the scan made of depth images is published.
+    /// Whether the scan from depth images is published.
     pub publishes_scan: bool,
-    /// Range of that scan \[m\].
+    /// Range of the scan from depth images \[m\].
     pub scan_range_m: f64,
     /// Radius of the largest disc in the body \[m\], for the costs.
     pub body_radius_m: f64,
 }
 
 impl OutputSettings {
-    /// Those of `robot`; `has_own_body`: its body does not come by topics.
+    /// The settings of `robot`; `has_own_body`: its body does not come by topics.
     #[must_use]
     pub fn of(
         options: &crate::Ros2Options,

@@ -7,7 +7,7 @@ use trundle_core::Stamp;
 /// A map and its stamp on the ROS clock.
 type StampedMap = (Arc<MapView>, Stamp);
 
-/// The newest map that was published as a whole. Clones share it.
+/// The newest map published as a whole. Clones share it.
 #[derive(Debug, Clone, Default)]
 pub struct PublishedMap(Arc<Mutex<Option<StampedMap>>>);
 

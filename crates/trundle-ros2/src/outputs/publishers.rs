@@ -38,7 +38,7 @@ impl<M: MessageType> OutputTopic<M> {
     }
 }
 
-/// Why a message was not sent, without the message.
+/// Reason why a message was not sent, without the message.
 fn cause<M>(error: &WriteError<M>) -> &'static str {
     match error {
         WriteError::WouldBlock { .. } => "a subscriber does not take messages as fast as they come",
@@ -52,13 +52,13 @@ pub struct RobotTopics {
     pub tf: OutputTopic<TFMessage>,
     /// Base to camera and scan.
     pub tf_static: OutputTopic<TFMessage>,
-    /// Odometry. `None` if the body publishes it itself.
+    /// Odometry. `None` if the body publishes its own.
     pub odom: Option<OutputTopic<Odometry>>,
     /// The map.
     pub map: OutputTopic<OccupancyGrid>,
     /// Changes of the map since the newest update.
     pub map_updates: OutputTopic<OccupancyGridUpdate>,
-    /// The scan made of depth images. `None` if a laser's scan has this name.
+    /// The scan from depth images. `None` if a laser's scan uses this name.
     pub scan: Option<OutputTopic<LaserScan>>,
     /// The plan.
     pub plan: OutputTopic<Path>,
@@ -70,7 +70,7 @@ pub struct RobotTopics {
     pub local_costmap: OutputTopic<OccupancyGrid>,
     /// State of the robot and of its topics.
     pub diagnostics: OutputTopic<DiagnosticArray>,
-    /// The battery. `None` if the body publishes it itself.
+    /// The battery. `None` if the body publishes its own.
     pub battery: Option<OutputTopic<BatteryState>>,
 }
 

@@ -1,4 +1,4 @@
-//! The robot's state as messages, from a thread of its own: the robot never waits for it.
+//! The robot's state as messages, from a separate thread: the robot never waits for it.
 
 use super::published_map::PublishedMap;
 use super::publishers::RobotTopics;
@@ -26,7 +26,7 @@ const POSE_PERIOD: Duration = Duration::from_millis(20);
 const SLOW_PERIOD: Duration = Duration::from_millis(200);
 /// Period of the whole map, the costs of the whole map, diagnostics and battery.
 const SLOWEST_PERIOD: Duration = Duration::from_secs(1);
-/// Time that the transform of the map holds beyond its stamp \[s\]: who looks up a newer image finds it. Source: ours; AMCL's
+/// Time by which the map's transform is stamped ahead \[s\]: a look-up for a newer image then succeeds. Source: ours; AMCL's
 /// `transform_tolerance` is 1 s.
 const TRANSFORM_TOLERANCE_S: f64 = 0.1;
 
@@ -46,11 +46,11 @@ pub struct OutputSources {
     pub base_from_camera: Pose3,
     /// Receives each map that is published as a whole.
     pub published_map: PublishedMap,
-    /// The node: when it dies, the robot is stopped.
+    /// The node; if it crashes, the robot is stopped.
     pub node: Arc<NodeThread>,
 }
 
-/// The thread that publishes. Dropping it ends the thread.
+/// The publishing thread. A drop ends it.
 pub struct RobotOutputs {
     is_over: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
@@ -154,7 +154,7 @@ impl OutputLoop {
         }
     }
 
-    /// Stops the robot where the node has died: no goal can be given or cancelled.
+    /// Stops the robot if the node has crashed, because no goal can be sent or cancelled.
     fn stop_robot_without_node(&mut self) {
         if self.is_dead {
             return;
@@ -244,7 +244,7 @@ impl OutputLoop {
         self.topics.plan.publish(path::to_ros(&poses, at, &self.settings.frames.map));
     }
 
-    /// Whether another map stands in place of the one that was published: the new one is published as a whole, without updates.
+    /// Whether another map replaced the published one: the new map is published as a whole, without updates.
     fn is_map_replaced(&mut self, view: &RunView) -> bool {
         let Some(map) = &view.map else { return false };
         let published = self.map_number.replace(map.number);
@@ -255,7 +255,7 @@ impl OutputLoop {
         is_replaced
     }
 
-    /// The whole map where it changed and a second has passed, else what changed.
+    /// The whole map if it changed and a second has passed, else the changes.
     fn publish_map(&mut self, view: &RunView, is_slowest: bool) {
         let Some(map) = &view.map else { return };
         let frame = &self.settings.frames.map;

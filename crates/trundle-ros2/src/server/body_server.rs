@@ -23,7 +23,7 @@ use trundle_core::{
 };
 use trundle_estimation::{OdometryConfig, WheelOdometry};
 
-/// Time after the newest command for which the base follows it. Source: ours; Nav2 sends 20 per second.
+/// Time for which the base follows the newest command. Source: ours; Nav2 sends 20 per second.
 const COMMAND_LIFETIME: Duration = Duration::from_millis(500);
 /// Range of a laser's beams without echo \[m\]. Source: the simulated lasers reach 12 m.
 const LASER_RANGE_M: f64 = 12.0;
@@ -39,7 +39,7 @@ pub struct OfferedBody {
     pub drive: DifferentialDrive,
 }
 
-/// Offers `body` as a ROS 2 robot, in real time, until it ends or `is_over` (called with the body's time) says so.
+/// Offers `body` as a ROS 2 robot, in real time, until it ends or `is_over` (called with the body's time) returns true.
 ///
 /// # Errors
 /// When the network cannot be joined, a topic cannot be created, or the body fails.
@@ -101,7 +101,7 @@ impl BodyServer {
         })
     }
 
-    /// Runs `body` in real time until it ends or `is_over` (called with the body's time) says so. The node must have been started.
+    /// Runs `body` in real time until it ends or `is_over` (called with the body's time) returns true. The node must have been started.
     ///
     /// # Errors
     /// When the body fails.
@@ -126,7 +126,7 @@ impl BodyServer {
         body.command(Twist2::ZERO)
     }
 
-    /// The newest command, as long as it counts.
+    /// The newest command, if it is recent enough.
     fn present_command(&self) -> Twist2 {
         let command = *self.command.lock().unwrap_or_else(PoisonError::into_inner);
         command.filter(|(_, at)| at.elapsed() <= COMMAND_LIFETIME).map_or(Twist2::ZERO, |(twist, _)| twist)
@@ -180,7 +180,7 @@ impl BodyServer {
     }
 }
 
-/// The newest command and when it came.
+/// The newest command and its time.
 type NewestCommand = Arc<Mutex<Option<(Twist2, Instant)>>>;
 
 /// Keeps the newest command; one that is not usable is reported and stops the base.

@@ -8,7 +8,7 @@ use crate::outputs::OutputTopic;
 use std::time::{SystemTime, UNIX_EPOCH};
 use trundle_core::Stamp;
 
-/// Period of `/clock` \[s\]: that of the wheels. Source: ours.
+/// Period of `/clock` \[s\], equal to that of the wheels. Source: ours.
 const CLOCK_PERIOD_S: f64 = 0.01;
 
 /// The publisher of `/clock`.
@@ -35,7 +35,7 @@ impl ClockPublisher {
         Stamp::from_nanos(self.origin.saturating_add(stamp.nanos))
     }
 
-    /// Publishes a ROS time where the period has passed.
+    /// Publishes a ROS time if the period has passed.
     pub(super) fn publish(&mut self, at: Stamp) {
         if self.due.is_none_or(|due| at >= due) {
             self.due = Some(at.after(CLOCK_PERIOD_S));

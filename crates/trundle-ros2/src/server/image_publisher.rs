@@ -1,4 +1,4 @@
-//! Images of a camera as messages, encoded in a thread of their own.
+//! Images of a camera as messages, encoded on a separate thread.
 
 use super::ServerSettings;
 use crate::Ros2Error;
@@ -26,7 +26,7 @@ enum Form {
     Raw(OutputTopic<Image>, OutputTopic<Image>),
 }
 
-/// Publishes images in a thread of its own: an image that waits is replaced by none, the newest is dropped.
+/// Publishes images on a separate thread: while an image waits, newer ones are dropped.
 pub struct ImagePublisher {
     images: Option<SyncSender<(RgbdImage, Stamp)>>,
     thread: Option<JoinHandle<()>>,

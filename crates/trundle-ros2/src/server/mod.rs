@@ -11,7 +11,7 @@ pub use sensor_topics::SensorTopics;
 
 use crate::outputs::FrameNames;
 
-/// How a body is offered.
+/// Settings of an offered body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServerSettings {
     /// Names of frames.

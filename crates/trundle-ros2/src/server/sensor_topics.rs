@@ -40,7 +40,7 @@ impl SensorTopics {
         })
     }
 
-    /// Publishes an event of these sensors, stamped `at` on the ROS clock. Events of others are not published.
+    /// Publishes an event of these sensors, stamped `at` on the ROS clock. Other events are not published.
     pub fn publish(&mut self, event: &SensorEvent, at: Stamp) {
         match event {
             SensorEvent::Gyro(gyro) => self.imu.publish(imu::to_ros(gyro.omega, None, at, &self.base_frame)),

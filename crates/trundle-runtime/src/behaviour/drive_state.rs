@@ -4,15 +4,15 @@ use crate::reason::Reason;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// State of the robot, with the reason where the robot does not move on.
+/// State of the robot; states without progress carry a reason.
 ///
-/// From any state a new goal leads to `Initializing` (before the first plan) or `Planning`, a stop by the safety monitor to
-/// `Waiting`, and an estimate that is too unsure to `Lost`.
+/// A new goal leads from any state to `Initializing` (before the first plan) or `Planning`. A stop by the safety monitor leads to
+/// `Waiting`, a too uncertain estimate to `Lost`.
 ///
 /// | state | leads to |
 /// |---|---|
 /// | idle | initializing, planning |
-/// | initializing | planning; arrived, when the goal is a turn on the spot |
+/// | initializing | planning; arrived, if the goal is a turn on the spot |
 /// | planning | driving, maneuvering, recovering |
 /// | driving | final approach, maneuvering, planning, waiting |
 /// | final approach, maneuvering | arrived, waiting, stopped |
@@ -39,7 +39,7 @@ pub enum DriveState {
     Maneuvering,
     /// The safety monitor stops the robot, or no path is free.
     Waiting {
-        /// Why the robot waits.
+        /// Reason for the wait.
         reason: Reason,
     },
     /// No free path is known: observing more of the surroundings.
@@ -54,9 +54,9 @@ pub enum DriveState {
     },
     /// At rest at the goal.
     Arrived,
-    /// The goal is given up.
+    /// The goal is abandoned.
     Stopped {
-        /// Why.
+        /// Reason for the end.
         reason: Reason,
     },
 }
@@ -79,7 +79,7 @@ impl DriveState {
         }
     }
 
-    /// Why the robot does not move on; none in a state without a reason.
+    /// Reason why the robot makes no progress; `None` in a state without a reason.
     pub fn reason(&self) -> Option<&Reason> {
         match self {
             Self::Waiting { reason }
@@ -90,7 +90,7 @@ impl DriveState {
         }
     }
 
-    /// Whether the navigator has nothing left to do for its goal.
+    /// Whether the navigator is done with its goal.
     pub fn is_over(&self) -> bool {
         matches!(self, Self::Idle | Self::Arrived | Self::Stopped { .. })
     }

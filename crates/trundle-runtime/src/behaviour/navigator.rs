@@ -53,17 +53,17 @@ pub(crate) struct Decision {
 pub(crate) enum Goal {
     /// Stand exactly here.
     Exact(Pose2),
-    /// A viewpoint: it need not be reached exactly, and is given up where it is blocked.
+    /// A viewpoint: the robot need not reach it exactly, and skips it if it is blocked.
     Viewpoint(Pose2),
     /// Turns and straight moves onto this pose from near by.
     Align(Pose2),
     /// A motion at a charging station.
     Station(StationGoal),
-    /// A motion relative to where the robot stands.
+    /// A motion relative to the robot's present pose.
     Relative(RelativeMotion),
     /// Turn on the spot once.
     Spin,
-    /// Stand where you are.
+    /// Stay at the present pose.
     Stay,
 }
 
@@ -76,7 +76,7 @@ impl Goal {
     }
 }
 
-/// From a goal and the world state to a safe twist: plans, follows the trajectory, approaches the goal, and waits. Without a path the
+/// Computes a safe twist from a goal and the world state: plans, follows the trajectory, approaches the goal, and waits. Without a path the
 /// robot turns on the spot and observes. The safety monitor checks each twist last. In narrow space docking makes the approach.
 #[derive(Debug)]
 pub(crate) struct Navigator {
@@ -102,7 +102,7 @@ pub(crate) struct Navigator {
     sight_recovery: SightRecovery,
     /// Whether a goal that no path leads to ends, in place of a wait for a path.
     ends_without_path: bool,
-    /// When the first of the plans since then found no path; none after a plan with a path.
+    /// Stamp of the first plan without a path since the last plan with one; `None` after a plan with a path.
     no_path_since: Option<Stamp>,
     /// Place where the path to the goal is blocked, if there is no path.
     blocked_at: Option<Vector2>,
@@ -112,12 +112,12 @@ pub(crate) struct Navigator {
     is_polygon: bool,
     /// Whether the outline is too near to an obstacle for a turn: the robot backs out, as far as safety permits.
     is_wedged: bool,
-    /// Whether the robot is too far from its reference to go on from it.
+    /// Whether the robot is too far from its reference to continue from it.
     is_off_track: bool,
     progress: ProgressChecker,
-    /// Of the safety monitor, s.
+    /// The safety monitor's timeout of images, s.
     image_timeout: f64,
-    /// Of the disc around the robot, m.
+    /// Radius of the disc around the robot, m.
     radius: f64,
     /// Distance from the base's origin to its front, m.
     reach: f64,
@@ -131,11 +131,11 @@ pub(crate) struct Navigator {
     is_before_zones: bool,
 }
 
-/// Number of bumper contacts after which a goal is given up. Source: ours.
+/// Number of bumper contacts after which the navigator gives up a goal. Source: ours.
 const MAX_BUMPER_CONTACTS: u32 = 3;
 /// Standard deviation of the position \[m\] above which the position is unknown. Source: ours.
 const UNKNOWN_POSITION_SIGMA_M: f64 = 50.0;
-/// Time that safety holds the robot before it plans again from where it stands \[s\]. Source: ours.
+/// Duration of a safety stop before the navigator plans again from the present pose \[s\]. Source: ours.
 const SAFETY_HOLD_BEFORE_REPLAN_S: f64 = 1.0;
 
 impl Navigator {
@@ -254,7 +254,7 @@ impl Navigator {
         self.plan.as_deref()
     }
 
-    /// One control step: maybe a new plan, then a command, then safety's word on it.
+    /// Executes one control step: an optional new plan, a command, and the check by the safety monitor.
     pub(crate) fn step(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> Decision {
         self.take_zones(s);
         self.initialize(s);
@@ -271,7 +271,7 @@ impl Navigator {
         Decision { twist, replanned }
     }
 
-    /// The opening: nothing moves before there is a first view.
+    /// Initializes: the robot does not move before the first view.
     fn initialize(&mut self, s: &WorldState<'_>) {
         self.started.get_or_insert(s.now);
         if self.state == DriveState::Initializing && self.is_initialized(s) && self.goal.pose().is_some() {
@@ -280,7 +280,7 @@ impl Navigator {
         }
     }
 
-    /// Whether the initialization is over: the robot has stood for long enough, and there is a scan.
+    /// Whether the initialization is over: the robot has stood long enough, and a scan exists.
     fn is_initialized(&self, s: &WorldState<'_>) -> bool {
         s.scan.is_some() && self.started.is_some_and(|started| s.now - started >= self.config.opening)
     }
@@ -300,7 +300,7 @@ impl Navigator {
             }
             None if is_lost && position_sigma(&s.estimate) < 0.5 * self.config.lost_sigma => {
                 self.spin = Spin::default();
-                // It may have been carried here.
+                // The robot may have been carried here.
                 self.visibility.home = None;
                 self.state = DriveState::Initializing;
             }
@@ -310,7 +310,7 @@ impl Navigator {
             || self.state == DriveState::Driving
             || self.goal == Goal::Spin && self.state == DriveState::Initializing;
         if s.hold.is_some() {
-            // What holds the robot is not a fault of its goal.
+            // A safety stop is not a fault of the goal.
             return self.progress.restart();
         }
         let stood = self.progress.standing_for(s.now, s.estimate.pose, turns_count);
@@ -319,8 +319,8 @@ impl Navigator {
         }
     }
 
-    /// Checks whether a usable scan came back after a time without one. Where a turn restored the view twice at one place, the path to the
-    /// viewpoint leads into the blind range of the camera: the viewpoint is given up.
+    /// Checks whether a usable scan came back after a time without one. If a turn restored the view twice at one place, the path to the
+    /// viewpoint leads into the camera's blind range, and the navigator gives up the viewpoint.
     fn monitor_sight(&mut self, s: &WorldState<'_>) {
         if self.is_blind(s) {
             return;
@@ -333,7 +333,7 @@ impl Navigator {
         }
     }
 
-    /// The reason for which the pose counts as unknown; none while it is known.
+    /// Returns the reason for an unknown pose; `None` for a known pose.
     fn lost_reason(&self, s: &WorldState<'_>) -> Option<Reason> {
         let sigma = position_sigma(&s.estimate);
         if sigma > UNKNOWN_POSITION_SIGMA_M {

@@ -14,7 +14,8 @@ pub(crate) struct ProgressChecker {
 const PROGRESS_DISTANCE_M: f64 = 0.15;
 /// Turn towards the goal's heading that counts as progress \[rad\]. A turn in search of a path does not count. Source: ours.
 const PROGRESS_TURN_RAD: f64 = 0.2;
-/// Number of turns that count as progress at one place: one whole turn. More of them are not progress. Source: ours.
+/// Number of turns of [`PROGRESS_TURN_RAD`] that count as progress at one place: one full turn. Further turns are not progress. Source:
+/// ours.
 const MAX_TURNS_AT_ONE_PLACE: u32 = 32;
 
 impl ProgressChecker {
@@ -23,7 +24,7 @@ impl ProgressChecker {
         *self = Self::default();
     }
 
-    /// How long the robot has not got on, s; `turns_count` where turning leads to the goal.
+    /// Time without progress, s; `turns_count`: whether a turn leads to the goal.
     pub(crate) fn standing_for(&mut self, now: Stamp, pose: Pose2, turns_count: bool) -> f64 {
         let (since, at) = *self.last.get_or_insert((now, pose));
         let has_turned = difference_of_angles(at.theta, pose.theta).abs() > PROGRESS_TURN_RAD;
@@ -63,10 +64,10 @@ mod tests {
         };
         (0..=32).for_each(|i| assert_eq!(stood(&mut watch, i), 0.0, "{i}"));
         (33..90).for_each(|i| assert!((stood(&mut watch, i) - f64::from(i - 32)).abs() < 1e-6, "{i}"));
-        // At another place it may turn again.
+        // At another place turns count again.
         watch.standing_for(Stamp::default().after(90.0), Pose2::new(0.5, 0.0, 0.0), true);
         assert_eq!(watch.standing_for(Stamp::default().after(91.0), Pose2::new(0.5, 0.0, 1.0), true), 0.0);
-        // And for another goal.
+        // Turns count again for another goal as well.
         (91..200).for_each(|i| _ = stood(&mut watch, i));
         watch.restart();
         (200..=232).for_each(|i| assert_eq!(stood(&mut watch, i), 0.0, "{i}"));

@@ -1,9 +1,9 @@
-//! Motions relative to where the robot stands: a turn on the spot by an angle, a straight drive by a distance.
+//! Motions relative to the robot's pose: a turn on the spot by an angle, a straight drive by a distance.
 
 use crate::behaviour::spin::SPIN_RATE_RAD_S;
 use trundle_core::{Pose2, Stamp, Twist2, difference_of_angles};
 
-/// A motion relative to where the robot stands.
+/// A motion relative to the robot's pose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum RelativeMotion {
     /// A turn on the spot by an angle, positive to the left \[rad\].
@@ -11,7 +11,7 @@ pub(crate) enum RelativeMotion {
         /// \[rad\]
         angle: f64,
     },
-    /// A straight drive, ahead where the distance is positive.
+    /// A straight drive; a positive distance is ahead.
     Straight {
         /// \[m\]
         distance: f64,
@@ -32,11 +32,11 @@ const DECELERATION_M_S2: f64 = 0.3;
 const MIN_SPEED_M_S: f64 = 0.03;
 /// Remaining distance at which a straight drive is done \[m\]. Source: ours.
 const DISTANCE_TOLERANCE_M: f64 = 0.005;
-/// Turn rate per heading error of a straight drive \[1/s\]. Source: that of the positioner's straight moves.
+/// Turn rate per heading error of a straight drive \[1/s\]. Source: the gain of the positioner's straight moves.
 const HEADING_GAIN: f64 = 1.5;
 /// Largest turn rate of a straight drive \[rad/s\]. Source: ours.
 const MAX_HEADING_RATE_RAD_S: f64 = 0.1;
-/// Time that safety stops the motion after which the motion is given up \[s\]. Source: ours.
+/// Time of a stop by the safety monitor after which the motion is abandoned \[s\]. Source: ours.
 const BLOCKED_TIME_S: f64 = 5.0;
 
 /// Carries out one relative motion.
@@ -61,7 +61,7 @@ impl RelativeMotionDrive {
         }
     }
 
-    /// Whether safety has stopped the motion until its patience ended.
+    /// Whether the safety monitor has stopped the motion for too long.
     pub(crate) fn is_blocked(&mut self, is_stopped: bool, now: Stamp) -> bool {
         if !is_stopped {
             self.stopped_since = None;
@@ -82,7 +82,7 @@ impl RelativeMotionDrive {
 fn straight(start: Pose2, distance: f64, speed: f64, pose: Pose2) -> Option<Twist2> {
     let driven = (start.inverse() * pose).x;
     let left = distance - driven;
-    // A robot that has passed the end does not come back.
+    // A robot beyond the end does not return.
     let is_done = left.abs() <= DISTANCE_TOLERANCE_M || left * distance <= 0.0;
     let v = speed.min((2.0 * DECELERATION_M_S2 * left.abs()).sqrt()).max(MIN_SPEED_M_S.min(speed));
     let off = difference_of_angles(start.theta, pose.theta);

@@ -7,15 +7,16 @@ use trundle_core::{Pose2, Twist2, Vector2};
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct SightRecovery {
     look: Spin,
-    /// The turn rate that the robot wanted when it lost its sight, rad/s.
+    /// The wanted turn rate at the loss of sight, rad/s.
     wanted: f64,
-    /// Where a turn last brought sight back, map frame, and how often it has there.
+    /// Place at which a turn last restored sight, map frame, and the number of times at this place.
     found: Option<(Vector2, u32)>,
 }
 
-/// Smallest fraction of a turn after which a restored view counts as an effect of the turn. Source: ours.
+/// Minimum fraction of a turn after which a restored view counts as an effect of the turn. Source: ours.
 const MIN_RECOVERY_TURN: f64 = 0.02;
-/// Number of times that sight may return by turning at one place. Beyond it the path leads out of sight, and the goal is given up. Source: ours.
+/// Number of times that a turn may restore sight at one place. Beyond it the path is considered unobservable, and the goal is abandoned.
+/// Source: ours.
 const MAX_RECOVERIES_AT_ONE_PLACE: u32 = 2;
 /// Distance within which two recoveries count as one place \[m\]. Source: ours.
 const ONE_PLACE_M: f64 = 0.5;
@@ -26,7 +27,7 @@ impl SightRecovery {
         self.wanted = wanted.omega;
     }
 
-    /// The command after a while without a usable scan: one turn in the direction of the last wanted turn, then rest.
+    /// The command after a pause without a usable scan: one turn in the direction of the last wanted turn, then rest.
     pub(crate) fn turn(&mut self, pose: Pose2) -> Twist2 {
         if self.look.has_turned(SPIN_TURNS) {
             Twist2::ZERO
@@ -35,8 +36,8 @@ impl SightRecovery {
         }
     }
 
-    /// Records a usable scan at a place (map frame, m). Returns whether a turn restored the view there for the second time. Where a whole turn
-    /// was without result, the camera was broken, and the turn did not restore the view.
+    /// Records a usable scan at a place (map frame, m). Returns whether a turn restored the view there for the second time. After a full
+    /// turn without result the camera was broken, and the turn did not restore the view.
     pub(crate) fn sees(&mut self, at: Vector2) -> bool {
         let look = std::mem::take(&mut self.look);
         if !look.has_turned(MIN_RECOVERY_TURN) || look.has_turned(SPIN_TURNS) {

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use trundle_core::{Pose2, Twist2, Vector2, wrap_angle};
 
-/// Turning on the spot to see what is around.
+/// A turn on the spot that observes the surroundings.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Spin {
     last: Option<f64>,
@@ -14,22 +14,22 @@ pub(crate) struct Spin {
 
 /// Turn rate \[rad/s\]: slow enough for features to be tracked. Source: ours.
 pub(crate) const SPIN_RATE_RAD_S: f64 = 0.6;
-/// Length of a spin in turns: a little more than one, so that the views overlap. Source: ours.
+/// Length of a spin in turns: slightly more than one, for overlapping views. Source: ours.
 pub(crate) const SPIN_TURNS: f64 = 1.02;
-/// A spin that no sensor measures ends after this multiple of the commands that it needs. Source: ours.
+/// Factor on the commands needed for a spin; a spin that no sensor measures ends at this multiple. Source: ours.
 const UNMEASURED_SPIN_FACTOR: f64 = 1.5;
 /// Time between two commands \[s\].
 const COMMAND_PERIOD_S: f64 = 0.02;
-/// Bearing of a target below which the robot faces it \[rad\]. Source: ours.
+/// Bearing of a target below which the robot faces the target \[rad\]. Source: ours.
 const FACING_TOLERANCE_RAD: f64 = 0.05;
 
 impl Spin {
-    /// The command, and a note of how far it has turned: to the left.
+    /// The command of a turn to the left; records the angle turned.
     pub(crate) fn twist(&mut self, pose: Pose2) -> Twist2 {
         self.twist_towards(SPIN_RATE_RAD_S, pose)
     }
 
-    /// The command towards the side of this turn rate (rad/s), and a note of how far it has turned.
+    /// The command of a turn in the direction of this turn rate (rad/s); records the angle turned.
     pub(crate) fn twist_towards(&mut self, side: f64, pose: Pose2) -> Twist2 {
         let last = self.last.replace(pose.theta).unwrap_or(pose.theta);
         self.turned += wrap_angle(pose.theta - last).abs();

@@ -11,7 +11,7 @@ use trundle_estimation::StationEstimate;
 /// A motion at a charging station.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum StationGoal {
-    /// Turn to both sides of the station and back, so that the receivers cross the edges of its light.
+    /// Turn to both sides of the station and back, so the receivers cross the edges of its light.
     Sweep(Pose2),
     /// Straight along the axis to a distance of the base from the station, m.
     Advance(StationEstimate, f64),
@@ -39,12 +39,12 @@ const BACK_OFF_SPEED_M_S: f64 = 0.1;
 const HEADING_PER_DISTANCE: f64 = 4.0;
 /// Largest heading off the axis on the last straight move \[rad\]. Source: ours.
 const MAX_HEADING_OFF_AXIS_RAD: f64 = 0.12;
-/// Turn rate per heading error \[1/s\]. Source: that of the positioner's straight moves.
+/// Turn rate per heading error \[1/s\]. Source: the same gain as for the positioner's straight moves.
 const HEADING_GAIN: f64 = 1.5;
-/// Largest turn rate of a straight move \[rad/s\]. Source: ours, below what the safety monitor permits.
+/// Maximum turn rate of a straight move \[rad/s\]. Source: ours, below the limit of the safety monitor.
 const MAX_HEADING_RATE_RAD_S: f64 = 0.1;
-/// Distance beyond the expected contact after which nothing is expected any more \[m\]: the light shows the distance worse than the
-/// axis. Source: ours.
+/// Distance beyond the expected contact at which a straight move ends \[m\]; the light measures distance less accurately than the axis.
+/// Source: ours.
 const OVERRUN_M: f64 = 0.1;
 /// Standard deviations of the distance that are added. Source: ours.
 const OVERRUN_SIGMAS: f64 = 2.0;
@@ -54,9 +54,9 @@ const MAX_ADDED_OVERRUN_M: f64 = 0.1;
 const FROZEN_GAP_M: f64 = 0.12;
 /// Time on a pressed bumper in which the charger may still report \[s\]. Source: ours.
 const CHARGER_TIME_S: f64 = 1.0;
-/// Time without motion after which a straight move is given up \[s\]. Source: ours.
+/// Time without motion after which a straight move fails \[s\]. Source: ours.
 const HELD_TIME_S: f64 = 5.0;
-/// Progress that counts as motion \[m\]. Source: ours.
+/// Minimum progress that counts as motion \[m\]. Source: ours.
 const MOTION_M: f64 = 0.01;
 /// Sides of the station to which a sweep turns, in order. Source: ours.
 const SWEEP_SIDES: [f64; 3] = [1.0, -1.0, 0.0];
@@ -65,17 +65,17 @@ const SWEEP_SIDES: [f64; 3] = [1.0, -1.0, 0.0];
 #[derive(Debug, Clone, Default)]
 pub(crate) struct StationDrive {
     start: Option<Pose2>,
-    /// Where and when the robot last got on.
+    /// Stamp and pose of the robot's last progress.
     last: Option<(Stamp, Pose2)>,
     /// Sides of the sweep that are done.
     sides: usize,
     touched: Option<Stamp>,
-    /// The station as the last straight move takes it.
+    /// The station's pose as used by the last straight move.
     station: Option<StationEstimate>,
 }
 
 impl StationDrive {
-    /// One control step; `touched` is the bumper, `reach` the distance from the base's origin to its front, m.
+    /// Executes one control step; `touched` is the bumper, `reach` the distance from the base's origin to its front, m.
     pub(crate) fn step(
         &mut self,
         goal: &StationGoal,
@@ -234,7 +234,7 @@ mod tests {
         }
     }
 
-    /// Drives until the motion is over; `is_free` is false where an obstacle holds the robot, `docks_at` and `touches_at` are distances
+    /// Drives until the end of the motion. `is_free` is false if an obstacle stops the robot; `docks_at` and `touches_at` are distances
     /// from the station, m.
     fn drive(
         goal: StationGoal,

@@ -1,4 +1,4 @@
-//! When checkpoints are made.
+//! Times at which checkpoints are made.
 
 use trundle_core::Stamp;
 
@@ -12,11 +12,11 @@ pub(crate) struct CheckpointSchedule {
 const WRITE_RATE_BYTES_PER_S: f64 = 3e5;
 /// Shortest time between two checkpoints \[s\]. Source: ours.
 const MIN_PERIOD_S: f64 = 3.0;
-/// Longest time between two checkpoints \[s\]: what a killed robot can lose. Source: ours.
+/// Longest time between two checkpoints \[s\]: the loss if the robot's process is killed. Source: ours.
 const MAX_PERIOD_S: f64 = 10.0;
 
 impl CheckpointSchedule {
-    /// Whether it is time to save.
+    /// Whether a checkpoint is due.
     pub(crate) fn is_due(&self, now: Stamp) -> bool {
         self.due.is_none_or(|due| now >= due)
     }

@@ -1,10 +1,10 @@
-//! How a final approach by turns and straight moves ends.
+//! End of a final approach by turns and straight moves.
 
 use serde::{Serialize, Serializer};
 use std::fmt;
 use trundle_docking::PositionerReason;
 
-/// How a final approach by turns and straight moves ends. In files it is its text.
+/// End of a final approach by turns and straight moves. Files contain its text.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ApproachEnd {
@@ -12,11 +12,11 @@ pub enum ApproachEnd {
     Settled,
     /// Another decision replaced the approach.
     BrokenOff,
-    /// The approach is given up.
+    /// The approach is abandoned.
     GivenUp(ApproachFailure),
 }
 
-/// Why a final approach by turns and straight moves is given up.
+/// Reason why a final approach by turns and straight moves is abandoned.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum ApproachFailure {
@@ -27,7 +27,7 @@ pub enum ApproachFailure {
         /// The time limit \[s\].
         limit: f64,
     },
-    /// The number of stops is over its limit; the reason is that of the last stop.
+    /// The number of stops exceeds its limit; the reason is that of the last stop.
     Positioner(PositionerReason),
 }
 

@@ -17,11 +17,11 @@ pub struct GoalApproachReport {
     pub restarts: u32,
     /// Number of waits without a manoeuvre, or with a pose that is not finite.
     pub waits: u32,
-    /// Since they took over, s.
+    /// Time since the manoeuvre took over, s.
     pub time: f64,
     /// `goal_from_base` at the last check: longitudinal and lateral deviation \[m\], heading deviation \[rad\].
     pub deviation: Option<Pose2>,
-    /// How it ended; `None` while it goes on.
+    /// End of the approach; `None` while the approach runs.
     pub ended: Option<ApproachEnd>,
 }
 
@@ -45,7 +45,7 @@ pub(super) struct Notes {
 }
 
 impl Notes {
-    /// Turns and straight moves take over: what was planned before counts.
+    /// Turns and straight moves take over: the plan made before counts for the report.
     pub fn restart(&mut self) {
         let plans = self.report.plans;
         *self =
@@ -59,7 +59,7 @@ impl Notes {
         self.last = Doing::Standing;
     }
 
-    /// Counts what a step did.
+    /// Counts the result of a step.
     pub fn note(&mut self, step: &PositionerReport) {
         let doing = match step.reason {
             PositionerReason::Moving(_) => Doing::Moving,
@@ -73,7 +73,7 @@ impl Notes {
         };
         let began = |what| doing == what && self.last != what;
         let (plans, moves, waits) = (began(Doing::Planning), began(Doing::Moving), began(Doing::Waiting));
-        // A plan that was ready in the step that began it shows in what came of it.
+        // A plan that was ready in the first step is recognised by the result of the plan.
         let at_once =
             (moves || (waits && step.reason != PositionerReason::BadPose)) && self.last != Doing::Planning;
         self.report.plans += u32::from(plans || at_once);

@@ -23,9 +23,9 @@ pub(super) struct ApproachSelection {
 /// Result of a part of the comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// Not known yet.
+    /// Undecided.
     Open,
-    /// The arc stays.
+    /// The arc.
     Arc,
     /// Turns and straight moves.
     Manoeuvre,
@@ -44,12 +44,12 @@ pub(super) struct ApproachContext<'a> {
 }
 
 impl ApproachSelection {
-    /// Between an arc, if there is one, and turns and straight moves from `from`.
+    /// A selection between an optional arc and turns and straight moves from `from`.
     pub(super) fn new(from: Pose2, goal: Pose2, arc: Option<StabilizerPreview>) -> Self {
         Self { goal, from, arc: arc.map(|arc| (arc, 0)), scene: None, planning: None }
     }
 
-    /// Whether it is about settling from about here on this goal.
+    /// Whether the selection is for this goal and a start near this pose.
     pub(super) fn is_about(&self, pose: &Pose2, goal: &Pose2) -> bool {
         const HERE: f64 = 0.02;
         self.goal == *goal && self.from.distance(pose) < HERE
@@ -90,7 +90,7 @@ impl ApproachSelection {
         if arc_wins(arc, manoeuvre) { Verdict::Arc } else { Verdict::Manoeuvre }
     }
 
-    /// Checks a part of the arc. Returns whether all of it is checked. An arc that is not free has no time.
+    /// Checks a part of the arc; returns whether the check is complete. An arc that is not free has no time.
     fn is_arc_looked_at(&mut self, s: &WorldState<'_>, means: &ApproachContext<'_>) -> bool {
         let Some((arc, looked)) = &mut self.arc else { return true };
         if arc.time.is_none() || *looked == arc.poses.len() {
@@ -119,7 +119,7 @@ fn about(s: &WorldState<'_>, arc: &StabilizerPreview, means: &ApproachContext<'_
 pub(super) fn arc_wins(arc: Option<f64>, manoeuvre: Option<f64>) -> bool {
     match (arc, manoeuvre) {
         (Some(arc), Some(manoeuvre)) => arc <= manoeuvre,
-        // Without either the arc is tried: the safety monitor watches it.
+        // Without arc and manoeuvre the arc is tried: the safety monitor watches it.
         (_, None) => true,
         (None, Some(_)) => false,
     }

@@ -75,7 +75,7 @@ fn a_free_arc_stays_and_one_through_a_wall_is_taken_over_and_settles() {
     assert!(report.deviation.unwrap().position().norm() < 0.01);
 }
 
-/// Runs steps of 20 ms on an ideal base until it gives up: when (s), and why.
+/// Runs steps of 20 ms on an ideal base until the approach gives up; returns the time (s) and the reason.
 fn until_given_up(
     stage: &mut GoalApproach,
     grid: &OccupancyGrid,
@@ -108,7 +108,7 @@ fn an_approach_that_never_moves_ends_with_a_reason() {
     let (time, reason) = until_given_up(&mut walled, &grid, start, false);
     assert!(time < 30.0 && reason.contains("goal"), "{time} {reason}");
     assert!(walled.report().waits > 5 && walled.report().ended.is_some());
-    // The pose is not a number: nothing else ends it but the time.
+    // The pose is not a number: only the timeout ends the approach.
     let mut lost = stage();
     begin(&mut lost, goal);
     let (time, reason) = until_given_up(&mut lost, &grid, Pose2 { x: f64::NAN, ..start }, false);
@@ -141,7 +141,7 @@ fn switched_off_or_far_away_it_never_takes_over() {
     assert!(!off.begin_if_possible(&world(&grid, start, 0.0), near));
 }
 
-/// Until it has settled on an ideal base, s.
+/// Returns the time until the base stops at the goal, s; the base is ideal.
 fn settles_in(stage: &mut GoalApproach, grid: &OccupancyGrid, mut pose: Pose2, goal: Pose2) -> f64 {
     begin(stage, goal);
     for i in 1..5000 {
@@ -154,7 +154,7 @@ fn settles_in(stage: &mut GoalApproach, grid: &OccupancyGrid, mut pose: Pose2, g
     f64::INFINITY
 }
 
-/// The selected approach is faster, driven to its end, than the other: arcs are kept where they are, and only there.
+/// The selected approach is faster than the other if both are driven to the end. An arc is selected if and only if it is faster.
 #[test]
 fn the_way_that_is_chosen_is_the_faster_one_when_both_are_driven() {
     let (robot, goal) = (crate::RobotConfig::default(), Pose2::new(1.5, 0.35, 0.0));
@@ -187,7 +187,7 @@ fn the_way_that_is_chosen_is_the_faster_one_when_both_are_driven() {
     assert!(arcs > 4 && manoeuvres > 2, "{arcs} arcs, {manoeuvres} manoeuvres");
 }
 
-/// The time of each step on one core, ms: what it takes to choose, then a manoeuvre on a base that stands where it is.
+/// Returns the time of each step on one core, ms: the selection, then a manoeuvre on a base that does not move.
 fn times_of_steps(
     config: &GoalApproachConfig,
     footprint: &Footprint,
@@ -213,14 +213,14 @@ fn times_of_steps(
     times
 }
 
-/// No step costs more than 2 ms of a core, however hard the place is, by either method; the least of some runs, each the same.
+/// No step costs more than 2 ms of a core, even in a hard place, by either method. The result is the minimum of several equal runs.
 #[test]
 fn no_step_takes_longer_than_two_milliseconds() {
     let corners = [(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)];
     let corners = corners.map(|(x, y)| trundle_core::Vector2::new(x, y)).to_vec();
     let footprint = Footprint::Polygon { corners };
     let (wall, free) = ("#".repeat(80) + "\n", ".".repeat(80) + "\n");
-    // Too narrow to turn in: all that may be searched is searched.
+    // Too narrow for a turn: the search uses its whole budget.
     let narrow = OccupancyGrid::from_ascii(0.05, &(wall.clone() + &free.repeat(9) + &wall)).unwrap();
     let turned = (Pose2::new(1.9, 0.27, 0.0), Pose2::new(2.0, 0.28, 3.1));
     // Free floor around the robot, posts farther away: every turn and straight move of the paper's method is checked by samples.

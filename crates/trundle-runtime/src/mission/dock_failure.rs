@@ -1,12 +1,12 @@
-//! Why a robot is not on its charging station.
+//! Reason why a robot failed to dock.
 
 use std::fmt;
 
-/// Why a robot is not on its charging station.
+/// Reason why a robot failed to dock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum DockFailure {
-    /// No receiver saw light of a station, wherever the robot could go.
+    /// No receiver detected the light of a station at any reachable place.
     NoLight,
     /// The light was seen, and lost again and again.
     LightLost,
@@ -15,12 +15,12 @@ pub enum DockFailure {
         /// Standard deviation of the lateral position at the contacts \[m\].
         sigma: f64,
     },
-    /// The robot drove as far as the station should be, or into it, and nothing charges.
+    /// The robot drove to the estimated distance of the station, or into it, and does not charge.
     NoCharging {
         /// Attempts made.
         attempts: u32,
     },
-    /// Something stops the robot on its last straight move, or behind it.
+    /// An obstacle or fault stops the robot on its last straight move, or behind it.
     Held,
 }
 

@@ -15,26 +15,26 @@ use trundle_planning::{Exploration, Explorer, Frontier};
 
 /// Poses from which the axis is surveyed, station frame \[m, m, rad\]: paths between them cross the edges of the light. Source: ours.
 const SURVEY_POSES: [[f64; 3]; 3] = [[1.2, 0.3, PI], [1.0, -0.3, PI], [0.9, 0.2, PI]];
-/// Distance of the base from the station before the last straight move \[m\]: the camera still measures there. Source: ours.
+/// Distance of the base from the station before the last straight move \[m\]: within the range of the camera's measurement. Source: ours.
 const STAGING_DISTANCE_M: f64 = 0.7;
-/// Distance of the base from the station at the second sweep \[m\]: a degree of the light is 5 mm there. Source: ours.
+/// Distance of the base from the station at the second sweep \[m\]: one degree of the light is 5 mm at this distance. Source: ours.
 const NEAR_DISTANCE_M: f64 = 0.45;
-/// Distance from the staging pose up to which turns and straight moves lead there \[m\]. Source: ours.
+/// Distance from the staging pose within which turns and straight moves are used \[m\]. Source: ours.
 const ALIGN_DISTANCE_M: f64 = 0.5;
 /// Largest standard deviation of the axis at the contacts, across \[m\] and heading \[rad\]. Source: ours, the plates' tolerances.
 const MAX_LATERAL_SIGMA_M: f64 = 0.012;
 const MAX_HEADING_SIGMA_RAD: f64 = 0.03;
-/// Distance of a docked base from the station \[m\], for that. Source: the Kobuki's radius.
+/// Distance of a docked base from the station \[m\]. Source: the Kobuki's radius.
 const DOCKED_DISTANCE_M: f64 = 0.18;
 /// Rounds of the survey after which the axis is too uncertain. Source: ours.
 const MAX_SURVEYS: u32 = 3;
-/// Last straight moves without charging after which the task is given up. Source: ours.
+/// Number of last straight moves without charging after which the task fails. Source: ours.
 const MAX_ATTEMPTS: u32 = 3;
 /// Times that the light may be lost. Source: ours.
 const MAX_LOSSES: u32 = 3;
 /// Distance of backing off after an attempt \[m\]. Source: ours.
 const BACK_OFF_M: f64 = 0.5;
-/// Change of the estimate after which the present goal is given anew \[m\]. Source: ours.
+/// Change of the estimate after which the present goal is sent again \[m\]. Source: ours.
 const MOVED_GOAL_M: f64 = 0.25;
 /// Rate at which that is checked \[1/s\]. Source: ours.
 const CHECK_RATE_HZ: f64 = 1.0;
@@ -51,18 +51,18 @@ pub(crate) enum DockStep {
 /// Progress of the task.
 #[derive(Debug)]
 enum Phase {
-    /// At its beginning.
+    /// Start of the task.
     Begin,
     /// Turns on the spot.
     Spinning,
-    /// On the way to a place from which light may be seen; the frontier, where that is unknown floor.
+    /// Drive to a place at which light may be detected; the frontier, if the target is unknown floor.
     Searching(Option<Frontier>),
-    /// On the way to a pose of the survey.
+    /// Drive to a pose of the survey.
     Surveying {
         next: usize,
         at: Pose2,
     },
-    /// On the way to the staging pose.
+    /// Drive to the staging pose.
     Staging {
         at: Pose2,
     },
@@ -120,7 +120,7 @@ impl DockTask {
         DockStep::Goal(Goal::Spin)
     }
 
-    /// On the way: the light was seen, or the station is elsewhere than estimated.
+    /// During the drive: checks whether the light was detected, or the estimate of the station moved.
     fn on_way(&mut self, s: &WorldState<'_>, state: &DriveState) -> DockStep {
         let drives = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
         if !drives || !self.check_due.due(s.now) {
@@ -139,7 +139,7 @@ impl DockTask {
         }
     }
 
-    /// The navigator has ended its goal.
+    /// Reaction to the end of the navigator's goal.
     fn on_over(&mut self, s: &WorldState<'_>, state: &DriveState) -> DockStep {
         let failure = match state {
             DriveState::Stopped { reason } => Some(reason),
@@ -240,7 +240,7 @@ impl DockTask {
         }
     }
 
-    /// The next place of known floor where light was not yet looked for; else the next viewpoint of unknown floor.
+    /// The next place of known floor without a search so far; else the next viewpoint of unknown floor.
     fn search_on(&mut self, s: &WorldState<'_>) -> DockStep {
         if let Some(place) = self.search.next_place(s.permitted_grid(), s.estimate.pose) {
             self.phase = Phase::Searching(None);
@@ -255,7 +255,7 @@ impl DockTask {
         }
     }
 
-    /// The readings contradict the estimate of the station: it is searched anew.
+    /// The readings contradict the estimate of the station: the search starts again.
     fn lost(&mut self) -> DockStep {
         self.losses += 1;
         if self.losses > MAX_LOSSES {

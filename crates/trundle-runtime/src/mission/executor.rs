@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 use trundle_core::{Invalid, Pose2, Stamp};
 use trundle_planning::{Exploration, Explorer, Frontier};
 
-/// Works through a mission: gives the navigator its goals, and notes what became of them.
+/// Executes a mission: gives the navigator its goals, and records the results.
 ///
 /// | task | what it gives the navigator | ends when |
 /// |---|---|---|
@@ -25,7 +25,7 @@ use trundle_planning::{Exploration, Explorer, Frontier};
 /// | explore | a turn on the spot, then viewpoint after viewpoint | no frontier is left |
 /// | dock | a search for light, a survey of the station's axis, a straight move onto its contacts | the battery charges, or given up |
 ///
-/// A robot on its charging station first backs off it, before any task but docking.
+/// A robot on its charging station first backs off the station, before any task except docking.
 #[derive(Debug)]
 pub(crate) struct MissionExecutor {
     explore: trundle_planning::ExploreConfig,
@@ -60,7 +60,7 @@ enum Work {
     Undocking,
     /// Driving onto the charging station.
     Docking(Box<DockTask>),
-    /// Driving to its goal.
+    /// The robot drives to the goal.
     Going,
     /// Turns on the spot, or drives to a viewpoint.
     Exploring {
@@ -69,7 +69,7 @@ enum Work {
         frontier: Option<Frontier>,
         /// Number of reached viewpoints.
         views: usize,
-        /// Why the last missed viewpoint was missed.
+        /// Reason for the last missed viewpoint.
         failure: Option<Reason>,
     },
 }
@@ -78,13 +78,13 @@ enum Work {
 const UNDOCK_DISTANCE_M: f64 = 0.4;
 /// The goal of backing off the charging station.
 const UNDOCK: Goal = Goal::Station(StationGoal::BackOff(UNDOCK_DISTANCE_M));
-/// Rate at which exploration checks whether its target is still unknown \[1/s\]. Source: ours.
+/// Rate of the check whether the target of the exploration is still unknown \[1/s\]. Source: ours.
 const FRONTIER_CHECK_RATE_HZ: f64 = 1.0;
 
 impl MissionExecutor {
     /// An executor without a mission; exploration keeps `radius` m from obstacles.
     pub(crate) fn new(config: &MissionExecutorConfig, radius: f64) -> Result<Self, Invalid> {
-        // Its settings are checked here, once.
+        // This call checks the settings once.
         Explorer::new(config.explore, radius)?;
         Ok(Self {
             explore: config.explore,
@@ -97,7 +97,7 @@ impl MissionExecutor {
         })
     }
 
-    /// Begins a mission at its recorded task, in place of the present one.
+    /// Starts a mission at its recorded task and replaces the present mission.
     pub(crate) fn begin(&mut self, mission: &MissionState) {
         let was_put_off = |index: usize| {
             mission.ended.iter().any(|r| r.index == index && matches!(r.end, TaskEnd::PutOff { .. }))
@@ -128,19 +128,19 @@ impl MissionExecutor {
         self.current.iter().map(|current| &current.entry).chain(&self.queue)
     }
 
-    /// How far the mission has come.
+    /// Progress of the mission.
     pub(crate) fn mission(&self) -> MissionState {
         let (places, tasks) = self.entries_left().map(|entry| (entry.index, entry.task)).unzip();
         let left = Mission::new(tasks).expect("invariant: these tasks are of a mission");
         MissionState { left, places, ended: self.records.clone(), by_operator: self.by_operator }
     }
 
-    /// Whether there is nothing left to do.
+    /// Whether no task is left.
     pub(crate) fn is_idle(&self) -> bool {
         self.current.is_none() && self.queue.is_empty()
     }
 
-    /// Why the mission is not done as a whole, once it is over.
+    /// Reason for an incomplete mission after its end.
     pub(crate) fn failure(&self) -> Option<Reason> {
         let failures: Vec<TaskFailure> = self.records.iter().filter_map(failure_of).collect();
         (!failures.is_empty()).then_some(Reason::TasksFailed(failures))
@@ -155,7 +155,7 @@ impl MissionExecutor {
             || explores && driving && self.frontier_check_due.will_be_due(s.now)
     }
 
-    /// The next goal of the navigator, which is in `state`; `None` while the present one is kept.
+    /// Returns the next goal for the navigator in `state`; `None` keeps the present goal.
     pub(crate) fn step(&mut self, s: &WorldState<'_>, state: &DriveState) -> Option<Goal> {
         if let Some(Current { work: Work::Docking(task), .. }) = &mut self.current {
             let step = task.step(s, state);
@@ -186,7 +186,7 @@ impl MissionExecutor {
         self.begin_current_task(s)
     }
 
-    /// Puts the present task off until the robot is off its charging station: the base may report that after the task began.
+    /// Defers the present task until the robot is off its charging station: the base may report the station after the start of the task.
     fn undock_first(&mut self, s: &WorldState<'_>) -> Option<Goal> {
         let current = self.current.as_mut().filter(|_| s.station.is_docked)?;
         let is_on_its_way = matches!(current.work, Work::Going | Work::Exploring { .. });
@@ -231,7 +231,7 @@ impl MissionExecutor {
         matches!(&self.current, Some(Current { work: Work::Undocking, .. }))
     }
 
-    /// Carries out what the dock task asks for.
+    /// Executes the request of the dock task.
     fn on_dock_step(&mut self, step: DockStep, s: &WorldState<'_>) -> Option<Goal> {
         match step {
             DockStep::Keep => return None,
@@ -242,7 +242,7 @@ impl MissionExecutor {
         self.start_next_task(s).or(Some(Goal::Stay))
     }
 
-    /// The next viewpoint of the exploration, where the present one has been observed or given up.
+    /// Returns the next viewpoint of the exploration after the present one was observed or given up.
     fn explore_further(&mut self, s: &WorldState<'_>, state: &DriveState) -> Option<Goal> {
         let over = matches!(state, DriveState::Arrived | DriveState::Stopped { .. });
         let driving = matches!(state, DriveState::Driving | DriveState::Waiting { .. });
@@ -264,7 +264,7 @@ impl MissionExecutor {
                 Some(Goal::Viewpoint(view.pose))
             }
             Exploration::Complete { .. } => {
-                // Where nothing could be driven to, nothing was explored.
+                // Without a reached viewpoint, nothing was explored.
                 let reason = failure.take().filter(|_| *views == 0);
                 self.end(reason.map_or(TaskEnd::Done, |reason| TaskEnd::GivenUp { reason }), s);
                 self.start_next_task(s).or(Some(Goal::Stay))
@@ -286,7 +286,7 @@ impl MissionExecutor {
         }
     }
 
-    /// The navigator has given up.
+    /// Handles a goal that the navigator has given up.
     fn on_stopped(&mut self, reason: &Reason, s: &WorldState<'_>) {
         let Some(current) = &mut self.current else { return };
         if let Work::Exploring { explorer, frontier, failure, .. } = &mut current.work {
@@ -316,7 +316,7 @@ impl MissionExecutor {
     }
 }
 
-/// The failure of a task that is given up.
+/// Returns the failure of a task that was given up.
 fn failure_of(record: &TaskRecord) -> Option<TaskFailure> {
     match &record.end {
         TaskEnd::GivenUp { reason } => {
@@ -447,7 +447,7 @@ mod tests {
         assert_eq!(early.step(&on, &DriveState::Maneuvering), None);
         assert_eq!(early.step(&off, &DriveState::Arrived), Some(Goal::Exact(goal)));
         assert_eq!(early.step(&on, &DriveState::Arrived), Some(UNDOCK), "still on the contacts");
-        // The base reports its charger after the task began.
+        // The base reports its charger after the start of the task.
         let mut late = executor(&[Task::Go(goal)]);
         assert_eq!(late.step(&off, &DriveState::Idle), Some(Goal::Exact(goal)));
         assert_eq!(late.step(&on, &DriveState::Initializing), Some(UNDOCK));
@@ -465,7 +465,7 @@ mod tests {
         assert!(executor.failure().unwrap().is_due_to(ReasonKind::NoStationLight));
     }
 
-    /// A task for each letter: `g` to a place of its own, `r` back to the start.
+    /// One task per letter: `g` to a separate place, `r` back to the start.
     fn tasks(letters: &str) -> Vec<Task> {
         let task = |(i, letter)| match letter {
             'r' => Task::Return,

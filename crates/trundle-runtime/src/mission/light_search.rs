@@ -1,15 +1,15 @@
 //! Places of the known floor from which the light of a station is looked for.
 //!
-//! A station shines into a sector of +-60 deg and 3 m. A disc of 1.3 m fits into that, so light is found where every free place has a
-//! searched one within that distance, in sight.
+//! A station shines into a sector of +-60 deg and 3 m. A disc of 1.3 m fits into that sector. Light is therefore found if every free place
+//! has a searched place within 1.3 m and in sight.
 
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Vector2};
 
-/// Radius about a searched place that counts as searched \[m\]. Source: the largest disc in the sector of a station's light.
+/// Radius around a searched place that counts as searched \[m\]. Source: the largest disc in the sector of a station's light.
 const SEARCHED_RADIUS_M: f64 = 1.3;
 /// Distance between candidates \[m\]. Source: ours.
 const CANDIDATE_STEP_M: f64 = 0.25;
-/// Clearance of a candidate from everything that is not free \[m\]. Source: ours, a Kobuki and 0.1 m.
+/// Clearance of a candidate from all cells that are not free \[m\]. Source: ours, a Kobuki and 0.1 m.
 const CLEARANCE_M: f64 = 0.28;
 
 /// Searched places.
@@ -25,13 +25,13 @@ impl LightSearch {
         self.searched.push(at);
     }
 
-    /// The way to the present place is over; a place that cannot be reached counts as searched.
+    /// Ends the drive to the present place; an unreachable place counts as searched.
     pub(crate) fn end_place(&mut self, has_failed: bool) {
         let place = self.place.take();
         self.searched.extend(place.filter(|_| has_failed));
     }
 
-    /// The nearest free place that is not searched, with the heading of the way there. `None` if all is searched.
+    /// The nearest free place without a search so far, with the heading of the drive to this place. `None` if all places are searched.
     pub(crate) fn next_place(&mut self, grid: &OccupancyGrid, from: Pose2) -> Option<Pose2> {
         let here = from.position();
         let distance = |at: &Vector2| (at - here).norm();
@@ -59,7 +59,7 @@ fn is_searched_from(grid: &OccupancyGrid, searched: Vector2, at: Vector2) -> boo
     (at - searched).norm() <= SEARCHED_RADIUS_M && is_in_sight(grid, searched, at)
 }
 
-/// Whether no occupied cell lies between two points.
+/// Whether no occupied cell is between two points.
 fn is_in_sight(grid: &OccupancyGrid, from: Vector2, to: Vector2) -> bool {
     let (way, step) = (to - from, grid.geometry().resolution);
     let count = (way.norm() / step).ceil().max(1.0);

@@ -21,7 +21,7 @@ pub enum Task {
         /// \[rad\]
         angle: f64,
     },
-    /// Drive straight by a distance, ahead where it is positive.
+    /// Drive straight by a distance; a positive distance is ahead.
     Straight {
         /// \[m\]
         distance: f64,

@@ -26,8 +26,8 @@ const MOTION_THRESHOLD: f64 = 0.01;
 const MIN_SEEN_SHARE: f64 = 0.05;
 
 impl CameraHealth {
-    /// Whether this image, taken at `odom_from_base`, is the same bit for bit as the last one, although the robot has moved or several
-    /// equal ones came. The noise of a real camera makes any two images differ.
+    /// Whether this image, taken at `odom_from_base`, equals the last one bit for bit although the robot has moved or several equal images
+    /// came. The noise of a real camera makes any two images differ.
     pub(crate) fn is_frozen(&mut self, image: &RgbdImage, odom_from_base: Pose2) -> bool {
         let now = Look { print: fingerprint(image), stamp: image.stamp(), odom_from_base };
         let Some(first) = self.last.filter(|first| first.print == now.print) else {

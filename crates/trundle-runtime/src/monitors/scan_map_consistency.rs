@@ -5,24 +5,24 @@ use trundle_core::{Beam, Cell, CellIndex, OccupancyGrid, Pose2, Scan, Stamp, Vec
 /// Watches scans that contradict the map.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ScanMapConsistency {
-    /// Since when they all have.
+    /// Stamp since which all scans contradict the map.
     since: Option<Stamp>,
-    /// When the last scan was taken, and how much of it contradicts the map.
+    /// Stamp of the last scan, and its fraction that contradicts the map.
     last: Option<(Stamp, f64)>,
 }
 
 /// Result of the comparison of a scan with the map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Fit {
-    /// It may be of this place.
+    /// The scan may show this place.
     Fits,
-    /// It is not, or much has changed: it does not belong on the map.
+    /// The scan shows another place or a large change: it is not drawn on the map.
     Contradicts,
     /// All scans contradicted the map until the limit of time: the robot is elsewhere.
     Elsewhere,
 }
 
-/// Distance between a hit and an occupied cell that counts as agreement \[m\]: the error of pose and map. Source: ours.
+/// Largest distance between a hit and an occupied cell that counts as agreement \[m\]: the error of pose and map. Source: ours.
 const HIT_TOLERANCE_M: f64 = 0.25;
 /// Share of a scan's known hits that contradict the map, above which the scan contradicts it. A person nearby hides less. Source: ours.
 const CONTRADICTING_SHARE: f64 = 0.45;
@@ -68,7 +68,7 @@ impl ScanMapConsistency {
     }
 }
 
-/// Fraction of the hits in known cells that lie in free cells or behind occupied cells; 0 with too few such hits.
+/// Fraction of the hits in known cells that are in free cells or behind occupied cells; 0 with too few such hits.
 fn contradicted(grid: &OccupancyGrid, map_from_base: Pose2, scan: &Scan) -> f64 {
     let origin = map_from_base.transform(scan.origin());
     let ends = scan.beams().iter().enumerate().filter_map(|(i, beam)| match beam {
@@ -98,7 +98,7 @@ fn judged(grid: &OccupancyGrid, origin: Vector2, end: Vector2) -> Option<bool> {
     let count = ((way.norm() - HIT_TOLERANCE_M).max(0.0) / step) as usize;
     let mut on_the_way = (0..count).map(|i| origin + way * (i as f64 * step / way.norm()));
     let is_behind = on_the_way.any(|point| grid.at(point) == Cell::Occupied);
-    // A wall may begin beside unknown cells.
+    // Unknown cells may contain the beginning of a wall.
     let is_clear = || grid.at(end) == Cell::Free && about(end).all(|cell| cell == Cell::Free);
     (is_behind || is_clear()).then_some(false)
 }
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
     use trundle_core::GridGeometry;
 
-    /// A room of 6 x 4 m with a box in it, known up to x = `known` \[m\]; its corner at the origin.
+    /// A room of 6 x 4 m with a box, known up to x = `known` \[m\]; its corner is at the origin.
     fn room(known: f64) -> OccupancyGrid {
         let geometry = GridGeometry::new(0.05, Vector2::zeros(), 120, 80).unwrap();
         let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
@@ -140,7 +140,7 @@ mod tests {
         grid
     }
 
-    /// The camera's scan of the room from a pose. `before`: nothing beyond this range in a part of the view, as behind a person.
+    /// The camera's scan of the room from a pose. `before`: maximum range in a part of the view, as in front of a person.
     fn scan(at: Pose2, time: f64, before: Option<f64>) -> Scan {
         let grid = room(f64::INFINITY);
         let beam = |i: i32| {
@@ -182,7 +182,7 @@ mod tests {
             let fits = judged(&room(known), here, off, before);
             assert!(fits.iter().all(|fit| *fit == Fit::Fits), "{known} {before:?}: {fits:?}");
         }
-        // In a map of nothing nothing can be contradicted.
+        // An empty map contradicts no scan.
         let fits = judged(&room(-1.0), here, Pose2::new(3.0, 1.0, 2.0), None);
         assert!(fits.iter().all(|fit| *fit == Fit::Fits));
     }

@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::time::{Duration, Instant};
 
-/// The input of the control thread, in one queue of bounded length. Urgent events overtake images and results. Images and results
-/// are only handed out while there is time before the next wheel reading.
+/// The input of the control thread, in one queue of bounded length. Urgent events overtake images and results. Images and results are only
+/// delivered while time is left before the next wheel reading.
 #[derive(Debug)]
 pub struct Inbox<E> {
     receiver: Receiver<InboxItem<E>>,
@@ -70,7 +70,7 @@ impl<E> InboxSender<E> {
         }
     }
 
-    /// Puts in an item that must not be lost; waits where the queue is full.
+    /// Adds an item that must not be lost; waits while the queue is full.
     pub fn send_waiting(&self, item: InboxItem<E>) -> bool {
         self.sender.send(item).is_ok()
     }
@@ -95,7 +95,7 @@ impl<E> Inbox<E> {
         self.sender.clone()
     }
 
-    /// The next item. `None` if nothing has come for `patience`. Items of a kind come in the order in which they were put in.
+    /// The next item. `None` if no item arrives within `patience`. Items of a kind are delivered in the order of their arrival.
     pub fn next(&mut self, loop_timer: &LoopTimer, patience: Duration) -> Option<Input<E>> {
         let start = Instant::now();
         loop {
@@ -116,7 +116,7 @@ impl<E> Inbox<E> {
         }
     }
 
-    /// The next result of a worker, ahead of all other items; urgent events are dropped. `None` if it does not come within `patience`.
+    /// The next result of a worker, ahead of all other items; urgent events are dropped. `None` if no result arrives within `patience`.
     pub fn next_answer(&mut self, worker: Worker, patience: Duration) -> Option<Answer> {
         let start = Instant::now();
         loop {

@@ -38,13 +38,13 @@ impl LoopTimerConfig {
     }
 }
 
-/// Timing of the control loop: records when commands leave, and whether there is time for other work.
+/// Timing of the control loop: records the times of commands, and decides whether time is left for other work.
 #[derive(Debug)]
 pub struct LoopTimer {
     config: LoopTimerConfig,
-    /// When processing of the last wheel reading began.
+    /// Time at which processing of the last wheel reading began.
     beat: Option<Instant>,
-    /// When the last command left.
+    /// Time of the last command.
     command: Option<Instant>,
     intervals: Histogram,
     jitter: Histogram,
@@ -52,28 +52,28 @@ pub struct LoopTimer {
     missed: u64,
 }
 
-/// How control kept time. Milliseconds; quantiles to 1 %.
+/// Timing of control. Milliseconds; quantiles to 1 %.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LoopTimerReport {
     /// Control steps.
     pub steps: u64,
     /// Between two commands, median.
     pub interval_median_ms: f64,
-    /// How far the time between two commands is from the period, median.
+    /// Deviation of the time between two commands from the period, median.
     pub jitter_median_ms: f64,
-    /// Of the same, 99 of 100 are at most.
+    /// Deviation of the time between two commands from the period, 99th percentile.
     pub jitter_p99_ms: f64,
-    /// Of the same, 999 of 1000 are at most.
+    /// Deviation of the time between two commands from the period, 99.9th percentile.
     pub jitter_p999_ms: f64,
-    /// Of the same, the largest.
+    /// Deviation of the time between two commands from the period, maximum.
     pub jitter_most_ms: f64,
-    /// From a reading of the wheels to its command, median.
+    /// Time from a wheel reading to its command, median.
     pub response_median_ms: f64,
-    /// Of the same, 999 of 1000 are at most.
+    /// Time from a wheel reading to its command, 99.9th percentile.
     pub response_p999_ms: f64,
-    /// Of the same, the largest.
+    /// Time from a wheel reading to its command, maximum.
     pub response_most_ms: f64,
-    /// Times between two commands that were longer than period and deadline: a base with a time-out stops by itself.
+    /// Number of times between two commands that exceeded period and deadline: a base with a time-out stops automatically.
     pub missed_deadlines: u64,
 }
 
@@ -108,7 +108,7 @@ impl LoopTimer {
         }
     }
 
-    /// `None` if there is time for other things; else in how long there will be, unless a reading comes first.
+    /// `None` if time is left for other work; else the time until then, unless a reading arrives first.
     pub fn time_for_others(&self) -> Option<Duration> {
         let LoopTimerConfig { period, reserve, .. } = self.config;
         let since = self.beat?.elapsed().as_secs_f64();
@@ -116,7 +116,7 @@ impl LoopTimer {
         is_busy.then(|| Duration::from_secs_f64(period + reserve - since))
     }
 
-    /// How it kept time. `None` before the second command.
+    /// The timing. `None` before the second command.
     pub fn report(&self) -> Option<LoopTimerReport> {
         Some(LoopTimerReport {
             steps: self.responses.count(),

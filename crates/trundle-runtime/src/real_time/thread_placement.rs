@@ -2,20 +2,21 @@
 
 use std::time::Duration;
 
-/// Where a thread runs, and how urgently.
+/// Cores and priority of a thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ThreadPlacement {
     /// The processor core, from 0; none: any.
     pub core: Option<usize>,
     /// Niceness above that of the starting thread, 0 to 39. Default 0.
     pub nice: i32,
-    /// Whether it runs before every thread that is not, whatever their niceness, if the system allows it (Linux: `SCHED_FIFO`).
-    /// For threads that compute little. Default false.
+    /// Whether the thread has a real-time priority (Linux: `SCHED_FIFO`), above all other threads of any niceness, if the system allows it.
+    /// Meant for threads that compute little. Default false.
     pub is_first: bool,
 }
 
 impl ThreadPlacement {
-    /// Puts the calling thread there. Returns whether the system granted all of it. Elsewhere than on Linux nothing is granted.
+    /// Applies the placement to the calling thread. Returns whether the system granted everything. On systems other than Linux nothing is
+    /// granted.
     pub fn take(self) -> bool {
         let pinned = self.core.is_none_or(pin);
         let ranked = self.nice == 0 || rank(self.nice);
@@ -42,7 +43,7 @@ fn rank(nicer: i32) -> bool {
     getpriority_process(None).and_then(|now| setpriority_process(None, now + nicer)).is_ok()
 }
 
-/// Of the ranks 1 to 99 of real-time threads: below those of the kernel's own.
+/// Real-time priority, 1 to 99: below the kernel's own threads.
 #[cfg(target_os = "linux")]
 const THREAD_PRIORITY: i32 = 10;
 
@@ -51,7 +52,7 @@ fn go_first() -> bool {
     let rank = libc::sched_param { sched_priority: THREAD_PRIORITY };
     // Threads started by such a thread do not inherit its priority.
     let policy = libc::SCHED_FIFO | libc::SCHED_RESET_ON_FORK;
-    // SAFETY: the call reads one valid structure and changes nothing but how the calling thread (0) is scheduled.
+    // SAFETY: the call reads one valid structure and changes only the scheduling of the calling thread (0).
     unsafe { libc::sched_setscheduler(0, policy, &rank) == 0 }
 }
 
@@ -70,14 +71,14 @@ fn rank(_nice: i32) -> bool {
     false
 }
 
-/// Processor time of the calling thread. `None` if threads have no clock of their own.
+/// Processor time of the calling thread. `None` if the system has no clock per thread.
 #[cfg(unix)]
 pub fn thread_time() -> Option<Duration> {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     Some(Duration::new(time.tv_sec.unsigned_abs(), u32::try_from(time.tv_nsec).ok()?))
 }
 
-/// Processor time of the calling thread. `None` if threads have no clock of their own.
+/// Processor time of the calling thread. `None` if the system has no clock per thread.
 #[cfg(not(unix))]
 pub fn thread_time() -> Option<Duration> {
     None

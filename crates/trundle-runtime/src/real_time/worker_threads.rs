@@ -6,7 +6,7 @@ use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
 
-/// The robot's workers, a thread each. What they compute in parallel they compute on that one thread.
+/// The robot's workers, one thread each. Parallel loops of a worker run on its own thread.
 #[derive(Debug)]
 pub struct WorkerThreads {
     handles: Vec<WorkerHandle>,
@@ -43,7 +43,7 @@ impl WorkerThreads {
         Ok(Self { handles: Worker::ALL.into_iter().map(start).collect::<Result<_, _>>()? })
     }
 
-    /// Gives a job to its worker. The robot gives a worker its next job after the result of the last one.
+    /// Gives a job to its worker. The robot gives a worker its next job after the result of the previous one.
     pub fn give(&self, job: Job) {
         let handle = self.handles.iter().find(|handle| handle.worker == job.worker());
         // A worker whose thread has ended gives no result. The robot continues without, and the safety monitor stops it on old data.

@@ -5,7 +5,7 @@ use crate::mission::dock_failure::DockFailure;
 use serde::{Deserialize, Serialize};
 use trundle_control::{MotionHold, StopReason};
 
-/// The kind of a reason, without its numbers. Its name in files is the variant's in `snake_case`.
+/// The kind of a reason, without its numbers. Its name in files is the name of the variant in `snake_case`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]

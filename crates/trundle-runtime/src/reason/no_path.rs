@@ -1,10 +1,10 @@
-//! Why the planner finds no path.
+//! Reasons for a missing path.
 
 use std::fmt;
 use trundle_core::{Invalid, Vector2};
 use trundle_planning::Plan;
 
-/// Why the planner finds no path.
+/// Reason for a missing path.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum NoPath {
@@ -37,7 +37,7 @@ pub enum NoPath {
 }
 
 impl NoPath {
-    /// Why a plan holds no path. `None` if the plan holds one.
+    /// Reason for the missing path of a plan. `None` if the plan has a path.
     #[must_use]
     pub fn of(plan: &Plan) -> Option<Self> {
         match plan {

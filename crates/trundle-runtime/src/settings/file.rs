@@ -1,4 +1,4 @@
-//! Reads a robot file: translates keys, names unknown ones, applies overrides, and validates.
+//! Reads a robot file: translates keys, reports unknown keys, applies overrides, and validates.
 
 use super::missing_keys::missing_keys;
 use super::overrides::overridden;
@@ -17,7 +17,7 @@ use trundle_core::toml_problem;
 pub struct RobotFile {
     /// The robot, gaps filled with the defaults.
     pub config: RobotConfig,
-    /// One sentence for each key that is deprecated.
+    /// One sentence for each deprecated key.
     pub warnings: Vec<String>,
 }
 
@@ -25,7 +25,7 @@ impl RobotFile {
     /// Reads the text of a robot file, TOML, then applies `overrides`, each `key=value`.
     ///
     /// # Errors
-    /// When the text is not TOML, a key is unknown or stands twice, a value is of the wrong kind, outside its range or implausible.
+    /// When the text is not TOML, a key is unknown or given twice, a value has the wrong kind, is outside its range or implausible.
     pub fn parse(text: &str, overrides: &[String]) -> Result<Self, SettingsError> {
         let mut warnings = Vec::new();
         let mut config = read(text, &mut warnings)?;
@@ -61,7 +61,7 @@ fn read(text: &str, warnings: &mut Vec<String>) -> Result<RobotConfig, SettingsE
         Some(problem) => Err(problem),
         None => {
             let given = || toml::Deserializer::from(Spanned::new(span.clone(), translated.clone()));
-            // Errors of this one name their line.
+            // Errors of this parse contain their line.
             RobotConfig::deserialize(given()).map_err(|error| {
                 missing_keys(&translated, &error).map_or_else(
                     || failed(error),
@@ -76,8 +76,8 @@ fn read(text: &str, warnings: &mut Vec<String>) -> Result<RobotConfig, SettingsE
     }
 }
 
-/// Puts the values of `given` in place of those of `table`. What a table within does not give keeps the robot's default, which may
-/// differ from the default of that table's type.
+/// Replaces values of `table` by those of `given`. A value absent from an inner table keeps the robot's default, which may differ from the
+/// default of that table's type.
 fn overlay(table: &mut toml::Table, given: toml::Table) {
     for (key, value) in given {
         match (table.get_mut(&key), value) {

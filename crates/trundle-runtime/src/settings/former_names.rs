@@ -1,8 +1,8 @@
-//! Former names of settings, which robot files and recordings may still hold.
+//! Former names of settings, which robot files and recordings may contain.
 
 use serde_json::Value;
 
-/// Beginnings of former names and of the present ones, the longer first.
+/// Prefixes of former names and of the present ones; longer prefixes come first.
 const FORMER_NAMES: [(&str, &str); 7] = [
     ("supervisor", "mission_executor"),
     ("least_way", "min_distance"),
@@ -13,7 +13,7 @@ const FORMER_NAMES: [(&str, &str); 7] = [
     ("most_", "max_"),
 ];
 
-/// The present name of a table or of a setting without its table; `None` if it has no former name.
+/// The present name of a table or of a setting without its table; `None` without a former name.
 fn present_name(name: &str) -> Option<String> {
     FORMER_NAMES.iter().find_map(|(former, present)| Some(format!("{present}{}", name.strip_prefix(former)?)))
 }

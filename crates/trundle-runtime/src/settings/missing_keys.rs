@@ -4,7 +4,7 @@ use super::reference::{Setting, reference};
 use super::value_kind::wanted;
 use toml::de::{DeTable, DeValue};
 
-/// Where serde misses a field: the table's place in the text, and the keys that the table of the file lacks.
+/// Place of a field that serde misses: the table's offset in the text, and the keys absent from the table.
 pub(super) fn missing_keys(given: &DeTable<'_>, error: &toml::de::Error) -> Option<(usize, String)> {
     let field = error.message().strip_prefix("missing field `")?.strip_suffix('`')?;
     let lacks = |setting: &&Setting| setting.field() == field && table_of(given, setting.path).is_some();

@@ -1,4 +1,4 @@
-//! The robot file: reads `robot.toml` with units in its keys, prints it with its meaning, and checks what is plausible.
+//! The robot file: reads `robot.toml` with units in its keys, prints each key with its meaning, and checks plausibility.
 
 mod file;
 mod former_names;

@@ -3,7 +3,7 @@
 use crate::RobotConfig;
 use trundle_core::Invalid;
 
-/// A number with the range that indoor robots have, and the unit that a number outside was probably meant in.
+/// A number, its range for indoor robots, and the likely unit of a number outside the range.
 struct Plausible {
     path: &'static str,
     value: f64,
@@ -23,14 +23,14 @@ const MAX_FOOTPRINT_RADIUS_M: f64 = 3.0;
 const MAX_SPEED_M_S: f64 = 5.0;
 /// Largest turn rate \[rad/s\]; ours: two turns per second.
 const MAX_TURN_RATE_RAD_S: f64 = 15.0;
-/// Largest acceleration \[m/s^2\]; ours: twice that of gravity, which no wheel on a floor has.
+/// Largest acceleration \[m/s^2\], twice that of gravity; no wheel on a floor reaches it. Source: ours.
 const MAX_ACCELERATION_M_S2: f64 = 20.0;
 /// Largest angular acceleration \[rad/s^2\]; ours.
 const MAX_ANGULAR_ACCELERATION_RAD_S2: f64 = 100.0;
 /// Range of focal lengths, as a multiple of the image's width: views of 160 and of 3 degrees; ours.
 const FOCAL_LENGTH_PER_WIDTH: (f64, f64) = (0.09, 20.0);
 
-/// Refuses numbers that no robot has, with the unit they were probably meant in.
+/// Refuses implausible numbers, and suggests the unit that was probably meant.
 ///
 /// # Errors
 /// Names the first such number.

@@ -8,7 +8,7 @@ use toml::Value;
 /// Width of the comments, characters.
 const COMMENT_WIDTH: usize = 110;
 
-/// The whole robot file, TOML: each key with its meaning, unit, range and default as a comment; what is not set as a comment too.
+/// The whole robot file as TOML. Each key has its meaning, unit, range and default as a comment; unset keys are comments too.
 pub fn to_commented_toml(config: &RobotConfig) -> String {
     let root = Value::try_from(config).expect("invariant: the configuration is plain data");
     let mut text = String::new();

@@ -9,11 +9,11 @@ pub struct Setting {
     pub path: &'static str,
     /// Dotted key in the file, with its unit, as `drive.wheel_radius_m`.
     pub key: &'static str,
-    /// Unit, as `m/s`; empty if there is none.
+    /// Unit, as `m/s`; empty without a unit.
     pub unit: &'static str,
     /// `number`, `integer`, `flag`, `list`, or the words of a choice parted by `|`.
     pub kind: &'static str,
-    /// Meaning, range, default and where the default comes from.
+    /// Meaning, range, default and source of the default.
     pub doc: &'static str,
 }
 

@@ -1,8 +1,8 @@
-//! Why a robot file cannot be used.
+//! Reasons why a robot file is refused.
 
 use thiserror::Error;
 
-/// Why a robot file cannot be used.
+/// Reason why a robot file is refused.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{}{message}", line.map_or(String::new(), |line| format!("line {line}: ")))]
 pub struct SettingsError {

@@ -1,4 +1,4 @@
-//! Keys of a robot file translated to names of fields; unknown and doubled keys refused.
+//! Translates keys of a robot file to names of fields; refuses unknown and doubled keys.
 
 use super::former_names::present_key;
 use super::reference::{Setting, reference};
@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
-/// The table with the names of fields in place of keys; reports unknown keys, and keys that stand twice, to `refuse`.
+/// The table with field names in place of keys; reports unknown and doubled keys to `refuse`.
 pub(super) fn translate<'i>(
     table: DeTable<'i>,
     prefix: &str,
@@ -84,7 +84,7 @@ pub(super) fn find(full: &str) -> Option<Found> {
     key.or_else(old).or_else(|| settings.iter().any(inside).then_some(Found::Table))
 }
 
-/// Why a key is refused: the keys that stand beside it.
+/// Error text for an unknown key, with the other keys of its table.
 pub(super) fn unknown(full: &str, prefix: &str) -> String {
     let mut names: Vec<&str> = reference()
         .iter()

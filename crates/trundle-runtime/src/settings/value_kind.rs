@@ -1,9 +1,9 @@
-//! The check that a value is of the kind of its setting.
+//! Checks that a value has the kind of its setting.
 
 use super::reference::Setting;
 use toml::Value;
 
-/// The problem of a value that is not of the kind of its setting: key, value and what is expected; `None` if it fits.
+/// The problem of a value of the wrong kind: key, value and expected kind; `None` if the kind fits.
 pub(super) fn kind_problem(setting: &Setting, value: &Value) -> Option<String> {
     (!is_of_kind(setting.kind, value)).then(|| {
         let (key, wanted) = (setting.key, wanted(setting));

@@ -51,7 +51,7 @@ impl DecisionWorker {
     }
 
     /// Whether the next decision may take longer than a control step: a plan, a search for frontiers, a search for turns and straight
-    /// moves. A short decision that counts as long costs little.
+    /// moves. A short decision counted as long costs little.
     pub(crate) fn may_take_long(&self, s: &WorldState<'_>) -> bool {
         self.executor.may_take_long(s, self.navigator.state()) || self.navigator.may_take_long(s)
     }
@@ -61,7 +61,7 @@ impl DecisionWorker {
         self.navigator.fallback()
     }
 
-    /// State of the drive, and whether the mission is over; then the state is that of the whole mission.
+    /// State of the drive, and whether the mission is over; after its end, the state of the whole mission.
     pub(crate) fn state(&self) -> (DriveState, bool) {
         let finished = self.executor.is_idle() && !self.executor.records().is_empty();
         let state = match self.executor.failure() {

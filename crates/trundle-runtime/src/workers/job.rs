@@ -25,12 +25,12 @@ pub enum Worker {
 }
 
 impl Worker {
-    /// All of them.
+    /// All workers.
     pub const ALL: [Self; 2] = [Worker::Perception, Worker::Decision];
 }
 
-/// Work that takes longer than a control step has time. It bears all that it needs: run it where you like, then give the
-/// answer to [`crate::Robot::apply_answer`].
+/// Work that may take longer than a control step. The job contains all its inputs: run it on any thread, then give the answer to
+/// [`crate::Robot::apply_answer`].
 #[derive(Debug)]
 pub struct Job(pub(crate) Work);
 
@@ -51,9 +51,9 @@ pub struct Answer {
 pub(crate) enum Outcome {
     Perceived {
         perception: Box<PerceptionWorker>,
-        /// Of the image.
+        /// Stamp of the image.
         stamp: Stamp,
-        /// None: a frozen camera's; an error: no image.
+        /// `None` for a frozen camera; an error for an image that cannot be decoded.
         perceived: Result<Option<Box<PerceptionResult>>, String>,
     },
     Decided {

@@ -16,9 +16,9 @@ use trundle_mapping::DepthScanner;
 use trundle_slam::{MapFileError, RgbdSlam, TrackReport};
 use trundle_vision::Vocabulary;
 
-/// All that is done with an image alone: the camera's pose by SLAM, and the scan.
+/// All processing of an image alone: the camera's pose by SLAM, and the scan.
 ///
-/// Its results depend only on its images and odometry, in their order. It may therefore run beside the control loop.
+/// Its results depend only on its images and odometry, in their order. Therefore it may run in parallel with the control loop.
 #[derive(Debug)]
 pub(crate) struct PerceptionWorker {
     range_source: RangeSource,
@@ -37,7 +37,7 @@ pub(crate) struct PerceptionWorker {
 /// Result of an image.
 #[derive(Debug)]
 pub(crate) struct PerceptionResult {
-    /// When the image was taken.
+    /// Odometry at the stamp of the image.
     pub(crate) odom_from_base: Pose2,
     pub(crate) track: TrackReport,
     /// Scan of the image, with the depth camera as range source.
@@ -52,7 +52,7 @@ pub(crate) struct PerceptionResult {
 
 /// Correction of the visual map \[m, rad\] above which the grid is corrected. Source: ours.
 const GRID_CORRECTION_THRESHOLD: f64 = 0.02;
-/// Number of features of an image that suffices to locate it. Source: ours.
+/// Minimum number of features for locating an image. Source: ours.
 pub(crate) const MIN_FEATURES_TO_LOCATE: usize = 200;
 
 impl PerceptionWorker {
@@ -71,7 +71,7 @@ impl PerceptionWorker {
         })
     }
 
-    /// Goes on with saved visual maps; where in them the camera is it has to recognise.
+    /// Continues with saved visual maps; the pose of the camera in them is unknown until a place is recognised.
     pub(crate) fn load_maps(&mut self, config: &RobotConfig, visual: &[u8]) -> Result<(), MapFileError> {
         self.slam = RgbdSlam::load(visual, config.camera, config.slam.clone())?;
         Ok(())
@@ -86,7 +86,7 @@ impl PerceptionWorker {
         &self.slam
     }
 
-    /// Nearer than this its scans show nothing, m.
+    /// Minimum range of a usable scan, m.
     pub(crate) fn blind_range(&self) -> f64 {
         blind_range(self.range_source, &self.scanner)
     }
@@ -115,7 +115,7 @@ impl PerceptionWorker {
         Some(PerceptionResult { odom_from_base, track, scan, place, corrected_trajectory, visual_snapshot })
     }
 
-    /// Poses are wanted from now on of frames whose scans may still move.
+    /// Drops the poses of frames whose scans can no longer move.
     pub(crate) fn forget_frames(&mut self, scan_poses: &ScanPoseLog) {
         self.slam.forget_frames(|stamp| scan_poses.has(stamp));
     }
@@ -142,7 +142,7 @@ impl PerceptionWorker {
         is_sought.then(|| times.measure(Stage::Search, look)).flatten()
     }
 
-    /// It was carried away, as others have found out: where images show the place again, it may be anywhere.
+    /// Resets the tracker after another part has detected a displacement: a recognised place may then be at any pose.
     pub(crate) fn kidnapped(&mut self) {
         self.slam.kidnapped();
     }
@@ -154,7 +154,7 @@ impl PerceptionWorker {
     }
 }
 
-/// Nearer than this its scans show nothing, m.
+/// Minimum range of a usable scan, m.
 fn blind_range(sight: RangeSource, scanner: &DepthScanner) -> f64 {
     match sight {
         RangeSource::DepthCamera => scanner.blind_range(),
@@ -176,7 +176,7 @@ mod tests {
     use super::*;
     use trundle_core::{DepthImage, Image};
 
-    /// The report on a grey image, which shows nothing to locate it by.
+    /// The report on a grey image without usable features.
     fn blank() -> TrackReport {
         let config = RobotConfig::default();
         let (width, height) = (config.camera.width(), config.camera.height());

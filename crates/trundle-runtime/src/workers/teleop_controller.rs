@@ -7,8 +7,8 @@ use crate::world_state::WorldState;
 use trundle_control::{Limiter, SafetyMonitor};
 use trundle_core::{Footprint, Invalid, Stamp, Twist2};
 
-/// Drives by the twists of an operator: within the limits of the base, each twist checked by the safety monitor. Without a new twist for
-/// [`TELEOP_SILENCE_S`] the robot stops at once.
+/// Drives by the twists of an operator, within the limits of the base; the safety monitor checks each twist. Without a new twist for
+/// [`TELEOP_SILENCE_S`] the robot stops immediately.
 #[derive(Debug)]
 pub(crate) struct TeleopController {
     limiter: Limiter,
@@ -17,7 +17,7 @@ pub(crate) struct TeleopController {
     pub(crate) over_edge: bool,
     /// The operator's last twist, and when it came.
     wanted: Option<(Twist2, Stamp)>,
-    /// Of the last twist that left.
+    /// Stamp of the last sent twist.
     sent: Option<Stamp>,
 }
 

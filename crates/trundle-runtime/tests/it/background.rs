@@ -1,4 +1,4 @@
-//! The robot with its long work given out.
+//! The robot with its long work as jobs.
 
 use crate::robot::{Base, robot, wall};
 use trundle_core::{Pose2, SensorEvent, Stamp, Touch, Twist2, WheelTicks};
@@ -7,8 +7,8 @@ use trundle_runtime::{Answer, DriveState, Job, LazyImage, ReasonKind, Robot, Ste
 /// The goal of all these drives.
 const GOAL: Pose2 = Pose2 { x: 1.5, y: 0.0, theta: 0.0 };
 
-/// Feeds a robot that drives towards a wall at 50 Hz, images at 10 Hz until `until`; `work` says what becomes of its jobs
-/// after each feeding: the answers to be taken up now.
+/// Feeds a robot that drives towards a wall at 50 Hz, with images at 10 Hz until `until`. `work` receives the jobs of each step and returns
+/// the answers to apply now.
 fn live(
     robot: &mut Robot,
     seconds: f64,
@@ -61,7 +61,7 @@ fn with_background_jobs() -> Robot {
     robot(GOAL).with_background_jobs()
 }
 
-/// Jobs done so long after they were given, s, by worker.
+/// Jobs whose answers arrive after these delays, s, by worker.
 fn after(look: f64, think: f64) -> impl FnMut(Stamp, Vec<Job>) -> Vec<Answer> {
     let mut open: Vec<(Stamp, Job)> = Vec::new();
     move |now, jobs| {
@@ -107,7 +107,7 @@ fn answers_in_the_same_places_give_the_same_reports() {
 #[test]
 fn of_images_that_nobody_has_time_for_the_newest_is_kept() {
     let mut robot = with_background_jobs();
-    // Images at 0, 0.1, ... 0.9 s; that of 0 is looked at until 0.52 s, then that of 0.5 until 1.04 s.
+    // Images at 0, 0.1, ... 0.9 s: the first is processed until 0.52 s, then that of 0.5 s until 1.04 s.
     live(&mut robot, 1.0, 1.0, after(0.52, 0.0));
     let dropped: Vec<i64> = robot.dropped_images().iter().map(|stamp| stamp.nanos / 1_000_000).collect();
     assert_eq!(dropped, [100, 200, 300, 400, 600, 700, 800]);
@@ -123,7 +123,7 @@ fn a_perception_job_that_never_ends_stops_the_robot() {
         let mut answers = Vec::new();
         for job in jobs {
             looks += u32::from(job.worker() == Worker::Perception);
-            // From the 25th on nobody comes back.
+            // From the 25th job on, no perception job returns.
             if job.worker() == Worker::Perception && looks >= 25 {
                 lost.push(job)
             } else {
@@ -161,7 +161,7 @@ fn during_a_long_decision_job_the_robot_brakes_for_the_bumper() {
     robot.step(&SensorEvent::Touch(Touch { stamp, pressed: true }));
     let report = robot.step(&SensorEvent::Wheels(WheelTicks { stamp, left: 0, right: 0 }));
     assert_eq!(report.twist, Some(Twist2::ZERO));
-    // Back again, the captain has heard of the bumper; what was decided half a second ago is not sent any more.
+    // After the late answer the robot has the bumper contact; the decision from half a second earlier is not sent.
     let report = robot.apply_answer(lost.remove(0).run());
     assert_eq!(report.twist, None);
     let stamp = stamp.after(0.02);

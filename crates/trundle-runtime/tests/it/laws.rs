@@ -16,7 +16,7 @@ const STEP_S: f64 = 0.02;
 /// Largest change of the speed between two commands \[m/s\].
 const MAX_SPEED_CHANGE_M_S: f64 = DriveLimits::KOBUKI.acceleration * STEP_S + 1e-9;
 
-/// Drives from `from` to `to` s with images at 10 Hz; every job is done at once, but decisions from `away` s on.
+/// Drives from `from` to `to` s with images at 10 Hz; every job is done immediately, except decisions from `away` s on.
 fn drive(robot: &mut Robot, base: &mut Base, (from, to): (f64, f64), away: f64) -> Vec<StepReport> {
     let mut kept = Vec::new();
     let step = |i: i64| {

@@ -30,7 +30,7 @@ fn range(from: Vector2, angle: f64) -> f64 {
     walls().filter_map(hit).fold(f64::INFINITY, f64::min)
 }
 
-/// A sweep of a laser that looks all round.
+/// A sweep of a laser over a full turn.
 fn sweep(stamp: Stamp, pose: Pose2) -> SensorEvent {
     let step = 1_f64.to_radians();
     let beam = |k: i32| Beam::Hit { range: range(pose.position(), pose.theta + f64::from(k) * step) };

@@ -11,7 +11,7 @@ pub fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
     let camera = PinholeCamera::kinect_v2();
     let base_from_camera = RobotConfig::default().mount.base_from_camera();
     let (width, height) = (camera.width(), camera.height());
-    // No two images of a true camera are the same.
+    // No two images of a real camera are equal.
     let color = Image::filled(width, height, [90, (stamp.nanos / 20_000_000 % 100) as u8, 90]);
     let depth = DepthImage::from_fn(width, height, |x, y| {
         let ray = base_from_camera.rotate(camera.unproject(Vector2::new(x as f64, y as f64), 1.0));
@@ -23,7 +23,7 @@ pub fn wall(stamp: Stamp, distance: f64) -> SensorEvent {
     SensorEvent::Rgbd(RgbdImage::new(stamp, color, depth).unwrap())
 }
 
-/// A base that follows each command at once.
+/// A base that follows each command immediately.
 #[derive(Debug, Default)]
 pub struct Base {
     command: Twist2,
@@ -53,12 +53,12 @@ impl Base {
         self.command
     }
 
-    /// Its pose in truth, from its start.
+    /// The true pose, relative to the start.
     pub fn pose(&self) -> Pose2 {
         self.pose
     }
 
-    /// How far a wall is that was 3 m ahead, m.
+    /// Distance of a wall that was 3 m ahead at the start, m.
     pub fn to_wall(&self) -> f64 {
         3.0 - self.pose.x
     }
@@ -81,7 +81,7 @@ fn drive(robot: &mut Robot, base: &mut Base, (from, to): (f64, f64), until: f64)
     steps.map(step).collect()
 }
 
-/// Feeds a robot that stands still for `seconds`: wheels and gyro at 50 Hz, and at 10 Hz what `image` gives.
+/// Feeds a robot at rest for `seconds`: wheels and gyro at 50 Hz, and the result of `image` at 10 Hz.
 fn stand(robot: &mut Robot, seconds: f64, image: impl Fn(Stamp) -> Option<SensorEvent>) -> Vec<StepReport> {
     let mut reports = Vec::new();
     for i in 0..(seconds * 50.0) as i64 {

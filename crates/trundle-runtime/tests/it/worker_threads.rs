@@ -1,4 +1,4 @@
-//! The robot in threads: what they did, in the order in which it was taken up, gives the same reports again.
+//! The robot in threads: its results, applied in the same order, give the same reports again.
 
 use crate::robot::{robot, wall};
 use std::time::Duration;
@@ -26,7 +26,7 @@ fn events(seconds: i64) -> Vec<SensorEvent> {
     (0..seconds * 50).flat_map(at).collect()
 }
 
-/// Feeds `robot` as fast as it can be, its work in threads; what it was fed, and what it commanded.
+/// Feeds `robot` at full speed, with its work in threads; returns the inputs and the commands.
 fn live(robot: &mut Robot) -> (Vec<Fed>, Vec<Twist2>) {
     let mut inbox: Inbox<SensorEvent> = Inbox::new(100_000);
     let sender = inbox.sender();
@@ -64,7 +64,7 @@ fn live(robot: &mut Robot) -> (Vec<Fed>, Vec<Twist2>) {
     (fed, twists)
 }
 
-/// Feeds `robot` the same again, its work done where it was taken up.
+/// Feeds the same inputs to `robot` again, with each job run at the place of its answer.
 fn again(robot: &mut Robot, fed: Vec<Fed>) -> Vec<Twist2> {
     let (mut twists, mut jobs) = (Vec::new(), Vec::<Job>::new());
     for fed in fed {

@@ -14,7 +14,7 @@ const LEAST_COSINE: f32 = 1e-3;
 /// All surfaces in one image.
 pub(super) struct Picture<'a> {
     pub(super) camera: &'a PinholeCamera,
-    /// The fixed world, then the moving ones.
+    /// The static world, then the moving ones.
     pub(super) views: &'a [WorldView<'a>],
     pub(super) lamps: &'a Lamps,
 }
@@ -31,7 +31,7 @@ impl Picture<'_> {
     pub(super) fn draw(&self, top: usize, band: &mut Band) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has the one feature that the function is compiled for.
+            // SAFETY: the processor has the only feature that the function is compiled for.
             return unsafe { self.draw_by_avx2(top, band) };
         }
         self.draw_plainly(top, band);
@@ -67,7 +67,7 @@ impl Picture<'_> {
         }
     }
 
-    /// Fills in the row of a tile; `still` are the rays among what stands still.
+    /// Computes the colours of a tile's row; `still` are the rays in the static world.
     #[inline(always)]
     fn shade(&self, tile: &Tile, still: &Rays, (left, top): (usize, usize), row: usize, line: &mut Band) {
         let (inverse_depth, ids) = (&tile.inverse_depth[row], &tile.ids[row]);

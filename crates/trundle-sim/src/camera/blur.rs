@@ -5,16 +5,16 @@ use super::srgb::{linear_from_srgb, srgb};
 use std::sync::LazyLock;
 use trundle_core::Invalid;
 
-/// Steps of linear light between black and white when it is turned back into levels: less than half a level each.
+/// Steps of linear light between black and white in the conversion to levels: less than half a level each.
 const LINEAR_STEPS: usize = 1 << 13;
 
-/// Image of a camera that moves while its shutter is open: the mean of `views` in linear light.
+/// Image of a camera that moves during the exposure: the mean of `views` in linear light.
 ///
-/// The views are at evenly spaced moments of the exposure. Depth and cosine are those of the middle one (the depth camera
-/// has a shutter of its own). Cost: a table look-up a channel and view. `out` is overwritten.
+/// The views are at equally spaced times of the exposure. Depth and cosine are those of the middle view (the depth camera has a separate
+/// shutter). Cost: one table look-up per channel and view. `out` is overwritten.
 ///
 /// # Errors
-/// When there is no view or they differ in size.
+/// When no view is given or the views differ in size.
 pub fn blend(views: &[View], out: &mut View) -> Result<(), Invalid> {
     static LEVELS: LazyLock<Vec<u8>> = LazyLock::new(|| {
         (0..=LINEAR_STEPS).map(|i| (srgb(i as f64 / LINEAR_STEPS as f64) + 0.5) as u8).collect()

@@ -4,11 +4,11 @@ use super::exposure::Exposure;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
-/// How a camera's colour differs from the ideal one: exposure, then photon noise and read noise \[Emva16\].
+/// Difference of a camera's colour from the ideal one: exposure, then photon noise and read noise \[Emva16\].
 ///
-/// Light collects mu electrons in a pixel, sigma^2 = mu + read noise^2 of them by chance; a well that is full clips. Gain
-/// above 1 amplifies electrons and noise alike, below 1 the exposure is shorter. What is read is coded as sRGB, so noise in
-/// grey levels is largest in the dark. Channels and pixels are independent.
+/// Light collects mu electrons in a pixel, with a variance sigma^2 = mu + read noise^2; a full well clips. A gain above 1 amplifies
+/// electrons and noise equally; below 1 the exposure is shorter. The value is coded as sRGB, so noise in grey levels is largest in the
+/// dark. Channels and pixels are independent.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ColorNoise {
@@ -28,7 +28,7 @@ impl Default for ColorNoise {
 }
 
 impl ColorNoise {
-    /// No noise, and the exposure that the scene's colours are meant for.
+    /// No noise, and an exposure gain of 1.
     pub fn none() -> Self {
         Self { full_well: 0.0, read_noise: 0.0, exposure: Exposure::fixed(1.0) }
     }
@@ -43,7 +43,7 @@ impl ColorNoise {
         Ok(Self { exposure: self.exposure.validated()?, ..self })
     }
 
-    /// The standard deviation of a channel in linear light (white = 1) when `light` (linear, white = 1) falls on it.
+    /// The standard deviation of a channel in linear light for incoming `light` (both linear, white = 1).
     pub fn sigma(&self, light: f64, gain: f64) -> f64 {
         if self.full_well == 0.0 {
             return 0.0;

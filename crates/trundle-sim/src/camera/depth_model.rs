@@ -11,9 +11,9 @@ const TABLE_STEPS: usize = 1024;
 /// Inputs of a pixel's depth measurement.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct DepthTruth {
-    /// Depth, m; 0 where nothing is.
+    /// Depth, m; 0 without a surface.
     pub(super) depth: f32,
-    /// Depth beyond the edge the pixel lies at, m; 0 when it lies at none.
+    /// Depth on the other side of the pixel's edge, m; 0 without an edge.
     pub(super) beyond: f32,
     /// Cosine of the angle of incidence.
     pub(super) cosine: f32,
@@ -58,7 +58,7 @@ impl DepthModel {
         let depth = |i: usize| {
             let z = i.max(1) as f64 / steps_a_metre;
             let sigma = noise.axial_factor * noise.sigma_head_on(z);
-            // The published sigma was measured with the steps of disparity in it.
+            // The published sigma includes the steps of disparity.
             let steps = noise.inverse_quantum * z * z;
             let rest = (sigma * sigma - steps * steps / 12.0).max(0.0).sqrt();
             (rest as f32, z.powf(noise.slant_power) as f32)

@@ -7,13 +7,13 @@ use trundle_core::{Invalid, require_in, require_positive};
 /// How a camera's depth differs from the truth. Presets: [`DepthNoise::kinect_v2`], the default, and
 /// [`DepthNoise::kinect_v1`].
 ///
-/// Axial noise is normal with sigma = a0 + a1 z + a2 z^2 + s z^p theta^2 / (pi/2 - theta)^2 (mm, z in m, theta the angle
-/// between ray and normal): both published models have this form. Pixels at depth edges mix both surfaces ("flying
-/// pixels"), jump to the other one, or are lost. Dark, slanted and far surfaces return too little light: the return is
-/// taken as luminance cos(theta) / z^2, the luminance of the colour image standing for the unknown infrared albedo.
+/// Axial noise is normal with sigma = a0 + a1 z + a2 z^2 + s z^p theta^2 / (pi/2 - theta)^2 (mm, z in m, theta the angle between ray and
+/// normal): both published models have this form. Pixels at depth edges mix both surfaces ("flying pixels"), take the depth of the other
+/// one, or are lost. Dark, slanted and distant surfaces return too little light. The return is modelled as luminance cos(theta) / z^2; the
+/// luminance of the colour image replaces the unknown infrared albedo.
 ///
-/// The shares at edges and the two thresholds of light are ours: the papers show the effects but give no such numbers.
-/// Not modelled: warm-up, wiggling, offset by colour (millimetres, \[Wasenmueller16\]), rolling exposure.
+/// The shares at edges and the two thresholds of light are ours: the papers show the effects without such numbers. Not modelled: warm-up,
+/// wiggling, offset by colour (millimetres, \[Wasenmueller16\]), rolling exposure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DepthNoise {
@@ -45,8 +45,8 @@ pub struct DepthNoise {
     pub flying: f64,
     /// Probability that a pixel at an edge is lost (the driver's edge-aware filter), 0 to 1. Default 0.4.
     pub edge_loss: f64,
-    /// Standard deviation of the place of an edge across the image, px, 0 to 2: pixels at it jump to the other side.
-    /// Kinect v1: 0.8 \[Nguyen12\]; Kinect V2: 0.
+    /// Standard deviation of an edge's position in the image, px, 0 to 2: pixels near the edge may have the depth of the other side. Kinect
+    /// v1: 0.8 \[Nguyen12\]; Kinect V2: 0.
     pub lateral_px: f64,
     /// Strength of multi-path in concave corners, 0 to 2: share of the corner's sagitta over 24 px that the depth there is
     /// too long by (see `docs/algorithms/simulator.md`). Default 0, off.
@@ -93,9 +93,9 @@ impl DepthNoise {
         }
     }
 
-    /// The Kinect v1, structured light \[Nguyen12\]: sigma = 1.2 + 1.9 (z - 0.4)^2 mm, and beyond 60 deg of incidence
-    /// 0.1 z^-0.5 theta^2 / (pi/2 - theta)^2 mm more; edges uncertain by 0.8 px. Disparity in eighths of a pixel, 7 cm at 5 m,
-    /// the end of its range \[Khoshelham12\]; behind edges the projector's shadow.
+    /// The Kinect v1, structured light \[Nguyen12\]: sigma = 1.2 + 1.9 (z - 0.4)^2 mm, and beyond 60 deg of incidence 0.1 z^-0.5 theta^2 /
+    /// (pi/2 - theta)^2 mm more; edges uncertain by 0.8 px. Disparity is in eighths of a pixel, 7 cm at 5 m, the end of the range
+    /// \[Khoshelham12\]; edges have the projector's shadow.
     pub fn kinect_v1() -> Self {
         Self {
             farthest: 5.0,

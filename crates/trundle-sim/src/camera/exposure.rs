@@ -8,11 +8,11 @@ use trundle_core::{Invalid, Stamp, require_in};
 /// Columns and rows between the pixels that auto exposure uses.
 const METERING_STRIDE_PX: usize = 7;
 
-/// How bright images become: a gain on linear light, fixed or following the scene.
+/// Brightness of images: a gain on linear light, fixed or automatic.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Exposure {
-    /// Whether the gain follows the scene. Default true, as in the cameras of both Kinects.
+    /// Whether the gain adapts to the scene. Default true, as in the cameras of both Kinects.
     pub auto: bool,
     /// The gain while it is fixed, 0.01 to 100. Default 1: the colours that the scene's lights make.
     pub gain: f64,
@@ -56,7 +56,7 @@ impl Exposure {
     }
 }
 
-/// The gain as it follows the scene.
+/// The automatic gain.
 #[derive(Debug, Clone)]
 pub(super) struct Meter {
     exposure: Exposure,
@@ -73,7 +73,7 @@ impl Meter {
         self.gain
     }
 
-    /// Adapts to the view at `stamp`; the first call sets the gain at once.
+    /// Adapts to the view at `stamp`; the first call sets the gain without delay.
     pub(super) fn look(&mut self, view: &View, stamp: Stamp) {
         if !self.exposure.auto {
             return;
@@ -113,7 +113,7 @@ mod tests {
         let bright = f64::from(linear_from_srgb(200));
         meter.look(&grey(200), Stamp::default());
         assert!((meter.gain() - 0.18 / bright).abs() < 1e-6);
-        // The light goes out; after one time constant 63 % of the stops are made up.
+        // The light goes out; after one time constant 63 % of the difference in stops is compensated.
         meter.look(&grey(20), Stamp::from_nanos(300_000_000));
         let (from, to) = ((0.18 / bright).ln(), 8_f64.ln());
         assert!((meter.gain().ln() - (to + (from - to) * (-1.0_f64).exp())).abs() < 1e-6);

@@ -3,7 +3,7 @@
 use super::patch::Patch;
 use super::tile::{Row, TILE_COLUMNS};
 
-/// Ratio of length to width of a pixel's footprint above which two samples are taken along it.
+/// Ratio of length to width of a pixel's footprint above which two samples along its length are used.
 const MAX_ANISOTROPY: f32 = 2.0;
 
 /// Footprints of the pixels of a row on a patch.
@@ -23,8 +23,8 @@ pub(super) struct Footprints {
 impl Footprints {
     /// `steps` are the sizes of a pixel at 1 m, `length` the lengths of the rays.
     ///
-    /// A pixel covers a parallelogram of the texture, spanned by what a step right and a step down change; its long and its
-    /// short side are the singular values of that matrix (Heckbert 1989, "Fundamentals of texture mapping").
+    /// A pixel covers a parallelogram of the texture, spanned by the changes for one step right and one step down. Its long and short side
+    /// are the singular values of that matrix (Heckbert 1989, "Fundamentals of texture mapping").
     #[inline(always)]
     pub(super) fn new(patch: &Patch, inverse_depth: &Row<f32>, row: usize, length: &Row<f32>) -> Self {
         let mut all = Self {

@@ -3,11 +3,11 @@
 use super::rays::{Linear, Rays};
 use super::tile::{ROWS, TILE_COLUMNS, Tile, larger, mask, smaller};
 
-/// Keeps the faces of a box where they are nearest; `origin` is the camera's centre in the box's frame, `rays` are in the frame
-/// in which `axes` are the box's. Of the id the last two bits become the axis of the face.
+/// Records the faces of a box where they are nearest. `origin` is the camera's centre in the box's frame; `rays` are in the frame in which
+/// `axes` are the box's. The last two bits of the id become the axis of the face.
 ///
-/// Slabs (Kay and Kajiya 1986) in inverse depth: on the plane of each face it is an affine function of the pixel. The box is
-/// entered through the last of the planes that face the camera, the least inverse depth, if that is before the first of the others.
+/// Slabs (Kay and Kajiya 1986) in inverse depth: on the plane of each face it is an affine function of the pixel. A ray enters the box
+/// through the last of the planes that face the camera, the smallest inverse depth, if that is before the first of the others.
 #[inline(always)]
 pub(super) fn meet_cuboid(
     rays: &Rays,
@@ -41,7 +41,7 @@ pub(super) fn meet_cuboid(
         for i in 0..TILE_COLUMNS {
             let entry = smaller(smaller(x[i], y[i]), z[i]);
             let exit = larger(larger(larger(f0[i], f1[i]), larger(f2[i], f3[i])), larger(f4[i], f5[i]));
-            // Of equal axes the first. From inside there is no entry: infinite.
+            // For equal values, the first axis is used. From inside the box, the entry is infinite.
             ids[i] = id + (mask(x[i] > entry) & (1 + (mask(y[i] > entry) & 1)));
             is_met[i] = mask(entry >= exit) & mask(entry < f32::INFINITY);
             entries[i] = entry;

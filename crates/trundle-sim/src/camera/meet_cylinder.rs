@@ -7,11 +7,11 @@ use super::tile::{ROWS, TILE_COLUMNS, Tile, larger, mask};
 pub(super) const SIDE_PART: u32 = 0;
 pub(super) const LID_PART: u32 = 1;
 
-/// Keeps the side and the lids of an upright cylinder where they are nearest; `o` is the camera's centre from the middle of
-/// the lower disc.
+/// Records the side and the lids of an upright cylinder where they are nearest; `o` is the camera's centre relative to the middle of the
+/// lower disc.
 ///
-/// With w = 1 / depth the ray is at (o w + d) / w. The side is where its plan has the length of the radius; the discriminant
-/// comes from the plan's distance to the axis, a cross product, so that nothing cancels.
+/// With w = 1 / depth the ray is at (o w + d) / w. At the side, the horizontal part has the length of the radius. The discriminant uses the
+/// horizontal distance of the ray to the axis, a cross product, which avoids cancellation.
 #[inline(always)]
 pub(super) fn meet_cylinder(
     rays: &Rays,
@@ -24,7 +24,7 @@ pub(super) fn meet_cylinder(
     let inverse = if outside > 0.0 { (1.0 / outside.max(1e-12)) as f32 } else { 0.0 };
     let (x, y, z) = (o[0] as f32, o[1] as f32, o[2] as f32);
     let (radius, height) = (radius as f32, height as f32);
-    // From between its lids neither is seen.
+    // From a height between the lids neither lid is visible.
     let lid_factor = match z {
         z if z > height => 1.0 / (height - z),
         z if z < 0.0 => 1.0 / -z,

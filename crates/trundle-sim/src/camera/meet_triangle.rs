@@ -6,13 +6,13 @@ use super::rays::{Linear, Rays};
 use super::tile::{ROWS, TILE_COLUMNS, Tile, mask, smaller};
 use crate::world::{BLOCK, Block};
 
-/// Keeps the triangles of a block where they are nearest; `apex` is the camera's centre in their frame, ids are `id` and the following
-/// numbers. `floor` is the least inverse depth in the tile. Whether any pixel may have changed.
+/// Records the triangles of a block where they are nearest. `apex` is the camera's centre in their frame, ids are `id` and the following
+/// numbers. `floor` is the smallest inverse depth in the tile. Returns whether any pixel may have changed.
 ///
-/// Triangle scan conversion in homogeneous coordinates (Olano and Greer 1997): with corners a, b, c seen from the camera, the ray
-/// d is on the inner side of edge ab where d . (a x b) has the sign of the volume a . (b x c), and the inverse depth is d . n / volume,
-/// n = a x b + b x c + c x a. All are affine functions of the pixel; nothing is divided or clipped. The triangles at an edge have
-/// exactly opposite functions of it: no pixel between them is lost.
+/// Triangle scan conversion in homogeneous coordinates (Olano and Greer 1997), with corners a, b, c relative to the camera. The ray d is on
+/// the inner side of edge ab if d . (a x b) has the sign of the volume a . (b x c). The inverse depth is d . n / volume, where
+/// n = a x b + b x c + c x a. All are affine functions of the pixel, without division or clipping. The two triangles at an edge have exactly opposite
+/// functions of the edge: no pixel between them is lost.
 #[inline(always)]
 pub(super) fn meet_block(
     rays: &Rays,
@@ -78,10 +78,10 @@ impl Functions {
     }
 }
 
-/// Of each triangle the three edges' functions, positive inside, and the inverse depth.
+/// For each triangle the functions of its three edges, positive inside, and the inverse depth.
 struct Setups {
     functions: [Functions; 4],
-    /// All bits set where a triangle may be seen in the tile.
+    /// All bits set if the triangle may be visible in the tile.
     is_seen: [u32; BLOCK],
 }
 

@@ -2,7 +2,7 @@
 
 use super::View;
 
-/// How far, px, the light of a neighbouring wall reaches.
+/// Range of the light from a neighbouring wall, px.
 const REACH_PX: usize = 24;
 
 /// Neighbours whose depth differs by more than this share belong to another surface.
@@ -11,7 +11,7 @@ const OTHER_SURFACE: f32 = 0.2;
 /// The depths of row `y` with multi-path: in concave corners the light that travels over the other wall makes
 /// the measured distance longer.
 ///
-/// The corner's sagitta over [`REACH_PX`] px to either side, times `strength`, is added; planes and convex edges stay. The shape
+/// Adds the corner's sagitta over [`REACH_PX`] px on either side, times `strength`; planes and convex edges do not change. The shape
 /// (rounded corners, centimetres deep) is that of measured corners \[Sarbolandi15, Wasenmueller16\]; the model is ours.
 pub(super) fn lengthen(view: &View, y: usize, strength: f32, out: &mut Vec<f32>) {
     let at = |x: usize, y: usize| view.depth[y * view.width + x];
@@ -29,7 +29,7 @@ pub(super) fn lengthen(view: &View, y: usize, strength: f32, out: &mut Vec<f32>)
     }));
 }
 
-/// How much deeper the middle lies than the plane through both sides (on which inverse depth is affine), m.
+/// Depth of the middle relative to the plane through both sides (in which inverse depth is affine), m.
 fn concave(before: f32, z: f32, after: f32) -> f32 {
     let is_other = |side: f32| (side - z).abs() > OTHER_SURFACE * z;
     if z <= 0.0 || is_other(before) || is_other(after) {

@@ -13,7 +13,7 @@ pub(super) struct Patch<'w> {
     /// The texture coordinates that the camera's centre would have, texels.
     pub(super) start: [f32; 2],
     pub(super) texture: &'w Texture,
-    /// Of 256.
+    /// Light in units of 1/256.
     pub(super) light: u32,
 }
 
@@ -24,7 +24,7 @@ pub(super) struct Plane {
     /// Growth of (u, v) per metre.
     pub(super) across: [f32; 3],
     pub(super) down: [f32; 3],
-    /// (u, v) of the camera's centre: where along the two its foot point would be.
+    /// (u, v) of the camera's centre: texture coordinates of its foot point.
     pub(super) start: [f32; 2],
 }
 

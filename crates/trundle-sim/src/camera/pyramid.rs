@@ -6,7 +6,7 @@ use super::rays::{Rays, cross};
 use super::tile::{ROWS, TILE_COLUMNS};
 use crate::world::{Node, Probe, WIDTH};
 
-/// How far a pyramid reaches beyond the centres of its outer pixels, px: more than any rounding.
+/// Margin of a pyramid outside the centres of its outer pixels, px: larger than any rounding error.
 const OUTER_MARGIN_PX: f32 = 0.02;
 
 /// Relative slack of places against the camera's.
@@ -16,7 +16,7 @@ const RELATIVE_ROUNDING: f32 = 8.0 / (1 << 23) as f32;
 pub(super) struct Pyramid {
     apex: [f32; 3],
     axis: [f32; 3],
-    /// Inward normals of its sides and how far outside a box may be.
+    /// Inward normals of the sides, and the allowed distance of a box outside.
     sides: [([f32; 3], f32); 4],
     slack: f32,
 }

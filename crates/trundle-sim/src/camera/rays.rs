@@ -4,8 +4,7 @@
 
 use super::tile::{ROWS, Row, TILE_COLUMNS};
 
-/// The rays through the pixels of a tile in some frame: start + column * right + row * down. Their part along the optical
-/// axis is 1.
+/// The rays through the pixels of a tile in some frame: start + column * right + row * down. Their component along the optical axis is 1.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rays {
     pub(super) start: [f32; 3],

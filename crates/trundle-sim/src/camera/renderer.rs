@@ -8,26 +8,25 @@ use crate::world::SceneSnapshot;
 use rayon::prelude::*;
 use trundle_core::{Distortion, Invalid, PinholeCamera, Pose2, Pose3};
 
-/// An ideal RGB-D image: what a camera without noise would see.
+/// An ideal RGB-D image: that of a camera without noise.
 #[derive(Debug, Clone, PartialEq)]
 pub struct View {
     /// Columns.
     pub width: usize,
     /// Rows.
     pub height: usize,
-    /// Depth along the optical axis, m, row by row; 0 where nothing is.
+    /// Depth along the optical axis, m, row by row; 0 without a surface.
     pub depth: Vec<f32>,
     /// sRGB, row by row.
     pub color: Vec<[u8; 3]>,
-    /// Cosine of the angle between ray and surface normal, row by row; 0 where nothing is.
+    /// Cosine of the angle between ray and surface normal, row by row; 0 without a surface.
     pub cosine: Vec<f32>,
 }
 
 /// Draws a [`SceneSnapshot`] in a rectified pinhole camera: exact perspective depth, filtered textures, Lambert's law.
 ///
-/// The image is cut into tiles of 16 x 8 pixels. For each, the hierarchies are walked with the tile's pyramid, the nearest
-/// boxes first, until every pixel has a surface nearer than the next box. The pixels do not depend on the number
-/// of threads.
+/// The image is cut into tiles of 16 x 8 pixels. For each tile, the hierarchies are searched with the tile's pyramid, nearest boxes first,
+/// until every pixel has a surface nearer than the next box. The pixels do not depend on the number of threads.
 #[derive(Debug, Clone)]
 pub struct Renderer {
     camera: PinholeCamera,

@@ -3,8 +3,8 @@
 /// 2^23: f32 has no digits behind the point from here on.
 const FIRST_WHOLE_F32: f32 = 8_388_608.0;
 
-/// The whole number nearest to `x`, 0 to 2^22 (a tie goes to the even one): an addition, where a conversion costs seven
-/// instructions for numbers that do not occur here.
+/// The whole number nearest to `x`, 0 to 2^22 (ties to even), by an addition. A conversion would cost seven instructions for numbers
+/// outside this range.
 pub(super) fn nearest(x: f32) -> u32 {
     (x + FIRST_WHOLE_F32).to_bits() & 0x7F_FFFF
 }

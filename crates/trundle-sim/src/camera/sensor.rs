@@ -8,8 +8,7 @@ use crate::rng::{GOLDEN_RATIO_STEP, NormalTable, hash, mix};
 use rayon::prelude::*;
 use trundle_core::{ColorImage, DepthImage, Invalid, RgbdImage, Stamp};
 
-/// Turns ideal images into what the camera delivers. Noise is a hash of (seed, frame, pixel): the same on any number of
-/// threads.
+/// Converts ideal images to the camera's output. Noise is a hash of (seed, frame, pixel): the same on any number of threads.
 #[derive(Debug, Clone)]
 pub struct RgbdSensor {
     depth: DepthModel,
@@ -114,14 +113,13 @@ fn luminance([r, g, b]: [u8; 3]) -> f32 {
     (i32::from(r) * 306 + i32::from(g) * 601 + i32::from(b) * 117) as f32 * (1.0 / (255.0 * 1024.0))
 }
 
-/// Stands for the depth of "nothing there", m.
+/// Depth of a pixel without a surface, m.
 const NO_SURFACE_DEPTH_M: f32 = 1e6;
 
-/// For every pixel of row `y` the depth on the other side of the edge it lies at, m; 0 if there is no edge of at
-/// least `step` m.
+/// For every pixel of row `y` the depth on the other side of its edge, m; 0 without an edge of at least `step` m.
 ///
-/// Inverse depth is an affine function of the pixel on any plane, so its second difference vanishes there, however steep
-/// the plane; what is left is the step.
+/// Inverse depth is an affine function of the pixel on any plane, so its second difference is zero there for any slope; the remainder is
+/// the step.
 fn find_edges(view: &View, y: usize, step: f32, beyond: &mut [f32]) {
     let row = |y: usize| &view.depth[y * view.width..(y + 1) * view.width];
     let here = row(y);
@@ -137,8 +135,7 @@ fn find_edges(view: &View, y: usize, step: f32, beyond: &mut [f32]) {
     }
 }
 
-/// Which of a pixel's two neighbours lies beyond an edge, its depth; 0 when neither does. No branch, no division: a
-/// row of them is SIMD.
+/// Depth of the neighbour on the other side of an edge; 0 if neither is. Without branch and division: a row of pixels is SIMD.
 fn step_to(before: f32, z: f32, after: f32, step: f32) -> f32 {
     let a = if before > 0.0 { before } else { NO_SURFACE_DEPTH_M };
     let b = if after > 0.0 { after } else { NO_SURFACE_DEPTH_M };

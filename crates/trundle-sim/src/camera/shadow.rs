@@ -1,10 +1,10 @@
 //! Depth shadows: pixels that the projector does not light.
 
-/// Takes away the depths of a row that a projector to the right of the camera does not light; `px_m` is focal length times
-/// their distance, px m (negative: to the left).
+/// Removes the depths of a row that are in the shadow of a projector to the right of the camera. `px_m` is focal length times their
+/// distance, px m (negative: to the left).
 ///
-/// Seen from the projector, column u at depth z lies at u - px_m / z; a surface is lit when nothing to its right (in the
-/// camera's image) lies further left there.
+/// In the projector's view, column u at depth z is at u - px_m / z. A surface is lit if no surface to its right (in the camera's image) is
+/// farther left in the projector's view.
 pub(super) fn cast_shadow(truth: &[f32], px_m: f32, said: &mut [f32]) {
     let mut nearest = f32::INFINITY;
     let mut look = |column: usize, said: &mut f32| {

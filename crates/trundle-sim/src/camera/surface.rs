@@ -67,8 +67,8 @@ impl<'w> WorldView<'w> {
     }
 }
 
-/// Which face of a box is seen along an axis, and how it is painted: seen from outside with z up, u runs to the right and v
-/// down; on the lids u is x, and v runs against y on top.
+/// The visible face of a box along an axis, and the orientation of its texture. From outside with z up, u is to the right and v down; on
+/// the lids u is x, and v is opposite to y on the top.
 #[inline(always)]
 fn face_of_cuboid(form: &Form, apex: [f64; 3], half: [f64; 3], axis: usize) -> (usize, Plane) {
     let (own, half) = (single(form.own(apex)), single(half));

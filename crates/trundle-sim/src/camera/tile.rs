@@ -7,7 +7,7 @@ pub(super) const TILE_COLUMNS: usize = 16;
 /// Rows of a tile.
 pub(super) const ROWS: usize = 8;
 
-/// "Nothing" among the ids of a [`Tile`].
+/// Id for "no surface" in a [`Tile`].
 pub(super) const NO_SURFACE_ID: u32 = u32::MAX;
 
 /// A row of numbers, one per pixel: plain loops over it become SIMD.
@@ -24,7 +24,7 @@ pub(super) struct Tile {
 }
 
 impl Tile {
-    /// Nothing seen yet. Pixels beyond `columns` and `rows` are not in the image: nothing will be nearer there.
+    /// A tile without any surface. Pixels outside `columns` and `rows` are not in the image and never get a surface.
     #[inline(always)]
     pub(super) fn empty(columns: usize, rows: usize) -> Self {
         let mut tile =
@@ -48,7 +48,7 @@ impl Tile {
                 least[i] = if w < least[i] { w } else { least[i] };
             }
         }
-        // Halves, so that this is SIMD too.
+        // Halves, which makes this SIMD too.
         let mut width = TILE_COLUMNS / 2;
         while width > 0 {
             for i in 0..width {
@@ -59,13 +59,13 @@ impl Tile {
         1.0 / least[0]
     }
 
-    /// Keeps in a row what is nearer than what is known: where `is_met` has all bits set.
+    /// Records the nearer surfaces of a row, for pixels with all bits of `is_met` set.
     #[inline(always)]
     pub(super) fn keep(&mut self, row: usize, inverse_depth: &Row<f32>, is_met: &Row<u32>, id: &Row<u32>) {
         let (known, ids) = (&mut self.inverse_depth[row], &mut self.ids[row]);
         for i in 0..TILE_COLUMNS {
             let nearer = f32::from_bits(inverse_depth[i].to_bits() & is_met[i]);
-            // Written so that it becomes a plain store: masked ones are slow.
+            // Compiles to a plain store: masked stores are slow.
             ids[i] ^= (ids[i] ^ id[i]) & mask(nearer > known[i]);
             known[i] = larger(nearer, known[i]);
         }

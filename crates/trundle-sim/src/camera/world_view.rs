@@ -10,10 +10,9 @@ use crate::materials::{Paintings, Texture};
 use crate::world::{Kind, World};
 use trundle_core::{PinholeCamera, Pose2, Pose3, Vector3};
 
-/// A world in one image of the camera: everything in the frame of that world.
+/// A world in one image of the camera: all geometry in the frame of that world.
 ///
-/// Surfaces are numbered: from `first_id` on, four a solid (the axis of a box's face, or a part of a cylinder), then one a
-/// triangle.
+/// Surfaces are numbered from `first_id` on: four per solid (the axis of a box's face, or a part of a cylinder), then one per triangle.
 pub(super) struct WorldView<'w> {
     pub(super) world: &'w World,
     pub(super) paintings: &'w Paintings,
@@ -32,7 +31,7 @@ pub(super) struct WorldView<'w> {
 }
 
 impl<'w> WorldView<'w> {
-    /// The view of a world that stands at `pose` in the scene.
+    /// The view of a world at `pose` in the scene.
     pub(super) fn new(
         world: &'w World,
         pose: Pose2,
@@ -56,7 +55,7 @@ impl<'w> WorldView<'w> {
         }
     }
 
-    /// One past the last surface id.
+    /// The last surface id plus one.
     pub(super) fn end_id(&self) -> u32 {
         self.first_id + 4 * self.world.solids().len() as u32 + self.world.triangles().len() as u32
     }

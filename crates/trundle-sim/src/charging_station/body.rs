@@ -5,7 +5,7 @@ use crate::solid::Solid;
 use crate::world::{Cuboid, Shape};
 use trundle_core::{Pose2, Vector2, Vector3};
 
-/// Depth, width and height of the box \[m\]: low enough for a camera above it, higher than what the base rolls over. Source: ours.
+/// Depth, width and height of the box \[m\]: low enough for a camera above it, higher than the base's step height. Source: ours.
 const BOX_SIZE_M: [f64; 3] = [0.08, 0.24, 0.1];
 /// Colour of the box. Source: ours.
 const BOX_COLOR: [u8; 3] = [58, 58, 64];

@@ -1,4 +1,4 @@
-//! The charging contacts: whether a robot that stands here touches the plates.
+//! The charging contacts: whether the robot touches the plates at a pose.
 
 use super::config::StationConfig;
 use std::f64::consts::PI;

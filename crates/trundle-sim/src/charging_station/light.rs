@@ -9,7 +9,7 @@ const LIGHT_HEIGHT_M: f64 = 0.06;
 /// Distance of the emitters from the front of the box \[m\]: a ray starts outside the box. Source: ours.
 const EMITTER_OFFSET_M: f64 = 1e-3;
 
-/// A receiver on the robot: where it sits and where it looks, `base_from_receiver`, x along its axis.
+/// Pose of a receiver on the robot, `base_from_receiver`, x along its axis.
 pub(super) fn receivers(config: &StationConfig) -> [Pose2; 3] {
     let bearing = config.receiver_bearing_deg.to_radians();
     [bearing, 0.0, -bearing].map(|bearing| {
@@ -18,7 +18,7 @@ pub(super) fn receivers(config: &StationConfig) -> [Pose2; 3] {
     })
 }
 
-/// Light at a receiver whose pose is `station_from_receiver`; every edge is moved by `edge_error` rad. Nothing is in between.
+/// Light at a receiver with pose `station_from_receiver`; every edge is shifted by `edge_error` rad. Occlusion is not considered.
 pub(super) fn beams(config: &StationConfig, receiver: Pose2, edge_error: f64) -> DockBeams {
     let (range, bearing) = (receiver.position().norm(), receiver.y.atan2(receiver.x));
     let to_station = (-receiver.y).atan2(-receiver.x);
@@ -50,7 +50,7 @@ fn sectors(config: &StationConfig, bearing: f64) -> [bool; 3] {
     ]
 }
 
-/// Whether nothing stands between the station and a receiver (world frame, m).
+/// Whether the line between the station and a receiver is free (world frame, m).
 pub(super) fn is_in_sight(snapshot: &SceneSnapshot<'_>, station: Pose2, receiver: Vector2) -> bool {
     let from = station.transform(Vector2::new(EMITTER_OFFSET_M, 0.0));
     let way = receiver - from;
@@ -92,8 +92,8 @@ mod tests {
         assert!(at(12.0).far_left && !at(12.0).far_center);
     }
 
-    /// The vendor's dock drive: a robot in the left sector that has turned counter-clockwise until its right receiver sees the station
-    /// comes to the middle when it drives ahead.
+    /// The vendor's dock drive: a robot in the left sector turns counter-clockwise until its right receiver detects the station. Straight
+    /// ahead it then reaches the middle.
     #[test]
     fn the_left_sector_is_where_the_vendors_drive_expects_it() {
         let config = StationConfig::default().without_noise();

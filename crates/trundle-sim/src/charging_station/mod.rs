@@ -1,9 +1,9 @@
 //! A charging station: its box, its infrared light, and its contacts.
 //!
-//! Frame `station`: on the floor at the middle of the box's front, x out of the front, so that a docked robot faces -x.
-//! The light is the one that the Kobuki's documentation describes ("Docking Stations", kobuki.readthedocs.io): three emitters send a
-//! left, a middle and a right sector, each coded as near or far, and three receivers at the robot's front report the codes that they see.
-//! The documentation gives no angles and no distances: those here are ours.
+//! Frame `station`: on the floor at the middle of the box's front, x out of the front; a docked robot faces -x. The light follows the
+//! Kobuki's documentation ("Docking Stations", kobuki.readthedocs.io). Three emitters send a left, a middle and a right sector, each coded
+//! as near or far; three receivers at the robot's front report the received codes. The documentation gives no angles and no distances:
+//! those here are ours.
 
 mod body;
 mod config;

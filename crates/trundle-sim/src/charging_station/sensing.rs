@@ -29,7 +29,7 @@ pub(crate) struct StationSensing {
 }
 
 impl StationSensing {
-    /// Near a station at `world_from_station`; `seed` is that of the noise.
+    /// Sensors near a station at `world_from_station`; `seed` is the seed of the noise.
     pub(crate) fn new(config: StationConfig, station: Pose2, seed: u64) -> Self {
         let (receivers, light) = (receivers(&config), DockInfrared::default());
         Self { config, station, receivers, seed, readings: 0, light, source: None }

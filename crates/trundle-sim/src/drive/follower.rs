@@ -4,7 +4,7 @@ use super::WaypointFollowerConfig;
 use super::rows::rows;
 use trundle_core::{Invalid, Pose2, Stamp, Twist2, Vector2, difference_of_angles};
 
-/// Way-points are reached within this, m and rad: half of what is promised, the rest is for coasting.
+/// Tolerance of way-points, m and rad: half of the guaranteed one; the rest is for coasting.
 const POSITION_TOLERANCE_M: f64 = 0.004;
 const HEADING_TOLERANCE_RAD: f64 = 0.004;
 
@@ -21,13 +21,13 @@ const LINE_RETURN_GAIN_RAD_PER_M: f64 = 4.0;
 /// Minimum motion that counts as progress, m and rad.
 const MIN_PROGRESS: f64 = 0.02;
 
-/// Number of attempts at a way-point when the turn towards it led away from it.
+/// Number of attempts at a way-point after a turn that led away from it.
 const MAX_WAYPOINT_ATTEMPTS: u32 = 5;
 
-/// How a [`WaypointFollower`] is doing.
+/// State of a [`WaypointFollower`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Following {
-    /// On its way to this way-point, from 0.
+    /// Drives to this way-point, from 0.
     Driving {
         /// Index of the way-point.
         waypoint: usize,
@@ -41,9 +41,9 @@ pub enum Following {
     },
 }
 
-/// Drives from way-point to way-point by the true pose: turns to it on the spot, goes straight, turns to its heading.
+/// Drives from way-point to way-point by the true pose: turns towards it on the spot, drives straight, turns to its heading.
 ///
-/// For making data: it uses the true pose and avoids nothing. Straight legs follow the line to the way-point: heading error and
+/// For data generation: it uses the true pose and avoids no obstacles. Straight legs follow the line to the way-point: heading error and
 /// distance from the line control the turn rate. Speeds ramp up, and fall with the remaining distance.
 #[derive(Debug, Clone)]
 pub struct WaypointFollower {
@@ -60,15 +60,15 @@ pub struct WaypointFollower {
 
 #[derive(Debug, Clone, Copy)]
 enum Phase {
-    /// Choosing what to do for the way-point.
+    /// Chooses the motion to the way-point.
     Plan,
-    /// Turning on the spot to `heading`, rad, then going straight (`Some`: the line's direction) or being there.
+    /// Turns on the spot to `heading`, rad; then drives straight (`Some`: the line's direction) or is done.
     Turn { heading: f64, then: Option<Line> },
     /// Going along a line.
     Straight(Line),
 }
 
-/// A straight leg: it ends at the way-point.
+/// A straight leg, which ends at the way-point.
 #[derive(Debug, Clone, Copy)]
 struct Line {
     direction: Vector2,
@@ -80,7 +80,7 @@ impl WaypointFollower {
     /// To `waypoints`, `world_from_base` each, in their order.
     ///
     /// # Errors
-    /// When there is none, one is not finite, or a number of the configuration is outside its range.
+    /// When no way-point is given, one is not finite, or a number of the configuration is outside its range.
     pub fn new(waypoints: Vec<Pose2>, config: WaypointFollowerConfig) -> Result<Self, Invalid> {
         if waypoints.is_empty() {
             return Err(Invalid::new("way-points", 0, "", "1 or more"));
@@ -99,27 +99,27 @@ impl WaypointFollower {
         })
     }
 
-    /// From lines `x y heading_deg` (m, m, deg; the scene's world frame), with the default speeds; `#` starts a comment.
+    /// Way-points from lines `x y heading_deg` (m, m, deg; the scene's world frame), with the default speeds; `#` starts a comment.
     ///
     /// # Errors
-    /// When there is no line, or a line is not three finite numbers; names the line.
+    /// When the text has no line, or a line is not three finite numbers; the error names the line.
     pub fn parse(text: &str) -> Result<Self, Invalid> {
         let rows = rows(text, ["x", "y", "heading_deg"])?;
         let waypoints = rows.iter().map(|(_, [x, y, deg])| Pose2::new(*x, *y, deg.to_radians())).collect();
         Self::new(waypoints, WaypointFollowerConfig::default())
     }
 
-    /// Where it goes, `world_from_base`.
+    /// Way-points, `world_from_base`.
     pub fn waypoints(&self) -> &[Pose2] {
         &self.waypoints
     }
 
-    /// How it is doing.
+    /// State of the follower.
     pub fn state(&self) -> Following {
         self.state
     }
 
-    /// Twist for the true pose `world_from_base`. It is to be called at 20 Hz or more.
+    /// Twist for the true pose `world_from_base`. Must be called at 20 Hz or more.
     pub fn step(&mut self, stamp: Stamp, pose: Pose2) -> Twist2 {
         let Following::Driving { waypoint } = self.state else { return Twist2::ZERO };
         let wish = self.wish(pose, self.waypoints[waypoint]);
@@ -134,7 +134,7 @@ impl WaypointFollower {
         twist
     }
 
-    /// The twist without regard to accelerations; goes on to the next phase when one is over.
+    /// The twist without limits of acceleration; selects the next phase at the end of one.
     fn wish(&mut self, pose: Pose2, goal: Pose2) -> Twist2 {
         match self.phase {
             Phase::Plan => {
@@ -204,7 +204,7 @@ impl WaypointFollower {
         let (since, before) = self.last.unwrap_or((stamp, Twist2::ZERO));
         let elapsed = (stamp - since).clamp(0.0, 0.1);
         let ramp = |from: f64, to: f64, most: f64| from + (to - from).clamp(-most * elapsed, most * elapsed);
-        // Braking is twice as fast, so that what `approach` asks for can be done.
+        // Braking is twice as fast, which makes the speeds of `approach` feasible.
         let c = &self.config;
         let most = |from: f64, to: f64, rate: f64| if to.abs() < from.abs() { 2.0 * rate } else { rate };
         Twist2::new(

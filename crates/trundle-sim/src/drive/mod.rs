@@ -1,4 +1,4 @@
-//! Drives of a simulated robot without autonomy: commands by the clock, and way-points by the true pose.
+//! Drives of a simulated robot without autonomy: timed commands, and way-points by the true pose.
 
 mod follower;
 mod follower_config;

@@ -6,7 +6,7 @@ use trundle_core::Invalid;
 /// count.
 ///
 /// # Errors
-/// When a line has more or fewer columns or one is not a finite number; names the line and the column.
+/// When a line has a wrong number of columns or a column is not a finite number; the error names the line and the column.
 pub(super) fn rows<const N: usize>(
     text: &str,
     columns: [&str; N],

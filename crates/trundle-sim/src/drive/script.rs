@@ -15,8 +15,8 @@ pub struct TimedCommand {
 /// No drive takes longer than this, s: eleven days.
 const MAX_DRIVE_DURATION_S: f64 = 1e6;
 
-/// Commands by the clock: each holds until the next one, nothing moves before the first, and the last one's time is the
-/// script's end (so a script ends with a line `t 0 0`).
+/// Timed commands: each is active until the next one. Before the first command the robot is at rest; the last time is the script's end (a
+/// script ends with a line `t 0 0`).
 #[derive(Debug, Clone, PartialEq)]
 pub struct CommandScript {
     commands: Vec<TimedCommand>,
@@ -26,7 +26,7 @@ impl CommandScript {
     /// A script of lines `t v omega` (s, m/s, rad/s), by rising time; `#` starts a comment.
     ///
     /// # Errors
-    /// When there is no line, a line is not three finite numbers, or times do not rise from 0 on; names the line.
+    /// When the text has no line, a line is not three finite numbers, or times do not increase from 0; the error names the line.
     pub fn parse(text: &str) -> Result<Self, Invalid> {
         let mut commands: Vec<TimedCommand> = Vec::new();
         for (line, [time, v, omega]) in rows(text, ["t", "v", "omega"])? {

@@ -9,13 +9,13 @@ use trundle_core::{Invalid, Pose2, require_finite, require_in};
 pub enum FaultKind {
     /// The lens is covered: images come, black and without depth.
     CameraBlack,
-    /// It is dark: colour is black, and the depth camera has a light of its own.
+    /// Darkness: colour is black; the depth camera has its own light.
     LightsOut,
-    /// Images come with new stamps, but all are the last one before (the first one, when there is none before).
+    /// Images have new stamps but repeat the last image before the fault (or the first one, if none came before).
     CameraFrozen,
     /// Images do not come.
     CameraDropped {
-        /// The share of them that does not, 0 to 1.
+        /// Share of lost images, 0 to 1.
         probability: f64,
     },
     /// Images come late, with the stamp of when they were taken: out of the order of stamps.
@@ -27,9 +27,9 @@ pub enum FaultKind {
     DepthGone,
     /// A wheel turns and is counted, but drives the body by only a fraction of its distance.
     WheelSlips {
-        /// Which.
+        /// The wheel.
         side: WheelSide,
-        /// The fraction of its distance, 0 (it spins) to 2.
+        /// The fraction of the wheel's distance that moves the body, 0 (spinning) to 2.
         factor: f64,
     },
     /// The encoders repeat their last counts while the wheels turn.
@@ -43,8 +43,8 @@ pub enum FaultKind {
         /// Ticks of the right wheel.
         right_ticks: i32,
     },
-    /// At `from_s` the robot is put somewhere else, as soon as no person stands there. No sensor of the base measures it, and `to_s`
-    /// has no effect.
+    /// At `from_s` the robot is moved to another pose, once no person is there. No sensor of the base measures the move, and `to_s` has no
+    /// effect.
     Kidnapped {
         /// World frame, m.
         x: f64,
@@ -78,7 +78,7 @@ pub enum WheelSide {
 pub struct Fault {
     /// Seconds since the start, 0 or more.
     pub from_s: f64,
-    /// Seconds since the start, more than `from_s`. Default infinite: it stays broken.
+    /// Seconds since the start, more than `from_s`. Default infinite: permanent.
     #[serde(default = "forever")]
     pub to_s: f64,
     /// The fault.
@@ -90,13 +90,13 @@ fn forever() -> f64 {
 }
 
 impl Fault {
-    /// Whether it is so `time` seconds after the start.
+    /// Whether the fault is active `time` seconds after the start.
     pub fn holds_at(&self, time: f64) -> bool {
         time >= self.from_s && time < self.to_s
     }
 }
 
-/// All faults of a run, in any order; where two faults set the same state, the later one in the list counts.
+/// All faults of a run, in any order; of two faults that set the same state, the later one in the list applies.
 ///
 /// In TOML a list of `{ from_s, to_s, kind }`, where `kind` is a name (`"camera-black"`) or a table
 /// (`{ camera-late = { delay_s = 0.3 } }`).
@@ -111,7 +111,7 @@ impl FaultSchedule {
     /// Passes a valid schedule through.
     ///
     /// # Errors
-    /// When a number is outside its range or not finite; names the fault by its place in the list.
+    /// When a number is outside its range or not finite; the error gives the index of the fault.
     pub fn validated(self) -> Result<Self, Invalid> {
         for (i, fault) in self.faults.iter().enumerate() {
             let name = |field: &str| format!("faults[{i}].{field}");
@@ -146,7 +146,7 @@ impl FaultSchedule {
         self.faults.iter().any(|fault| fault.kind == FaultKind::CameraFrozen)
     }
 
-    /// When and where the robot is put, `world_from_base`, in the order of the list.
+    /// Time and pose of each kidnapping, `world_from_base`, in the order of the list.
     pub fn kidnappings(&self) -> impl Iterator<Item = (f64, Pose2)> + '_ {
         self.faults.iter().filter_map(|fault| match fault.kind {
             FaultKind::Kidnapped { x, y, heading_deg } => {

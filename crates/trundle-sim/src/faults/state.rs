@@ -10,7 +10,7 @@ pub(crate) struct Faults {
     schedule: FaultSchedule,
     seed: u64,
     now: f64,
-    /// Of each fault, whether its moment is over: for those that happen once.
+    /// Whether each one-time fault has happened.
     is_done: Vec<bool>,
 }
 
@@ -27,13 +27,13 @@ pub(crate) struct CameraFault {
 }
 
 impl Faults {
-    /// Of a valid schedule.
+    /// The state of a valid schedule.
     pub(crate) fn new(schedule: FaultSchedule, seed: u64) -> Self {
         let is_done = vec![false; schedule.faults.len()];
         Self { schedule, seed: hash(seed, 0xFA17), now: 0.0, is_done }
     }
 
-    /// It is `time` seconds after the start.
+    /// Advances to `time` seconds after the start.
     pub(crate) fn at(&mut self, time: f64) {
         self.now = time;
     }
@@ -57,7 +57,7 @@ impl Faults {
         fault
     }
 
-    /// The fraction of its distance by which each wheel drives, left and right.
+    /// The fraction of each wheel's distance that moves the body, left and right.
     pub(crate) fn grip(&self) -> (f64, f64) {
         let mut grip = (1.0, 1.0);
         for (_, kind) in self.holding() {
@@ -100,7 +100,7 @@ impl Faults {
         self.once(jumped, |_| true)
     }
 
-    /// Pose to which the robot is carried now, `world_from_base`, if `is_free` there; returned once.
+    /// Pose to which the robot is moved now, `world_from_base`, if `is_free`; returned once.
     pub(crate) fn kidnapping(&mut self, is_free: impl Fn(Pose2) -> bool) -> Option<Pose2> {
         let put = |kind| match kind {
             FaultKind::Kidnapped { x, y, heading_deg } => Some(Pose2::new(x, y, heading_deg.to_radians())),

@@ -9,8 +9,8 @@ pub(super) struct Block {
     pub(super) rows: (usize, usize),
 }
 
-/// The occupied cells as rectangles, greedily: from the lowest left cell on the widest run of its row, then as many rows as
-/// hold it whole. O(cells).
+/// The occupied cells as rectangles, greedily: from the lowest left cell the widest run of its row, then all following rows that contain
+/// the whole run. O(cells).
 pub(super) fn blocks(grid: &OccupancyGrid) -> Vec<Block> {
     let GridGeometry { width, height, .. } = *grid.geometry();
     let mut open: Vec<bool> = grid.cells().iter().map(|&cell| cell == Cell::Occupied).collect();

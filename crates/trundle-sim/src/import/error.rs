@@ -2,7 +2,7 @@
 
 use trundle_core::Invalid;
 
-/// Why a file makes no world.
+/// Reason why a file gives no world.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{file}: {fault}")]
 pub struct ImportError {
@@ -24,34 +24,34 @@ pub enum ImportFault {
     /// The file is shorter than its header declares.
     #[error("{item} has {found} bytes, expected {expected}: the file is cut short")]
     Truncated {
-        /// Which part.
+        /// The part of the file.
         item: String,
-        /// Bytes there are.
+        /// Number of bytes in the file.
         found: u64,
-        /// Bytes there should be.
+        /// Number of bytes expected.
         expected: u64,
     },
-    /// Not glTF 2.0.
+    /// The file is not glTF 2.0.
     #[error("is not glTF 2.0: {reason}")]
     NotGltf {
-        /// Where and why.
+        /// Place and reason.
         reason: String,
     },
-    /// It cannot be understood without an extension that is not supported.
+    /// The file requires an unsupported extension.
     #[error("needs the glTF extension {name}, which trundle does not read; export it without")]
     Extension {
-        /// Its name.
+        /// Name of the extension.
         name: String,
     },
     /// A buffer outside the file is missing.
     #[error("{item}: {reason}")]
     Part {
-        /// Which one, with its file name if it has one.
+        /// The item, with its file name if it has one.
         item: String,
-        /// Why.
+        /// Reason.
         reason: String,
     },
-    /// There is no surface in its scene.
+    /// The scene has no surface.
     #[error("has no triangles in its scene")]
     NoTriangles,
     /// A number: not finite, out of range, too large.

@@ -1,4 +1,4 @@
-//! Notes about an imported file, beside errors.
+//! Notes about an imported file that are no errors.
 
 use std::fmt;
 
@@ -10,20 +10,20 @@ const MAX_EXAMPLES: usize = 3;
 pub enum ImportNote {
     /// Textures that cannot be read; their surfaces are grey.
     LostTextures {
-        /// Why, of each.
+        /// Reason for each.
         reasons: Vec<String>,
     },
-    /// Surfaces with a texture and with colours of their corners; the colours are left out.
+    /// Number of surfaces with both a texture and vertex colours; these colours are ignored.
     HiddenColors {
-        /// How many.
+        /// Number of surfaces.
         surfaces: usize,
     },
     /// The floor was not at z = 0, and the scene was moved.
     FloorMoved {
-        /// Its height in the file, m.
+        /// Height in the file, m.
         height_m: f64,
     },
-    /// The size is not that of a room.
+    /// The size is implausible for an indoor space.
     OddSize {
         /// Along x, y and z, m.
         size_m: [f64; 3],

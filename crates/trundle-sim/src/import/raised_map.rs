@@ -13,7 +13,7 @@ const SLAB_SIDE_M: f64 = 10.0;
 /// Thickness of floor and ceiling, m.
 const SLAB_THICKNESS_M: f64 = 0.1;
 
-/// Bytes of a texel with its smaller levels, and texels per metre: those of the paints.
+/// Bytes of a texel with its mip levels, and texels per metre of the paints.
 const TEXEL_BYTES: f64 = 16.0 / 3.0;
 const TEXELS_A_METRE: f64 = 250.0;
 
@@ -36,13 +36,13 @@ const THINGS: [Paint; 4] = [
     Paint::Metal { color: [110, 120, 128] },
 ];
 
-/// How a map is raised to walls.
+/// Settings of the walls made from a map.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RaisedMap {
     /// Height of the walls, m, 0.1 to 20. Default 2.5, a room's.
     pub wall_height: f64,
-    /// Whether there is a ceiling. Default true.
+    /// Whether the world has a ceiling. Default true.
     pub ceiling: bool,
     /// Most memory that the world's textures may take, GB, 0.01 to 1000. Default 4.
     pub max_memory_gb: f64,
@@ -68,11 +68,11 @@ impl RaisedMap {
 
 /// The solids of a map: occupied cells as walls, floor (and ceiling) at known cells, in the frame of the map.
 ///
-/// Cells are merged into few boxes. The true grid of the result is the map. `file` is for messages.
+/// Cells are merged into few boxes. The true grid of the result equals the map. `file` is for messages.
 ///
 /// # Errors
-/// When an option is outside its range, the map has no known cell, or its textures would not fit in the memory allowed; the
-/// message holds the size of the map.
+/// When an option is outside its range, the map has no known cell, or its textures exceed the memory limit; the error gives the size of the
+/// map.
 pub fn raise_map(file: &str, grid: &OccupancyGrid, options: &RaisedMap) -> Result<Vec<Solid>, ImportError> {
     raise(grid, options).map_err(|fault| ImportFault::Invalid(fault).of(file))
 }
@@ -148,7 +148,7 @@ fn wall(grid: &OccupancyGrid, block: &Block, index: usize, options: &RaisedMap) 
     solid((low, high), (0.0, options.wall_height), finish(sides, HIDDEN, HIDDEN))
 }
 
-/// Whether a free cell lies at the sides +x, -x, +y, -y.
+/// Whether a free cell is next to the sides +x, -x, +y, -y.
 fn visible_sides(grid: &OccupancyGrid, block: &Block) -> [bool; 4] {
     let GridGeometry { width, height, .. } = *grid.geometry();
     let is_free = |col: usize, row: usize| {
@@ -156,7 +156,7 @@ fn visible_sides(grid: &OccupancyGrid, block: &Block) -> [bool; 4] {
     };
     let beside = |col: usize| (block.rows.0..block.rows.1).any(|row| is_free(col, row));
     let along = |row: usize| (block.cols.0..block.cols.1).any(|col| is_free(col, row));
-    // One below zero wraps to a column that no grid has.
+    // An index of -1 wraps to a column outside of any grid.
     [
         beside(block.cols.1),
         beside(block.cols.0.wrapping_sub(1)),

@@ -26,7 +26,7 @@ impl Bumper {
 
     /// End of a motion of the body from `from` to `to` at the first contact, and the bumper's state when it changed.
     ///
-    /// A move into an obstacle does not happen (the wheels slip); its turn does when there is room for it.
+    /// A move into an obstacle is blocked (the wheels slip); its turn is carried out if space allows.
     pub(super) fn resolve(
         &mut self,
         from: Pose2,
@@ -56,7 +56,7 @@ impl Bumper {
         self.free_way = 0.0;
     }
 
-    /// How often a touch began.
+    /// Number of separate contacts.
     pub(super) fn contacts(&self) -> u32 {
         self.contacts
     }
@@ -65,7 +65,7 @@ impl Bumper {
         &self.footprint
     }
 
-    /// Metres to the nearest thing at `pose`, at least while that is near; measures what stands only where it might be near.
+    /// Distance to the nearest obstacle at `pose`, m, exact while it is small; static obstacles are measured only if they may be near.
     fn gap(&mut self, pose: Pose2, around: &ContactScene<'_>) -> f64 {
         if self.free_way <= RELEASE_GAP_M {
             self.free_way = around.fixed.clearance(&self.footprint, pose);

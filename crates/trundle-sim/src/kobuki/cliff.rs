@@ -15,7 +15,8 @@ pub(super) struct CliffSensors {
 }
 
 impl CliffSensors {
-    /// At `places`, base frame, m; `step_over` is what the base rolls over, `depth` what counts as a cliff, m.
+    /// Sensors at `places`, base frame, m; `step_over` is the height of steps that the base passes, `depth` the minimum depth of a cliff,
+    /// m.
     pub(super) fn new(places: &[[f64; 2]], step_over: f64, depth: f64) -> Self {
         let places = places.iter().map(|p| Vector2::new(p[0], p[1])).collect();
         Self { places, height: step_over + 0.01, depth, is_over_edge: false }

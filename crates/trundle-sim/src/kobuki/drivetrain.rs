@@ -17,7 +17,7 @@ pub(super) struct Drivetrain {
     delay_steps: u64,
     /// Steps without a command after which the base stops; `None` is never.
     timeout_steps: Option<u64>,
-    /// When the last command took effect.
+    /// Time at which the last command took effect.
     heard: u64,
     now: u64,
     /// Commands within the delay: (step at which they take effect, wheel speeds).
@@ -99,7 +99,7 @@ mod tests {
         assert!(speeds[21].0 > 0.0);
         let steepest = speeds.windows(2).map(|w| w[1].0 - w[0].0).fold(0.0, f64::max);
         assert!(steepest <= 1.2e-3 + 1e-12);
-        // On a ramp a first-order lag trails by its time constant.
+        // On a ramp a first-order lag has a delay of its time constant.
         assert!((speeds[19 + 200].0 - 1.2 * (0.2 - 0.05)).abs() < 0.01, "{}", speeds[219].0);
         assert!((speeds[1999].0 - 0.3).abs() < 1e-9);
     }

@@ -12,7 +12,7 @@ pub(super) struct Encoders {
 }
 
 impl Encoders {
-    /// Counters that stand at `start`.
+    /// Counters with the value `start`.
     pub(super) fn new(drive: DifferentialDrive, start: (u16, u16)) -> Self {
         Self { drive, start, way: (0.0, 0.0) }
     }

@@ -27,7 +27,7 @@ use slip::Slip;
 use tolerance::tolerance;
 use trundle_core::{Footprint, GyroRate, Invalid, Pose2, Stamp, Twist2, WheelTicks};
 
-/// Streams of the one seed, so that each kind of noise is independent of how often the others are drawn.
+/// Random streams derived from the seed: each kind of noise is independent of the number of other draws.
 #[derive(Clone, Copy)]
 enum Stream {
     Build,
@@ -41,7 +41,7 @@ fn generator(seed: u64, stream: Stream) -> ChaCha8Rng {
     rng
 }
 
-/// The true geometry of a base, which a calibration estimates: for evaluation only.
+/// The true geometry of a base, the target of a calibration: for evaluation only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TrueWheels {
     /// Radius of the left wheel, m.
@@ -64,7 +64,7 @@ pub(crate) struct Kobuki {
     wheels: TrueWheels,
     /// True over nominal radius, left and right.
     radius_ratio: (f64, f64),
-    /// Fraction of its distance by which a wheel drives the body, left and right: 1 without a fault.
+    /// Fraction of each wheel's distance that moves the body, left and right: 1 without a fault.
     grip: (f64, f64),
     pose: Pose2,
     /// Turned so far, rad, not wrapped.
@@ -76,7 +76,7 @@ impl Kobuki {
     /// A base standing at `pose`, `world_from_base`; the configuration is valid.
     ///
     /// # Errors
-    /// When its outline is not valid.
+    /// When the outline is invalid.
     pub(crate) fn new(config: &KobukiConfig, pose: Pose2, seed: u64) -> Result<Self, Invalid> {
         let mut rng = generator(seed, Stream::Build);
         let mut ratio = |sigma: f64| 1.0 + sigma * tolerance(&mut rng);
@@ -136,7 +136,7 @@ impl Kobuki {
         self.cliff.look(self.pose, world)
     }
 
-    /// Sets the fraction of their distance by which the wheels drive the body, left and right.
+    /// Sets the fraction of each wheel's distance that moves the body, left and right.
     pub(crate) fn set_grip(&mut self, grip: (f64, f64)) {
         self.grip = grip;
     }

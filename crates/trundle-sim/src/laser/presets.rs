@@ -7,8 +7,8 @@ use std::f64::consts::TAU;
 /// Angle between beams of Hokuyo's URG series: 1024 a turn.
 const URG_STEP: f64 = TAU / 1024.0;
 
-/// Lasers by their data sheets. What a sheet gives as accuracy is a bound and holds a systematic part; the noise here is a
-/// third of it where the sheet gives no standard deviation.
+/// Lasers according to their data sheets. The accuracy in a data sheet is a bound with a systematic part; the noise here is a third of it
+/// unless the sheet gives a standard deviation.
 impl LaserConfig {
     /// The lasers of a front end: name, help text, configuration.
     pub const PRESETS: [Preset<Self>; 4] = [

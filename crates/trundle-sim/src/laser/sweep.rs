@@ -22,7 +22,7 @@ impl Laser {
         Self { config, seed: hash(seed, 0x1A5E) }
     }
 
-    /// Scan number `scan`, ended at `stamp`; `world_from_base(age)` is where the base was `age` s before.
+    /// Scan number `scan`, ended at `stamp`; `world_from_base(age)` is the base's pose `age` s before.
     ///
     /// # Errors
     /// Never for a valid configuration; the type is that of a scan's constructor.
@@ -45,7 +45,7 @@ impl Laser {
         if c.sweeps { scan.with_beam_times(BeamTimes { first_s: -self.age(0), step_s }) } else { Ok(scan) }
     }
 
-    /// How long before the scan's stamp beam `i` is measured, s.
+    /// Time between the measurement of beam `i` and the scan's stamp, s.
     fn age(&self, i: usize) -> f64 {
         let c = &self.config;
         let turn = (c.beams as f64 - 1.0 - i as f64) * c.increment() / std::f64::consts::TAU;

@@ -11,10 +11,10 @@ use crate::solid::Solid;
 use crate::world::shape::Shape;
 use rayon::prelude::*;
 
-/// Sides of textures are multiples of this, so that five levels halve exactly.
+/// Sides of textures are multiples of this number, so five levels halve exactly.
 const TEXEL_MULTIPLE: usize = 16;
 
-/// Grain of every size, so that corners are found from 1 m as from 6 m.
+/// Grain of every size, which gives corners at 1 m as well as at 6 m.
 const GRAIN: Fractal = Fractal { wavelength: 0.64, octaves: 7, gain: 0.82 };
 
 /// Most texels of one face; larger faces get coarser texels.
@@ -34,10 +34,9 @@ fn faces(shape: &Shape) -> Vec<(usize, f64, f64)> {
     }
 }
 
-/// The painted faces of a solid, six of a box, (side, top, bottom) of a cylinder, with texels `coarse` times as wide as
-/// their paints have them.
+/// The painted faces of a solid, six for a box, (side, top, bottom) for a cylinder, with texels `coarse` times as wide as in the paints.
 pub(super) fn bake_solid(solid: &Solid, world_seed: u64, index: usize, coarse: f64) -> Vec<Texture> {
-    // Seeds that are given must not meet those of places in the list.
+    // Given seeds must not collide with those derived from indices.
     let (world_seed, nth) = match solid.finish.seed {
         Some(seed) => (hash(world_seed, u64::MAX), hash(seed, 0)),
         None => (world_seed, index as u64),
@@ -144,7 +143,7 @@ fn color_at(paint: Paint, seed: u32, size: (f32, f32), x: f32, y: f32, grain: f3
         Paint::Goods { color } => industry::goods(seed, color, x, y, grain),
         Paint::Door { color } => joinery::door(seed, color, size, x, y, grain),
         Paint::Window => joinery::window(seed, size, x, y, grain),
-        // All of it lies under its print.
+        // The print covers the whole face.
         Paint::Print => [0.0; 3],
         Paint::Sign { color } => joinery::sign(seed, color, size, x, y),
         Paint::Fronts { color } => joinery::fronts(seed, color, size, x, y, grain),

@@ -28,7 +28,7 @@ pub(super) fn books(seed: u32, x: f32, y: f32, grain: f32) -> Rgb {
     lifted(scaled(color, shade), 8.0 * grain)
 }
 
-/// Which book of a row stands at `x`, and where across its spine (0 to 1): three to a field of 0.12 m.
+/// The book at `x` in a row, and the position across its spine (0 to 1): three per field of 0.12 m.
 fn spine(seed: u32, x: f32) -> (i32, f32) {
     let field = (x / 0.12).floor();
     let t = x / 0.12 - field;

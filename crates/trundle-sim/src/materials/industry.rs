@@ -1,5 +1,5 @@
-//! Materials of halls, corridors and offices, rich and poor in texture: colour as a function of metres from the
-//! face's top left and of `grain`, fractal noise of about unit strength.
+//! Materials of halls, corridors and offices with much or little texture: colour as a function of metres from the face's top left and of
+//! `grain`, fractal noise of about unit strength.
 
 use super::color::{Rgb, lifted, mixed, rgb, scaled};
 use super::noise::{lattice, value};
@@ -9,7 +9,7 @@ pub(super) fn plain(color: [u8; 3], grain: f32) -> Rgb {
     lifted(rgb(color), 2.5 * grain)
 }
 
-/// Carpet tiles of 0.5 m: speckled, joints hardly seen.
+/// Carpet tiles of 0.5 m: speckled, with faint joints.
 pub(super) fn carpet(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -> Rgb {
     let side = 0.5;
     let (column, row) = ((x / side).floor(), (y / side).floor());
@@ -60,7 +60,7 @@ pub(super) fn slotted(seed: u32, color: [u8; 3], size: (f32, f32), x: f32, y: f3
     lifted(base, scratch + 8.0 * grain)
 }
 
-/// A stack of packed goods under film: rows of boxes 0.3 x 0.25 m, some with a label, and a shine that runs down.
+/// A stack of packed goods under film: rows of boxes 0.3 x 0.25 m, some with a label, and vertical reflections.
 pub(super) fn goods(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -> Rgb {
     let (width, height) = (0.3, 0.25);
     let row = (y / height).floor();

@@ -1,5 +1,5 @@
-//! Doors, windows, signs and kitchens, drawn to the size of their face: colour as a function of metres from the face's
-//! top left and of `grain`, fractal noise of about unit strength.
+//! Doors, windows, signs and kitchens, fitted to the size of their face: colour as a function of metres from the face's top left and of
+//! `grain`, fractal noise of about unit strength.
 
 use super::color::{Rgb, lifted, mixed, pick, rgb, scaled};
 use super::noise::{Fractal, lattice};

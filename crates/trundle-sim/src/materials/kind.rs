@@ -3,7 +3,7 @@
 /// A kind of surface. Colours are sRGB.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Paint {
-    /// One colour: hidden faces, and tests.
+    /// One uniform colour: hidden faces, and tests.
     Flat {
         /// The colour.
         color: [u8; 3],
@@ -15,7 +15,7 @@ pub enum Paint {
         /// Share of the wall's fields (0.9 x 0.8 m) that hold a print, 0 to 1.
         prints: f32,
     },
-    /// Wallpaper with a motif of its own every 0.16 m, hung with a few prints.
+    /// Wallpaper with a different motif every 0.16 m, and a few prints.
     Wallpaper {
         /// The ground colour.
         color: [u8; 3],

@@ -1,8 +1,8 @@
 //! Appearance of surfaces: procedural paints, baked once a face into mip-mapped textures.
 //!
-//! Every face gets a painting of its own, drawn from (world seed, solid, face). No two places are then equal, and the
-//! result does not depend on the order or the number of threads. A finish with a seed replaces the solid's, so that places
-//! can be equal. Colour is a pure function of metres on the face.
+//! Every face has a separate painting, derived from (world seed, solid, face). All places therefore differ, and the result does not depend
+//! on the order or the number of threads. A finish with a seed replaces the solid's number, which allows equal places. Colour is a pure
+//! function of metres on the face.
 
 mod bake;
 mod color;

@@ -28,7 +28,7 @@ fn table(values: &[i8; LATTICE_PERIOD * LATTICE_PERIOD], x: u32, y: u32) -> f32 
     f32::from(values[((y & mask) << 8 | x & mask) as usize])
 }
 
-/// Where a seed's lattice lies in the table.
+/// Offset of a seed's lattice in the table.
 fn shift_of(seed: u32) -> (u32, u32) {
     let shift = seed.wrapping_mul(0x9E37_79B1);
     (shift >> 8, shift >> 20)
@@ -53,7 +53,7 @@ pub(super) fn value(seed: u32, x: f32, y: f32) -> f32 {
     (upper + (lower - upper) * ty) * (1.0 / 128.0)
 }
 
-/// The whole number below, by a cast: `f32::floor` is a call where SSE 4.1 is not taken for granted.
+/// The next lower whole number, by a cast: without SSE 4.1 `f32::floor` is a function call.
 pub(super) fn floor(x: f32) -> i32 {
     let toward_zero = x as i32;
     toward_zero - i32::from(x < toward_zero as f32)
@@ -62,10 +62,10 @@ pub(super) fn floor(x: f32) -> i32 {
 /// Noise of several scales.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fractal {
-    /// Wavelength of the coarsest octave, m; each further one has half of it.
+    /// Wavelength of the coarsest octave, m; each further octave has half of the previous one.
     pub(super) wavelength: f32,
     pub(super) octaves: u32,
-    /// Strength of an octave over that of the one before.
+    /// Ratio of an octave's strength to that of the previous one.
     pub(super) gain: f32,
 }
 
@@ -84,8 +84,8 @@ impl Fractal {
         self.scales(seed).map(|(seed, strength, waves)| strength * value(seed, x * waves, y * waves)).sum()
     }
 
-    /// The noise at `row.len()` points from (step / 2, y) on, `step` m apart: [`Fractal::at`] for a tenth of its price, for
-    /// lattice values are fetched once a wave.
+    /// The noise at `row.len()` points from (step / 2, y) on, `step` m apart. It costs a tenth of [`Fractal::at`], because lattice values
+    /// are read once per wave.
     pub(super) fn fill_row(self, seed: u32, y: f32, step: f32, row: &mut [f32]) {
         row.fill(0.0);
         for (seed, strength, waves) in self.scales(seed) {

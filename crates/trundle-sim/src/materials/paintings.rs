@@ -12,12 +12,12 @@ use std::ops::Index;
 /// Texels of a world, about 5.4 bytes each with their mip levels; beyond, all texels get coarser.
 const MOST_TEXELS: usize = 40_000_000;
 
-/// The painted faces of every solid of a world. Solids that must be equal (equal sizes, equal finishes with a seed)
-/// share one set, so that repeated furniture costs nothing.
+/// The painted faces of every solid of a world. Equal solids (equal sizes, equal finishes with a seed) share one set, so repeated furniture
+/// is free.
 #[derive(Debug)]
 pub(crate) struct Paintings {
     distinct: Vec<Vec<Texture>>,
-    /// Which of them a solid has.
+    /// Index of each solid's set.
     of_solid: Vec<u32>,
 }
 
@@ -46,7 +46,7 @@ impl Index<usize> for Paintings {
     }
 }
 
-/// How much wider texels must be so that there are at most [`MOST_TEXELS`].
+/// Factor on the width of texels that limits their number to [`MOST_TEXELS`].
 fn coarseness(texels: usize) -> f64 {
     (texels as f64 / MOST_TEXELS as f64).sqrt().max(1.0)
 }

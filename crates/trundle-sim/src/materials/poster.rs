@@ -3,7 +3,7 @@
 use super::color::{Rgb, lifted, mixed, pick, scaled};
 use super::noise::{Fractal, lattice};
 
-/// A print on a wall, a door or a carton: a rectangle in metres from the face's top left, and what is on it.
+/// A print on a wall, a door or a carton: a rectangle in metres from the face's top left, and its content.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Poster {
     pub(super) left: f32,
@@ -19,7 +19,7 @@ impl Poster {
         (-1e-3..=self.height + 1e-3).contains(&(y - self.top))
     }
 
-    /// The print's colour at a point of the face; `None` beside it.
+    /// The print's colour at a point of the face; `None` outside the print.
     pub(super) fn at(&self, x: f32, y: f32) -> Option<Rgb> {
         let (x, y) = (x - self.left, y - self.top);
         let edge = x.min(y).min(self.width - x).min(self.height - y);
@@ -57,7 +57,7 @@ impl Poster {
         color
     }
 
-    /// Clouds of two colours with hard edges here and there.
+    /// Clouds of two colours with some hard edges.
     fn photograph(&self, x: f32, y: f32) -> Rgb {
         let coarse = Fractal { wavelength: 0.22, octaves: 5, gain: 0.65 }.at(self.seed, x, y);
         let fine = Fractal { wavelength: 0.09, octaves: 4, gain: 0.7 }.at(self.seed ^ 77, x, y);

@@ -11,7 +11,7 @@ pub(super) fn plaster(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -> 
     lifted(rgb(color), 20.0 * grain + mark)
 }
 
-/// Wallpaper: a motif of its own in every field.
+/// Wallpaper with a different motif in every field.
 pub(super) fn wallpaper(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -> Rgb {
     let side = 0.16;
     let (column, row) = ((x / side).floor(), (y / side).floor());
@@ -29,7 +29,7 @@ pub(super) fn wallpaper(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -
     if inside { mixed(base, pick(seed, (draw(6) * 1e4) as i32), 0.35 + 0.5 * draw(7)) } else { base }
 }
 
-/// Bricks in running bond, each of its own tone, joints of mortar.
+/// Bricks in running bond with different tones, and joints of mortar.
 pub(super) fn bricks(seed: u32, x: f32, y: f32, grain: f32) -> Rgb {
     let (length, height, joint) = (0.25, 0.085, 0.012);
     let row = (y / height).floor();
@@ -44,7 +44,7 @@ pub(super) fn bricks(seed: u32, x: f32, y: f32, grain: f32) -> Rgb {
     lifted(clay, 15.0 * grain)
 }
 
-/// Floor boards along x, each of its own tone and length, with grain, gaps and knots.
+/// Floor boards along x with different tones and lengths, with grain, gaps and knots.
 pub(super) fn boards(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -> Rgb {
     let width = 0.13;
     let row = (y / width).floor();
@@ -62,7 +62,7 @@ pub(super) fn boards(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -> R
 /// Fibres of wood, across them; along they are nine times as long.
 const FIBRE: Fractal = Fractal { wavelength: 0.03, octaves: 2, gain: 0.75 };
 
-/// Sawn timber, fibres along x, knots here and there.
+/// Sawn timber with fibres along x and some knots.
 pub(super) fn timber(seed: u32, color: Rgb, x: f32, y: f32, grain: f32) -> Rgb {
     let wave = 0.02 * value(seed ^ 3, x / 0.4, y / 0.2);
     let fibre = FIBRE.at(seed, x / 9.0, y + wave);
@@ -71,7 +71,7 @@ pub(super) fn timber(seed: u32, color: Rgb, x: f32, y: f32, grain: f32) -> Rgb {
     lifted(scaled(color, dark), 22.0 * fibre + 11.0 * grain)
 }
 
-/// Floor tiles, each of its own tone, some with an inlay.
+/// Floor tiles with different tones, some with an inlay.
 pub(super) fn tiles(seed: u32, color: [u8; 3], x: f32, y: f32, grain: f32) -> Rgb {
     let side = 0.30;
     let (column, row) = ((x / side).floor(), (y / side).floor());

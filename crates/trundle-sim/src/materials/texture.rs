@@ -10,15 +10,15 @@ use trundle_core::ColorImage;
 
 /// A rectangle of colours with its mip levels, for the camera.
 ///
-/// Texels are `0x00BBGGRR`, row by row from the top left. Each level halves both sides of the one before by averaging
-/// (Williams 1983, "Pyramidal parametrics"), so that a pixel gets the mean of its area.
+/// Texels are `0x00BBGGRR`, row by row from the top left. Each level is half the previous one in both directions, by averaging (Williams
+/// 1983, "Pyramidal parametrics"). A pixel therefore gets the mean of its area.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Texture {
     levels: Vec<Level>,
     texels: Vec<u32>,
     /// Texels of level 0.
     size: [f32; 2],
-    /// Whether it repeats beyond its borders, rather than go on with the border's colour.
+    /// Whether the texture repeats outside its borders; otherwise the border's colour continues.
     repeats: bool,
     /// Texels of level 0 per unit of (u, v).
     scale: [f32; 2],
@@ -26,8 +26,8 @@ pub(crate) struct Texture {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Level {
-    /// Place of the first texel. Every row has one more at its end and there is one more row: a texel always has
-    /// neighbours to the right and below.
+    /// Index of the first texel. Each row has an extra texel at its end, and the texture an extra row: every texel has neighbours to the
+    /// right and below.
     first: usize,
     stride: usize,
     /// Sixteenths of a texel all across and down.
@@ -43,8 +43,7 @@ impl Texture {
         Self::with_levels(texels, (width, height), scale, false)
     }
 
-    /// Texture of a material: a colour, times a picture if there is one. (u, v) are in widths and heights of the
-    /// picture, which repeats.
+    /// Texture of a material: a colour, multiplied by a picture if given. (u, v) are in widths and heights of the picture, which repeats.
     pub(crate) fn of_picture(color: [u8; 3], picture: Option<&ColorImage>) -> Self {
         let tinted = |texel: [u8; 3]| {
             let channel = |k: usize| ((u32::from(texel[k]) * u32::from(color[k]) + 127) / 255) << (8 * k);
@@ -98,10 +97,10 @@ impl Texture {
         self.scale
     }
 
-    /// The colour at (x, y) texels of level 0 from the upper left corner, averaged over 2^`level` of them in each direction.
+    /// The colour at (x, y) texels of level 0 from the upper left corner, averaged over 2^`level` texels in each direction.
     ///
-    /// Between two levels the blend runs over the middle half of the interval. It is continuous, as the usual blend
-    /// over the whole interval is, and costs three quarters of it.
+    /// The blend between two levels uses the middle half of the interval. Like the usual blend over the whole interval it is continuous, at
+    /// three quarters of the cost.
     #[inline(always)]
     pub(crate) fn sample(&self, [x, y]: [f32; 2], level: f32) -> Light {
         let [x, y] = if self.repeats { self.wrapped([x, y]) } else { [x, y] };

@@ -44,12 +44,12 @@ pub(super) struct Body {
 #[derive(Debug)]
 pub(super) struct Part {
     pub(super) world: World,
-    /// Part of it that the robot can run into.
+    /// Part of the body that the robot can touch.
     pub(super) obstacles: Obstacles,
 }
 
 impl Body {
-    /// The body of person number `index` as a robot of this height band meets it.
+    /// The body of person number `index`, for a robot of this height band.
     ///
     /// # Errors
     /// Never: the sizes are constants.
@@ -72,7 +72,7 @@ impl Body {
         })
     }
 
-    /// Draws its textures.
+    /// Draws the textures.
     pub(super) fn paint(&self) {
         for part in [&self.shin, &self.knee, &self.thigh, &self.trunk] {
             part.world.paint();

@@ -15,10 +15,10 @@ const ELBOW_ROOM: f64 = 0.3;
 /// Smallest distance of a foot from the robot, m.
 const KEEP_OFF: f64 = 0.03;
 
-/// Farther from a person's middle than this, m, nothing of the person can be.
+/// Radius around a person's middle that contains the whole person, m.
 const MAX_PERSON_EXTENT_M: f64 = 0.85;
 
-/// How much room a person needs to walk, radius, m.
+/// Radius of the space that a walking person needs, m.
 const SHOULDER_RADIUS_M: f64 = 0.2;
 
 /// All persons who walk.
@@ -47,7 +47,7 @@ impl Crowd {
     /// People at the start of their paths; `band` is the robot's height band.
     ///
     /// # Errors
-    /// When a number of a person is outside its range; names the person.
+    /// When a number of a person is outside its range; the error names the person.
     pub(crate) fn new(people: &[Person], band: HeightBand) -> Result<Self, Invalid> {
         let named =
             |i: usize| move |error: Invalid| Invalid { field: format!("{} {i}", error.field), ..error };
@@ -83,7 +83,7 @@ impl Crowd {
         Ok(())
     }
 
-    /// Goes on by `elapsed` s while the robot stands at `robot`.
+    /// Advances by `elapsed` s with the robot at `robot`.
     ///
     /// Advances all persons. A step that would bring a leg too near to the robot is not made.
     pub(crate) fn step(&mut self, elapsed: f64, footprint: &Footprint, robot: Pose2) {
@@ -102,8 +102,7 @@ impl Crowd {
         }
     }
 
-    /// Metres between a footprint standing at `pose` and the nearest person, infinite when all are farther than
-    /// [`MAX_PERSON_EXTENT_M`] from it.
+    /// Distance between a footprint at `pose` and the nearest person, m; infinite if all are farther than [`MAX_PERSON_EXTENT_M`].
     pub(crate) fn clearance(&self, footprint: &Footprint, pose: Pose2) -> f64 {
         let reach = footprint.circumscribed_radius() + MAX_PERSON_EXTENT_M;
         let near =
@@ -137,7 +136,7 @@ fn movers<'b>(walkers: &[Walker], bodies: &'b [Body]) -> Vec<Mover<'b>> {
     parts.map(|(part, pose)| Mover { body: &part.world, pose }).collect()
 }
 
-/// The parts of a person and where they stand, `world_from_part`.
+/// The parts of a person and their poses, `world_from_part`.
 fn parts<'b>(body: &'b Body, walker: &Walker) -> [(&'b Part, Pose2); 7] {
     let legs = |part, share| walker.gait.legs(share).map(|leg| (part, walker.pose * leg));
     let [left_shin, right_shin] = legs(&body.shin, 1.0);

@@ -2,20 +2,20 @@
 
 use trundle_core::Pose2;
 
-/// Step length over cadence, m s: the walk ratio, 0.0064 m/(step/min), is the same at all speeds \[Sekiya98\].
+/// Step length over cadence, m s: the walk ratio, 0.0064 m/(step/min), is constant for all speeds \[Sekiya98\].
 const WALK_RATIO: f64 = 0.384;
 
 /// Half the distance between the feet, m.
 const HALF_TRACK: f64 = 0.1;
 
-/// How far knee and thigh follow their shin.
+/// Fraction of the shin's motion followed by knee and thigh.
 pub(super) const KNEE_SHARE: f64 = 0.65;
 pub(super) const THIGH_SHARE: f64 = 0.3;
 
 /// Seconds in which a walk begins and ends.
 const EASE_DURATION_S: f64 = 0.35;
 
-/// How legs swing: the foot on the floor stays where it is, the other overtakes it.
+/// Motion of the legs: the foot on the floor is fixed, the other one overtakes it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gait {
     /// Length of a step, m.
@@ -32,12 +32,12 @@ impl Gait {
         Self { step: (WALK_RATIO * speed).sqrt(), phase: 0.0, swing: 0.0 }
     }
 
-    /// How much of the full speed is walked now, 0 to 1.
+    /// Fraction of the full speed, 0 to 1.
     pub(super) fn swing(&self) -> f64 {
         self.swing
     }
 
-    /// The gait after `elapsed` s and a walked distance of `way` m; `is_walking`: whether the person goes on.
+    /// The gait after `elapsed` s and a walked distance of `way` m; `is_walking`: whether the person continues.
     pub(super) fn after(self, elapsed: f64, way: f64, is_walking: bool) -> Self {
         let change = if is_walking { elapsed / EASE_DURATION_S } else { -elapsed / EASE_DURATION_S };
         Self {
@@ -47,15 +47,14 @@ impl Gait {
         }
     }
 
-    /// Where the pieces of the legs stand that follow their shin by `share`, 1 for the shins: `body_from_piece`, left and
-    /// right.
+    /// Poses of the leg pieces that follow their shin by `share`, 1 for the shins: `body_from_piece`, left and right.
     pub(super) fn legs(&self, share: f64) -> [Pose2; 2] {
         [(HALF_TRACK, 0.0), (-HALF_TRACK, 0.5)]
             .map(|(side, shift)| Pose2::new(share * self.swing * self.reach(shift), side, 0.0))
     }
 
-    /// How far before the body a foot is, m: backward as fast as the body goes forward while it stands; forward while it
-    /// swings, in the cubic that leaves the floor and comes down on it without a jolt.
+    /// Distance of a foot ahead of the body, m. During stance it moves backward at the body's speed; during swing it moves forward along a
+    /// cubic with a smooth start and end.
     fn reach(&self, shift: f64) -> f64 {
         let phase = 2.0 * (self.phase + shift).fract();
         let u = phase.fract();

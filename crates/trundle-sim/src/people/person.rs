@@ -7,7 +7,7 @@ use trundle_core::{Invalid, require_finite, require_in};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Person {
-    /// The path, world frame, m; one point is a person who stands.
+    /// The path, world frame, m; one point is a standing person.
     pub waypoints: Vec<[f64; 2]>,
     /// Walking speed, m/s, 0.05 to 3. Default 1.2, a calm walk.
     pub speed: f64,
@@ -15,9 +15,9 @@ pub struct Person {
     pub pause: f64,
     /// Waits before the first step for, s, 0 to 3600. Default 0.
     pub delay: f64,
-    /// Whether the path goes on from its last point to its first, rather than back along itself. Default false.
+    /// Whether the path continues from its last point to its first; otherwise it reverses. Default false.
     pub around: bool,
-    /// Whether the person stays at the last way-point. Default false.
+    /// Whether the person remains at the last way-point. Default false.
     pub once: bool,
 }
 
@@ -41,7 +41,7 @@ impl Person {
     /// Passes a valid person through.
     ///
     /// # Errors
-    /// When there is no way-point, or a number is outside its range or not finite.
+    /// When no way-point is given, or a number is outside its range or not finite.
     pub fn validated(self) -> Result<Self, Invalid> {
         if self.waypoints.is_empty() {
             return Err(Invalid::new("way-points of a person", 0, "", "1 or more"));

@@ -4,13 +4,13 @@ use super::Person;
 use super::gait::Gait;
 use trundle_core::{Pose2, Vector2, difference_of_angles};
 
-/// How fast people turn on the spot, rad/s.
+/// Turn rate of people on the spot, rad/s.
 const TURN_RATE: f64 = 2.5;
 
 /// Tolerance of position and heading at a way-point, m and rad.
 const ARRIVAL_TOLERANCE: f64 = 1e-6;
 
-/// One person on the path.
+/// A person on the path.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Walker {
     /// `world_from_body`.
@@ -20,7 +20,7 @@ pub(super) struct Walker {
     target: usize,
     /// Whether way-points are taken backward.
     is_returning: bool,
-    /// Seconds still to stand.
+    /// Remaining time of the pause, s.
     rest: f64,
     is_done: bool,
 }
@@ -40,7 +40,7 @@ impl Walker {
         }
     }
 
-    /// A moment later; `is_free` is whether nothing is before the person.
+    /// The state after `elapsed` s; `is_free`: whether the space ahead of the person is free.
     pub(super) fn after(self, person: &Person, elapsed: f64, is_free: bool) -> Self {
         if self.is_done || self.rest > 0.0 {
             return Self { rest: (self.rest - elapsed).max(0.0), ..self.stand(elapsed) };

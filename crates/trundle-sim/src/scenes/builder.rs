@@ -33,10 +33,10 @@ pub(super) struct Builder {
     pub(super) solids: Vec<Solid>,
     /// Colour of furniture in place of one drawn by chance.
     pub(super) tint: Option<[u8; 3]>,
-    /// Height above the floor of what is placed next, m.
+    /// Height above the floor of the next placed object, m.
     pub(super) lift: f64,
     rng: ChaCha8Rng,
-    /// Inside [`Builder::alike`]: what paintings are drawn from, and how many solids have one.
+    /// Inside [`Builder::alike`]: seed of the paintings, and number of painted solids.
     look: Option<(u64, u64)>,
 }
 
@@ -46,8 +46,7 @@ impl Builder {
         Self { solids: Vec::new(), tint: None, lift: 0.0, rng, look: None }
     }
 
-    /// Objects that `place` places, drawn and painted from `seed` alone: the same again wherever it is called so, and nothing else
-    /// changes by it.
+    /// Objects placed by `place`, drawn and painted from `seed` alone: every call gives equal objects, without effect on other objects.
     pub(super) fn alike(&mut self, seed: u64, place: impl FnOnce(&mut Self)) {
         let rng = std::mem::replace(&mut self.rng, ChaCha8Rng::seed_from_u64(seed));
         let look = self.look.replace((seed, 0));
@@ -55,7 +54,7 @@ impl Builder {
         (self.rng, self.look) = (rng, look);
     }
 
-    /// Whether something of this probability happens.
+    /// Draws an event of this probability.
     pub(super) fn happens(&mut self, probability: f64) -> bool {
         self.rng.random_bool(probability)
     }
@@ -65,7 +64,7 @@ impl Builder {
         self.rng.random_range(-reach..=reach)
     }
 
-    /// One of a list.
+    /// An element of a list, drawn at random.
     pub(super) fn choose<T: Copy>(&mut self, list: &[T]) -> T {
         list[self.rng.random_range(0..list.len())]
     }
@@ -76,7 +75,7 @@ impl Builder {
         Pose2::new(place.x + dx, place.y + dy, place.theta + dt)
     }
 
-    /// A box whose middle stands `offset` (x, y, m) from `place`, in its axes, from `bottom` up; `size` m.
+    /// A box with its middle at `offset` (x, y, m) from `place`, in the axes of `place`, from `bottom` up; `size` m.
     pub(super) fn block(
         &mut self,
         place: Pose2,
@@ -113,7 +112,7 @@ impl Builder {
         self.solids.push(Solid { shape, finish });
     }
 
-    /// A slab between two corners (x, y, z, m), painted where it can be seen.
+    /// A slab between two corners (x, y, z, m), painted on its visible faces.
     pub(super) fn slab(&mut self, low: [f64; 3], high: [f64; 3], seen: &[(Side, Paint)]) {
         let mut finish = Finish::all(UNSEEN);
         for (side, paint) in seen {

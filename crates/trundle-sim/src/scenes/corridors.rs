@@ -7,14 +7,14 @@ use crate::world::{Lights, World};
 use std::f64::consts::FRAC_PI_2;
 use trundle_core::{Invalid, Pose2};
 
-/// Clear width, m: the paper's robot (0.6 x 0.4 m, 0.72 m across its corners) can turn round in the middle, and away from
-/// it only so far; a Kobuki (0.351 m) can anywhere.
+/// Clear width, m. The paper's robot (0.6 x 0.4 m, 0.72 m across its corners) can turn round only in the middle; a Kobuki (0.351 m) can
+/// turn anywhere.
 const CORRIDOR_WIDTH_M: f64 = 1.0;
 
 /// Half of the corridor's length, m.
 const HALF_LENGTH_M: f64 = 3.0;
 
-/// How far to the left of the goal the robot starts, m.
+/// Distance of the robot's start to the left of the goal, m.
 const START_OFFSET_M: f64 = 0.38;
 
 /// The corridors of \[Hong24\], section 4.
@@ -30,11 +30,10 @@ pub enum Corridor {
     RightFrontBlocked,
 }
 
-/// A corridor 1.0 m wide and 6 m long to settle in, closed at both ends (world frame: origin in its middle, y along it).
+/// A corridor 1.0 m wide and 6 m long for docking, closed at both ends (world frame: origin in its middle, y along it).
 ///
-/// The goal faces along the corridor. The robot stands beside it, 0.38 m to the left, with the same heading; a crate 1.1 m high
-/// blocks the straight path. Both poses are free for a Kobuki and for a robot of 0.6 x 0.4 m. `seed` varies textures and,
-/// by 2 cm, the crate.
+/// The goal faces along the corridor. The robot starts 0.38 m to the left of the goal with the same heading; a crate 1.1 m high blocks the
+/// straight path. Both poses are free for a Kobuki and for a robot of 0.6 x 0.4 m. `seed` varies textures and, by 2 cm, the crate.
 ///
 /// # Errors
 /// Never for any seed; the type is that of every scene.

@@ -26,9 +26,9 @@ const HIGH_TABLE: f64 = 0.72;
 
 /// Two furnished rooms, 8 x 6 m together, and a door between them (world frame: x 0 to 8, y 0 to 6).
 ///
-/// The robot starts in the west room; its goal is in the east one, 6 m away, beyond the wall. The path leads round a low
-/// table (0.45 m), through a door 1.0 m wide whose leaf stands open, and round a second low table. `seed` varies the
-/// textures, the door's place by 0.12 m, and the furniture by some centimetres and degrees; the path stays 0.8 m wide.
+/// The robot starts in the west room; its goal is in the east room, 6 m away, behind the wall. The path leads around a low table (0.45 m),
+/// through a door 1.0 m wide with an open leaf, and around a second low table. `seed` varies the textures, the door's position by 0.12 m,
+/// and the furniture by some centimetres and degrees; the path is at least 0.8 m wide.
 ///
 /// # Errors
 /// Never for any seed; the type is that of every scene.
@@ -83,7 +83,7 @@ fn shell(build: &mut Builder) {
     );
 }
 
-/// The wall between the rooms with its door in the middle of `door` (y, m), the leaf open into the east room.
+/// The wall between the rooms with its door centred at `door` (y, m), the leaf open into the east room.
 fn partition(build: &mut Builder, door: f64) {
     let (x0, x1) = (PARTITION_X_M, PARTITION_X_M + WALL_THICKNESS_M);
     let (south, north) = (door - DOOR_WIDTH / 2.0, door + DOOR_WIDTH / 2.0);

@@ -86,7 +86,7 @@ impl Builder {
         self.block(place, (0.0, 0.0), 0.0, size, Finish::all(Paint::Cardboard));
     }
 
-    /// A carton with a smaller one on it, turned.
+    /// A carton with a smaller, rotated one on top.
     pub(super) fn cartons(&mut self, place: Pose2, size: [f64; 3]) {
         self.carton(place, size);
         let turned = Pose2::new(place.x, place.y, place.theta + 0.2 + self.jitter(0.15));

@@ -112,7 +112,7 @@ fn outer_walls(build: &mut Builder, look: &Look) {
     build.wall([LIVING_ROOM_WALL_X_M + half, y1, x1, y1 + WALL_THICKNESS_M], &[(Side::South, look.kitchen)]);
 }
 
-/// The walls between rooms with their doors, and the doors' leaves.
+/// The inner walls with their doors, and the doors' leaves.
 fn inner_walls(build: &mut Builder, look: &Look) {
     let jamb = Paint::Plain { color: [224, 220, 210] };
     let wall = |along, span, low: f64, paints| Partition {

@@ -46,7 +46,7 @@ impl Scene {
     /// A built-in scene by its name.
     ///
     /// # Errors
-    /// When there is no scene of that name.
+    /// When no scene has this name.
     pub fn by_name(name: &str, seed: u64) -> Result<Self, Invalid> {
         match name {
             "demo" => demo_room(seed),

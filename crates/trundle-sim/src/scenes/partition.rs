@@ -19,13 +19,13 @@ pub(super) enum Along {
 #[derive(Debug, Clone)]
 pub(super) struct Partition {
     pub(super) along: Along,
-    /// Its ends along its direction, m.
+    /// Ends of the wall along its direction, m.
     pub(super) span: [f64; 2],
-    /// Its faces across its direction, m.
+    /// Faces of the wall across its direction, m.
     pub(super) faces: [f64; 2],
-    /// Paintings on them, the one toward lower coordinates first.
+    /// Paints of the faces, the one at lower coordinates first.
     pub(super) paints: [Paint; 2],
-    /// On the sides of its openings.
+    /// Paint of the openings' sides.
     pub(super) jamb: Paint,
 }
 
@@ -70,7 +70,7 @@ impl Builder {
         }
     }
 
-    /// A door's leaf that hangs at `hinge` and stands along the hinge's x axis.
+    /// A door leaf at `hinge`, open along the hinge's x axis.
     pub(super) fn door_leaf(&mut self, hinge: Pose2, color: [u8; 3]) {
         let leaf = Finish::all(Paint::Door { color });
         let size = [DOOR_WIDTH - 0.06, 0.04, DOOR_HEIGHT - 0.02];

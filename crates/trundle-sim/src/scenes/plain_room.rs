@@ -12,7 +12,7 @@ use trundle_core::{Invalid, Pose2};
 const SIDE_RANGE_M: (f64, f64) = (3.0, 6.0);
 /// Distance of the start, the goal and people from the walls, m.
 const MARGIN_M: f64 = 0.7;
-/// Side of a box that stands in a room without symmetry, m.
+/// Side of the box in a room without symmetry, m.
 const BOX_SIDE_M: f64 = 0.5;
 /// Height of the box, m.
 const BOX_HEIGHT_M: f64 = 0.8;
@@ -27,8 +27,8 @@ const WAYPOINT_COUNT: usize = 3;
 
 /// A room of 3 to 6 m with walls of one colour, and `people` who walk about.
 ///
-/// With an even `seed` the room is a bare rectangle: it looks the same after half a turn, and a square one after a quarter. With an odd
-/// seed a box stands in a corner. World frame: a corner at the origin.
+/// With an even `seed` the room is an empty rectangle: it looks equal after half a turn, a square one after a quarter. With an odd seed a
+/// box is in a corner. World frame: a corner at the origin.
 ///
 /// # Errors
 /// Never for any seed; the type is that of every scene.

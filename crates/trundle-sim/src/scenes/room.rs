@@ -12,8 +12,8 @@ const HALF_SIDE_M: f64 = 3.0;
 
 /// An empty room, 6 x 6 m, its middle the origin of the world frame: the scene of the point stabilisation of \[Li18\].
 ///
-/// The goal is that of \[Li18\], (0, 0, 90 deg). The start is the one of their eight that faces across the room, (-2.4, 2.4, 0). At
-/// the others, too, a Kobuki stands 0.42 m from the wall. The walls are rich in texture. `seed` varies textures and colours.
+/// The goal is the one in \[Li18\], (0, 0, 90 deg). The start is the one of their eight that faces across the room, (-2.4, 2.4, 0). At the
+/// other starts a Kobuki is 0.42 m from the wall, too. The walls have much texture. `seed` varies textures and colours.
 ///
 /// # Errors
 /// Never for any seed; the type is that of every scene.

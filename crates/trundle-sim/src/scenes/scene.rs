@@ -5,7 +5,7 @@ use crate::people::Person;
 use crate::world::{Lights, SceneSnapshot, World};
 use trundle_core::{Invalid, Pose2};
 
-/// A world with a task in it.
+/// A world with a start and a goal.
 #[derive(Debug)]
 pub struct Scene {
     /// The name, as in [`Scene::NAMES`].
@@ -16,16 +16,16 @@ pub struct Scene {
     pub lights: Lights,
     /// People who walk.
     pub people: Vec<Person>,
-    /// Where the robot starts, `world_from_base`.
+    /// Start of the robot, `world_from_base`.
     pub start: Pose2,
-    /// Where the robot shall go, `world_from_base`.
+    /// Goal of the robot, `world_from_base`.
     pub goal: Pose2,
     /// A charging station, `world_from_station`: see [`Scene::with_station`].
     pub station: Option<Pose2>,
 }
 
 impl Scene {
-    /// The scene for a camera while nothing moves.
+    /// The scene for a camera without moving objects.
     pub fn snapshot(&self) -> SceneSnapshot<'_> {
         SceneSnapshot { world: &self.world, movers: &[], lights: &self.lights }
     }
@@ -39,7 +39,7 @@ impl Scene {
         Ok(Self { world, station: Some(station), ..self })
     }
 
-    /// The goal as the robot is given it, in a frame that starts at the robot: `start_from_goal`.
+    /// The goal in a frame that starts at the robot: `start_from_goal`.
     pub fn start_from_goal(&self) -> Pose2 {
         self.start.inverse() * self.goal
     }

@@ -4,7 +4,7 @@ use super::builder::Builder;
 use crate::materials::{Finish, Paint};
 use trundle_core::Pose2;
 
-/// Colours of packed goods: as many paintings a size, however many pallets there are.
+/// Colours of packed goods: this number of paintings per size, for any number of pallets.
 const GOODS: [[u8; 3]; 6] =
     [[182, 140, 92], [166, 122, 76], [196, 160, 112], [120, 134, 150], [214, 210, 200], [96, 122, 104]];
 
@@ -30,7 +30,7 @@ impl Builder {
         }
     }
 
-    /// A stack of goods, `offset` from `place`, `size` m, in one of a few textures.
+    /// A stack of goods at `offset` from `place`, `size` m, with one of a few textures.
     pub(super) fn goods(&mut self, place: Pose2, offset: (f64, f64), bottom: f64, size: [f64; 3]) {
         let look = self.choose(&[0, 1, 2, 3, 4, 5]);
         let color = self.tint.unwrap_or(GOODS[look]);

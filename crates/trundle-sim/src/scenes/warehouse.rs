@@ -15,7 +15,7 @@ const HALL_HEIGHT_M: f64 = 5.5;
 /// Middles of the double rows of racks, x, m: aisles of 2.8 m between them.
 const ROW_CENTRES_X_M: [f64; 4] = [4.6, 10.0, 15.4, 20.8];
 
-/// Where racks begin, their bays and the bays' length, y, m.
+/// Start of the racks along y, number and length of their bays, m.
 const FIRST_BAY_Y_M: f64 = 5.0;
 const BAYS_PER_RACK: usize = 7;
 const BAY_LENGTH_M: f64 = 2.7;
@@ -33,9 +33,9 @@ const YELLOW: Paint = Paint::Marking { color: [226, 188, 44] };
 
 /// A warehouse, 30 x 30 m and 5.5 m high (world frame: x and y 0 to 30).
 ///
-/// Four double rows of pallet racks with aisles of 2.8 m, concrete columns, an open area in the east with pallets, drums
-/// and cartons before the gates. Goods, signs and uprights are rich in texture, concrete and corrugated walls are poor, and
-/// goods repeat. `seed` varies textures and colours, what stands where in the racks, and the pallets on the floor.
+/// Four double rows of pallet racks with aisles of 2.8 m, concrete columns, an open area in the east with pallets, drums and cartons before
+/// the gates. Goods, signs and uprights have much texture, concrete and corrugated walls have little, and goods repeat. `seed` varies
+/// textures and colours, the goods in the racks, and the pallets on the floor.
 ///
 /// # Errors
 /// Never for any seed; the type is that of every scene.
@@ -104,7 +104,7 @@ fn columns(build: &mut Builder) {
     }
 }
 
-/// A rack along y with its middle at `x`; `side` is +1 where its goods face east.
+/// A rack along y with its middle at `x`; `side` is +1 for goods that face east.
 fn rack(build: &mut Builder, x: f64, side: f64) {
     for frame in 0..=BAYS_PER_RACK {
         let place = Pose2::new(x, FIRST_BAY_Y_M + BAY_LENGTH_M * frame as f64, 0.0);

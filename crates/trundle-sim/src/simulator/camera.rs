@@ -1,4 +1,4 @@
-//! A camera that works beside the dynamics, as a real one does.
+//! A camera that runs in parallel with the dynamics, like a real one.
 
 use super::camera_rig::CameraRig;
 use super::track::Track;
@@ -10,14 +10,14 @@ use crate::world::SceneSnapshot;
 use std::sync::Arc;
 use trundle_core::{Invalid, RgbdImage, SensorEvent, Stamp};
 
-/// The simulated camera taken out of its [`Simulator`], for another thread: it makes images of [`Shot`]s.
+/// The simulated camera, detached from its [`Simulator`] for another thread: it makes images of [`Shot`]s.
 #[derive(Debug)]
 pub struct CameraAside {
     rig: CameraRig,
     scene: Arc<Scene>,
 }
 
-/// All that an image depends on at the moment when it is taken.
+/// All data needed for an image.
 #[derive(Debug)]
 pub struct Shot {
     pub(super) people: CrowdView,
@@ -28,7 +28,7 @@ pub struct Shot {
 }
 
 impl CameraAside {
-    /// The image of a shot: the same as the simulator would have made of it, when every shot is taken, in order.
+    /// The image of a shot, equal to the simulator's own image if all shots are taken in order.
     ///
     /// # Errors
     /// Never for a valid configuration.
@@ -38,7 +38,7 @@ impl CameraAside {
 }
 
 impl Shot {
-    /// When the image is taken.
+    /// Stamp of the image.
     pub fn stamp(&self) -> Stamp {
         self.stamp
     }
@@ -56,12 +56,12 @@ impl Shot {
 }
 
 impl Simulator {
-    /// Takes the camera out: from now on there are no images among the events, but [`Simulator::shots`]. None the second time.
+    /// Detaches the camera: from now on images are not among the events, but are made from [`Simulator::shots`]. `None` the second time.
     pub fn detach_camera(&mut self) -> Option<CameraAside> {
         Some(CameraAside { rig: self.rig.take()?, scene: Arc::clone(&self.scene) })
     }
 
-    /// Advances by a millisecond: the sensor events of that time, in order.
+    /// Advances by one millisecond; returns the sensor events of that time, in order.
     ///
     /// # Errors
     /// As [`trundle_core::RobotBody::next_event`].

@@ -7,7 +7,7 @@ use crate::faults::CameraFault;
 use crate::world::SceneSnapshot;
 use trundle_core::{ColorImage, DepthImage, Invalid, Pose3, RgbdImage, Stamp};
 
-/// The camera on the robot, with what may be wrong with it.
+/// The camera on the robot, with its faults.
 #[derive(Debug)]
 pub(super) struct CameraRig {
     renderer: Renderer,

@@ -2,7 +2,7 @@
 
 use crate::kobuki::STEPS_PER_SECOND;
 
-/// When a sensor is due: the n-th reading at the step nearest to n / rate.
+/// Due times of a sensor: the n-th reading is at the step nearest to n / rate.
 #[derive(Debug)]
 pub(super) struct Clock {
     /// `None`: never.
@@ -19,7 +19,7 @@ impl Clock {
         Self { steps: None, ticks: 0 }
     }
 
-    /// The number of the reading that is due at step `now`, from 0. It is called at every step and returns each number once.
+    /// The number of the reading due at step `now`, from 0. Must be called at every step; returns each number once.
     pub(super) fn due(&mut self, now: u64) -> Option<u64> {
         let tick = self.ticks;
         let is_due = self.steps.is_some_and(|steps| now >= (tick as f64 * steps).round() as u64);

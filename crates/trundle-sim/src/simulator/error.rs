@@ -22,7 +22,7 @@ pub enum SimError {
         /// Metres.
         penetration: f64,
     },
-    /// The robot would stand where the scene has nothing, not even a floor.
+    /// The robot's pose is outside the scene, without a floor.
     #[error(
         "{what} at ({x:.3}, {y:.3}) m is outside scene '{scene}', which reaches from ({:.3}, {:.3}) to ({:.3}, {:.3}) m",
         low[0], low[1], high[0], high[1]
@@ -62,7 +62,7 @@ pub enum SimError {
         "command at {stamp} s is v = {v} m/s, omega = {omega} rad/s, expected finite numbers; the robot stops"
     )]
     CommandNotFinite {
-        /// When it came.
+        /// Stamp of the command.
         stamp: Stamp,
         /// Commanded forward speed, m/s.
         v: f64,

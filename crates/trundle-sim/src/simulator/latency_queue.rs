@@ -12,7 +12,7 @@ pub(super) struct LatencyQueue {
 }
 
 impl LatencyQueue {
-    /// Puts an event into the queue, or lets it wait for `delay` s.
+    /// Queues an event, or delays it by `delay` s.
     pub(super) fn send(
         &mut self,
         event: SensorEvent,
@@ -28,7 +28,7 @@ impl LatencyQueue {
         }
     }
 
-    /// Puts what arrives now into the queue, after what is there.
+    /// Queues the delayed events that are due, after the events already queued.
     pub(super) fn arrive(&mut self, now: u64, queue: &mut VecDeque<SensorEvent>) {
         if self.waiting.is_empty() {
             return;

@@ -1,10 +1,10 @@
-//! The recent true poses of the base, one for each simulation step.
+//! The recent true poses of the base, one per simulation step.
 
 use crate::kobuki::STEPS_PER_SECOND;
 use std::collections::VecDeque;
 use trundle_core::Pose2;
 
-/// Where the base was in the last moments: a pose a step.
+/// Recent poses of the base, one per step.
 #[derive(Debug, Clone)]
 pub(super) struct Track {
     /// The newest first.
@@ -13,13 +13,13 @@ pub(super) struct Track {
 }
 
 impl Track {
-    /// Reaches `seconds` back from `start` on, before which the base stood there.
+    /// A track over the last `seconds`; before its beginning the base was at `start`.
     pub(super) fn new(start: Pose2, seconds: f64) -> Self {
         let most = (seconds * STEPS_PER_SECOND).ceil() as usize + 2;
         Self { poses: VecDeque::from([start]), most }
     }
 
-    /// A step later it is at `pose`.
+    /// Appends the pose of the next step.
     pub(super) fn add(&mut self, pose: Pose2) {
         self.poses.push_front(pose);
         self.poses.truncate(self.most);
@@ -31,8 +31,7 @@ impl Track {
         self.poses.push_front(pose);
     }
 
-    /// Where the base was `age` s ago, between steps on a straight line; for a negative age where it will be if it goes on
-    /// as in the last step.
+    /// Pose of the base `age` s ago, interpolated linearly between steps; for a negative age, extrapolated by the last step.
     pub(super) fn back(&self, age: f64) -> Pose2 {
         let steps = age * STEPS_PER_SECOND;
         if steps < 0.0 {

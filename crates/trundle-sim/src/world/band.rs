@@ -1,4 +1,4 @@
-//! The obstacle height band and the outlines of what reaches into it.
+//! The obstacle height band and the outlines of the objects within it.
 
 use super::outline::fill_hull;
 use super::region::Region;
@@ -6,7 +6,7 @@ use super::{Mesh, World};
 use rayon::prelude::*;
 use trundle_core::{Invalid, Vector2, Vector3, require_finite};
 
-/// Triangles that a thread clips at a time.
+/// Number of triangles per work item of a thread.
 const TRIANGLES_PER_CHUNK: usize = 4096;
 
 /// The heights between which a solid is an obstacle.
@@ -31,7 +31,7 @@ impl HeightBand {
         }
     }
 
-    /// Whether something from `bottom` to `top` reaches into the band.
+    /// Whether an object from `bottom` to `top` overlaps the band.
     fn is_reached(&self, bottom: f64, top: f64) -> bool {
         top > self.low && bottom < self.high
     }
@@ -110,7 +110,7 @@ fn clip(mesh: &Mesh, triangles: std::ops::Range<usize>, band: HeightBand) -> Out
     outlines
 }
 
-/// Leaves of a polygon what is on the side where `height` is not negative (Sutherland and Hodgman 1974).
+/// Clips a polygon to the side with non-negative `height` (Sutherland and Hodgman 1974).
 fn cut(polygon: &mut Vec<Vector3>, swap: &mut Vec<Vector3>, height: impl Fn(&Vector3) -> f64) {
     swap.clear();
     for (i, corner) in polygon.iter().enumerate() {

@@ -15,37 +15,37 @@ use stack::Stack;
 
 /// A bounding volume hierarchy over boxes: eight boxes a node, tested together (Wald et al. 2008, "Getting rid of packets").
 ///
-/// Built from the top by the surface area heuristic over bins (Wald 2007): O(n log n), deterministic. Boxes are kept in
-/// f32, rounded outwards.
+/// Built from the top by the surface area heuristic over bins (Wald 2007): O(n log n), deterministic. Boxes are stored in f32, rounded
+/// outwards.
 #[derive(Debug)]
 pub(crate) struct Bvh {
     nodes: Vec<Node>,
     /// Items in the order of the leaves.
     items: Vec<u32>,
-    /// Where the items of a leaf begin and end among `items`.
+    /// Start and end of each leaf's items in `items`.
     leaves: Vec<(u32, u32)>,
 }
 
 /// A query of the boxes.
 pub(crate) trait Probe {
-    /// A lower bound of the distance of whatever is in each box; infinite for boxes that are not met.
+    /// A lower bound of the distance of each box's content; infinite for boxes that are missed.
     fn distances(&self, node: &Node) -> [f32; WIDTH];
 }
 
 impl Bvh {
-    /// Over `boxes`, with at most `most` of them a leaf.
+    /// A hierarchy over `boxes`, with at most `most` items per leaf.
     pub(crate) fn new(boxes: &[Aabb], most: usize) -> Self {
         let Tree { nodes, items, leaves } = build(boxes, most);
         Self { nodes, items, leaves }
     }
 
-    /// Where the items of a leaf begin in [`Bvh::items`], and where they end.
+    /// Start and end of a leaf's items in [`Bvh::items`].
     pub(crate) fn leaf(&self, leaf: usize) -> (usize, usize) {
         let (first, end) = self.leaves[leaf];
         (first as usize, end as usize)
     }
 
-    /// How many leaves there are.
+    /// Number of leaves.
     pub(crate) fn leaf_count(&self) -> usize {
         self.leaves.len()
     }
@@ -102,7 +102,7 @@ mod tests {
     use proptest::prelude::*;
     use trundle_core::Vector3;
 
-    /// Boxes that hold a point; their distance is that of their number among the node's.
+    /// Query for boxes that contain a point; their distance is their index in the node.
     struct Point([f32; 3]);
 
     impl Probe for Point {

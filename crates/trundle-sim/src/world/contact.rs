@@ -8,17 +8,16 @@ use trundle_core::{Footprint, Invalid, Pose2, require_finite, require_in};
 
 /// Parts of a world that a robot of some height can touch, seen from above: built once, queried often.
 ///
-/// Of solids the whole outline counts, of meshes the surface: a robot may stand in a ring of walls, and a closed shell
-/// touches it from within as from without. A query is exact and costs some ten microseconds in a house of
-/// 100,000 triangles.
+/// Solids count with their area, meshes with their surface: a robot may be inside a ring of walls, and a closed shell can be touched from
+/// inside and outside. A query is exact and takes some ten microseconds in a house of 100,000 triangles.
 #[derive(Debug, Clone)]
 pub struct Obstacles {
     index: OutlineIndex,
 }
 
 impl Obstacles {
-    /// Metres between a footprint standing at `pose` (in the frame of the obstacles) and the nearest of them; 0 or less
-    /// in contact, infinite when there is none.
+    /// Distance between a footprint at `pose` (in the obstacles' frame) and the nearest obstacle, m; 0 or less in contact, infinite without
+    /// obstacles.
     ///
     /// A disc that holds a point of an obstacle is that much below zero; overlapping polygons are at 0.
     pub fn clearance(&self, footprint: &Footprint, pose: Pose2) -> f64 {
@@ -32,7 +31,7 @@ impl Obstacles {
         }
     }
 
-    /// Clearance from obstacles that stand at `world_from_obstacles`: a person, a door.
+    /// Clearance from obstacles with the pose `world_from_obstacles`: a person, a door.
     pub fn clearance_at(
         &self,
         world_from_obstacles: Pose2,
@@ -51,8 +50,8 @@ impl World {
         Obstacles { index: OutlineIndex::new(&outlines) }
     }
 
-    /// Metres between a footprint standing at `pose` (`world_from_base`) and the nearest thing in the height band; 0 or
-    /// less in contact, infinite when there is none. For one question; to ask often, keep [`World::obstacles`].
+    /// Distance between a footprint at `pose` (`world_from_base`) and the nearest object in the height band, m; 0 or less in contact,
+    /// infinite without objects. For a single query; for many queries, reuse [`World::obstacles`].
     ///
     /// # Errors
     /// When the pose is not finite.
@@ -71,7 +70,7 @@ impl World {
 }
 
 impl SceneSnapshot<'_> {
-    /// As [`World::clearance`], of what stands and of what moves.
+    /// As [`World::clearance`], for static and moving objects.
     ///
     /// # Errors
     /// When the pose is not finite.

@@ -1,8 +1,8 @@
-//! Solids with sine and cosine of their heading computed once.
+//! Solids with precomputed sine and cosine of their heading.
 
 use super::Shape;
 
-/// A solid as the camera meets it: its sine and cosine taken once.
+/// A solid for the camera, with precomputed sine and cosine.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Form {
     /// The middle of a box, or of a cylinder's lower disc, world frame, m.
@@ -31,7 +31,7 @@ impl Form {
         Self { place: place.into(), axes: [[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]], kind }
     }
 
-    /// A point of the world in its own frame.
+    /// A point of the world in the solid's own frame.
     #[inline(always)]
     pub(crate) fn own(&self, point: [f64; 3]) -> [f64; 3] {
         let (x, y, z) = (point[0] - self.place[0], point[1] - self.place[1], point[2] - self.place[2]);

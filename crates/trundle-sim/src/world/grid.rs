@@ -4,21 +4,20 @@ use super::region::Region;
 use super::{HeightBand, World};
 use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, require_positive};
 
-/// Cells are shrunk by this share of their side, so that a wall that ends on a cell's border does not fill the cell.
+/// Fraction of their side by which cells are shrunk: a wall that ends at a cell's border does not fill the cell.
 const CELL_SHRINK_RATIO: f64 = 1e-6;
 
 /// Most cells of a grid: one byte each.
 const MOST_CELLS: f64 = (1_u64 << 31) as f64;
 
 impl World {
-    /// The true map: every cell with a part of a solid in the height band is occupied, all others are free.
+    /// The true map: every cell that overlaps a solid in the height band is occupied, all others are free.
     ///
-    /// Of meshes their surfaces count: within a closed shell the cells are free. The grid lies in the world frame and
-    /// covers the whole world; cells are `resolution` m wide, lines at its multiples. Cost: the cells, and the triangles of
-    /// the band.
+    /// Meshes count with their surface: cells inside a closed shell are free. The grid is in the world frame and covers the whole world;
+    /// cells are `resolution` m wide, with borders at multiples of it. Cost: the cells, and the triangles of the band.
     ///
     /// # Errors
-    /// When the resolution is not positive or so small that there would be more than 2^31 cells.
+    /// When the resolution is not positive or gives more than 2^31 cells.
     pub fn true_grid(&self, resolution: f64, band: HeightBand) -> Result<OccupancyGrid, Invalid> {
         let mut grid = OccupancyGrid::filled(self.grid_geometry(resolution)?, Cell::Free);
         for outlines in self.outlines_in(band) {
@@ -62,8 +61,7 @@ fn fill(grid: &mut OccupancyGrid, outline: &Region<'_>) {
     }
 }
 
-/// Which of `count` cells the stretch from `low` to `high` (in cells) reaches into; what lies on a border and nowhere
-/// else belongs to one side of it.
+/// Range of cells, of `count`, that overlap the interval from `low` to `high` (in cells); an interval on a border only belongs to one side.
 fn run(low: f64, high: f64, count: usize) -> std::ops::Range<usize> {
     let (first, last) = ((low - 1.0 + CELL_SHRINK_RATIO).ceil(), (high - CELL_SHRINK_RATIO).floor());
     let seam = ((low + high) / 2.0).floor();

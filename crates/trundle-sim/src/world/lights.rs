@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_finite, require_in};
 
-/// How a scene is lit: ambient light and lamps far away, without shadows (Lambert's law).
+/// Lights of a scene: ambient light and distant lamps, without shadows (Lambert's law).
 ///
 /// A surface of normal n shows its colour times ambient + sum of strength max(0, n . direction), at most white.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -21,7 +21,7 @@ pub struct Lights {
 pub struct Lamp {
     /// From the scene to the lamp, world frame; its length does not matter.
     pub direction: [f64; 3],
-    /// On a surface that faces it, 0 to 2.
+    /// Strength on a surface that faces the lamp, 0 to 2.
     pub strength: f64,
 }
 

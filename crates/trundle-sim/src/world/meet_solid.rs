@@ -5,7 +5,7 @@ use super::{Cuboid, Cylinder, Shape};
 use trundle_core::{Vector2, Vector3};
 
 impl Shape {
-    /// Where a ray enters: distance in lengths of `direction`, and the outward normal.
+    /// Entry of a ray: distance in lengths of `direction`, and the outward normal.
     pub(super) fn meet(&self, origin: Vector3, direction: Vector3) -> Option<(f64, Vector3)> {
         match self {
             Self::Cuboid(cuboid) => cuboid.meet(origin, direction),
@@ -46,7 +46,7 @@ impl Cylinder {
         self.meet_side(o, direction).or_else(|| self.meet_lid(o, direction))
     }
 
-    /// The ray's plan meets the circle where its distance to the axis, q / |d|, is below the radius.
+    /// The ray's horizontal projection meets the circle if its distance to the axis, q / |d|, is below the radius.
     fn meet_side(&self, o: Vector3, d: Vector3) -> Option<(f64, Vector3)> {
         let a = d.xy().norm_squared();
         let q = o.xy().perp(&d.xy());

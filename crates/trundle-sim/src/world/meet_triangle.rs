@@ -3,10 +3,10 @@
 use super::triangles::{BLOCK, Block};
 use trundle_core::Vector3;
 
-/// How far a ray goes to each triangle of a block, in lengths of its direction; infinite for those it misses.
+/// Distance along a ray to each triangle of a block, in lengths of its direction; infinite for a miss.
 ///
-/// The ray passes inside where it is on the same side of all three edges: the sign of direction . (a x b), which is exactly
-/// opposite for the other triangle at the same edge, so that no ray slips through between two triangles.
+/// The ray hits a triangle if it is on the same side of all three edges, by the sign of direction . (a x b). This sign is exactly opposite
+/// for the other triangle at the edge, so no ray passes between two triangles.
 #[inline(always)]
 pub(super) fn meet_block(block: &Block, origin: Vector3, direction: Vector3) -> [f64; BLOCK] {
     let mut distances = [0.0; BLOCK];

@@ -28,7 +28,7 @@ pub struct Triangle {
 pub struct Material {
     /// For messages.
     pub name: String,
-    /// sRGB; multiplies the texture if there is one.
+    /// sRGB; multiplies the texture, if any.
     pub color: [u8; 3],
     /// The texture, sRGB.
     pub texture: Option<ColorImage>,
@@ -38,7 +38,7 @@ impl Mesh {
     /// A mesh; every position has its texture coordinate.
     ///
     /// # Errors
-    /// When a number is not finite, an index is out of range, or there is no triangle; the message names the item.
+    /// When a number is not finite, an index is out of range, or the mesh has no triangle; the error names the item.
     pub fn new(
         positions: Vec<[f32; 3]>,
         uvs: Vec<[f32; 2]>,

@@ -1,4 +1,4 @@
-//! The static scene: solids, what a ray meets, what a robot touches, and its true map.
+//! The static scene: solids, ray casting, contact, and the true map.
 
 mod aabb;
 mod band;
@@ -41,7 +41,7 @@ use trundle_core::{Invalid, Vector3};
 
 /// A static scene: frame `world`, z up, the floor's top at z = 0, metres.
 ///
-/// Textures are drawn from `seed` at their first use; use of the geometry alone draws none.
+/// Textures are drawn from `seed` at their first use; geometry alone draws none.
 #[derive(Debug)]
 pub struct World {
     seed: u64,
@@ -61,7 +61,7 @@ impl World {
     /// A world of `solids`, its textures drawn from `seed`.
     ///
     /// # Errors
-    /// When there is no solid, or a solid has a number that is not finite or a size that is not positive.
+    /// When no solid is given, or a solid has a number that is not finite or a size that is not positive.
     pub fn new(solids: Vec<Solid>, seed: u64) -> Result<Self, Invalid> {
         Self::with_meshes(solids, Vec::new(), seed)
     }
@@ -69,7 +69,7 @@ impl World {
     /// A world of `solids` and `meshes`, the textures of the solids drawn from `seed`.
     ///
     /// # Errors
-    /// When there is neither solid nor mesh, or a solid has a number that is not finite or a size that is not positive.
+    /// When neither solid nor mesh is given, or a solid has a number that is not finite or a size that is not positive.
     pub fn with_meshes(solids: Vec<Solid>, meshes: Vec<Mesh>, seed: u64) -> Result<Self, Invalid> {
         for (i, solid) in solids.iter().enumerate() {
             solid.shape.check(i)?;
@@ -86,7 +86,7 @@ impl World {
         Ok(Self { seed, solids, meshes, outlines, bounds, bvh, forms, triangles, paintings, pictures })
     }
 
-    /// The same world with one more solid; the looks of the others stay.
+    /// The same world with one more solid; the appearance of the others does not change.
     pub(crate) fn with_solid(self, solid: Solid) -> Result<Self, Invalid> {
         let solids = self.solids.into_iter().chain([solid]).collect();
         Self::with_meshes(solids, self.meshes, self.seed)
@@ -122,7 +122,7 @@ impl World {
         &self.triangles
     }
 
-    /// Draws the textures at once and not at their first use: some tenths of a second.
+    /// Draws the textures immediately instead of at their first use: some tenths of a second.
     pub fn paint(&self) {
         self.paintings();
         self.pictures();

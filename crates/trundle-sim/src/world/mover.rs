@@ -3,11 +3,11 @@
 use super::World;
 use trundle_core::Pose2;
 
-/// A moving body: solids in a frame of their own, at a pose. A walking person is a few of them.
+/// A moving body: solids in their own frame, at a pose. A walking person consists of several.
 #[derive(Debug, Clone, Copy)]
 pub struct Mover<'w> {
-    /// Its solids with their appearance, in its own frame, z up from the floor.
+    /// Solids with their appearance, in the body's frame, z up from the floor.
     pub body: &'w World,
-    /// Where it stands: `world_from_body`.
+    /// Pose of the body: `world_from_body`.
     pub pose: Pose2,
 }

@@ -6,12 +6,12 @@ use trundle_core::Vector2;
 /// Most outlines of a leaf.
 const LEAF_SIZE: usize = 4;
 
-/// Many outlines and a hierarchy of boxes over them: the nearest one in O(log n).
+/// Many outlines and a hierarchy of boxes over them: a nearest query takes O(log n).
 ///
 /// Built by median splits of the longest side, O(n log n); the same input makes the same tree.
 #[derive(Debug, Clone, Default)]
 pub(super) struct OutlineIndex {
-    /// Corners of all outlines, those of a leaf side by side.
+    /// Corners of all outlines, contiguous per leaf.
     corners: Vec<Vector2>,
     /// (first corner, number of corners, radius) of every outline.
     outlines: Vec<(u32, u32, f64)>,
@@ -65,7 +65,7 @@ impl OutlineIndex {
         self.add(right, outlines, boxes);
     }
 
-    /// The clearance of the nearest outline; infinite when there is none.
+    /// The clearance of the nearest outline; infinite without outlines.
     pub(super) fn clearance(&self, robot: Region<'_>) -> f64 {
         let walls = Walls::new(robot);
         let bound = |at: u32| {
@@ -105,17 +105,17 @@ impl OutlineIndex {
     }
 }
 
-/// Most sides of a robot that serve as bounds; any are right, more are tighter.
+/// Maximum number of the robot's sides used as bounds; any number is valid, more are tighter.
 const MAX_SIDES: usize = 8;
 
-/// Bounds stay this far, m, below what they bound, so that rounding does not matter.
+/// Distance by which bounds are reduced, m, against rounding errors.
 const BOUND_SLACK_M: f64 = 1e-9;
 
-/// The box and the sides of a robot: lower bounds of the distance of whatever lies beyond one of them.
+/// The box and the sides of a robot: lower bounds of the distance of objects outside of them.
 struct Walls {
     low: Vector2,
     high: Vector2,
-    /// Outward normal of a side and its distance from the origin along it.
+    /// Outward normal of a side, and its distance from the origin along the normal.
     sides: [(Vector2, f64); MAX_SIDES],
     count: usize,
 }
@@ -149,7 +149,8 @@ impl Walls {
         self.beyond(low, high, least)
     }
 
-    /// The largest of the gap of the boxes and of how far beyond each side something begins: `least` of it along a normal.
+    /// The maximum of the boxes' gap and of the distances outside each side; `least` is the smallest coordinate of the object along a
+    /// normal.
     fn beyond(&self, low: Vector2, high: Vector2, least: impl Fn(&Vector2) -> f64) -> f64 {
         let gap = (low - self.high).sup(&(self.low - high)).sup(&Vector2::zeros()).norm();
         let sides = self.sides[..self.count].iter().map(|(out, offset)| least(out) - offset);

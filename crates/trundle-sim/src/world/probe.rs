@@ -12,7 +12,7 @@ const RELATIVE_ROUNDING: f32 = 4.0 / (1 << 23) as f32;
 pub(super) struct RayProbe {
     origin: [f32; 3],
     inverse: [f32; 3],
-    /// How much wider, m.
+    /// Additional width, m.
     slack: f32,
 }
 
@@ -44,7 +44,7 @@ impl Probe for RayProbe {
 }
 
 impl RayProbe {
-    /// Where the ray enters and leaves the space between two planes.
+    /// Entry and exit of the ray between two planes.
     #[inline(always)]
     fn slab(&self, axis: usize, low: f32, high: f32) -> (f32, f32) {
         let a = (low - self.origin[axis] - self.slack) * self.inverse[axis];

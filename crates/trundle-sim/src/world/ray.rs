@@ -8,27 +8,26 @@ use trundle_core::Vector3;
 /// The first hit of a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hit {
-    /// How far, in lengths of the ray's direction: metres when that is a unit vector, depth when its part along the
-    /// optical axis is 1.
+    /// Distance in lengths of the ray's direction: metres for a unit vector, depth for a component of 1 along the optical axis.
     pub distance: f64,
     /// The target.
     pub target: Target,
-    /// Which of a snapshot's movers; `None` of what stands still.
+    /// Index of the snapshot's mover; `None` for a static object.
     pub mover: Option<usize>,
-    /// The normal there on the side that the ray comes from, unit length, frame of the world or snapshot.
+    /// Surface normal on the side of the ray's origin, unit length, frame of the world or snapshot.
     pub normal: Vector3,
 }
 
 /// A thing in a [`World`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
-    /// One of its solids.
+    /// Index of a solid.
     Solid(usize),
-    /// A triangle of one of its meshes.
+    /// A triangle of a mesh.
     Triangle {
-        /// Which mesh.
+        /// Index of the mesh.
         mesh: usize,
-        /// Which triangle of the mesh.
+        /// Index of the triangle in the mesh.
         triangle: usize,
     },
 }
@@ -59,12 +58,12 @@ impl Mover<'_> {
 impl World {
     /// The first thing along a ray from `origin` (world frame, m), nearer than `limit` lengths of `direction`.
     ///
-    /// Solids that hold the origin are left out; triangles have two sides, and no ray passes between two that
-    /// share an edge. f64 throughout: lasers use it, and it is the reference of the renderer's tests.
+    /// Solids that contain the origin are ignored; triangles have two sides, and no ray passes between two that share an edge. All numbers
+    /// are f64: lasers use this function, and it is the reference of the renderer's tests.
     pub fn cast(&self, origin: Vector3, direction: Vector3, limit: f64) -> Option<Hit> {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has the one feature that the function is compiled for.
+            // SAFETY: the processor has the only feature that the function is compiled for.
             return unsafe { self.cast_by_avx2(origin, direction, limit) };
         }
         self.cast_plainly(origin, direction, limit)
@@ -137,7 +136,7 @@ impl World {
     }
 }
 
-/// Not less than `reach`.
+/// A value of at least `reach`.
 fn wide(reach: f64) -> f32 {
     (reach as f32).next_up()
 }

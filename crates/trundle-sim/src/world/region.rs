@@ -5,7 +5,7 @@ use trundle_core::Vector2;
 /// A convex region of the plane: a point, a segment or a counter-clockwise polygon, grown by a radius.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Region<'a> {
-    /// One corner or more, m.
+    /// Corners, at least one, m.
     pub(crate) corners: &'a [Vector2],
     /// Metres.
     pub(crate) radius: f64,
@@ -19,13 +19,13 @@ impl Region<'_> {
         gap - self.radius - other.radius
     }
 
-    /// The lowest and the highest corner of the box around its corners, radius left out.
+    /// The lowest and the highest corner of the bounding box of the corners, without the radius.
     pub(super) fn box_of_corners(&self) -> (Vector2, Vector2) {
         let first = self.corners[0];
         self.corners.iter().fold((first, first), |(low, high), corner| (low.inf(corner), high.sup(corner)))
     }
 
-    /// The lowest and the highest x of what lies between two heights y; `None` if nothing does.
+    /// The lowest and the highest x between two values of y; `None` if empty.
     pub(super) fn span_between(&self, low: f64, high: f64) -> Option<(f64, f64)> {
         let mut span: Option<(f64, f64)> = None;
         let mut take = |x0: f64, x1: f64| {
@@ -62,8 +62,8 @@ fn span_of_edge((a, b): Segment, low: f64, high: f64) -> Option<(f64, f64)> {
     Some((x0.min(x1), x0.max(x1)))
 }
 
-/// The squared gap of two convex polygons neither of which holds the other's first corner: that of a corner and a side, or 0
-/// where sides cross.
+/// The squared gap of two convex polygons, neither of which contains the other's first corner: the distance of a corner and a side, or 0 if
+/// sides cross.
 fn polygon_gap2(a: &[Vector2], b: &[Vector2]) -> f64 {
     if a.len() > 1 && b.len() > 1 && edges(a).any(|a| edges(b).any(|b| cross(a, b))) {
         return 0.0;
@@ -79,13 +79,13 @@ fn corner_gap2(a: &[Vector2], b: &[Vector2]) -> f64 {
 
 type Segment = (Vector2, Vector2);
 
-/// The sides of a polygon; of a segment or a point the one there is.
+/// The sides of a polygon; for a segment or a point the only one.
 fn edges(corners: &[Vector2]) -> impl Iterator<Item = Segment> + '_ {
     let n = corners.len();
     (0..if n == 2 { 1 } else { n }).map(move |i| (corners[i], corners[if i + 1 == n { 0 } else { i + 1 }]))
 }
 
-/// Whether a convex counter-clockwise polygon holds a point; points and segments hold nothing.
+/// Whether a convex counter-clockwise polygon contains a point; always false for points and segments.
 fn holds(corners: &[Vector2], point: Vector2) -> bool {
     corners.len() > 2 && edges(corners).all(|(a, b)| (b - a).perp(&(point - a)) >= 0.0)
 }

@@ -1,4 +1,4 @@
-//! A world with its moving solids at one moment, as camera and laser see it.
+//! A world with its moving solids at one time, for camera and laser.
 
 use super::{Lights, Mover, World};
 
@@ -9,6 +9,6 @@ pub struct SceneSnapshot<'w> {
     pub world: &'w World,
     /// Moving bodies at their present poses.
     pub movers: &'w [Mover<'w>],
-    /// How it is lit.
+    /// Lights of the scene.
     pub lights: &'w Lights,
 }

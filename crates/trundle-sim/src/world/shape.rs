@@ -7,9 +7,9 @@ use trundle_core::{Invalid, Vector2, Vector3};
 /// A box, turned around z.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cuboid {
-    /// Its middle, world frame, m.
+    /// Middle of the box, world frame, m.
     pub center: Vector3,
-    /// Full lengths along its own axes, m.
+    /// Full lengths along the box's own axes, m.
     pub size: Vector3,
     /// Turn around z, rad.
     pub yaw: f64,
@@ -18,7 +18,7 @@ pub struct Cuboid {
 /// An upright cylinder.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cylinder {
-    /// The middle of its lower disc, world frame, m.
+    /// Middle of the lower disc, world frame, m.
     pub base: Vector3,
     /// Metres.
     pub radius: f64,
@@ -68,7 +68,7 @@ impl Shape {
         Aabb { min: center - half, max: center + half }
     }
 
-    /// Its outline seen from above.
+    /// Outline in the top view.
     pub(super) fn outline(&self) -> Outline {
         match self {
             Self::Cuboid(c) => {

@@ -11,19 +11,18 @@ pub(crate) const BLOCK: usize = 4;
 #[derive(Debug)]
 pub(crate) struct Triangles {
     bvh: Bvh,
-    /// One a leaf.
+    /// One block per leaf.
     blocks: Vec<Block>,
     surfaces: Vec<Surface>,
     /// Mesh and triangle within the mesh.
     sources: Vec<(u32, u32)>,
 }
 
-/// The corners of up to four triangles, side by side: corner, axis, triangle; world frame, m. Those that are missing are
-/// points.
+/// The corners of up to four triangles, interleaved: corner, axis, triangle; world frame, m. Missing triangles are points.
 #[derive(Debug, Clone)]
 pub(crate) struct Block {
     pub(crate) corners: [[[f32; BLOCK]; 3]; 3],
-    /// Number of its first triangle.
+    /// Index of the first triangle.
     pub(crate) first: u32,
 }
 
@@ -32,13 +31,13 @@ pub(crate) struct Block {
 pub(crate) struct Surface {
     /// Unit length; which side is undefined.
     pub(crate) normal: [f32; 3],
-    /// A point on it, and the texture coordinates there.
+    /// A point of the triangle, and its texture coordinates.
     pub(crate) corner: [f32; 3],
     pub(crate) uv: [f32; 2],
-    /// How much u and v grow per metre.
+    /// Gradients of u and v per metre.
     pub(crate) across: [f32; 3],
     pub(crate) down: [f32; 3],
-    /// Number of the material among those of all meshes.
+    /// Index of the material among those of all meshes.
     pub(crate) material: u32,
 }
 
@@ -74,7 +73,7 @@ impl Triangles {
         &self.surfaces[triangle]
     }
 
-    /// Its mesh, and its number there.
+    /// Index of the mesh, and of the triangle in the mesh.
     pub(crate) fn source(&self, triangle: usize) -> (usize, usize) {
         let (mesh, triangle) = self.sources[triangle];
         (mesh as usize, triangle as usize)
@@ -85,7 +84,7 @@ impl Triangles {
     }
 }
 
-/// How many materials the meshes before each have.
+/// Number of materials before each mesh.
 fn first_materials(meshes: &[Mesh]) -> Vec<u32> {
     let mut sum = 0;
     meshes

@@ -135,7 +135,7 @@ fn the_true_grid_of_small_house_holds_the_walls_that_a_laser_saw() {
         offsets.any(|(dx, dy)| grid.at(**point + Vector2::new(dx.into(), dy.into()) * 0.05) == Cell::Occupied)
     };
     let share = |cells| walls.iter().filter(|p| near(p, cells)).count() as f64 / walls.len() as f64;
-    // The map that the laser's SLAM made is itself bent: its whole east wall lies 13 cm off.
+    // The map by the laser's SLAM is itself bent: its whole east wall is 13 cm off.
     assert!(share(1) > 0.85 && share(3) > 0.95, "{} within a cell, {} within three", share(1), share(3));
 }
 

@@ -59,7 +59,7 @@ fn a_turned_box_and_a_cylinder_have_their_closed_forms() {
         }
         let p = Vector3::new(depth, -x * depth, -y * depth);
         if p.y > 0.35 {
-            // On the cylinder's side the distance to its axis is its radius; ray by ray: the quadratic's nearer root.
+            // On the cylinder's side the distance to the axis equals the radius; for each ray: the nearer root of the quadratic.
             let (a, b, c) = (1.0 + x * x, 3.0 - 0.8 * x, 3.0 * 3.0 + 0.8 * 0.8 - 0.16);
             let root = (b * b - a * c).max(0.0).sqrt();
             assert!((depth - (b - root) / a).abs() < 1e-4, "{depth} at {x} {y}");
@@ -97,7 +97,7 @@ fn the_renderer_agrees_with_the_ray_caster() {
             wrong += usize::from(!is_same);
         }
     }
-    // A ray that grazes an edge may fall on either side of it in f32 and f64.
+    // A ray that grazes an edge may have different results in f32 and f64.
     assert!(wrong * 5000 < pixels, "{wrong} of {pixels}");
 }
 

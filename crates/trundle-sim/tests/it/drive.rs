@@ -79,7 +79,7 @@ fn unequal_wheels_drive_the_arcs_of_their_radii() {
         let mut robot = Simulator::new(hall(start), config, seed).unwrap();
         let wheels = robot.true_wheels();
         let listener = drive_square(&mut robot);
-        // Both rims ramp and lag alike, so that each leg is one arc, whatever the speeds on it.
+        // Both wheels have equal ramps and lags: each leg is one arc at any speed.
         let arc = |left: f64, right: f64| {
             let (left, right) = (left * wheels.left_radius / 0.035, right * wheels.right_radius / 0.035);
             Twist2::new((left + right) / 2.0, (right - left) / wheels.wheelbase)
@@ -164,7 +164,7 @@ fn a_long_body_off_its_wheels_touches_with_its_nose_and_its_tail() {
     let mut listener = Listener::default();
     listener.drive(&mut robot, Twist2::new(0.5, 0.0), 3.0);
     assert!((robot.true_pose().x - 2.5).abs() < 2e-3, "{:?}", robot.true_pose());
-    // It cannot turn with its nose at the wall, but back off and turn, until the tail is at it.
+    // The robot cannot turn with its front at the wall; after backing off it turns until its rear touches.
     listener.drive(&mut robot, Twist2::new(0.0, 1.0), 1.0);
     assert!(robot.true_pose().theta.abs() < 0.05, "{:?}", robot.true_pose());
     listener.drive(&mut robot, Twist2::new(-0.3, 0.0), 1.0);

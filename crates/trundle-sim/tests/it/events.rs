@@ -28,7 +28,7 @@ fn events_until(robot: &mut Simulator, end: f64) -> Vec<SensorEvent> {
 
 #[test]
 fn events_come_by_stamp_and_at_equal_stamps_in_the_fixed_order() {
-    // Without a floor, every cliff sensor looks into the depth.
+    // Without a floor, every cliff sensor measures a cliff.
     let mut scene = hall(Pose2::new(2.5, 0.0, 0.0));
     scene.world = World::new(scene.world.solids()[..4].to_vec(), 1).unwrap();
     let laser = Some(LaserConfig::default());

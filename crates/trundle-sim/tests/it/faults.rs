@@ -144,7 +144,7 @@ fn a_slipping_wheel_turns_the_robot_but_not_its_odometry() {
     else {
         panic!("no truth")
     };
-    // The left rim (0.3 - 0.2 * 0.115 m/s) drives half its way for a second.
+    // The left wheel (0.3 - 0.2 * 0.115 m/s) moves the body by half its distance for a second.
     let turned = 0.5 * (0.3 - 0.2 * 0.115) / 0.230;
     let more = robot.true_pose().theta - pose.theta;
     assert!((more - turned).abs() < 1e-2, "{more} {turned}");
@@ -251,7 +251,7 @@ fn a_stuck_bumper_says_what_it_is_stuck_at() {
     };
     let free = touches(Pose2::new(-2.0, 0.0, 0.0), FaultKind::BumperStuck { pressed: true });
     assert_eq!(free, (vec![(1.0, true), (2.0, false)], 0));
-    // At the wall after 1.3 s, and still there when the bumper works again.
+    // The robot reaches the wall after 1.3 s, and is still in contact when the bumper works again.
     let wall = touches(Pose2::new(2.5, 0.0, 0.0), FaultKind::BumperStuck { pressed: false });
     assert_eq!(wall, (vec![(2.0, true)], 1));
 }

@@ -157,7 +157,7 @@ fn transforms_of_nodes_multiply() {
     assert!(message(&ring).contains("node 0 is reached twice"), "{}", message(&ring));
 }
 
-/// z up, the floor's height given: nothing is moved.
+/// z up with a given floor height: no translation.
 fn as_it_lies() -> GltfOptions {
     GltfOptions { floor: Some(0.0), ..GltfOptions::z_up() }
 }
@@ -329,7 +329,7 @@ fn a_file_cut_short_says_so() {
     assert!(message.contains(&format!("{} bytes, expected {}", whole.len() - 40, whole.len())), "{message}");
 }
 
-/// A file with a bit of everything that is read.
+/// A file with all supported content.
 fn rich_file() -> Vec<u8> {
     let json = textured(r#"{"bufferView":3,"mimeType":"image/png"}"#)
         .replace(r#""byteLength":12}]"#, r#""byteLength":12},{"buffer":0,"byteOffset":92,"byteLength":SIZE}]"#)

@@ -47,7 +47,7 @@ fn beyond_its_range_it_is_silent_and_too_near_it_is_blind() {
     let laser = LaserConfig { range_min: 2.0, range_max: 3.2, ..LaserConfig::default() };
     let mut robot = Simulator::new(hall(Pose2::new(1.5, 0.0, 0.0)), config(laser.clone()), 1).unwrap();
     let scan = &scans(&mut robot, 1)[0];
-    // Beam 180 looks ahead to 1.5 m, beam 0 behind to 4.5 m, beam 90 right to 3 m.
+    // Beam 180 hits at 1.5 m ahead, beam 0 at 4.5 m behind, beam 90 at 3 m to the right.
     assert_eq!(scan.beams()[180], Beam::Unseen);
     assert_eq!(scan.beams()[0], Beam::Free { range: 3.2 });
     assert!(matches!(scan.beams()[90], Beam::Hit { range } if (range - 3.0).abs() < 1e-9));

@@ -18,7 +18,7 @@ mod textures;
 use trundle_core::{Pose2, Vector3};
 use trundle_sim::{Cuboid, Finish, Lights, Paint, Scene, Shape, SimConfig, Solid, World};
 
-/// A plain grey box from its middle and full size, m, turned by `yaw` rad.
+/// A plain grey box from its middle and full size, m, rotated by `yaw` rad.
 fn block(center: [f64; 3], size: [f64; 3], yaw: f64) -> Solid {
     let shape = Shape::Cuboid(Cuboid { center: Vector3::from(center), size: Vector3::from(size), yaw });
     Solid { shape, finish: Finish::all(Paint::Flat { color: [150; 3] }) }
@@ -41,13 +41,13 @@ fn hall(start: Pose2) -> Scene {
     }
 }
 
-/// A robot with a slow camera of few pixels: for tests that look at the wheels.
+/// A robot with a slow camera of few pixels, for tests of the wheels.
 fn almost_blind() -> SimConfig {
     let camera = trundle_core::PinholeCamera::from_field_of_view((16, 8), (1.2, 0.8)).unwrap();
     SimConfig { camera, camera_rate_hz: 1.0, ..SimConfig::default() }
 }
 
-/// A file of the shared data; `None`, and says so, if it is absent.
+/// A file of the shared data; prints a note and returns `None` if absent.
 fn shared_data(name: &str) -> Option<std::path::PathBuf> {
     let path = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data")).join(name);
     if path.exists() {

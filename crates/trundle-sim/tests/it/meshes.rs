@@ -19,7 +19,7 @@ fn kinect() -> Renderer {
     Renderer::new(PinholeCamera::kinect_v2()).unwrap()
 }
 
-/// The ray of pixel `i` of a Kinect at the origin that looks along x: its part along x is 1.
+/// The ray of pixel `i` of a Kinect at the origin facing along x: its component along x is 1.
 fn ray(view: &View, i: usize) -> Vector3 {
     let pixel = Vector2::new((i % view.width) as f64, (i / view.width) as f64);
     camera_mount(0.0, 0.0, 0.0).rotate(PinholeCamera::kinect_v2().unproject(pixel, 1.0))
@@ -77,7 +77,7 @@ fn slanted_triangles_are_planes_to_a_tenth_of_a_millimetre_without_a_gap() {
 
 #[test]
 fn a_sphere_of_200_000_triangles_has_its_closed_form() {
-    // The triangles lie up to 34 um inside the sphere, twice that along the slanted rays.
+    // The triangles are up to 34 um inside the sphere, twice that along slanted rays.
     let (x, radius) = (2.0, 0.7);
     let world = sphere(x, radius, 448);
     let pose = camera_mount(0.0, 0.0, 0.0);
@@ -106,7 +106,7 @@ fn a_sphere_of_200_000_triangles_has_its_closed_form() {
 
 #[test]
 fn rays_and_pixels_do_not_leak_between_triangles() {
-    // From within a closed surface everything is seen: from many places, where corners and edges fall on pixels.
+    // From inside a closed surface every ray hits, for many positions with corners and edges at pixels.
     let world = sphere(0.0, 3.0, 96);
     let renderer = kinect();
     for i in 0..6 {
@@ -156,7 +156,7 @@ fn a_moving_solid_looks_like_a_standing_one() {
     assert!(on_mover > 500, "{on_mover}");
 }
 
-/// The house of triangles in shared/data, if it is there.
+/// The house of triangles in shared/data; `None` if absent.
 fn small_house() -> Option<World> {
     let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/scenes/small_house.glb"));
     if !path.exists() {

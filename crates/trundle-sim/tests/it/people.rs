@@ -14,7 +14,7 @@ fn quiet() -> SimConfig {
     SimConfig { has_camera: false, ..almost_blind().without_noise() }
 }
 
-/// Runs for `seconds`; nothing ever overlaps.
+/// Runs for `seconds`; the robot and the people never overlap.
 fn run(robot: &mut Simulator, seconds: f64, mut each: impl FnMut(&Simulator)) {
     let end = robot.stamp().after(seconds);
     while robot.stamp() < end {
@@ -46,7 +46,7 @@ fn a_robot_that_drives_into_a_person_is_stopped_by_the_legs() {
     robot.command(Twist2::new(0.5, 0.0)).unwrap();
     run(&mut robot, 5.0, |_| {});
     assert_eq!(robot.contacts(), 1);
-    // The person looks along x, so a leg (5.5 cm) stands 0.1 m beside (1.5, 0.1): at (1.5, 0).
+    // The person faces along x: a leg (5.5 cm) is 0.1 m from (1.5, 0.1), at (1.5, 0).
     let reach = robot.true_pose().distance(&Pose2::new(1.5, 0.0, 0.0));
     assert!((reach - 0.1755 - 0.065).abs() < 2e-3, "the knee is the thickest part below 0.6 m: {reach}");
 }
@@ -86,7 +86,7 @@ fn the_laser_sees_two_legs_that_swing() {
         let at_person = |p: &Vector2| (p - person.position()).norm() < 0.6;
         let points: Vec<Vector2> = scan.hits().filter(at_person).collect();
         assert!(points.len() > 20, "{}", points.len());
-        // Every point lies on a shin: on a circle of 5.5 cm, 10 cm beside the way.
+        // Every point is on a shin: on a circle of 5.5 cm radius, 10 cm from the path.
         for p in &points {
             let side = (p - person.position()).dot(&Vector2::x()).abs();
             assert!((0.045 - 1e-6..0.155 + 1e-6).contains(&side), "{side}");

@@ -23,9 +23,9 @@ struct Promise {
     clearance: f64,
     /// Half of the width of the narrowest way, m.
     way: f64,
-    /// Of the true grid, m.
+    /// Resolution of the true grid, m.
     resolution: f64,
-    /// Reachable places beside the goal.
+    /// Reachable places near the goal.
     places: &'static [[f64; 2]],
 }
 
@@ -129,14 +129,14 @@ fn the_room_is_the_stage_of_the_papers_stabilisation() {
     assert!((low + high).xy().norm() < 1e-12, "its middle is the origin");
 }
 
-/// The corridors are those of [Hong24]: where the goal lies, and what is free before the paper's robot.
+/// The corridors are those of [Hong24]: position of the goal, and free space around the paper's robot.
 #[test]
 fn the_corridors_are_free_and_blocked_where_the_paper_says() {
     let corner = |x: f64, y: f64| Vector2::new(x, y);
     let robot =
         Footprint::polygon(vec![corner(0.3, 0.2), corner(-0.3, 0.2), corner(-0.3, -0.2), corner(0.3, -0.2)])
             .unwrap();
-    // Whether 0.3 m ahead is free on the left, where the robot stands, and on the right, where the goal is.
+    // Whether 0.3 m ahead is free on the left, at the robot's position, and on the right, at the goal.
     for (name, left, right, behind) in [
         ("corridor-a", true, true, 0.0),
         ("corridor-b", false, false, 0.0),

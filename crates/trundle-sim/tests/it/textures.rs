@@ -19,7 +19,7 @@ fn spread(values: &[f64]) -> f64 {
     (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// Moving sideways by one pixel's width on a wall must shift its picture by one pixel and change nothing else.
+/// A sideways motion by one pixel's width on a wall must shift its picture by exactly one pixel.
 #[test]
 fn textures_do_not_flicker() {
     let renderer = Renderer::new(PinholeCamera::kinect_v2()).unwrap();
@@ -39,8 +39,7 @@ fn textures_do_not_flicker() {
     }
 }
 
-/// Wherever the robot looks there is something to see: all but a twentieth of the patches of 32 x 32 pixels
-/// spread by more than twice the sensor's noise.
+/// Texture in every view: all but a twentieth of the patches of 32 x 32 pixels vary by more than twice the sensor's noise.
 #[test]
 fn the_demo_is_rich_in_texture() {
     let renderer = Renderer::new(PinholeCamera::kinect_v2()).unwrap();
@@ -75,8 +74,8 @@ fn pictured_wall() -> World {
     World::with_meshes(Vec::new(), vec![mesh], 1).unwrap()
 }
 
-/// A camera that walks half a millimetre a frame along and towards a wall of checks hardly larger than its pixels, seen straight
-/// and at a slant: no pixel jumps, by far, as much as light and dark differ, and the mean of the image hardly moves.
+/// A camera moves half a millimetre per frame along and towards a wall of checks hardly larger than its pixels, seen straight and at a
+/// slant. No pixel changes by nearly the difference of light and dark, and the image mean is nearly constant.
 #[test]
 fn pictures_do_not_flicker() {
     let renderer = Renderer::new(PinholeCamera::kinect_v2()).unwrap();
@@ -88,7 +87,7 @@ fn pictures_do_not_flicker() {
             let mut view = renderer.blank();
             let pose = Pose3::from_pose2(Pose2::new(3.0 - way, 0.5 + way, heading));
             renderer.render(&stage, &(pose * camera_mount(0.0, 1.0, 0.0)), &mut view);
-            // Beyond the wall nothing is seen.
+            // Outside the wall the image is empty.
             gray(&view)
                 .into_iter()
                 .zip(view.depth)

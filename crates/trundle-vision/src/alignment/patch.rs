@@ -2,7 +2,7 @@
 
 use trundle_core::GrayImage;
 
-/// Pixels from the middle of a patch to its border: 10. Source: ours.
+/// Number of pixels from the middle of a patch to its border: 10. Source: ours.
 pub(super) const PATCH_RADIUS_PX: usize = 10;
 /// Side of a patch, px.
 pub(super) const PATCH_SIDE_PX: usize = 2 * PATCH_RADIUS_PX + 1;
@@ -11,7 +11,7 @@ pub(super) const PATCH_SIDE_PX: usize = 2 * PATCH_RADIUS_PX + 1;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImagePatch {
     pixels: [u8; PATCH_SIDE_PX * PATCH_SIDE_PX],
-    /// Where the feature is, px right and down of the middle pixel.
+    /// Position of the feature, px right and down of the middle pixel.
     feature: [f32; 2],
 }
 
@@ -19,8 +19,8 @@ impl ImagePatch {
     /// Bytes of a patch.
     pub const BYTES: usize = PATCH_SIDE_PX * PATCH_SIDE_PX;
 
-    /// A patch of these pixels, row by row. `feature` is the offset of the feature to the right and down from the middle pixel, px; `None`
-    /// if it is more than half a pixel.
+    /// A patch of these pixels, row by row. `feature` is the offset of the feature to the right and down from the middle pixel, px. `None`
+    /// if the offset exceeds half a pixel.
     pub fn new(pixels: [u8; Self::BYTES], feature: [f32; 2]) -> Option<Self> {
         feature.iter().all(|v| v.abs() <= 0.5).then_some(Self { pixels, feature })
     }
@@ -39,7 +39,7 @@ impl ImagePatch {
         &self.pixels
     }
 
-    /// Where the feature is, px right and down of the middle pixel.
+    /// Position of the feature, px right and down of the middle pixel.
     pub fn feature(&self) -> [f32; 2] {
         self.feature
     }
@@ -60,7 +60,8 @@ impl ImagePatch {
         Some(above + down * (below - above))
     }
 
-    /// Of each `N` x `N` px from pixel (`left`, `top`) on: the sum of the four pixels from it on by their weights, row by row.
+    /// For each of `N` x `N` px from pixel (`left`, `top`) on: the weighted sum of the pixel and its three right and lower neighbours, row
+    /// by row.
     #[inline(always)]
     pub(super) fn blend<const N: usize>(
         &self,

@@ -3,23 +3,23 @@
 use super::patch::{ImagePatch, PATCH_RADIUS_PX};
 use nalgebra::{Matrix2, Vector2};
 
-/// Pixels from the middle of a template to its border: 5. Source: ours.
+/// Number of pixels from the middle of a template to its border: 5. Source: ours.
 const TEMPLATE_RADIUS_PX: usize = 5;
 /// Side of a template, px.
 const TEMPLATE_SIDE_PX: usize = 2 * TEMPLATE_RADIUS_PX + 1;
 /// Pixels of a template, padded with zeros to whole registers.
 const PADDED_LENGTH: usize = (TEMPLATE_SIDE_PX * TEMPLATE_SIDE_PX).next_multiple_of(LANES);
-/// Sums that are accumulated side by side on every processor: 8. Sums of floats depend on their order.
+/// Number of parallel sums on every processor: 8. Sums of floats depend on their order.
 const LANES: usize = 8;
 /// Side of a template with a border of one pixel for the gradients, px.
 const WARPED_SIDE_PX: usize = TEMPLATE_SIDE_PX + 2;
-/// Most steps of an alignment: 10. It then ends as far as it has come. Source: ours.
+/// Maximum number of steps of an alignment: 10. After this number the alignment ends with its present state. Source: ours.
 const MAX_STEPS: usize = 10;
 /// Step that ends an alignment: 0.02 px. Source: ours.
 const CONVERGED_STEP_PX: f32 = 0.02;
-/// Largest fraction of the contrast in view that the template does not explain: 0.3. Beyond it the alignment fails. Source: ours.
+/// Largest fraction of the contrast in view that the template may leave unexplained: 0.3. Above it the alignment fails. Source: ours.
 const MAX_RESIDUAL_RATIO: f32 = 0.3;
-/// Largest ratio of the contrasts of image and template, or its inverse: 2. Beyond it the alignment fails. Source: ours.
+/// Largest ratio of the contrasts of image and template, or its inverse: 2. Above it the alignment fails. Source: ours.
 const MAX_CONTRAST_RATIO: f32 = 2.0;
 /// Parameters that are fitted: position (two), brightness, contrast.
 const FITTED_PARAMETERS: usize = 4;
@@ -29,9 +29,9 @@ type Pixels = [f32; PADDED_LENGTH];
 /// A patch warped to the view of another image.
 #[derive(Debug, Clone)]
 pub struct Template {
-    /// Grey values less their mean.
+    /// Grey values minus their mean.
     values: Pixels,
-    /// Gradients less what a change of brightness or contrast does.
+    /// Gradients without the effect of a change of brightness or contrast.
     right: Pixels,
     down: Pixels,
     /// Sum of the squared values.
@@ -40,18 +40,18 @@ pub struct Template {
     inverse: Matrix2<f32>,
 }
 
-/// Where a template was found.
+/// Position at which a template was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PatchAlignment {
-    /// Where it is, px of the patch's level right and down of the patch's own feature.
+    /// Position, px of the patch's level right and down of the patch's own feature.
     pub offset: Vector2<f32>,
-    /// Standard deviation of that in its least certain direction, by what is left of the differences, px of the level.
+    /// Standard deviation of the position in its least certain direction, from the remaining differences, px of the level.
     pub sigma: f32,
 }
 
 impl Template {
-    /// The template of `patch` for a view in which an offset of a px is one of `there_from_here`, px. `None` if the patch is too
-    /// small for that, or similar to itself at a small offset.
+    /// The template of `patch` for a view; `there_from_here` maps an offset in that view to one in the patch, px. `None` if the patch is
+    /// too small, or similar to itself at a small offset.
     pub fn new(patch: &ImagePatch, there_from_here: Matrix2<f32>) -> Option<Self> {
         let warped = warp(patch, there_from_here.try_inverse()?)?;
         let mut template = Self::gradients(&warped);
@@ -74,7 +74,7 @@ impl Template {
         (template.contrast > 0.0 && template.inverse.iter().all(|v| v.is_finite())).then_some(template)
     }
 
-    /// Values as they are, and their gradients.
+    /// Original values, and their gradients.
     fn gradients(warped: &[[f32; WARPED_SIDE_PX]; WARPED_SIDE_PX]) -> Self {
         let mut template = Self {
             values: [0.0; PADDED_LENGTH],
@@ -93,12 +93,12 @@ impl Template {
         template
     }
 
-    /// Position in `patch`, searched from `start` on, px of the patch's level right and down of the patch's own feature;
-    /// `None` if no similar position is found.
+    /// Position in `patch`, searched from `start`, px of the patch's level right and down of the patch's own feature; `None` without a
+    /// similar position.
     pub fn find(&self, patch: &ImagePatch, start: Vector2<f32>) -> Option<PatchAlignment> {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
-            // SAFETY: the processor has the one feature that the function is compiled for.
+            // SAFETY: the processor has the only feature that the function is compiled for.
             return unsafe { self.find_by_avx2(patch, start) };
         }
         self.find_plainly(patch, start)
@@ -129,7 +129,7 @@ impl Template {
         None
     }
 
-    /// The position, unless the pixels `seen` there differ too much.
+    /// The position, unless the pixels `seen` at it differ too much.
     #[inline(always)]
     fn judged(&self, seen: &Pixels, gain: f32, offset: Vector2<f32>) -> Option<PatchAlignment> {
         let count = (TEMPLATE_SIDE_PX * TEMPLATE_SIDE_PX) as f32;
@@ -146,7 +146,7 @@ impl Template {
     }
 }
 
-/// The patch around its feature, an offset of a px being one of `here_from_there`; `None` if the patch is too small.
+/// The patch around its feature, warped by `here_from_there`; `None` if the patch is too small.
 fn warp(
     patch: &ImagePatch,
     here_from_there: Matrix2<f32>,

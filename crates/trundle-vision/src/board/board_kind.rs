@@ -34,7 +34,8 @@ const SIDES: std::ops::RangeInclusive<usize> = 3..=50;
 const TAG_SIDES: std::ops::RangeInclusive<usize> = 1..=50;
 /// Smallest and largest square or marker: 1 mm to 1 m. Source: ours.
 const SQUARES_M: std::ops::RangeInclusive<f64> = 0.001..=1.0;
-/// Smallest and largest gap between markers over their side. Source: ours; a smaller one shows no paper around the border.
+/// Smallest and largest ratio of the gap between markers to their side. Source: ours; a smaller gap leaves no white border around the
+/// marker.
 const GAP_RATIOS: std::ops::RangeInclusive<f64> = 0.1..=1.0;
 
 impl Board {

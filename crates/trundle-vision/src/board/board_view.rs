@@ -1,4 +1,4 @@
-//! Corners of a board in one image. Any part of the corners is a view; the calibration knows no kind of board.
+//! Corners of a board in one image. Any part of the corners is a view; the calibration is independent of the kind of board.
 
 use thiserror::Error;
 use trundle_core::Vector2;
@@ -19,11 +19,11 @@ pub struct BoardView {
     pub points: Vec<BoardPoint>,
 }
 
-/// Why an image does not show a board.
+/// Reason why an image does not show a board.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BoardProblem {
-    /// Nothing like a board.
+    /// No board is visible.
     #[error("no board found; expected {expected}; show the whole board, in focus and evenly lit")]
     NoBoard {
         /// The board.
@@ -86,7 +86,7 @@ pub enum BoardProblem {
         /// Id of the marker.
         id: usize,
     },
-    /// Too small a part of the board.
+    /// The visible part of the board is too small.
     #[error("{found} tags of the board found, expected {minimum} or more; show more of the board, in focus")]
     TooFewTags {
         /// Markers found.

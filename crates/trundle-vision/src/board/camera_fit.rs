@@ -1,9 +1,9 @@
 //! A camera by the corners of a board in several images.
 //!
-//! Problem: intrinsics and lens from views of a plane. Idea \[Zhang00\]: two constraints of each homography on the image of the absolute
-//! conic give the focal lengths in closed form, the principal point in the middle of the image. Levenberg-Marquardt then minimises the
-//! reprojection error over camera and poses together. The poses are eliminated by the Schur complement, whose inverse is the covariance
-//! of the camera. Cost: O(corners) a round, about 20 rounds.
+//! Problem: intrinsics and lens from views of a plane. Idea \[Zhang00\]: each homography gives two constraints on the image of the absolute
+//! conic. With the principal point in the middle of the image, they give the focal lengths in closed form. Levenberg-Marquardt then
+//! minimises the reprojection error over camera and poses together. The poses are eliminated by the Schur complement, whose inverse is the
+//! covariance of the camera. Cost: O(corners) a round, about 20 rounds.
 //!
 //! | \[Zhang00\] | here | unit |
 //! |---|---|---|
@@ -33,12 +33,12 @@ pub struct CameraFit {
     pub view_residuals_px: Vec<Option<f64>>,
     /// Views that were left out.
     pub rejected: Vec<RejectedView>,
-    /// How well the views cover the image and the tilts of the board.
+    /// Coverage of the image and of the tilts of the board by the views.
     pub coverage: BoardCoverage,
 }
 
 impl CameraFit {
-    /// Advice, one sentence each; empty if nothing is missing.
+    /// Advice, one sentence each; empty for sufficient views.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = self.coverage.warnings();
@@ -58,11 +58,11 @@ impl CameraFit {
 pub struct RejectedView {
     /// Index into the given views.
     pub index: usize,
-    /// Why.
+    /// Reason.
     pub cause: String,
 }
 
-/// Why views do not yield a camera.
+/// Reason why views give no camera.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CameraFitError {
@@ -94,7 +94,8 @@ pub enum CameraFitError {
 
 /// Smallest number of views: 3. Source: \[Zhang00, sec. 3.1\]: each gives two constraints on five unknowns.
 const MIN_VIEWS: usize = 3;
-/// Smallest tilt of the board in the most tilted view: 10 deg. Source: ours; \[Zhang00, fig. 3\] finds errors to grow fast below it.
+/// Smallest tilt of the board in the view with the largest tilt: 10 deg. Source: ours; \[Zhang00, fig. 3\] finds errors to grow fast below
+/// it.
 const MIN_TILT_DEG: f64 = 10.0;
 /// Rounds of Levenberg-Marquardt. Source: ours.
 const MAX_STEP_COUNT: usize = 60;
@@ -269,7 +270,7 @@ struct Reduced {
     /// Information of the camera, poses eliminated, and its gradient.
     camera: DMatrix<f64>,
     gradient: DVector<f64>,
-    /// Of each view: inverse of the pose's information, gradient of the pose, coupling.
+    /// For each view: inverse of the pose's information, gradient of the pose, coupling.
     views: Vec<(Matrix6<f64>, Vector6<f64>, SMatrix<f64, PARAMETER_COUNT, 6>)>,
 }
 
@@ -402,7 +403,7 @@ fn jacobians(
     (by_camera, by_pose)
 }
 
-/// How well the views cover image and tilts.
+/// Coverage of the image and of the tilts by the views.
 fn coverage(views: &[PosedView], size: (usize, usize)) -> BoardCoverage {
     let tilts = views.iter().map(|view| {
         let normal = view.camera_from_board.rotate(Vector3::z());

@@ -43,7 +43,7 @@ impl CameraParameters {
         PinholeCamera::new((width, height), (fx, fy), (cx, cy), lens)
     }
 
-    /// Where a point (camera frame, m) appears in the raw image, px: Brown and Conrady, as in OpenCV.
+    /// Position of a point (camera frame, m) in the raw image, px: Brown and Conrady, as in OpenCV.
     pub(super) fn project(&self, p: Vector3) -> Vector2 {
         let [fx, fy, cx, cy, k1, k2, p1, p2, k3] = self.0;
         let (x, y) = (p.x / p.z, p.y / p.z);

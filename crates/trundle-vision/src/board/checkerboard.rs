@@ -1,8 +1,8 @@
 //! A checkerboard in an image.
 //!
-//! Problem: which of the saddle points of an image are the corners of the board, and which is which. Idea \[Geiger12, sec. III-B\]:
-//! from a seed and its neighbours the grid grows corner by corner, each where its neighbours predict it. Of all seeds the grid of the
-//! right size counts. Cost: O(corners^2).
+//! Problem: which saddle points of an image are the corners of the board, and their order. Idea \[Geiger12, sec. III-B\]: from a seed and
+//! its neighbours the grid grows corner by corner, each at its predicted position. Among all seeds, the grid of the right size is used.
+//! Cost: O(corners^2).
 
 use super::board_view::{BoardPoint, BoardProblem, BoardView};
 use super::corner_refinement::refine_corner;
@@ -11,15 +11,16 @@ use super::smooth_image::SmoothImage;
 use std::collections::BTreeMap;
 use trundle_core::{GrayImage, Vector2};
 
-/// Blur before the search, px: noise makes saddles of its own. Source: ours.
+/// Blur before the search, px: it removes saddle points of noise. Source: ours.
 const SEARCH_BLUR_PX: f32 = 1.5;
 /// Blur before the refinement, px. Source: ours.
 const REFINEMENT_BLUR_PX: f32 = 0.7;
 /// Seeds that are tried. Source: ours.
 const MAX_SEEDS: usize = 30;
-/// Distance of a corner from its prediction, over the side of a square. Source: ours.
+/// Largest distance of a corner from its prediction, as a ratio to the side of a square. Source: ours.
 const MAX_PREDICTION_ERROR: f64 = 0.3;
-/// Fraction of the board's corners that must be found: 0.8. The outer ones must show the size of the board. Source: ours.
+/// Smallest fraction of the board's corners: 0.8. The outer corners must be found, because they determine the size of the board. Source:
+/// ours.
 const MIN_CORNER_RATIO: f64 = 0.8;
 /// Radius of the refinement over the distance to the nearest corner. Source: ours; a larger one would meet the next corner.
 const REFINEMENT_RADIUS_RATIO: f64 = 0.4;
@@ -116,7 +117,7 @@ impl Grid {
         Some(grid)
     }
 
-    /// Where the neighbour of a cell is expected, px, and the side of a square there, px.
+    /// Predicted position of a cell's neighbour, px, and the local side of a square, px.
     fn prediction(
         &self,
         cell: GridCell,
@@ -148,8 +149,8 @@ impl Grid {
         (span(&|cell| cell.0) as usize, span(&|cell| cell.1) as usize)
     }
 
-    /// The pixels with their number, row by row, right-handed as seen from the front; `None` of a grid of another size, and of one
-    /// with too many gaps.
+    /// The pixels with their corner numbers, row by row, right-handed in front view; `None` for a grid of another size or with too many
+    /// gaps.
     fn ordered(&self, (columns, rows): (usize, usize)) -> Option<Vec<(usize, Vector2)>> {
         let is_turned = self.size() == (rows, columns) && rows != columns;
         let is_whole = self.cells.len() as f64 >= MIN_CORNER_RATIO * (columns * rows) as f64;
@@ -158,7 +159,7 @@ impl Grid {
         }
         let first = |value: &dyn Fn(&GridCell) -> i32| self.cells.keys().map(value).min();
         let (x0, y0) = (first(&|cell| cell.0)?, first(&|cell| cell.1)?);
-        // A turned grid is mirrored by the exchange of its axes.
+        // The axes of a turned grid are exchanged, which mirrors it.
         let is_mirrored = self.is_mirrored()? != is_turned;
         let number = |cell: &GridCell| {
             let (x, y) = ((cell.0 - x0) as usize, (cell.1 - y0) as usize);
@@ -181,7 +182,7 @@ impl Grid {
     }
 }
 
-/// The steps from a corner to its nearest neighbour and to the nearest one in another direction.
+/// The steps from a corner to its nearest neighbour and to the nearest neighbour in another direction.
 fn axes(corners: &[SaddlePoint], origin: Vector2) -> Option<(Vector2, Vector2)> {
     let mut steps: Vec<Vector2> =
         corners.iter().map(|corner| corner.pixel - origin).filter(|step| step.norm() > 0.0).collect();

@@ -1,7 +1,7 @@
 //! A corner to a tenth of a pixel.
 //!
-//! Each pixel near a corner lies on an edge through the corner, where its gradient is across the edge, or in a flat area, where the
-//! gradient is zero: `gradient . (pixel - corner) = 0`. Weighted least squares gives the corner \[Geiger12, eq. 4\].
+//! Each pixel near a corner is on an edge through the corner, with its gradient across the edge, or in a flat area with gradient zero:
+//! `gradient . (pixel - corner) = 0`. Weighted least squares gives the corner \[Geiger12, eq. 4\].
 
 use super::smooth_image::SmoothImage;
 use nalgebra::Matrix2;
@@ -9,10 +9,10 @@ use trundle_core::Vector2;
 
 /// Rounds. Source: ours; the corner moves by less than 0.001 px after ten.
 const MAX_ROUND_COUNT: usize = 20;
-/// Move below which the corner stands, px. Source: ours.
+/// Step below which the corner has converged, px. Source: ours.
 const CONVERGED_PX: f64 = 1e-3;
 
-/// The corner near `start`, by the pixels within `radius` px; `None` if there is none within `radius` px of the start.
+/// The corner near `start`, by the pixels within `radius` px; `None` if it is farther than `radius` px from the start.
 pub(super) fn refine_corner(image: &SmoothImage, start: Vector2, radius: f64) -> Option<Vector2> {
     let mut corner = start;
     for _ in 0..MAX_ROUND_COUNT {

@@ -1,8 +1,8 @@
-//! How well views of a board determine a camera.
+//! Sufficiency of board views for a calibration.
 
 use trundle_core::Vector2;
 
-/// How well views of a board cover the image and the tilts of the board.
+/// Coverage of the image and of the tilts of the board.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoardCoverage {
     /// Views that were used.
@@ -45,7 +45,7 @@ impl BoardCoverage {
         }
     }
 
-    /// Advice, one sentence each; empty if nothing is missing.
+    /// Advice, one sentence each; empty for sufficient views.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();

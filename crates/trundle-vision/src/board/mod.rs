@@ -2,7 +2,7 @@
 //!
 //! | problem | here |
 //! |---|---|
-//! | what is on the board, in metres | [`Board`] |
+//! | geometry of the board, m | [`Board`] |
 //! | corners of a board in an image, to a tenth of a pixel | [`Board::find`] |
 //! | square markers in an image | [`tags`] |
 //! | intrinsics and lens from corners in several images | [`calibrate_camera`] |

@@ -1,7 +1,7 @@
 //! Candidates for corners of a checkerboard: saddle points of the grey values with four alternating sectors around them.
 //!
-//! The determinant of the Hessian is negative at a saddle \[Geiger12, sec. III-A\] (the same corners, there by templates). A ring of
-//! samples about a corner changes four times between dark and light, and opposite samples are alike.
+//! The determinant of the Hessian is negative at a saddle \[Geiger12, sec. III-A\] (the same corners, found there with templates). A ring
+//! of samples around a corner changes four times between dark and light, and opposite samples are similar.
 
 use super::smooth_image::SmoothImage;
 use trundle_core::Vector2;
@@ -25,7 +25,7 @@ const MIN_CONTRAST: f64 = 15.0;
 const MAX_ASYMMETRY: f64 = 0.35;
 /// Radius within which a candidate is the strongest: 3 px. Source: ours.
 const NEIGHBOURHOOD_PX: usize = 3;
-/// Smallest strength over that of the strongest candidate. Source: ours.
+/// Smallest strength, as a ratio to the strongest candidate. Source: ours.
 const MIN_STRENGTH_RATIO: f32 = 0.02;
 
 /// The candidates of an image, strongest first.
@@ -75,13 +75,13 @@ fn is_maximum(strength: &impl Fn(usize, usize) -> f32, (x, y): (usize, usize)) -
     (y - r..=y + r).all(|v| {
         (x - r..=x + r).all(|u| {
             let other = strength(u, v);
-            // Of equal ones the first counts.
+            // Among equal ones the first is used.
             other < here || (other == here && (v, u) >= (y, x))
         })
     })
 }
 
-/// Whether the ring about a pixel has two dark and two light sectors, opposite ones alike.
+/// Whether the ring around a pixel has two dark and two light sectors, with similar opposite ones.
 fn is_alternating(image: &SmoothImage, pixel: Vector2) -> bool {
     let sample = |i: usize| {
         let angle = i as f64 * std::f64::consts::TAU / RING_SAMPLES as f64;

@@ -41,7 +41,7 @@ impl SmoothImage {
         self.values[y * self.width + x]
     }
 
-    /// The value of a pixel, which lies in the image.
+    /// The value of a pixel inside the image.
     pub(super) fn value(&self, x: usize, y: usize) -> f32 {
         self.values[y * self.width + x]
     }

@@ -37,8 +37,8 @@ impl TagBoard {
         self.ids().end <= TAG_COUNT
     }
 
-    /// Corners of a marker's black square on the board, m, x right and y down from the upper left corner of the board: upper left,
-    /// upper right, lower right, lower left. `None` of an id that is not on the board.
+    /// Corners of a marker's black square on the board, m, x right and y down from the upper left corner of the board. Order: upper left,
+    /// upper right, lower right, lower left. `None` for an id that is not on the board.
     #[must_use]
     pub fn corners(&self, id: usize) -> Option<[Vector2; 4]> {
         let index = self.ids().contains(&id).then(|| id - self.first_id)?;

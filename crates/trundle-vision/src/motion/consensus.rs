@@ -14,8 +14,8 @@ const MAX_STEPS: usize = 10;
 /// Step that ends a round: 1e-7, m and rad. Source: ours.
 const CONVERGED_STEP: f64 = 1e-7;
 
-/// RANSAC \[Fischler81\] over observations, some of them wrong: samples of three propose motions, the one of least truncated
-/// cost \[Torr00\] wins, and is polished on those that agree with it.
+/// RANSAC \[Fischler81\] over observations with outliers: samples of three propose motions, and the motion with the minimum truncated cost
+/// \[Torr00\] is refined on its inliers.
 pub(crate) struct Consensus<'a> {
     pub observations: &'a [Observation],
     pub camera: &'a PinholeCamera,
@@ -23,8 +23,8 @@ pub(crate) struct Consensus<'a> {
 }
 
 impl Consensus<'_> {
-    /// The motion `b_from_a`, and which observations agree with it, rising. `propose` turns three different observations,
-    /// given by their places, into motions. `None` if fewer than [`RansacConfig::min_inliers`] agree.
+    /// The motion `b_from_a`, and the indices of its inliers, increasing. `propose` converts three different observations, given by their
+    /// indices, to motions. `None` if fewer than [`RansacConfig::min_inliers`] agree.
     pub fn find<P>(&self, seed: u64, propose: impl Fn([usize; 3]) -> P) -> Option<(Pose3, Vec<usize>)>
     where
         P: IntoIterator<Item = Pose3>,
@@ -35,7 +35,7 @@ impl Consensus<'_> {
         (found.1.len() >= fewest).then_some(found)
     }
 
-    /// The proposed motion of least cost; of equal ones the first. The search ends when a better one is unlikely.
+    /// The proposed motion with the minimum cost; among equal ones the first. The search ends when a better one is unlikely.
     fn best_of_samples<P>(&self, seed: u64, propose: impl Fn([usize; 3]) -> P) -> Option<Pose3>
     where
         P: IntoIterator<Item = Pose3>,
@@ -65,13 +65,12 @@ impl Consensus<'_> {
         })
     }
 
-    /// Samples after which one of right observations only was among them, if `inliers` are all the right ones
-    /// \[Fischler81\].
+    /// Number of samples after which a sample of three inliers is sufficiently likely, if `inliers` are all inliers \[Fischler81\].
     fn enough(&self, inliers: usize) -> usize {
         let most = self.config.max_iterations;
         let all_right = (inliers as f64 / self.observations.len() as f64).powi(3);
         let samples = (1.0 - self.config.confidence).ln() / (1.0 - all_right).ln();
-        // With no right ones the quotient is infinite, of either sign; if all are right it is 0.
+        // Without inliers the quotient is infinite, of either sign; with only inliers it is 0.
         if all_right > 0.0 { (samples.ceil() as usize).min(most) } else { most }
     }
 
@@ -81,7 +80,7 @@ impl Consensus<'_> {
         (0..self.observations.len()).filter(|&i| agrees(&self.observations[i])).collect()
     }
 
-    /// Fits the motion to its inliers until they stay the same. `None` if they do not determine it.
+    /// Fits the motion to its inliers until the set of inliers is constant. `None` if the inliers do not determine the motion.
     fn polish(&self, b_from_a: Pose3) -> Option<(Pose3, Vec<usize>)> {
         let mut motion = b_from_a;
         let mut inliers = self.inliers(motion);

@@ -1,5 +1,5 @@
-//! Motion from paired features (docs/methods.md A1): RANSAC over three-point motions between two RGB-D frames, or over the poses that
-//! three points and their pixels allow if there is no depth; polished by reprojection.
+//! Motion from paired features (docs/methods.md A1): RANSAC over three-point motions between two RGB-D frames. Without depth, RANSAC runs
+//! over the poses that three points and their pixels allow. The result is refined by reprojection.
 
 mod consensus;
 mod p3p;

@@ -1,10 +1,10 @@
-//! The perspective three-point problem: from where three known points are seen in three known directions.
+//! The perspective three-point problem: the camera pose from three known points in three known directions.
 //!
-//! The distances l_i to the points satisfy three quadrics, l_i^2 + l_j^2 - 2 c_ij l_i l_j = a_ij (law of cosines). Two of their
-//! combinations have no constant: cones, that is conics in the ratios of the distances. Some member of the pencil of the two is
-//! a pair of lines, found by the one real root that a cubic always has; the lines meet the conics in at most four points
-//! \[Persson18, sec. 3\], \[Ding23\]. A few Newton steps on the three quadrics undo what rounding did on the way.
-//! Cost: about 2 us, most of it for the motion of each solution.
+//! The distances l_i to the points satisfy three quadrics, l_i^2 + l_j^2 - 2 c_ij l_i l_j = a_ij (law of cosines). Two linear combinations
+//! have no constant term: they are cones, that is conics in the ratios of the distances. One member of the pencil of both is a pair of
+//! lines, given by the real root that a cubic always has. The lines intersect the conics in at most four points \[Persson18, sec. 3\],
+//! \[Ding23\]. A few Newton steps on the three quadrics remove the rounding error. Cost: about 2 us, mainly for the motion of each
+//! solution.
 //!
 //! | paper | here | unit |
 //! |---|---|---|
@@ -17,8 +17,8 @@ use super::rigid::rigid_motion;
 use nalgebra::Matrix3;
 use trundle_core::{Pose3, Vector3};
 
-/// The poses (none to four, in no particular order) that bring `points` (frame a, m) into the directions `bearings` (unit
-/// length, camera frame b), each in front of the camera along its bearing. `None` if the points lie on a line.
+/// The poses (none to four, in any order) that move `points` (frame a, m) to the directions `bearings` (unit length, camera frame b), in
+/// front of the camera. `None` if the points are collinear.
 pub(crate) fn poses_of_three(points: [Vector3; 3], bearings: [Vector3; 3]) -> [Option<Pose3>; 4] {
     let triangle = Triangle::new(points, bearings);
     let pose = |distances: Vector3| {
@@ -32,8 +32,8 @@ pub(crate) fn poses_of_three(points: [Vector3; 3], bearings: [Vector3; 3]) -> [O
 const SIDES: [(usize, usize); 3] = [(0, 1), (0, 2), (1, 2)];
 /// Newton steps on the distances: 5. Source: ours.
 const NEWTON_STEPS: usize = 5;
-/// Largest error of a side's square in a solution, as a fraction of the longest: 1e-7. Beyond it there is no solution. Source:
-/// ours.
+/// Largest error of a side's square in a solution, as a fraction of the longest: 1e-7. With a larger error, the solution is rejected.
+/// Source: ours.
 const MAX_SIDE_ERROR: f64 = 1e-7;
 
 /// A triangle, and under which angles its sides are seen.
@@ -74,7 +74,7 @@ impl Triangle {
         quadric
     }
 
-    /// The distances of these ratios, of the triangle's size; `None` if one is not in front of the camera.
+    /// The distances for these ratios, in the size of the triangle; `None` if one is not in front of the camera.
     fn sized(&self, ratios: Vector3) -> Option<Vector3> {
         let size: f64 = (0..3).map(|side| ratios.dot(&(self.quadric(side) * ratios))).sum();
         let distances = ratios * ((self.squares.iter().sum::<f64>() / size).sqrt() * ratios.sum().signum());
@@ -101,8 +101,8 @@ impl Triangle {
     }
 }
 
-/// A root of det(`first` + root * `second`) = 0, and the two lines that this conic consists of. Of several roots the one
-/// whose lines are clearest apart. `None` if there is none with real lines. `second` has the larger determinant.
+/// A root of det(`first` + root * `second`) = 0, and the two lines of this conic. Among several roots, the one with the most distinct
+/// lines. `None` without real lines. `second` has the larger determinant.
 fn line_pair(first: &Matrix3<f64>, second: &Matrix3<f64>) -> Option<(f64, [Vector3; 2])> {
     let (adjoint_1, adjoint_2) = (adjoint(first), adjoint(second));
     let cubic = [
@@ -128,8 +128,8 @@ fn adjoint(m: &Matrix3<f64>) -> Matrix3<f64> {
     Matrix3::from_columns(&[b.cross(&c), c.cross(&a), a.cross(&b)])
 }
 
-/// The two lines of a degenerate conic whose adjugate has a negative number on its diagonal: adding the cross product matrix
-/// of their common point leaves the outer product of the lines (Richter-Gebert, Perspectives on Projective Geometry, 11.1).
+/// The two lines of a degenerate conic whose adjugate has a negative number on its diagonal. The sum with the cross product matrix of their
+/// common point is the outer product of the lines (Richter-Gebert, Perspectives on Projective Geometry, 11.1).
 fn lines_of(conic: &Matrix3<f64>) -> [Vector3; 2] {
     let adjoint = adjoint(conic);
     let column = adjoint.diagonal().imin();
@@ -139,7 +139,7 @@ fn lines_of(conic: &Matrix3<f64>) -> [Vector3; 2] {
     [product.row(row).transpose(), product.column(column).into_owned()]
 }
 
-/// Where a line meets a conic, as points of length one.
+/// Intersections of a line with a conic, as points of length one.
 fn meet(line: &Vector3, conic: &Matrix3<f64>) -> [Option<Vector3>; 2] {
     let mut axis = Vector3::zeros();
     axis[line.iamin()] = 1.0;
@@ -172,7 +172,7 @@ fn roots([a, b, c, d]: [f64; 4]) -> [Option<f64>; 3] {
     [Some(first), Some(half - spread), Some(half + spread)]
 }
 
-/// A real root of x^3 + b x^2 + c x + d by Newton's method, from beyond the turning points, where it cannot go astray
+/// A real root of x^3 + b x^2 + c x + d by Newton's method, from a start outside the turning points, where the method converges
 /// \[Persson18, sec. 3.3\].
 fn one_root(b: f64, c: f64, d: f64) -> Option<f64> {
     let value = |x: f64| ((x + b) * x + c) * x + d;
@@ -227,8 +227,7 @@ mod tests {
             let truth = Pose3::exp(tangent);
             let seen = [0, 1, 2].map(|i| bearings[i] * depths[i]);
             let points = seen.map(|p| truth.inverse().transform(p));
-            // Where two solutions are nearly one, or the plane through the points passes near the camera, the
-            // directions hardly determine the pose.
+            // Two solutions that nearly coincide, or a plane through the points near the camera: the directions hardly determine the pose.
             let triangle = Triangle::new(points, bearings);
             let depths = Vector3::from(depths);
             let jacobian = Matrix3::from_fn(|side, k| (triangle.quadric(side) * depths)[k]);

@@ -10,13 +10,12 @@ use trundle_core::{PinholeCamera, Vector2, Vector3};
 /// Chi-square with two degrees of freedom at 95 %.
 const CHI2_95_2: f64 = 5.991;
 
-/// The pose of a camera from points known in some frame a (m) and the rectified `pixels` of camera b that show them, some of
-/// the pairs being wrong: what [`estimate_rigid_motion`](crate::estimate_rigid_motion) does, for features without depth.
+/// The pose of camera b from points in a frame a (m) and their rectified `pixels`, with wrong pairs among them. It is the counterpart of
+/// [`estimate_rigid_motion`](crate::estimate_rigid_motion) for features without depth.
 ///
-/// RANSAC \[Fischler81\]: three pairs allow up to four poses \[Persson18\]; a pair agrees with a pose when its point reprojects
-/// to its pixel within 95 % of [`RansacConfig::pixel_sigma`]; the pose of the least truncated cost \[Torr00\] wins, and is
-/// polished on its inliers by Gauss-Newton on the reprojection errors, robustly weighted (Huber). The numbers for depth in
-/// `config` are not used.
+/// RANSAC \[Fischler81\]: three pairs allow up to four poses \[Persson18\]. A pair agrees with a pose if its point reprojects to its pixel
+/// within 95 % of [`RansacConfig::pixel_sigma`]. The pose with the minimum truncated cost \[Torr00\] is refined on its inliers by
+/// Gauss-Newton on the reprojection errors, robustly weighted (Huber). The numbers for depth in `config` are ignored.
 ///
 /// Pairs that are not finite never agree. The same input and `seed` give the same result. `None` if fewer than
 /// [`RansacConfig::min_inliers`] pairs agree, or the points do not determine a pose, as on one line. Panics when the slices
@@ -57,7 +56,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
     use trundle_core::Pose3;
 
-    /// Points of frame a with the pixels of camera b, with an error of at most `noise` px in each direction; every `nth` pixel is wrong.
+    /// Points of frame a with their pixels in camera b, with an error of at most `noise` px in each direction; every `nth` pixel is wrong.
     fn scene(truth: Pose3, count: usize, noise: f64, nth: usize, seed: u64) -> (Vec<Vector3>, Vec<Vector2>) {
         let camera = PinholeCamera::kinect_v2();
         let mut rng = ChaCha8Rng::seed_from_u64(seed);

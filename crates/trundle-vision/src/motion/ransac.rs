@@ -14,19 +14,19 @@ const CHI2_95_3: f64 = 7.815;
 pub struct RansacResult {
     /// The motion: maps points of frame a into camera frame b.
     pub b_from_a: Pose3,
-    /// The pairs that agree with it, rising.
+    /// Indices of the pairs that agree with the motion, increasing.
     pub inliers: Vec<usize>,
 }
 
 /// The motion between two RGB-D frames from paired points (camera frames a and b, m), some of the pairs being wrong.
 ///
-/// RANSAC \[Fischler81\]: three pairs give a motion by least squares \[Umeyama91\]; a pair agrees with it when its point of a
-/// reprojects to its point of b, in `camera` px and in depth, within 95 % of the noise, which for a depth grows with its
-/// square; the motion with the least truncated cost \[Torr00\] wins, and the search ends when a better one is unlikely. It
-/// is then polished on its inliers by Gauss-Newton on the reprojection and depth errors, robustly weighted (Huber).
+/// RANSAC \[Fischler81\]: three pairs give a motion by least squares \[Umeyama91\]. A pair agrees if its point of a reprojects to its point
+/// of b, in `camera` px and in depth, within 95 % of the noise; the noise of a depth grows with its square. The motion has the minimum
+/// truncated cost \[Torr00\], and the search ends when a better one is unlikely. The motion is then refined on its inliers by Gauss-Newton
+/// on the reprojection and depth errors, robustly weighted (Huber).
 ///
-/// Pairs with a point that is not finite or not in front of its camera never agree. The same input and `seed` give the same
-/// result. `None` if fewer than [`RansacConfig::min_inliers`] pairs agree. Panics when the slices differ in length.
+/// Pairs with a point that is not finite or not in front of its camera count as outliers. The same input and `seed` give the same result.
+/// `None` if fewer than [`RansacConfig::min_inliers`] pairs agree. Panics when the slices differ in length.
 pub fn estimate_rigid_motion(
     points_a: &[Vector3],
     points_b: &[Vector3],
@@ -57,7 +57,7 @@ struct Pair {
     index: usize,
     a: Vector3,
     b: Vector3,
-    /// How far the distance to another point may be wrong because of this one, m.
+    /// Possible error of the distance to another point, caused by this one, m.
     slack: f64,
     observation: Observation,
 }
@@ -87,8 +87,7 @@ impl Pair {
     }
 }
 
-/// Whether the three distances are the same on both sides within the noise, as in any rigid motion: the cheap check that
-/// spares most wrong samples the rest.
+/// Whether the three distances agree on both sides within the noise, as in any rigid motion: this cheap check rejects most wrong samples.
 fn keeps_distances(sample: &[&Pair; 3]) -> bool {
     [(0, 1), (1, 2), (2, 0)].into_iter().all(|(i, j)| {
         let (p, q) = (sample[i], sample[j]);

@@ -42,8 +42,8 @@ impl RefineConfig {
     }
 }
 
-/// The pose near `b_from_a` that brings `points_a` (camera frame a, m) nearest to their rectified `pixels_b`, by Gauss-Newton
-/// on the Huber loss of the reprojection errors. `camera` is that of image b. A step that makes it worse is not taken.
+/// The pose near `b_from_a` with the smallest reprojection errors of `points_a` (camera frame a, m) to their rectified `pixels_b`, by
+/// Gauss-Newton on the Huber loss. `camera` is that of image b. A step that increases the cost is rejected.
 ///
 /// `None` if the points do not determine a pose: fewer than three, or degenerate. Panics when the slices differ in length.
 pub fn refine_pose_by_reprojection(
@@ -78,7 +78,7 @@ pub(crate) fn gauss_newton(
         let step = -solve(hessian, &gradient)?;
         let candidate = (pose * Pose3::exp(step)).renormalized();
         let candidate_cost = robust_cost(candidate, observations, camera);
-        // Also false where it is NaN.
+        // Also false for NaN.
         if candidate_cost <= cost {
             (pose, cost) = (candidate, candidate_cost);
         } else {

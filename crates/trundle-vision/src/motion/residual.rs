@@ -10,17 +10,17 @@ pub(crate) struct Observation {
     pub point: Vector3,
     /// Rectified pixel in image b.
     pub pixel: Vector2,
-    /// One over the pixel's standard deviation, 1/px.
+    /// Inverse of the pixel's standard deviation, 1/px.
     pub per_px: f64,
     /// Depth in image b, m.
     pub depth: f64,
-    /// One over the depth's standard deviation, 1/m; 0 if the depth is not known.
+    /// Inverse of the depth's standard deviation, 1/m; 0 for an unknown depth.
     pub per_m: f64,
     /// Squared residual beyond which Huber's loss is linear, and an inlier ends.
     pub bound: f64,
 }
 
-/// Squared residual of a point behind the camera: 1e8, larger than any in front of it, and finite. Source: ours.
+/// Squared residual of a point behind the camera: 1e8, finite and larger than any in front of the camera. Source: ours.
 const CHI2_BEHIND_CAMERA: f64 = 1e8;
 
 impl Observation {
@@ -57,7 +57,7 @@ impl Observation {
     }
 }
 
-/// A pose with its rotation as a matrix, for moving many points.
+/// A pose with its rotation as a matrix, for the transformation of many points.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Mover {
     pub rotation: Matrix3<f64>,

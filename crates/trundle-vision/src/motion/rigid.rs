@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, SVD};
 use trundle_core::{Pose3, Vector3};
 
-/// `b_from_a` that brings the first point of each pair nearest to the second in the least-squares sense \[Umeyama91\],
-/// without scale. `None` below three pairs, or when the points of either side lie on a line.
+/// `b_from_a` with the least-squares fit of the first points of the pairs to the second points \[Umeyama91\], without scale. `None` for
+/// fewer than three pairs, or for collinear points on either side.
 pub(crate) fn rigid_motion(pairs: &[(Vector3, Vector3)]) -> Option<Pose3> {
     let count = pairs.len() as f64;
     (pairs.len() >= 3).then_some(())?;

@@ -4,11 +4,11 @@
 use super::vector::{self, BLOCK_PX, Bytes, block, block_mut, starts};
 use trundle_core::GrayImage;
 
-/// Weights of a Gaussian of standard deviation 2 px over 7 px, in 1/256: middle first. BRIEF compares single pixels, so
-/// that it needs a smoothed image \[Calonder10, sec. 3.1\].
+/// Weights of a Gaussian of standard deviation 2 px over 7 px, in 1/256: middle first. BRIEF compares single pixels and therefore needs a
+/// smoothed image \[Calonder10, sec. 3.1\].
 const KERNEL: [u32; 4] = [56, 49, 34, 17];
 const KERNEL_RADIUS_PX: usize = KERNEL.len() - 1;
-/// Pixels whose seven slices are found at once: finding them costs as much as smoothing 16 px. Source: ours.
+/// Number of pixels whose seven slices are found together: finding them costs as much as smoothing 16 px. Source: ours.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 const SPAN_PX: usize = 64;
 
@@ -40,7 +40,7 @@ impl Blur {
 fn smooth(from: [&[u8]; 2 * KERNEL_RADIUS_PX + 1], to: &mut [u8]) {
     #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
     if to.len() >= SPAN_PX && vector::is_available() {
-        // SAFETY: the processor has the one feature that the function is compiled for.
+        // SAFETY: the processor has the only feature that the function is compiled for.
         return unsafe { smooth_by_blocks(from, to) };
     }
     smooth_plainly(from, to);

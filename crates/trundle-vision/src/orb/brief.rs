@@ -7,8 +7,8 @@ use crate::Descriptor;
 /// Brightness comparisons, a bit each.
 const BRIGHTNESS_TESTS: usize = 256;
 
-/// Rotated BRIEF: bit i is set where the first point of test i is darker than the second. The tests are turned by the
-/// patch's direction \[Rublee11, sec. 4.1\]. The patch is smoothed already.
+/// Rotated BRIEF: bit i is set if the first point of test i is darker than the second. The tests are rotated by the patch's direction
+/// \[Rublee11, sec. 4.1\]. The patch must be smoothed.
 pub(crate) fn describe(patch: &Patch, direction: Direction) -> Descriptor {
     let [first, second] = turned(direction);
     let value = |at: u32| patch[at as usize % (PATCH_STRIDE * PATCH_STRIDE)];
@@ -23,19 +23,19 @@ pub(crate) fn describe(patch: &Patch, direction: Direction) -> Descriptor {
     Descriptor(words)
 }
 
-/// Where in a patch the ends of every test are when turned.
+/// Indices in a patch of both ends of every rotated test.
 type Places = [[u32; BRIGHTNESS_TESTS]; 2];
 
 fn turned(direction: Direction) -> Places {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {
-        // SAFETY: the processor has the one feature that the function is compiled for.
+        // SAFETY: the processor has the only feature that the function is compiled for.
         return unsafe { turned_by_avx2(direction) };
     }
     turned_plainly(direction)
 }
 
-/// The same as [`turned_plainly`], more numbers per instruction. No product and sum are fused, so that the bits are the same.
+/// The same as [`turned_plainly`], more numbers per instruction. No product and sum are fused, so the bits are equal.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
 fn turned_by_avx2(direction: Direction) -> Places {
@@ -58,7 +58,7 @@ fn turned_plainly(direction: Direction) -> Places {
 /// Index of the patch's middle, less what [`rounded_bits`] adds.
 const MIDDLE_INDEX: u32 = ((DISC_RADIUS_PX * PATCH_STRIDE + DISC_RADIUS_PX) as u32)
     .wrapping_sub(ROUNDING_OFFSET.to_bits().wrapping_mul(PATCH_STRIDE as u32 + 1));
-/// Adding it leaves no bits for a fraction: the sum's last bits are the nearest whole number.
+/// A sum with this number has no bits for a fraction: its last bits are the nearest whole number.
 const ROUNDING_OFFSET: f32 = 12_582_912.0;
 
 /// The nearest whole number plus the bits of [`ROUNDING_OFFSET`], without a conversion that the compiler cannot vectorise.
@@ -66,17 +66,17 @@ fn rounded_bits(value: f32) -> u32 {
     (value + ROUNDING_OFFSET).to_bits()
 }
 
-/// Where one end of every test is, px from the middle.
+/// Position of one end of every test, px from the middle.
 struct Points {
     x: [f32; BRIGHTNESS_TESTS],
     y: [f32; BRIGHTNESS_TESTS],
 }
 
-/// Both ends of every test, drawn from an isotropic normal distribution of variance S^2 / 25 for a patch of side S, which
-/// did best in \[Calonder10, sec. 3.2\] (G II). Ours: from a fixed seed, not the learned table of \[Rublee11\].
+/// Both ends of every test, from an isotropic normal distribution of variance S^2 / 25 for a patch of side S, the best one in \[Calonder10,
+/// sec. 3.2\] (G II). Ours: from a fixed seed, not the learned table of \[Rublee11\].
 static PATTERN: [Points; 2] = pattern();
 
-/// Largest distance of a test point from the middle, px: it stays in the patch under every rotation.
+/// Largest distance of a test point from the middle, px: the point is in the patch for every rotation.
 const MAX_TEST_RADIUS_PX: f32 = DISC_RADIUS_PX as f32 - 0.5;
 /// Standard deviation of the test points, px: S / 5 of \[Calonder10\].
 const TEST_SIGMA_PX: f32 = (2 * DISC_RADIUS_PX + 1) as f32 / 5.0;
@@ -98,7 +98,7 @@ const fn pattern() -> [Points; 2] {
     points
 }
 
-/// A nearly normal number: the sum of twelve uniform ones, less six; and the generator's next state.
+/// An approximately normal number, the sum of twelve uniform ones minus six; and the generator's next state.
 const fn normal(mut state: u64) -> (f32, u64) {
     let (mut sum, mut i) = (0, 0);
     while i < 12 {

@@ -3,11 +3,11 @@
 use super::corner::Corner;
 use std::cmp::Reverse;
 
-/// Appends to `chosen` `quota` of the `corners`, or all if there are fewer, spread evenly over an image of this size.
+/// Appends `quota` of the `corners` to `chosen`, or all if fewer exist, evenly distributed over an image of this size.
 ///
-/// The image is halved repeatedly across its longer side, and the quota with it. Quota that one half cannot use goes to the other.
-/// Where the quota has come down to [`MAX_LEAF_CORNERS`], the strongest corners are taken. Cost: n log n. The order of the
-/// `corners` is lost; that of `chosen` is fixed.
+/// The image is halved repeatedly across its longer side, together with the quota. A quota unused by one half is given to the other. Below
+/// a quota of [`MAX_LEAF_CORNERS`], the strongest corners are selected. Cost: n log n. The order of the `corners` changes; that of `chosen`
+/// is deterministic.
 pub(crate) fn choose(
     corners: &mut [Corner],
     (width, height): (usize, usize),
@@ -18,8 +18,8 @@ pub(crate) fn choose(
     choose_in(area, corners, quota, chosen);
 }
 
-/// Most corners of one part that are taken by strength: 3. One would distribute corners more evenly; three give a tenth more
-/// inliers between frames of TUM freiburg1_rpy. Source: ours.
+/// Maximum number of corners of one part that are selected by strength: 3. A value of one would distribute corners more evenly; three give
+/// a tenth more inliers between frames of TUM freiburg1_rpy. Source: ours.
 const MAX_LEAF_CORNERS: usize = 3;
 
 /// A rectangle of pixels, right and bottom exclusive.
@@ -42,7 +42,7 @@ impl Area {
         }
     }
 
-    /// Whether a corner of the whole lies in this first half of it.
+    /// Whether a corner of the whole is in the first half.
     fn is_before_end(self, corner: Corner) -> bool {
         u32::from(corner.x) < self.right && u32::from(corner.y) < self.bottom
     }
@@ -70,7 +70,7 @@ fn share(quota: usize, a: usize, b: usize) -> (usize, usize) {
     (quota - for_b, for_b)
 }
 
-/// Those of which `is_first` holds, and the others.
+/// The corners that satisfy `is_first`, and the others.
 fn partition(corners: &mut [Corner], is_first: impl Fn(Corner) -> bool) -> (&mut [Corner], &mut [Corner]) {
     let mut boundary = 0;
     for i in 0..corners.len() {

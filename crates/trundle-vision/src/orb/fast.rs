@@ -1,7 +1,6 @@
-//! FAST-9 by exact scores: a pixel is a corner if nine contiguous ones of the sixteen on a circle of radius 3 around it
-//! are all brighter, or all darker, than it by more than a threshold \[Rosten06\]. The score is the highest threshold
-//! below which that holds. It comes from minima and maxima alone, so that a register of pixels is done at a time, and
-//! serves both thresholds and the suppression of non-maxima.
+//! FAST-9 by exact scores. A pixel is a corner if nine contiguous ones of the sixteen on a circle of radius 3 are all brighter, or all
+//! darker, by more than a threshold \[Rosten06\]. The score is the highest threshold with this property. Minima and maxima alone give the
+//! score, so a register of pixels is processed per step. The score serves both thresholds and the suppression of non-maxima.
 
 use super::OrbConfig;
 use super::corner::Corner;
@@ -43,9 +42,8 @@ pub(crate) struct Detector {
 }
 
 impl Detector {
-    /// Appends the corners of `image` that are at least [`BORDER_PX`] px from its border, row by row: local maxima of the
-    /// score above the threshold, and in cells that have none, above the lower one; only of those that are `wanted`. The image is
-    /// larger than two borders.
+    /// Appends the `wanted` corners of `image` that are at least [`BORDER_PX`] px from its border, row by row. They are local maxima of the
+    /// score above the threshold; in cells without any, above the lower threshold. The image is larger than two borders.
     pub fn detect(
         &mut self,
         image: &GrayImage,
@@ -68,12 +66,12 @@ impl Detector {
         corners.retain(|c| c.score > config.fast_threshold || !self.cells[cell(c)]);
     }
 
-    /// The scores of the last image, row by row: of every pixel that can be kept, and its neighbours.
+    /// The scores of the last image, row by row: of every possible corner and its neighbours.
     pub fn scores(&self) -> &[u8] {
         &self.scores
     }
 
-    /// Scores every pixel that can be kept or is a neighbour of one.
+    /// Scores every possible corner and its neighbours.
     fn score(&mut self, image: &GrayImage, threshold: u8) {
         let (width, height) = (image.width(), image.height());
         self.scores.resize(width * height, 0);
@@ -86,14 +84,14 @@ impl Detector {
 
     fn find_maxima(&mut self, (width, height): (usize, usize), corners: &mut Vec<Corner>) {
         self.maxima.resize((width - 2 * BORDER_PX).next_multiple_of(WORD_PX), 0);
-        // The last word is longer than the row: what an image of another size left there is no maximum.
+        // The last word is longer than the row: leftovers of an image of another size are no maxima.
         self.maxima[width - 2 * BORDER_PX..].fill(0);
         for y in BORDER_PX..height - BORDER_PX {
             let row = |y: usize| &self.scores[y * width..][BORDER_PX - 1..=width - BORDER_PX];
             let maxima = &mut self.maxima[..width - 2 * BORDER_PX];
             suppress_row([row(y - 1), row(y), row(y + 1)], maxima);
             for (word, scores) in self.maxima.as_chunks::<WORD_PX>().0.iter().enumerate() {
-                // Most words are empty, and the others nearly.
+                // Most words are empty, and the others have few bits.
                 let mut left = u64::from_le_bytes(*scores);
                 while left != 0 {
                     let i = left.trailing_zeros() as usize / 8;
@@ -109,11 +107,11 @@ impl Detector {
     }
 }
 
-/// Pixels that are searched at once for maxima: 8.
+/// Number of pixels searched together for maxima: 8.
 const WORD_PX: usize = 8;
 
-/// The `$best` over all arcs of nine of `$circle` of the `$worst` of its pixels, be these one each or many. Two arcs of nine
-/// share eight; the eight halve twice.
+/// The `$best` over all arcs of nine of `$circle` of the `$worst` of its pixels, for single pixels or vectors. Two neighbouring arcs of
+/// nine share eight pixels, which are halved twice.
 macro_rules! best_arc {
     ($circle:expr, $worst:expr, $best:expr) => {{
         let (circle, worst, best) = ($circle, $worst, $best);
@@ -134,12 +132,12 @@ macro_rules! best_arc {
     }};
 }
 
-/// Scores a row of pixels, from the seven rows around it, each 2 * [`CIRCLE_RADIUS_PX`] longer than `scores`. What does not exceed
-/// `threshold` becomes 0.
+/// Scores a row of pixels, from the seven rows around it, each 2 * [`CIRCLE_RADIUS_PX`] longer than `scores`. A score up to `threshold`
+/// becomes 0.
 fn score_row(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, scores: &mut [u8]) {
     #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
     if scores.len() >= BLOCK_PX && vector::is_available() {
-        // SAFETY: the processor has the one feature that the function is compiled for.
+        // SAFETY: the processor has the only feature that the function is compiled for.
         return unsafe { score_row_by_blocks(rows, threshold, scores) };
     }
     score_row_plainly(rows, threshold, scores);
@@ -153,10 +151,10 @@ fn score_row_plainly(rows: [&[u8]; 2 * CIRCLE_RADIUS_PX + 1], threshold: u8, sco
     }
 }
 
-/// [`score_row_plainly`] of [`BLOCK_PX`] pixels or more, a block at a time.
+/// [`score_row_plainly`] for [`BLOCK_PX`] pixels or more, block by block.
 ///
-/// An arc of nine holds one of the topmost and the lowest pixel of the circle, and one of the leftmost and the rightmost. These four
-/// alone show for most of an image that a block has no corner; then no other pixel is read.
+/// An arc of nine contains the top or the bottom pixel of the circle, and the leftmost or the rightmost one. For most of an image, these
+/// four pixels alone exclude a corner in a block; the other pixels are then not read.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 #[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2"))]
 #[cfg_attr(target_arch = "aarch64", target_feature(enable = "neon"))]
@@ -202,7 +200,7 @@ fn score(circle: [u8; 16], middle: u8) -> u8 {
 fn suppress_row(rows: [&[u8]; 3], maxima: &mut [u8]) {
     #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
     if maxima.len() >= BLOCK_PX && vector::is_available() {
-        // SAFETY: the processor has the one feature that the function is compiled for.
+        // SAFETY: the processor has the only feature that the function is compiled for.
         return unsafe { suppress_row_by_blocks(rows, maxima) };
     }
     suppress_row_plainly(rows, maxima);
@@ -216,7 +214,7 @@ fn suppress_row_plainly([above, own, below]: [&[u8]; 3], maxima: &mut [u8]) {
     }
 }
 
-/// [`suppress_row_plainly`] of [`BLOCK_PX`] pixels or more, a block at a time.
+/// [`suppress_row_plainly`] for [`BLOCK_PX`] pixels or more, block by block.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 #[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2"))]
 #[cfg_attr(target_arch = "aarch64", target_feature(enable = "neon"))]
@@ -301,7 +299,7 @@ mod tests {
         let corners = detected(&image);
         assert_eq!(corners.len(), 4, "{corners:?}");
         for (corner, at) in corners.iter().zip([(30, 30), (49, 30), (30, 49), (49, 49)]) {
-            // All pixels of the corner's tip score the same in so clean a picture: the first of them counts.
+            // All pixels of the corner's tip have the same score in a noiseless picture: the first one is used.
             assert!(corner.x.abs_diff(at.0) <= 2 && corner.y.abs_diff(at.1) <= 2, "{corner:?} {at:?}");
             assert_eq!(corner.score, 150);
         }

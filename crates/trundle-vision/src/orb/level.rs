@@ -7,7 +7,7 @@ use super::{
 use crate::ImagePatch;
 use trundle_core::GrayImage;
 
-/// One level of the pyramid, with the buffers of every step.
+/// A level of the pyramid, with the buffers of every step.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Level {
     image: GrayImage,
@@ -53,8 +53,8 @@ impl Level {
         }
     }
 
-    /// Finds the corners that are far enough from the border for a descriptor, with gradients of at least `least` grey values per px
-    /// around them in every direction.
+    /// Finds the corners with enough distance from the border for a descriptor, and gradients of at least `least` grey values per px in
+    /// every direction.
     pub fn detect(&mut self, config: &OrbConfig, least: f32) {
         self.corners.clear();
         if self.width().min(self.height()) > 2 * patch::BORDER_PX && self.width().max(self.height()) <= 65536
@@ -65,7 +65,7 @@ impl Level {
         }
     }
 
-    /// Keeps `quota` of the corners, evenly spread, or all if there are fewer. How many were kept.
+    /// Selects `quota` of the corners, evenly distributed, or all if fewer exist. Returns the number of selected corners.
     pub fn choose(&mut self, quota: usize) -> usize {
         self.chosen.clear();
         distribute::choose(

@@ -1,7 +1,7 @@
 //! ORB: corners of FAST on an image pyramid, oriented by the intensity centroid, described by rotated BRIEF \[Rublee11\].
 //!
-//! The idea: a cheap corner test finds the same points in every image. The centre of mass of their surroundings gives the roll of the
-//! camera, and 256 brightness comparisons turned by that angle give a descriptor, compared by counting bits.
+//! Idea: a cheap corner test finds the same points in every image. The centre of mass of their surroundings gives the roll of the camera.
+//! 256 brightness comparisons rotated by that angle give a descriptor; the distance of two descriptors is the number of different bits.
 //! Cost: linear in the pixels of the pyramid (3.3 images) plus about 1 us a feature.
 //!
 //! | paper | here | unit |
@@ -56,7 +56,7 @@ impl OrbExtractor {
         Ok(Self { scale_factors: config.scale_factors(), quotas: config.quotas(), levels, config })
     }
 
-    /// How it works.
+    /// Settings of the extractor.
     pub fn config(&self) -> &OrbConfig {
         &self.config
     }
@@ -66,9 +66,9 @@ impl OrbExtractor {
         &self.scale_factors
     }
 
-    /// The features of `image`, octave by octave, at most [`OrbConfig::features`]; keypoints in px of `image`, to a fraction
-    /// of a pixel. None on a pixel within 16 px (of its own level) of the border: there is nothing to describe it by. An
-    /// image of less than 33 px a side has none.
+    /// The features of `image`, octave by octave, at most [`OrbConfig::features`]; keypoints in px of `image`, to a fraction of a pixel. A
+    /// pixel within 16 px (of its own level) of the border has no feature, because its patch would be incomplete. An image of less than 33
+    /// px a side has none.
     pub fn extract(&mut self, image: &GrayImage) -> Features {
         let mut features = Features::default();
         self.extract_into(image, &mut features);
@@ -86,7 +86,7 @@ impl OrbExtractor {
         self.collect(image, features);
     }
 
-    /// Each level from the one below it.
+    /// Computes each level from the one below.
     fn build_pyramid(&mut self, image: &GrayImage) {
         for (index, scale) in self.scale_factors.iter().enumerate() {
             let size = |side: usize| (side as f64 / scale).round() as usize;
@@ -98,7 +98,7 @@ impl OrbExtractor {
         }
     }
 
-    /// Takes each level's share of its corners; what a level lacks, the next ones may give.
+    /// Selects each level's share of its corners; later levels fill a shortage.
     fn choose(&mut self) {
         let mut owed = 0;
         for (level, quota) in self.levels.iter_mut().zip(&self.quotas) {

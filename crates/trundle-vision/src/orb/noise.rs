@@ -1,4 +1,4 @@
-//! How much noise an image has.
+//! Noise of an image.
 
 use trundle_core::GrayImage;
 
@@ -9,15 +9,15 @@ const MASK_GAIN: f32 = 6.0;
 const QUANTILE_DIVISOR: usize = 4;
 /// That quantile of the absolute values of a normal distribution, in standard deviations.
 const QUANTILE_SIGMAS: f32 = 0.3186;
-/// Smallest standard deviation of an image's noise: 0.29 grey values, the rounding to whole ones.
+/// Smallest standard deviation of an image's noise: 0.29 grey values, the rounding error of whole values.
 const MIN_NOISE_SIGMA: f32 = 0.29;
 /// Distance between the pixels that are used, in both directions: 2. Source: ours.
 const STRIDE_PX: usize = 2;
 /// Number of possible answers: 8 x 255 and 0.
 const ANSWER_COUNT: usize = 8 * 255 + 1;
 
-/// Standard deviation of the image's noise, grey values, at least that of rounding: by how much its pixels differ from what
-/// their neighbours let expect, where that is little. A ramp, and the middle of a straight edge, differ by nothing \[Immerkaer96\].
+/// Standard deviation of the image's noise, grey values, at least that of rounding: the difference of pixels from the prediction by their
+/// neighbours, in areas of small differences. The difference is zero on a ramp and in the middle of a straight edge \[Immerkaer96\].
 pub(crate) fn sigma(image: &GrayImage) -> f32 {
     let mut counts = [0_usize; ANSWER_COUNT];
     for y in (1..image.height().saturating_sub(1)).step_by(STRIDE_PX) {
@@ -29,14 +29,14 @@ pub(crate) fn sigma(image: &GrayImage) -> f32 {
     (quarter(&counts) / (QUANTILE_SIGMAS * MASK_GAIN)).max(MIN_NOISE_SIGMA)
 }
 
-/// The answer, whatever its sign, of the mask 1 -2 1, -2 4 -2, 1 -2 1.
+/// The absolute response of the mask 1 -2 1, -2 4 -2, 1 -2 1.
 fn answer(rows: [[u8; 3]; 3]) -> u16 {
     let [above, here, below] =
         rows.map(|[left, middle, right]| i16::from(left) - 2 * i16::from(middle) + i16::from(right));
     (above - 2 * here + below).unsigned_abs()
 }
 
-/// Below what a quarter of the answers is; 0 of none. Whole numbers stand for what is rounded to them.
+/// The lower quartile of the responses; 0 without responses. Each whole number represents the interval that is rounded to it.
 fn quarter(counts: &[usize; ANSWER_COUNT]) -> f32 {
     let wanted = counts.iter().sum::<usize>() as f32 / QUANTILE_DIVISOR as f32;
     let mut below = 0.0;

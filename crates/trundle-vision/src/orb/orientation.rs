@@ -12,7 +12,7 @@ pub(crate) struct Direction {
     pub sin: f32,
 }
 
-/// The direction of the intensity centroid within the disc; along x if there is none.
+/// The direction of the intensity centroid within the disc; along x if undefined.
 pub(crate) fn direction(patch: &Patch) -> Direction {
     let (m10, m01) = moments(patch);
     let (x, y) = (m10 as f32, m01 as f32);
@@ -26,7 +26,7 @@ pub(crate) fn direction(patch: &Patch) -> Direction {
 fn moments(patch: &Patch) -> (i32, i32) {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {
-        // SAFETY: the processor has the one feature that the function is compiled for.
+        // SAFETY: the processor has the only feature that the function is compiled for.
         return unsafe { moments_by_avx2(patch) };
     }
     moments_plainly(patch)
@@ -39,9 +39,9 @@ fn moments_by_avx2(patch: &Patch) -> (i32, i32) {
     moments_plainly(patch)
 }
 
-/// m_10 and m_01: sums of x I(x, y) and y I(x, y) over the disc, from its middle \[Rublee11, eq. 1\]. Column by column, in
-/// 16 bits: a column's sum is at most 31 * 255, and its sum of y I is at most (1 + ... + 15) * 255 in magnitude. No
-/// sum can overflow. `Wrapping` is used because checks would keep the compiler from vector code.
+/// m_10 and m_01: sums of x I(x, y) and y I(x, y) over the disc, from its middle \[Rublee11, eq. 1\]. Column by column, in 16 bits: a
+/// column's sum is at most 31 * 255, and its sum of y I is at most (1 + ... + 15) * 255 in magnitude. No sum can overflow. `Wrapping` is
+/// used because overflow checks would prevent vector code.
 #[inline(always)]
 fn moments_plainly(patch: &Patch) -> (i32, i32) {
     let (mut sums, mut downs) = ([Wrapping(0i16); PATCH_STRIDE], [Wrapping(0i16); PATCH_STRIDE]);

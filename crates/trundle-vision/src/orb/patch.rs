@@ -7,7 +7,7 @@ use trundle_core::GrayImage;
 pub(crate) const DISC_RADIUS_PX: usize = 15;
 /// Smallest distance of a described corner to the border of its level: 16 px.
 pub(crate) const BORDER_PX: usize = 16;
-/// Columns of a [`Patch`]: 32; the last one is not used. A power of two, so that indices need no check.
+/// Columns of a [`Patch`]: 32; the last one is unused. A power of two needs no check of indices.
 pub(crate) const PATCH_STRIDE: usize = 32;
 /// The square around a corner, which is at ([`DISC_RADIUS_PX`], [`DISC_RADIUS_PX`]); the last row is zero.
 pub(crate) type Patch = [u8; PATCH_STRIDE * PATCH_STRIDE];

@@ -11,7 +11,7 @@ use trundle_core::GrayImage;
 pub(crate) struct Resize {
     sizes: [usize; 4],
     columns: Vec<Tap>,
-    /// The same columns, four at a time; empty if four need more samples than a register has.
+    /// The same columns, in groups of four; empty if a group needs more samples than a register has.
     quads: Vec<Quad>,
     /// A row of the larger image, interpolated downwards, in 1/128, with [`SAMPLES_PER_REGISTER`] more after its end.
     row: Vec<i16>,
@@ -21,7 +21,7 @@ pub(crate) struct Resize {
 #[derive(Debug, Clone, Copy)]
 struct Tap {
     first: u32,
-    /// Weight of the second in 1/256; 256 - this is that of the first.
+    /// Weight of the second sample in 1/256; that of the first is 256 minus this.
     weight: u16,
 }
 
@@ -42,7 +42,7 @@ struct Quad {
 }
 
 impl Resize {
-    /// Fills `to` with `from` at its size, which may be empty. `from` must have pixels if `to` has.
+    /// Resizes `from` to the size of `to`, which may be empty. `from` must have pixels if `to` has.
     pub fn run(&mut self, from: &GrayImage, to: &mut GrayImage) {
         self.fit([from.width(), from.height(), to.width(), to.height()]);
         if to.data().is_empty() {
@@ -57,7 +57,7 @@ impl Resize {
         }
     }
 
-    /// Prepares for images of these sizes.
+    /// Prepares the tables for images of these sizes.
     fn fit(&mut self, sizes: [usize; 4]) {
         if self.sizes == sizes {
             return;
@@ -71,7 +71,7 @@ impl Resize {
     }
 }
 
-/// Where sample `i` of `to` lies among those of `from`.
+/// Position of sample `i` of `to` among those of `from`.
 fn tap(i: usize, from: usize, to: usize) -> Tap {
     let position = ((i as f64 + 0.5) * from as f64 / to as f64 - 0.5).clamp(0.0, (from - 1) as f64);
     let in_256ths = (position * 256.0).round() as u64;
@@ -98,7 +98,7 @@ fn quad(columns: &[Tap; 4]) -> Option<Quad> {
 fn mix_rows(upper: &[u8], lower: &[u8], weight: u16, row: &mut [i16]) {
     #[cfg(target_arch = "x86_64")]
     if row.len() >= 16 && vector::is_available() {
-        // SAFETY: the processor has the one feature that the function is compiled for.
+        // SAFETY: the processor has the only feature that the function is compiled for.
         return unsafe { mix_rows_by_blocks(upper, lower, weight, row) };
     }
     mix_rows_plainly(upper, lower, weight, row);
@@ -126,7 +126,7 @@ fn shrink_row(row: &[i16], columns: &[Tap], quads: &[Quad], to: &mut [u8]) {
     let _ = quads;
     #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
     if vector::is_available() {
-        // SAFETY: the processor has the one feature that the function is compiled for.
+        // SAFETY: the processor has the only feature that the function is compiled for.
         unsafe { shrink_quads(row, quads, to) };
         let done = quads.len() / 2 * 8;
         return shrink_row_plainly(row, &columns[done..], &mut to[done..]);
@@ -142,7 +142,7 @@ fn shrink_row_plainly(row: &[i16], columns: &[Tap], to: &mut [u8]) {
     }
 }
 
-/// [`shrink_row_plainly`] of the first columns, two quads of them at a time.
+/// [`shrink_row_plainly`] for the first columns, two quads per step.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 #[cfg_attr(target_arch = "x86_64", target_feature(enable = "avx2"))]
 #[cfg_attr(target_arch = "aarch64", target_feature(enable = "neon"))]

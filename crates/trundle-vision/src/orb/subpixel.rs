@@ -1,12 +1,12 @@
-//! Where between the pixels a corner is.
+//! Position of a corner between the pixels.
 
 use super::corner::Corner;
 
-/// Where the score is highest, px from the `corner`, at most half a pixel in each direction: the tops of parabolas through the three
-/// columns and the three rows around it, their scores weighted 1, 2, 1. With these weights a corner is placed twice as exactly as by
-/// whole pixels, and better than by its own row and column alone (docs/algorithms/orb.md).
+/// Position of the maximum score, px from the `corner`, at most half a pixel in each direction: the tops of parabolas through the three
+/// columns and the three rows around it, with weights 1, 2, 1. The position is twice as exact as the pixel, and better than with the
+/// corner's row and column alone (docs/algorithms/orb.md).
 ///
-/// `scores` are those of the corner's level, `width` px a row; the corner is not at the border.
+/// `scores` are those of the corner's level, `width` px per row; the corner is not at the border.
 pub(crate) fn offset(scores: &[u8], width: usize, corner: Corner) -> (f32, f32) {
     let first = (usize::from(corner.y) - 1) * width + usize::from(corner.x) - 1;
     let rows = [0, 1, 2].map(|row| &scores[first + row * width..][..3]);
@@ -16,7 +16,7 @@ pub(crate) fn offset(scores: &[u8], width: usize, corner: Corner) -> (f32, f32) 
     (top([0, 1, 2].map(column)), top([0, 1, 2].map(row)))
 }
 
-/// Where the parabola through the values at -1, 0 and 1 is highest, at most 0.5 from the middle; 0 if it has no top.
+/// Position of the maximum of the parabola through the values at -1, 0 and 1, at most 0.5 from the middle; 0 without a maximum.
 fn top([before, middle, after]: [i32; 3]) -> f32 {
     let bend = 2 * middle - before - after;
     if bend <= 0 {

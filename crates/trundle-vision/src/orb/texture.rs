@@ -3,7 +3,7 @@
 use super::corner::Corner;
 use trundle_core::GrayImage;
 
-/// Pixels around a corner in which its texture is measured: 7. Source: ours.
+/// Radius of the area in which a corner's texture is measured: 7 px. Source: ours.
 const TEXTURE_RADIUS_PX: usize = 7;
 const TEXTURE_SIDE_PX: usize = 2 * TEXTURE_RADIUS_PX + 1;
 /// Columns that are read: a power of two; the last is not counted.
@@ -14,10 +14,10 @@ const COUNT_WEIGHTS: [i16; TEXTURE_STRIDE] = {
     counts
 };
 
-/// Root mean square of the gradient around `corner` in the direction in which it is least, grey values per px: the smaller
-/// eigenvalue of the structure tensor \[Shi94\]. An edge has none along itself, however strong it is.
+/// Root mean square of the gradient around `corner` in its minimum direction, grey values per px: the smaller eigenvalue of the structure
+/// tensor \[Shi94\]. It is zero for an edge of any strength.
 ///
-/// `image` is smoothed, so that its noise counts little; the corner is far enough from its border to be described.
+/// `image` is smoothed, so its noise is small; the corner has enough distance from the border for a descriptor.
 pub(crate) fn min_gradient(image: &GrayImage, corner: Corner) -> f32 {
     let [across, down, both] = tensor(image, corner).map(f64::from);
     let middle = (across + down) / 2.0;
@@ -29,7 +29,7 @@ pub(crate) fn min_gradient(image: &GrayImage, corner: Corner) -> f32 {
 fn tensor(image: &GrayImage, corner: Corner) -> [i32; 3] {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {
-        // SAFETY: the processor has the one feature that the function is compiled for.
+        // SAFETY: the processor has the only feature that the function is compiled for.
         return unsafe { tensor_by_avx2(image, corner) };
     }
     tensor_plainly(image, corner)

@@ -10,7 +10,7 @@ pub struct BagOfWords {
 }
 
 impl BagOfWords {
-    /// The bag of `words`, each as often as it occurs; words that every image has (weight 0) count for nothing.
+    /// The bag of `words`, with repetitions; words of every image (weight 0) are ignored.
     pub(super) fn new(words: &[NodeId], weight: impl Fn(NodeId) -> f32) -> Self {
         let mut sorted = words.to_vec();
         sorted.sort_unstable();
@@ -27,7 +27,7 @@ impl BagOfWords {
         &self.entries
     }
 
-    /// Whether it has no word.
+    /// Whether the bag has no word.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }

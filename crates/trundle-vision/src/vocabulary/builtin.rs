@@ -3,7 +3,7 @@
 use super::Vocabulary;
 use std::sync::{Arc, OnceLock};
 
-/// The trained vocabulary that is part of the program; how it was made stands in `data/README.md` of the crate.
+/// The built-in trained vocabulary; `data/README.md` of the crate describes its training.
 static BYTES: &[u8] = include_bytes!("../../data/vocabulary.bin");
 
 static BUILTIN: OnceLock<Arc<Vocabulary>> = OnceLock::new();
@@ -21,7 +21,7 @@ impl Vocabulary {
 mod tests {
     use super::*;
 
-    /// Training again changes the numbers: set those that the new file has.
+    /// New training changes these numbers: set them to those of the new file.
     #[test]
     fn the_builtin_vocabulary_is_the_one_that_its_readme_describes() {
         assert!(BYTES.len() <= 12_000_000, "{} bytes", BYTES.len());
@@ -29,7 +29,7 @@ mod tests {
         assert!(Arc::ptr_eq(&vocabulary, &Vocabulary::builtin()));
         assert_eq!((vocabulary.branching(), vocabulary.depth()), (10, 5));
         assert_eq!((vocabulary.word_count(), BYTES.len()), (96_477, 3_923_508));
-        // Reading compared it with the content.
+        // The reader has compared the checksum with the content.
         assert_eq!(BYTES[24..32], 0x7074_8058_D88E_9E62_u64.to_le_bytes());
         assert_eq!(vocabulary.to_bytes(), BYTES);
     }

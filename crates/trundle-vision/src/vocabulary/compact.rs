@@ -12,10 +12,10 @@ const MAGIC: &[u8; 8] = b"trundlV\x02";
 /// Bytes of the head: magic, branching, depth, nodes, words, checksum of all but magic and checksum.
 const HEAD_BYTES: usize = 8 + 4 * 4 + 8;
 
-/// Why a vocabulary could not be read.
+/// Reason why a vocabulary could not be read.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum VocabularyError {
-    /// A line of a text is not as it should be.
+    /// A line of a text is invalid.
     #[error("line {number}: {problem}")]
     Line {
         /// From 1.
@@ -32,9 +32,8 @@ pub enum VocabularyError {
 }
 
 impl Vocabulary {
-    /// The vocabulary as bytes, versioned and with a checksum, little endian: the head, the descriptors of all nodes level
-    /// by level (32 bytes each), how many children the root and each node have (a byte each), the weights of the words (4
-    /// bytes each).
+    /// The vocabulary as bytes with version and checksum, little endian. They are the head, the descriptors of all nodes level by level (32
+    /// bytes each), the number of children of the root and each node (a byte each), and the weights of the words (4 bytes each).
     pub fn to_bytes(&self) -> Vec<u8> {
         let words = self.nodes().filter(|node| self.is_word(*node));
         let weights: Vec<f32> = words.map(|word| self.weight(word)).collect();
@@ -111,7 +110,7 @@ fn long(bytes: &[u8]) -> u64 {
     u64::from(number(bytes)) | u64::from(number(&bytes[4..])) << 32
 }
 
-/// FNV-1a, 8 bytes at a time, over the numbers of the head and all that follows it; the last bytes are filled with zeros.
+/// FNV-1a in steps of 8 bytes over the numbers of the head and all following bytes; the last step is padded with zeros.
 fn checksum(bytes: &[u8]) -> u64 {
     let (head, body) = (&bytes[8..HEAD_BYTES - 8], &bytes[HEAD_BYTES..]);
     let whole = body.chunks_exact(8);

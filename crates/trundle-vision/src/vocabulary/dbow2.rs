@@ -7,9 +7,9 @@ use crate::Descriptor;
 use std::fmt::Write;
 
 impl Vocabulary {
-    /// The text form of DBoW2 that ORB-SLAM programs read: a line `branching depth 0 0` (L1 score, tf-idf weights), then a
-    /// line a node, in the order of their numbers from 1: `parent is_leaf 32 bytes weight`. Without a newline at its end:
-    /// some readers take what follows one for a node.
+    /// The text format of DBoW2 for ORB-SLAM programs. The first line is `branching depth 0 0` (L1 score, tf-idf weights); each node, in
+    /// the order of numbers from 1, is a line `parent is_leaf 32 bytes weight`. The text has no newline at its end: some readers would read
+    /// another node after it.
     pub fn to_dbow2_text(&self) -> String {
         let mut text = format!("{} {} 0 0", self.branching(), self.depth());
         for node in self.nodes() {
@@ -27,7 +27,7 @@ impl Vocabulary {
     /// and weights other than L1 and tf-idf are taken as these.
     ///
     /// # Errors
-    /// When a line is not as it should be, with its number, or the nodes are not a tree.
+    /// When a line is invalid, with its number, or the nodes are not a tree.
     pub fn from_dbow2_text(text: &str) -> Result<Self, VocabularyError> {
         let mut lines = (1..).zip(text.lines());
         let (_, head) = lines.next().ok_or_else(|| bad_line(1, "the file is empty"))?;

@@ -1,14 +1,14 @@
-//! The nodes of a vocabulary as text files list them.
+//! The nodes of a vocabulary in the form of text files.
 
 use super::tree::{MAX_BRANCHING, MAX_DEPTH, Tree};
 use super::{NodeId, Vocabulary};
 use crate::Descriptor;
 use trundle_core::{Invalid, require_in};
 
-/// A node as text files list them: its parent, whether it is a leaf, its descriptor and its weight.
+/// A node of a text file: its parent, whether it is a leaf, its descriptor and its weight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ListedNode {
-    /// Its number in the list, from 1; 0 is the root.
+    /// Number of the parent in the list, from 1; 0 is the root.
     pub parent: NodeId,
     pub is_leaf: bool,
     pub descriptor: Descriptor,
@@ -16,12 +16,11 @@ pub(super) struct ListedNode {
 }
 
 impl Vocabulary {
-    /// A tree from its nodes but the root, which may stand in any order with parents before children.
+    /// A tree from its nodes without the root, in any order with parents before children.
     ///
     /// # Errors
-    /// When the shape is out of range or there is no node. When a parent does not come before its child, or is a leaf. When a node
-    /// has too many children or lies too deep, or an inner node has none. When a weight is negative or not finite. The
-    /// message names the node.
+    /// When the shape is out of range or the list is empty. When a parent follows its child, or is a leaf. When a node has too many
+    /// children or is too deep, or an inner node has none. When a weight is negative or not finite. The error gives the node.
     pub(super) fn from_list(branching: usize, depth: usize, list: &[ListedNode]) -> Result<Self, Invalid> {
         check_shape(branching, depth)?;
         if list.is_empty() {
@@ -41,7 +40,7 @@ pub(super) fn check_shape(branching: usize, depth: usize) -> Result<(), Invalid>
 
 /// The children of the root (0) and of each listed node (i + 1), one list after the other.
 struct Children {
-    /// Where each one's begin; one more at the end.
+    /// Start of each node's children; one more at the end.
     first: Vec<usize>,
     nodes: Vec<NodeId>,
 }
@@ -68,7 +67,7 @@ impl Children {
     }
 }
 
-/// How many children each node has, when all nodes are as they should be.
+/// Number of children of each node, after validation.
 fn counted(list: &[ListedNode], branching: usize) -> Result<Vec<usize>, Invalid> {
     let mut counts = vec![0; list.len() + 1];
     for (i, node) in list.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use crate::Descriptor;
 
-/// How many descriptors of a set have each of the 256 bits, for their bitwise median.
+/// For each of the 256 bits, the number of descriptors of a set with this bit, for the bitwise median.
 #[derive(Debug, Clone)]
 pub(super) struct BitCounts {
     /// A byte for each bit, eight to a word: counts since the last flush.
@@ -25,7 +25,7 @@ const BYTE_OF_BITS: [u64; 256] = {
 };
 
 impl BitCounts {
-    /// Of no descriptor.
+    /// The counts without a descriptor.
     pub fn new() -> Self {
         Self { small: [0; 32], unflushed: 0, ones: [0; 256], count: 0 }
     }
@@ -44,7 +44,7 @@ impl BitCounts {
         }
     }
 
-    /// Each bit as most have it, 1 where half have it; `None` of nothing.
+    /// Each bit by majority, 1 for a tie; `None` without descriptors.
     pub fn median(mut self) -> Option<Descriptor> {
         self.flush();
         let bit = |i: usize| u64::from(2 * self.ones[i] >= self.count);

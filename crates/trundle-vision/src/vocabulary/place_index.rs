@@ -5,19 +5,19 @@ use std::collections::BTreeMap;
 
 /// The inverse index of \[GalvezLopez12\]: for each word the places that show it.
 ///
-/// A query costs the entries of its words, and memory for a number a place.
+/// A query costs the entries of its words, plus memory for one number per place.
 #[derive(Debug, Clone, Default)]
 pub struct PlaceIndex {
     /// By word, as far as any place has shown one.
     shown: Vec<Vec<Entry>>,
     /// The slot of each place.
     slots: BTreeMap<u32, u32>,
-    /// The place of each slot; of one that is free that which left it.
+    /// The place of each slot; a free slot retains its last place.
     places: Vec<u32>,
     free: Vec<u32>,
 }
 
-/// A place that shows a word. Places have slots, numbered without gaps, so that sums over them are an array.
+/// A place with a word. Places have slots, numbered without gaps: sums over places are an array.
 #[derive(Debug, Clone, Copy)]
 struct Entry {
     slot: u32,
@@ -37,12 +37,12 @@ impl PlaceIndex {
         self.slots.len()
     }
 
-    /// Whether there is no place.
+    /// Whether the index has no place.
     pub fn is_empty(&self) -> bool {
         self.slots.is_empty()
     }
 
-    /// Adds what `place` shows, which must be unknown yet.
+    /// Adds the words of `place`, which must be a new one.
     pub fn add(&mut self, place: u32, bag: &BagOfWords) {
         let slot = self.free.pop().unwrap_or(self.places.len() as u32);
         assert!(self.slots.insert(place, slot).is_none(), "invariant: place {place} is added once");
@@ -70,14 +70,14 @@ impl PlaceIndex {
         self.free.push(slot);
     }
 
-    /// The places that share a word with `bag` and that `is_asked_for`, with their similarities, the most similar
-    /// first, of equal ones the lower number.
+    /// The places that share a word with `bag` and satisfy `is_asked_for`, with their similarities; the most similar first, among equal
+    /// ones the lower number.
     pub fn query(&self, bag: &BagOfWords, is_asked_for: impl Fn(u32) -> bool) -> Vec<(u32, f32)> {
         self.query_sharing(bag, 0.0, is_asked_for)
     }
 
-    /// [`PlaceIndex::query`] without the places that share fewer than `min_share` (0 to 1) of the words that the one
-    /// with the most has in common with `bag`; 0.8 in \[MurArtal17\].
+    /// [`PlaceIndex::query`] with a minimum number of shared words: `min_share` (0 to 1) of the largest number that any place shares with
+    /// `bag`; 0.8 in \[MurArtal17\].
     pub fn query_sharing(
         &self,
         bag: &BagOfWords,
@@ -97,7 +97,7 @@ impl PlaceIndex {
         found
     }
 
-    /// For each slot what its place has in common with `bag`, added up by rising word.
+    /// For each slot the common words of its place with `bag`, summed in the order of the words.
     fn common(&self, bag: &BagOfWords) -> Vec<Common> {
         let mut common = vec![Common::default(); self.places.len()];
         for &(word, weight) in bag.entries() {
@@ -140,7 +140,7 @@ mod tests {
     }
 
     proptest! {
-        /// However places come and go, and in whatever slots they are.
+        /// Independent of insertions, removals and slots.
         #[test]
         fn the_index_finds_what_comparing_all_finds(
             steps in prop::collection::vec((0..12_u32, prop::collection::vec(1..30_u32, 0..12)), 1..60),

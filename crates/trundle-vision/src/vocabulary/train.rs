@@ -49,7 +49,7 @@ impl Vocabulary {
     /// that a single image shows. The same images and seed give the same tree on any number of threads.
     ///
     /// # Errors
-    /// When the configuration is invalid or there is no descriptor.
+    /// When the configuration is invalid or no descriptor is given.
     pub fn train(images: &[Vec<Descriptor>], config: &VocabularyConfig, seed: u64) -> Result<Self, Invalid> {
         let config = config.clone().validated()?;
         let descriptors: Vec<Descriptor> = images.iter().flatten().copied().collect();
@@ -82,13 +82,13 @@ impl Vocabulary {
     }
 }
 
-/// A part of the tree: a median and what it is divided into.
+/// A part of the tree: a median and its subdivision.
 struct Branch {
     median: Descriptor,
     below: Vec<Branch>,
 }
 
-/// The children of a node at `level` that has these members; each child draws from a seed of its own.
+/// The children of a node at `level` with these members; each child has its own seed.
 fn divide(descriptors: &[Descriptor], config: &VocabularyConfig, level: usize, seed: u64) -> Vec<Branch> {
     let is_done = level == config.depth || (level > 0 && descriptors.len() < config.min_to_divide);
     if is_done {
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
     use rand::RngExt;
 
-    /// Images of `places` places, each seen `views` times with a few bits of every feature changed.
+    /// Images of `places` places, `views` of each place, with a few bits of every feature changed.
     fn images(places: u64, views: u64) -> Vec<Vec<Descriptor>> {
         let view = |place: u64, view: u64| {
             let (mut scene, mut noise) =

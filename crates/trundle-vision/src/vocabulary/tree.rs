@@ -8,29 +8,29 @@ use trundle_core::Invalid;
 
 /// A tree of binary words: each node holds the bitwise median of the descriptors below it.
 ///
-/// Nodes stand level by level, so that the children of each lie side by side in memory.
+/// Nodes are sorted by level, so the children of a node are contiguous in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vocabulary {
     branching: usize,
     depth: usize,
-    /// Of node i + 1: the root has none.
+    /// Descriptor of node i + 1: the root has none.
     descriptors: Vec<Descriptor>,
     /// The children of node i are `first_child[i]..first_child[i + 1]`.
     first_child: Vec<NodeId>,
-    /// The root is its own.
+    /// Parent of each node; the root's parent is the root.
     parent: Vec<NodeId>,
-    /// Of a leaf its inverse document frequency, ln(images / images with the word); 0 of an inner node.
+    /// For a leaf its inverse document frequency, ln(images / images with the word); 0 for an inner node.
     weight: Vec<f32>,
-    /// Where each level ends, the root's first.
+    /// End of each level, the root's first.
     level_end: Vec<NodeId>,
 }
 
 /// The nodes of a tree level by level.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Tree {
-    /// Of all nodes but the root.
+    /// Descriptors of all nodes except the root.
     pub descriptors: Vec<Descriptor>,
-    /// Of all nodes but the root.
+    /// Weights of all nodes except the root.
     pub weights: Vec<f32>,
     /// Children of each node and of the root, which is the first.
     pub counts: Vec<u8>,
@@ -56,7 +56,7 @@ impl Vocabulary {
     /// The vocabulary of a tree of this shape.
     ///
     /// # Errors
-    /// When the counts are not those of a tree with as many nodes, or the tree is deeper than `depth`.
+    /// When the counts are not those of a tree with this number of nodes, or the tree is deeper than `depth`.
     pub(super) fn from_tree(branching: usize, depth: usize, tree: Tree) -> Result<Self, Invalid> {
         let nodes = tree.descriptors.len() + 1;
         let first_child = first_children(&tree.counts, nodes)?;
@@ -92,7 +92,7 @@ impl Vocabulary {
         self.nodes().filter(|node| self.is_word(*node)).count()
     }
 
-    /// The word of a descriptor: from the root to the child of the nearest median, the first of equally near ones.
+    /// The word of a descriptor: the path from the root to the child with the nearest median, the first among equally near ones.
     pub fn word(&self, descriptor: &Descriptor) -> NodeId {
         let mut at = 0;
         loop {
@@ -105,8 +105,8 @@ impl Vocabulary {
         }
     }
 
-    /// The node of a word's path at `level` below the root, the word itself where the path is shorter: features of two
-    /// images that fall under one node are worth comparing.
+    /// The node of a word's path at `level` below the root, or the word itself for a shorter path. Features of two images below one node
+    /// are candidates for a match.
     pub fn node_of(&self, word: NodeId, level: usize) -> NodeId {
         let Some(&end) = self.level_end.get(level) else { return word };
         let mut at = word;
@@ -139,7 +139,7 @@ impl Vocabulary {
         self.parent[node as usize]
     }
 
-    /// Of any node but the root.
+    /// Descriptor of any node except the root.
     pub(super) fn descriptor(&self, node: NodeId) -> &Descriptor {
         &self.descriptors[node as usize - 1]
     }
@@ -153,7 +153,7 @@ impl Vocabulary {
     }
 }
 
-/// Where the children of each of `nodes` nodes begin, and of the last end.
+/// Start of each node's children, and the end of the last node's.
 fn first_children(counts: &[u8], nodes: usize) -> Result<Vec<NodeId>, Invalid> {
     let wrong = |found: usize| {
         Err(Invalid::new("children of all vocabulary nodes", found, "", format!("{} in all", nodes - 1)))
@@ -161,7 +161,7 @@ fn first_children(counts: &[u8], nodes: usize) -> Result<Vec<NodeId>, Invalid> {
     let mut first_child: Vec<NodeId> = Vec::with_capacity(counts.len() + 1);
     let mut next = 1;
     for (i, count) in counts.iter().enumerate() {
-        // A node that is not a child of one before it.
+        // A node that is not a child of an earlier node.
         if i >= next {
             return wrong(next - 1);
         }

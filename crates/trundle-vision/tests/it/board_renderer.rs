@@ -17,7 +17,7 @@ pub struct Pattern {
     first: Vector2,
 }
 
-/// How an image is taken.
+/// Settings of a rendered image.
 pub struct Shot {
     /// Standard deviation of the blur, px.
     pub blur_px: f64,
@@ -77,7 +77,7 @@ impl Pattern {
         Self { paint: Box::new(paint), half: size / 2.0 + Vector2::repeat(gap), first: -size / 2.0 }
     }
 
-    /// The same sheet with grey disks of this radius, m, on it.
+    /// The same sheet covered with grey disks of this radius, m.
     pub fn covered(self, middles: Vec<Vector2>, radius: f64) -> Self {
         let paint = move |at: Vector2| {
             let is_covered = middles.iter().any(|middle| (middle - at).norm() < radius);

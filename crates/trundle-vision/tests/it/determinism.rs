@@ -21,7 +21,7 @@ fn an_extraction_does_not_depend_on_the_one_before() {
     for image in [&one, &other, &one, &one] {
         assert_eq!(used.extract(image), fresh(image));
     }
-    // Widths whose levels leave something of every length in the last word of a row.
+    // Widths whose levels have rows with remainders of every length in the last word.
     let wall = noisy(&picture((400, 150), |p| p * 0.7), 9.0, 3);
     for width in [400, 256, 397, 301, 400, 233, 398] {
         let cut = GrayImage::from_fn(width, 150, |x, y| wall[(x, y)]);

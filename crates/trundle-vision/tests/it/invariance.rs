@@ -13,7 +13,7 @@ fn position(k: &Keypoint) -> Vector2 {
     Vector2::new(f64::from(k.x), f64::from(k.y))
 }
 
-/// How many matches there are, and which part of them is right: within 3 px (of the coarser octave) of the truth.
+/// Number of matches, and the fraction of correct ones: within 3 px (of the coarser octave) of the truth.
 fn matched(a: &Features, b: &Features, b_from_a: impl Fn(Vector2) -> Vector2) -> (usize, f64) {
     let matches = match_mutual(&a.descriptors, &b.descriptors, 64, 0.8);
     let right = matches.iter().filter(|m| {
@@ -85,7 +85,7 @@ fn noise_moves_few_features() {
 
 #[test]
 fn keypoints_of_every_octave_are_where_the_corner_is() {
-    // One bright square far from everything: its corners, seen on all octaves, must lie about it without bias.
+    // One isolated bright square: the keypoints of its corners on all octaves must have no bias.
     let inside = |v: usize, low: usize| (low..low + 100).contains(&v);
     let image = GrayImage::from_fn(340, 300, |x, y| if inside(x, 120) && inside(y, 100) { 220 } else { 30 });
     let features = extracted(&image);

@@ -1,4 +1,4 @@
-//! How exactly a corner is placed: the errors of right matches between two views whose relation is known, by octave.
+//! Localisation error of corners: errors of correct matches between two views with a known relation, by octave.
 
 use crate::texture::{noisy, picture};
 use crate::tum::Recording;
@@ -20,7 +20,7 @@ fn position(k: &Keypoint) -> Vector2 {
     Vector2::new(f64::from(k.x), f64::from(k.y))
 }
 
-/// The centre of the pixel of its own level that a keypoint lies on.
+/// The centre of the keypoint's pixel in its own level.
 fn position_of_pixel(k: &Keypoint) -> Vector2 {
     let whole = |v: f32, side: usize| {
         let per_px = side as f64 / (side as f64 / SCALE.powi(i32::from(k.octave))).round();
@@ -29,7 +29,7 @@ fn position_of_pixel(k: &Keypoint) -> Vector2 {
     Vector2::new(whole(k.x, SIZE.0), whole(k.y, SIZE.1))
 }
 
-/// A drawn picture whose edges lie between the samples that a pixel is averaged from.
+/// A drawn picture with edges between the samples of a pixel's average.
 fn drawn(wall_from_image: impl Fn(Vector2) -> Vector2) -> GrayImage {
     picture(SIZE, |p| wall_from_image(p) + Vector2::new(0.217, 0.131))
 }
@@ -56,8 +56,8 @@ fn mean(errors: &[Vector2]) -> Vector2 {
     errors.iter().sum::<Vector2>() / errors.len() as f64
 }
 
-/// Standard deviation of one keypoint along one axis by the median of the errors: the length of a normal error in the plane
-/// is below 1.1774 sigma by half, and two keypoints add their variances.
+/// Standard deviation of one keypoint along one axis by the median of the errors. Half of the normal errors in the plane are shorter than
+/// 1.1774 sigma, and two keypoints add their variances.
 fn sigma(errors: &[Vector2]) -> f64 {
     let mut norms: Vec<f64> = errors.iter().map(|e| e.norm()).collect();
     norms.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! The features and the motion as a user of the crate meets them: drawn textures and real recordings.
+//! Features and motion through the public interface: drawn textures and real recordings.
 
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr, reason = "tests")]
 

@@ -4,7 +4,7 @@ use trundle_vision::{
     Features, OrbConfig, OrbExtractor, RansacConfig, estimate_rigid_motion, match_mutual, rotation_consistent,
 };
 
-/// Where each feature is, camera frame, m; `None` without depth.
+/// Position of each feature, camera frame, m; `None` without depth.
 fn points(features: &Features, depth: &DepthImage, camera: &PinholeCamera) -> Vec<Option<Vector3>> {
     let point = |k: &trundle_vision::Keypoint| {
         let depth = *depth.get(k.x.round() as usize, k.y.round() as usize)?;
@@ -21,7 +21,7 @@ struct Outcome {
     degrees: f64,
 }
 
-/// Extracts, matches, moves; and how far that is from the truth.
+/// Extracts, matches and estimates the motion; returns its error.
 fn outcome(recording: &Recording, a: usize, b: usize) -> Option<Outcome> {
     let camera = Recording::camera();
     let mut orb = OrbExtractor::new(OrbConfig::default()).unwrap();
@@ -45,7 +45,7 @@ fn outcome(recording: &Recording, a: usize, b: usize) -> Option<Outcome> {
     })
 }
 
-/// How many of the pairs of frames `step` apart came within the bounds.
+/// Number of frame pairs with a distance of `step` whose error is within the bounds.
 fn good(recording: &Recording, step: usize, (metres, degrees): (f64, f64)) -> (usize, usize) {
     let starts: Vec<usize> = (0..recording.len() - step).step_by(20).collect();
     let within = |a: &&usize| {

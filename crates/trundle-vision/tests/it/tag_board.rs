@@ -62,7 +62,7 @@ fn corner_errors(tags: &[Tag], pattern: &Pattern, camera_from_sheet: &Pose3) -> 
     tags.iter().flat_map(corners).map(|(board, pixel)| error(board, pixel)).collect()
 }
 
-/// Number of markers whose corners lie 10 px or more inside the image.
+/// Number of markers whose corners are at least 10 px inside the image.
 fn visible_tags(pattern: &Pattern, camera_from_sheet: &Pose3) -> usize {
     let camera_from_board = pattern.camera_from_first_corner(camera_from_sheet);
     let is_inside = |corner: &Vector2| {
@@ -183,7 +183,7 @@ fn a_mirrored_image_other_ids_and_a_strange_family_are_named() {
     assert!(matches!(problem, BoardProblem::OtherFamily { squares, .. } if squares >= 4), "{problem}");
 }
 
-/// Six black squares of 8 x 8 cells of 6 px whose cells are those of no marker.
+/// Six black squares of 8 x 8 cells of 6 px with cells of no marker.
 fn other_family() -> GrayImage {
     GrayImage::from_fn(640, 480, |x, y| {
         let (column, row) = ((x % 90) as i64 / 6 - 3, (y % 90) as i64 / 6 - 3);

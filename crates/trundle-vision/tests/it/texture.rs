@@ -18,7 +18,7 @@ fn wall(p: Vector2) -> f64 {
     20.0 + 110.0 * layer(41.0, 1) + 70.0 * layer(17.0, 2) + 40.0 * layer(7.0, 3)
 }
 
-/// The wall as a camera would see it: pixel p shows the wall at `wall_from_image(p)`, averaged over the pixel.
+/// The wall in a camera image: pixel p shows the wall at `wall_from_image(p)`, averaged over the pixel.
 pub fn picture((width, height): (usize, usize), wall_from_image: impl Fn(Vector2) -> Vector2) -> GrayImage {
     const PARTS: usize = 3;
     GrayImage::from_fn(width, height, |x, y| {
@@ -30,7 +30,7 @@ pub fn picture((width, height): (usize, usize), wall_from_image: impl Fn(Vector2
     })
 }
 
-/// The picture with the noise of a sensor: nearly normal, of standard deviation `sigma` grey values.
+/// The picture with sensor noise: approximately normal, of standard deviation `sigma` grey values.
 pub fn noisy(image: &GrayImage, sigma: f64, seed: u64) -> GrayImage {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut normal = || (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0;

@@ -22,7 +22,7 @@ pub fn view(image: &GrayImage, image_from_view: impl Fn(Vector2) -> Vector2) -> 
     })
 }
 
-/// The image between its pixels; beyond its border the border's value.
+/// The image between its pixels; outside the border, the border's value.
 fn cubic(image: &GrayImage, p: Vector2) -> f64 {
     let weights = |t: f64| {
         [

@@ -108,7 +108,7 @@ fn trajectory() -> Vec<u8> {
     trajectory_picture(&estimate, Some(&truth))
 }
 
-/// Every letter there is, as the legend of an empty picture.
+/// Every letter of the typeface, as the legend of an empty picture.
 fn typeface() -> Vec<u8> {
     let letters: String = (' '..='~').chain("°±²µ·×–→".chars()).collect();
     let letters: Vec<char> = letters.chars().collect();

@@ -101,7 +101,7 @@ pub fn scan(pose: Pose2) -> Scan {
     Scan::new(Stamp::default(), Vector2::zeros(), -0.6, step, beams).expect("a good scan")
 }
 
-/// A small generator, so that the gallery is the same each time (Knuth's MMIX constants).
+/// A small generator with a fixed seed, which gives the same gallery each time (Knuth's MMIX constants).
 pub struct Noise(pub u64);
 
 impl Noise {

@@ -8,10 +8,10 @@ use crate::text::{TextStyle, cap_height, text_width};
 use crate::ticks::Ticks;
 use trundle_core::DepthImage;
 
-/// A depth image in colour: near is light, far is dark, black if there is no depth; a scale in metres stands below.
+/// A depth image in colour: near is light, far is dark, unknown is black; a scale in metres is at the bottom.
 ///
-/// The scale reaches from the 1st to the 99th percentile of what was measured. An 8-bit RGB PNG; the image is enlarged to
-/// about 960 px by a whole number, or shrunk below 3000 px. An empty image gives a note in its place.
+/// The scale covers the 1st to the 99th percentile of the measured depths. An 8-bit RGB PNG; the image is enlarged to about 960 px by a
+/// whole number, or shrunk below 3000 px. An empty image gives a picture with a note.
 pub fn depth_picture(depth: &DepthImage) -> Vec<u8> {
     let (near, far) = range(depth.data());
     let color = |metres: &f32| match f64::from(*metres) {

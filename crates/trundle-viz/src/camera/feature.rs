@@ -6,19 +6,19 @@ use crate::color::Color;
 use crate::legend::{LegendItem, Mark, paint_legend};
 use trundle_core::ColorImage;
 
-/// A feature as the camera view shows it.
+/// A feature in the camera view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FeatureMark {
     /// Column, px of the image.
     pub x: f64,
     /// Row, px of the image.
     pub y: f64,
-    /// Diameter of the patch it describes, px of the image (for ORB: 31 times the scale of its octave). Drawn at a quarter,
-    /// so that a crowd of features does not hide the picture.
+    /// Diameter of the described patch, px of the image (for ORB: 31 times the scale of its octave). The drawing uses a quarter of the
+    /// diameter, which keeps the picture visible under many features.
     pub size: f64,
     /// Orientation, rad, image axes (x right, y down).
     pub angle: f64,
-    /// Whether it was matched with a landmark.
+    /// Whether the feature was matched with a landmark.
     pub tracked: bool,
 }
 
@@ -26,9 +26,9 @@ const TRACKED: Color = Color::rgb(0x00_c8_92);
 const UNTRACKED: Color = Color::YELLOW;
 const RIM: Color = Color::BLACK.alpha(150);
 
-/// The camera view with its features as circles, a stroke along the orientation: tracked ones green and bold, the others
-/// yellow and thin; how many of each stands below. An 8-bit RGB PNG; the image is enlarged to about 960 px by a whole
-/// number, or shrunk below 3000 px. Features that are not finite are left out; an empty image gives a note in its place.
+/// The camera view with its features as circles and a stroke along the orientation. Tracked ones are green and bold, the others yellow and
+/// thin; their numbers are at the bottom. An 8-bit RGB PNG; the image is enlarged to about 960 px by a whole number, or shrunk below 3000
+/// px. Features that are not finite are left out; an empty image gives a picture with a note.
 pub fn feature_picture(color: &ColorImage, features: &[FeatureMark]) -> Vec<u8> {
     let Some(mut photo) = Photo::new(color, true, |pixel| *pixel) else { return no_image() };
     for tracked in [false, true] {

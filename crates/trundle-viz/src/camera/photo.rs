@@ -5,7 +5,7 @@ use crate::color::Color;
 use crate::text::{TextStyle, line_height, text_width};
 use trundle_core::Image;
 
-/// Pictures of a camera are enlarged to about this width, px, so that marks on them are crisp.
+/// Width to which small camera pictures are enlarged, px, for sharp marks.
 const TARGET_WIDTH: usize = 960;
 /// No picture of a camera is wider or higher than this, px.
 const MAX_SIDE: usize = 3000;
@@ -46,7 +46,7 @@ impl Photo {
         Some(Self { canvas, zoom: enlarge as f64 / shrink as f64 })
     }
 
-    /// The unit of text and lines, px: readable even where two pictures share a page's width.
+    /// The unit of text and lines, px: readable even if two pictures share a page's width.
     pub(crate) fn unit(&self) -> i64 {
         (self.canvas.width() / 340).clamp(1, 8)
     }

@@ -19,7 +19,7 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// An axis over the range of `values`, a little wider. One that holds nothing reaches from 0 to 1.
+    /// An axis slightly wider than the range of `values`. Without values the axis covers 0 to 1.
     pub(crate) fn over(
         values: impl Iterator<Item = f64>,
         logarithmic: bool,
@@ -45,7 +45,7 @@ impl Axis {
         Self { low, high, logarithmic, ends }
     }
 
-    /// The place of a number. `None` if it cannot be shown.
+    /// The place of a number. `None` if the number cannot be shown.
     pub(crate) fn place(&self, value: f64) -> Option<f64> {
         let value = if self.logarithmic { value.log10() } else { value };
         let fraction = (value - self.low) / (self.high - self.low);

@@ -20,20 +20,20 @@ const BAR_PITCH: f64 = 28.0;
 const PLOT_TOP: f64 = 40.0;
 
 impl BarChart {
-    /// An empty chart of values in `unit`; `bar` and `whisker` name what the two ends mean.
+    /// An empty chart of values in `unit`; `bar` and `whisker` name the meaning of the two ends.
     pub fn new(title: &str, unit: &str, bar: &str, whisker: &str) -> Self {
         let [title, unit, bar, whisker] = [title, unit, bar, whisker].map(str::to_owned);
         Self { title, unit, names: [bar, whisker], rows: Vec::new() }
     }
 
-    /// Adds a row. What is not finite or below zero counts as 0.
+    /// Adds a row. Values that are not finite or negative count as 0.
     pub fn row(mut self, label: &str, bar: f64, whisker: f64) -> Self {
         let sane = |value: f64| if value.is_finite() && value > 0.0 { value } else { 0.0 };
         self.rows.push((label.to_owned(), sane(bar), sane(whisker)));
         self
     }
 
-    /// The chart as an `<svg>` element, all text escaped. Same content, same bytes.
+    /// The chart as an `<svg>` element, all text escaped. Equal content gives equal bytes.
     pub fn to_svg(&self) -> String {
         let height = PLOT_TOP + BAR_PITCH * self.rows.len() as f64 + 34.0;
         let widest =

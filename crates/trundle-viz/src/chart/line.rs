@@ -51,7 +51,7 @@ impl Chart {
         self.series(label, color, true, points)
     }
 
-    /// Adds a level that must not be passed. Left out when not finite.
+    /// Adds a line at a limit. A limit that is not finite is left out.
     pub fn limit(mut self, label: &str, y: f64) -> Self {
         if y.is_finite() {
             self.limits.push((label.to_owned(), y));
@@ -59,7 +59,7 @@ impl Chart {
         self
     }
 
-    /// A logarithmic y axis; what is not above zero is left out.
+    /// A logarithmic y axis; values that are not positive are left out.
     pub fn log_y(self) -> Self {
         Self { log_y: true, ..self }
     }
@@ -69,7 +69,7 @@ impl Chart {
         self
     }
 
-    /// The chart as an `<svg>` element, all text escaped. Same content, same bytes.
+    /// The chart as an `<svg>` element, all text escaped. Equal content gives equal bytes.
     pub fn to_svg(&self) -> String {
         let finite =
             || self.series.iter().flat_map(|s| &s.points).filter(|p| p.0.is_finite() && p.1.is_finite());

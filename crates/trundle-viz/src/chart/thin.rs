@@ -1,10 +1,10 @@
-//! Reduction of a long series to the points that a chart can show; peaks are kept.
+//! Reduction of a long series to the points that a chart can show, with its peaks.
 
 /// More points than this in a series are thinned.
 const MAX_SERIES_POINTS: usize = 1500;
 
-/// A series with few enough points to draw: where it is long and runs to the right, each of many columns keeps its lowest
-/// and its highest point, so that no peak is lost. Gaps (points that are not finite) end a piece.
+/// A series reduced to few points. If the series is long and its x increases, each of many columns retains its lowest and its highest
+/// point, so no peak is lost. Gaps (points that are not finite) end a piece.
 pub(crate) fn pieces(points: &[(f64, f64)]) -> Vec<Vec<(f64, f64)>> {
     let finite = |p: &(f64, f64)| p.0.is_finite() && p.1.is_finite();
     let pieces = points.split(|p| !finite(p)).filter(|piece| !piece.is_empty());

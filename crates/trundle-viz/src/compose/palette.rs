@@ -1,4 +1,4 @@
-//! One colour a meaning, in every picture of the project.
+//! One colour per meaning, in every picture of the project.
 
 use crate::color::Color;
 use crate::map::{DotStyle, LineStyle};
@@ -15,7 +15,7 @@ pub(super) const SLOW: Color = Color::YELLOW.alpha(150);
 pub(super) const LANDMARKS: Color = Color::GREEN;
 pub(super) const SCAN: Color = Color::SKY;
 
-/// Plan, truth and estimate are ever thinner lines: where they agree, each lies on the one before and all are seen.
+/// Plan, truth and estimate have decreasing widths: all remain visible where they agree.
 pub(super) fn plan_line() -> LineStyle {
     LineStyle::solid(PLAN.alpha(95)).width(7.0).plain()
 }

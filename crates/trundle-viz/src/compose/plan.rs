@@ -5,29 +5,29 @@ use crate::color::Color;
 use crate::map::{DotStyle, LineStyle, MapPicture, PoseStyle};
 use trundle_core::{Footprint, GridGeometry, OccupancyGrid, Pose2, Vector2};
 
-/// Values of a mask in its cells, row by row from the lowest y, in shares from 0 (nothing) to 1.
+/// Values of a mask in its cells, row by row from the lowest y, from 0 to 1.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MaskShares {
-    /// Where its cells lie.
+    /// Geometry of the cells.
     pub geometry: GridGeometry,
     /// Value of each cell.
     pub shares: Vec<f32>,
 }
 
-/// A plan to be drawn, all in the map frame, m. What is empty is left out.
+/// A plan to be drawn, all in the map frame, m. Empty parts are left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanScene<'a> {
     /// The map.
     pub grid: &'a OccupancyGrid,
-    /// Where the robot stands.
+    /// Start pose of the robot.
     pub start: Pose2,
-    /// Where it is to stand, one after the other.
+    /// Goal poses, in order.
     pub goals: &'a [Pose2],
     /// Requested goals that were replaced by others.
     pub replaced: &'a [Pose2],
     /// The lanes of a way-point graph, end to end.
     pub lanes: &'a [[Vector2; 2]],
-    /// The route as the search found it; pass none to leave it out.
+    /// The route of the search; empty to leave it out.
     pub route: &'a [Vector2],
     /// The way-points.
     pub way_points: &'a [Vector2],
@@ -35,9 +35,9 @@ pub struct PlanScene<'a> {
     pub curve: &'a [Vector2],
     /// The robot's outline.
     pub footprint: &'a Footprint,
-    /// Where the robot must not be (1), or should not (less).
+    /// Forbidden cells (1) and costly cells (below 1).
     pub keep_out: Option<&'a MaskShares>,
-    /// Where it must be slow: 1 less the share of its full speed.
+    /// Slow cells: 1 minus the share of the full speed.
     pub slow: Option<&'a MaskShares>,
 }
 
@@ -60,7 +60,7 @@ impl<'a> PlanScene<'a> {
         self.forbidden(picture, FORBIDDEN)
     }
 
-    /// The picture with what the robot must keep out of.
+    /// The picture with the forbidden cells.
     pub(super) fn forbidden(&self, picture: MapPicture<'a>, color: Color) -> MapPicture<'a> {
         let Some(mask) = self.keep_out else { return picture };
         let forbidden = mask.shares.iter().map(|share| if *share >= 1.0 { 1.0 } else { 0.0 });
@@ -79,7 +79,7 @@ impl<'a> PlanScene<'a> {
         goals.fold(picture, |picture, (i, goal)| picture.pose(&name(i), *goal, pose(GOAL)))
     }
 
-    /// The way-points between start and goals, which have marks of their own.
+    /// The way-points between start and goals, which have separate marks.
     pub(super) fn between(&self) -> Vec<Vector2> {
         const SAME: f64 = 1e-3;
         let is_end = |p: &Vector2| {
@@ -89,15 +89,15 @@ impl<'a> PlanScene<'a> {
     }
 }
 
-/// The picture of a plan that there is not: the map, start and goal with the robot's outline, and the `nearest` places to the goal
-/// that the robot could reach. An 8-bit RGB PNG.
+/// The picture of a missing plan: the map, start and goal with the robot's outline, and the reachable places `nearest` to the goal. An
+/// 8-bit RGB PNG.
 pub fn no_plan_picture(scene: &PlanScene, nearest: &[Vector2]) -> Vec<u8> {
     let dots = DotStyle::circles(PLAN).radius(4.0);
     scene.ends(scene.ground().dots("nearest place that can be reached", nearest, dots)).to_png()
 }
 
-/// The picture of `trundle plan`: the map, start and goal with the robot's outline, way-points, the fitted curve, and the
-/// floor the robot sweeps along it. An 8-bit RGB PNG.
+/// The picture of `trundle plan`: the map, start and goal with the robot's outline, way-points, the fitted curve, and the floor swept by
+/// the robot. An 8-bit RGB PNG.
 pub fn plan_picture(scene: &PlanScene) -> Vec<u8> {
     let picture = scene
         .ground()

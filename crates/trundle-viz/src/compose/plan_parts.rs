@@ -7,10 +7,10 @@ use crate::color::Color;
 use crate::map::{DotStyle, LineStyle, MapPicture};
 use trundle_core::{GridGeometry, Trajectory, Vector2};
 
-/// Parts of a plan beside [`PlanScene`]; map frame, m. Empty parts are left out.
+/// Parts of a plan in addition to [`PlanScene`]; map frame, m. Empty parts are left out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlanParts<'a> {
-    /// Where the distance field's cells lie.
+    /// Geometry of the distance field's cells.
     pub geometry: GridGeometry,
     /// Distance to the nearest obstacle, m, row by row from the lowest y.
     pub distances: &'a [f32],
@@ -20,11 +20,11 @@ pub struct PlanParts<'a> {
     pub active: &'a [Vector2],
 }
 
-/// Largest distance with a colour of its own, m.
+/// Largest distance with a separate colour, m.
 const MAX_SHOWN_DISTANCE_M: f32 = 1.0;
 
-/// The pictures of how a plan was made: the distance field with the path that the search found, and the corridors with the
-/// curve that was fitted into them. 8-bit RGB PNGs.
+/// The pictures of a plan's stages: the distance field with the path of the search, and the corridors with the curve fitted into them.
+/// 8-bit RGB PNGs.
 pub fn plan_part_pictures(scene: &PlanScene, parts: &PlanParts) -> [Vec<u8>; 2] {
     let free = |distance: &f32| if *distance > 0.0 { *distance } else { f32::NAN };
     let distances = parts.distances.iter().map(free).collect();

@@ -10,14 +10,14 @@ use trundle_core::{ColorImage, DepthImage};
 pub struct CameraView {
     /// The colour image.
     pub color: ColorImage,
-    /// Its features.
+    /// Features of the image.
     pub features: Vec<FeatureMark>,
 }
 
-/// The content of a run's report; what is empty or `None` is left out of the page.
+/// The content of a run's report; empty parts and `None` are left out of the page.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RunReport {
-    /// Title of the page.
+    /// One or two sentences: the command and its input.
     pub title: String,
     /// One or two sentences: what was run, on what.
     pub subtitle: String,
@@ -25,7 +25,7 @@ pub struct RunReport {
     pub verdict: Option<Verdict>,
     /// Key numbers.
     pub cards: Vec<Card>,
-    /// The map with what lies on it.
+    /// The map with its overlays.
     pub map: RunMap,
     /// The camera view with features.
     pub camera: Option<CameraView>,
@@ -74,7 +74,7 @@ impl RunReport {
     }
 }
 
-/// Adds a section of figures to a report. The report stays as it is if there are no figures.
+/// Adds a section of figures to a report. Without figures the report is unchanged.
 fn add_figures(report: Report, title: &str, figures: Vec<Figure>) -> Report {
     if figures.is_empty() {
         return report;

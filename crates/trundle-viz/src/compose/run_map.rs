@@ -7,7 +7,7 @@ use crate::map::{DotStyle, MapPicture, PoseStyle};
 use crate::report::Figure;
 use trundle_core::{Footprint, OccupancyGrid, Pose2, Scan, Vector2, Vector3};
 
-/// The map of a run with what lies on it; what is empty or `None` is left out. Geometry is in the map frame, m.
+/// The map of a run with its overlays; empty parts and `None` are left out. Geometry is in the map frame, m.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RunMap {
     /// The occupancy grid at the end.
@@ -20,25 +20,25 @@ pub struct RunMap {
     pub curve: Vec<Vector2>,
     /// The estimated poses of the robot.
     pub estimated_path: Vec<Pose2>,
-    /// Where it was.
+    /// True poses of the robot.
     pub true_path: Vec<Pose2>,
-    /// Where it started.
+    /// Start pose.
     pub start: Option<Pose2>,
-    /// Where it was to stand.
+    /// Goal pose.
     pub goal: Option<Pose2>,
     /// The robot's outline.
     pub footprint: Option<Footprint>,
-    /// A scan and the pose it was taken at (`map_from_base`).
+    /// A scan and its pose (`map_from_base`).
     pub scan: Option<(Pose2, Scan)>,
 }
 
 impl RunMap {
-    /// The map with everything on it, as PNG with its legend inside.
+    /// The map with all overlays, as PNG with its legend inside.
     pub fn to_png(&self) -> Vec<u8> {
         self.picture().to_png()
     }
 
-    /// The map from above; `None` if there is neither map nor path.
+    /// The map from above; `None` without map and path.
     pub(super) fn figure(&self) -> Option<Figure> {
         if self.grid.is_none() && self.estimated_path.is_empty() && self.true_path.is_empty() {
             return None;
@@ -69,7 +69,7 @@ impl RunMap {
         picture
     }
 
-    /// The goal from near: true and estimated outline at the end.
+    /// Detail of the goal: true and estimated outline at the end.
     pub(super) fn goal_figure(&self) -> Option<Figure> {
         let goal = self.goal.filter(Pose2::is_finite)?;
         let footprint = self.footprint.clone().unwrap_or(Footprint::KOBUKI);

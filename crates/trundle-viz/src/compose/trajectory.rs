@@ -8,11 +8,11 @@ use trundle_core::{Vector2, Vector3};
 /// At most this many ties between estimate and truth.
 const MAX_ERROR_LINES: usize = 400;
 
-/// The picture of `trundle slam`: a trajectory, and the true one if there is one, both in the same frame (aligned), m.
+/// The picture of `trundle slam`: a trajectory, and the true one if given, both in the same frame (aligned), m.
 ///
-/// It is seen along the axis in which the motion was least, so that the picture shows the two that matter; the axes are
-/// named. Where both have the same number of points, point i of one belongs to point i of the other, and a thin grey line
-/// ties them: its length is the error. Positions that are not finite interrupt the line. An 8-bit RGB PNG.
+/// The view is along the axis with the smallest motion, which shows the two main axes; the axes are named. If both have the same number of
+/// points, a thin grey line connects point i of one with point i of the other: its length is the error. Positions that are not finite
+/// interrupt the line. An 8-bit RGB PNG.
 pub fn trajectory_picture(estimate: &[Vector3], truth: Option<&[Vector3]>) -> Vec<u8> {
     let truth = truth.unwrap_or_default();
     let (right, up) = principal_axes(if truth.is_empty() { estimate } else { truth });

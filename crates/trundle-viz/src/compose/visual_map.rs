@@ -7,14 +7,14 @@ use crate::legend::LegendItem;
 use crate::map::{DotStyle, LineStyle, MapPicture};
 use trundle_core::{Vector2, Vector3};
 
-/// A visual map: what was seen, from where, and what ties the views together. All in one frame, m.
+/// A visual map: landmarks, keyframes, and the links between keyframes. All in one frame, m.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct VisualMapScene<'a> {
     /// The landmarks.
     pub landmarks: &'a [Vector3],
     /// The camera's trajectory.
     pub way: &'a [Vector3],
-    /// Where the keyframes are.
+    /// Positions of the keyframes.
     pub keyframes: &'a [Vector3],
     /// Pairs of keyframes that see the same landmarks: the covisibility graph.
     pub covisible: &'a [(Vector3, Vector3)],
@@ -24,7 +24,7 @@ pub struct VisualMapScene<'a> {
 
 /// The picture of a visual map, an 8-bit RGB PNG, and its legend.
 ///
-/// It is seen along the axis in which the camera moved least; the axes are named. Points that are not finite are left out.
+/// The view is along the axis with the smallest motion of the camera; the axes are named. Points that are not finite are left out.
 pub fn visual_map_picture(scene: &VisualMapScene) -> (Vec<u8>, Vec<LegendItem>) {
     let (right, up) = principal_axes(if is_way(scene.way) { scene.way } else { scene.landmarks });
     let flat = |p: &Vector3| Vector2::new(p[right], p[up]);
@@ -55,7 +55,7 @@ fn is_way(way: &[Vector3]) -> bool {
 /// Part of the points at either end of each axis that the picture need not show.
 const OUTLIER_SHARE: f64 = 0.02;
 
-/// Middle and half side of the square that shows nearly all points.
+/// Middle and half side of the square that contains nearly all points.
 fn middle_of(points: [Vec<Vector2>; 3]) -> (Vector2, f64) {
     let ends = |axis: usize| {
         let part = |points: &Vec<Vector2>| {

@@ -11,7 +11,7 @@ use trundle_core::Vector2;
 /// Length of a head in line widths, and half its breadth.
 const HEAD_SIZE_LINE_WIDTHS: (f64, f64) = (4.6, 2.3);
 
-/// A line with a head at its end; one that is shorter than its head is all head.
+/// A line with an arrowhead at its end; a line shorter than its head becomes the head only.
 pub(super) fn draw_arrow(canvas: &mut Canvas, view: &View, points: &[Vector2], style: &LineStyle) {
     let Some(&end) = points.last() else { return };
     let tip = view.px(end);
@@ -39,7 +39,7 @@ fn distance(a: Px, b: Px) -> f64 {
     (a.0 - b.0).hypot(a.1 - b.1)
 }
 
-/// A line from a place to where its note was moved.
+/// A line from a place to its moved note.
 pub(super) fn draw_leader(canvas: &mut Canvas, from: Px, to: Px, unit: f64, color: Color) {
     canvas.polyline([from, to], Pen::solid(color, 0.7 * unit));
 }

@@ -8,14 +8,14 @@ use crate::color::Color;
 use crate::text::{TextStyle, cap_height, text_width};
 use trundle_core::Vector2;
 
-/// Space about a text within its badge, in dots of the typeface.
+/// Space around a text within its badge, in dots of the typeface.
 const PADDING_DOTS: f64 = 2.5;
-/// How far from their places badges are moved at most, in their own diameters.
+/// Maximum shift of a badge from its place, in badge diameters.
 const MAX_SHIFT_DIAMETERS: u32 = 6;
 /// Bearings tried at each distance.
 const BEARINGS_PER_DISTANCE: u32 = 12;
 
-/// Short texts in circles at their places, none over another: one that would be is moved aside, with a line to its place.
+/// Short texts in circles at their places without overlaps: an overlapping one is moved aside, with a line to its place.
 pub(super) fn draw_badges(canvas: &mut Canvas, view: &View, badges: &[(String, Vector2)], color: Color) {
     let scale = view.unit + 1;
     let places: Vec<Px> = badges.iter().map(|(_, p)| view.px(*p)).collect();
@@ -30,7 +30,7 @@ pub(super) fn draw_badges(canvas: &mut Canvas, view: &View, badges: &[(String, V
     }
 }
 
-/// One text in its circle.
+/// A text in its circle.
 pub(crate) fn draw_badge(canvas: &mut Canvas, center: Px, radius: f64, text: &str, scale: i64, color: Color) {
     if !(center.0.is_finite() && center.1.is_finite()) {
         return;
@@ -47,7 +47,7 @@ pub(crate) fn radius_of(text: &str, scale: i64) -> f64 {
     (text_width(text, scale) as f64).hypot(cap_height(scale) as f64) / 2.0 + PADDING_DOTS * scale as f64 / 2.0
 }
 
-/// Centres of the circles for `places`: there, or as near as no other circle overlaps, within a picture of `size`.
+/// Centres of the circles for `places`: at the place, or at the nearest position without overlap, within a picture of `size`.
 fn spread(places: &[Px], radius: f64, size: Px) -> Vec<Px> {
     let mut placed: Vec<Px> = Vec::with_capacity(places.len());
     for &place in places {

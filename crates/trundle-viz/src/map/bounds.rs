@@ -13,7 +13,7 @@ pub(crate) struct Bounds {
 }
 
 impl Bounds {
-    /// The least rectangle around all points with sensible coordinates. `None` if there is no such point.
+    /// The smallest rectangle around all points with plausible coordinates. `None` without such a point.
     pub(crate) fn around(points: impl IntoIterator<Item = Vector2>) -> Option<Self> {
         let sensible = |p: &Vector2| p.x.abs() < MAX_COORDINATE_M && p.y.abs() < MAX_COORDINATE_M;
         points.into_iter().filter(sensible).fold(None, |bounds: Option<Self>, p| {
@@ -22,7 +22,7 @@ impl Bounds {
         })
     }
 
-    /// A square around a point. `None` if it is not finite or has no extent.
+    /// A square around a point. `None` if the point is not finite or the square has no extent.
     pub(crate) fn square(center: Vector2, half_side: f64) -> Option<Self> {
         let half = Vector2::new(half_side, half_side);
         let bounds = Self::around([center - half, center + half])?;

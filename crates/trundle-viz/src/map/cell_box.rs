@@ -3,7 +3,7 @@
 use super::bounds::Bounds;
 use trundle_core::{Cell, GridGeometry, OccupancyGrid};
 
-/// Distance from the origin in cells; positions beyond it are moved to it. Source: ours.
+/// Maximum distance from the origin in cells; farther positions are moved to this distance. Source: ours.
 const MAX_CELL_INDEX: f64 = 1e14;
 
 /// A block of cells, which may reach beyond the grid: columns and rows from `low`, up to but without `high`.
@@ -36,7 +36,7 @@ impl CellBox {
         Self { low: [cell(low.x), cell(low.y)], high: [cell(high.x) + 1, cell(high.y) + 1] }
     }
 
-    /// The smallest block around the cells that are not unknown.
+    /// The smallest block around all known cells.
     pub(crate) fn known(grid: &OccupancyGrid) -> Option<Self> {
         let width = grid.geometry().width.max(1);
         let mut found: Option<Self> = None;
@@ -57,7 +57,7 @@ impl CellBox {
         Self { low: pick(self.low, other.low, i64::min), high: pick(self.high, other.high, i64::max) }
     }
 
-    /// This block, widened to hold `other` as far as that lies within one own length around it.
+    /// This block, widened to contain `other`, as far as that is within one own length around it.
     pub(crate) fn widened_to(&self, other: &Self) -> Self {
         let reach = self.cols().max(self.rows()).max(20);
         let near = |axis: usize, value: i64| value.clamp(self.low[axis] - reach, self.high[axis] + reach);

@@ -6,7 +6,7 @@ use crate::canvas::Canvas;
 use crate::color::Color;
 use trundle_core::{Cell, CellIndex, OccupancyGrid};
 
-/// The ground: the cells of a view in their colours. Where cells share a pixel, the most solid one shows.
+/// The ground: the cells of a view in their colours. If several cells share a pixel, an occupied one is shown first.
 pub(crate) fn paint_cells(grid: &OccupancyGrid, block: CellBox, zoom: Zoom, view: &View) -> Canvas {
     let mut canvas = Canvas::new(view.width, view.height, Color::UNKNOWN);
     let span = |low: i64, px: i64, limit: usize| {

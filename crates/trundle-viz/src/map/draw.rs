@@ -29,7 +29,7 @@ pub(super) fn draw_dot(canvas: &mut Canvas, center: Px, style: &DotStyle, unit: 
     }
 }
 
-/// A wedge along the heading, as large as the robot but never too small to see. Its name keeps off `lines` if it can.
+/// A wedge along the heading with the size of the robot, but with a visible minimum size. Its name avoids `lines` if possible.
 pub(super) fn draw_pose(
     canvas: &mut Canvas,
     view: &View,
@@ -62,8 +62,7 @@ pub(super) fn draw_pose(
     }
 }
 
-/// The upper left corner of a name beside a place: of right, left, above and below the first that the fewest lines cross,
-/// within the picture.
+/// The upper left corner of a name next to a place: right, left, above or below, whichever the fewest lines cross, within the picture.
 fn place_of_name(
     canvas: &Canvas,
     unit: i64,
@@ -114,14 +113,14 @@ pub(super) fn draw_area(canvas: &mut Canvas, view: &View, corners: &[Vector2], c
     canvas.polyline(edge, Pen::solid(Color::OCCUPIED, view.unit as f64));
 }
 
-/// One of many outlines, laid over each other.
+/// One of many overlapping outlines.
 pub(super) fn draw_swept(canvas: &mut Canvas, view: &View, pose: Pose2, footprint: &Footprint, color: Color) {
     let edge = outline(view, pose, footprint);
     canvas.polygon(&edge, color.alpha(16));
     canvas.polyline(edge, Pen::solid(color.alpha(70), 0.5 * view.unit as f64));
 }
 
-/// How far the outline reaches straight ahead of the axle, m; as far as anywhere along x where the axle is outside.
+/// Distance from the axle to the outline straight ahead, m; the maximum along x if the axle is outside.
 fn front(footprint: &Footprint) -> f64 {
     let corners = match footprint {
         Footprint::Disc { radius } => return *radius,

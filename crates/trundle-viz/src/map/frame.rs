@@ -21,7 +21,7 @@ pub(crate) fn paint_lattice(canvas: &mut Canvas, view: &View) {
     }
 }
 
-/// The plot in its frame: ticks and axis names around it, a scale bar above, a legend below.
+/// The plot in its frame: ticks and axis names around it, a scale bar at the top, a legend at the bottom.
 pub(crate) fn paint_frame(plot: &Canvas, view: &View, axes: &[String; 2], legend: Option<&Canvas>) -> Canvas {
     let unit = view.unit;
     let (x_ticks, y_ticks) = axis_ticks(view);
@@ -78,7 +78,7 @@ fn label_y(canvas: &mut Canvas, view: &View, ticks: &Ticks, (left, top): (i64, i
     }
 }
 
-/// A bar of a round length, its right end at `right`. Left out if it would meet the axis name, `taken` px wide.
+/// A bar of a round length, its right end at `right`. The bar is left out if it would overlap the axis name, `taken` px wide.
 fn paint_scale_bar(canvas: &mut Canvas, view: &View, right: i64, top: i64, taken: i64) {
     let metres = round_step(view.metres(view.width as f64 / 5.0) / 2.5);
     let (unit, label) = (view.unit, length_label(metres));

@@ -78,7 +78,7 @@ impl Layer {
         }
     }
 
-    /// The points that the picture shows when there is nothing else.
+    /// The points that the picture shows in the absence of other content.
     pub(crate) fn strays(&self) -> Vec<Vector2> {
         match &self.shape {
             Shape::Dots { points, .. } => points.clone(),
@@ -87,7 +87,7 @@ impl Layer {
         }
     }
 
-    /// Its line in the legend. `None` if there is nothing to see.
+    /// The layer's line in the legend. `None` for an empty layer.
     pub(crate) fn legend(&self) -> Option<LegendItem> {
         let finite = |points: &[Vector2]| points.iter().any(|p| p.x.is_finite() && p.y.is_finite());
         let (shown, color, mark) = match &self.shape {
@@ -114,7 +114,7 @@ impl Layer {
         (shown && !self.label.is_empty()).then(|| LegendItem::new(self.label.clone(), color, mark))
     }
 
-    /// Where its line runs in a picture; nothing if it is none.
+    /// Points of the layer's line in a picture; empty for other layers.
     pub(crate) fn line(&self, view: &View) -> Vec<Px> {
         match &self.shape {
             Shape::Line { points, .. } => points.iter().map(|p| view.px(*p)).collect(),
@@ -122,7 +122,7 @@ impl Layer {
         }
     }
 
-    /// Lays it over a picture; names keep off `lines` if they can.
+    /// Draws the layer over a picture; names avoid `lines` if possible.
     pub(crate) fn draw(&self, canvas: &mut Canvas, view: &View, lines: &[Vec<Px>]) {
         let unit = view.unit as f64;
         match &self.shape {

@@ -31,10 +31,10 @@ use view::View;
 
 /// A picture of a map from above, with the robot's estimates, plans and paths over it.
 ///
-/// Everything is given in the map frame, m: x to the right, y up. Layers are drawn in the order they are added. A number
-/// that is not finite leaves out the point, never the picture. The picture holds the known cells, the lines and the
-/// poses; dots and scans never widen it. Each cell is a whole number of pixels; a map of more than 3000 cells a side
-/// is shrunk, walls kept. Ticks, a scale bar and a legend are drawn with a typeface of our own: no font file is needed.
+/// All coordinates are in the map frame, m: x to the right, y up. Layers are drawn in the order of their addition. A point with a number
+/// that is not finite is left out. The picture contains the known cells, the lines and the poses; dots and scans never widen the picture.
+/// Each cell is a whole number of pixels; a map with a side above 3000 cells is shrunk, with its walls preserved. Ticks, a scale bar and a
+/// legend use the crate's typeface: no font file is needed.
 ///
 /// ```
 /// use trundle_core::{OccupancyGrid, Pose2, Vector2};
@@ -80,7 +80,7 @@ impl<'a> MapPicture<'a> {
         self.layer(label, Shape::Arrow { points: points.to_vec(), style })
     }
 
-    /// Adds short texts, for example numbers, in circles: each at its place, or beside it with a line to it where it would cover another.
+    /// Adds short texts, for example numbers, in circles at their places; an overlapping one is moved aside, with a line to its place.
     pub fn badges(self, label: &str, badges: &[(String, Vector2)], color: Color) -> Self {
         self.layer(label, Shape::Badges { badges: badges.to_vec(), color })
     }
@@ -120,7 +120,8 @@ impl<'a> MapPicture<'a> {
         self.layer(label, Shape::scan(map_from_base, scan, color))
     }
 
-    /// Adds a tint a cell: `values` row by row from the lowest y, from 0, light, to `full`, dark. What is not finite is left out.
+    /// Adds a tint per cell: `values` row by row from the lowest y, from 0 (light) to `full` (dark). Values that are not finite are left
+    /// out.
     pub fn shade(self, label: &str, geometry: GridGeometry, values: Vec<f32>, full: f32) -> Self {
         self.layer(label, Shape::Shade(Shade { geometry, values, paint: Paint::Scale(full) }))
     }
@@ -130,7 +131,7 @@ impl<'a> MapPicture<'a> {
         self.layer(label, Shape::Shade(Shade { geometry, values: shares, paint: Paint::Tint(color) }))
     }
 
-    /// Shows the square of `half_side` m about `center` and nothing else. Ignored when not finite or empty.
+    /// Shows only the square of half side `half_side` m around `center`. Ignored for a window that is not finite or empty.
     pub fn window(self, center: Vector2, half_side: f64) -> Self {
         Self { window: Bounds::square(center, half_side), ..self }
     }
@@ -169,7 +170,7 @@ impl<'a> MapPicture<'a> {
         items
     }
 
-    /// The picture as an 8-bit RGB PNG, at most about 3000 px a side. Same content, same bytes.
+    /// The picture as an 8-bit RGB PNG, at most about 3000 px a side. Equal content gives equal bytes.
     pub fn to_png(&self) -> Vec<u8> {
         let view = self.view().with_lettering(self.lettering);
         let mut plot = self.ground(&view);

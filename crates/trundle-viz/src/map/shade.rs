@@ -10,7 +10,7 @@ use trundle_core::{GridGeometry, Vector2};
 #[derive(Debug, Clone)]
 pub(crate) struct Shade {
     pub geometry: GridGeometry,
-    /// Row by row from the lowest y; not finite: nothing is laid there.
+    /// Row by row from the lowest y; a value that is not finite leaves the cell unchanged.
     pub values: Vec<f32>,
     pub paint: Paint,
 }
@@ -20,7 +20,7 @@ pub(crate) struct Shade {
 pub(crate) enum Paint {
     /// From light, 0, to dark, this value.
     Scale(f32),
-    /// This colour, the more opaque the nearer to 1; nothing at 0.
+    /// This colour, with opacity equal to the value.
     Tint(Color),
 }
 
@@ -37,7 +37,7 @@ impl Paint {
 const TINT_ALPHA: u8 = 150;
 
 impl Shade {
-    /// The tint that stands for it in a legend.
+    /// The tint for the legend.
     pub(crate) fn color(&self) -> Color {
         match self.paint {
             Paint::Scale(_) => tint(0.35),
@@ -53,7 +53,7 @@ impl Shade {
         }
     }
 
-    /// Walls stay walls: nothing is laid over them.
+    /// Walls remain visible: no tint is drawn over them.
     pub(crate) fn draw(&self, canvas: &mut Canvas, view: &View) {
         let (low, high) = view.extent();
         let wall = Color::OCCUPIED.over([0; 3]);

@@ -6,13 +6,13 @@ use trundle_core::Footprint;
 /// Style of a polyline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineStyle {
-    /// Its colour.
+    /// Colour of the line.
     pub color: Color,
-    /// Its width in dots of the picture's lettering (a capital letter is 7 high). Default 1.5.
+    /// Width in dots of the picture's lettering (a capital letter is 7 high). Default 1.5.
     pub width: f64,
     /// Dashes instead of a solid line.
     pub dashed: bool,
-    /// A white border, so that the line stays visible over walls.
+    /// A white border, which keeps the line visible over walls.
     pub rimmed: bool,
 }
 
@@ -32,7 +32,7 @@ impl LineStyle {
         Self { width, ..self }
     }
 
-    /// The same line without its border.
+    /// The same line without a border.
     pub fn plain(self) -> Self {
         Self { rimmed: false, ..self }
     }
@@ -41,9 +41,9 @@ impl LineStyle {
 /// Style of dots.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DotStyle {
-    /// Their colour; its alpha makes crowds readable.
+    /// Colour of the dots; its alpha makes crowds readable.
     pub color: Color,
-    /// Their radius in dots of the picture's lettering.
+    /// Radius in dots of the picture's lettering.
     pub radius: f64,
     /// Circles with a white inside instead of filled dots.
     pub hollow: bool,
@@ -55,7 +55,7 @@ impl DotStyle {
         Self { color: color.alpha(90), radius: 0.9, hollow: false }
     }
 
-    /// Circles, made for a few.
+    /// Circles, for a few points.
     pub fn circles(color: Color) -> Self {
         Self { color, radius: 2.6, hollow: true }
     }
@@ -66,19 +66,19 @@ impl DotStyle {
     }
 }
 
-/// Style of a pose: a wedge along its heading, with the robot's outline around it where given.
+/// Style of a pose: a wedge along its heading, optionally with the robot's outline.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PoseStyle {
-    /// Its colour.
+    /// Colour of the wedge.
     pub color: Color,
     /// The robot's outline, drawn to scale.
     pub footprint: Option<Footprint>,
-    /// Whether its label stands beside it in the picture.
+    /// Whether the picture shows the pose's label.
     pub named: bool,
 }
 
 impl PoseStyle {
-    /// A wedge with its name beside it.
+    /// A wedge with its name.
     pub fn named(color: Color) -> Self {
         Self { color, footprint: None, named: true }
     }
@@ -88,7 +88,7 @@ impl PoseStyle {
         Self { named: false, ..self }
     }
 
-    /// The same pose with the robot's outline around it.
+    /// The same pose with the robot's outline.
     pub fn with_footprint(self, footprint: Footprint) -> Self {
         Self { footprint: Some(footprint), ..self }
     }

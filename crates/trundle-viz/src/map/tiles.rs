@@ -11,8 +11,8 @@ const TILE_SIDE_SHARE: f64 = 0.4;
 /// The unit of lettering, px.
 const LETTER_UNIT_PX: i64 = 2;
 
-/// Pictures side by side, `columns` in a row, each below its title, with one legend: as an 8-bit RGB PNG. Without axes. Same
-/// content, same bytes.
+/// Pictures in rows of `columns`, each with its title on top, with one legend: as an 8-bit RGB PNG. The tiles have no axes. Equal content
+/// gives equal bytes.
 pub fn tiles(pictures: &[(String, MapPicture<'_>)], columns: usize) -> Vec<u8> {
     let plots: Vec<Canvas> = pictures.iter().map(|(_, picture)| plot(picture)).collect();
     let columns = columns.clamp(1, plots.len().max(1));

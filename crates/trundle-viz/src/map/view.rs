@@ -10,7 +10,7 @@ const TARGET_PX: f64 = 1100.0;
 /// The longer side of a plot is at most this, px.
 const MAX_PX: i64 = 3000;
 
-/// How many pixels a cell gets, or how many cells one pixel shows.
+/// Number of pixels per cell, or of cells per pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Zoom {
     /// Each cell is this many pixels wide.
@@ -19,7 +19,7 @@ pub(crate) enum Zoom {
     CellsPerPx(i64),
 }
 
-/// Which part of the map frame a plot shows, and how large.
+/// The part of the map frame shown by a plot, and its scale.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct View {
     /// Lower left corner, m.
@@ -28,7 +28,7 @@ pub(crate) struct View {
     /// Size of the plot, px.
     pub width: i64,
     pub height: i64,
-    /// The cells shown, if there is a grid.
+    /// The cells shown; `None` without a grid.
     pub cells: Option<(CellBox, Zoom)>,
     /// The unit of all that does not scale with the map: text dots and line widths, px.
     pub unit: i64,
@@ -75,13 +75,13 @@ impl View {
         Self::new(self.corner, self.px_per_m * part, side(self.width), side(self.height))
     }
 
-    /// The same view with its lettering `factor` times as large.
+    /// The same view with its lettering enlarged by `factor`.
     pub(crate) fn with_lettering(self, factor: f64) -> Self {
         let unit = ((self.unit as f64 * factor).round() as i64).clamp(1, 12);
         Self { unit, ..self }
     }
 
-    /// The place of a point of the map frame: x to the right, y up. Not finite for what cannot be drawn.
+    /// The place of a point of the map frame: x to the right, y up. Not finite for a point that cannot be drawn.
     pub(crate) fn px(&self, point: Vector2) -> Px {
         let offset = (point - self.corner) * self.px_per_m;
         (offset.x, self.height as f64 - offset.y)

@@ -2,7 +2,7 @@
 
 use crate::html::escape;
 
-/// How it went, in one sentence.
+/// Result, in one sentence.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
     /// The aim was reached.
@@ -52,12 +52,12 @@ impl Card {
         Self { unit: unit.to_owned(), ..self }
     }
 
-    /// A few words below it, such as the limit it is held against.
+    /// A short remark at the bottom, such as the limit of the number.
     pub fn remark(self, remark: &str) -> Self {
         Self { remark: remark.to_owned(), ..self }
     }
 
-    /// Whether the number is as it should be.
+    /// Whether the number passes its limit.
     pub fn good(self, good: bool) -> Self {
         Self { good: Some(good), ..self }
     }

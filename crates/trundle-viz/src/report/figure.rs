@@ -47,7 +47,7 @@ impl Figure {
         Self { caption: caption.to_owned(), ..self }
     }
 
-    /// Meanings of its colours, for a picture without a legend of its own.
+    /// Meanings of the colours, for a picture without its own legend.
     pub fn legend(self, items: Vec<LegendItem>) -> Self {
         Self { legend: items, ..self }
     }

@@ -12,10 +12,10 @@ pub use table::Table;
 use crate::html::escape;
 use block::Section;
 
-/// A report: one HTML page that carries all it shows. It fetches nothing and runs no script, and its own content security
-/// policy forbids both; it follows the reader's light or dark scheme, prints, and enlarges a figure on a click.
+/// A report: one self-contained HTML page. The page fetches nothing and runs no script; its content security policy forbids both. It
+/// follows the reader's light or dark scheme, prints, and enlarges a figure on a click.
 ///
-/// All text is escaped. Same content, same bytes: there is no date and no random name in it.
+/// All text is escaped. Equal content gives equal bytes: the page has no date and no random name.
 ///
 /// ```
 /// use trundle_viz::{Card, Report, Table, Verdict};
@@ -43,7 +43,7 @@ impl Report {
         Self { title, subtitle, verdict: None, cards: Vec::new(), sections: Vec::new() }
     }
 
-    /// One or two sentences below the title: what was run, on what.
+    /// One or two sentences below the title: the command and its input.
     pub fn subtitle(self, subtitle: &str) -> Self {
         Self { subtitle: subtitle.to_owned(), ..self }
     }
@@ -59,7 +59,7 @@ impl Report {
         self
     }
 
-    /// Opens a section; what is added from now on stands in it. The introduction may be empty.
+    /// Opens a section; later additions belong to it. The introduction may be empty.
     pub fn section(mut self, title: &str, intro: &str) -> Self {
         self.sections.push(Section::new(title, intro));
         self

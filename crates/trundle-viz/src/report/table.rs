@@ -12,14 +12,14 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table without rows. It takes half the page's width up to four columns.
+    /// A table without rows. A table of up to four columns has half the page's width.
     pub fn new<T: Into<String>>(title: &str, header: impl IntoIterator<Item = T>) -> Self {
         let header: Vec<String> = header.into_iter().map(Into::into).collect();
         let wide = header.len() > 4;
         Self { title: title.to_owned(), header, rows: Vec::new(), wide }
     }
 
-    /// Adds a row. Cells beyond the header are kept, missing ones stay empty.
+    /// Adds a row. Cells beyond the header are preserved, missing ones remain empty.
     pub fn row<T: Into<String>>(mut self, cells: impl IntoIterator<Item = T>) -> Self {
         self.rows.push(cells.into_iter().map(Into::into).collect());
         self

@@ -1,10 +1,10 @@
-//! Numbers and things as bad as they come.
+//! Extreme and invalid inputs.
 
 use proptest::prelude::*;
 use trundle_core::{Beam, Cell, Footprint, GridGeometry, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
 use trundle_viz::FeatureMark;
 
-/// Mostly sensible, now and then anything at all.
+/// Mostly plausible numbers, sometimes arbitrary ones.
 pub fn any_number() -> impl Strategy<Value = f64> {
     prop_oneof![6 => -8.0..8.0_f64, 1 => any::<f64>(), 1 => Just(f64::NAN), 1 => -1e9..1e9_f64]
 }
@@ -35,7 +35,7 @@ pub fn any_grid() -> impl Strategy<Value = OccupancyGrid> {
     let origin = prop_oneof![8 => -5.0..5.0_f64, 1 => Just(-1e300), 1 => Just(1e12)];
     (resolution, origin, 1..60_usize, 1..60_usize, any::<u64>(), 0..4_u64).prop_map(
         |(resolution, origin, w, h, bits, mix)| {
-            // Farther off no geometry lets its cells be told apart.
+            // Beyond this distance, a geometry cannot distinguish its cells.
             let farthest = resolution * 2_f64.powi(39);
             let origin = origin.clamp(-farthest, farthest);
             let geometry =

@@ -1,4 +1,4 @@
-//! Nothing a caller can hand in makes a picture panic, and the same content always gives the same bytes.
+//! No input makes a picture panic, and equal content always gives equal bytes.
 
 mod any;
 

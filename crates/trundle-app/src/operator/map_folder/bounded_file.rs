@@ -6,20 +6,20 @@ use std::path::Path;
 
 /// A file of a folder: regular, within the folder, and not too large.
 pub struct BoundedFile<'a> {
-    /// Where it is.
+    /// Path of the file.
     pub path: &'a Path,
-    /// The folder that it must lie in once all links are followed.
+    /// The folder that must contain the file after all links are followed.
     pub folder: &'a Path,
-    /// Its largest size.
+    /// Maximum size of the file.
     pub max_bytes: u64,
 }
 
 impl BoundedFile<'_> {
-    /// Its bytes.
+    /// Reads the bytes of the file.
     ///
     /// # Errors
-    /// Why it is not read, to follow the file's name. A file outside the folder and one that does not exist give the same answer:
-    /// nobody learns which files there are elsewhere.
+    /// The reason why the file is not read, to follow the file's name. A file outside the folder and a missing file give the same error,
+    /// which does not reveal files elsewhere.
     pub fn read(&self) -> Result<Vec<u8>, String> {
         let outside = |_| "is missing or outside the folder of maps".to_owned();
         let failed = |error: io::Error| format!("cannot be read ({error})");
@@ -37,13 +37,13 @@ impl BoundedFile<'_> {
             return Err(format!("has {} bytes, expected at most {}", about.len(), self.max_bytes));
         }
         let mut bytes = Vec::with_capacity(about.len() as usize);
-        // It may grow while it is read.
+        // The file may grow during reading.
         file.take(self.max_bytes).read_to_end(&mut bytes).map_err(failed)?;
         Ok(bytes)
     }
 }
 
-/// Opens a file without a wait: a pipe that nobody writes into opens too, and is refused by its kind.
+/// Opens a file without waiting: a pipe without a writer opens too, and is refused by its kind.
 fn open(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.read(true);
@@ -51,7 +51,7 @@ fn open(path: &Path) -> io::Result<File> {
     {
         use rustix::fs::OFlags;
         use std::os::unix::fs::OpenOptionsExt;
-        // The path has no links left: one that is there now has been put there since.
+        // The path contains no link: a link found now was created since the check.
         options.custom_flags((OFlags::NONBLOCK | OFlags::NOFOLLOW).bits() as i32);
     }
     options.open(path)

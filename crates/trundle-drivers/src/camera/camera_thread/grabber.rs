@@ -1,4 +1,4 @@
-//! The thread that reads the camera, and opens it anew when it is lost.
+//! The thread that reads the camera, and reopens a lost one.
 
 use super::config::{CameraFactory, CameraThreadConfig, HostClock};
 use super::mailbox::{GrabbedFrame, Mailbox};
@@ -11,9 +11,9 @@ use std::sync::Arc;
 use std::time::Duration;
 use trundle_core::Stamp;
 
-/// Longest wait for one frame \[ms\]; the thread looks for the end of the program in between. Source: ours.
+/// Longest wait for one frame \[ms\]; in between, the thread checks for the end of the program. Source: ours.
 const POLL_MS: u64 = 50;
-/// Broken frames in a row after which the camera is opened anew: 30. Source: ours; 1 s at 30 Hz.
+/// Number of consecutive broken frames after which the camera is reopened: 30. Source: ours; 1 s at 30 Hz.
 const MAX_BROKEN_IN_ROW: u64 = 30;
 
 /// Reads the camera.
@@ -24,17 +24,17 @@ pub(super) struct Grabber {
     mailbox: Arc<Mailbox>,
     outbox: Arc<Outbox>,
     config: CameraThreadConfig,
-    /// Attempts to open the camera since its last frame.
+    /// Number of attempts to open the camera since its last frame.
     attempts: u32,
     /// Stamps of the last frame of the camera that was lost.
     last_stamps: Option<(Stamp, Stamp)>,
 }
 
-/// Why a camera is no longer read.
+/// Reason why a camera is no longer read.
 enum Outcome {
     /// The recording ended, or the program does.
     Finished,
-    /// It must be opened anew.
+    /// The camera must be reopened.
     Lost(String),
 }
 
@@ -62,7 +62,7 @@ impl Grabber {
 
     pub(super) fn run(mut self) {
         while !self.mailbox.is_stopped() {
-            // A driver of a maker may panic; the robot has to know that the camera is lost.
+            // A manufacturer's driver may panic; the robot must learn of the lost camera.
             let outcome = catch_unwind(AssertUnwindSafe(|| self.open_and_read()));
             match outcome.unwrap_or_else(|_| Outcome::Lost("the driver of the camera panicked".into())) {
                 Outcome::Finished => break,
@@ -154,7 +154,7 @@ impl Grabber {
         })
     }
 
-    /// A sentence, and what was wrong with the last broken frame.
+    /// A sentence, followed by the fault of the last broken frame.
     fn with_cause(&self, sentence: &str) -> String {
         self.outbox
             .last_fault()

@@ -1,4 +1,4 @@
-//! One waiting frame between the reading and the converting thread.
+//! A queue of one frame between the reading and the converting thread.
 
 use crate::camera::{CameraFrame, CameraInfo};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -59,7 +59,7 @@ impl Mailbox {
         self.changed.notify_all();
     }
 
-    /// Both threads shall end.
+    /// Requests the end of both threads.
     pub(super) fn stop(&self) {
         self.lock().is_stopped = true;
         self.changed.notify_all();

@@ -1,8 +1,8 @@
-//! A camera in threads of its own, reopened after faults.
+//! A camera with its own threads, reopened after faults.
 //!
-//! One thread reads the camera: it stamps each frame on arrival, looks for faults, and opens the camera anew when it is lost. A second
-//! thread converts and registers the newest frame, and pushes it into the sink. A frame that waits when a newer one comes is dropped, so
-//! that the delay stays below two frames; the frames of a recording wait instead.
+//! One thread reads the camera: it stamps each frame on arrival, detects faults, and reopens a lost camera. A second thread converts and
+//! registers the newest frame, and pushes it into the sink. A newer frame replaces a waiting one, which keeps the delay below two frames;
+//! the frames of a recording wait instead.
 
 mod config;
 mod converter;
@@ -19,7 +19,7 @@ use self::{converter::Converter, grabber::Grabber, mailbox::Mailbox, outbox::Out
 use std::sync::Arc;
 use std::thread::{Builder, JoinHandle};
 
-/// A running camera. Its threads end with this value; that may take as long as the camera's opening.
+/// A running camera. A drop ends its threads; this may take as long as opening the camera.
 #[derive(Debug)]
 pub struct CameraThread {
     mailbox: Arc<Mailbox>,
@@ -28,7 +28,7 @@ pub struct CameraThread {
 }
 
 impl CameraThread {
-    /// Starts the threads. The camera is opened there; a camera that cannot be opened is tried again until it can.
+    /// Starts the threads. The camera is opened on a thread; a failure is retried until it succeeds.
     ///
     /// # Errors
     /// When the system refuses a thread.
@@ -48,7 +48,7 @@ impl CameraThread {
         self.outbox.counters()
     }
 
-    /// The sentence of the last fault; `None` if there was none.
+    /// The sentence of the last fault; `None` without a fault.
     pub fn last_fault(&self) -> Option<String> {
         self.outbox.last_fault()
     }

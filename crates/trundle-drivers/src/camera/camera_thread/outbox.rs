@@ -10,7 +10,7 @@ use trundle_core::{BodyEvent, BodyEventKind, Device, Link, RgbdImage, SensorEven
 pub struct CameraCounters {
     /// Frames pushed into the sink.
     pub frames: u64,
-    /// Frames dropped, since a newer one came before they were converted, or since the camera was lost meanwhile.
+    /// Frames dropped because a newer one arrived before the conversion, or because the camera was lost.
     pub dropped: u64,
     /// Frames that could not be read or converted.
     pub broken: u64,
@@ -30,7 +30,7 @@ struct State {
     last_fault: Option<String>,
 }
 
-/// The sink of images and link events. A frame of a camera that was lost meanwhile never follows the event of its loss.
+/// The sink of images and link events. A frame of a lost camera never follows the event of its loss.
 pub(super) struct Outbox {
     clock: HostClock,
     state: Mutex<State>,

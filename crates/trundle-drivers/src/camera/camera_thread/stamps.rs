@@ -3,18 +3,18 @@
 use crate::camera::CameraInfo;
 use trundle_core::Stamp;
 
-/// Maps a time on the camera's clock and the arrival of that frame on the host's clock to the sensors' clock.
+/// Converts a time on the camera's clock and the frame's arrival on the host's clock to the sensors' clock.
 pub type StampMap = Box<dyn FnMut(Stamp, Stamp) -> Stamp + Send>;
-/// Makes the map of a camera that was opened. The camera's own clock may begin anew with each opening.
+/// Makes the map of an opened camera. The camera's own clock may restart with each opening.
 pub type StampMapFactory = Box<dyn FnMut(&CameraInfo) -> StampMap + Send>;
 
-/// The simplest map: the arrival minus the camera's delay. It carries the jitter of the arrival.
+/// The simplest map: the arrival minus the camera's delay. It includes the jitter of the arrival.
 pub fn arrival_minus_delay(info: &CameraInfo) -> StampMap {
     let delay_s = info.delay_s;
     Box::new(move |_, arrival| arrival.after(-delay_s))
 }
 
-/// The stamps of the camera itself: those of a recording.
+/// The stamps of the camera itself, as in a recording.
 pub fn recorded_stamps(_info: &CameraInfo) -> StampMap {
     Box::new(|device, _| device)
 }

@@ -1,8 +1,8 @@
 //! Measurements from their 11-bit codes.
 //!
-//! A code is a sign and a magnitude of 10 bits. Magnitudes are coarser if they are larger: the step is 1 below 256 and doubles with every
-//! further 128 codes. That is the division into segments of \[G711\], A-law, with seven bits a segment. The code of minus zero marks a
-//! saturated pixel. This code is an assumption; see [`super`].
+//! A code is a sign and a magnitude of 10 bits. Larger magnitudes are coarser: the step is 1 below 256 and doubles with every further 128
+//! codes. This is the division into segments of \[G711\], A-law, with seven bits per segment. The code of minus zero marks a saturated
+//! pixel. This code is an assumption; see [`super`].
 
 /// Codes in one segment.
 const SEGMENT_CODES: u16 = 128;
@@ -46,7 +46,7 @@ fn measurement(code: u16) -> i16 {
     if code < SIGN_BIT { magnitude } else { -magnitude }
 }
 
-/// Two segments of step 1, then each with twice the step of the one before.
+/// Two segments of step 1, then each with twice the previous step.
 fn magnitude(code: u16) -> i16 {
     let (segment, within) = (code / SEGMENT_CODES, code % SEGMENT_CODES);
     let doublings = segment.saturating_sub(1);

@@ -9,7 +9,7 @@ use super::smoothing::smooth;
 use super::unwrapping::Unwrapper;
 use trundle_core::{DepthImage, Image, Invalid, PinholeCamera, Vector2, require_finite, require_in};
 
-/// Largest distance that three frequencies tell apart \[m\]: c / (2 x 8 MHz). Source: \[Lawin16\].
+/// Largest distance that three frequencies distinguish \[m\]: c / (2 x 8 MHz). Source: \[Lawin16\].
 const MAX_UNAMBIGUOUS_M: f64 = 18.73;
 
 /// Calibration of one device.
@@ -31,7 +31,7 @@ pub struct DecoderConfig {
     pub min_amplitude: f64,
     /// Nearest valid distance \[m\], 0 to 18.73. Default 0.4. Source: ours; nearer surfaces saturate.
     pub min_range_m: f64,
-    /// Furthest valid distance \[m\], 0 to 18.73. Default 8. Source: \[Lawin16\]: the intended use of the sensor.
+    /// Furthest valid distance \[m\], 0 to 18.73. Default 8. Source: \[Lawin16\], the intended use of the sensor.
     pub max_range_m: f64,
     /// Whether phasors are filtered. Default `true`.
     pub smooths_phasors: bool,
@@ -64,7 +64,7 @@ impl DecoderConfig {
     }
 }
 
-/// Computes depth from packed measurements. It allocates nothing after its making.
+/// Computes depth from packed measurements. After construction, no memory is allocated.
 #[derive(Debug, Clone)]
 pub struct DepthDecoder {
     config: DecoderConfig,
@@ -107,8 +107,8 @@ impl DepthDecoder {
         })
     }
 
-    /// Decodes the ten packed images of a frame; the last one, ambient light, is not used. The result is depth along the optical axis \[m\],
-    /// 512 x 424 px, 0 if there is none.
+    /// Decodes the ten packed images of a frame; the last one, ambient light, is ignored. The result is depth along the optical axis \[m\],
+    /// 512 x 424 px, 0 for unknown.
     ///
     /// # Errors
     /// When an image has not 298,496 bytes.
@@ -130,7 +130,7 @@ impl DepthDecoder {
         Ok(&self.depth)
     }
 
-    /// Mean amplitude of the last decoded frame \[1\]: an infrared image; 0 if there is no depth.
+    /// Mean amplitude of the last decoded frame \[1\]: an infrared image; 0 without depth.
     pub fn amplitude(&self) -> &Image<f32> {
         &self.amplitude
     }

@@ -16,7 +16,7 @@ const WHITE_AMPLITUDE: f32 = 4096.0;
 /// Time from exposure to arrival \[s\]: 0, since a recording has no arrival.
 const RECORDING_DELAY_S: f64 = 0.0;
 
-/// A Kinect V2 played back from a dump. Its colour image is the infrared image, at the same place as depth.
+/// A Kinect V2 played back from a dump. Its colour image is the infrared image, with the geometry of depth.
 #[derive(Debug)]
 pub struct DumpCamera {
     info: CameraInfo,

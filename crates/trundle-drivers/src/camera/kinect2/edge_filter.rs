@@ -1,7 +1,7 @@
 //! The filter of flying pixels.
 //!
-//! A pixel on an edge receives light from both surfaces. Its distance then lies between them, where nothing is. Such a pixel has few
-//! neighbours at its own depth, and is removed. Source: the principle is that of \[Reynolds11\].
+//! A pixel on an edge receives light from both surfaces. Its distance is then between both surfaces, in free space. Such a pixel has few
+//! neighbours with similar depth, and is removed. Source: the principle is that of \[Reynolds11\].
 
 use super::layout::{COLUMNS, ROWS};
 use trundle_core::DepthImage;
@@ -11,7 +11,7 @@ use trundle_core::DepthImage;
 const SUPPORT_SHARE: f32 = 0.02;
 /// Difference of depth up to which a neighbour supports a pixel in any case \[m\]: 0.02. Source: ours; four times the noise at 4 m.
 const MIN_SUPPORT_M: f32 = 0.02;
-/// Neighbours, of eight, that must support a pixel: 4. Source: ours; a pixel at a straight edge has five on its own surface.
+/// Minimum number of supporting neighbours, of eight: 4. Source: ours; a pixel at a straight edge has five on its own surface.
 const MIN_SUPPORTERS: usize = 4;
 
 /// Copies `depth` into `filtered` without flying pixels. The border of one pixel is copied.

@@ -1,7 +1,7 @@
 //! Depth of the Kinect V2 from its raw packets.
 //!
-//! **Problem.** The Kinect V2 sends no depth. It sends ten images of 11-bit numbers: three shifted measurements at each of three modulation
-//! frequencies, and one of ambient light. The host computes depth.
+//! **Problem.** The Kinect V2 sends no depth. It sends ten images of 11-bit numbers: three shifted measurements for each of three
+//! modulation frequencies, and one of ambient light. The host computes depth.
 //!
 //! **Idea.** Three measurements shifted by a third of a turn give the phase and amplitude of the returning light. The phase is the distance
 //! modulo half a wavelength of the modulation. Three frequencies agree at one distance only within 18.75 m, which unwraps the phase. Two
@@ -25,11 +25,11 @@
 //!
 //! # Assumptions
 //!
-//! No maker's document describes the bytes. These facts are assumed, and were not compared with a device. All but those of the phase and its
-//! unit are also what \[Freenect2\] uses, whose authors have devices. It subtracts p_0 where this decoder adds it (`usb` changes the sign),
-//! and its unit of `p0` is larger by 1.6 %:
+//! The bytes are not documented by the manufacturer. The following facts are assumptions that were not verified with a device. All but
+//! those of the phase and its unit agree with \[Freenect2\], whose authors have devices. \[Freenect2\] subtracts p_0 where this decoder
+//! adds it (`usb` changes the sign), and its unit of `p0` is larger by 1.6 %:
 //!
-//! | fact | assumed | where |
+//! | fact | assumption | module |
 //! |---|---|---|
 //! | order of the bits | the first pixel in the lowest bits, 8 pixels in 11 bytes | [`packing`] |
 //! | order of the columns | four interleaved blocks of 128: columns 0, 4, 8, ..., then 1, 5, 9, ... | [`packing`] |

@@ -1,7 +1,7 @@
 //! Frames put together from USB sub-packets.
 //!
-//! A frame comes as ten sub-packets, one packed image each. A footer follows each: time, number of the frame (sequence), number of the image
-//! (subsequence), and length. The fields are published in the messages of open drivers; their order and size here are an assumption:
+//! A frame comes as ten sub-packets, one packed image each. A footer follows each: time, number of the frame (sequence), number of the
+//! image (subsequence), and length. The fields are published in the messages of open drivers. Their order and size here are an assumption:
 //! 152 bytes, little endian u32: 0, 9, time, sequence, subsequence, length, and 32 further fields.
 
 use super::layout::{IMAGE_BYTES, IMAGE_COUNT};
@@ -14,7 +14,7 @@ const FOOTER_MAGIC: [u32; 2] = [0, 9];
 /// Nanoseconds in one step of the time \[ns\]: 0.125 ms. Source: assumed.
 const TICK_NANOS: i64 = 125_000;
 
-/// One packed image of a frame.
+/// A packed image of a frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SubPacket {
     /// Time of the frame \[0.125 ms\].
@@ -38,7 +38,7 @@ pub struct PackedFrame {
     pub images: [Vec<u8>; IMAGE_COUNT],
 }
 
-/// Cuts sub-packets out of USB transfers. It holds at most one sub-packet.
+/// Extracts sub-packets from USB transfers. It stores at most one sub-packet.
 #[derive(Debug, Clone, Default)]
 pub struct SubPacketParser {
     bytes: Vec<u8>,
@@ -46,7 +46,8 @@ pub struct SubPacketParser {
 }
 
 impl SubPacketParser {
-    /// Takes the bytes of one USB transfer; a sub-packet when this transfer ends with its footer. A sub-packet of wrong length is skipped.
+    /// Adds the bytes of one USB transfer; returns the sub-packet if this transfer ends with its footer. A sub-packet of wrong length is
+    /// skipped.
     pub fn push(&mut self, transfer: &[u8]) -> Option<SubPacket> {
         if self.bytes.len() + transfer.len() > IMAGE_BYTES + FOOTER_BYTES {
             self.skip();
@@ -95,8 +96,8 @@ pub struct FrameAssembler {
 }
 
 impl FrameAssembler {
-    /// Takes a sub-packet; the whole frame when it was the last one missing. A new sequence drops an incomplete frame. Sub-packets of the
-    /// frame that was whole last came twice, and are passed over.
+    /// Adds a sub-packet; returns the frame if the sub-packet completes it. A new sequence drops an incomplete frame. Repeated sub-packets
+    /// of the last complete frame are skipped.
     pub fn push(&mut self, packet: SubPacket) -> Option<PackedFrame> {
         if self.finished == Some(packet.sequence) {
             self.repeated += 1;
@@ -123,7 +124,7 @@ impl FrameAssembler {
         self.dropped
     }
 
-    /// Sub-packets passed over since their frame was whole already.
+    /// Number of sub-packets skipped because their frame was complete.
     pub fn repeated(&self) -> u64 {
         self.repeated
     }
@@ -135,15 +136,15 @@ impl FrameAssembler {
     }
 }
 
-/// A clock of 32 bits that goes on after its largest number, which comes every 6.2 days.
+/// A clock of 32 bits that continues after its overflow every 6.2 days.
 #[derive(Debug, Clone, Default)]
 pub struct TickClock {
-    /// The last time with its overflows \[0.125 ms\].
+    /// Last time including overflows \[0.125 ms\].
     long_ticks: Option<i64>,
 }
 
 impl TickClock {
-    /// The time of a number of ticks, which is less than half a round from the one before.
+    /// The time of a number of ticks, less than half a period from the previous one.
     pub fn stamp(&mut self, ticks: u32) -> Stamp {
         let last = self.long_ticks.unwrap_or(ticks.into());
         let step = ticks.wrapping_sub(last as u32).cast_signed();

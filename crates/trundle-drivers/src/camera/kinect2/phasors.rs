@@ -18,10 +18,10 @@ const THIRD_TURN_SIN: f32 = 0.866_025_4;
 /// Planes of a phasor image: real and imaginary part at each frequency.
 pub const PLANE_COUNT: usize = 2 * FREQUENCY_COUNT;
 
-/// The phasors of one pixel: real and imaginary part at each frequency. All zero if there is no measurement.
+/// The phasors of one pixel: real and imaginary part at each frequency. All zero without a measurement.
 pub type Phasors = [f32; PLANE_COUNT];
 
-/// The phasors of all pixels, one plane for each part, so that several pixels are computed at once.
+/// The phasors of all pixels, one plane per part, for vectorised computation.
 #[derive(Debug, Clone)]
 pub struct PhasorImage {
     /// Rows from the top left, in the order of [`Phasors`].
@@ -34,7 +34,7 @@ impl PhasorImage {
         Self { planes: std::array::from_fn(|_| vec![0.0; PIXEL_COUNT]) }
     }
 
-    /// The phasors of a pixel. Panics when there is no such pixel.
+    /// The phasors of a pixel. Panics for a pixel outside the image.
     #[inline]
     pub fn at(&self, pixel: usize) -> Phasors {
         std::array::from_fn(|plane| self.planes[plane][pixel])

@@ -1,17 +1,17 @@
 //! The bilateral filter on the phasors.
 //!
-//! Each phasor becomes the mean of the 3 x 3 phasors around it, weighted by their nearness in the image and by their likeness: phasors across
-//! an edge get no weight. Likeness is measured at all frequencies together and relative to the amplitude, since the amplitude falls with the
+//! Each phasor becomes the mean of the 3 x 3 phasors around it, weighted by distance in the image and by similarity: phasors across an edge
+//! get no weight. Similarity is measured at all frequencies together and relative to the amplitude, because the amplitude falls with the
 //! square of the distance. Source: \[Tomasi98\]; the kernel of likeness is Tukey's, \[Durand02\].
 
 use super::layout::{COLUMNS, ROWS};
 use super::phasors::{PLANE_COUNT, PhasorImage};
 
-/// Pixels computed at once: the compiler turns loops over this number into vector instructions.
+/// Number of pixels computed together: the compiler turns loops over this number into vector instructions.
 const LANES: usize = 8;
-/// Smallest power of a phasor that is divided by \[1\]. It keeps pixels without measurement finite.
+/// Smallest power of a phasor used as a divisor \[1\]. It keeps pixels without a measurement finite.
 const MIN_POWER: f32 = 1e-6;
-/// Weights of the neighbours across and down, by a Gaussian of 1 px: exp(-1/2) beside the middle. Source: ours.
+/// Weights of the neighbours in columns and rows, by a Gaussian of 1 px: exp(-1/2) next to the middle. Source: ours.
 const SPATIAL_WEIGHTS: [f32; 3] = [0.606_53, 1.0, 0.606_53];
 /// Difference of phasors, relative to the amplitude, from which a neighbour gets no weight \[1\]: 0.6. Source: ours; noise reaches 0.2 at the
 /// lowest accepted amplitude, and 0.6 is a step of 0.12 m at 120 MHz.
@@ -22,14 +22,14 @@ type Lanes = [f32; LANES];
 /// The phasors of neighbouring pixels, one part after the other.
 type LanePhasors = [Lanes; PLANE_COUNT];
 
-/// Filters all phasors; the border of one pixel is copied. Pixels without measurement stay so.
+/// Filters all phasors; the border of one pixel is copied. Pixels without a measurement do not change.
 pub(super) fn smooth(phasors: &PhasorImage, smoothed: &mut PhasorImage) {
     for (target, source) in smoothed.planes.iter_mut().zip(&phasors.planes) {
         target.copy_from_slice(source);
     }
     for y in 1..ROWS - 1 {
         for block in (1..COLUMNS - 1).step_by(LANES) {
-            // The last block overlaps the one before, so that it ends before the border.
+            // The last block overlaps the previous one, to end before the border.
             let start = y * COLUMNS + block.min(COLUMNS - 1 - LANES);
             let means = means_around(phasors, start);
             for (target, mean) in smoothed.planes.iter_mut().zip(&means) {
@@ -64,7 +64,7 @@ fn means_around(phasors: &PhasorImage, start: usize) -> LanePhasors {
     sum.map(|part| lanes(|i| part[i] / total[i]))
 }
 
-/// Weights of neighbours by their likeness. A pixel without measurement has no like neighbour but itself.
+/// Weights of neighbours by their similarity. A pixel without a measurement is similar only to itself.
 fn weights(own: &LanePhasors, other: &LanePhasors, scale: &Lanes, spatial: f32) -> Lanes {
     let mut difference = Lanes::default();
     for (own, other) in own.iter().zip(other) {

@@ -1,8 +1,9 @@
 //! Distance from the wrapped phases of three frequencies.
 //!
-//! Each number of wraps of the highest frequency is a hypothesis of the distance. It predicts the phases of the two other frequencies; the
-//! hypothesis with the smallest weighted squares of the differences wins. Weights are inverse variances, and the variance of a phase is that
-//! of the measurements over the squared amplitude. The distance is the weighted mean over the three frequencies. Source: \[Lawin16\].
+//! Each number of wraps of the highest frequency is a hypothesis of the distance. The hypothesis predicts the phases of the two other
+//! frequencies. The hypothesis with the smallest weighted sum of squared differences is chosen. Weights are inverse variances; the variance
+//! of a phase is that of the measurements over the squared amplitude. The distance is the weighted mean over the three frequencies. Source:
+//! \[Lawin16\].
 
 use super::layout::{FREQUENCY_COUNT, wrap_distance_m};
 use super::phasors::Phasors;
@@ -12,8 +13,8 @@ use std::f32::consts::TAU;
 const FINEST_INDEX: usize = 2;
 /// The frequencies by which the hypotheses are scored.
 const JUDGE_INDICES: [usize; 2] = [0, 1];
-/// Largest difference of a predicted phase \[turn\]: 0.12. Beyond it no hypothesis is right. Source: ours; hypotheses differ by 0.33 turn at
-/// 80 MHz.
+/// Largest difference of a predicted phase \[turn\]: 0.12. With a larger difference no hypothesis is accepted. Source: ours; hypotheses
+/// differ by 0.33 turn at 80 MHz.
 const MAX_PHASE_DIFFERENCE_TURN: f32 = 0.12;
 
 /// Number whose sum with a smaller one is whole: 1.5 x 2^23. Source: IEEE 754, 23 bits of fraction.
@@ -30,7 +31,7 @@ pub(super) struct Unwrapper {
 }
 
 impl Unwrapper {
-    /// Of distances up to `max_range_m`, of pixels with at least `min_amplitude` at each frequency.
+    /// An unwrapper for distances up to `max_range_m`, for pixels with at least `min_amplitude` at each frequency.
     pub(super) fn new(max_range_m: f64, min_amplitude: f32) -> Self {
         let wrap_m = std::array::from_fn(|frequency| wrap_distance_m(frequency) as f32);
         let hypotheses = (max_range_m / wrap_distance_m(FINEST_INDEX)).ceil() as usize;
@@ -95,8 +96,8 @@ fn wrapped(turns: f32) -> f32 {
     turns - ((turns + ROUNDING_SUMMAND) - ROUNDING_SUMMAND)
 }
 
-/// The angle of (x, y) in turns, -0.5 to 0.5. Its error is below 2e-6 turn, 2.5 um at 120 MHz. Source: \[Abramowitz64\],
-/// equation 4.4.47, for the eighth of a turn; symmetry for the rest.
+/// The angle of (x, y) in turns, -0.5 to 0.5. The error is below 2e-6 turn, 2.5 um at 120 MHz. Source: \[Abramowitz64\], equation 4.4.47,
+/// for the eighth of a turn; symmetry for the rest.
 fn turn_of(y: f32, x: f32) -> f32 {
     let (a, b) = (x.abs(), y.abs());
     let (low, high) = (a.min(b), a.max(b));

@@ -55,7 +55,7 @@ pub fn list_devices(kind: NativeKind) -> Result<Vec<DeviceEntry>, CameraError> {
     }
 }
 
-/// Opens a camera or recording of `kind` with default settings. A camera of OpenNI2 belongs in a process of its own: see
+/// Opens a camera or recording of `kind` with default settings. A camera of OpenNI2 should run in a separate process: see
 /// [`openni2::serve_openni`].
 ///
 /// # Errors

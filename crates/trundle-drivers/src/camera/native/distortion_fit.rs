@@ -1,8 +1,7 @@
 //! Lens models of other makers as [`Distortion`].
 //!
-//! [`Distortion`] maps a point of a rectified image to the raw image. Some cameras report the opposite direction, or another formula. Its
-//! five coefficients enter linearly, so that least squares over a grid of the image find the best ones; the largest error left decides
-//! whether they are good enough.
+//! [`Distortion`] maps a point of a rectified image to the raw image. Some cameras report the opposite direction, or another formula. The
+//! five coefficients are linear, so least squares over a grid of the image find them; the largest remaining error decides about acceptance.
 
 use nalgebra::{DMatrix, DVector};
 use trundle_core::{Distortion, Invalid, PinholeCamera, Vector2};
@@ -18,7 +17,7 @@ const MAX_FIT_ERROR_PX: f64 = 0.5;
 pub struct FittedDistortion {
     /// The coefficients.
     pub distortion: Distortion,
-    /// Largest distance between the fitted and the reported model in the image \[px\]; 0 where they are the same formula.
+    /// Largest distance between the fitted and the reported model in the image \[px\]; 0 for equal formulas.
     pub error_px: f64,
 }
 

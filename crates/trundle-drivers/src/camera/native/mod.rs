@@ -1,4 +1,4 @@
-//! Cameras through the libraries of their makers, which are loaded at run time.
+//! Cameras through the libraries of their manufacturers, which are loaded at run time.
 //!
 //! | module | content |
 //! |---|---|

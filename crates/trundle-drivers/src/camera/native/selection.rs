@@ -1,4 +1,4 @@
-//! Which camera to open.
+//! Selection of a camera.
 
 use crate::camera::UsbSpeed;
 use std::fmt;
@@ -58,7 +58,7 @@ impl fmt::Display for NativeKind {
     }
 }
 
-/// Which camera of a kind.
+/// Selection of a camera of a kind.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum Selection {
     /// The first that the library lists.

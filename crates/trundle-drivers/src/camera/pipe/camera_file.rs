@@ -18,7 +18,7 @@ const MAX_HEADER_BYTES: usize = 65_536;
 const MAX_DELAY_S: f64 = 1.0;
 /// Highest frame rate \[Hz\]. Source: ours; a higher one is a mistyped number.
 const MAX_RATE_HZ: f64 = 1000.0;
-/// Largest unit of whole-numbered depth \[m\]. Source: ours; 65535 units of it are 6.5 km.
+/// Largest unit of whole-numbered depth \[m\]. Source: ours; 65535 units are 6.5 km.
 const MAX_DEPTH_UNIT_M: f64 = 0.1;
 
 #[derive(Serialize, Deserialize)]
@@ -54,7 +54,7 @@ fn depth_stream<'de, D: Deserializer<'de>>(header: D) -> Result<StreamInfo, D::E
     named_stream("depth", header)
 }
 
-/// A stream of the header; an error names the stream.
+/// A stream of the header; errors contain the stream's name.
 fn named_stream<'de, D: Deserializer<'de>>(name: &str, header: D) -> Result<StreamInfo, D::Error> {
     StreamInfo::deserialize(header).map_err(|error| D::Error::custom(format!("{name}: {error}")))
 }
@@ -93,7 +93,7 @@ pub fn header_line(info: &CameraInfo) -> Result<String, String> {
 /// The camera that a header describes.
 ///
 /// # Errors
-/// A sentence that names the field: no JSON, another magic or version, or a number out of range.
+/// A sentence with the field: no JSON, another magic or version, or a number out of range.
 pub fn parse_header(bytes: &[u8]) -> Result<CameraInfo, String> {
     if bytes.len() > MAX_HEADER_BYTES {
         return Err(format!("the header has {} bytes, expected at most {MAX_HEADER_BYTES}", bytes.len()));
@@ -110,16 +110,16 @@ pub fn parse_header(bytes: &[u8]) -> Result<CameraInfo, String> {
     Ok(info)
 }
 
-/// Where a header stands in the bytes of a stream.
+/// Result of the search for a header in the bytes of a stream.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum HeaderSearch {
     /// A whole header, with its end of line.
     Found(std::ops::Range<usize>),
-    /// More bytes are needed; those before this place hold no header.
+    /// More bytes are needed; no header begins before this position.
     From(usize),
 }
 
-/// Looks for a header, which begins a stream and may be repeated between frames.
+/// Searches for a header, which begins a stream and may be repeated between frames.
 ///
 /// # Errors
 /// When no line ends within the longest header.

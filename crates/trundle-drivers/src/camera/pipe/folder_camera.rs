@@ -10,7 +10,7 @@ use trundle_core::{Invalid, Stamp};
 
 /// Wait between two lists of the folder \[ms\]. Source: ours; half of the time between frames at 30 Hz.
 const SCAN_PERIOD_MS: u64 = 15;
-/// Longest wait of an image for the other one of its pair \[ms\]. Source: ours; the silence after which a camera counts as lost.
+/// Longest wait of an image for its partner \[ms\]. Source: ours; equal to the silence after which a camera counts as lost.
 const MAX_PAIR_WAIT_MS: u64 = 1000;
 /// Largest image file \[bytes\]: 256 MiB. Source: ours; an uncompressed image of the largest size.
 const MAX_IMAGE_FILE_BYTES: u64 = 1 << 28;
@@ -20,11 +20,11 @@ const MAX_IMAGE_FILE_BYTES: u64 = 1 << 28;
 pub struct FolderCounts {
     /// Pairs delivered.
     pub frames: u64,
-    /// Pairs dropped since one of their files did not come in time.
+    /// Number of pairs dropped because one file did not arrive in time.
     pub dropped: u64,
 }
 
-/// A camera whose images appear as files `color/STAMP.png`, `color/STAMP.jpg` and `depth/STAMP.png` beside a file `camera.json`.
+/// A camera whose images appear as files `color/STAMP.png`, `color/STAMP.jpg` and `depth/STAMP.png` next to a file `camera.json`.
 #[derive(Debug)]
 pub struct FolderCamera {
     info: CameraInfo,
@@ -36,7 +36,7 @@ pub struct FolderCamera {
 }
 
 impl FolderCamera {
-    /// Opens a folder with its `camera.json`. The folders of images may still be empty.
+    /// Opens a folder with its `camera.json`. The folders of images may be empty.
     ///
     /// # Errors
     /// When a folder or `camera.json` is missing, or the file is not valid.
@@ -44,7 +44,7 @@ impl FolderCamera {
         Self::with_pair_wait(folder, Duration::from_millis(MAX_PAIR_WAIT_MS))
     }
 
-    /// As [`FolderCamera::open`], with the longest wait of an image for the other one of its pair.
+    /// As [`FolderCamera::open`], with the longest wait of an image for its partner.
     ///
     /// # Errors
     /// As [`FolderCamera::open`].
@@ -111,7 +111,7 @@ impl DepthCamera for FolderCamera {
     }
 }
 
-/// A JPEG as it is; a PNG decoded, since pixel formats know no colour PNG.
+/// A JPEG unchanged; a PNG decoded, because the pixel formats have no colour PNG.
 fn color_image(path: &Path, size: (usize, usize), stamp: Stamp) -> Result<RawImage, CameraError> {
     let bytes = bytes_of(path)?;
     let is_png = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png"));

@@ -45,12 +45,12 @@ struct SeenFile {
 }
 
 impl FolderScan {
-    /// Of the folders `color` and `depth` in `folder`. A file waits at most `max_wait` for its partner.
+    /// A scan of the folders `color` and `depth` in `folder`. A file waits at most `max_wait` for its partner.
     pub(super) fn new(folder: &Path, max_wait: Duration) -> Self {
         Self { folder: folder.to_owned(), max_wait, pending: BTreeMap::new(), last: None, dropped: 0 }
     }
 
-    /// Lists both folders. A file is complete when its size is that of the scan before.
+    /// Lists both folders. A file is complete if its size has not changed since the previous scan.
     ///
     /// # Errors
     /// When a folder cannot be listed.
@@ -82,12 +82,12 @@ impl FolderScan {
         None
     }
 
-    /// Whether no file waits for anything.
+    /// Whether no file waits for its partner or completion.
     pub(super) fn is_empty(&self) -> bool {
         self.pending.is_empty()
     }
 
-    /// Pairs dropped since one of their files did not come.
+    /// Number of pairs dropped because one file did not arrive.
     pub(super) fn dropped(&self) -> u64 {
         self.dropped
     }

@@ -1,8 +1,7 @@
 //! Frames cut out of a stream of bytes.
 //!
-//! A frame begins with a magic word and the lengths of its two images. Bytes that do not fit are skipped up to the next magic word, so
-//! that the stream recovers after lost or foreign bytes. The lengths are checked against the header of the stream, which bounds the
-//! memory.
+//! A frame begins with a magic word and the lengths of its two images. Bytes that do not fit are skipped up to the next magic word: the
+//! stream recovers after lost or foreign bytes. The lengths are checked against the header of the stream, which bounds the memory.
 
 use crate::camera::{CameraFrame, CameraInfo, PixelFormat, RawImage, StreamInfo};
 use trundle_core::{Invalid, Stamp};
@@ -11,7 +10,7 @@ use trundle_core::{Invalid, Stamp};
 pub const FRAME_MAGIC: [u8; 4] = *b"TRFR";
 /// Bytes before the images: magic, stamp (i64), length of colour (u32), length of depth (u32).
 pub(super) const FRAME_HEADER_BYTES: usize = 20;
-/// Bytes that a compressed image may have beyond its uncompressed size: 65536. Source: ours; headers and tables of a file.
+/// Bytes by which a compressed image may exceed its uncompressed size: 65536. Source: ours; headers and tables of a file.
 const COMPRESSED_EXTRA_BYTES: usize = 65_536;
 /// Bytes of a pixel of a compressed image before compression, at most: 4.
 const MAX_BYTES_PER_PIXEL: usize = 4;
@@ -48,7 +47,7 @@ pub struct FrameLimits {
 }
 
 impl FrameLimits {
-    /// Of the streams of a camera: exact for uncompressed formats.
+    /// Limits for the streams of a camera: exact for uncompressed formats.
     pub fn of(info: &CameraInfo) -> Self {
         Self { color: limits(&info.color), depth: limits(&info.depth) }
     }
@@ -72,14 +71,14 @@ pub struct ParserCounts {
     pub wrong_lengths: u64,
 }
 
-/// Cuts frames out of a stream of bytes. It holds at most one frame and one push.
+/// Extracts frames from a stream of bytes. It stores at most one frame and one push.
 #[derive(Debug, Clone)]
 pub struct FrameParser {
     limits: FrameLimits,
     bytes: Vec<u8>,
     start: usize,
     counts: ParserCounts,
-    /// Lengths of colour and depth of the last frame that was refused for them.
+    /// Refused lengths of colour and depth of the last refused frame.
     refused: Option<(usize, usize)>,
 }
 
@@ -87,7 +86,7 @@ pub struct FrameParser {
 enum Front {
     /// A frame with lengths of colour and depth.
     Frame(Stamp, usize, usize),
-    /// Too few bytes to decide.
+    /// Too few bytes for a decision.
     Incomplete,
     /// A frame's header with lengths that the stream cannot have.
     WrongLengths(usize, usize),

@@ -1,7 +1,7 @@
 //! Any camera as frames in a pipe, a FIFO, a file, or a folder that grows.
 //!
-//! The form is described in `docs/camera-stream.md`. Another program writes it, in any language, and no library of that camera is needed
-//! here. [`StreamWriter`] writes the same form.
+//! `docs/camera-stream.md` describes the format. Another program writes it, in any language; no library of the camera is needed.
+//! [`StreamWriter`] writes the same format.
 
 mod camera_file;
 mod folder_camera;

@@ -17,7 +17,7 @@ struct RunningProcess(Child);
 
 impl Drop for RunningProcess {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // The process may have ended by itself.
         let _ = self.0.kill();
         let _ = self.0.wait();
     }

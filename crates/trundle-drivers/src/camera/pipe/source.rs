@@ -1,4 +1,4 @@
-//! Pipes, FIFOs, files and standard input, opened so that their reader can be stopped.
+//! Pipes, FIFOs, files and standard input, opened with a stoppable reader.
 
 use std::fs::{File, OpenOptions};
 use std::io::{self, ErrorKind, Read};
@@ -13,14 +13,14 @@ const IDLE_WAIT_MS: u64 = 3;
 /// An open source of bytes.
 pub(super) struct Source {
     pub reader: Box<dyn Read + Send>,
-    /// Whether the bytes end for good, as those of a file.
+    /// Whether the end of the bytes is final, as for a file.
     pub is_file: bool,
 }
 
-/// Opens a file or FIFO; `-` is standard input. A FIFO is opened at once, also without a writer.
+/// Opens a file or FIFO; `-` is standard input. A FIFO is opened immediately, also without a writer.
 ///
 /// # Errors
-/// When the path does not exist or may not be read.
+/// When the path does not exist or is not readable.
 pub(super) fn open(path: &Path, is_stopped: Arc<AtomicBool>) -> io::Result<Source> {
     if path.as_os_str() == "-" {
         return Ok(Source { reader: Box::new(io::stdin()), is_file: false });
@@ -36,7 +36,7 @@ pub(super) fn open(path: &Path, is_stopped: Arc<AtomicBool>) -> io::Result<Sourc
     Ok(Source { reader: Box::new(FifoReader { file, has_begun: false, is_stopped }), is_file: false })
 }
 
-/// A FIFO read without blocking, so that its thread ends on request.
+/// A FIFO with non-blocking reads, whose thread ends on request.
 struct FifoReader {
     file: File,
     has_begun: bool,
@@ -47,7 +47,7 @@ impl Read for FifoReader {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         while !self.is_stopped.load(Ordering::Relaxed) {
             match self.file.read(buffer) {
-                // Nobody has opened the other end yet.
+                // No writer has opened the other end yet.
                 Ok(0) if !self.has_begun => {}
                 Err(error) if error.kind() == ErrorKind::WouldBlock => {}
                 result => {

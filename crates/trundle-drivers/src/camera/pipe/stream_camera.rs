@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 use trundle_core::Invalid;
 
-/// Bytes read at once. Source: ours; the largest pipe buffer of Linux without privileges.
+/// Maximum number of bytes per read. Source: ours; the largest pipe buffer of Linux without privileges.
 const READ_BYTES: usize = 1 << 20;
 /// Bytes that are searched for a header: 2^30. Source: ours; a header comes every 30 frames, and 30 frames of 1920 x 1080 px have 0.4 GB.
 const MAX_BYTES_BEFORE_HEADER: usize = 1 << 30;
@@ -21,7 +21,7 @@ const MAX_WAITING_FRAMES: usize = 2;
 
 /// A camera whose frames come from a pipe, a FIFO, a file or standard input.
 ///
-/// A thread reads the bytes. It ends with this value; on standard input it ends with the next byte.
+/// A camera whose bytes are read by a thread. A drop ends the thread; on standard input the thread ends with the next byte.
 #[derive(Debug)]
 pub struct StreamCamera {
     info: CameraInfo,
@@ -44,7 +44,7 @@ enum Message {
 
 impl StreamCamera {
     /// Opens a file or a FIFO, or standard input for `-`, and waits at most `timeout` for the header. A file is a recording: it is not
-    /// live, whatever its header says.
+    /// live, even if its header says so.
     ///
     /// # Errors
     /// When the path cannot be read, or its header does not come in time or is not valid.
@@ -155,11 +155,11 @@ impl Worker {
             }
             Err(problem) => problem,
         };
-        // The caller may be gone; then the message has no reader.
+        // The receiver may be dropped; then the message is lost.
         let _ = self.sender.send(last);
     }
 
-    /// The camera, and the bytes that were read beyond its header. Bytes before it are those of a stream that was joined midway.
+    /// The camera, and the bytes read after its header. Bytes before the header belong to a stream that was joined midway.
     fn read_header(&mut self) -> Result<(CameraInfo, Vec<u8>), Message> {
         let (mut bytes, mut chunk) = (Vec::new(), vec![0; READ_BYTES]);
         let mut skipped = 0;

@@ -6,7 +6,7 @@ use crate::camera::{CameraError, CameraFrame, CameraInfo, RawImage};
 use std::io::Write;
 use trundle_core::Invalid;
 
-/// Frames after which the header is repeated, so that a reader can join midway. Source: ours; 1 s at 30 Hz.
+/// Number of frames after which the header is repeated, for readers that join midway. Source: ours; 1 s at 30 Hz.
 const FRAMES_PER_HEADER: u64 = 30;
 
 /// Writes the frames of a camera in the form of `docs/camera-stream.md`.

@@ -11,15 +11,15 @@ const DISPARITY_SLOPE: f64 = -0.003_071_101_6;
 const DISPARITY_OFFSET: f64 = 3.330_949_516_1;
 /// Raw disparity without a measurement. Source: \[OpenKinect\].
 const NO_DISPARITY: u16 = 2047;
-/// Largest depth that a Kinect v1 measures \[m\]; beyond it the formula has a pole at raw disparity 1085. Source: ours; one step of
-/// disparity is 0.3 m there.
+/// Largest depth that a Kinect v1 measures \[m\]; the formula has a pole at raw disparity 1085. Source: ours; one step of disparity is 0.3
+/// m at this depth.
 const MAX_DISPARITY_DEPTH_M: f64 = 10.0;
 
-/// Converts `raw` into `image` (metres, 0 if there is none), whose memory is used again when the size is the same.
-/// `unit_m` is the length of one unit of whole-numbered depth \[m\].
+/// Converts `raw` into `image` (metres, 0 for unknown); the memory is reused if the size is equal. `unit_m` is the length of one unit of
+/// whole-numbered depth \[m\].
 ///
 /// # Errors
-/// When the format is one of colour, the number of bytes does not fit the size, the unit is not positive, or a PNG cannot be decoded.
+/// When the format is one of colour, the number of bytes does not match the size, the unit is not positive, or a PNG cannot be decoded.
 pub fn depth_from_raw(raw: &RawImage, unit_m: f64, image: &mut DepthImage) -> Result<(), Invalid> {
     require_positive("unit of depth", unit_m, "m")?;
     let unit = unit_m as f32;
@@ -40,7 +40,7 @@ pub fn depth_from_raw(raw: &RawImage, unit_m: f64, image: &mut DepthImage) -> Re
     }
 }
 
-/// Depth \[m\] of a raw disparity of the Kinect v1; 0 if there is none or if it is beyond 10 m.
+/// Depth \[m\] of a raw disparity of the Kinect v1; 0 for unknown or above 10 m.
 pub fn metres_from_disparity(raw: u16) -> f32 {
     let inverse = raw as f64 * DISPARITY_SLOPE + DISPARITY_OFFSET;
     if raw >= NO_DISPARITY || inverse < 1.0 / MAX_DISPARITY_DEPTH_M { 0.0 } else { (1.0 / inverse) as f32 }

@@ -1,6 +1,6 @@
 //! Pixel formats to images of [`trundle_core`].
 //!
-//! Both converters keep their image: after the first frame they allocate nothing, except inside the decoders of JPEG and PNG.
+//! Both converters reuse their image: after the first frame only the decoders of JPEG and PNG allocate memory.
 
 mod bt601;
 mod color;

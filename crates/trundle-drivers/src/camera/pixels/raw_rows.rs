@@ -3,14 +3,14 @@
 use crate::camera::RawImage;
 use trundle_core::Invalid;
 
-/// Largest number of columns or rows \[px\]. A larger number is that of a damaged header. Source: the limit of
+/// Largest number of columns or rows \[px\]. A larger number indicates a damaged header. Source: the limit of
 /// [`trundle_core::PinholeCamera`].
 const MAX_SIDE_PX: usize = 16_384;
 
 /// The rows of an uncompressed image, without their padding.
 ///
 /// # Errors
-/// When the format is compressed, a side is out of range, or the bytes do not suffice or are too many.
+/// When the format is compressed, a side is out of range, or the number of bytes is wrong.
 pub(super) fn rows(raw: &RawImage) -> Result<impl Iterator<Item = &[u8]>, Invalid> {
     let pixel = raw.format.bytes_per_pixel().ok_or_else(|| {
         Invalid::new("pixel format", raw.format, "", "an uncompressed format in an image by rows")
@@ -39,7 +39,7 @@ pub(super) fn check_size(raw: &RawImage) -> Result<(), Invalid> {
     Err(Invalid::new(format!("size of a {} image", raw.format), value, "px", "1 x 1 to 16384 x 16384"))
 }
 
-/// The padding of the last row may be missing, and may not be followed by anything.
+/// The padding of the last row is optional, and no bytes may follow it.
 fn check_length(raw: &RawImage, row: usize, stride: usize) -> Result<(), Invalid> {
     let too_large =
         || Invalid::new("row stride of an image", stride, "bytes", "a stride that fits in memory");

@@ -8,7 +8,7 @@ pub(super) fn is_same_lens(a: &PinholeCamera, b: &PinholeCamera) -> bool {
     lens(a) == lens(b)
 }
 
-/// Refuses an image whose size is not that of its camera.
+/// Refuses an image whose size differs from its camera's.
 ///
 /// # Errors
 /// When the sizes differ.

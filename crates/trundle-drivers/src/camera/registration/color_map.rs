@@ -3,14 +3,14 @@
 use super::checks::{check_size, is_same_lens};
 use trundle_core::{ColorImage, Invalid, PinholeCamera, Vector2};
 
-/// Where the output pixels lie in the colour image.
+/// Positions of the output pixels in the colour image.
 #[derive(Debug, Clone)]
 pub(super) struct ColorMap {
     camera: PinholeCamera,
     output: PinholeCamera,
-    /// Of each output pixel: its place in the colour image \[px\]; `None` outside. Empty if both cameras are the same.
+    /// Position of each output pixel in the colour image \[px\]; `None` outside. Empty if both cameras are the same.
     places: Vec<Option<[f32; 2]>>,
-    /// Samples across and down for one output pixel. 1 takes four pixels by bilinear weights.
+    /// Numbers of samples in columns and rows for one output pixel. For 1, bilinear interpolation uses four pixels.
     samples: [usize; 2],
 }
 

@@ -2,26 +2,26 @@
 
 use trundle_core::DepthImage;
 
-/// Largest step of depth between neighbouring pixels on one surface, as a share of the nearer depth: 0.03. Beyond it lies an edge. Source:
-/// ours; the floor 4 m ahead of a Kinect V2 at 0.4 m height steps by 0.027 a row.
+/// Largest step of depth between neighbouring pixels on one surface, as a share of the nearer depth: 0.03. A larger step is an edge.
+/// Source: ours; the floor 4 m ahead of a Kinect V2 at 0.4 m height steps by 0.027 a row.
 const MAX_SURFACE_STEP: f32 = 0.03;
 
-/// Overlap of neighbouring footprints \[px\]: 0.1. Footprints stay upright where the cameras are turned around the optical axis, which leaves
-/// gaps at their corners. Source: ours; it closes the gaps of a turn of 0.03 rad.
+/// Overlap of neighbouring footprints \[px\]: 0.1. Footprints are axis-aligned even for cameras rotated around the optical axis, which
+/// leaves gaps at their corners. Source: ours; it closes the gaps of a rotation of 0.03 rad.
 const FOOTPRINT_OVERLAP_PX: f32 = 0.1;
 
 /// A depth pixel in the output image.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Footprint {
-    /// Column of its middle \[px\].
+    /// Column of the middle \[px\].
     pub x: f32,
-    /// Row of its middle \[px\].
+    /// Row of the middle \[px\].
     pub y: f32,
-    /// Depth in the output camera \[m\]; 0 if there is none.
+    /// Depth in the output camera \[m\]; 0 for unknown.
     pub z: f32,
-    /// Half its width if it has no neighbour \[px\].
+    /// Half the width without neighbours \[px\].
     pub half_x: f32,
-    /// Half its height if it has no neighbour \[px\].
+    /// Half the height without neighbours \[px\].
     pub half_y: f32,
 }
 
@@ -37,7 +37,7 @@ pub(super) struct Footprints {
     all: Vec<Footprint>,
 }
 
-/// Along one axis: where a footprint begins and ends \[px\], and the slope of its depth \[m/px\].
+/// Along one axis: start and end of a footprint \[px\], and the slope of its depth \[m/px\].
 #[derive(Clone, Copy)]
 struct Span {
     start: f32,
@@ -54,7 +54,7 @@ impl Footprints {
         &mut self.all
     }
 
-    /// Draws all footprints into `moved`, the nearest in front. `depth` is the image they come from.
+    /// Draws all footprints into `moved`, the nearest in front. `depth` is the source image.
     pub(super) fn splat(&self, depth: &DepthImage, moved: &mut DepthImage) {
         moved.data_mut().fill(f32::INFINITY);
         for (y, row) in self.all.chunks(self.width).enumerate() {
@@ -106,7 +106,7 @@ fn span((at, half): (f32, f32), z: f32, before: Option<(f32, f32)>, after: Optio
     Span { start, end, slope: if length > half { (last.1 - first.1) / length } else { 0.0 } }
 }
 
-/// Draws the output pixels whose middles lie in a footprint.
+/// Draws the output pixels whose middles are in a footprint.
 fn draw(footprint: &Footprint, across: Span, down: Span, moved: &mut DepthImage) {
     let (x0, x1) = pixels(across, moved.width());
     let (y0, y1) = pixels(down, moved.height());

@@ -3,9 +3,9 @@
 //! **Problem.** Depth and colour come from two lenses a few centimetres apart, with different sizes, focal lengths and distortion.
 //! [`RgbdImage`] needs both pixel for pixel.
 //!
-//! **Idea.** Each depth pixel is a small square facing the depth camera. It is projected into the output camera, and the nearest square
-//! wins each output pixel (a z-buffer). Neighbours on one surface share their edges, so that no hole opens where the output has more
-//! pixels. Depth within a square follows the slope to the neighbours. Colour is sampled along the same rays; it needs no depth, since the
+//! **Idea.** Each depth pixel is a small square facing the depth camera. It is projected into the output camera, and the nearest square is
+//! visible in each output pixel (a z-buffer). Neighbours on one surface share their edges, which prevents holes if the output has more
+//! pixels. Depth within a square follows the slope to the neighbours. Colour is sampled along the same rays without depth, because the
 //! output camera has the optical centre of the colour camera.
 //!
 //! **Cost.** One projection a depth pixel and one comparison a covered output pixel; no memory after the first frame.
@@ -31,8 +31,8 @@ pub struct Registration {
 }
 
 impl Registration {
-    /// For the streams of a camera; the result looks as if the camera `output` had taken it. `output` has the optical centre and the
-    /// direction of the colour camera. `None` keeps the colour camera itself with its distortion.
+    /// A registration for the streams of a camera; the result is an image of the camera `output`. `output` has the optical centre and the
+    /// direction of the colour camera. `None` is the colour camera itself with its distortion.
     pub fn new(info: &CameraInfo, output: Option<PinholeCamera>) -> Self {
         let output = output.unwrap_or(info.color.camera);
         let depth = DepthRegistration::new(info.depth.camera, info.color_from_depth, output);
@@ -47,7 +47,7 @@ impl Registration {
     /// The registered image, taken at `stamp`.
     ///
     /// # Errors
-    /// When an image has not the size of its camera.
+    /// When the size of an image differs from its camera's.
     pub fn register(
         &mut self,
         stamp: Stamp,
@@ -71,8 +71,8 @@ pub struct DepthRegistration {
 }
 
 impl DepthRegistration {
-    /// From `depth` into `output`. `output_from_depth` is the pose of the depth camera in the output camera's frame; `None` means that
-    /// both are at one place, which registered depth is.
+    /// From `depth` into `output`. `output_from_depth` is the pose of the depth camera in the output camera's frame; `None` means equal
+    /// poses, as for registered depth.
     pub fn new(depth: PinholeCamera, output_from_depth: Option<Pose3>, output: PinholeCamera) -> Self {
         let is_same = output_from_depth.is_none() && is_same_lens(&depth, &output);
         let pose = output_from_depth.unwrap_or_default();
@@ -84,7 +84,7 @@ impl DepthRegistration {
     /// Writes the moved depth \[m\] into `moved`, which has the size of the output camera; 0 if no depth pixel lands.
     ///
     /// # Errors
-    /// When `depth` has not the size of the depth camera, or `moved` not that of the output camera.
+    /// When the size of `depth` differs from the depth camera's, or that of `moved` from the output camera's.
     pub fn register(&mut self, depth: &DepthImage, moved: &mut DepthImage) -> Result<(), Invalid> {
         check_size("registered depth image", moved.width(), moved.height(), &self.output)?;
         let Some((projection, footprints)) = &mut self.moved else {

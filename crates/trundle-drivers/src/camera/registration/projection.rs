@@ -5,8 +5,8 @@ use trundle_core::{DepthImage, Distortion, PinholeCamera, Pose3, Vector2};
 
 /// Nearest depth in front of the output camera that is projected \[m\]. Source: ours; no depth camera measures nearer.
 const MIN_OUTPUT_DEPTH_M: f32 = 0.01;
-/// Furthest a point may lie outside the output image before the lens, in image sides. A polynomial lens folds far outside its image, so a
-/// point from there could appear inside. Source: ours.
+/// Largest distance of a point outside the output image before distortion, in image sides. A polynomial lens folds far outside its image,
+/// so a more distant point could appear inside. Source: ours.
 const MAX_OUTSIDE_SIDES: f32 = 0.25;
 
 /// Rays of the depth camera in the frame of the output camera.
@@ -15,7 +15,7 @@ pub(super) struct Projection {
     depth_camera: PinholeCamera,
     output: PinholeCamera,
     has_distortion: bool,
-    /// Of each depth pixel: the ray to depth 1, turned into the output frame.
+    /// For each depth pixel: the ray to depth 1, rotated into the output frame.
     rays: Vec<[f32; 3]>,
     /// Place of the depth camera in the output frame \[m\].
     translation: [f32; 3],
@@ -46,7 +46,7 @@ impl Projection {
         &self.depth_camera
     }
 
-    /// The footprint of each depth pixel as if it had no neighbours.
+    /// The footprint of each depth pixel without its neighbours.
     pub(super) fn project(&self, depth: &DepthImage, footprints: &mut Footprints) {
         let pixels = depth.data().iter().zip(&self.rays);
         for (footprint, (depth, ray)) in footprints.all_mut().iter_mut().zip(pixels) {

@@ -12,7 +12,7 @@ fn uniform(state: &mut u64) -> f64 {
     (*state >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// A device that sends packets: true time in, device stamp out.
+/// A device that sends packets: converts true times to device stamps.
 struct Device {
     drift: f64,
     jitter_s: f64,
@@ -37,7 +37,7 @@ impl Device {
         }
     }
 
-    /// Counter value and arrival of the packet of true time `t`.
+    /// Counter value and arrival of the packet sent at true time `t`.
     fn packet(&mut self, t: f64) -> (u16, Stamp) {
         let device_ms = ((t + self.shift_s) * (1.0 - self.drift) * 1000.0).floor();
         self.last_arrival = self.last_arrival.max(t + 0.002 + self.jitter_s * uniform(&mut self.rng));

@@ -10,7 +10,7 @@ fn captured() -> Vec<u8> {
     text.split_whitespace().map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect()
 }
 
-/// A packet that differs from those of other stamps in many bytes.
+/// A packet that differs in many bytes from those of other stamps.
 fn packet(stamp_ms: u16) -> Vec<u8> {
     let ticks = stamp_ms.wrapping_mul(7919);
     let core = CoreSensors { stamp_ms, left_ticks: ticks, right_ticks: !ticks, ..CoreSensors::default() };

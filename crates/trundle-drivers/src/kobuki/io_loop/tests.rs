@@ -6,12 +6,12 @@ use crate::kobuki::link::ConnectError;
 use std::sync::atomic::{AtomicI64, Ordering};
 use std::sync::mpsc::{Sender, channel, sync_channel};
 
-/// A link that brings what it is given, takes a fixed number of bytes a write, and then breaks.
+/// A link that delivers given bytes, accepts a fixed number of bytes per write, and then breaks.
 struct Scripted {
     reads: Vec<Vec<u8>>,
     taken_per_write: usize,
     written: Arc<Mutex<Vec<u8>>>,
-    /// A clock that goes on by half a second in each read.
+    /// A clock that advances by half a second in each read.
     stalled: Arc<AtomicI64>,
 }
 

@@ -2,7 +2,7 @@
 
 use trundle_core::Twist2;
 
-/// Half the distance between the wheels as the firmware assumes it: 115 mm. Source: the protocol's "Base Control", b = 230 mm.
+/// Half the distance between the wheels in the firmware: 115 mm. Source: the protocol's "Base Control", b = 230 mm.
 const HALF_WHEELBASE_MM: f64 = 115.0;
 /// Turn rate below which the base drives straight: 1e-4 rad/s. Source: the vendor's driver.
 const MIN_TURN_RATE_RAD_S: f64 = 1e-4;
@@ -10,8 +10,8 @@ const MIN_TURN_RATE_RAD_S: f64 = 1e-4;
 const MIN_SPEED_M_S: f64 = 1e-4;
 /// Radius up to which the base turns on the spot: 1 mm. Source: the protocol's "Base Control".
 const SPIN_RADIUS_MM: f64 = 1.0;
-/// Radius beyond which straight ahead is the nearest possible curve: 65534 mm. Source: ours; the radius field ends at 32767 mm, and half of
-/// that curvature is nearer to none.
+/// Radius above which straight ahead is the nearest possible curve: 65534 mm. Source: ours; the radius field ends at 32767 mm, and half of
+/// that curvature is nearer to zero.
 const STRAIGHT_RADIUS_MM: f64 = 65534.0;
 
 /// Content of the base control command.
@@ -27,8 +27,8 @@ impl BaseControl {
     /// The command that stops the base.
     pub const STOP: Self = Self { speed_mm_s: 0, radius_mm: 0 };
 
-    /// The command for a twist of the base: v in m/s, omega in rad/s, counter-clockwise. A twist that is not finite stops the base.
-    /// Numbers beyond the fields' range are clamped, the rest is truncated to whole mm.
+    /// The command for a twist of the base: v in m/s, omega in rad/s, counter-clockwise. A twist that is not finite stops the base. Numbers
+    /// outside the fields' range are clamped, the others truncated to whole mm.
     pub fn from_twist(twist: Twist2) -> Self {
         let Twist2 { v, omega } = twist;
         if !(v.is_finite() && omega.is_finite()) {
@@ -50,7 +50,7 @@ impl BaseControl {
         Self { speed_mm_s: speed_mm_s as i16, radius_mm: radius_mm as i16 }
     }
 
-    /// The twist of the base that this command asks for: v in m/s, omega in rad/s, counter-clockwise.
+    /// The twist of the base for this command: v in m/s, omega in rad/s, counter-clockwise.
     pub fn twist(self) -> Twist2 {
         let (speed, radius) = (f64::from(self.speed_mm_s), f64::from(self.radius_mm));
         match self.radius_mm {

@@ -23,20 +23,20 @@ pub enum KobukiCommand {
     },
     /// A melody of the firmware.
     SoundSequence(SoundSequence),
-    /// Asks for versions and unique id.
+    /// Requests versions and unique id.
     RequestExtra {
-        /// Ask for the version of the hardware.
+        /// Requests the version of the hardware.
         hardware: bool,
-        /// Ask for the version of the firmware.
+        /// Requests the version of the firmware.
         firmware: bool,
-        /// Ask for the unique id.
+        /// Requests the unique id.
         unique_id: bool,
     },
-    /// Sets all outputs at once.
+    /// Sets all outputs together.
     Outputs(Outputs),
     /// Sets the gains of the wheels' speed controllers. Firmware 1.2.0 or later.
     SetGains(Gains),
-    /// Asks for the gains of the wheels' speed controllers. Firmware 1.2.0 or later.
+    /// Requests the gains of the wheels' speed controllers. Firmware 1.2.0 or later.
     GetGains,
 }
 
@@ -82,7 +82,8 @@ pub struct Led {
     pub green: bool,
 }
 
-/// All outputs of the base. One command sets them together. By default the four supplies are on, as the base starts, and the rest is off.
+/// All outputs of the base. One command sets all of them. By default the four supplies are on, as at the base's start, and all others are
+/// off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Outputs {
     /// Digital outputs 0 to 3 of the expansion port.

@@ -9,11 +9,11 @@ const GAIN_UNITS: f64 = 1000.0;
 /// Version of hardware or firmware.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Version {
-    /// Changes of it break the protocol.
+    /// Number of incompatible changes of the protocol.
     pub major: u8,
-    /// Changes of it add features.
+    /// Number of added features.
     pub minor: u8,
-    /// Changes of it repair faults.
+    /// Number of repaired faults.
     pub patch: u8,
 }
 

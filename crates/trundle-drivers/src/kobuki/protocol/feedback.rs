@@ -9,7 +9,7 @@ use super::sensor_payloads::{
 };
 use trundle_core::DockInfrared;
 
-/// The sub-payloads of one packet; `None` for those that the packet does not hold.
+/// The sub-payloads of one packet; `None` if the packet has none of the kind.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Feedback {
     /// Stamp, bumper, wheels, charger.
@@ -37,9 +37,9 @@ pub struct Feedback {
 }
 
 impl Feedback {
-    /// Reads a payload: the packet, and the number of unknown sub-payloads in it, which are skipped.
+    /// Reads a payload: the packet, and the number of its unknown sub-payloads, which are skipped.
     ///
-    /// Bytes of a sub-payload after its known fields are ignored, as a later firmware may send more.
+    /// Bytes of a sub-payload after its known fields are ignored, because a later firmware may send more.
     ///
     /// # Errors
     /// When a sub-payload is damaged or shorter than its fields.
@@ -52,7 +52,7 @@ impl Feedback {
         Ok((feedback, unknown))
     }
 
-    /// Takes a sub-payload in; false for an unknown one.
+    /// Stores a sub-payload; returns false for an unknown one.
     fn take(&mut self, part: SubPayload<'_>) -> bool {
         let data = Fields(part.data);
         match part.id {
@@ -99,7 +99,7 @@ impl Feedback {
 
 /// Minimum length of the data of a feedback sub-payload, bytes; `None` for an unknown identifier.
 ///
-/// It counts the fields that are read. Source: the protocol's "Feedback Packets"; versions had two bytes in the first firmwares.
+/// The length of the fields that are read. Source: the protocol's "Feedback Packets"; versions had two bytes in the first firmwares.
 pub fn min_feedback_bytes(id: u8) -> Option<usize> {
     match id {
         1 => Some(15),

@@ -8,7 +8,7 @@ pub const FRAME_HEADER: [u8; 2] = [0xAA, 0x55];
 pub const MIN_PAYLOAD_BYTES: usize = 3;
 /// Maximum number of bytes of a payload. Source: the length field has one byte.
 pub const MAX_PAYLOAD_BYTES: usize = 255;
-/// Bytes of a frame besides its payload: header (2), length, checksum. Source: the protocol's "Structure of Bytestream".
+/// Bytes of a frame in addition to its payload: header (2), length, checksum. Source: the protocol's "Structure of Bytestream".
 pub const FRAME_OVERHEAD_BYTES: usize = 4;
 
 /// A refused payload.
@@ -57,7 +57,7 @@ pub struct SubPayload<'a> {
     pub data: &'a [u8],
 }
 
-/// XOR of `bytes`. Over a frame from its length byte to its checksum it is zero.
+/// XOR of `bytes`. The XOR over a frame from its length byte to its checksum is zero.
 pub fn checksum(bytes: &[u8]) -> u8 {
     bytes.iter().fold(0, |sum, byte| sum ^ byte)
 }
@@ -104,10 +104,10 @@ pub fn sub_payloads(payload: &[u8]) -> impl Iterator<Item = SubPayload<'_>> {
     })
 }
 
-/// Checks the sub-payloads of a payload of `total` bytes, of which `received` are there.
+/// Checks the sub-payloads of a payload of `total` bytes, of which `received` have arrived.
 ///
-/// `min_bytes` is the minimum length of the data of an identifier, `None` for an unknown one. The error found in a beginning is the one
-/// found in the whole payload.
+/// `min_bytes` is the minimum length of the data of an identifier, `None` for an unknown one. The error found in a partial payload is equal
+/// to the one found in the whole payload.
 ///
 /// # Errors
 /// The first damaged sub-payload: beyond the end, too short, or cut in its header.

@@ -8,7 +8,7 @@
 //! | [`frame`] | frames, sub-payloads, checksum |
 //! | [`base_control`] | twist to speed and radius, and back |
 //! | [`command`] | commands to the base |
-//! | [`feedback`] | a feedback packet: all sub-payloads of it |
+//! | [`feedback`] | a feedback packet with all its sub-payloads |
 //! | [`core_sensors`] | stamp, bumper, wheels, charger |
 //! | [`sensor_payloads`] | docking light, gyro, cliff, currents, inputs |
 //! | [`device_info`] | versions, unique id, gains |

@@ -47,7 +47,7 @@ impl Inertia {
         (f64::from(self.angle_centideg) * INERTIA_UNIT_DEG).to_radians()
     }
 
-    /// Turn rate, rad/s, counter-clockwise, without the bias that the firmware knows of.
+    /// Turn rate, rad/s, counter-clockwise, without the firmware's own bias estimate.
     pub fn rate(&self) -> f64 {
         (f64::from(self.rate_centideg_s) * INERTIA_UNIT_DEG).to_radians()
     }

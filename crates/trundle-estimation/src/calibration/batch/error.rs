@@ -1,8 +1,8 @@
-//! Why a recording does not yield a calibration.
+//! Reason why a recording gives no calibration.
 
 use thiserror::Error;
 
-/// Why a recording does not yield a calibration.
+/// Reason why a recording gives no calibration.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CalibrationError {
@@ -25,9 +25,9 @@ pub enum CalibrationError {
         what: &'static str,
         /// The quantity that decides.
         quantity: &'static str,
-        /// Its size.
+        /// Value of the quantity.
         found: f64,
-        /// Its unit.
+        /// Unit of the quantity.
         unit: &'static str,
         /// The accepted range.
         expected: String,
@@ -41,7 +41,7 @@ pub enum CalibrationError {
         what: &'static str,
         /// The quantity that decides.
         quantity: &'static str,
-        /// Its size.
+        /// Value of the quantity.
         found: f64,
         /// The accepted range.
         expected: String,

@@ -1,6 +1,6 @@
-//! A number with its standard deviation.
+//! A value with its standard deviation.
 
-/// A number with its standard deviation, both in the same unit.
+/// A value with its standard deviation, both in the same unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// The number.
@@ -10,14 +10,14 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// A number with its standard deviation.
+    /// A value with its standard deviation.
     #[must_use]
     pub fn new(value: f64, sigma: f64) -> Self {
         Self { value, sigma }
     }
 
-    /// Mean of equally good measurements; its standard deviation is that of their scatter over the square root of their number.
-    /// `None` of no measurement.
+    /// Mean of measurements of equal quality. Its standard deviation is their scatter over the square root of their number. `None` without
+    /// measurements.
     #[must_use]
     pub fn mean_of(measurements: &[f64]) -> Option<Self> {
         let count = measurements.len() as f64;

@@ -2,8 +2,8 @@
 //!
 //! Problem: the floor's plane in the camera frame from depth images with walls and objects in them. Idea: a plane `q * p = 1` gives an
 //! inverse depth `1/z = q * ray`, linear in q. Consensus of three pixels proposes a floor for each image \[Fischler81\]; the median over
-//! the images is right where most proposals are. From the median, each image's floor is refined by least squares on the inverse
-//! depth. Cost: 500 planes over some 1,000 samples per image.
+//! the images is right if most proposals are. From the median, each image's floor is refined by least squares on the inverse depth. Cost:
+//! 500 planes over some 1,000 samples per image.
 
 use super::estimate::Estimate;
 use super::planar_track::tilt_of;
@@ -40,13 +40,14 @@ const SAMPLE_STEP_PX: usize = 10;
 const MAX_DEPTH_M: f64 = 4.0;
 /// Planes tried in an image. Source: \[Fischler81\]: three of 20 % floor pixels are found with 98 % probability.
 const MAX_PLANE_TRIALS: usize = 500;
-/// Distance from the plane within which a point supports it: 0.03 m. Source: ours.
+/// Largest distance of a supporting point from the plane: 0.03 m. Source: ours.
 const SUPPORT_DISTANCE_M: f64 = 0.03;
 /// Fraction of the samples that must be floor: 0.1. Source: ours.
 const MIN_SUPPORT_RATIO: f64 = 0.1;
 /// Smallest number of samples with depth. Source: ours.
 const MIN_SAMPLES: usize = 100;
-/// Largest angle of the floor to the floor by the mount in use: 20 deg. Beyond it the plane is a wall or a ramp. Source: ours.
+/// Largest angle between the floor and the floor expected by the mount in use: 20 deg. A plane with a larger angle is a wall or a ramp.
+/// Source: ours.
 const MAX_TILT_ERROR_RAD: f64 = 0.35;
 /// Lowest camera: 0.05 m. Source: ours.
 const MIN_HEIGHT_M: f64 = 0.05;
@@ -67,7 +68,7 @@ const MAX_HEIGHT_TO_MEDIAN_M: f64 = 0.03;
 #[derive(Debug, Clone)]
 pub struct FloorSearch {
     expected_up: Vector3,
-    /// Samples of each image, and the floor proposed by it.
+    /// Samples of each image, and the floor proposed by the image.
     images: Vec<(Vec<Vector3>, Option<FloorView>)>,
 }
 
@@ -92,7 +93,7 @@ impl FloorSearch {
         (self.images.len(), with_depth.count())
     }
 
-    /// The floor in each image that shows it.
+    /// The floor in each image that shows the floor.
     #[must_use]
     pub fn views(&self) -> Vec<FloorView> {
         let Some(median) = self.median() else { return Vec::new() };
@@ -117,7 +118,7 @@ impl FloorSearch {
 }
 
 impl FloorView {
-    /// The plane with the most support that lies like a floor; `None` if no floor is seen.
+    /// The plane with the most support and a tilt near the expected one; `None` without visible floor.
     fn propose(samples: &[Vector3], expected_up: Vector3) -> Option<Self> {
         if samples.len() < MIN_SAMPLES {
             return None;
@@ -178,8 +179,8 @@ impl FloorView {
 }
 
 impl FloorMount {
-    /// The mean over images; `None` without one. The standard deviations contain what the images share: the bias of the depth, and the
-    /// angle between the floor's normal and the `axis` around which the robot turns (camera frame), if that is known.
+    /// The mean over images; `None` without one. The standard deviations include the errors common to all images: the bias of the depth,
+    /// and the angle between the floor's normal and the robot's turn `axis` (camera frame) if known.
     #[must_use]
     pub fn of(views: &[FloorView], axis: Option<&Vector3>) -> Option<Self> {
         let mean = |value: &dyn Fn(&FloorView) -> f64, shared: &dyn Fn(f64) -> f64| {

@@ -4,8 +4,8 @@ use trundle_core::{GyroRate, Stamp};
 
 /// Integral of the gyro's rate over a recording.
 ///
-/// A reading is the mean rate since the one before it, so the integral is exact at the readings and linear between them. A gap
-/// splits the integral: no turn is known across it.
+/// A reading is the mean rate since the previous one: the integral is exact at the readings and linear between them. A gap splits the
+/// integral: no turn is known across it.
 #[derive(Debug, Clone, Default)]
 pub struct GyroAngle {
     readings: Vec<Reading>,
@@ -54,7 +54,7 @@ impl GyroAngle {
         self.readings.len()
     }
 
-    /// Whether there is no reading.
+    /// Whether the integral has no reading.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.readings.is_empty()

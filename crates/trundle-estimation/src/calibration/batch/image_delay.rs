@@ -1,9 +1,9 @@
 //! Delay of the image stamps against the gyro.
 //!
-//! Problem: by how much is the stamp of an image later than the moment at which it was taken? Idea: camera and gyro measure the same
-//! turns. The delay is the shift of the gyro at which both agree. A search over shifts, each scored by the correlation of the turns,
-//! finds the start; Gauss-Newton refines delay, gyro scale and gyro bias together \[Furgale13\] (the same model, without splines).
-//! Cost: one pass over the images for each of 200 shifts.
+//! Problem: the difference between the stamp of an image and its exposure. Idea: camera and gyro measure the same turns. The delay is the
+//! shift of the gyro at which both agree. A search over shifts finds the start; each shift is scored by the correlation of the turns.
+//! Gauss-Newton refines delay, gyro scale and gyro bias together \[Furgale13\] (the same model, without splines). Cost: one pass over the
+//! images for each of 200 shifts.
 //!
 //! | symbol | name here | unit |
 //! |---|---|---|
@@ -24,7 +24,7 @@ use trundle_core::{Pose3, Stamp};
 /// Delay of the image stamps, with the gyro's scale and bias.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImageDelay {
-    /// Stamp of an image minus the moment at which it was taken, s; negative where the stamp is too early.
+    /// Stamp of an image minus the time of its exposure, s; negative for a stamp that is too early.
     pub delay: Estimate,
     /// True over measured turn rate.
     pub gyro_scale: Estimate,
@@ -59,7 +59,7 @@ const NEWTON_ROUNDS: usize = 6;
 /// ([`crate::turn_axis`]) and the gyro.
 ///
 /// # Errors
-/// When there are too few images or gyro readings, the turn rate changes too little, or camera and gyro contradict each other.
+/// When too few images or gyro readings are given, the turn rate changes too little, or camera and gyro contradict each other.
 pub fn estimate_image_delay(
     poses: &[(Stamp, Pose3)],
     axis: Vector3<f64>,
@@ -123,7 +123,7 @@ fn best_shift(turns: &[Turn], gyro: &GyroAngle) -> (f64, f64) {
     scored.fold((0.0, f64::MIN), |best, next| if next.1 > best.1 { next } else { best })
 }
 
-/// Pearson correlation of the turn rates; -1 where less than half of the turns are covered by the gyro.
+/// Pearson correlation of the turn rates; -1 if the gyro covers less than half of the turns.
 fn correlation(turns: &[Turn], gyro: &GyroAngle, delay: f64) -> f64 {
     let rate = |turn: &Turn| {
         let seconds = turn.to - turn.from;

@@ -29,7 +29,7 @@ pub(super) struct LinearSolution<const N: usize> {
 }
 
 impl<const N: usize> LinearFit<N> {
-    /// No equations. The noise never counts as less than `min_sigma`.
+    /// A system without equations. The noise counts as at least `min_sigma`.
     pub(super) fn new(min_sigma: f64) -> Self {
         let prior = (SMatrix::zeros(), SVector::zeros());
         Self { rows: Vec::new(), rights: Vec::new(), prior, min_sigma }

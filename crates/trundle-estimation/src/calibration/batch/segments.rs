@@ -5,13 +5,13 @@ use super::wheel_angles::{WheelAngles, WheelTurn};
 use nalgebra::Rotation2;
 use trundle_core::Vector2;
 
-/// Turn that completes a segment: 1 rad. Source: ours; shorter ones show the offset of the camera poorly.
+/// Turn that completes a segment: 1 rad. Source: ours; shorter segments determine the camera's offset poorly.
 const MAX_TURN_RAD: f64 = 1.0;
 /// Distance of the camera that completes a segment: 0.4 m. Source: ours.
 const MAX_DISTANCE_M: f64 = 0.4;
 /// Longest segment: 4 s. Source: ours.
 const MAX_DURATION_S: f64 = 4.0;
-/// Longest time between two images: 0.5 s. Beyond it the segment ends. Source: ours.
+/// Longest time between two images: 0.5 s. A longer gap ends the segment. Source: ours.
 const MAX_IMAGE_GAP_S: f64 = 0.5;
 
 /// Motion of the camera over a segment, in steps from image to image.
@@ -37,8 +37,8 @@ struct Step {
 }
 
 impl Segment {
-    /// Displacement of the base in its own frame at the segment's start, in units of the distances that `distance` gives to the
-    /// turns of the wheels: each step is an arc.
+    /// Displacement of the base in its own frame at the segment's start; each step is an arc. `distance` converts turns of the wheels to
+    /// the unit of the result.
     pub(super) fn base_displacement(&self, distance: impl Fn(&WheelTurn) -> f64) -> Vector2 {
         let chord = |step: &Step| {
             let half = step.turn / 2.0;

@@ -61,7 +61,7 @@ struct Drive {
     gyro: Vec<GyroRate>,
 }
 
-/// Turns both ways on the spot, and straight moves: (s, m/s, rad/s).
+/// Turns on the spot in both directions, and straight moves: (s, m/s, rad/s).
 const SQUARE: [(f64, f64, f64); 12] = [
     (1.0, 0.0, 0.0),
     (3.0, 0.3, 0.0),
@@ -126,7 +126,7 @@ fn fit(truth: &Truth, plan: &[(f64, f64, f64)]) -> Result<WheelCameraFit, Calibr
     fit_wheels_and_camera(&poses, up_of(truth.base_from_camera), &wheels, &DifferentialDrive::KOBUKI)
 }
 
-/// The estimate is within `limit` and within four of its own standard deviations of the truth, which are at most `limit`.
+/// Asserts that the error of the estimate is below `limit` and below four of its standard deviations, which are at most `limit`.
 #[track_caller]
 fn assert_found(found: Estimate, truth: f64, limit: f64) {
     let error = (found.value - truth).abs();

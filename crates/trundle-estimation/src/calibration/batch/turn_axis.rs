@@ -4,7 +4,7 @@ use super::error::CalibrationError;
 use nalgebra::{Matrix3, SymmetricEigen};
 use trundle_core::{Pose3, Stamp, Vector3};
 
-/// Turn that shows the axis: 1 rad. Below it the noise of the camera's rotations tilts the axis. Source: ours.
+/// Smallest turn that determines the axis: 1 rad. Below it the noise of the camera's rotations tilts the axis. Source: ours.
 const MIN_TURN_RAD: f64 = 1.0;
 
 /// Rotation vector from one pose to the next, in the frame of the earlier camera, rad.
@@ -16,7 +16,7 @@ fn rotation(earlier: &Pose3, later: &Pose3) -> Vector3 {
 /// (`visual_from_camera`, by rising stamp). `expected` is the upward axis by the mount in use; it decides the sign.
 ///
 /// # Errors
-/// When the camera's heading stays within 1 rad.
+/// When the camera's heading changes by less than 1 rad.
 pub fn turn_axis(poses: &[(Stamp, Pose3)], expected: Vector3) -> Result<Vector3, CalibrationError> {
     let turned = turned_range(poses, expected);
     if turned < MIN_TURN_RAD {
@@ -28,7 +28,7 @@ pub fn turn_axis(poses: &[(Stamp, Pose3)], expected: Vector3) -> Result<Vector3,
     Ok(if axis.dot(&expected) < 0.0 { -axis } else { axis })
 }
 
-/// Difference of the largest and the smallest heading around `axis`, rad: noise does not add up in it.
+/// Difference of the largest and the smallest heading around `axis`, rad; noise does not accumulate in this measure.
 fn turned_range(poses: &[(Stamp, Pose3)], axis: Vector3) -> f64 {
     let (mut heading, mut low, mut high) = (0.0, 0.0_f64, 0.0_f64);
     for turn in turns(poses, axis) {

@@ -64,13 +64,13 @@ impl WheelAngles {
         self.readings.len()
     }
 
-    /// Whether there is no reading.
+    /// Whether no reading was added.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.readings.is_empty()
     }
 
-    /// Turns of the wheels between two stamps; `None` if a stamp is not covered or a gap lies between.
+    /// Turns of the wheels between two stamps; `None` if a stamp is not covered or a gap is in between.
     pub(super) fn turn(&self, from: Stamp, to: Stamp) -> Option<WheelTurn> {
         let (start, end) = (self.at(from)?, self.at(to)?);
         let turn = WheelTurn { left: end.left - start.left, right: end.right - start.right };

@@ -1,9 +1,9 @@
 //! Wheels, wheelbase and the camera's place on the base from one drive.
 //!
-//! Problem: the wheels' radii r_L and r_R, the wheelbase b, and the camera's offset m and yaw a on the base, from the turns of the
-//! wheels and the camera's trajectory. Idea \[Censi13\]: the turn of a segment is linear in J_L = -r_L / b and J_R = r_R / b. With
-//! these known, the camera's displacement is linear in (b cos a, -b sin a, R(-a) m). Two linear least-squares problems, no start
-//! values. Cost: O(segments).
+//! Problem: the wheels' radii r_L and r_R, the wheelbase b, and the camera's offset m and yaw a on the base. The data are the turns of the
+//! wheels and the camera's trajectory. Idea \[Censi13\]: the turn of a segment is linear in J_L = -r_L / b and J_R = r_R / b. Given these,
+//! the camera's displacement is linear in (b cos a, -b sin a, R(-a) m). Two linear least-squares problems, no start values. Cost:
+//! O(segments).
 //!
 //! | \[Censi13\] | here | unit |
 //! |---|---|---|
@@ -21,8 +21,8 @@ use super::wheel_angles::{WheelAngles, WheelTurn};
 use nalgebra::{Matrix2x4, Vector2, Vector4};
 use trundle_core::{DifferentialDrive, Pose3, Stamp, Vector3};
 
-/// Wheels and mount of the camera by one drive. A number that the drive does not show is the one in use, with the standard deviation
-/// of the prior.
+/// Wheels and mount of the camera, estimated from one drive. A number that the drive does not determine equals the number in use, with the
+/// standard deviation of the prior.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WheelCameraFit {
     /// Radius of the left wheel, m.
@@ -51,8 +51,8 @@ pub struct WheelCameraFit {
 const MIN_SEGMENTS: usize = 8;
 /// Standard deviation of the wheels and the wheelbase in use, ratio. Source: ours; a value is off by a third at most.
 const DRIVE_PRIOR_RATIO: f64 = 0.3;
-/// Standard deviation of the difference of both radii, ratio: 0.01. It decides where the robot only turns on the spot. Source: ours,
-/// three times the unequal diameters of \[Borenstein96\].
+/// Standard deviation of the difference of both radii, ratio: 0.01. It determines the result if the robot only turns on the spot. Source:
+/// ours, three times the unequal diameters of \[Borenstein96\].
 const RADIUS_DIFFERENCE_RATIO: f64 = 0.01;
 /// Standard deviation of the camera's offset in use: 1 m. Source: ours, half of the range of a mount.
 const OFFSET_PRIOR_M: f64 = 1.0;
@@ -65,7 +65,7 @@ const MIN_DISPLACEMENT_SIGMA_M: f64 = 5e-4;
 /// in the camera's frame; `drive` is the drive in use, a weak prior.
 ///
 /// # Errors
-/// When there are too few segments with motion.
+/// When too few segments contain motion.
 pub fn fit_wheels_and_camera(
     poses: &[(Stamp, Pose3)],
     up: Vector3,
@@ -151,7 +151,7 @@ fn assembled(turn: &LinearSolution<2>, shift: &LinearSolution<4>) -> WheelCamera
     }
 }
 
-/// The camera's offset on the base and its variances: `m = R(a) R(-a) m`, with the gradient of the yaw.
+/// The camera's offset on the base, `m = R(a) R(-a) m`, and its variances, with the gradient of the yaw.
 fn offset(shift: &LinearSolution<4>, yaw: f64, yaw_gradient: &Vector4<f64>) -> (Vector2<f64>, Vector2<f64>) {
     let turned = nalgebra::Rotation2::new(yaw);
     let offset = turned * Vector2::new(shift.x[2], shift.x[3]);

@@ -30,7 +30,7 @@ fn whitened(residual: Vector3<f64>, covariance: &Matrix3<f64>) -> Vec<f64> {
     lower.solve_lower_triangular(&residual).unwrap().iter().copied().collect()
 }
 
-/// All residuals in their standard deviations.
+/// All residuals in units of their standard deviations.
 fn residuals(smoother: &Smoother, values: &Values) -> DVector<f64> {
     let mut all = prior(smoother, values);
     let keyframes = &smoother.window.as_ref().unwrap().keyframes;

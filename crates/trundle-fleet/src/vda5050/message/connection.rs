@@ -10,7 +10,7 @@ pub struct ConnectionMessage {
     /// The header.
     #[serde(flatten)]
     pub header: MessageHeader,
-    /// Whether it is.
+    /// State of the connection.
     pub connection_state: ConnectionState,
 }
 
@@ -18,10 +18,10 @@ pub struct ConnectionMessage {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum ConnectionState {
-    /// It is.
+    /// The robot is connected.
     Online,
-    /// It has left in order.
+    /// The robot disconnected in order.
     Offline,
-    /// The broker lost it: its last will.
+    /// The broker lost the robot: its last will.
     ConnectionBroken,
 }

@@ -4,9 +4,9 @@ use crate::timestamp::utc_text;
 use serde::{Deserialize, Serialize};
 use std::time::SystemTime;
 
-/// Version of the protocol that is spoken.
+/// Version of the protocol.
 pub const PROTOCOL_VERSION: &str = "2.1.0";
-/// Major version as it stands in topics.
+/// Major version in topics.
 const MAJOR_VERSION: &str = "v2";
 /// First part of every topic. Source: VDA 5050 2.1, section 6.4.
 const INTERFACE_NAME: &str = "uagv";
@@ -16,7 +16,7 @@ const INTERFACE_NAME: &str = "uagv";
 pub enum Topic {
     /// From the master: an order.
     Order,
-    /// From the master: actions that are done at once.
+    /// From the master: instant actions.
     InstantActions,
     /// From the robot: its state.
     State,
@@ -24,7 +24,7 @@ pub enum Topic {
     Visualization,
     /// From the robot and the broker: whether the robot is connected.
     Connection,
-    /// From the robot: what it can do.
+    /// From the robot: its abilities.
     Factsheet,
 }
 
@@ -74,7 +74,7 @@ impl Identity {
 pub struct MessageHeader {
     /// Number of the message in its topic.
     pub header_id: u32,
-    /// When it was sent: ISO 8601, UTC.
+    /// Time of sending: ISO 8601, UTC.
     pub timestamp: String,
     /// Version of the protocol.
     pub version: String,

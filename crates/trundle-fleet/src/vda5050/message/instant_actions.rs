@@ -1,10 +1,10 @@
-//! Actions that are done at once.
+//! Actions that are carried out immediately.
 
 use super::header::MessageHeader;
 use super::order::Action;
 use serde::Deserialize;
 
-/// Actions that are done at once.
+/// Actions that are carried out immediately.
 #[derive(Debug, Clone, Deserialize)]
 pub struct InstantActions {
     /// The header.

@@ -1,4 +1,4 @@
-//! The messages of VDA 5050, version 2.1: those that are read and those that are sent.
+//! The messages of VDA 5050, version 2.1: received and sent ones.
 
 mod connection;
 mod factsheet;

@@ -4,7 +4,7 @@ use super::header::MessageHeader;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
-/// An order, or an update of one. Units are m, rad and m/s; poses stand in the map frame.
+/// An order, or an update of one. Units are m, rad and m/s; poses are in the map frame.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Order {
@@ -33,13 +33,13 @@ pub struct OrderNode {
     pub node_description: Option<String>,
     /// Whether the node may be driven to: it is part of the base, not of the horizon.
     pub released: bool,
-    /// Where it is.
+    /// Position of the node.
     pub node_position: Option<NodePosition>,
-    /// The action there.
+    /// Actions at the node.
     pub actions: Vec<Action>,
 }
 
-/// Where a node is.
+/// Position of a node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct NodePosition {
@@ -60,7 +60,7 @@ pub struct NodePosition {
     pub map_id: String,
 }
 
-/// A way between two nodes.
+/// A path between two nodes.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct OrderEdge {
@@ -111,20 +111,20 @@ pub struct UnusableFields {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Action {
-    /// What.
+    /// Type of the action.
     pub action_type: String,
     /// Name, by which its state is reported.
     pub action_id: String,
     /// For people.
     pub action_description: Option<String>,
-    /// Actions that may run beside it.
+    /// Actions that may run at the same time.
     pub blocking_type: BlockingType,
-    /// Its parameters.
+    /// Parameters of the action.
     #[serde(default)]
     pub action_parameters: Vec<ActionParameter>,
 }
 
-/// Actions that may run beside an action.
+/// Actions that may run at the same time as an action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum BlockingType {
@@ -132,16 +132,16 @@ pub enum BlockingType {
     None,
     /// Other actions, no driving.
     Soft,
-    /// Nothing.
+    /// No other actions, no driving.
     Hard,
 }
 
 /// A parameter of an action.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct ActionParameter {
-    /// Its name.
+    /// Name of the parameter.
     pub key: String,
-    /// Its value.
+    /// Value of the parameter.
     pub value: serde_json::Value,
 }
 

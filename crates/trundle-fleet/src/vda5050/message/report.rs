@@ -1,4 +1,4 @@
-//! Errors as a master reads them.
+//! Errors in a master's format.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ErrorReport {
-    /// One of the standard's words, or one of ours.
+    /// Type of the error, of the standard or of trundle.
     pub error_type: String,
     /// The reference.
     pub error_references: Vec<ErrorReference>,
@@ -15,7 +15,7 @@ pub struct ErrorReport {
     /// The remedy.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error_hint: Option<String>,
-    /// Whether the robot can go on.
+    /// Whether the robot can continue.
     pub error_level: ErrorLevel,
 }
 
@@ -27,18 +27,18 @@ pub struct ErrorReference {
     reference_value: String,
 }
 
-/// Whether the robot can go on.
+/// Whether the robot can continue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum ErrorLevel {
-    /// It can.
+    /// The robot can continue.
     Warning,
     /// A person must help.
     Fatal,
 }
 
 impl ErrorReport {
-    /// An error after which the robot can go on.
+    /// An error after which the robot can continue.
     pub fn warning(error_type: &str, description: impl Into<String>) -> Self {
         Self {
             error_type: error_type.to_owned(),

@@ -1,4 +1,4 @@
-//! The state of a robot as a master reads it.
+//! The state of a robot in a master's format.
 
 use super::header::MessageHeader;
 use super::order::{NodePosition, OrderEdge, OrderNode};
@@ -17,15 +17,15 @@ pub struct VehicleState {
     /// The order.
     #[serde(flatten)]
     pub order: OrderProgress,
-    /// Where the robot is.
+    /// Position of the robot.
     pub agv_position: RobotPosition,
-    /// How fast it moves.
+    /// Velocity of the robot.
     pub velocity: Velocity,
-    /// The load: nothing.
+    /// The load: always empty.
     pub loads: [(); 0],
-    /// Whether it drives or turns.
+    /// Whether the robot drives or turns.
     pub driving: bool,
-    /// Whether it is paused.
+    /// Whether the robot is paused.
     pub paused: bool,
     /// The battery.
     pub battery_state: ChargeState,
@@ -39,30 +39,30 @@ pub struct VehicleState {
     pub safety_state: SafetyState,
 }
 
-/// How far an order is.
+/// Progress of an order.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct OrderProgress {
     /// The present or last order; empty before the first.
     pub order_id: String,
-    /// Its last update.
+    /// Number of the last update.
     pub order_update_id: u32,
     /// The last node that was reached; empty before the first.
     pub last_node_id: String,
-    /// Its place in the order.
+    /// Sequence number of the node in the order.
     pub last_node_sequence_id: u32,
     /// Nodes that are still to be reached.
     pub node_states: Vec<NodeState>,
     /// Edges that are still to be driven.
     pub edge_states: Vec<EdgeState>,
-    /// Whether it comes to the end of the base while there is a horizon.
+    /// Whether the robot approaches the end of the base while a horizon exists.
     pub new_base_request: bool,
-    /// The actions of the order and those done at once.
+    /// States of the order's actions and of instant actions.
     pub action_states: Vec<ActionState>,
 }
 
 impl VehicleState {
-    /// Whether nothing changed that a master must know at once: all but position, speed, charge and texts for people.
+    /// Whether both states are equal except for details that are not urgent for a master: position, speed, charge and texts.
     #[must_use]
     pub fn is_like(&self, other: &Self) -> bool {
         let same = |state: &Self| Self {
@@ -83,11 +83,11 @@ impl VehicleState {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct LoadedMap {
-    /// Its name.
+    /// Name of the map.
     pub map_id: String,
-    /// Its version.
+    /// Version of the map.
     pub map_version: String,
-    /// Whether it is used.
+    /// Whether the map is in use.
     pub map_status: &'static str,
 }
 
@@ -138,7 +138,7 @@ impl From<&OrderEdge> for EdgeState {
     }
 }
 
-/// Where the robot is, map frame.
+/// Pose of the robot, map frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct RobotPosition {
@@ -150,13 +150,13 @@ pub struct RobotPosition {
     pub theta: f64,
     /// The map.
     pub map_id: String,
-    /// Whether the robot knows its pose.
+    /// Whether the pose of the robot is known.
     pub position_initialized: bool,
-    /// Standard deviation of the position along its worst axis \[m\].
+    /// Standard deviation of the position along its most uncertain axis \[m\].
     pub deviation_range: f64,
 }
 
-/// How fast the robot moves, base frame.
+/// Velocity of the robot, base frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Velocity {
     /// Ahead \[m/s\].
@@ -171,36 +171,36 @@ pub struct Velocity {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct ActionState {
-    /// Its name.
+    /// Name of the action.
     pub action_id: String,
     /// The kind.
     pub action_type: String,
     /// For people.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub action_description: Option<String>,
-    /// How far it is.
+    /// State of the action.
     pub action_status: ActionStatus,
-    /// How it ended.
+    /// Result of the action.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub result_description: Option<String>,
 }
 
-/// How far an action is.
+/// State of an action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum ActionStatus {
-    /// Not begun.
+    /// Not started.
     Waiting,
     /// Under way.
     Running,
     /// Done.
     Finished,
-    /// Not done.
+    /// The action failed.
     Failed,
 }
 
 impl ActionStatus {
-    /// Whether it has ended.
+    /// Whether the action has ended.
     #[must_use]
     pub fn is_over(self) -> bool {
         matches!(self, Self::Finished | Self::Failed)
@@ -216,7 +216,7 @@ pub struct ChargeState {
     /// Voltage \[V\].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub battery_voltage: Option<f64>,
-    /// Whether it is being charged.
+    /// Whether the battery is being charged.
     pub charging: bool,
 }
 
@@ -246,7 +246,7 @@ pub struct Information {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct SafetyState {
-    /// The emergency stop: this robot has none that it could report.
+    /// The emergency stop: this robot reports none.
     pub e_stop: &'static str,
     /// Whether an obstacle is too near, or a condition of the body stops all wheels.
     pub field_violation: bool,

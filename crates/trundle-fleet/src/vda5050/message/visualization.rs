@@ -11,8 +11,8 @@ pub struct Visualization {
     /// The header.
     #[serde(flatten)]
     pub header: MessageHeader,
-    /// Where the robot is.
+    /// Position of the robot.
     pub agv_position: RobotPosition,
-    /// How fast it moves.
+    /// Velocity of the robot.
     pub velocity: Velocity,
 }

@@ -1,4 +1,4 @@
-//! The system's allocator, counting what is in use and the peak.
+//! The system's allocator, with a count of the memory in use and its peak.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 /// Memory at which an allocation is refused \[bytes\]: 3 GB. The process then ends, and its input is a finding. Source: ours.
 const MAX_BYTES_IN_USE: usize = 3 << 30;
 
-/// The system's allocator, counting what is in use and the peak.
+/// The system's allocator, with a count of the memory in use and its peak.
 pub struct CountingAllocator {
     in_use: AtomicUsize,
     peak: AtomicUsize,
@@ -24,7 +24,7 @@ impl CountingAllocator {
         in_use
     }
 
-    /// The most bytes in use since [`CountingAllocator::start`], beyond those that it gave.
+    /// Maximum number of bytes in use since [`CountingAllocator::start`], above the number returned by it.
     pub fn peak_above(&self, start: usize) -> usize {
         self.peak.load(Relaxed).saturating_sub(start)
     }
@@ -41,7 +41,7 @@ impl CountingAllocator {
     }
 }
 
-// SAFETY: every call goes to the system's allocator with the same arguments; a refused one returns null, as allowed.
+// SAFETY: every call is passed to the system's allocator with the same arguments; a refused one returns null, as allowed.
 unsafe impl GlobalAlloc for CountingAllocator {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         if !self.take(layout.size()) {

@@ -1,11 +1,11 @@
-//! Counters of executed code, where the program was built with them (`cargo xtask fuzz --guided`).
+//! Counters of executed code, if the program was built with them (`cargo xtask fuzz --guided`).
 //!
-//! LLVM's pass `sancov-module` puts a counter of 8 bits on each edge of the control flow, and names them to the function below when
-//! the program starts. Without the pass there are none, and no input is new.
+//! LLVM's pass `sancov-module` adds a counter of 8 bits to each edge of the control flow, and registers them with the function below at the
+//! program's start. Without the pass no counters exist, and no input is new.
 
 use std::sync::Mutex;
 
-/// The counters of a part of the program: address of the first, number of them.
+/// The counters of a part of the program: address of the first, and their number.
 static REGIONS: Mutex<Vec<(usize, usize)>> = Mutex::new(Vec::new());
 
 /// Called once by each instrumented part of the program.
@@ -16,7 +16,7 @@ extern "C" fn __sanitizer_cov_8bit_counters_init(start: *mut u8, end: *mut u8) {
     }
 }
 
-/// Which counts of which edges inputs have shown.
+/// Counts of each edge reached by the inputs so far.
 pub struct Coverage {
     regions: Vec<(usize, usize)>,
     seen: Vec<u8>,
@@ -37,12 +37,12 @@ impl Coverage {
     /// Sets the counters to zero.
     pub fn reset(&self) {
         for &(start, length) in &self.regions {
-            // SAFETY: the region is the instrumented program's, is there as long as the program, and only counts.
+            // SAFETY: the region belongs to the instrumented program, has static lifetime, and only counts.
             unsafe { std::ptr::write_bytes(start as *mut u8, 0, length) };
         }
     }
 
-    /// Whether the input since the last reset ran through an edge as often as none had; remembers it.
+    /// Whether the input since the last reset reached a new count of an edge; records the count.
     pub fn is_new(&mut self) -> bool {
         let mut is_new = false;
         let mut seen = self.seen.iter_mut();

@@ -16,7 +16,7 @@ impl CurrentInput {
         File::create(&path).map(Self).map_err(|error| format!("{}: {error}", path.display()))
     }
 
-    /// Writes the input over the one before it.
+    /// Replaces the previous input.
     pub fn set(&mut self, input: &[u8]) -> Result<(), String> {
         let bytes = [&(input.len() as u64).to_le_bytes()[..], input].concat();
         let written = self.0.seek(SeekFrom::Start(0)).and_then(|_| self.0.write_all(&bytes));

@@ -4,7 +4,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use trundle_fuzz::FuzzTarget;
 
-/// Saves an input; prints what it does and how to repeat it.
+/// Saves an input; prints its effect and the command to repeat it.
 pub fn report(target: &FuzzTarget, input: &[u8], what: &str) -> Result<(), String> {
     let path = save(target.name, input).map_err(|error| format!("a finding cannot be saved: {error}"))?;
     println!("{}: {what} ({} bytes)", target.name, input.len());

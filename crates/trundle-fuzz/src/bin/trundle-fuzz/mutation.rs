@@ -9,7 +9,7 @@ const MAX_CHANGES: usize = 6;
 const MAX_LENGTH: usize = 1 << 18;
 /// Longest piece that is copied or cut \[bytes\].
 const MAX_PIECE: usize = 256;
-/// Numbers at the edges of what a length or a count can be.
+/// Extreme values of lengths and counts.
 const EDGES: [u64; 14] = [
     0,
     1,
@@ -27,7 +27,7 @@ const EDGES: [u64; 14] = [
     u64::MAX,
 ];
 
-/// An input made of `parent` by some changes.
+/// An input made from `parent` by some changes.
 pub fn mutate(parent: &[u8], other: &[u8], words: &[&str], rng: &mut ChaCha8Rng) -> Vec<u8> {
     let mut input = parent.to_vec();
     for _ in 0..rng.random_range(1..=MAX_CHANGES) {
@@ -67,7 +67,7 @@ fn set_byte(input: &mut [u8], at: usize, value: u8) {
     }
 }
 
-/// A number at the edge of its range, of 1 to 8 bytes and in either order.
+/// An extreme number of 1 to 8 bytes, in either byte order.
 fn edge(rng: &mut ChaCha8Rng) -> Vec<u8> {
     let bytes = EDGES[rng.random_range(0..EDGES.len())].to_le_bytes();
     let mut bytes = bytes[..1 << rng.random_range(0..4)].to_vec();

@@ -1,4 +1,4 @@
-//! Runs each target in a process of its own, and reports the input of a process that died.
+//! Runs each target in a separate process, and reports the input of a crashed process.
 
 use crate::current_input::last_input;
 use crate::finding;
@@ -9,12 +9,12 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 use trundle_fuzz::FuzzTarget;
 
-/// Deaths of one target after which it is left.
+/// Number of crashes after which a target is abandoned.
 const MAX_DEATHS: u64 = 3;
-/// Memory disk, if there is one.
+/// Memory disk, if available.
 const MEMORY_DISK: &str = "/dev/shm";
 
-/// Runs each target for some time, as many at once as there are cores. Returns whether nothing was found.
+/// Runs each target for some time, in parallel on all cores. Returns whether no fault was found.
 pub fn run(targets: &[FuzzTarget], time: Duration, seed: u64) -> Result<bool, String> {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let (next, is_clean) = (AtomicUsize::new(0), AtomicBool::new(true));
@@ -33,7 +33,7 @@ pub fn run(targets: &[FuzzTarget], time: Duration, seed: u64) -> Result<bool, St
     failure.map_or_else(|| Ok(is_clean.load(Relaxed)), Err)
 }
 
-/// Runs a target until its time is over, again after each death.
+/// Runs a target until its time is over, with a restart after each crash.
 fn watch(target: &FuzzTarget, time: Duration, seed: u64) -> Result<bool, String> {
     let end = Instant::now() + time;
     let mut is_clean = true;
@@ -68,7 +68,7 @@ fn work(target: &FuzzTarget, seconds: u64, seed: u64, folder: &Path) -> Result<E
     command.stdin(Stdio::null()).status().map_err(|error| format!("{}: cannot start: {error}", target.name))
 }
 
-/// A folder for the inputs, in memory if there is a memory disk.
+/// A folder for the inputs, on a memory disk if available.
 fn scratch() -> Result<tempfile::TempDir, String> {
     let made =
         if Path::new(MEMORY_DISK).is_dir() { tempfile::tempdir_in(MEMORY_DISK) } else { tempfile::tempdir() };

@@ -8,7 +8,7 @@ use std::time::Duration;
 const MAX_INPUT_MS: u64 = 1000;
 /// Exit code of a process that hung.
 pub const HANG_CODE: i32 = 97;
-/// Time between two looks at the clock.
+/// Period of checks of the clock.
 const WATCH_PERIOD: Duration = Duration::from_millis(50);
 /// No input is read.
 const NO_INPUT: u64 = u64::MAX;

@@ -14,13 +14,13 @@ use std::time::{Duration, Instant};
 use trundle_fuzz::FuzzTarget;
 use trundle_fuzz::corpus::{committed_inputs, inputs_below};
 
-/// Folder of further inputs, relative to the workspace. Where it is absent, it is skipped.
+/// Folder of further inputs, relative to the workspace. Skipped if absent.
 const CASES: &str = "../shared/cases";
 
 /// The place and the message of the last panic.
 static LAST_PANIC: Mutex<String> = Mutex::new(String::new());
 
-/// Runs `target` for some time. Returns whether nothing was found. A panic is reported and the run goes on.
+/// Runs `target` for some time. Returns whether no fault was found. A panic is reported and the run continues.
 pub fn run(target: &FuzzTarget, time: Duration, seed: u64, folder: &Path) -> Result<bool, String> {
     watchdog::start();
     record_panics();
@@ -85,7 +85,7 @@ impl<'a> Work<'a> {
         mutate(&self.inputs[parent], &self.inputs[other], self.target.words, &mut self.rng)
     }
 
-    /// Reads an input. Returns whether it ran through new code.
+    /// Reads an input. Returns whether it reached new code.
     fn read(&mut self, input: &[u8]) -> Result<bool, String> {
         self.count += 1;
         self.current.set(input)?;
@@ -111,7 +111,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// Keeps the message of a panic instead of printing it.
+/// Stores the message of a panic instead of printing it.
 fn record_panics() {
     set_hook(Box::new(|panic| {
         let place = panic.location().map(ToString::to_string).unwrap_or_default();

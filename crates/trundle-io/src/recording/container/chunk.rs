@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 pub(in crate::recording) enum Group {
     /// Depth images: zstd, apart from others, whose bytes have other frequencies.
     Depth,
-    /// Colour images, which are packed already: as they are.
+    /// Colour images, already compressed: stored unchanged.
     Color,
     /// The rest, in the order of the run: zstd.
     Rest,
@@ -20,7 +20,7 @@ impl Group {
     pub(super) const ALL: [Self; 3] = [Self::Depth, Self::Color, Self::Rest];
 }
 
-/// Level of zstd. Higher ones gain nothing on depth images in RVL (docs/experiments/recording-size.md).
+/// Level of zstd. Higher levels have no advantage for depth images in RVL (docs/experiments/recording-size.md).
 const ZSTD_LEVEL: i32 = 1;
 
 /// A chunk that is being filled.
@@ -31,13 +31,13 @@ pub(super) struct Chunk {
     index: BTreeMap<u16, Vec<(u64, u64)>>,
 }
 
-/// Where a chunk is in the file, for the index at the end.
+/// Position of a chunk in the file, for the index at the end.
 pub(super) struct ChunkPlace {
     pub(super) first: u64,
     pub(super) last: u64,
     start: u64,
     length: u64,
-    /// Where the index of each channel is.
+    /// Position of each channel's index.
     index_offsets: BTreeMap<u16, u64>,
     index_length: u64,
     compression: &'static str,
@@ -69,7 +69,7 @@ impl Chunk {
         self.records.extend(data);
     }
 
-    /// The chunk and the index of its messages as they stand at byte `start` of the file.
+    /// The chunk and the index of its messages, for a start at byte `start` of the file.
     pub(super) fn packed(self, group: Group, start: u64) -> (Vec<u8>, ChunkPlace) {
         let times = || self.index.values().flatten().map(|(time, _)| *time);
         let (first, last) = (times().min().unwrap_or(0), times().max().unwrap_or(0));
@@ -105,7 +105,7 @@ impl Chunk {
     }
 }
 
-/// The records of a chunk, packed where that makes them smaller.
+/// The records of a chunk, compressed if that makes them smaller.
 fn pack(records: Vec<u8>, group: Group) -> (&'static str, Vec<u8>) {
     if group == Group::Color {
         return ("", records);
@@ -117,7 +117,7 @@ fn pack(records: Vec<u8>, group: Group) -> (&'static str, Vec<u8>) {
 }
 
 impl ChunkPlace {
-    /// The content of its record in the summary.
+    /// Content of the chunk's record in the summary.
     pub(super) fn index_record(&self) -> Vec<u8> {
         let offsets = self.index_offsets.iter();
         let offsets =

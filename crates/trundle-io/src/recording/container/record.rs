@@ -25,7 +25,7 @@ impl RecordWriter {
         self.bytes(text.as_bytes())
     }
 
-    /// A list behind its length in bytes.
+    /// A list, preceded by its length in bytes.
     pub(super) fn bytes(self, bytes: &[u8]) -> Self {
         self.u32(bytes.len() as u32).append(bytes)
     }

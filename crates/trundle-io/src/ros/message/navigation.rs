@@ -5,12 +5,12 @@ use crate::ros::cdr_writer::CdrWriter;
 use nalgebra::Matrix3;
 use trundle_core::{Cell, OccupancyGrid, Odometry, Pose2, Pose3, Stamp};
 
-/// Variance of what a base in the plane does not measure: height, roll, pitch \[m², rad²\]. Source: ours, very large.
+/// Variance of quantities that a planar base does not measure: height, roll, pitch \[m², rad²\]. Source: ours, very large.
 const UNMEASURED_VARIANCE: f64 = 1e6;
-/// Where x, y and heading are among the six of ROS: x, y, z, roll, pitch, yaw.
+/// Indices of x, y and heading among the six of ROS: x, y, z, roll, pitch, yaw.
 const PLANAR: [usize; 3] = [0, 1, 5];
 
-/// `nav_msgs/msg/Odometry`: `frame_from_child` with its covariance, which stays a right perturbation.
+/// `nav_msgs/msg/Odometry`: `frame_from_child` with its covariance, which remains a right perturbation.
 #[must_use]
 pub fn odometry(frame: &str, child: &str, odometry: &Odometry) -> RosMessage {
     let writer = CdrWriter::with_header(odometry.stamp, frame).string(child);

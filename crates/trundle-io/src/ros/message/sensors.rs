@@ -6,7 +6,7 @@ use trundle_core::{Beam, GyroRate, PinholeCamera, Scan, Stamp};
 
 /// Bytes in front of a depth image of `compressed_depth_image_transport`: no quantisation.
 const DEPTH_HEADER: [u8; 12] = [0; 12];
-/// Range beyond which a sweep of ours holds nothing \[m\]. Source: ours, more than any room.
+/// Maximum range of a sweep by trundle \[m\]. Source: ours, more than any room.
 const MAX_RANGE_M: f32 = 100.0;
 /// Covariance of a quantity that was not measured. Source: sensor_msgs/msg/Imu.
 const NOT_MEASURED: f64 = -1.0;
@@ -45,7 +45,7 @@ pub fn camera_info(stamp: Stamp, frame: &str, camera: &PinholeCamera) -> RosMess
     RosMessage::new("sensor_msgs/msg/CameraInfo", writer)
 }
 
-/// `sensor_msgs/msg/Imu` of a gyro around the vertical axis; nothing else was measured.
+/// `sensor_msgs/msg/Imu` of a gyro around the vertical axis, without other measurements.
 #[must_use]
 pub fn gyro(frame: &str, rate: &GyroRate) -> RosMessage {
     let writer = CdrWriter::with_header(rate.stamp, frame).f64s([0.0, 0.0, 0.0, 1.0]);
@@ -54,7 +54,7 @@ pub fn gyro(frame: &str, rate: &GyroRate) -> RosMessage {
     RosMessage::new("sensor_msgs/msg/Imu", writer.f64s([0.0; 3]).f64s(unmeasured))
 }
 
-/// `sensor_msgs/msg/LaserScan` in a frame at the sweep's origin: infinite if a beam met nothing, NaN if nothing is known.
+/// `sensor_msgs/msg/LaserScan` in a frame at the sweep's origin: infinite for a beam without a return, NaN for an unknown beam.
 #[must_use]
 pub fn scan(frame: &str, scan: &Scan) -> RosMessage {
     let (first, step, count) = (scan.angle_min(), scan.angle_increment(), scan.beams().len());

@@ -25,7 +25,7 @@ const LOOP_COLOR: [f32; 4] = [0.9, 0.3, 0.1, 1.0];
 /// Two points of a line, m.
 pub type PointPair = (Vector3, Vector3);
 
-/// `visualization_msgs/msg/ImageMarker`: features at raw pixels, green where they were matched with landmarks, yellow where not.
+/// `visualization_msgs/msg/ImageMarker`: features at raw pixels, green if matched with landmarks, otherwise yellow.
 #[must_use]
 pub fn features(stamp: Stamp, frame: &str, features: &[(Vector2, bool)]) -> RosMessage {
     let writer = CdrWriter::with_header(stamp, frame).string("features").u32(0).u32(IMAGE_POINTS).u32(0);

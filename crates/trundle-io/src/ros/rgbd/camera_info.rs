@@ -5,7 +5,7 @@ use crate::ros::cdr::{CdrError, CdrReader, Wire};
 use crate::ros::messages::{header, types};
 use trundle_core::{Invalid, PinholeCamera};
 
-/// `sensor_msgs/msg/CameraInfo`, as far as it is used.
+/// The used part of `sensor_msgs/msg/CameraInfo`.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct CameraInfo {
     pub(super) frame: String,

@@ -8,13 +8,13 @@ const HEADER_BYTES: usize = 12;
 /// First bytes of a PNG.
 const PNG_MAGIC: &[u8] = b"\x89PNG";
 
-/// Whether a format is that of the transport, as `16UC1; compressedDepth png`.
+/// Whether a format is `compressedDepth`, as `16UC1; compressedDepth png`.
 pub(super) fn is_compressed_depth(format: &str) -> bool {
     format.contains("compressedDepth")
 }
 
-/// Depth in metres, 0 if there is none. `format` is that of the message, as `16UC1; compressedDepth png`. Images of 32 bits hold
-/// quantised inverse depth d: metres = a / (d - b). Of all others `depth_scale` units are a metre.
+/// Depth in metres, 0 for unknown. `format` is the message's format, as `16UC1; compressedDepth png`. Images of 32 bits hold quantised
+/// inverse depth d: metres = a / (d - b). In all other images, `depth_scale` units are one metre.
 ///
 /// # Errors
 /// When the image is cut, of another pixel format, or its parameters make no depth.
@@ -48,7 +48,7 @@ pub fn decode_compressed_depth(
     metres(&raw, |value| a / (f64::from(value) - b))
 }
 
-/// The depths of the numbers that are none of 0; what is not depth becomes 0.
+/// Converts numbers to depths; 0 and invalid depths become 0.
 fn metres(raw: &Image<u16>, depth: impl Fn(u16) -> f64) -> Result<DepthImage, CodecError> {
     let metres = |&value: &u16| {
         let depth = if value == 0 { 0.0 } else { depth(value) };

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use trundle_core::{RgbdImage, Stamp};
 
-/// Size of the images that wait for their partners \[bytes\]. A bag that needs more holds colour and depth far apart and is refused.
+/// Maximum size of the images that wait for their partners \[bytes\]. A bag that needs more has colour and depth far apart and is refused.
 /// Source: ours.
 const MAX_WAITING_BYTES: usize = 1 << 29;
 
@@ -52,7 +52,7 @@ impl<'a> RosFrames<'a> {
         })
     }
 
-    /// The next pair, where both images are here.
+    /// The next pair, if both images are read.
     fn ready(&mut self) -> Option<RosFrame> {
         let (color, depth) = *self.pairs.first()?;
         if !(self.colors.contains_key(&color) && self.depths.contains_key(&depth)) {
@@ -62,7 +62,7 @@ impl<'a> RosFrames<'a> {
         let depth_image = self.depths.get(&depth)?.clone();
         self.waiting_bytes -= color.byte_count();
         self.pairs = &self.pairs[1..];
-        // A depth image may serve the next colour image as well.
+        // A depth image may be paired with the next colour image as well.
         if self.pairs.first().is_none_or(|(_, next)| *next != depth) {
             self.waiting_bytes -= depth_image.byte_count();
             self.depths.remove(&depth);
@@ -70,7 +70,7 @@ impl<'a> RosFrames<'a> {
         Some(RosFrame { color, depth: depth_image, depth_scale: self.depth_scale })
     }
 
-    /// Reads the next message. Returns whether there was one. A bag that breaks off ends here, as it did in the first pass.
+    /// Reads the next message. Returns whether a message was read. A bag that breaks off ends here, as in the first pass.
     fn read_message(&mut self) -> Result<bool, IoError> {
         let Ok(Some(message)) = self.bag.next_message() else { return Ok(false) };
         let is_color = message.topic == self.topics.color;
@@ -142,7 +142,7 @@ impl RosFrame {
         Ok(RgbdImage::new(self.color.stamp, color, depth)?)
     }
 
-    /// The bytes to record for the decoded `image`: a JPEG as it was read, depth in millimetres.
+    /// The bytes to record for the decoded `image`: an unchanged JPEG, and depth in millimetres.
     ///
     /// # Errors
     /// When the image cannot be encoded.

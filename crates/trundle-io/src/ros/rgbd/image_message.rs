@@ -1,4 +1,4 @@
-//! `sensor_msgs/msg/Image` and `CompressedImage`: colour and depth images as they stand in a bag.
+//! `sensor_msgs/msg/Image` and `CompressedImage`: colour and depth images of a bag.
 
 use super::compressed_depth::{decode_compressed_depth, is_compressed_depth};
 use super::pixels::{color_of_raw, depth_of_raw, is_raw_color, is_raw_depth};
@@ -26,7 +26,7 @@ enum Content {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ImageKind {
     Color,
-    /// Brightness only: used as colour if there is no other.
+    /// Brightness only: used as colour if no colour exists.
     Grey,
     Depth,
     /// An encoding that is not read.
@@ -94,7 +94,7 @@ impl BagImage {
         }
     }
 
-    /// The colour image; grey ones become grey colours.
+    /// The colour image; grey images become grey colours.
     pub(super) fn color(&self) -> Result<ColorImage, CodecError> {
         match &self.content {
             Content::Raw(raw) => color_of_raw(raw),
@@ -110,7 +110,7 @@ impl BagImage {
         }
     }
 
-    /// Depth in metres, 0 if there is none. `depth_scale`: units per metre of whole-numbered images.
+    /// Depth in metres, 0 for unknown. `depth_scale`: units per metre of whole-numbered images.
     pub(super) fn depth(&self, depth_scale: f64) -> Result<DepthImage, CodecError> {
         match &self.content {
             Content::Raw(raw) => depth_of_raw(raw, depth_scale),

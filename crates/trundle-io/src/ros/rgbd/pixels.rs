@@ -5,7 +5,7 @@ use super::yuv::{Yuv, color_of_yuv};
 use crate::codec::CodecError;
 use trundle_core::{ColorImage, DepthImage};
 
-/// Encodings of pixels that stand alone: bytes of a pixel, and where red, green and blue are.
+/// Encodings of separate pixels: bytes per pixel, and the positions of red, green and blue.
 const COLOR_ENCODINGS: &[(&str, usize, [usize; 3])] = &[
     ("rgb8", 3, [0, 1, 2]),
     ("bgr8", 3, [2, 1, 0]),
@@ -31,7 +31,7 @@ pub(super) fn is_raw_depth(encoding: &str) -> bool {
 /// The colours of an image.
 ///
 /// # Errors
-/// When its encoding is not read, or its bytes are too few for its size.
+/// When the encoding is unknown, or the bytes are too few for the size.
 pub(super) fn color_of_raw(raw: &RawImage) -> Result<ColorImage, CodecError> {
     if let Some(form) = Yuv::named(&raw.encoding) {
         return color_of_yuv(raw, form);
@@ -48,10 +48,10 @@ pub(super) fn color_of_raw(raw: &RawImage) -> Result<ColorImage, CodecError> {
     Ok(ColorImage::new(raw.width, raw.height, pixels)?)
 }
 
-/// Depth in metres of an image of 16 bits in units, or of 32-bit floats in metres; 0 if there is none.
+/// Depth in metres of an image of 16 bits in units, or of 32-bit floats in metres; 0 for unknown.
 ///
 /// # Errors
-/// When its encoding is another, or its bytes are too few for its size.
+/// When the encoding is unknown, or the bytes are too few for the size.
 pub(super) fn depth_of_raw(raw: &RawImage, depth_scale: f64) -> Result<DepthImage, CodecError> {
     let metres: Vec<f32> = if raw.encoding == "32FC1" {
         let number = if raw.is_big_endian { f32::from_be_bytes } else { f32::from_le_bytes };

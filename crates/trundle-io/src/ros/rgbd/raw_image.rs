@@ -2,7 +2,7 @@
 
 use crate::codec::CodecError;
 
-/// A raw image as it stands in its message.
+/// A raw image with the bytes of its message.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct RawImage {
     pub(super) width: usize,
@@ -15,7 +15,7 @@ pub(super) struct RawImage {
 }
 
 impl RawImage {
-    /// The rows without what is behind their last pixel, at `bytes` a pixel.
+    /// The rows without padding, for `bytes` per pixel.
     pub(super) fn rows(
         &self,
         kind: &'static str,

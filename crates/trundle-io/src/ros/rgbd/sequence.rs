@@ -1,4 +1,4 @@
-//! The RGB-D sequence of a bag: its topics, camera, mount and poses; the images stay on disk.
+//! The RGB-D sequence of a bag: topics, camera, mount and poses; the images remain on disk.
 
 use super::frames::RosFrames;
 use super::survey::Survey;
@@ -10,16 +10,16 @@ use crate::{IoError, TumSequence, Warnings};
 use std::path::{Path, PathBuf};
 use trundle_core::{PinholeCamera, Pose2, Pose3, Stamp};
 
-/// The topics that are asked for; `None` leaves the choice to the bag.
+/// The requested topics; for `None` the bag's content decides.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct RosSequenceOptions {
-    /// Of colour images.
+    /// Topic of colour images.
     pub color_topic: Option<String>,
-    /// Of depth images, registered to colour.
+    /// Topic of depth images, registered to colour.
     pub depth_topic: Option<String>,
-    /// Of the camera's intrinsics.
+    /// Topic of the camera's intrinsics.
     pub info_topic: Option<String>,
-    /// Of odometry, or of its transforms.
+    /// Topic of odometry, or of its transforms.
     pub odometry_topic: Option<String>,
 }
 
@@ -37,7 +37,7 @@ pub struct RosSequence {
     warnings: Warnings,
 }
 
-/// Frames that stand on the floor below the base, the first that is there. Source: REP 105, REP 120.
+/// Frames on the floor below the base; the first existing one is used. Source: REP 105, REP 120.
 const BASE_FRAMES: [&str; 2] = ["base_footprint", "base_link"];
 /// Distance of the depth camera from the colour camera \[m\], from which depth is not registered to colour. Source: ours.
 const MAX_DEPTH_OFFSET_M: f64 = 1e-3;
@@ -45,12 +45,12 @@ const MAX_DEPTH_OFFSET_M: f64 = 1e-3;
 const MAX_DEPTH_TURN_RAD: f64 = 1e-3;
 
 impl RosSequence {
-    /// Reads a bag but for its pixels: topics, camera, mount, odometry, ground truth. `needs_camera`: whether the bag must hold the
+    /// Reads a bag without its pixels: topics, camera, mount, odometry, ground truth. `needs_camera`: whether the bag must contain the
     /// camera's intrinsics.
     ///
     /// # Errors
-    /// When the bag cannot be read; there is no colour or no depth, or the choice is not clear; depth is not registered to colour; no image can
-    /// be paired; or the camera is missing or not accepted.
+    /// When the bag cannot be read, colour or depth is missing or ambiguous, depth is not registered to colour, no image can be paired, or
+    /// the camera is missing or invalid.
     pub fn open(path: &Path, options: &RosSequenceOptions, needs_camera: bool) -> Result<Self, IoError> {
         let survey = Survey::read(path)?;
         Self::of(path, survey, options, needs_camera).map_err(|problem| IoError::malformed(path, problem))
@@ -100,7 +100,7 @@ impl RosSequence {
         })
     }
 
-    /// The topics that the sequence is made of.
+    /// The topics of the sequence.
     #[must_use]
     pub fn topics(&self) -> &RosImageTopics {
         &self.topics
@@ -112,7 +112,7 @@ impl RosSequence {
         self.camera
     }
 
-    /// Where the camera sits on the base by the bag's transforms, optical frame; `None` if none lead from the one to the other.
+    /// The camera's pose on the base by the bag's transforms, optical frame; `None` if the transforms do not connect both.
     #[must_use]
     pub fn base_from_camera(&self) -> Option<Pose3> {
         self.base_from_camera
@@ -124,7 +124,7 @@ impl RosSequence {
         self.pairs.len()
     }
 
-    /// Whether there is no image; never so.
+    /// Whether the sequence is empty; always false.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
@@ -169,7 +169,7 @@ impl RosSequence {
     }
 }
 
-/// Refuses depth whose camera sits elsewhere than that of colour by the bag's transforms.
+/// Refuses depth whose camera pose differs from that of colour by the bag's transforms.
 fn require_registered(survey: &mut Survey, color: &ImageTopic, depth: &ImageTopic) -> Result<(), String> {
     if color.frame == depth.frame {
         return Ok(());
@@ -190,7 +190,7 @@ fn require_registered(survey: &mut Survey, color: &ImageTopic, depth: &ImageTopi
     Ok(())
 }
 
-/// The camera of the colour images and its topic: the requested one, the one beside the images, or the only one in their frame.
+/// The camera of the colour images and its topic: the requested one, the one with the images' prefix, or the only one in their frame.
 fn camera(
     survey: &Survey,
     color: &ImageTopic,
@@ -229,7 +229,7 @@ fn motion(survey: &mut Survey, asked: Option<&str>) -> Result<BaseMotion, String
     Ok((motion.topic, Some(motion.base), motion.motion.into_poses()))
 }
 
-/// Where the camera sits above the floor below the base.
+/// Pose of the camera above the floor below the base.
 fn mount(survey: &mut Survey, base: &Option<String>, camera: &str) -> Option<Pose3> {
     let bases = BASE_FRAMES.iter().copied().chain(base.as_deref());
     let mut broken = None;

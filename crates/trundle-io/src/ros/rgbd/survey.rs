@@ -1,4 +1,4 @@
-//! The first pass over a bag: everything but the pixels of its images.
+//! The first pass over a bag: all content except the pixels of images.
 
 use super::camera_info::CameraInfo;
 use super::image_message::{BagImage, ImageKind};
@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use trundle_core::{Pose3, Stamp};
 
-/// Everything of a bag but the pixels of its images.
+/// Content of a bag except the pixels of images.
 #[derive(Default)]
 pub(super) struct Survey {
     /// Odometry and transforms.
@@ -33,14 +33,14 @@ struct ImageStamps {
     stamps: Vec<Stamp>,
 }
 
-/// Whether a topic holds true poses, by its name.
+/// Whether a topic contains true poses, by its name.
 fn is_truth(topic: &str) -> bool {
     let name = topic.to_lowercase().replace('_', "");
     name.contains("groundtruth")
 }
 
 impl Survey {
-    /// Reads a bag. A broken message is one warning with its topic; a bag that breaks off is read up to the break.
+    /// Reads a bag. A broken message gives one warning with its topic; a bag that breaks off is read up to the break.
     pub(super) fn read(path: &Path) -> Result<Self, IoError> {
         let (mut survey, mut bag) = (Self::default(), Bag::open(path)?);
         for number in 1.. {

@@ -1,4 +1,4 @@
-//! The topics of a bag, and the choice of those of colour and depth.
+//! The topics of a bag, and the selection of the colour and depth topics.
 
 use super::image_message::{BagImage, ImageKind};
 use crate::IoError;
@@ -18,25 +18,25 @@ pub(super) struct ImageTopic {
     pub(super) count: usize,
 }
 
-/// The topics of the images that a sequence is made of.
+/// The topics of a sequence's images.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RosImageTopics {
-    /// Of the colour images.
+    /// Topic of the colour images.
     pub color: String,
-    /// Of the depth images.
+    /// Topic of the depth images.
     pub depth: String,
-    /// Of the camera's intrinsics; empty if a camera was given.
+    /// Topic of the camera's intrinsics; empty if a camera was given.
     pub info: String,
-    /// Of the odometry; empty without one.
+    /// Topic of the odometry; empty without odometry.
     pub odometry: String,
     /// Unused topics of images, with the number of their messages.
     pub left: Vec<(String, usize)>,
 }
 
-/// Ends of topics that say how images are sent.
+/// Suffixes of topics for the transport of images.
 const TRANSPORTS: [&str; 3] = ["/compressed", "/compressedDepth", "/ffmpeg"];
 
-/// The topic without the way in which its images are sent.
+/// The topic without the suffix of its transport.
 pub(super) fn base_topic(topic: &str) -> &str {
     TRANSPORTS.iter().find_map(|transport| topic.strip_suffix(transport)).unwrap_or(topic)
 }
@@ -44,7 +44,7 @@ pub(super) fn base_topic(topic: &str) -> &str {
 /// The colour topic: the requested one, else the only one, or the one with the most messages; grey only without colour.
 ///
 /// # Errors
-/// When there is none, or none of that name.
+/// When no such topic exists.
 pub(super) fn choose_color<'a>(
     topics: &'a [ImageTopic],
     asked: Option<&str>,
@@ -57,11 +57,11 @@ pub(super) fn choose_color<'a>(
     found.ok_or_else(|| format!("no colour images, expected some; its images: {}", listing(topics)))
 }
 
-/// The depth topic: the requested one, else the one in the frame of the colour images. Of one image in several transports the first
-/// with the most messages.
+/// The depth topic: the requested one, else the one in the frame of the colour images. For one image in several transports, the first with
+/// the most messages.
 ///
 /// # Errors
-/// When there is none, none of that name, or several differ.
+/// When no such topic exists, or several differ.
 pub(super) fn choose_depth<'a>(
     topics: &'a [ImageTopic],
     asked: Option<&str>,
@@ -113,7 +113,7 @@ fn listing(topics: &[ImageTopic]) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
-/// The topics of a bag with their types, message counts and, of images, the encoding of the first.
+/// The topics of a bag with their types and message counts; for images, the encoding of the first.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct RosTopics {
     topics: BTreeMap<String, (String, usize, String)>,
@@ -145,13 +145,13 @@ impl RosTopics {
         }
     }
 
-    /// Whether there are sweeps of a laser.
+    /// Whether the bag has sweeps of a laser.
     #[must_use]
     pub fn has_scans(&self) -> bool {
         self.has(&[types::LASER_SCAN])
     }
 
-    /// Whether there are images, raw or compressed.
+    /// Whether the bag has images, raw or compressed.
     #[must_use]
     pub fn has_images(&self) -> bool {
         self.has(&[types::IMAGE, types::COMPRESSED_IMAGE])

@@ -7,9 +7,9 @@ use trundle_core::ColorImage;
 /// The order of the bytes of a YUV image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Yuv {
-    /// Two pixels in four bytes; where the first Y, the second Y, U and V are.
+    /// Two pixels in four bytes; positions of the first Y, the second Y, U and V.
     Packed([usize; 4]),
-    /// All Y, then U and V of two by two pixels in turns; where U and V are.
+    /// All Y, then U and V of two by two pixels alternately; positions of U and V.
     TwoPlanes([usize; 2]),
 }
 

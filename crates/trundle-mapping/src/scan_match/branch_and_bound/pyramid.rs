@@ -22,13 +22,13 @@ pub(crate) struct Pyramid {
 }
 
 impl Pyramid {
-    /// Of all tiles of a map; `None` of an empty or an endless one. Cost: 5 passes over its area.
+    /// The pyramid of all tiles of a map; `None` for an empty or unbounded map. Cost: 5 passes over its area.
     pub(crate) fn new(map: &TileMap) -> Option<Self> {
         let (low, high) = map.extent()?;
         Self::of(map, low, high)
     }
 
-    /// Of the tiles from `low` to `high`.
+    /// The pyramid of the tiles from `low` to `high`.
     pub(crate) fn of(map: &TileMap, low: (i32, i32), high: (i32, i32)) -> Option<Self> {
         let size =
             |low: i32, high: i32| (high - low + 1) as usize * SAMPLES_PER_TILE_SIDE + 2 * MARGIN_SAMPLES;

@@ -5,16 +5,16 @@ use crate::scan_match::normal_equations::NormalEquations;
 use crate::scan_match::point_spread::PointSpread;
 use nalgebra::{Matrix3, SymmetricEigen, U3, Vector3};
 
-/// The information of a match by direction, the degenerate ones known (Zhang, Kaess and Singh, On degeneracy of
-/// optimization-based state estimation problems, ICRA 2016).
+/// The information of a match by direction, with its degenerate directions (Zhang, Kaess and Singh, On degeneracy of optimization-based
+/// state estimation problems, ICRA 2016).
 ///
-/// Displacements are those of the hits' centroid, and turns are measured in metres at the hits' mean distance from it, so
-/// that directions can be compared.
+/// Displacements are those of the hits' centroid. Turns are in metres at the hits' mean distance from the centroid, for comparable
+/// directions.
 #[derive(Debug, Clone)]
 pub(crate) struct Information {
     /// B of displacement of the base = B * displacement of the centroid, turns in metres.
     base_from_centroid: Matrix3<f64>,
-    /// Its inverse.
+    /// Inverse of `base_from_centroid`.
     centroid_from_base: Matrix3<f64>,
     eigen: SymmetricEigen<f64, U3>,
     least: f64,
@@ -40,7 +40,7 @@ impl Information {
         self.eigen.eigenvalues.min() < self.least
     }
 
-    /// The step that the pull asks for, without its degenerate part.
+    /// The least-squares step without its degenerate part.
     pub(crate) fn solve(&self, rhs: &Vector3<f64>) -> Vector3<f64> {
         self.by_direction(|value| if value < self.least { 0.0 } else { 1.0 / value }) * rhs
     }

@@ -14,11 +14,11 @@ use trundle_grid::{LikelihoodField, SurfacePoints};
 
 /// Lays scans onto the map.
 ///
-/// Problem: the pose near a guess at which a scan agrees best with the map, and its covariance. First all poses of a
-/// small window are tried on a likelihood field, coarse to fine. Then Gauss-Newton on the kernel density of the map's
-/// obstacles finds the optimum between the cells. An obstacle is the mean of the hits of an occupied cell, so that the cell size has
-/// little effect. The information matrix at the optimum gives the covariance. Directions that the hits hardly determine, as along a bare
-/// corridor, keep the guess and get its large covariance. Cost: window poses x hits look-ups, then about 80 cells a hit and step.
+/// Problem: the pose near a guess at which a scan agrees best with the map, and its covariance. First, all poses of a small window are
+/// scored on a likelihood field, coarse to fine. Then Gauss-Newton on the kernel density of the map's obstacles refines the pose to less
+/// than a cell. An obstacle is the mean of the hits in an occupied cell, which makes the result nearly independent of the cell size. The
+/// information matrix at the optimum gives the covariance. Directions hardly determined by the hits, as along a bare corridor, retain the
+/// guess with its large covariance. Cost: window poses x hits look-ups, then about 80 cells per hit and step.
 ///
 /// | symbol | here | unit |
 /// |---|---|---|
@@ -30,16 +30,16 @@ pub struct ScanMatcher {
     config: ScanMatchConfig,
 }
 
-/// Where a scan fits.
+/// Result of a scan match.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScanMatch {
     /// `map_from_base`.
     pub pose: Pose2,
-    /// Its covariance as a right perturbation (x m, y m, theta rad).
+    /// Covariance as a right perturbation (x m, y m, theta rad).
     pub covariance: Matrix3<f64>,
     /// Part of the hits on known ground that the map explains, 0 to 1.
     pub score: f64,
-    /// Whether some direction was not determined; the pose keeps the guess in it.
+    /// Whether some direction was not determined; the pose equals the guess in that direction.
     pub degenerate: bool,
 }
 
@@ -52,8 +52,8 @@ impl ScanMatcher {
         Ok(Self { config: config.validated()? })
     }
 
-    /// The pose near `guess` (`map_from_base`) at which `scan` fits the map; `None` if there are too few hits on known
-    /// ground, the map explains too few of them, or the fit runs out of the window.
+    /// The pose near `guess` (`map_from_base`) at which `scan` fits the map. `None` if too few hits are on known ground, the map explains
+    /// too few of them, or the fit leaves the window.
     pub fn refine(&self, mapper: &GridMapper, scan: &Scan, guess: Pose2) -> Option<ScanMatch> {
         if !guess.is_finite() {
             return None;

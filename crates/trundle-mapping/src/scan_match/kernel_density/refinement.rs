@@ -10,10 +10,10 @@ use trundle_grid::SurfacePoints;
 /// Kernel density of an outlier \[1\]. A hit with this density is explained with probability 0.5; a hit on a wall has a
 /// density of about 3. Source: ours.
 const OUTLIER_DENSITY: f64 = 0.3;
-/// Curvature along a wall relative to that across it \[1\]. A smaller curvature is the unevenness of the wall's cells and
-/// counts as zero. Source: ours.
+/// Curvature along a wall relative to that across it \[1\]. A smaller curvature comes from the unevenness of the wall's cells and counts as
+/// zero. Source: ours.
 const MIN_RELATIVE_CURVATURE: f64 = 0.15;
-/// Maximum number of Gauss-Newton steps. The last pose is returned beyond it. Source: ours.
+/// Maximum number of Gauss-Newton steps. After this number the last pose is returned. Source: ours.
 const MAX_ITERATIONS: usize = 12;
 /// Step length at which the iteration ends \[m, rad\]. Source: ours.
 const MIN_STEP: f64 = 1e-5;
@@ -72,9 +72,9 @@ fn equations(
 struct PointResidual {
     /// To the mean of the sites, m.
     shift: Vector2,
-    /// How much of it counts, by direction: 1 across a wall, 0 along it.
+    /// Weight of the residual by direction: 1 across a wall, 0 along it.
     stiffness: Matrix2<f64>,
-    /// How likely the hit is one of the map's obstacles, 0 to 1.
+    /// Probability that the hit is an obstacle of the map, 0 to 1.
     explained: f64,
 }
 
@@ -103,7 +103,7 @@ fn rhs(config: &ScanMatchConfig, sites: &SurfacePoints, hit: Vector2) -> Option<
     })
 }
 
-/// Without what the unevenness of a straight wall's cells feigns, and without negative curvature.
+/// The curvature without the part caused by the unevenness of a straight wall's cells, and without negative values.
 fn steadied(curvature: Matrix2<f64>) -> Matrix2<f64> {
     let mut eigen = curvature.symmetric_eigen();
     eigen

@@ -4,12 +4,12 @@ use super::ScanMatchConfig;
 use trundle_core::{Pose2, Vector2};
 use trundle_grid::LikelihoodField;
 
-/// Score that a pose at the edge of the window loses against the guess \[1\]. It decides between poses of equal likelihood.
+/// Penalty on the score of a pose at the edge of the window, relative to the guess \[1\]. It decides between poses of equal likelihood.
 /// Source: ours.
 const MAX_PRIOR_PENALTY: f64 = 0.02;
 
-/// The pose of the window about `guess` whose hits lie best in the field: all poses in coarse steps, then their
-/// neighbours in half steps (Olson, Real-time correlative scan matching, ICRA 2009).
+/// The pose of the window around `guess` with the highest score of its hits in the field: all poses in coarse steps, then their neighbours
+/// in half steps (Olson, Real-time correlative scan matching, ICRA 2009).
 pub(crate) fn search(
     config: &ScanMatchConfig,
     field: &LikelihoodField<'_>,

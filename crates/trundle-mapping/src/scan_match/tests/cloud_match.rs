@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 use trundle_core::{Pose2, wrap_angle};
 use trundle_grid::tiles::TileWindow;
 
-/// A prior that says next to nothing within the room: 10 cells and 0.3 rad.
+/// A prior too wide to matter within the area: 10 cells and 0.3 rad.
 fn wide() -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::new(100.0, 100.0, 0.09))
 }
@@ -51,7 +51,7 @@ fn a_scan_finds_its_place_in_the_whole_room_without_a_guess() {
     }
 }
 
-/// The optimum is no worse than any pose about it.
+/// The optimum is at least as likely as any neighbouring pose.
 #[test]
 fn no_pose_near_the_optimum_is_likelier() {
     let models = room::models();
@@ -79,7 +79,7 @@ fn no_pose_near_the_optimum_is_likelier() {
     }
 }
 
-/// A map without the room explains nothing: the pose follows the prior.
+/// An empty map explains no hit: the pose follows the prior.
 #[test]
 fn in_an_empty_map_the_prior_decides() {
     let models = room::models();
@@ -94,7 +94,7 @@ fn in_an_empty_map_the_prior_decides() {
     assert_eq!(matcher.fit(&map, start), (0.0, 0.0));
 }
 
-/// A scan explains its own map, and another place contradicts it.
+/// A scan agrees with its own map and contradicts another place.
 #[test]
 fn a_fit_counts_explained_and_contradicted_points() {
     let models = room::models();

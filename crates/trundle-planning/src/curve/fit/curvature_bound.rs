@@ -1,8 +1,8 @@
 //! The curvature bound of the quadratic program.
 //!
-//! Problem: |p' x p''| <= k |p'|^3 is not linear. Idea: where the last curve exceeds the bound, the bound is linearised about that
-//! curve, and the program is solved again, until the curve keeps it (sequential linear constraints, \[Nocedal06\] ch. 18).
-//! The rows act on p' and p'' alike, so the curve may get a smaller curvature or a wider swing. Cost: one row of two knots per point.
+//! Problem: |p' x p''| <= k |p'|^3 is not linear. Idea: the bound is linearised about the last curve where the curve exceeds the bound, and
+//! the program is solved again until the curve satisfies the bound (sequential linear constraints, \[Nocedal06\] ch. 18). The rows act on
+//! p' and p'' alike, so the curve may get a smaller curvature or a wider swing. Cost: one row of two knots per point.
 
 use crate::curve::analytic_curve::Curve;
 use crate::curve::fit::rows::Rows;
@@ -13,13 +13,13 @@ pub(super) type CurvePoint = (usize, f64);
 
 /// Number of points checked per piece. Source: ours.
 const CHECKS_PER_PIECE: usize = 16;
-/// Share of the bound that the rows ask for: points between two checks then keep the bound too. Source: ours.
+/// Share of the bound used in the rows, which leaves room for points between two checks. Source: ours.
 const BOUND_SHARE: f64 = 0.97;
 
-/// Parametric speed below which a curve is near a cusp, ratio: a small change of the curve does not help there. Source: ours.
+/// Parametric speed below which a curve is near a cusp, ratio: a small change of the curve has no effect there. Source: ours.
 const MIN_PARAMETRIC_SPEED: f64 = 0.3;
 
-/// The points where the curve's curvature exceeds `most`, 1/m; `None` if it is near a cusp at one of them.
+/// The points at which the curve's curvature exceeds `most`, 1/m; `None` if the curve is near a cusp at one of them.
 pub(super) fn exceeding(curve: &Curve, most: f64) -> Option<Vec<CurvePoint>> {
     let mut points = Vec::new();
     for (piece, bezier) in curve.pieces().iter().enumerate() {

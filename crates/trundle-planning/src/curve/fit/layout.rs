@@ -8,8 +8,8 @@ pub(super) const KNOT_UNKNOWNS: usize = 3;
 /// A control point as a sum of unknown vectors.
 pub(super) type Terms = ([(usize, f64); KNOT_UNKNOWNS], usize);
 
-/// Neighbouring pieces share the vectors of their common knot, so they meet in position, heading and curvature by construction. A
-/// degree above 5 adds free control points in the middle of each piece.
+/// Neighbouring pieces share the vectors of their common knot: they agree in position, heading and curvature by construction. A degree
+/// above 5 adds free control points in the middle of each piece.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Layout {
     pub(super) degree: usize,

@@ -6,7 +6,7 @@ use crate::curve::fit::segment::PathSegment;
 use clarabel::algebra::CscMatrix;
 use nalgebra::DMatrix;
 
-/// Weight of the second derivative beside the third, as a share of the smoothing length. Source: ours.
+/// Weight of the second derivative relative to the third, as a share of the smoothing length. Source: ours.
 const BENDING_SHARE: f64 = 0.4;
 
 /// 1/2 x'Px + q'x of integral |p - path|^2 + (0.4 l)^4 |p''|^2 + l^6 |p'''|^2 ds, l the smoothing length.
@@ -41,7 +41,7 @@ pub(super) fn objective(
     (p.finish(unknowns, unknowns), q)
 }
 
-/// The matrix from a piece's own unknown vectors to its control points.
+/// The matrix that maps a piece's own unknown vectors to its control points.
 fn control_from_unknowns(layout: Layout, span: f64) -> DMatrix<f64> {
     let mut matrix = DMatrix::zeros(layout.degree + 1, layout.degree + 1);
     for k in 0..=layout.degree {

@@ -1,9 +1,9 @@
-//! The curve through waypoints: a quadratic program \[Li18\], kept inside a convex free corridor.
+//! The curve through waypoints: a quadratic program \[Li18\] inside a convex free corridor.
 //!
-//! Problem: a smooth curve near the waypoints, with given ends and headings, that touches nothing. Idea: one Bezier piece for
-//! each segment of the path; least squares to the path plus the squared second and third derivatives. End points, headings and
-//! joints are equalities, an inequality excludes the reversed tangent, and every control point stays in its segment's
-//! corridor, so the whole curve does. Cost: a sparse interior-point solve, O(pieces).
+//! Problem: a smooth curve near the waypoints, with given ends and headings, free of contact. Idea: one Bezier piece for each segment of
+//! the path; least squares to the path plus the squared second and third derivatives. End points, headings and joints are equalities. An
+//! inequality excludes the reversed tangent. Every control point is inside its segment's corridor, and therefore the whole curve is. Cost:
+//! a sparse interior-point solve, O(pieces).
 //!
 //! | paper | here | unit |
 //! |---|---|---|
@@ -24,11 +24,11 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use trundle_core::Vector2;
 
-/// The curve along `segments` with these end tangents; `smoothing` is a length, m. `None` if there is none.
+/// The curve along `segments` with these end tangents; `smoothing` is a length, m. `None` if the program has no solution.
 ///
-/// Few of the corridors' sides matter. The program is solved with the sides near the path first, then again with those near the
-/// last curve, until all are kept (cutting planes); the result is that of the whole program. Where the curvature exceeds
-/// `config.max_curvature`, the bound joins in; where that has no solution, the result is the curve without the bound.
+/// Few sides of the corridors are active. The program is solved with the sides near the path first, then with those near the last curve,
+/// until all sides hold (cutting planes). The result equals that of the whole program. If the curvature exceeds `config.max_curvature`, the
+/// bound is added; without a solution the result is the curve without the bound.
 pub(crate) fn fit(
     segments: &[PathSegment],
     tangents: (Tangent, Tangent),
@@ -78,7 +78,7 @@ pub(crate) fn fit(
     over_bound
 }
 
-/// Sides near the path itself, at the control points towards that end: most of the active ones are among them.
+/// Sides near the path itself, at the control points towards that end: most active sides are among them.
 fn sides_near_path(segments: &[PathSegment], degree: usize) -> Vec<Side> {
     let mut sides = Vec::new();
     let last = segments.len() - 1;
@@ -97,7 +97,7 @@ fn sides_near_path(segments: &[PathSegment], degree: usize) -> Vec<Side> {
     sides
 }
 
-/// Distance of a side from the path below which it is in the first program, m. Source: ours.
+/// Distance between side and path below which the side is part of the first program, m. Source: ours.
 const NEAR_PATH_M: f64 = 0.03;
 /// Largest number of solves, with added sides and curvature rows. Source: ours.
 const MAX_SOLVES: usize = 16;

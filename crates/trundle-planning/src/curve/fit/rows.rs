@@ -57,7 +57,7 @@ impl<'a> Rows<'a> {
         }
     }
 
-    /// x' cos(theta) + y' sin(theta) >= least at both ends; along the segment where the heading is free.
+    /// x' cos(theta) + y' sin(theta) >= least at both ends; along the segment if the heading is free.
     pub(super) fn forward(&mut self, start: Tangent, end: Tangent, least: f64) {
         let last = self.layout.pieces;
         let ends = [(0, start, &self.segments[0]), (last, end, &self.segments[last - 1])];

@@ -11,13 +11,13 @@ use trundle_core::Vector2;
 pub(crate) enum Tangent {
     /// Any forward direction.
     Free,
-    /// With this heading, rad, forward.
+    /// A heading, rad, forward.
     Heading(f64),
     /// This heading, rad, at unit parametric speed, and this curvature, 1/m: the continuation of a motion.
     Moving(f64, f64),
 }
 
-/// A straight segment of the path, its corridor, and so the part that one curve piece stands for.
+/// A straight segment of the path with its corridor; one piece of the curve follows the segment.
 pub(crate) struct PathSegment {
     pub(crate) from: Vector2,
     pub(crate) to: Vector2,

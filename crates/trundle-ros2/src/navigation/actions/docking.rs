@@ -16,10 +16,11 @@ use trundle_app::operator::RunView;
 use trundle_core::Pose2;
 use trundle_runtime::Task;
 
-/// Distance before a given dock at which the search for its light begins \[m\]. Source: Nav2's default staging pose, 0.7 m.
+/// Distance of the staging pose from a given dock, from which the search for its light begins \[m\]. Source: Nav2's default staging pose,
+/// 0.7 m.
 const STAGING_M: f64 = 0.7;
 
-/// Names of the one dock that the robot knows, and of its type: the charging station whose light the base sees.
+/// Names of the only dock known to the robot, and of its type: the charging station with infrared light.
 const STATION_NAMES: [&str; 2] = ["", "station"];
 
 /// A limit in seconds; 0 and below is none.
@@ -81,7 +82,7 @@ impl NavigationAction for DockRobot {
 }
 
 impl NavigationAction for UndockRobot {
-    /// A robot on its station backs off it before any task: here before a turn by nothing.
+    /// A robot on its station backs off before any task: here before a turn by 0.
     fn tasks(
         goal: &UndockRobotGoal,
         _context: &GoalContext<'_>,

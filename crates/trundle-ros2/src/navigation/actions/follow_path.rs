@@ -44,7 +44,7 @@ impl NavigationAction for FollowPath {
     }
 }
 
-/// The last pose of the path; `None` if it has none. A pose without a frame is in that of the path.
+/// The last pose of the path; `None` for an empty path. A pose without a frame is in the frame of the path.
 fn end_in_map(
     goal: &Goal,
     frames: &FrameNames,
@@ -57,7 +57,7 @@ fn end_in_map(
     Some(in_map(&end, frames, view))
 }
 
-/// The controller's code for a reason: where the planner has one, no control leads along the path.
+/// The controller's code for a reason: if the planner has a code, no control leads along the path.
 fn code_of(reason: &Reason) -> u16 {
     match of_reason(reason) {
         code @ Outcome::UNKNOWN..=Outcome::CONTROLLER_TIMED_OUT => code,

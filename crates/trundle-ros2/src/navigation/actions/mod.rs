@@ -24,7 +24,7 @@ fn duration(seconds: f64) -> Duration {
     stamp::duration(if seconds.is_finite() { seconds } else { 0.0 })
 }
 
-/// Distance that is left along the plan \[m\], and the time for it \[s\]; straight to `goal` if there is no plan.
+/// Remaining distance along the plan \[m\] and time \[s\]; without a plan straight to `goal`.
 fn left(view: &RunView, goal: &Pose2) -> (f32, Duration) {
     let pose = &view.estimate.pose;
     match &view.plan {

@@ -1,4 +1,4 @@
-//! `Spin`, `BackUp` and `DriveOnHeading`: motions relative to where the robot stands.
+//! `Spin`, `BackUp` and `DriveOnHeading`: motions relative to the robot's pose.
 
 use super::duration;
 use crate::convert::stamp;

@@ -3,7 +3,7 @@
 use crate::generated::rcl_interfaces::{ListParametersRequest, ListParametersResult};
 use crate::node::arrives;
 
-/// The names that are asked for. Where all of them have no room in a reply: those of the upper levels, and the prefixes of the rest.
+/// The requested names. If they do not fit into a reply: those of the upper levels, and the prefixes of the rest.
 pub(super) fn list<'n>(
     names: impl Iterator<Item = &'n String>,
     request: &ListParametersRequest,
@@ -16,7 +16,7 @@ pub(super) fn list<'n>(
     lists.find(arrives).unwrap_or_default()
 }
 
-/// How deep `name` lies below the prefixes, from 1 on; 0 if it is one of them. `None` if no prefix holds it.
+/// Depth of `name` below the prefixes, from 1; 0 if it equals one of them. `None` if no prefix matches.
 fn level(name: &str, prefixes: &[String]) -> Option<usize> {
     let below = |prefix: &String| match name.strip_prefix(prefix.as_str())? {
         "" => Some(0),
@@ -25,7 +25,7 @@ fn level(name: &str, prefixes: &[String]) -> Option<usize> {
     if prefixes.is_empty() { Some(name.split('.').count()) } else { prefixes.iter().find_map(below) }
 }
 
-/// The names down to `depth`, and the prefixes of these and of the deeper ones.
+/// The names down to `depth`, and the prefixes of these and of deeper names.
 fn listing(asked: &[(&String, usize)], depth: usize) -> ListParametersResult {
     let names = asked.iter().filter(|(_, level)| *level <= depth).map(|(name, _)| (*name).clone()).collect();
     let prefix = |(name, level): &(&String, usize)| {

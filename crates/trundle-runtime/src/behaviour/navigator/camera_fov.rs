@@ -12,9 +12,9 @@ use trundle_mapping::DepthScanner;
 pub(super) struct CameraFov {
     /// Position and direction of the sector in the base frame.
     pub(super) base_from_sector: Pose2,
-    /// Half its angle, rad.
+    /// Half the angle of the field of view, rad.
     pub(super) half_angle: f64,
-    /// Where it begins, m.
+    /// Minimum distance of visible floor, m.
     pub(super) nearest: f64,
 }
 
@@ -30,7 +30,7 @@ const PATH_STEP_M: f64 = 0.05;
 const PATH_STEP_RAD: f64 = 0.1;
 /// Area of unseen floor under the footprint that is accepted \[m^2\]: scans leave slivers. Source: ours.
 const MAX_UNSEEN_AREA_M2: f64 = 0.02;
-/// Radius about the start pose whose unseen floor is accepted \[m\]: the robot stands in its own blind zone. Source: ours.
+/// Radius around the start pose within which unseen floor is accepted \[m\]: the robot starts in its own blind zone. Source: ours.
 const START_RADIUS_M: f64 = 0.8;
 
 impl CameraFov {
@@ -45,8 +45,8 @@ impl CameraFov {
         Ok((config.sight == RangeSource::DepthCamera && half_angle > 0.0).then_some(view))
     }
 
-    /// The first place where the disc of `radius` on the path covers floor that is unknown and that the camera does not observe from an
-    /// earlier pose, or floor that was observed without result.
+    /// The first place of the path at which the disc of `radius` covers unseen floor. Unseen floor is unknown and not observed from an
+    /// earlier pose, or was observed without result.
     pub(super) fn first_unseen(
         self,
         way: &[TrajectoryPoint],
@@ -76,7 +76,7 @@ impl CameraFov {
         None
     }
 
-    /// Whether a point is in the camera's view with the base at `from`, and no occupied cell lies between.
+    /// Whether a point is in the camera's view from base pose `from`, without an occupied cell in between.
     pub(super) fn shows(self, grid: &OccupancyGrid, from: Pose2, at: Vector2) -> bool {
         let sector = from * self.base_from_sector;
         let to = sector.inverse().transform(at);
@@ -86,7 +86,7 @@ impl CameraFov {
     }
 }
 
-/// The cells within `radius` of a point that nothing is known of, but for those where the robot was set down.
+/// The unknown cells within `radius` of a point, without those around the start pose.
 pub(super) fn unknown_about(
     grid: &OccupancyGrid,
     at: Vector2,
@@ -99,7 +99,7 @@ pub(super) fn unknown_about(
     cells_about(grid, at, radius).filter(move |cell| grid.get(*cell) == Cell::Unknown && is_off(*cell))
 }
 
-/// Of these cells the one nearest to the middle of all.
+/// The cell nearest to the mean of these cells.
 fn middle(grid: &OccupancyGrid, cells: &[CellIndex]) -> Vector2 {
     let centers = || cells.iter().map(|cell| grid.geometry().center(*cell));
     let mean = centers().sum::<Vector2>() / cells.len().max(1) as f64;
@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn floor_around_a_tight_bend_is_not() {
         let beside = floor(|at| at.y > 2.3);
-        // Along the edge of what is known, then a turn on the spot, and on.
+        // Along the edge of the known floor, then a turn on the spot, then ahead.
         let along = (0..8).map(|i| Pose2::new(3.6 + 0.05 * f64::from(i), 2.0, 0.0));
         let turn = || (0..16).map(|i| Pose2::new(3.95, 2.0, 0.1 * f64::from(i)));
         let on = || (0..20).map(|i| Pose2::new(3.95, 2.0 + 0.05 * f64::from(i), 1.57));
@@ -146,7 +146,7 @@ mod tests {
         let at = VIEW.first_unseen(bend.points(), &beside, 0.2, &VisibilityConstraint::default()).unwrap();
         assert!((at - Vector2::new(3.95, 2.35)).norm() < 0.1, "{at}");
         assert_eq!(beside.at(at), Cell::Unknown);
-        // There it was set down: it stands in what it cannot see.
+        // The robot starts at this place, on floor that its camera cannot observe.
         let mut set_down = VisibilityConstraint::default();
         set_down.home = Some(at);
         assert_eq!(VIEW.first_unseen(bend.points(), &beside, 0.2, &set_down), None);

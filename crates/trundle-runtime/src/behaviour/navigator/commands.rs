@@ -1,4 +1,4 @@
-//! The command of each state, and safety's word on it.
+//! The command of each state, checked by the safety monitor.
 
 use super::{Goal, Navigator, SAFETY_HOLD_BEFORE_REPLAN_S, known_floor::cells_about, viewpoint::Viewpoint};
 use crate::world_state::WorldState;
@@ -20,13 +20,13 @@ const BACK_OUT_SPEED_M_S: f64 = 0.05;
 const BACK_OUT_CLEARANCE_M: f64 = 0.15;
 /// Longest time of backing out \[s\]: twice the clearance. A bumper still pressed then is broken, or pushed. Source: ours.
 const BACK_OUT_DURATION_S: f64 = 6.0;
-/// Time without sight \[s\] after which the robot turns to regain it. Source: ours.
+/// Time without a usable scan \[s\] after which the robot turns to regain one. Source: ours.
 const BLIND_PAUSE_S: f64 = 3.0;
 /// Speed of backing out of a place with no room to turn \[m/s\]. Source: ours.
 const REVERSE_SPEED_M_S: f64 = 0.1;
 
 impl Navigator {
-    /// The command before safety's word on it.
+    /// The command before the check of the safety monitor.
     pub(super) fn wanted(
         &mut self,
         follow: &FollowReport,
@@ -68,7 +68,7 @@ impl Navigator {
         twist
     }
 
-    /// Whether it is time to leave what presses on the bumper, or an edge, backward, and the map has nothing there.
+    /// Whether the robot should now back away from a pressed bumper or an edge, over floor that the map has free.
     fn backs_out(&self, s: &WorldState<'_>) -> bool {
         let backs = SAFETY_HOLD_BEFORE_REPLAN_S..SAFETY_HOLD_BEFORE_REPLAN_S + BACK_OUT_DURATION_S;
         let waited = self.held_since.is_some_and(|since| backs.contains(&(s.now - since)));
@@ -89,7 +89,7 @@ impl Navigator {
         if is_long { self.sight_recovery.turn(s.estimate.pose) } else { Twist2::ZERO }
     }
 
-    /// A turn on the spot, and what is around has been seen.
+    /// A command of the full turn that observes the surroundings.
     fn spin_once(&mut self, s: &WorldState<'_>) -> Twist2 {
         if !self.is_initialized(s) {
             return Twist2::ZERO;
@@ -123,7 +123,7 @@ impl Navigator {
         }
     }
 
-    /// One step of a relative motion.
+    /// One control step of a relative motion.
     fn drive_relative(&mut self, s: &WorldState<'_>) -> Twist2 {
         let Some(motion) = self.relative_motion().filter(|_| self.is_rested(s)) else { return Twist2::ZERO };
         let twist = self.relative_drive.step(motion, s.estimate.pose);
@@ -133,7 +133,7 @@ impl Navigator {
         twist.unwrap_or_default()
     }
 
-    /// Whether the robot has stood since it was switched on for long enough to measure the gyro's bias.
+    /// Whether the robot has been at rest since power-on for long enough to measure the gyro's bias.
     fn is_rested(&self, s: &WorldState<'_>) -> bool {
         self.started.is_some_and(|started| s.now - started >= self.config.opening)
     }
@@ -145,7 +145,7 @@ impl Navigator {
         }
     }
 
-    /// One step of a motion at a charging station.
+    /// One control step of a motion at a charging station.
     fn drive_at_station(&mut self, s: &WorldState<'_>) -> Twist2 {
         let Some(goal) = self.station_goal().filter(|_| self.is_rested(s)) else { return Twist2::ZERO };
         match self.station_drive.step(&goal, s, self.touched, self.reach) {
@@ -238,14 +238,14 @@ pub(crate) fn safety_input<'a>(
     }
 }
 
-/// Whether the map has nothing occupied where a disc of `radius` goes that backs out.
+/// Whether the map is free in the area that a disc of `radius` covers when backing out.
 fn is_free_behind(s: &WorldState<'_>, radius: f64) -> bool {
     let grid = s.permitted_grid();
     let geometry = grid.geometry();
     let (here, ahead) = (s.estimate.pose.position(), s.estimate.pose.inverse());
     let is_in_the_way = |at: Vector2| {
         let at = ahead.transform(at);
-        // Obstacles beside or ahead of the robot do not block backing out.
+        // Obstacles to the side of or ahead of the robot do not block backing out.
         at.x < -0.5 * radius && (at - Vector2::new(at.x.max(-BACK_OUT_CLEARANCE_M), 0.0)).norm() < radius
     };
     let mut cells = cells_about(grid, here, radius + BACK_OUT_CLEARANCE_M);
@@ -264,7 +264,7 @@ mod tests {
     const BLIND: f64 = 5.0;
     const STEP: f64 = 0.02;
 
-    /// Lets the robot wait without a usable scan, turn, and get a scan again; the stamp of that scan.
+    /// Makes the robot wait without a usable scan, turn, and regain a scan; returns the stamp of that scan.
     fn lose_sight_and_find_it(navigator: &mut Navigator, grid: &OccupancyGrid, from: Stamp) -> Stamp {
         let mut times = StageTimes::default();
         let mut pose = Pose2::new(3.0, 2.0, 0.0);

@@ -2,7 +2,7 @@
 
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Vector2};
 
-/// The cells whose centres lie within `radius` of a point, m; none around a point off the map.
+/// The cells whose centres are within `radius` of a point, m; empty around a point outside the map.
 pub(super) fn cells_about(
     grid: &OccupancyGrid,
     at: Vector2,
@@ -22,7 +22,7 @@ pub(super) fn cells_about(
         .filter(move |cell| (geometry.center(*cell) - at).norm() < radius)
 }
 
-/// Whether no occupied cell lies between two points. The last `own_size` m are ignored, because an obstacle hides its own cells.
+/// Whether no occupied cell is between two points. The last `own_size` m are ignored, because an obstacle hides its own cells.
 pub(super) fn is_in_sight(grid: &OccupancyGrid, from: Vector2, to: Vector2, own_size: f64) -> bool {
     let (way, step) = (to - from, grid.geometry().resolution / 2.0);
     let count = ((way.norm() - own_size).max(0.0) / step) as usize;

@@ -1,4 +1,4 @@
-//! Plans of paths that show the camera the floor ahead before the robot is too near to see it.
+//! Plans paths along which the camera observes the floor ahead in time.
 
 use super::Navigator;
 use super::camera_fov::unknown_about;
@@ -12,9 +12,9 @@ use trundle_planning::{Plan, PlanResult};
 pub(super) enum InView {
     /// A path to drive, or none.
     Plan(Plan),
-    /// Place where the best path enters unseen floor, and a longer path without unseen floor where there is one.
+    /// Place at which the best path enters unseen floor, and a longer path without unseen floor if one was found.
     Unseen(Vector2, Option<Box<PlanResult>>),
-    /// There is more to be asked, in the next step.
+    /// Another query is needed in the next step.
     Asking,
 }
 
@@ -24,7 +24,7 @@ const MAX_SEEN_PATH_RATIO: f64 = 1.5;
 const MAX_SEEN_PATH_EXTRA_S: f64 = 10.0;
 
 impl Navigator {
-    /// A plan that shows the camera what it leads onto, if there is one that is worth it. Asks for two plans at most.
+    /// A plan along which the camera observes the floor ahead, if such a plan is not much longer. Uses two queries at most.
     pub(super) fn plan_in_view(
         &mut self,
         s: &WorldState<'_>,
@@ -74,12 +74,12 @@ impl Navigator {
         found
     }
 
-    /// First place where a path enters floor that the camera does not observe in time.
+    /// First place at which a path enters floor that the camera does not observe in time.
     pub(super) fn first_unseen(&self, way: &[TrajectoryPoint], floor: &OccupancyGrid) -> Option<Vector2> {
         self.camera_fov?.first_unseen(way, floor, self.radius, &self.visibility)
     }
 
-    /// Whether the rest of a path, from `time` \[s\] on, is free on the newest map, and its floor was seen or will be seen.
+    /// Whether the rest of a path, from `time` \[s\] on, is free on the newest map, and its floor was or will be observed.
     pub(super) fn is_still_good(&self, way: &Trajectory, time: f64, s: &WorldState<'_>) -> bool {
         let rest = &way.points()[way.points().partition_point(|point| point.time < time)..];
         self.planner.validate_trajectory(s.permitted_floor(), way, time).is_ok()
@@ -101,7 +101,7 @@ impl Navigator {
     }
 }
 
-/// Whether a path continues the present motion as smoothly as the best one, and stays on the map.
+/// Whether a path continues the present motion as smoothly as the best path, and remains on the map.
 fn goes_on(plan: &PlanResult, best: &PlanResult, floor: &OccupancyGrid) -> bool {
     let stays =
         plan.trajectory.points().iter().all(|p| floor.geometry().cell_at(p.pose.position()).is_some());
@@ -142,7 +142,7 @@ mod tests {
         assert_eq!(grid.at(Vector2::new(5.0, 2.4)), Cell::Unknown);
     }
 
-    /// A robot beside a bed whose far side was never seen, and a goal behind it.
+    /// A robot next to a bed with an unseen far side, and a goal behind the bed.
     fn beside_a_bed() -> OccupancyGrid {
         let mut grid = floor(|at| (1.5..4.0).contains(&at.x) && (1.2..2.0).contains(&at.y));
         let geometry = *grid.geometry();
@@ -207,7 +207,7 @@ mod tests {
         let s = at_rest(&grid, Stamp::default(), pose);
         let InView::Unseen(at, _) = asked(&mut navigator, &s, goal) else { panic!("the bend hides it") };
         assert_eq!(grid.at(at), Cell::Unknown);
-        // The floor stays unseen: every observation is without result, no path is left, and the reason is reported.
+        // The floor remains unseen: every observation is without result, no path is left, and the reason is reported.
         navigator.set_goal(super::super::Goal::Exact(goal));
         navigator.state = crate::behaviour::drive_state::DriveState::Planning;
         let mut looks = 0;
@@ -216,7 +216,7 @@ mod tests {
             navigator.replan(goal, &s);
             assert!(navigator.plan.is_none(), "no way is driven that leads there");
             if let Some(end) = navigator.follower.end() {
-                // At once there.
+                // The simulated robot moves to the end of its path in one step.
                 pose = end;
                 navigator.follower.halt();
                 navigator.viewpoint = super::super::viewpoint::Viewpoint::Settled;
@@ -249,7 +249,7 @@ mod tests {
         };
         assert!(!ends_on(&floor(|_| false)), "all is as it was");
         assert!(!ends_on(&floor(|at| at.x > 5.0)), "unseen beyond the place");
-        // A chair that hides its own side: the camera does not observe what is beside the robot.
+        // A chair that hides its own side: the camera does not observe the floor to the side of the robot.
         assert!(ends_on(&floor(|at| at.x < 1.6 && at.y > 2.05)));
         let mut blocked = floor(|_| false);
         (0..80).for_each(|row| blocked.set(CellIndex { col: 50, row }, Cell::Occupied));

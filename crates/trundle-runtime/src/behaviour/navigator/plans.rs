@@ -1,4 +1,4 @@
-//! When the navigator plans, from which pose, and what it does without a path.
+//! Time and start pose of planning, and the reactions to a missing path.
 
 use super::{Goal, Navigator, SAFETY_HOLD_BEFORE_REPLAN_S, plan_in_view::InView, viewpoint::Viewpoint};
 use crate::world_state::WorldState;
@@ -15,16 +15,16 @@ use trundle_planning::{Plan, PlanResult};
 const MIN_IMPROVABLE_S: f64 = 0.5;
 /// Time that a new trajectory must save to replace a good one \[s\]. Source: ours.
 const MIN_TIME_GAIN_S: f64 = 0.05;
-/// Speed below which the robot counts as standing \[m/s\]. Source: ours.
+/// Speed below which the robot counts as at rest \[m/s\]. Source: ours.
 const STANDING_SPEED_M_S: f64 = 0.02;
 /// Number of turns of a search for sight: each bearing is seen twice. Source: ours.
 const MAX_SPINS: f64 = 2.0;
-/// Time for which no plan may find a path before a goal ends that does not wait for one \[s\]: 30 images, ten plans. One noisy image ends
-/// no goal. Source: ours.
+/// Time without any path after which a goal ends if the goal does not wait for a path \[s\]: 30 images, ten plans. A single noisy image
+/// therefore ends no goal. Source: ours.
 const NO_PATH_CONFIRMATION_S: f64 = 2.0;
 
 impl Navigator {
-    /// Whether it is time to plan: at the beginning, or when a check finds the old plan wanting.
+    /// Whether a plan is due: at the beginning, or after a check rejects the old plan.
     pub(super) fn wants_plan(&mut self, s: &WorldState<'_>) -> bool {
         match &self.state {
             DriveState::Idle | DriveState::Arrived | DriveState::Stopped { .. } => false,
@@ -53,7 +53,7 @@ impl Navigator {
         }
     }
 
-    /// Whether the rest of the trajectory is still free on the newest map, shows what it leads onto, and meets nothing that moves.
+    /// Whether the rest of the trajectory is free on the newest map, has its floor observed in time, and meets no moving obstacle.
     fn plan_holds(&self, s: &WorldState<'_>) -> bool {
         match (&self.plan, self.follower.reference()) {
             (Some(plan), Some(reference)) => {
@@ -67,7 +67,7 @@ impl Navigator {
         }
     }
 
-    /// Plans from the reference where the robot is on it, else from where it stands; true when there is a new plan.
+    /// Plans from the reference if the robot follows it, else from the robot's pose; returns whether a new plan exists.
     pub(super) fn replan(&mut self, goal: Pose2, s: &WorldState<'_>) -> bool {
         if let Some(zone) = s.zones.masks.and_then(|masks| masks.no_go_zone_at(goal)) {
             let zone = zone.label();
@@ -129,8 +129,8 @@ impl Navigator {
         }
     }
 
-    /// Handles a path that enters unseen floor at `at`: the robot drives to a viewpoint of that floor. Without a viewpoint it takes the
-    /// `long` path.
+    /// Handles a path that enters unseen floor at `at`: the robot drives to a viewpoint of that floor. Without a viewpoint the robot takes
+    /// the `long` path.
     fn observe_first(
         &mut self,
         at: Vector2,
@@ -152,7 +152,7 @@ impl Navigator {
         }
         self.viewpoint = Viewpoint::Unknown;
         if long.is_none() && self.visibility.bar(at, s.now) {
-            // The next plan keeps off it.
+            // The next plan avoids this floor.
             self.stop_for_path_in_view(s);
         } else if long.is_none() {
             self.without_path(NoPath::Blocked { nearest: at }, s);
@@ -160,7 +160,7 @@ impl Navigator {
         long
     }
 
-    /// Stops a drive whose path is not observed in time, until there is another plan. Never a new plan: false.
+    /// Stops a drive whose path is not observed in time, until another plan exists. Returns false: no new plan exists.
     fn stop_for_path_in_view(&mut self, s: &WorldState<'_>) -> bool {
         if self.state == DriveState::Driving {
             self.hold(Reason::PathOutOfView, s.now);
@@ -174,7 +174,7 @@ impl Navigator {
             && matches!(self.planner.plan(s.permitted_floor(), from.0, from.1, goal), Plan::Found(_))
     }
 
-    /// While it drives: a new plan that goes on from the reference and arrives sooner replaces the old one.
+    /// During a drive: a new plan that continues from the reference and arrives sooner replaces the old one.
     pub(super) fn improved(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> bool {
         let (Some(goal), DriveState::Driving) = (self.goal.pose(), &self.state) else { return false };
         let (Some(old), Some(reference)) = (&self.plan, self.follower.reference()) else { return false };
@@ -207,8 +207,8 @@ impl Navigator {
         }
     }
 
-    /// Without a path: stops, turns on the spot until the surroundings are observed, drives to a viewpoint of the blocked place, and
-    /// waits there with the camera on that place.
+    /// Reaction to a missing path: stops, turns on the spot until the surroundings are observed, drives to a viewpoint of the blocked
+    /// place, and waits with the camera on that place.
     fn without_path(&mut self, cause: NoPath, s: &WorldState<'_>) {
         let is_final = self.is_final(&cause, s.now);
         if matches!(self.viewpoint, Viewpoint::Going(..)) {
@@ -233,18 +233,18 @@ impl Navigator {
         };
     }
 
-    /// Whether the goal is given up without a wait for a path: a viewpoint at once; a goal that does not wait, if no path leads to it
-    /// over known or unknown floor.
+    /// Whether the goal ends without a wait for a path. A viewpoint ends immediately; another goal that does not wait ends if no path
+    /// exists over known or unknown floor.
     fn is_final(&mut self, cause: &NoPath, now: Stamp) -> bool {
         let since = *self.no_path_since.get_or_insert(now);
         let is_at_goal = !matches!(cause, NoPath::StartInObstacle { .. } | NoPath::StartOutside);
-        // Floor that is kept out of the search may be seen by a later observation, as long as there are any.
+        // Floor kept out of the search may be observed later, as long as observations are left.
         let is_kept_out = self.visibility.keep_out().is_some() && !self.visibility.is_exhausted();
         let is_proven = is_at_goal && !is_kept_out && now - since >= NO_PATH_CONFIRMATION_S;
         matches!(self.goal, Goal::Viewpoint(_)) || self.ends_without_path && is_proven
     }
 
-    /// Near the goal, if no path is found or safety holds the robot: by turns and straight moves, if there are such.
+    /// Starts a manoeuvre of turns and straight moves near the goal, if no path is found or the safety monitor stops the robot.
     fn starts_maneuver_if_possible(&mut self, goal: Pose2, s: &WorldState<'_>) -> bool {
         let stands = s.estimate.twist.v.abs() < STANDING_SPEED_M_S;
         let is_exact = matches!(self.goal, Goal::Exact(_));
@@ -261,7 +261,7 @@ impl Navigator {
         self.state = DriveState::Maneuvering;
     }
 
-    /// The reason for a missing path, with the floor that was kept out of the search.
+    /// The reason for a missing path, with the floor excluded from the search.
     fn no_path(&self, cause: NoPath) -> Reason {
         Reason::NoPath { cause, unseen: self.visibility.keep_out() }
     }

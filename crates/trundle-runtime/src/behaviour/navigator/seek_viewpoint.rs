@@ -11,13 +11,13 @@ use trundle_planning::Plan;
 
 /// Distances from which a blockage is seen whole and well \[m\]. Source: ours.
 const VIEWING_RANGE_M: std::ops::RangeInclusive<f64> = 0.8..=2.5;
-/// Depth of a blockage \[m\]: a point inside it is hidden by it, a point before it is not. Source: ours.
+/// Depth of a blockage \[m\]: the blockage hides points inside it, not points in front of it. Source: ours.
 const BLOCKAGE_DEPTH_M: f64 = 0.35;
 /// Duration of a view \[s\]: several scans are integrated. Source: ours.
 const VIEWING_DURATION_S: f64 = 1.0;
 
 impl Navigator {
-    /// Whether the robot starts for a viewpoint of the blocked place; false where it stands at such a viewpoint.
+    /// Starts the drive to a viewpoint of the blocked place; returns false if the robot is at such a viewpoint.
     pub(super) fn seeks_viewpoint(&mut self, s: &WorldState<'_>) -> bool {
         let Some(at) = self.blocked_at else { return false };
         if !matches!(
@@ -35,8 +35,8 @@ impl Navigator {
         self.plan_to_viewpoint(s)
     }
 
-    /// Whether the robot starts for a viewpoint of the unseen floor at `at`, on the path to the goal. False without a viewpoint, and where
-    /// observations of this floor were without result.
+    /// Starts the drive to a viewpoint of the unseen floor at `at`, on the path to the goal. Returns false without a viewpoint, and after
+    /// observations of this floor without result.
     pub(super) fn seeks_view_of(&mut self, at: Vector2, s: &WorldState<'_>) -> bool {
         match &self.viewpoint {
             Viewpoint::Going(..) => return true,
@@ -56,7 +56,7 @@ impl Navigator {
         self.plan_to_viewpoint(s)
     }
 
-    /// Plans to one of the candidate viewpoints. Returns whether there is a path, or another candidate.
+    /// Plans to one of the candidate viewpoints. Returns whether a path exists or another candidate is left.
     fn plan_to_viewpoint(&mut self, s: &WorldState<'_>) -> bool {
         let Viewpoint::Choosing(aim, places) = &mut self.viewpoint else {
             return self.is_at_viewpoint_or_going();
@@ -79,12 +79,13 @@ impl Navigator {
         true
     }
 
-    /// Whether the robot drives to a viewpoint or observes there.
+    /// Whether the robot drives to a viewpoint or observes from one.
     fn is_at_viewpoint_or_going(&self) -> bool {
         matches!(self.viewpoint, Viewpoint::Going(..) | Viewpoint::Looking(_))
     }
 
-    /// Whether a plan to the goal is due on the path to a viewpoint: an obstacle may go away, and unseen floor may be seen.
+    /// Whether a plan to the goal is due during the drive to a viewpoint: an obstacle may have left, or unseen floor may have been
+    /// observed.
     pub(super) fn needs_new_plan(&self, s: &WorldState<'_>) -> bool {
         match &self.viewpoint {
             Viewpoint::Going(ViewTarget::UnknownFloor, _) => {
@@ -104,7 +105,7 @@ impl Navigator {
         }
     }
 
-    /// Ends the drive to a viewpoint that does not show its target on the newest map, or that is occupied. The robot observes from its
+    /// Ends the drive to a viewpoint that does not show its target on the newest map, or that is occupied. The robot then observes from its
     /// present place.
     pub(super) fn watch_path_to_viewpoint(&mut self, s: &WorldState<'_>) {
         let (Viewpoint::Going(_, way), Some(reference)) = (&self.viewpoint, self.follower.reference()) else {
@@ -127,7 +128,7 @@ impl Navigator {
         };
     }
 
-    /// Whether the robot stands while it recovers: to choose a viewpoint, or to observe.
+    /// Whether the robot is at rest during the recovery: to choose a viewpoint, or to observe.
     pub(super) fn observes_at_rest(&self) -> bool {
         let recovers = matches!(self.state, DriveState::Recovering { .. });
         recovers && matches!(self.viewpoint, Viewpoint::Looking(_) | Viewpoint::Choosing(..))

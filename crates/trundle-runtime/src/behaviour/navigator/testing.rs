@@ -6,7 +6,7 @@ use crate::world_state::{DynamicObstacles, WorldState};
 use trundle_control::MotionSense;
 use trundle_core::{Cell, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
 
-/// Known floor, 6 x 4 m about (3, 2); unknown where `hidden` is true.
+/// Known floor, 6 x 4 m about (3, 2); cells with `hidden` are unknown.
 pub(crate) fn floor(hidden: impl Fn(Vector2) -> bool) -> OccupancyGrid {
     let mut grid = OccupancyGrid::from_ascii(0.05, &vec![".".repeat(120); 80].join("\n")).unwrap();
     let geometry = *grid.geometry();

@@ -1,4 +1,4 @@
-//! Laws of the navigator: which state follows which, and what it commands in each.
+//! Rules of the navigator: its transitions between states, and its commands in each state.
 
 use super::testing::{at_rest, floor, navigator};
 use super::*;
@@ -11,7 +11,7 @@ use trundle_core::{Beam, Cell, CellIndex, DriveLimits, OccupancyGrid, Scan};
 /// Period of the control loop \[s\].
 const STEP_S: f64 = 0.02;
 
-/// A navigator on an ideal base: the base does at once what is commanded.
+/// A navigator on an ideal base: the base executes commands without a delay.
 struct Base {
     navigator: Navigator,
     grid: OccupancyGrid,
@@ -37,7 +37,7 @@ impl Base {
         base
     }
 
-    /// One control step; `change` alters what the navigator is shown.
+    /// Executes one control step; `change` modifies the navigator's input.
     fn step_with(&mut self, change: impl FnOnce(&mut WorldState<'_>)) -> Decision {
         self.now = self.now.after(STEP_S);
         let scan = free_all_around(self.now);
@@ -63,7 +63,7 @@ impl Base {
         })
     }
 
-    /// Walls off everything beyond x = 4 m, or opens it again.
+    /// Blocks all cells beyond x = 4 m, or frees them again.
     fn wall(&mut self, cell: Cell) {
         (1..79).for_each(|row| self.grid.set(CellIndex { col: 80, row }, cell));
     }

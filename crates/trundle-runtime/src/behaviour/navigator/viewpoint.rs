@@ -10,13 +10,13 @@ pub(super) enum Viewpoint {
     /// No viewpoint was searched since the last plan.
     #[default]
     Unknown,
-    /// Candidate viewpoints that are not planned for yet, the best one last.
+    /// Candidate viewpoints without a plan so far, the best one last.
     Choosing(ViewTarget, Vec<Pose2>),
     /// The robot drives to the viewpoint.
     Going(ViewTarget, Trajectory),
-    /// There, looking until then.
+    /// At the viewpoint, observing until this time.
     Looking(Stamp),
-    /// There, or there is none.
+    /// Finished: at the viewpoint, or without any viewpoint.
     Settled,
 }
 
@@ -35,14 +35,15 @@ const VIEWPOINT_DISTANCES_M: [f64; 2] = [1.2, 0.9];
 const VIEWPOINT_BEARINGS: usize = 16;
 /// Number of viewpoints, the nearest first, to which a path is planned, one per step. Source: ours.
 const MAX_VIEWPOINT_PLANS: usize = 4;
-/// These poses by falling distance: the nearest is last and tried first.
+/// These poses by decreasing distance: the nearest is last and tried first.
 pub(super) fn best_last(mut places: Vec<Pose2>) -> Vec<Pose2> {
     places.truncate(MAX_VIEWPOINT_PLANS);
     places.reverse();
     places
 }
 
-/// Places on the map's free floor that see `at`, but for the last `own_size` m, the nearest to `here` first.
+/// Places on the map's free floor with a clear line of sight to `at`, nearest to `here` first. Occupied cells on the last `own_size` m do
+/// not block the line.
 pub(super) fn places(
     grid: &OccupancyGrid,
     here: Pose2,
@@ -61,8 +62,8 @@ pub(super) fn places(
     places
 }
 
-/// Viewpoints from which the camera observes the floor at `at`, without those of earlier observations. The present place comes first,
-/// where a turn is enough; then the nearest.
+/// Viewpoints from which the camera observes the floor at `at`, without those of earlier observations. The present place comes first if a
+/// turn is enough; then the nearest places.
 pub(super) fn sights(
     grid: &OccupancyGrid,
     here: Pose2,
@@ -90,7 +91,7 @@ mod tests {
 
     #[test]
     fn viewpoints_see_the_blockage_and_are_off_the_path() {
-        // A wall with a door in which a person stands.
+        // A wall with a door that a person blocks.
         let rows = [".".repeat(40), "#".repeat(18) + "####" + &"#".repeat(18), ".".repeat(40)];
         let text =
             [vec![rows[0].clone(); 10], vec![rows[1].clone()], vec![rows[2].clone(); 30]].concat().join("\n");

@@ -5,9 +5,9 @@ use trundle_core::{Cell, OccupancyGrid, Stamp, Vector2};
 /// Unseen floor on the path to the present goal, and its observations.
 #[derive(Debug, Clone, Default)]
 pub(super) struct VisibilityConstraint {
-    /// Where it was set down, map frame.
+    /// Position at which the robot started, map frame.
     pub(super) home: Option<Vector2>,
-    /// Places where the candidate paths entered unseen floor.
+    /// Places at which the candidate paths entered unseen floor.
     pub(super) virtual_obstacles: Vec<Vector2>,
     /// Observations of the last 20 s.
     looks: Vec<Look>,
@@ -26,7 +26,7 @@ struct Look {
     is_in_vain: bool,
 }
 
-/// Radius of a virtual obstacle around a point that the path must not reach unseen \[m\]. Source: ours.
+/// Radius of a virtual obstacle around a point that the path must not reach before it is observed \[m\]. Source: ours.
 pub(super) const VIRTUAL_OBSTACLE_RADIUS_M: f64 = 0.3;
 /// Number of virtual obstacles of one search. Source: ours.
 pub(super) const MAX_VIRTUAL_OBSTACLES: usize = 3;
@@ -34,7 +34,8 @@ pub(super) const MAX_VIRTUAL_OBSTACLES: usize = 3;
 const MAX_VIEWS_PER_PLACE: usize = 2;
 /// Smallest distance between two viewpoints of one place \[m\]. Source: ours.
 const MIN_VIEWPOINT_SPACING_M: f64 = 0.4;
-/// Number of observations per goal without result. Observations with a result explore, which has a limit of its own. Source: ours.
+/// Maximum number of observations per goal without result. Observations with a result count as exploration, which has a separate limit.
+/// Source: ours.
 pub(super) const MAX_VAIN_VIEWS: usize = 12;
 /// Time after which an observation without result may be repeated \[s\]: a person in front of the place may have left. Source: ours.
 const VAIN_VIEW_RETRY_S: f64 = 20.0;
@@ -79,12 +80,12 @@ impl VisibilityConstraint {
             .map(|look| look.from)
     }
 
-    /// Whether this floor was observed. Floor that is unknown after that stays unknown on the path too.
+    /// Whether this floor was observed. Floor that is unknown after an observation remains unknown during the drive.
     pub(super) fn was_observed(&self, at: Vector2) -> bool {
         self.observations_of(at).next().is_some()
     }
 
-    /// Whether looking at `at` once more may help.
+    /// Whether another observation of `at` may have a result.
     pub(super) fn is_worth_observing(&self, at: Vector2) -> bool {
         self.observations_of(at).count() < MAX_VIEWS_PER_PLACE && !self.is_exhausted()
     }
@@ -99,7 +100,7 @@ impl VisibilityConstraint {
         self.observations_of(at).all(|old| (old - from).norm() > MIN_VIEWPOINT_SPACING_M)
     }
 
-    /// Adds a keep-out zone. Returns whether it is new.
+    /// Adds a keep-out zone. Returns whether the zone is new.
     pub(super) fn bar(&mut self, at: Vector2, now: Stamp) -> bool {
         let is_new = self.keep_out.iter().all(|(old, _)| (old - at).norm() > VIRTUAL_OBSTACLE_RADIUS_M / 2.0);
         if is_new {

@@ -4,7 +4,7 @@ use super::Navigator;
 use crate::world_state::WorldState;
 
 impl Navigator {
-    /// Gives the planner the limits of changed zones. The present plan was made without them: the next check plans anew.
+    /// Gives the limits of changed zones to the planner. The present plan was made without them; the next check starts a new plan.
     pub(super) fn take_zones(&mut self, s: &WorldState<'_>) {
         let Some(masks) = s.zones.masks.filter(|_| self.has_other_zones(s)) else { return };
         self.zones_version = masks.version;
@@ -14,7 +14,7 @@ impl Navigator {
         self.check_due.hurry();
     }
 
-    /// Whether the zones differ from those that the planner has.
+    /// Whether the zones differ from those of the planner.
     pub(super) fn has_other_zones(&self, s: &WorldState<'_>) -> bool {
         s.zones.masks.is_some_and(|masks| masks.version != self.zones_version)
     }
@@ -43,7 +43,7 @@ mod tests {
         zones
     }
 
-    /// A navigator on its way to a goal, after its first plan.
+    /// A navigator that drives to a goal, after its first plan.
     fn sent_to(goal: Pose2, s: &WorldState<'_>) -> Navigator {
         let mut navigator = navigator();
         navigator.set_goal(Goal::Exact(goal));

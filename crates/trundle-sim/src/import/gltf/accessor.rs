@@ -19,7 +19,7 @@ struct Elements<'a> {
     stride: usize,
 }
 
-/// The `N`-vectors of an accessor, normalised where it is marked so; all finite.
+/// The `N`-vectors of an accessor, normalised if so marked; all finite.
 pub(super) fn vectors<const N: usize>(
     buffers: &Buffers<'_>,
     index: Index<Accessor>,
@@ -60,7 +60,7 @@ pub(super) fn indices(buffers: &Buffers<'_>, index: Index<Accessor>) -> Result<V
     Ok((0..count).map(|i| elements.whole(i)).collect())
 }
 
-/// Replaces the elements that a sparse accessor names.
+/// Replaces the elements listed by a sparse accessor.
 fn patch<const N: usize>(
     buffers: &Buffers<'_>,
     accessor: &Accessor,
@@ -103,7 +103,7 @@ impl<'a> Elements<'a> {
         Ok(Self { bytes: &bytes[offset as usize..], component, parts, stride })
     }
 
-    /// The bytes of component `part` of element `i`, the rest zero.
+    /// The bytes of component `part` of element `i`, padded with zeros.
     fn component(&self, i: usize, part: usize) -> [u8; 4] {
         let size = self.component.size();
         let at = i * self.stride + part * size;

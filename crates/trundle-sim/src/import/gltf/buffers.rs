@@ -1,4 +1,4 @@
-//! glTF buffers, embedded or in files beside.
+//! glTF buffers, embedded or in separate files.
 
 use super::container::Container;
 use super::schema::at;
@@ -10,7 +10,7 @@ use std::borrow::Cow;
 /// Fetches a file named in a glTF file.
 pub(super) type Resolve<'a> = &'a (dyn Fn(&str) -> std::io::Result<Vec<u8>> + Sync);
 
-/// All bytes that a glTF file speaks of.
+/// All bytes of a glTF file and its separate files.
 pub(super) struct Buffers<'a> {
     root: &'a Root,
     data: Vec<Cow<'a, [u8]>>,
@@ -85,7 +85,7 @@ fn reason(error: &std::io::Error) -> String {
     }
 }
 
-/// `%20` and the like as the bytes they stand for.
+/// Decodes `%20` and similar codes to bytes.
 fn percent_decoded(uri: &str) -> String {
     let bytes = uri.as_bytes();
     let hex = |at: usize| bytes.get(at).and_then(|&b| char::from(b).to_digit(16));

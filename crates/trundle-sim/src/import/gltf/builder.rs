@@ -14,7 +14,7 @@ use trundle_core::Invalid;
 /// Farthest coordinate, m: a file beyond it is in another unit or broken.
 const MAX_COORDINATE_M: f64 = 1e5;
 
-/// Most triangles of a file with all its instances.
+/// Maximum number of triangles of a file with all its instances.
 const MOST_TRIANGLES: usize = 50_000_000;
 
 /// Gathers the surfaces of a file into one mesh.
@@ -26,7 +26,7 @@ pub(super) struct Builder<'a> {
     /// The appearances in use, by their index in the mesh.
     looks: Vec<Look>,
     painting: Painting,
-    /// Surfaces whose colours lie over a texture and are left out.
+    /// Number of surfaces whose vertex colours are ignored because they have a texture.
     hidden: usize,
 }
 
@@ -43,7 +43,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Adds a mesh of the file that stands at `world_from_mesh`.
+    /// Adds a mesh of the file at `world_from_mesh`.
     pub(super) fn add(
         &mut self,
         index: Index<mesh::Mesh>,
@@ -105,7 +105,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    /// Adds triangles with corners of their own, because colours are stored by corner.
+    /// Adds triangles with separate corners, because colours are stored per corner.
     fn paint(&mut self, triangles: &[Triangle], first: usize, colors: &[[f32; 3]]) {
         for Triangle { corners, material } in triangles {
             let place = self.positions.len();

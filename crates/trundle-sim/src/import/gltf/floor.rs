@@ -13,7 +13,7 @@ const MIN_FLOOR_SHARE: f64 = 0.3;
 /// Distance from z = 0 within which a level is at z = 0 \[m\]. Source: ours.
 const MAX_DISTANCE_FROM_ZERO_M: f64 = 0.15;
 
-/// The height of the floor where it is not at z = 0, world frame, m; `None` if it is there, or if there is no level.
+/// The height of the floor if it is not at z = 0, world frame, m; `None` if it is, or without a level surface.
 pub(super) fn floor_elsewhere(positions: &[[f32; 3]], triangles: &[Triangle]) -> Option<f64> {
     let levels = levels(positions, triangles);
     let largest = levels.values().map(|level| level.area).fold(0.0, f64::max);

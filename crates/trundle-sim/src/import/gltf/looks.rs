@@ -17,7 +17,7 @@ const GREY_LEVEL: u8 = 150;
 /// Place of the image of a texture without one, as `gltf-json` has it.
 const NO_IMAGE: usize = u32::MAX as usize;
 
-/// Appearance of surfaces: a material of the file, with the colours of its corners where they have some.
+/// Appearance of surfaces: a material of the file, and optionally vertex colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Look {
     /// `None` is the default material.
@@ -29,7 +29,7 @@ pub(super) struct Look {
 /// The decoded images, and for each other image the reason.
 type Images = BTreeMap<usize, Result<ColorImage, String>>;
 
-/// The materials of a mesh, in the order of `looks`, and notes about them.
+/// The materials of a mesh, in the order of `looks`, and notes about the materials.
 pub(super) fn materials(
     buffers: &Buffers<'_>,
     looks: &[Look],
@@ -53,7 +53,7 @@ pub(super) fn materials(
     Ok((materials, (!lost.is_empty()).then_some(ImportNote::LostTextures { reasons: lost })))
 }
 
-/// The image, or why there is none.
+/// The image, or the reason for its absence.
 fn decoded(buffers: &Buffers<'_>, index: Index<image::Image>) -> Result<ColorImage, String> {
     if index.value() == NO_IMAGE {
         return Err("a texture names no PNG or JPEG image".to_owned());

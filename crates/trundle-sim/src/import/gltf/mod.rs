@@ -1,4 +1,4 @@
-//! glTF 2.0: JSON or GLB, buffers and textures inside or beside it.
+//! glTF 2.0: JSON or GLB, with embedded or separate buffers and textures.
 
 mod accessor;
 mod buffers;
@@ -26,7 +26,7 @@ use std::path::Path;
 /// A scene as imported.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ImportedScene {
-    /// Its surfaces, world frame.
+    /// Surfaces of the file, world frame.
     pub mesh: Mesh,
     /// Notes for the user.
     pub notes: Vec<ImportNote>,
@@ -34,19 +34,18 @@ pub struct ImportedScene {
 
 /// Reads a glTF 2.0 file, `.gltf` or `.glb`, as one mesh in the world frame, m, z up.
 ///
-/// Supported content: the default scene with its nodes' transforms; triangle lists, strips and fans, indexed or not, sparse or
-/// quantised; of materials the base colour and its texture (PNG or JPEG; alpha is ignored, everything is opaque and seen
-/// from both sides); KHR_texture_transform; the colours of vertices if there is no texture. Textures repeat. A texture that
-/// is missing or in another form is grey, and noted. Triangles without area are left out. What it ignores: skins, morph targets,
-/// animations, other maps of the material, cameras and lights.
+/// Supported geometry: the default scene with its nodes' transforms; triangle lists, strips and fans, indexed or not, sparse or quantised.
+/// Supported materials: the base colour and its texture (PNG or JPEG, opaque and two-sided; alpha is ignored), KHR_texture_transform, and
+/// vertex colours without a texture. Textures repeat. A missing or unsupported texture is grey and gives a note. Triangles without area are
+/// left out. Ignored: skins, morph targets, animations, other maps of the material, cameras and lights.
 ///
 /// The floor, the lowest large level, is moved to z = 0 if it is elsewhere.
 ///
-/// The up axis is the standard's, +y, unless `options` sets another: a z-up file without a declaration lies on its side.
+/// The up axis is the standard's, +y, unless `options` sets another: a z-up file without this option is rotated by 90 deg.
 ///
 /// # Errors
-/// When a file or a buffer is missing, cut short or broken, a number is not finite, an index is out of range, the file
-/// needs an extension such as Draco compression, or there is no triangle. The error names the file and the item.
+/// When a file or a buffer is missing, truncated or broken, a number is not finite, an index is out of range, the file requires an
+/// extension such as Draco compression, or has no triangle. The error names the file and the item.
 pub fn gltf(path: &Path, options: &GltfOptions) -> Result<ImportedScene, ImportError> {
     let file = path.display().to_string();
     let bytes =
@@ -55,7 +54,7 @@ pub fn gltf(path: &Path, options: &GltfOptions) -> Result<ImportedScene, ImportE
     gltf_from_bytes(&file, &bytes, options, &|name| std::fs::read(folder.join(name)))
 }
 
-/// As [`gltf()`], from the bytes of a file called `file` in messages; `resolve` fetches what the file names.
+/// As [`gltf()`], from the bytes of a file called `file` in messages; `resolve` reads the separate files.
 ///
 /// # Errors
 /// As [`gltf()`].

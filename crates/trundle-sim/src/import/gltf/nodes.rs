@@ -6,7 +6,7 @@ use gltf::json::{Index, Node, Root, mesh};
 use nalgebra::{Matrix4, Quaternion, UnitQuaternion, Vector3};
 use trundle_core::Invalid;
 
-/// A mesh of the file and where it stands.
+/// A mesh of the file and its pose.
 pub(super) struct Instance {
     pub(super) mesh: Index<mesh::Mesh>,
     /// `file_from_mesh`.

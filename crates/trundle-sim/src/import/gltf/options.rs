@@ -4,14 +4,14 @@ use nalgebra::{Matrix4, Rotation3};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, Vector3, require_in};
 
-/// Which axis of a file points up.
+/// Up axis of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum UpAxis {
-    /// +y, as glTF 2.0 prescribes and Blender writes. The file's x stays x; its -z becomes y.
+    /// +y, as glTF 2.0 prescribes and Blender writes. The file's x remains x; its -z becomes y.
     #[default]
     Y,
-    /// +z, as in files that robotics tools wrote without turning the axes. All axes stay.
+    /// +z, as in files of robotics tools without a rotation of the axes. All axes remain.
     Z,
 }
 
@@ -21,7 +21,7 @@ impl UpAxis {
         [("y", "As glTF has it", Self::Y), ("z", "As robots have it", Self::Z)];
 }
 
-/// How a glTF file is placed in the world.
+/// Placement of a glTF file in the world.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GltfOptions {
@@ -29,7 +29,7 @@ pub struct GltfOptions {
     pub up: UpAxis,
     /// Metres per unit of the file, 1e-6 to 1e6. Default 1, by the standard.
     pub scale: f64,
-    /// Height of the model's floor, m, which comes to lie at z = 0. Default: where it is found, if `pose` is the identity.
+    /// Height of the model's floor, m, which is moved to z = 0. Default: the detected height, if `pose` is the identity.
     pub floor: Option<f64>,
     /// `world_from_model`, applied after the three above. Default identity.
     pub pose: Pose3,

@@ -14,7 +14,7 @@ use trundle_core::Invalid;
 /// A primitive's surface, in its mesh's frame.
 pub(super) struct Surface {
     pub(super) positions: Vec<[f32; 3]>,
-    /// One per position; zero if the primitive has none.
+    /// One per position; zeros if the primitive has none.
     pub(super) uvs: Vec<[f32; 2]>,
     pub(super) triangles: Vec<[u32; 3]>,
     /// Linear shares of red, green and blue, one per position, if the primitive has them.
@@ -83,7 +83,7 @@ fn read_uvs(
     Ok(uvs)
 }
 
-/// The colours of the corners, alpha left out; `None` if there are none, or all are white.
+/// The colours of the corners without alpha; `None` if absent, or if all are white.
 fn read_colors(
     buffers: &Buffers<'_>,
     primitive: &Primitive,

@@ -27,7 +27,7 @@ const UNDERSTOOD: [&str; 17] = [
 
 /// The item of a list that an index means; `kind` is the list's name in the file.
 ///
-/// The schema crate checks most indices, not all of them.
+/// The schema crate checks only most indices.
 pub(super) fn at<'a, T>(list: &'a [T], index: Index<T>, kind: &str) -> Result<&'a T, ImportFault> {
     let reason = || format!("{kind}[{index}] is meant, but there are {}", list.len());
     list.get(index.value()).ok_or_else(|| ImportFault::NotGltf { reason: reason() })
@@ -56,7 +56,7 @@ pub(super) fn parse(json: &[u8]) -> Result<Root, ImportFault> {
     first.map_or(Ok(root), |reason| Err(not_gltf(reason)))
 }
 
-/// Where and how a file is not JSON.
+/// Place and fault of a file that is not JSON.
 fn broken_json(error: &gltf::json::Error) -> String {
     let (line, column) = (error.line(), error.column());
     if error.is_eof() {
@@ -67,7 +67,7 @@ fn broken_json(error: &gltf::json::Error) -> String {
     format!("its JSON is broken at line {line}, column {column}")
 }
 
-/// Part of the JSON that is not as glTF has it.
+/// Part of the JSON that does not match glTF's schema.
 fn wrong_value(error: &gltf::json::Error) -> String {
     let problem = error.to_string();
     match problem.split_once("missing field ") {
@@ -76,7 +76,7 @@ fn wrong_value(error: &gltf::json::Error) -> String {
     }
 }
 
-/// Takes out all `extras`: the standard lets programs put any value there, the schema crate takes objects alone.
+/// Removes all `extras`: the standard allows any value, the schema crate only objects.
 fn remove_extras(value: &mut Value) {
     match value {
         Value::Object(members) => {
@@ -91,7 +91,7 @@ fn remove_extras(value: &mut Value) {
 /// Members of a material that hold maps which the renderer does not use.
 const UNUSED_MEMBERS: [&str; 4] = ["normalTexture", "occlusionTexture", "emissiveTexture", "extensions"];
 
-/// Takes out the maps of materials that the renderer does not use: a wrong index in one of them would refuse the whole scene.
+/// Removes the maps of materials that the renderer does not use: a wrong index in one of them would refuse the whole scene.
 fn remove_unused_maps(value: &mut Value) {
     let materials = value.get_mut("materials").and_then(Value::as_array_mut).into_iter().flatten();
     for material in materials.filter_map(Value::as_object_mut) {
@@ -101,7 +101,7 @@ fn remove_unused_maps(value: &mut Value) {
     }
 }
 
-/// Takes out indices of image data that is not there. Such a texture is grey; without this, the whole scene is refused.
+/// Removes indices of missing image data. Such a texture is grey; otherwise the whole scene would be refused.
 fn leave_out_lost_images(root: &mut Root) {
     let (views, images) = (root.buffer_views.len(), root.images.len());
     for image in &mut root.images {
@@ -112,7 +112,7 @@ fn leave_out_lost_images(root: &mut Root) {
     }
 }
 
-/// The schema crate's own validation takes these indices for good and panics where they are not.
+/// The schema crate's own validation assumes valid indices and panics otherwise.
 fn check_attributes(root: &Root) -> Result<(), ImportFault> {
     for (i, mesh) in root.meshes.iter().enumerate() {
         for (k, primitive) in mesh.primitives.iter().enumerate() {

@@ -14,7 +14,7 @@ const ROOM_HEIGHT_M: std::ops::RangeInclusive<f64> = 1.5..=12.0;
 const UNITS: [(&str, f64); 4] =
     [("centimetres", 0.01), ("millimetres", 0.001), ("inches", 0.0254), ("kilometres", 1000.0)];
 
-/// A note if a scene of this size, m, is hardly a room.
+/// A note if a scene of this size, m, is implausible as an indoor space.
 pub(super) fn odd_size(size_m: [f64; 3]) -> Option<ImportNote> {
     let [x, y, height] = size_m;
     let length = x.max(y);

@@ -1,10 +1,10 @@
-//! Colours of vertices as a picture: each triangle has a patch of two by two texels of its own.
+//! Vertex colours as a picture: each triangle has a patch of two by two texels.
 
 use super::srgb::srgb;
 use std::collections::BTreeMap;
 use trundle_core::ColorImage;
 
-/// The colours of the triangles of each material that has them.
+/// The colours of the triangles of each material with vertex colours.
 #[derive(Debug, Default)]
 pub(super) struct Painting {
     /// By the material's place.
@@ -14,7 +14,7 @@ pub(super) struct Painting {
 /// A triangle with colours.
 #[derive(Debug)]
 struct PaintedTriangle {
-    /// Place of its first corner in the mesh; the others follow.
+    /// Index of its first corner in the mesh; the others follow.
     first: usize,
     /// Linear shares of red, green and blue, of each corner.
     colors: [[f32; 3]; 3],

@@ -1,7 +1,6 @@
 //! Fixed-point colour arithmetic for texture filtering.
 
-/// A colour as three 8.8 fixed-point numbers in one word: red at bit 0, blue at 16, green at 32. Arithmetic works on all
-/// three at once.
+/// A colour as three 8.8 fixed-point numbers in one word: red at bit 0, blue at 16, green at 32. Arithmetic processes all three together.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Light(pub(super) u64);
 

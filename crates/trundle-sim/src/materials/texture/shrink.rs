@@ -2,8 +2,7 @@
 
 use super::light::spread;
 
-/// Half as many texels in each direction (rounded down, at least one), each the mean of its area: of 2 x 2 texels when both
-/// numbers are even.
+/// Half the number of texels in each direction (rounded down, at least one), each the mean of its area: of 2 x 2 texels for even numbers.
 pub(super) fn halved(texels: &[u32], (width, height): (usize, usize)) -> (Vec<u32>, usize, usize) {
     let (w, h) = ((width / 2).max(1), (height / 2).max(1));
     if width % 2 == 0 && height % 2 == 0 {
@@ -36,12 +35,12 @@ fn means_of_four(texels: &[u32], width: usize, (w, h): (usize, usize)) -> Vec<u3
     (0..h).flat_map(|y| (0..w).map(move |x| mean_at(x, y))).collect()
 }
 
-/// Of `from` texels in a line, what share of each of `to` texels they make: the first, and the shares of three.
+/// Shares of `from` texels of a line in each of `to` texels: the first index, and three shares.
 ///
-/// A texel is from / to wide, which is less than 3, and begins at a multiple of that; with three it begins at a texel.
+/// A texel has a width of from / to, less than 3, and starts at a multiple of that width; with three shares it starts at a texel.
 fn shares(from: usize, to: usize) -> Vec<(usize, [f32; 3])> {
     let share = |i: usize| {
-        // In units of 1 / to texels everything is whole.
+        // In units of 1 / to texels all numbers are whole.
         let (low, high) = (i * from, (i + 1) * from);
         let covered = |k: usize| high.min((k + 1) * to).saturating_sub(low.max(k * to)) as f32 / from as f32;
         let first = low / to;

@@ -24,7 +24,7 @@ pub struct Base {
     pub up: Option<UpAxis>,
     /// Metres per unit of the glTF, 0.0001 to 1000. Default 1.
     pub scale: Option<f64>,
-    /// Height of the glTF's floor, m, -1000 to 1000, which comes to lie at z = 0. Default: where it is found.
+    /// Height of the glTF's floor, m, -1000 to 1000, which is moved to z = 0. Default: the detected height.
     pub floor: Option<f64>,
     /// A map's YAML file, relative to the scene file.
     pub map: Option<PathBuf>,
@@ -32,7 +32,7 @@ pub struct Base {
     pub wall_height: Option<f64>,
 }
 
-/// Reads the files that a scene file names; paths are relative to the scene file, which the caller opens.
+/// Reads the files referred to by a scene file; paths are relative to the scene file, which the caller opens.
 pub trait BaseLoader {
     /// A glTF or GLB file ([`crate::import::gltf()`]).
     ///

@@ -3,7 +3,7 @@
 use std::path::Path;
 use trundle_core::Invalid;
 
-/// Why a file that a scene file names could not be loaded.
+/// Reason why a referred file could not be loaded.
 pub type LoadError = Box<dyn std::error::Error + Send + Sync>;
 
 /// Problems of a scene file.
@@ -12,12 +12,12 @@ pub enum SceneError {
     /// An item, named as in the file (`props[3].size`).
     #[error(transparent)]
     Invalid(#[from] Invalid),
-    /// A file that the base names.
+    /// A file of the base.
     #[error("{field} '{path}': {source}")]
     Load {
-        /// The item that names it.
+        /// The item that refers to the file.
         field: &'static str,
-        /// The file, as the item names it.
+        /// The file, as given in the item.
         path: String,
         /// The reader's error.
         source: LoadError,
@@ -34,7 +34,7 @@ impl SceneError {
     }
 }
 
-/// `error` about something of `item`.
+/// `error` about a value of `item`.
 pub(super) fn within(item: &str, error: Invalid) -> SceneError {
     Invalid { field: format!("{item}: {}", error.field), ..error }.into()
 }

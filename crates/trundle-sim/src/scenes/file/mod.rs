@@ -1,4 +1,4 @@
-//! Scenes from files: what stands where, as a value that serde reads. Text and folders are the caller's business.
+//! Scenes from files, as a value that serde reads. The caller handles text and folders.
 
 mod base;
 mod error;
@@ -17,10 +17,10 @@ use error::within;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Pose2, require_finite, require_in};
 
-/// Farthest from the origin that anything may be placed, m.
+/// Largest distance of any object from the origin, m.
 const MAX_COORDINATE_M: f64 = 1000.0;
 
-/// A scene as a file describes it: a base, and what is added to it. The format stands in `docs/formats.md`.
+/// A scene file: a base, and additions to it. `docs/formats.md` describes the format.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneFile {
@@ -28,20 +28,20 @@ pub struct SceneFile {
     pub name: Option<String>,
     /// The base of the scene.
     pub base: Base,
-    /// Where the robot starts and shall go.
+    /// Start and goal of the robot.
     #[serde(default)]
     pub robot: RobotPlaces,
-    /// Props beside the base.
+    /// Props in addition to the base.
     #[serde(default)]
     pub props: Vec<Prop>,
-    /// People who walk, beside the base's people.
+    /// Walking people in addition to the base's people.
     #[serde(default)]
     pub people: Vec<Person>,
-    /// How it is lit. Default: as the base is.
+    /// Lights. Default: those of the base.
     pub lights: Option<Lights>,
 }
 
-/// Where the robot starts and shall go.
+/// Start and goal of the robot.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RobotPlaces {
@@ -65,8 +65,7 @@ pub struct ScenePose {
 }
 
 impl SceneFile {
-    /// The scene. `loader` reads the files that the base names; `seed` is for a base without one, and for the
-    /// textures of props.
+    /// The scene. `loader` reads the files of the base; `seed` is used for a base without a seed, and for the textures of props.
     ///
     /// # Errors
     /// Names the item that is wrong (`props[3].size`), or the file and its reader's error.

@@ -17,29 +17,28 @@ const WOOD: [u8; 3] = [176, 128, 80];
 pub struct Prop {
     /// The kind.
     pub kind: PropKind,
-    /// Its middle, world frame, m.
+    /// Middle, world frame, m.
     pub x: f64,
-    /// Its middle, world frame, m.
+    /// Middle, world frame, m.
     pub y: f64,
-    /// Its own x axis, degrees from the world's, counter-clockwise. Default 0.
+    /// Heading of its own x axis, degrees from the world's, counter-clockwise. Default 0.
     #[serde(default)]
     pub heading_deg: f64,
-    /// Height of its lower side above the floor, m, 0 to 20. Default 0.
+    /// Height of the lower side above the floor, m, 0 to 20. Default 0.
     #[serde(default)]
     pub bottom: f64,
-    /// Along its own x, y and z, m, 0.005 to 50 each; x and y of what is round must be equal. Default:
-    /// [`PropKind::default_size`].
+    /// Size along its own x, y and z, m, 0.005 to 50 each; round props need equal x and y. Default: [`PropKind::default_size`].
     pub size: Option<[f64; 3]>,
-    /// Of its main paint, sRGB. Default: by seed, or wood.
+    /// Colour of the main paint, sRGB. Default: by seed, or wood.
     pub color: Option<[u8; 3]>,
-    /// Of a box or cylinder. Default veneer.
+    /// Paint of a box or cylinder. Default veneer.
     pub paint: Option<PaintName>,
     /// Props of one kind, size and seed are exactly equal. Default: no two are.
     pub seed: Option<u64>,
 }
 
 impl Prop {
-    /// Its solids; `item` is its name in messages, `index` its place in the list.
+    /// Solids of the prop; `item` is its name in messages, `index` its index in the list.
     pub(super) fn solids(&self, item: &str, seed: u64, index: usize) -> Result<Vec<Solid>, SceneError> {
         self.check(item)?;
         let size = self.checked_size(item)?;

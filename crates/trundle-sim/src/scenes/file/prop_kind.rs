@@ -13,11 +13,11 @@ pub enum PropKind {
     Cylinder,
     /// A table on four legs.
     Table,
-    /// A chair that faces along its x.
+    /// A chair facing along its x axis.
     Chair,
     /// A round stool.
     Stool,
-    /// A sofa that faces along its x.
+    /// A sofa facing along its x axis.
     Sofa,
     /// A bed, its head at its -x.
     Bed,
@@ -55,7 +55,7 @@ impl PropKind {
         }
     }
 
-    /// Whether it is as wide as it is deep.
+    /// Whether width and depth must be equal.
     pub(super) fn is_round(self) -> bool {
         matches!(self, Self::Cylinder | Self::Stool | Self::Bin | Self::Plant)
     }
@@ -70,7 +70,7 @@ impl PropKind {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PaintName {
-    /// One colour.
+    /// One uniform colour.
     Flat,
     /// Blotchy plaster.
     Plaster,
@@ -111,7 +111,7 @@ pub enum PaintName {
     Door,
     /// A window.
     Window,
-    /// One print a face.
+    /// One print per face.
     Print,
     /// A sign.
     Sign,

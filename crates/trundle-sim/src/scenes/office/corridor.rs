@@ -15,7 +15,7 @@ const CORRIDOR_SOUTH_Y_M: f64 = ROOM_SIZE_M[1];
 
 const JAMB: Paint = Paint::Plain { color: [206, 204, 198] };
 
-/// The ring corridor: floor, ceiling, walls with the rooms' doors, the core, and what hangs and stands there.
+/// The ring corridor: floor, ceiling, walls with the rooms' doors, the core, and the furnishings.
 pub(super) fn place(build: &mut Builder) {
     let wall = Paint::Plain { color: build.choose(&[[208, 204, 194], [200, 206, 206], [206, 198, 188]]) };
     shell(build, wall);
@@ -90,7 +90,7 @@ fn prints(build: &mut Builder) {
     }
 }
 
-/// A room's number beside every door.
+/// Signs with the room numbers next to the doors.
 fn signs(build: &mut Builder) {
     for k in 0..3 {
         let x = ROOM_SIZE_M[0] * f64::from(k) + DOOR_CENTRE_X_M - 0.75;

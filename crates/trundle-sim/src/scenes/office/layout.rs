@@ -1,7 +1,7 @@
 //! Measures of the office: walls, rooms, core, and places for tests.
 
-/// Half of the thickness of walls between rooms and the corridor, m. All measures of the office are sums of few powers of
-/// two, so that a room placed elsewhere is the same to the last bit.
+/// Half of the thickness of walls between rooms and the corridor, m. All measures of the office are sums of few powers of two: a copied
+/// room is equal to the last bit.
 pub(super) const HALF_WALL: f64 = 0.0625;
 
 /// Outer size of a room, m.

@@ -18,10 +18,9 @@ use trundle_core::{Invalid, Pose2};
 /// Six rooms, 5 x 4.5 m each, outside a ring corridor 1.56 m wide that runs 41.8 m around a closed core (world frame: x 0 to
 /// 15, y 0 to 18.25).
 ///
-/// South, from the west: an office, a pantry, the same office again; north: two equal meeting rooms and a store. Equal rooms
-/// are equal to the last texel: an image cannot separate them. The doors (1.0 m) stand
-/// open. The corridor is poor in texture between its posters, signs and closed doors. `seed` varies textures, colours,
-/// furniture and what hangs on the walls.
+/// South, from the west: an office, a pantry, a copy of the office; north: two equal meeting rooms and a store. Equal rooms are equal to
+/// the last texel: an image cannot distinguish them. The doors (1.0 m) are open. The corridor has little texture between its posters, signs
+/// and closed doors. `seed` varies textures, colours, furniture and wall decorations.
 ///
 /// # Errors
 /// Never for any seed; the type is that of every scene.

@@ -7,7 +7,7 @@ use crate::materials::{Finish, Paint};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::Pose2;
 
-/// Which of a room's long walls has the door.
+/// The long wall of a room that contains the door.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum DoorIn {
     South,

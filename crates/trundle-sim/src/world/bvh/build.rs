@@ -17,7 +17,7 @@ pub(super) struct Tree {
     pub(super) leaves: Vec<(u32, u32)>,
 }
 
-/// The hierarchy over `boxes`, with at most `most` of them a leaf.
+/// The hierarchy over `boxes`, with at most `most` items per leaf.
 pub(super) fn build(boxes: &[Aabb], most: usize) -> Tree {
     let centers = boxes.iter().map(Aabb::center).collect();
     let items = (0..boxes.len() as u32).collect();
@@ -51,7 +51,7 @@ impl Part {
 }
 
 impl Builder<'_> {
-    /// Adds a node over a range of items and all below it; its index.
+    /// Adds a node over a range of items with its subtree; returns its index.
     fn add_node(&mut self, first: usize, end: usize, depth: usize) -> u32 {
         let mut parts = vec![self.part(first, end)];
         while parts.len() < WIDTH {
@@ -87,7 +87,7 @@ impl Builder<'_> {
         (self.part(part.first, middle), self.part(middle, part.end))
     }
 
-    /// Orders the items by the best plane; where its right side begins. `None` if no plane parts them.
+    /// Orders the items by the best plane; returns the start of the right side. `None` if no plane separates them.
     fn partition(&mut self, part: Part, depth: usize) -> Option<usize> {
         let items = &mut self.tree.items[part.first..part.end];
         let scale = Scale::over(items, &self.centers);
@@ -128,7 +128,7 @@ impl Scale {
     }
 }
 
-/// The axis and the first bin of the right side where area times number, summed over both sides, is least.
+/// The axis and the first bin of the right side with the minimum sum of area times number over both sides.
 fn best_plane(items: &[u32], boxes: &[Aabb], centers: &[Vector3], scale: &Scale) -> Option<(usize, usize)> {
     let mut best = (f64::INFINITY, None);
     for axis in (0..3).filter(|&axis| scale.bins_per_metre[axis] > 0.0) {

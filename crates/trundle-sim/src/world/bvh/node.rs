@@ -14,6 +14,6 @@ pub(crate) struct Node {
     pub(crate) high: [[f32; WIDTH]; 3],
     /// A node, or with [`LEAF`] a leaf.
     pub(super) links: [u32; WIDTH],
-    /// How many there are; the boxes of the others are empty.
+    /// Number of children in use; the boxes of the others are empty.
     pub(super) count: u32,
 }

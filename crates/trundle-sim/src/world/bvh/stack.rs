@@ -1,12 +1,12 @@
 //! The traversal stack of the hierarchy.
 
-/// Entries that need no memory from the heap.
+/// Number of entries without heap allocation.
 const INLINE_ENTRIES: usize = 64;
 
 /// (distance, link).
 type Entry = (f32, u32);
 
-/// A stack of what is still to be visited. Up to [`INLINE_ENTRIES`] entries, more than any reasonable tree needs, cost no allocation.
+/// A stack of nodes to be visited. Up to [`INLINE_ENTRIES`] entries, more than any reasonable tree needs, cost no allocation.
 pub(super) struct Stack {
     fixed: [Entry; INLINE_ENTRIES],
     len: usize,
@@ -34,7 +34,7 @@ impl Stack {
         self.len += 1;
     }
 
-    /// Puts an entry among those above `bottom` so that the nearest are on top.
+    /// Inserts an entry among those above `bottom`, sorted with the nearest on top.
     #[inline(always)]
     pub(super) fn push_sorted(&mut self, bottom: usize, entry: Entry) {
         let mut at = self.len;

@@ -4,7 +4,7 @@ use trundle_sim::import::{GltfOptions, UpAxis};
 use trundle_sim::scenes::file::{BaseLoader, LoadError, SceneFile};
 use trundle_sim::{Material, Mesh, Scene, SimConfig, Simulator, Solid, Triangle};
 
-/// Files of this loader: `floor.glb` and `floor.yaml` hold the test hall, all others nothing.
+/// Files of this loader: `floor.glb` and `floor.yaml` contain the test hall, all others are empty.
 struct Shelf;
 
 impl BaseLoader for Shelf {
@@ -27,7 +27,7 @@ impl BaseLoader for Shelf {
     }
 }
 
-/// The same reading as TOML's, which this crate must not know.
+/// The same deserialisation as TOML's, which this crate does not depend on.
 fn parse(json: &str) -> Result<SceneFile, String> {
     serde_json::from_str(json).map_err(|error| error.to_string())
 }
@@ -93,7 +93,7 @@ fn every_kind_of_prop_stands_where_it_is_put() {
         let empty = count("").len();
         let plain = count(&prop(""));
         assert!(plain.len() > empty, "{kind}");
-        // Of the same seed: exactly alike; of another: not.
+        // Props with equal seeds are equal; with other seeds they differ.
         let pair = count(&format!("{}, {}", prop(r#", "seed": 3"#), prop(r#", "seed": 3"#)));
         let half = (pair.len() - empty) / 2;
         assert_eq!(pair[empty..empty + half], pair[empty + half..], "{kind}");

@@ -1,6 +1,6 @@
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Vector2};
 
-/// Where a disc may go on a true grid.
+/// Free positions of a disc on a true grid.
 pub struct Flood<'g> {
     grid: &'g OccupancyGrid,
     /// Reached from the start.
@@ -28,7 +28,7 @@ impl<'g> Flood<'g> {
         Self { grid, reached }
     }
 
-    /// Whether the disc can stand at `place`.
+    /// Whether `place` is a free position of the disc.
     pub fn reaches(&self, place: Vector2) -> bool {
         let geometry = self.grid.geometry();
         geometry.cell_at(place).is_some_and(|cell| self.reached[geometry.linear(cell)])
@@ -54,7 +54,7 @@ fn free_for(grid: &OccupancyGrid, radius: f64) -> Vec<bool> {
     };
     let mut free: Vec<bool> = grid.cells().iter().map(|&cell| cell != Cell::Occupied).collect();
     for (row, col) in (0..height).flat_map(|row| (0..width).map(move |col| (row, col))) {
-        // What is occupied all round is nobody's nearest.
+        // A cell with only occupied neighbours is never the nearest.
         let is_rim = [(1, 0), (-1, 0), (0, 1), (0, -1)].iter().any(|(dc, dr)| !occupied(col + dc, row + dr));
         if !(occupied(col, row) && is_rim) {
             continue;

@@ -2,7 +2,7 @@ use trundle_core::{Footprint, PinholeCamera, Pose2, Pose3, Vector3};
 use trundle_sim::scenes::{OFFICE_RING, OFFICE_TWINS};
 use trundle_sim::{HeightBand, Renderer, Scene, View, camera_mount};
 
-/// Place by place along the ring's centre line, with the way on.
+/// Poses along the ring's centre line, with the heading of the path.
 fn ring(step: f64) -> impl Iterator<Item = Pose2> {
     (0..4).flat_map(move |i| {
         let ([ax, ay], [bx, by]) = (OFFICE_RING[i], OFFICE_RING[(i + 1) % 4]);
@@ -24,7 +24,7 @@ fn the_ring_is_40_m_around_in_the_middle_of_its_corridor_and_free() {
     for pose in ring(0.25) {
         let free = scene.world.clearance(&Footprint::KOBUKI, pose, band).unwrap();
         assert!(free > 0.1, "{free} m at {pose:?}");
-        // Walls to both sides, above doors and posters; at the corners there is none.
+        // Walls on both sides, above doors and posters; none at the corners.
         let eye = Vector3::new(pose.x, pose.y, 2.3);
         let wall = |turn: f64| {
             let (s, c) = (pose.theta + turn).sin_cos();
@@ -50,7 +50,7 @@ fn look_alike_rooms_cannot_be_told_apart() {
     let renderer =
         Renderer::new(PinholeCamera::from_field_of_view((256, 212), (1.232, 1.047)).unwrap()).unwrap();
     let scene = Scene::by_name("office", 2).unwrap();
-    // Away from the doors, through which one sees where one is: offices have theirs in the north.
+    // Away from the doors, through which the rooms can be distinguished: the offices have theirs in the north.
     for ([one, two], headings) in
         OFFICE_TWINS.into_iter().zip([[-90.0_f64, -130.0, 180.0], [90.0, 50.0, 150.0]])
     {
@@ -62,7 +62,7 @@ fn look_alike_rooms_cannot_be_told_apart() {
             assert!(here.color == there.color, "colour at {heading} deg");
             assert!(here.depth == there.depth, "depth at {heading} deg");
         }
-        // Through the door, and in the pantry, it looks different.
+        // Through the door, and in the pantry, the view differs.
         assert!(at(one, headings[0]).color != at([5.0, 0.0], headings[0]).color);
         assert!(at(one, headings[0] + 180.0).color != at(two, headings[0] + 180.0).color);
     }

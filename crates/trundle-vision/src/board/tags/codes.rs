@@ -10,10 +10,10 @@ pub(super) const CODE_CELLS: usize = TAG_CELLS - 2;
 /// Bits by row from the upper left cell, the first bit highest; 1 is white. Origin and licence: `data/README.md`.
 const CODES: [u64; TAG_COUNT] = parsed(include_bytes!("../../../data/tag36h11.txt"));
 
-/// Cells of a code, `true` is white, by row and column.
+/// Cells of a code, by row and column; `true` is white.
 pub(super) type CodeCells = [[bool; CODE_CELLS]; CODE_CELLS];
 
-/// Cells of a whole marker by row and column from the upper left; `true` is white. `None` of an id outside the family.
+/// Cells of a whole marker by row and column from the upper left; `true` is white. `None` for an id outside the family.
 #[must_use]
 pub fn tag_cells(id: usize) -> Option<[[bool; TAG_CELLS]; TAG_CELLS]> {
     let code = CODES.get(id)?;
@@ -35,7 +35,7 @@ pub(super) struct CodeMatch {
     pub(super) turns: usize,
 }
 
-/// The nearest marker in any of four orientations; of equal ones the first.
+/// The nearest marker in any of four orientations; among equal ones the first.
 pub(super) fn nearest_code(cells: &CodeCells) -> CodeMatch {
     let mut nearest = CodeMatch { distance: u32::MAX, id: 0, turns: 0 };
     let mut turned = *cells;
@@ -65,7 +65,7 @@ pub(super) fn mirrored(cells: &CodeCells) -> CodeCells {
     })
 }
 
-/// Hexadecimal numbers between blanks. Other text does not compile.
+/// Hexadecimal numbers between blanks. Other text causes a compile error.
 const fn parsed(text: &[u8]) -> [u64; TAG_COUNT] {
     let mut codes = [0; TAG_COUNT];
     let (mut i, mut count, mut is_inside) = (0, 0, false);

@@ -1,4 +1,4 @@
-//! Which marker a quad is.
+//! Identification of the marker in a quad.
 
 use super::codes::{CODE_CELLS, CodeCells, TAG_CELLS, mirrored, nearest_code};
 use super::quad::Quad;
@@ -18,7 +18,7 @@ pub(super) enum Decoded {
     Mirrored,
     /// None of the family.
     Unknown {
-        /// Cells that differ from those of the nearest marker.
+        /// Number of cells that differ from those of the nearest marker.
         wrong_cells: u32,
     },
 }
@@ -26,7 +26,7 @@ pub(super) enum Decoded {
 /// Largest number of wrong cells, border and code. Source: ours; codes differ in 11 cells, and each accepted cell makes false markers
 /// 10 times as frequent \[Olson11, sec. III-C\].
 pub(super) const MAX_WRONG_CELLS: u32 = 2;
-/// Smallest contrast between the border and the paper around it, grey values. Source: ours.
+/// Smallest contrast between the border and the surrounding paper, grey values. Source: ours.
 const MIN_CONTRAST: f64 = 15.0;
 /// Distance of the samples of the paper from the border, cells: less than the smallest gap of a board. Source: ours.
 const PAPER_CELLS: f64 = 0.4;

@@ -1,9 +1,8 @@
 //! Square markers of the family tag36h11 in a grey image.
 //!
-//! Problem: where the corners of each marker are, to a tenth of a pixel, and which marker it is. Idea \[Olson11\]: a marker is a dark
-//! square with 36 cells inside, whose codes differ from each other in 11 cells or more in every orientation. Dark regions with a
-//! convex outline of four corners are candidates. Curves are fitted to the edges, their intersections are the corners, and the cells
-//! name the marker. Cost: O(pixels).
+//! Problem: the corners of each marker to a tenth of a pixel, and the marker's number. Idea \[Olson11\]: a marker is a dark square with 36
+//! cells inside. The codes differ in at least 11 cells in every orientation. Dark regions with a convex outline of four corners are
+//! candidates. Curves are fitted to the edges, their intersections are the corners, and the cells give the number. Cost: O(pixels).
 //!
 //! | \[Olson11\] | here |
 //! |---|---|
@@ -34,7 +33,7 @@ use trundle_core::GrayImage;
 pub struct TagSearch {
     /// Markers of the family, by id.
     pub tags: Vec<Tag>,
-    /// Wrong cells of each black square whose cells are those of no marker, against the nearest one.
+    /// For each black square without a marker's code: number of cells that differ from the nearest marker.
     pub unknown: Vec<u32>,
     /// Markers of the family that appear mirrored.
     pub mirrored: usize,

@@ -10,7 +10,7 @@ pub(super) type Quad = [Vector2; 4];
 
 /// Smallest side, px. Source: ours; cells of 2 px.
 const MIN_SIDE_PX: f64 = 14.0;
-/// Smallest area of the quad over that of the outline: blur rounds the corners of small markers. Source: ours.
+/// Smallest ratio of the quad's area to that of the outline: blur rounds the corners of small markers. Source: ours.
 const MIN_AREA_RATIO: f64 = 0.75;
 /// Smallest number of dark pixels over the area: the border alone is 28 of 64 cells. Source: ours.
 const MIN_DARK_RATIO: f64 = 0.25;

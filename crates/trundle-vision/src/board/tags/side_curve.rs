@@ -1,7 +1,7 @@
 //! The edge of a marker as a curve.
 //!
-//! The curve is a parabola over the chord: a lens bends a side of 45 px by 0.3 px. Blur moves a straight edge nowhere, but
-//! rounds the corners, so that the ends of the side do not count.
+//! The curve is a parabola over the chord: a lens bends a side of 45 px by 0.3 px. Blur does not move a straight edge, but it rounds the
+//! corners: the ends of the side are not used.
 
 use crate::board::smooth_image::SmoothImage;
 use nalgebra::{Matrix2, Matrix3, Vector3};
@@ -30,11 +30,12 @@ const MIN_END_PX: f64 = 2.5;
 const SEARCH_RATIO: f64 = 0.12;
 /// Smallest such distance, px. Source: ours.
 const MIN_SEARCH_PX: f64 = 3.0;
-/// Distance between samples along the edge and across it, px. Source: ours.
+/// Distance between samples, along and across the edge, px. Source: ours.
 const STEP_PX: f64 = 0.5;
 /// Half width of the window in which the mean of the gradient is the edge, px. Source: ours.
 const WINDOW_PX: f64 = 2.0;
-/// Half width of that window as a fraction of the side's length: the border is an eighth of the side, less where the marker is tilted. Source: ours.
+/// Half width of that window as a fraction of the side's length. The border is an eighth of the side, less for a tilted marker. Source:
+/// ours.
 const WINDOW_RATIO: f64 = 0.05;
 /// Smallest gradient of an edge, grey values per px. Source: ours.
 const MIN_GRADIENT: f64 = 4.0;
@@ -48,7 +49,7 @@ const SELECTION_COUNT: usize = 3;
 const MAX_RESIDUAL_PX: f64 = 0.5;
 
 impl SideCurve {
-    /// The edge near the chord between two corners, dark on its right side seen from the start; `None` if there is none.
+    /// The edge near the chord between two corners, dark on its right side in the direction from `start` to `end`; `None` without an edge.
     pub(super) fn fit(image: &SmoothImage, start: Vector2, end: Vector2) -> Option<Self> {
         let chord = end - start;
         let along = chord.normalize();
@@ -69,7 +70,7 @@ impl SideCurve {
         Some(curve)
     }
 
-    /// Where this curve's end meets the start of the next, by Newton's method; `None` if they are parallel.
+    /// Intersection of this curve's end with the start of the next, by Newton's method; `None` for parallel curves.
     pub(super) fn end_meets_start_of(&self, next: &Self) -> Option<Vector2> {
         let (mut u, mut v) = (1.0, -1.0);
         for _ in 0..5 {
@@ -95,7 +96,7 @@ impl SideCurve {
         self.along * self.half_length + self.outward * (self.coefficients.y + 2.0 * u * self.coefficients.z)
     }
 
-    /// Places of the edge, and how many were tried.
+    /// Points of the edge, and the number of attempts.
     fn samples(&self, image: &SmoothImage) -> (Vec<Sample>, usize) {
         let length = 2.0 * self.half_length;
         let end = (END_RATIO * length).max(MIN_END_PX);
@@ -126,7 +127,7 @@ impl SideCurve {
         if peak < MIN_GRADIENT {
             return None;
         }
-        // The window moves to the mean, so that it is as long on both sides.
+        // The window moves to the mean, which makes both sides equally long.
         for _ in 0..3 {
             let steps = (window / (0.5 * STEP_PX)) as i64;
             let (mut sum, mut moment) = (0.0, 0.0);

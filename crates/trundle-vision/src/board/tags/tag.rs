@@ -9,6 +9,6 @@ pub struct Tag {
     pub id: usize,
     /// Corners of the black square, px, seen from the front with the marker upright: upper left, upper right, lower right, lower left.
     pub corners: [Vector2; 4],
-    /// Cells that differ from those of the family's marker, 0 to 2.
+    /// Number of cells that differ from the family's marker, 0 to 2.
     pub wrong_cells: u32,
 }

@@ -1,4 +1,4 @@
-//! Which pixels are dark, against the light and dark ones around them.
+//! Dark pixels by comparison with the light and dark ones around them.
 
 use crate::board::smooth_image::SmoothImage;
 

@@ -48,7 +48,7 @@ impl Bytes {
         Self(_mm256_subs_epu8(self.0, other.0))
     }
 
-    /// The mask of bytes that are not less than those of `other`.
+    /// The mask of bytes that are at least those of `other`.
     #[inline]
     #[target_feature(enable = "avx2")]
     pub(crate) fn at_least(self, other: Self) -> Self {
@@ -74,13 +74,13 @@ impl Bytes {
         _mm256_testz_si256(self.0, self.0) == 1
     }
 
-    /// The means, rounded, of seven blocks. The weights, in 1/256, are those of the middle block and of the pairs about it; all seven
-    /// add up to 256. No weight of a pair and no half of the middle one exceeds 127.
+    /// The rounded means of seven blocks. The weights, in 1/256, are those of the middle block and of the pairs around it; the seven
+    /// weights add up to 256. No weight of a pair and no half of the middle one exceeds 127.
     #[inline]
     #[target_feature(enable = "avx2")]
     pub(crate) fn mean_of_seven([a, b, c, d, e, f, g]: [Self; 7], weights: &[u8; 4]) -> Self {
         let both = |weight: u8| _mm256_set1_epi8(weight as i8);
-        // The middle is paired with twos: 64 of these make the half that rounds.
+        // The middle is paired with twos: 64 of these give the half for rounding.
         let (twos, middle) = (both(2), _mm256_set1_epi16(64 << 8 | i16::from(weights[0])));
         let pairs = [
             (d.0, twos, middle),
@@ -98,7 +98,7 @@ impl Bytes {
     }
 }
 
-/// 16 pixels interpolated between two rows, in 1/128; `weight` is that of the lower one, in 1/256.
+/// 16 pixels interpolated between two rows, in 1/128; `weight` is that of the lower row, in 1/256.
 #[inline]
 #[target_feature(enable = "avx2")]
 pub(crate) fn mix_16(upper: &[u8; 16], lower: &[u8; 16], weight: u16, to: &mut [i16; 16]) {

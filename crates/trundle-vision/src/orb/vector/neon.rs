@@ -47,7 +47,7 @@ impl Bytes {
         Self(vqsubq_u8(self.0, other.0))
     }
 
-    /// The mask of bytes that are not less than those of `other`.
+    /// The mask of bytes that are at least those of `other`.
     #[inline]
     #[target_feature(enable = "neon")]
     pub(crate) fn at_least(self, other: Self) -> Self {
@@ -73,8 +73,8 @@ impl Bytes {
         vmaxvq_u32(vreinterpretq_u32_u8(self.0)) == 0
     }
 
-    /// The means, rounded, of seven blocks. The weights, in 1/256, are those of the middle block and of the pairs about it; all seven
-    /// add up to 256, so that no sum exceeds 16 bits.
+    /// The rounded means of seven blocks. The weights, in 1/256, are those of the middle block and of the pairs around it. The seven
+    /// weights add up to 256, so no sum exceeds 16 bits.
     #[inline]
     #[target_feature(enable = "neon")]
     pub(crate) fn mean_of_seven([a, b, c, d, e, f, g]: [Self; 7], weights: &[u8; 4]) -> Self {

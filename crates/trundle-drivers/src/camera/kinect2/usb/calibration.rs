@@ -2,12 +2,12 @@
 //!
 //! The device's images are mirrored left to right; [`turned_back`] is the camera of the image turned back.
 //!
-//! The map from depth to colour is a polynomial of third order, which holds rotation and both lenses:
+//! The map from depth to colour is a polynomial of third order, which includes rotation and both lenses:
 //!
 //! u = (P(x, y) / q_c) + f (m / z - m / s) + c_x, v = Q(x, y) / q_c + c_y, with (x, y) = q_d (pixel - principal point)
 //!
-//! The rotation between the cameras is taken from its constant and linear terms, and the baseline from m. The distortion of the colour lens
-//! stays in the polynomial and is not used: colour is misplaced by some pixels in the corners.
+//! The rotation between the cameras follows from the polynomial's constant and linear terms, and the baseline from m. The distortion of the
+//! colour lens is part of the polynomial and is ignored: colour is misplaced by some pixels in the corners.
 
 use crate::camera::kinect2::layout::{COLUMNS, FREQUENCY_COUNT, PIXEL_COUNT, ROWS};
 use nalgebra::UnitQuaternion;
@@ -27,7 +27,7 @@ const PIXEL_MIDDLE: f64 = 0.5;
 const MILLIMETRE_M: f64 = 1e-3;
 /// Longest baseline \[m\]. Source: ours; the cameras are 0.05 m apart.
 const MAX_BASELINE_M: f64 = 0.2;
-/// Largest angle between the cameras as a tangent \[1\]. Source: ours; they look in the same direction.
+/// Largest angle between the cameras as a tangent \[1\]. Source: ours; both cameras face the same direction.
 const MAX_TILT: f64 = 0.2;
 /// Terms of a polynomial.
 const TERM_COUNT: usize = 10;
@@ -66,7 +66,7 @@ pub fn depth_camera(page: &[u8]) -> Result<PinholeCamera, Invalid> {
     PinholeCamera::new((COLUMNS, ROWS), (fx, fy), centre(cx, cy), Distortion { k1, k2, p1, p2, k3 })
 }
 
-/// The camera of the image turned back left to right. Of the lens, the horizontal shear changes its sign.
+/// The camera of the image mirrored back, left to right. The horizontal shear of the lens changes its sign.
 ///
 /// # Errors
 /// Never: the numbers are those of a camera.
@@ -77,7 +77,7 @@ pub fn turned_back(camera: &PinholeCamera) -> Result<PinholeCamera, Invalid> {
     PinholeCamera::new(size, (camera.fx(), camera.fy()), centre, distortion)
 }
 
-/// The colour camera and the pose of the depth camera in its frame, both of the images turned back.
+/// The colour camera and the pose of the depth camera in its frame, both for the images mirrored back.
 ///
 /// # Errors
 /// When the page is too short, or a number is not a property of a camera.
@@ -166,7 +166,7 @@ mod tests {
         assert!(depth_camera(&[0xff; 40]).is_err(), "not a number");
     }
 
-    /// The page of a device whose colour camera is turned by small angles and 52 mm away, without distortion: the polynomial is fitted to
+    /// The page of a device whose colour camera is rotated by small angles and 52 mm away, without distortion. The polynomial is fitted to
     /// the true projection of its mirrored images at an infinite distance.
     #[test]
     fn the_pose_projects_as_the_polynomial_does() {

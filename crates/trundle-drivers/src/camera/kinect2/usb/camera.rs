@@ -22,10 +22,10 @@ use trundle_core::{ColorImage, Invalid};
 /// Frames per second of the Kinect V2 \[Hz\]. Source: \[Sell14\].
 const RATE_HZ: f64 = 30.0;
 /// Time from the middle of the exposure to the arrival of a frame \[s\]. Source: ours, assumed: one frame of readout, half an exposure, and
-/// the decoding of depth. Measure it where it matters.
+/// the decoding of depth. Measure the delay if it matters.
 const DELAY_S: f64 = 0.06;
 
-/// A Kinect V2 at a USB port: colour 1920 x 1080 and depth 512 x 424, not registered. It has never met a device.
+/// A Kinect V2 at a USB port: colour 1920 x 1080 and depth 512 x 424, not registered. This driver has never been tested with a device.
 #[derive(Debug)]
 pub struct Kinect2UsbCamera {
     info: CameraInfo,
@@ -38,7 +38,7 @@ impl Kinect2UsbCamera {
     /// Opens a Kinect V2 and starts its streams.
     ///
     /// # Errors
-    /// When the camera is missing, forbidden, in use, connected by USB 2, or does not speak the protocol.
+    /// When the camera is missing, forbidden, in use, connected by USB 2, or does not follow the protocol.
     pub fn open(api: &Arc<UsbApi>, selection: &Selection) -> Result<Self, CameraError> {
         if let Selection::File(file) = selection {
             return Err(CameraError::StreamsUnavailable {

@@ -1,7 +1,8 @@
 //! JPEG files of colour from bulk transfers.
 //!
-//! A packet is a header (sequence, magic), a JPEG file, up to 3 bytes of padding, filler, and a footer at the end of a transfer: magic,
-//! sequence, length of the filler, two unknown, time, exposure, gain, magic, length of the packet, gamma, three unknown.
+//! A packet consists of a header (sequence, magic), a JPEG file, up to 3 bytes of padding, filler, and a footer at the end of a transfer.
+//! The footer is magic, sequence, length of the filler, two unknown, time, exposure, gain, magic, length of the packet, gamma, three
+//! unknown.
 
 use crate::camera::kinect2::packets::TickClock;
 use trundle_core::Stamp;
@@ -34,7 +35,7 @@ pub struct ColorPacket {
     pub jpeg: Vec<u8>,
 }
 
-/// Finds colour images in bulk transfers. It holds at most one packet.
+/// Finds colour images in bulk transfers. It stores at most one packet.
 #[derive(Debug, Clone, Default)]
 pub struct ColorPackets {
     bytes: Vec<u8>,
@@ -44,7 +45,7 @@ pub struct ColorPackets {
 }
 
 impl ColorPackets {
-    /// Takes one transfer; an image when this transfer ends its packet. A packet that lacks bytes, and one that came before, are skipped.
+    /// Adds one transfer; returns the image if this transfer ends its packet. An incomplete or repeated packet is skipped.
     pub fn push(&mut self, transfer: &[u8]) -> Option<ColorPacket> {
         if self.bytes.len() + transfer.len() > MAX_PACKET_BYTES {
             self.skip();
@@ -65,7 +66,7 @@ impl ColorPackets {
         Some(ColorPacket { stamp, sequence: footer.sequence, jpeg })
     }
 
-    /// A transfer was lost: the packet that it belongs to is skipped.
+    /// Reports a lost transfer: its packet is skipped.
     pub fn lose(&mut self) {
         self.skip();
     }
@@ -76,7 +77,7 @@ impl ColorPackets {
     }
 
     fn image(&mut self, footer: &Footer) -> Option<(Stamp, Vec<u8>)> {
-        // Bytes of a packet whose footer was lost may stand before this packet.
+        // Bytes of a packet with a lost footer may precede this packet.
         let start = self.bytes.len().checked_sub(footer.packet_bytes)?;
         let packet = &self.bytes[start..];
         let (head, _) = packet.as_chunks::<4>();

@@ -49,7 +49,7 @@ impl Kinect2Command {
         head.iter().chain(&parameters).flat_map(|word| word.to_le_bytes()).collect()
     }
 
-    /// Longest data of the reply \[bytes\]; 0 where only the completion comes.
+    /// Maximum length of the reply's data \[bytes\]; 0 for a completion only.
     pub fn reply_limit(self) -> u32 {
         match self {
             Self::ReadFirmware => 0x200,

@@ -1,14 +1,14 @@
 //! Frames of depth from isochronous packets.
 //!
-//! A packed image and its footer fill nine packets of at most 33,792 bytes; an empty packet stands between images. A lost packet costs the
-//! frame that it belongs to.
+//! A packed image and its footer fill nine packets of at most 33,792 bytes; an empty packet separates images. A lost packet costs its
+//! frame.
 
 use crate::camera::kinect2::packets::{FrameAssembler, PackedFrame, SubPacketParser};
 
 /// Least size of the isochronous packets \[bytes\].
 pub const MIN_PACKET_BYTES: usize = 0x8400;
 
-/// Puts frames together from isochronous packets. It holds at most one frame.
+/// Assembles frames from isochronous packets. It stores at most one frame.
 #[derive(Debug, Clone, Default)]
 pub struct DepthPackets {
     parser: SubPacketParser,
@@ -16,7 +16,7 @@ pub struct DepthPackets {
 }
 
 impl DepthPackets {
-    /// Takes one isochronous packet; the frame when this packet ends the last of its ten images.
+    /// Adds one isochronous packet; returns the frame if this packet ends the last of its ten images.
     pub fn push(&mut self, packet: &[u8]) -> Option<PackedFrame> {
         if packet.is_empty() {
             self.parser.skip();
@@ -25,7 +25,7 @@ impl DepthPackets {
         self.assembler.push(self.parser.push(packet)?)
     }
 
-    /// A packet was lost: the image that it belongs to is skipped, and its frame is dropped.
+    /// Reports a lost packet: its image is skipped, and its frame is dropped.
     pub fn lose(&mut self) {
         self.parser.skip();
     }
@@ -40,7 +40,7 @@ impl DepthPackets {
         self.assembler.dropped()
     }
 
-    /// Images passed over since their frame was whole already.
+    /// Number of images skipped because their frame was complete.
     pub fn repeated(&self) -> u64 {
         self.assembler.repeated()
     }

@@ -9,8 +9,8 @@ const ISOCHRONOUS_BITS: u8 = 1;
 /// Bits of the type of transfer.
 const TRANSFER_MASK: u8 = 3;
 
-/// Bytes that the isochronous `endpoint` of the `interface` in its `alternate` setting moves in one interval, from its SuperSpeed companion;
-/// `None` if there is no such endpoint or no companion: the device hangs at a port that is too slow.
+/// Bytes per interval of the isochronous `endpoint` of the `interface` in its `alternate` setting, from its SuperSpeed companion. `None`
+/// without such an endpoint or companion: the device is at a port that is too slow.
 pub fn bytes_per_interval(configuration: &[u8], interface: u8, alternate: u8, endpoint: u8) -> Option<usize> {
     let (mut is_setting, mut is_endpoint) = (false, false);
     let mut rest = configuration;

@@ -13,9 +13,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_core::{Invalid, PinholeCamera, Pose3};
 
-/// Longest wait for the sensor to become ready \[s\]. Source: ours; it takes less than 1 s by reports of users.
+/// Longest wait for the sensor to become ready \[s\]. Source: ours; less than 1 s by reports of users.
 const READY_TIMEOUT_S: u64 = 5;
-/// Time between questions whether it is ready \[ms\].
+/// Period of queries of the ready state \[ms\].
 const READY_POLL_MS: u64 = 100;
 /// Most transfers that one reply may take. Source: ours; two, and some completions of earlier requests.
 const MAX_REPLY_TRANSFERS: usize = 16;
@@ -36,7 +36,7 @@ const COLOR_TRANSFERS: (usize, usize) = (20, 0x4000);
 /// Depth transfers that wait at the same time, and their packets: 60 ms of packets of 0.125 ms.
 const DEPTH_TRANSFERS: (usize, usize) = (60, 8);
 
-/// Description of the device by itself.
+/// The device's own description.
 #[derive(Debug)]
 pub(super) struct Identity {
     pub(super) serial: String,
@@ -48,7 +48,7 @@ pub(super) struct Identity {
     pub(super) color_from_depth: Pose3,
 }
 
-/// An open device. It is stopped when it is dropped.
+/// An open device. A drop stops the device.
 #[derive(Debug)]
 pub(super) struct Kinect2Device {
     handle: UsbConnection,
@@ -59,7 +59,7 @@ pub(super) struct Kinect2Device {
 }
 
 impl Kinect2Device {
-    /// Opens a device and takes its interfaces.
+    /// Opens a device and claims its interfaces.
     pub(super) fn open(session: &Arc<UsbSession>, selection: &Selection) -> Result<Self, CameraError> {
         let found = choose(session.kinects()?, selection)?;
         let speed = found.speed;
@@ -113,7 +113,7 @@ impl Kinect2Device {
         Ok(())
     }
 
-    /// Reads what the device says of itself, and starts its streams.
+    /// Reads the device's identity, and starts its streams.
     pub(super) fn start(&mut self) -> Result<Identity, CameraError> {
         self.is_streaming = true;
         self.handle.control(TO_INTERFACE, SET_FEATURE, FUNCTION_SUSPEND, 0)?;
@@ -156,7 +156,7 @@ impl Kinect2Device {
         self.execute(Kinect2Command::ReadPage(page))
     }
 
-    /// Sends a command and waits for its reply; the data of the reply.
+    /// Sends a command and waits for its reply; returns the reply's data.
     fn execute(&mut self, command: Kinect2Command) -> Result<Vec<u8>, CameraError> {
         let mut request = command.encode(self.sequence);
         let mut reader = ReplyReader::new(self.sequence, command.reply_limit());
@@ -176,7 +176,7 @@ impl Kinect2Device {
         Err(unanswered(format!("{command:?}: no end of the reply in {MAX_REPLY_TRANSFERS} transfers")))
     }
 
-    /// Stops the streams, and ends the session with the device. Errors are of no use here: the device is given up.
+    /// Stops the streams, and ends the session with the device. Errors are ignored: the device is closed anyway.
     fn stop(&mut self) -> Result<(), CameraError> {
         self.handle.set_alternate(ids::DEPTH_INTERFACE, 0)?;
         let quiet = [Kinect2Command::SetMode(true, STREAM_MODE), Kinect2Command::SetMode(false, 0)];

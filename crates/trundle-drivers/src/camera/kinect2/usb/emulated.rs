@@ -1,6 +1,7 @@
 //! An emulated Kinect V2 behind the functions of libusb, for the parts that need a device: commands, transfers, threads.
 //!
-//! It cannot show that a device behaves so; it shows that the calls keep their order, that nothing is lost, and that all memory is freed.
+//! The emulation cannot verify the behaviour of a device. It verifies the order of the calls, that no data is lost, and that all memory is
+//! freed.
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
@@ -182,7 +183,7 @@ unsafe extern "C" fn cancel(transfer: *mut UsbTransfer) -> c_int {
     with(|state| state.waiting.iter_mut().for_each(mark));
     0
 }
-/// Ends what is cancelled, or the first transfer of each endpoint that has bytes.
+/// Ends cancelled transfers, or the first transfer of each endpoint with bytes.
 unsafe extern "C" fn handle_events(_: *mut UsbContext, _: *mut libc::timeval, _: *mut c_int) -> c_int {
     let waiting = with(|state| std::mem::take(&mut state.waiting));
     let mut ended = Vec::new();
@@ -206,7 +207,7 @@ unsafe extern "C" fn handle_events(_: *mut UsbContext, _: *mut libc::timeval, _:
 }
 
 impl Emulated {
-    /// Answers a request as the protocol says.
+    /// Answers a request according to the protocol.
     fn answer(&mut self, request: &[u8]) {
         let fields: Vec<u32> =
             request.as_chunks::<4>().0.iter().map(|word| u32::from_le_bytes(*word)).collect();
@@ -235,7 +236,7 @@ impl Emulated {
         self.replies.push_back(words(&[reply::COMPLETION_MAGIC, sequence, 0, 0]));
     }
 
-    /// Ends a transfer if there is something to end it with.
+    /// Ends a transfer if bytes or a cancellation are pending.
     ///
     /// # Safety
     /// The transfer has its packets and its buffer.
@@ -296,7 +297,7 @@ impl Emulated {
     }
 }
 
-/// The functions of the emulated library. Any loaded library stands for its file.
+/// The functions of the emulated library. Any loaded library replaces its file.
 fn api() -> Arc<UsbApi> {
     Arc::new(UsbApi {
         library: NativeLibrary::load(LIBRARY, Some(Path::new("libc.so.6"))).unwrap(),

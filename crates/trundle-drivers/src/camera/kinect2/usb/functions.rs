@@ -83,7 +83,7 @@ pub struct IsoPacket {
 /// `libusb_transfer_cb_fn`.
 pub type TransferCallback = unsafe extern "C" fn(*mut UsbTransfer);
 
-/// `libusb_transfer`. The library allocates it, with room for the packets after its end.
+/// `libusb_transfer`. The library allocates it, with space for the packets after its end.
 #[repr(C)]
 #[derive(Debug)]
 pub struct UsbTransfer {
@@ -132,7 +132,7 @@ functions! {
 }
 
 impl UsbApi {
-    /// Loads the library; `setting` is its file in the settings, if there is one.
+    /// Loads the library; `setting` is its file in the settings, if given.
     ///
     /// # Errors
     /// When the library is missing, broken, lacks functions, or has a version that does not suit.

@@ -16,12 +16,12 @@ pub const COLOR_ENDPOINT: u8 = 0x83;
 pub const DEPTH_ENDPOINT: u8 = 0x84;
 /// Interface of requests, replies and colour.
 pub const CONTROL_INTERFACE: u8 = 0;
-/// Interface of depth. Its alternate setting 0 has no isochronous endpoint, 1 has it.
+/// Interface of depth. Its alternate setting 0 has no isochronous endpoint; setting 1 has one.
 pub const DEPTH_INTERFACE: u8 = 1;
 /// Configuration with both interfaces.
 pub const CONFIGURATION_NUMBER: u8 = 1;
 
-/// Rule of udev that lets everyone in the group `plugdev` open a Kinect V2.
+/// Udev rule that gives access to a Kinect V2 to the group `plugdev`.
 pub const KINECT2_UDEV_RULE: &str = "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"045e\", ATTR{idProduct}==\"02c4\", MODE=\"0660\", GROUP=\"plugdev\", \
     TAG+=\"uaccess\"\n\
     SUBSYSTEM==\"usb\", ATTR{idVendor}==\"045e\", ATTR{idProduct}==\"02d8\", MODE=\"0660\", GROUP=\"plugdev\", TAG+=\"uaccess\"";

@@ -1,7 +1,7 @@
 //! The calls of libusb: the only unsafe code of the Kinect V2.
 //!
-//! Callbacks run inside [`Transfers::handle_events`], in the thread that calls it: nothing else handles events of a context while transfers
-//! run. Blocking transfers are made before and after that.
+//! Callbacks run inside [`Transfers::handle_events`], in the calling thread: no other code handles events of a context while transfers run.
+//! Blocking transfers are only made before and after.
 
 use super::functions::{DeviceDescriptor, LIBRARY, UsbApi, UsbContext, UsbHandle, UsbTransfer};
 use super::ids::{self, KINECT2_NAME};
@@ -33,7 +33,7 @@ const SPEED_SUPER: c_int = 4;
 const BLOCKING_TIMEOUT_MS: c_uint = 1000;
 /// Longest wait for cancelled transfers \[ms\]. Source: ours; a host controller needs some milliseconds.
 const CANCEL_TIMEOUT_MS: u64 = 2000;
-/// Longest text of a descriptor \[bytes\]. Source: USB 3.1 specification, 9.6.9: 255 bytes, two a character.
+/// Longest text of a descriptor \[bytes\]. Source: USB 3.1 specification, 9.6.9: 255 bytes, two per character.
 const TEXT_BYTES: usize = 128;
 /// Largest configuration descriptor that is read \[bytes\]. Source: ours; the device's has some 200 bytes.
 const CONFIGURATION_BYTES: usize = 4096;
@@ -109,7 +109,7 @@ impl UsbSession {
     /// Begins a session.
     pub(super) fn new(api: &Arc<UsbApi>) -> Result<Arc<Self>, CameraError> {
         let mut context = std::ptr::null_mut();
-        // SAFETY: the context has a place.
+        // SAFETY: the context is writable.
         let code = unsafe { (api.libusb_init)(&mut context) };
         api.check("libusb_init", code)?;
         let context = NonNull::new(context).ok_or_else(|| api.failed("libusb_init", code, LIBRARY.remedy))?;
@@ -119,15 +119,15 @@ impl UsbSession {
     /// All connected devices that are a Kinect V2, opened.
     pub(super) fn kinects(self: &Arc<Self>) -> Result<Vec<Found>, CameraError> {
         let mut list = std::ptr::null_mut();
-        // SAFETY: the context is alive, and the list has a place.
+        // SAFETY: the context is valid, and the list is writable.
         let count = unsafe { (self.api.libusb_get_device_list)(self.context.as_ptr(), &mut list) };
         let count = self.api.check("libusb_get_device_list", count as c_int)?;
         let mut found = Vec::new();
         for index in 0..count {
-            // SAFETY: the list has `count` living devices; they live until it is freed. An open handle keeps its device alive.
+            // SAFETY: the list has `count` valid devices; they are valid until the list is freed. An open handle keeps its device valid.
             found.extend(unsafe { self.kinect(*list.add(index)) });
         }
-        // SAFETY: the list came from the library and is not used any more; 1 gives up its hold on the devices.
+        // SAFETY: the list came from the library and is not used afterwards; 1 releases its references to the devices.
         unsafe { (self.api.libusb_free_device_list)(list, 1) };
         Ok(found)
     }
@@ -136,13 +136,13 @@ impl UsbSession {
     /// `device` is alive.
     unsafe fn kinect(self: &Arc<Self>, device: *mut super::functions::UsbDevice) -> Option<Found> {
         let mut descriptor = DeviceDescriptor::default();
-        // SAFETY: the device is alive, and the descriptor has a place.
+        // SAFETY: the device is valid, and the descriptor is writable.
         let code = unsafe { (self.api.libusb_get_device_descriptor)(device, &mut descriptor) };
         if code < 0 || !ids::is_kinect2(descriptor.vendor, descriptor.product) {
             return None;
         }
         let mut handle = std::ptr::null_mut();
-        // SAFETY: the device is alive, and the handle has a place.
+        // SAFETY: the device is valid, and the handle is writable.
         let (speed, code) = unsafe {
             ((self.api.libusb_get_device_speed)(device), (self.api.libusb_open)(device, &mut handle))
         };
@@ -157,7 +157,7 @@ impl UsbSession {
 
 impl Drop for UsbSession {
     fn drop(&mut self) {
-        // SAFETY: the context is alive; handles hold the session, so all of them are closed.
+        // SAFETY: the context is valid; handles contain the session, so all of them are closed.
         unsafe { (self.api.libusb_exit)(self.context.as_ptr()) };
     }
 }
@@ -202,11 +202,11 @@ impl UsbConnection {
         String::from_utf8_lossy(text).into_owned()
     }
 
-    /// Makes `configuration` the one in use.
+    /// Selects `configuration`.
     pub(super) fn set_configuration(&self, configuration: u8) -> Result<(), CameraError> {
         let (api, handle) = (&self.session.api, self.handle.as_ptr());
         let mut current = 0;
-        // SAFETY: the device is open, and the number has a place.
+        // SAFETY: the device is open, and the number is writable.
         self.check("libusb_get_configuration", unsafe {
             (api.libusb_get_configuration)(handle, &mut current)
         })?;
@@ -218,7 +218,7 @@ impl UsbConnection {
         Ok(())
     }
 
-    /// Takes an interface for this program alone.
+    /// Claims an interface exclusively.
     pub(super) fn claim(&self, interface: u8) -> Result<(), CameraError> {
         // SAFETY: the device is open.
         let code =
@@ -226,7 +226,7 @@ impl UsbConnection {
         self.check("libusb_claim_interface", code).map(drop)
     }
 
-    /// Gives an interface back. A device that is gone has none.
+    /// Releases an interface. An unplugged device has none.
     pub(super) fn release(&self, interface: u8) {
         // SAFETY: the device is open; an interface that is not claimed is refused.
         unsafe { (self.session.api.libusb_release_interface)(self.handle.as_ptr(), interface.into()) };
@@ -320,7 +320,7 @@ struct Shared<'a> {
     fault: Option<c_int>,
 }
 
-/// Transfers that are submitted again when they arrive.
+/// Transfers that are resubmitted after their arrival.
 pub(super) struct Transfers<'a> {
     handle: &'a UsbConnection,
     shared: NonNull<Shared<'a>>,
@@ -354,7 +354,7 @@ impl<'a> Transfers<'a> {
         let transfer = unsafe { (api.libusb_alloc_transfer)(plan.packets as c_int) };
         let transfer = NonNull::new(transfer)
             .ok_or_else(|| api.failed("libusb_alloc_transfer", ERROR_NO_MEM, "free some memory"))?;
-        // SAFETY: the transfer is alive and has room for its packets; the buffer stays at its place until the transfer is freed.
+        // SAFETY: the transfer is valid and has space for its packets; the buffer does not move until the transfer is freed.
         let code = unsafe {
             fill(
                 transfer.as_ptr(),
@@ -367,20 +367,20 @@ impl<'a> Transfers<'a> {
         };
         self.transfers.push((transfer, buffer));
         api.check("libusb_submit_transfer", code)?;
-        // SAFETY: no callback runs: nothing handles events.
+        // SAFETY: no callback runs, because no code handles events.
         unsafe { (*self.shared.as_ptr()).waiting += 1 };
         Ok(())
     }
 
-    /// Lets the callbacks run, for at most `timeout`.
+    /// Runs the callbacks for at most `timeout`.
     ///
     /// # Errors
-    /// When the device is gone or a transfer failed.
+    /// When the device is unplugged or a transfer failed.
     pub(super) fn handle_events(&mut self, timeout: Duration) -> Result<(), CameraError> {
         let code = self.run_events(timeout);
         let api = &self.handle.session.api;
         api.check("libusb_handle_events_timeout_completed", code)?;
-        // SAFETY: no callback runs: they run inside the function above.
+        // SAFETY: no callback runs: callbacks run only inside the function above.
         let fault = unsafe { (*self.shared.as_ptr()).fault };
         fault.map_or(Ok(()), |code| api.check("libusb_submit_transfer", code).map(drop))
     }
@@ -392,7 +392,7 @@ impl<'a> Transfers<'a> {
             tv_usec: libc::suseconds_t::from(timeout.subsec_micros()),
         };
         let handle_events = session.api.libusb_handle_events_timeout_completed;
-        // SAFETY: context and time are alive; a null place for completion is allowed.
+        // SAFETY: context and time are valid; a null place for completion is allowed.
         unsafe { handle_events(session.context.as_ptr(), &mut time, std::ptr::null_mut()) }
     }
 
@@ -406,7 +406,7 @@ impl<'a> Transfers<'a> {
         // SAFETY: no callback runs outside of `run_events`.
         unsafe { (*self.shared.as_ptr()).is_stopping = true };
         for (transfer, _) in &self.transfers {
-            // SAFETY: the transfer is alive; one that does not wait is refused.
+            // SAFETY: the transfer is valid; cancelling an inactive transfer is refused.
             unsafe { (self.handle.session.api.libusb_cancel_transfer)(transfer.as_ptr()) };
         }
         let start = Instant::now();
@@ -420,7 +420,8 @@ impl<'a> Transfers<'a> {
 impl Drop for Transfers<'_> {
     fn drop(&mut self) {
         if !self.cancel() {
-            // Their memory stays: the library may still write to it. What the callback borrows ends here, so it is replaced.
+            // The memory is leaked, because the library may still write to it. The callback's borrow ends here, so the callback is
+            // replaced.
             tracing::warn!("{} USB transfers did not end: their memory is lost", self.waiting());
             // SAFETY: no callback runs outside of `run_events`.
             unsafe { (*self.shared.as_ptr()).on_arrival = Box::new(|_| {}) };
@@ -429,10 +430,10 @@ impl Drop for Transfers<'_> {
                 .for_each(|(_, buffer)| std::mem::forget(buffer));
         }
         for (transfer, _) in &self.transfers {
-            // SAFETY: the transfer ended and is not used any more.
+            // SAFETY: the transfer ended and is not used afterwards.
             unsafe { (self.handle.session.api.libusb_free_transfer)(transfer.as_ptr()) };
         }
-        // SAFETY: it came from a box, and no transfer points to it any more.
+        // SAFETY: the pointer came from a box, and no transfer refers to it.
         drop(unsafe { Box::from_raw(self.shared.as_ptr()) });
     }
 }
@@ -440,7 +441,7 @@ impl Drop for Transfers<'_> {
 /// Fills a transfer.
 ///
 /// # Safety
-/// `transfer` is alive with room for its packets; `buffer` and `shared` outlive it.
+/// `transfer` must be valid with space for its packets; `buffer` and `shared` must outlive it.
 unsafe fn fill(
     transfer: *mut UsbTransfer,
     handle: *mut UsbHandle,
@@ -469,9 +470,10 @@ unsafe fn fill(
 /// Passes on what arrived, and submits the transfer again.
 ///
 /// # Safety
-/// `transfer` was filled by [`fill`], and its buffer and shared part are alive.
+/// `transfer` must have been filled by [`fill`], and its buffer and shared part must be valid.
 unsafe extern "C" fn on_transfer(transfer: *mut UsbTransfer) {
-    // SAFETY: the caller vouches for the transfer; callbacks run one after the other, inside `run_events`, where nothing else uses `Shared`.
+    // SAFETY: the caller guarantees a valid transfer. Callbacks run one after the other, inside `run_events`, while no other code uses
+    // `Shared`.
     let shared = unsafe { &mut *(*transfer).user_data.cast::<Shared<'_>>() };
     // SAFETY: as above.
     let status = unsafe { (*transfer).status };

@@ -2,20 +2,20 @@
 //!
 //! **This part has never met a device.** Its state machines were tested with made byte streams, its calls with the real libusb and no device.
 //!
-//! | what | where | endpoint |
+//! | data | module | endpoint |
 //! |---|---|---|
 //! | requests, little endian: magic, sequence, longest reply, command, 0, parameters | [`command`] | bulk 0x02, out |
-//! | replies: data where the command asks for some, then a completion with the same sequence | [`reply`] | bulk 0x81, in |
+//! | replies: the data requested by the command, then a completion with the same sequence | [`reply`] | bulk 0x81, in |
 //! | firmware, serial number, calibration from replies | [`answers`], [`calibration`] | |
 //! | colour: header, JPEG file, filler, footer | [`color_packets`] | bulk 0x83, in |
 //! | depth: packed images of 298,496 bytes, each with a footer of 152 bytes; an empty packet between images | [`depth_packets`] | isochronous 0x84, in |
 //! | size of isochronous packets | [`descriptor`] | control |
 //!
-//! With the feature `kinect2-usb`, `camera` drives a device through libusb, which is loaded at run time: `functions` declares its functions,
-//! `libusb` calls them, `device` speaks the protocol, `stream_thread` collects packets, `camera` makes frames.
+//! With the feature `kinect2-usb`, `camera` drives a device through libusb, which is loaded at run time. `functions` declares its
+//! functions, `libusb` calls them, `device` implements the protocol, `stream_thread` collects packets, and `camera` makes frames.
 //!
-//! No maker's document describes the protocol. Source of all of its numbers, unless another is named: \[Freenect2\], read for facts.
-//! Images come mirrored left to right; `camera` turns them. What is assumed: both time counters start together and step by 0.125 ms.
+//! The protocol is not documented by the manufacturer. Unless stated otherwise, its numbers are facts read in \[Freenect2\]. Images come
+//! mirrored left to right; `camera` turns them. Assumption: both time counters start together and count in steps of 0.125 ms.
 
 pub mod answers;
 pub mod calibration;

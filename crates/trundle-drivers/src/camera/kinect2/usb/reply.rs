@@ -1,6 +1,6 @@
 //! Replies of the device to one request.
 //!
-//! The device sends data where the request asks for some, and then a completion: magic, sequence of the request, and two further words.
+//! The device sends the data requested, and then a completion: magic, sequence of the request, and two further words.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ pub const COMPLETION_MAGIC: u32 = 0x0a6f_e000;
 /// Bytes of a completion.
 pub const COMPLETION_BYTES: usize = 16;
 
-/// Why a reply cannot be used.
+/// Reason why a reply is invalid.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ReplyFault {
     /// The completion came before the data.
@@ -26,7 +26,7 @@ pub enum ReplyFault {
         /// Limit \[bytes\].
         limit: usize,
     },
-    /// The completion of a request that was not yet sent.
+    /// The completion belongs to another request.
     WrongSequence {
         /// Sequence of the request.
         expected: u32,
@@ -64,7 +64,7 @@ impl ReplyReader {
         Self { sequence, limit: limit as usize, data: None }
     }
 
-    /// Takes one transfer; the data when the reply is whole. Empty transfers and completions of earlier requests are passed over.
+    /// Adds one transfer; returns the data of a complete reply. Empty transfers and completions of earlier requests are skipped.
     ///
     /// # Errors
     /// When the reply cannot be used.

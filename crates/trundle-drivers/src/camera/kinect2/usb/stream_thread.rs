@@ -1,4 +1,4 @@
-//! A thread that collects the packets of an open device, so that none is lost while a frame is decoded.
+//! A thread that collects the packets of an open device, which prevents losses during decoding.
 
 use super::color_packets::{ColorPacket, ColorPackets};
 use super::depth_packets::DepthPackets;
@@ -13,9 +13,9 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// Images that wait for the reader; further ones are dropped. Source: ours; two of each kind.
+/// Maximum number of images in the queue; further ones are dropped. Source: ours; two of each kind.
 const QUEUE_IMAGES: usize = 4;
-/// Longest wait for a transfer \[ms\]; the thread looks for its end in between. Source: ours.
+/// Longest wait for a transfer \[ms\]; in between, the thread checks for its end. Source: ours.
 const POLL_MS: u64 = 50;
 
 /// Results of the thread.
@@ -25,7 +25,7 @@ pub(super) enum Streamed {
     Depth(Box<PackedFrame>),
 }
 
-/// The thread. It stops the device and ends when this is dropped.
+/// The thread. A drop stops the device and ends the thread.
 #[derive(Debug)]
 pub(super) struct StreamThread {
     images: Receiver<Streamed>,

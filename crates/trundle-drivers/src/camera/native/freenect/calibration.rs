@@ -12,7 +12,7 @@ const DEPTH_CENTRE_Y_PX: f64 = 235.5;
 /// Distance of the depth camera to the right of the colour camera \[m\]. Source: as above.
 const BASELINE_M: f64 = 0.025;
 
-/// Values that suit any Kinect v1 to some pixels. A calibration of the camera at hand is better.
+/// Typical values, with errors of some pixels for any Kinect v1. A calibration of the individual camera is better.
 ///
 /// # Errors
 /// Never, unless a constant is wrong.

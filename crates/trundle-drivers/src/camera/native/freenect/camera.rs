@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 /// Frames per second \[Hz\]. Source: OpenKinect wiki, "Imaging information".
 const RATE_HZ: f64 = 30.0;
 /// Time from the middle of the exposure to the arrival of a frame \[s\]. Source: ours, assumed: one frame of readout and depth computation,
-/// half an exposure. Measure it where it matters.
+/// half an exposure. Measure the delay if it matters.
 const DEFAULT_DELAY_S: f64 = 0.05;
 /// Length of one unit of depth \[m\]; without use for raw disparity, which has its own formula.
 const DEPTH_UNIT_M: f64 = 0.001;
@@ -45,7 +45,7 @@ pub struct FreenectCamera {
 }
 
 impl FreenectCamera {
-    /// Opens a Kinect and starts its streams, 640 x 480 at 30 Hz. Depth comes as raw disparity, not registered to colour.
+    /// Opens a Kinect and starts its streams, 640 x 480 at 30 Hz. Depth is raw disparity, not registered to colour.
     ///
     /// # Errors
     /// When the camera is missing, in use or forbidden.

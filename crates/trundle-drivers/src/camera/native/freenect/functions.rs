@@ -7,7 +7,7 @@ use std::ffi::{c_char, c_int, c_void};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Specification of libfreenect. It has no function that tells its version: the soname stands for 0.5.
+/// Specification of libfreenect. The library has no version function: the soname means 0.5.
 pub const LIBRARY: LibrarySpec = LibrarySpec {
     name: "libfreenect",
     variable: "TRUNDLE_FREENECT_LIB",
@@ -49,7 +49,7 @@ pub struct FrameMode {
     padding_bits: i8,
     /// Frames per second \[Hz\].
     pub framerate: i8,
-    /// 0 if there is no such mode.
+    /// 0 for an unavailable mode.
     pub is_valid: i8,
 }
 
@@ -92,7 +92,7 @@ functions! {
 }
 
 impl FreenectApi {
-    /// Loads the library; `setting` is its file in the settings, if there is one.
+    /// Loads the library; `setting` is its file in the settings, if given.
     ///
     /// # Errors
     /// When the library is missing, broken, or lacks functions.

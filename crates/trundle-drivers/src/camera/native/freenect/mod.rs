@@ -1,6 +1,6 @@
 //! The Kinect v1 (Kinect for Xbox 360) through libfreenect 0.5.
 //!
-//! Checked with fakenect, the library of the same functions that plays a folder. No real Kinect was at hand.
+//! Tested with fakenect, a library with the same functions that plays a folder. It was not tested with a real Kinect.
 //!
 //! Depth comes as raw disparity of 11 bits, which [`crate::camera::pixels`] converts to metres. The calibration is assumed unless the settings
 //! give one.
@@ -11,7 +11,7 @@
 //! | [`calibration`] | intrinsics and extrinsics |
 //! | [`functions`] | the functions of the library |
 //! | `session` | connection and open device |
-//! | `receiver`, `ticks` | images as they come, and their clock |
+//! | `receiver`, `ticks` | received images, and their clock |
 
 pub mod calibration;
 pub mod camera;

@@ -1,6 +1,6 @@
 //! Images from the callbacks of libfreenect, put together.
 //!
-//! The library calls back inside `freenect_process_events_timeout`, in the thread that called it. A variable of that thread leads the
+//! The library calls back inside `freenect_process_events_timeout`, in the thread that called it. A thread-local variable leads the
 //! callbacks to their receiver.
 
 use super::functions::FreenectDevice;
@@ -39,7 +39,7 @@ impl Receiver {
         result
     }
 
-    /// A pair of images of the same time, if there is one.
+    /// A pair of images of the same time; `None` without a pair.
     pub(super) fn take_pair(&mut self) -> Option<CameraFrame> {
         self.pair.take()
     }
@@ -84,6 +84,6 @@ unsafe fn receive(data: *mut c_void, bytes_per_pixel: usize, store: impl FnOnce(
     // SAFETY: the caller vouches for the length.
     let bytes =
         unsafe { std::slice::from_raw_parts(data.cast::<u8>(), SIZE_PX.0 * SIZE_PX.1 * bytes_per_pixel) };
-    // SAFETY: the receiver is borrowed by `during` until the library returns, and the library calls back one image at a time.
+    // SAFETY: `during` borrows the receiver until the library returns, and the library makes one callback at a time.
     store(unsafe { receiver.as_mut() }, bytes.to_vec());
 }

@@ -8,7 +8,7 @@ use std::ptr::NonNull;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Environment variable of fakenect: the folder that it plays.
+/// Environment variable of fakenect: the folder to play.
 const FAKE_FOLDER_VARIABLE: &str = "FAKENECT_PATH";
 const LOG_LEVEL_ERROR: c_int = 1;
 const SUBDEVICE_CAMERA: c_int = 2;
@@ -29,14 +29,14 @@ pub(super) struct Session {
     context: NonNull<Context>,
 }
 
-// SAFETY: libfreenect has no thread of its own; its objects may move between threads.
+// SAFETY: libfreenect has no threads; its objects may move between threads.
 unsafe impl Send for Session {}
 
 impl Session {
     /// A connection that leaves motor and microphones alone.
     pub(super) fn new(api: &Arc<FreenectApi>) -> Result<Self, CameraError> {
         if api.is_fake() && std::env::var_os(FAKE_FOLDER_VARIABLE).is_none() {
-            // Without the variable fakenect ends the program.
+            // Without the variable, fakenect would end the program.
             return Err(failed(
                 "freenect_init",
                 -1,
@@ -44,12 +44,12 @@ impl Session {
             ));
         }
         let mut context: *mut Context = std::ptr::null_mut();
-        // SAFETY: the context has a place; a null USB context lets the library make one.
+        // SAFETY: the context is writable; for a null USB context the library creates one.
         let code = unsafe { (api.freenect_init)(&mut context, std::ptr::null_mut()) };
         let context = NonNull::new(context).filter(|_| code >= 0);
         let context = context
             .ok_or_else(|| failed("freenect_init", code, "check that USB devices are visible".into()))?;
-        // SAFETY: the context is alive.
+        // SAFETY: the context is valid.
         unsafe {
             (api.freenect_set_log_level)(context.as_ptr(), LOG_LEVEL_ERROR);
             (api.freenect_select_subdevices)(context.as_ptr(), SUBDEVICE_CAMERA);
@@ -59,7 +59,7 @@ impl Session {
 
     /// The connected cameras. Their serial numbers are empty if the library cannot list them.
     pub(super) fn devices(&self) -> Vec<DeviceEntry> {
-        // SAFETY: the context is alive.
+        // SAFETY: the context is valid.
         let count = unsafe { (self.api.freenect_num_devices)(self.context.as_ptr()) };
         let count = usize::try_from(count).unwrap_or(0);
         let mut serials = self.serials();
@@ -72,7 +72,7 @@ impl Session {
         let functions = (self.api.freenect_list_device_attributes, self.api.freenect_free_device_attributes);
         let (Some(list), Some(free)) = functions else { return Vec::new() };
         let mut first: *mut Attributes = std::ptr::null_mut();
-        // SAFETY: the context is alive, and the list has a place.
+        // SAFETY: the context is valid, and the list is writable.
         unsafe { list(self.context.as_ptr(), &mut first) };
         let mut serials = Vec::new();
         let mut next = first;
@@ -85,7 +85,7 @@ impl Session {
             serials.push(serial.unwrap_or_default());
             next = following;
         }
-        // SAFETY: the list came from the library and is not used any more.
+        // SAFETY: the list came from the library and is not used afterwards.
         unsafe { free(first) };
         serials
     }
@@ -101,7 +101,7 @@ impl Session {
             Selection::Serial(serial) => {
                 let text = CString::new(serial.as_str())
                     .map_err(|_| CameraError::NoDevice { kind: name.clone() })?;
-                // SAFETY: the context and the text are alive, and the device has a place.
+                // SAFETY: the context and the text are valid, and the device is writable.
                 unsafe {
                     (self.api.freenect_open_device_by_camera_serial)(
                         self.context.as_ptr(),
@@ -110,27 +110,27 @@ impl Session {
                     )
                 }
             }
-            // SAFETY: the context is alive, and the device has a place.
+            // SAFETY: the context is valid, and the device is writable.
             _ => unsafe { (self.api.freenect_open_device)(self.context.as_ptr(), &mut device, 0) },
         };
         let device = NonNull::new(device).filter(|_| code >= 0);
         device.map(|device| OpenKinect { session: self, device }).ok_or_else(|| open_error(name, code))
     }
 
-    /// Lets the library call its callbacks, for at most `timeout`.
+    /// Runs the library's callbacks for at most `timeout`.
     fn process(&self, timeout: Duration) -> c_int {
         let mut time = libc::timeval {
             tv_sec: timeout.as_secs().min(60) as libc::time_t,
             tv_usec: libc::suseconds_t::from(timeout.subsec_micros()),
         };
-        // SAFETY: the context and the time are alive.
+        // SAFETY: the context and the time are valid.
         unsafe { (self.api.freenect_process_events_timeout)(self.context.as_ptr(), &mut time) }
     }
 }
 
 impl Drop for Session {
     fn drop(&mut self) {
-        // SAFETY: the context is alive and all its devices are closed.
+        // SAFETY: the context is valid and all its devices are closed.
         unsafe { (self.api.freenect_shutdown)(self.context.as_ptr()) };
     }
 }
@@ -149,7 +149,7 @@ impl OpenKinect {
     /// Starts 640 x 480 colour and raw disparity, delivered to the callbacks.
     pub(super) fn start(&self, on_video: ImageCallback, on_depth: ImageCallback) -> Result<(), CameraError> {
         let (api, device) = (&self.session.api, self.device.as_ptr());
-        // SAFETY: the device is alive, and the callbacks live as long as the program.
+        // SAFETY: the device is valid, and the callbacks are static functions.
         unsafe {
             (api.freenect_set_video_callback)(device, on_video);
             (api.freenect_set_depth_callback)(device, on_depth);
@@ -162,7 +162,7 @@ impl OpenKinect {
         }
     }
 
-    /// Lets the library call the callbacks; a negative number when the camera is gone.
+    /// Runs the callbacks; returns a negative number if the camera was unplugged.
     pub(super) fn process(&self, timeout: Duration) -> c_int {
         self.session.process(timeout)
     }
@@ -171,7 +171,7 @@ impl OpenKinect {
 impl Drop for OpenKinect {
     fn drop(&mut self) {
         let (api, device) = (&self.session.api, self.device.as_ptr());
-        // SAFETY: the device is alive; stopping a stopped stream is allowed.
+        // SAFETY: the device is valid; stopping a stopped stream is allowed.
         unsafe {
             (api.freenect_stop_depth)(device);
             (api.freenect_stop_video)(device);

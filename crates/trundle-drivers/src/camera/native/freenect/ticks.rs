@@ -2,19 +2,19 @@
 
 use trundle_core::Stamp;
 
-/// Ticks per second \[Hz\]. The counter of 32 bits starts anew every 71.6 s. Source: OpenKinect wiki, "Protocol Documentation".
+/// Ticks per second \[Hz\]. The counter of 32 bits restarts every 71.6 s. Source: OpenKinect wiki, "Protocol Documentation".
 const TICK_RATE_HZ: i128 = 60_000_000;
 /// Nanoseconds in a second.
 const NANOS_PER_S: i128 = 1_000_000_000;
 
-/// A clock whose counter goes on after its largest number.
+/// A clock that continues after the counter's overflow.
 #[derive(Debug, Default)]
 pub(super) struct TickClock {
     last: Option<(u32, i64)>,
 }
 
 impl TickClock {
-    /// Time of a number of ticks, which is less than half a round (35 s) from the one before.
+    /// Time of a number of ticks, less than half a period (35 s) from the previous one.
     pub(super) fn stamp(&mut self, ticks: u32) -> Stamp {
         let total = match self.last {
             Some((last, total)) => total + i64::from(ticks.wrapping_sub(last).cast_signed()),

@@ -1,7 +1,7 @@
 //! A table of the functions of a library.
 
-/// Declares a structure with a field for each function of a library, and `load`, which fills it. A function after `optional` may be
-/// missing. The declared types have to match the documentation of the library: nothing can check them.
+/// Declares a structure with a field for each function of a library, and its constructor `load`. A function after `optional` may be
+/// missing. The declared types must match the library's documentation: they cannot be checked.
 macro_rules! functions {
     (
         $(#[$meta:meta])*
@@ -24,13 +24,13 @@ macro_rules! functions {
             /// The functions of `library`.
             ///
             /// # Errors
-            /// When the library lacks some; the error names all of them.
+            /// When functions are missing in the library; the error names all of them.
             fn from_library(
                 library: $crate::camera::native::library::NativeLibrary,
             ) -> Result<Self, $crate::camera::CameraError> {
                 let mut missing: Vec<&str> = Vec::new();
                 $(
-                    // SAFETY: the type is the one that the documentation of the library declares for the function.
+                    // SAFETY: the type is that of the function in the library's documentation.
                     let $name = unsafe { library.function(stringify!($name)) };
                     if $name.is_none() {
                         missing.push(stringify!($name));

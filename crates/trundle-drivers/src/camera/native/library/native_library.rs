@@ -9,8 +9,8 @@ use std::ffi::{CStr, c_int};
 use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 
-/// A loaded library of a camera maker. It stays loaded until the program ends: these libraries start threads and register exit handlers
-/// that do not survive unloading.
+/// A loaded library of a camera manufacturer. It is never unloaded: these libraries start threads and register exit handlers that do not
+/// survive unloading.
 #[derive(Debug)]
 pub struct NativeLibrary {
     spec: LibrarySpec,
@@ -19,11 +19,11 @@ pub struct NativeLibrary {
 }
 
 impl NativeLibrary {
-    /// Loads the library `spec`; `setting` is its file in the settings, if there is one.
+    /// Loads the library `spec`; `setting` is its file in the settings, if given.
     ///
     /// # Errors
-    /// [`CameraError::LibraryMissing`] when there is no such file; [`CameraError::LibraryBroken`] when it, or a library that it needs,
-    /// cannot be loaded.
+    /// [`CameraError::LibraryMissing`] when the file does not exist; [`CameraError::LibraryBroken`] when the file, or a library that it
+    /// requires, cannot be loaded.
     pub fn load(spec: LibrarySpec, setting: Option<&Path>) -> Result<Self, CameraError> {
         let candidates = candidates(&spec, setting);
         let mut problems = Vec::new();
@@ -43,7 +43,7 @@ impl NativeLibrary {
         &self.spec
     }
 
-    /// Passes the version `found` through when it suits.
+    /// Returns the version `found` if it is supported.
     ///
     /// # Errors
     /// [`CameraError::VersionUnsuitable`] otherwise.
@@ -54,18 +54,18 @@ impl NativeLibrary {
     /// The function `name`, `None` if the library lacks it.
     ///
     /// # Safety
-    /// `T` is the type of a pointer to that function, as its documentation declares it.
+    /// `T` must be the type of a pointer to that function, according to its documentation.
     pub unsafe fn function<T: Copy>(&self, name: &str) -> Option<T> {
         // SAFETY: the caller vouches for the type.
         unsafe { self.library.get::<T>(name.as_bytes()) }.ok().map(|symbol| *symbol)
     }
 
-    /// The error of a library that lacks the functions `names`.
+    /// The error of a library without the functions `names`.
     pub fn lacks(&self, names: &[&str]) -> CameraError {
         self.spec.unsuitable(format!("unknown (without the functions {})", names.join(", ")))
     }
 
-    /// Path of the file that holds the address of a function; the file as searched where the loader does not tell.
+    /// Path of the file that contains the address of a function; the requested file if the loader does not report it.
     pub fn path_of(&self, function: *const ()) -> PathBuf {
         // SAFETY: all fields of the structure may be zero.
         let mut found: libc::Dl_info = unsafe { std::mem::zeroed() };

@@ -10,18 +10,18 @@ use std::path::PathBuf;
 pub struct LibraryReport {
     /// Name of the library.
     pub name: &'static str,
-    /// Its state.
+    /// State of the library.
     pub state: LibraryState,
 }
 
 /// State of a library.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LibraryState {
-    /// The library is loaded and its version suits.
+    /// The library is loaded and its version is supported.
     Usable {
-        /// Its file.
+        /// File of the library.
         file: PathBuf,
-        /// Its version; `None` if the library has no function that tells it.
+        /// Version of the library; `None` without a version function.
         version: Option<LibraryVersion>,
     },
     /// The library cannot be used.

@@ -1,4 +1,4 @@
-//! Specification of a library before it is loaded.
+//! Specification of a library before loading.
 
 use crate::camera::CameraError;
 use std::fmt;
@@ -8,17 +8,17 @@ use std::fmt;
 pub struct LibrarySpec {
     /// Name in messages.
     pub name: &'static str,
-    /// Environment variable that names its file.
+    /// Environment variable with the file of the library.
     pub variable: &'static str,
-    /// Names under which the loader finds it, best first.
+    /// Names for the loader, in order of preference.
     pub sonames: &'static [&'static str],
-    /// Its place inside a Python wheel; `None` if there is no wheel.
+    /// Path inside a Python wheel; `None` without a wheel.
     pub wheel: Option<WheelFile>,
     /// First version that suits.
     pub from: LibraryVersion,
-    /// First version beyond those that suit.
+    /// First version above the supported ones.
     pub below: LibraryVersion,
-    /// How to get it, with the exact command.
+    /// Remedy for a missing library, with the exact command.
     pub remedy: &'static str,
 }
 

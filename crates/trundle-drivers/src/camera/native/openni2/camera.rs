@@ -42,7 +42,7 @@ pub struct OpenNiCamera {
 }
 
 impl OpenNiCamera {
-    /// Opens a camera and starts its streams in their default modes, depth registered to colour where the camera offers it. The serial
+    /// Opens a camera and starts its streams in their default modes, with depth registered to colour if the camera offers it. The serial
     /// number of `selection` is the URI of [`list_devices`]; `Dummy` is the driver's own test image.
     ///
     /// # Errors

@@ -92,7 +92,7 @@ pub struct Frame {
 }
 
 functions! {
-    /// The functions of OpenNI2. `oniShutdown` is left out: version 2.2.0.33 crashes in it.
+    /// The functions of OpenNI2. `oniShutdown` is not used, because version 2.2.0.33 crashes in it.
     pub struct OpenNiApi {
         fn oniInitialize(c_int) -> c_int;
         fn oniGetVersion() -> Version;
@@ -117,8 +117,7 @@ functions! {
 }
 
 impl OpenNiApi {
-    /// Loads the library and starts its drivers, which stay until the program ends; `setting` is its file in the settings, if there is
-    /// one.
+    /// Loads the library and starts its drivers, which run until the program ends; `setting` is its file in the settings, if given.
     ///
     /// # Errors
     /// When the library is missing, broken, of another version, or its drivers do not start.
@@ -126,7 +125,7 @@ impl OpenNiApi {
         static STARTED: OnceLock<c_int> = OnceLock::new();
         let api = Self::from_library(NativeLibrary::load(LIBRARY, setting)?)?;
         api.library.check_version(api.version())?;
-        // SAFETY: the number is that of the structures above.
+        // SAFETY: the number is the version of the structures above.
         let code = *STARTED.get_or_init(|| unsafe { (api.oniInitialize)(API_VERSION) });
         api.check("oniInitialize", code, "any camera")?;
         Ok(Arc::new(api))
@@ -148,7 +147,7 @@ impl OpenNiApi {
         self.library.path_of(self.oniInitialize as *const ())
     }
 
-    /// The error of a status; `device` is the camera in it.
+    /// The error of a status of the camera `device`.
     pub(super) fn check(&self, function: &str, status: c_int, device: &str) -> Result<(), CameraError> {
         match status {
             STATUS_OK => Ok(()),

@@ -1,14 +1,14 @@
 //! Xtion and the first Astra through OpenNI2.
 //!
-//! Checked with the dummy device of version 2.2.0.33. No real camera was at hand. Recordings (`.oni`) are refused: that version delivers no
-//! frame from a recording of its dummy device.
+//! Tested with the dummy device of version 2.2.0.33. It was not tested with a real camera. Recordings (`.oni`) are refused: this version
+//! delivers no frame from a recording of its dummy device.
 //!
 //! The library reports an unplugged camera as silence.
 //!
 //! | module | content |
 //! |---|---|
 //! | [`camera`] | the camera and its settings |
-//! | [`serve`] | the camera in a process of its own |
+//! | [`serve`] | the camera in a separate process |
 //! | [`functions`] | the functions of the library |
 //! | `session` | open device and streams |
 

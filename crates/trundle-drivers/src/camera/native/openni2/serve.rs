@@ -1,7 +1,7 @@
-//! A camera of OpenNI2 in a process of its own.
+//! A camera of OpenNI2 in a separate process.
 //!
-//! The drivers of OpenNI2 crash when they are shut down, and a driver that crashes ends its process. A child process runs
-//! [`serve_openni`] and writes the frames to its output, from where the robot's process reads them as a camera stream.
+//! The drivers of OpenNI2 crash at their shutdown, which ends their process. A child process therefore runs [`serve_openni`] and writes the
+//! frames to its output; the robot's process reads them as a camera stream.
 
 use super::{OpenNiApi, OpenNiCamera, OpenNiSettings};
 use crate::camera::native::Selection;

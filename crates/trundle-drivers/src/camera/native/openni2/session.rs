@@ -22,27 +22,27 @@ const FORMAT_DEPTH_100_UM: c_int = 101;
 /// Nanoseconds in a microsecond.
 const NANOS_PER_US: i64 = 1000;
 
-/// Which of the two streams.
+/// Kind of a stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Color,
     Depth,
 }
 
-/// An open device. It closes its streams and itself; the library stays started.
+/// An open device. A drop closes the streams and the device; the library remains initialised.
 #[derive(Debug)]
 pub(super) struct OpenDevice {
     api: Arc<OpenNiApi>,
     name: String,
     device: *mut OpenNiDevice,
-    /// Colour and depth; null where not made.
+    /// Colour and depth; null for a missing stream.
     streams: [*mut Stream; 2],
 }
 
 // SAFETY: the library locks its objects; they may move between threads.
 unsafe impl Send for OpenDevice {}
 
-/// The cameras that the library lists; the URI stands for the serial number.
+/// The cameras listed by the library; the URI is used as serial number.
 pub fn list_devices(api: &Arc<OpenNiApi>) -> Result<Vec<DeviceEntry>, CameraError> {
     let (mut list, mut count) = (std::ptr::null_mut::<DeviceInfo>(), 0);
     // SAFETY: list and count have places.
@@ -53,7 +53,7 @@ pub fn list_devices(api: &Arc<OpenNiApi>) -> Result<Vec<DeviceEntry>, CameraErro
     // SAFETY: the library made a list of `count` entries.
     let infos = unsafe { std::slice::from_raw_parts(list, usize::try_from(count).unwrap_or(0)) };
     let entries = infos.iter().map(entry).collect();
-    // SAFETY: the list came from the library and is not used any more.
+    // SAFETY: the list came from the library and is not used afterwards.
     unsafe { (api.oniReleaseDeviceList)(list) };
     Ok(entries)
 }
@@ -70,12 +70,12 @@ fn text(field: &[c_char; 256]) -> String {
 }
 
 impl OpenDevice {
-    /// Opens the device with this URI and makes its streams; they are not started.
+    /// Opens the device with this URI and creates its streams without starting them.
     pub(super) fn open(api: &Arc<OpenNiApi>, uri: &str) -> Result<Self, CameraError> {
         let no_device = || CameraError::NoDevice { kind: uri.to_owned() };
         let text = CString::new(uri).map_err(|_| no_device())?;
         let mut device = std::ptr::null_mut();
-        // SAFETY: the text is alive, and the device has a place.
+        // SAFETY: the text is valid, and the device is writable.
         api.check("oniDeviceOpen", unsafe { (api.oniDeviceOpen)(text.as_ptr(), &mut device) }, uri)?;
         let streams = [std::ptr::null_mut(); 2];
         let mut open = Self { api: Arc::clone(api), name: uri.to_owned(), device, streams };
@@ -86,11 +86,11 @@ impl OpenDevice {
 
     fn make_stream(&mut self, kind: Kind, sensor: c_int) -> Result<(), CameraError> {
         let place = &mut self.streams[kind as usize];
-        // SAFETY: the device is alive, and the stream has a place.
+        // SAFETY: the device is valid, and the stream is writable.
         let status = unsafe { (self.api.oniDeviceCreateStream)(self.device, sensor, place) };
         self.api.check("oniDeviceCreateStream", status, &self.name)?;
         let is_mirrored: c_int = 0;
-        // SAFETY: the stream is alive, and the value has the size of its type. A device without the property refuses it.
+        // SAFETY: the stream is valid, and the value has the size of its type. A device without the property refuses the call.
         unsafe {
             (self.api.oniStreamSetProperty)(
                 self.streams[kind as usize],
@@ -102,10 +102,10 @@ impl OpenDevice {
         Ok(())
     }
 
-    /// Asks for depth registered to colour; `false` if the device does not offer it.
+    /// Requests depth registered to colour; `false` if the device does not offer it.
     pub(super) fn register_depth(&self) -> bool {
         let mode = REGISTRATION_DEPTH_TO_COLOR;
-        // SAFETY: the device is alive, and the value has the size of its type.
+        // SAFETY: the device is valid, and the value has the size of its type.
         unsafe {
             (self.api.oniDeviceIsImageRegistrationModeSupported)(self.device, mode) != 0
                 && (self.api.oniDeviceSetProperty)(
@@ -117,11 +117,11 @@ impl OpenDevice {
         }
     }
 
-    /// Description of the device by itself.
+    /// The device's own description.
     pub(super) fn about(&self) -> Result<DeviceEntry, CameraError> {
         // SAFETY: all fields of the structure may be zero.
         let mut info: DeviceInfo = unsafe { std::mem::zeroed() };
-        // SAFETY: the device is alive, and the information has a place.
+        // SAFETY: the device is valid, and the information is writable.
         self.api.check(
             "oniDeviceGetInfo",
             unsafe { (self.api.oniDeviceGetInfo)(self.device, &mut info) },
@@ -137,7 +137,7 @@ impl OpenDevice {
         self.api.check("oniStreamGetProperty", status, &self.name).map(|()| mode)
     }
 
-    /// Fields of view \[rad\]; 0 if the stream does not tell them.
+    /// Fields of view \[rad\]; 0 if the stream does not report them.
     pub(super) fn fields_of_view(&self, kind: Kind) -> (f64, f64) {
         let (mut across, mut down) = (0_f32, 0_f32);
         self.property(kind, STREAM_PROPERTY_HORIZONTAL_FOV, &mut across);
@@ -148,7 +148,7 @@ impl OpenDevice {
     fn property<T: Copy>(&self, kind: Kind, number: c_int, value: &mut T) -> c_int {
         let mut size = size_of_value::<T>();
         let place: *mut T = value;
-        // SAFETY: the stream is alive, and the value has the size given.
+        // SAFETY: the stream is valid, and the value has the size given.
         unsafe {
             (self.api.oniStreamGetProperty)(self.streams[kind as usize], number, place.cast(), &mut size)
         }
@@ -157,7 +157,7 @@ impl OpenDevice {
     /// Starts both streams.
     pub(super) fn start(&self) -> Result<(), CameraError> {
         self.streams.iter().try_for_each(|stream| {
-            // SAFETY: the stream is alive.
+            // SAFETY: the stream is valid.
             self.api.check("oniStreamStart", unsafe { (self.api.oniStreamStart)(*stream) }, &self.name)
         })
     }
@@ -166,7 +166,7 @@ impl OpenDevice {
     pub(super) fn next_image(&mut self, timeout: Duration) -> Result<Option<(Kind, RawImage)>, CameraError> {
         let ms = c_int::try_from(timeout.as_millis()).unwrap_or(c_int::MAX);
         let mut index = -1;
-        // SAFETY: both streams are alive, and the index has a place.
+        // SAFETY: both streams are valid, and the index is writable.
         let status = unsafe { (self.api.oniWaitForAnyStream)(self.streams.as_mut_ptr(), 2, &mut index, ms) };
         if status == STATUS_TIME_OUT {
             return Ok(None);
@@ -174,12 +174,12 @@ impl OpenDevice {
         self.api.check("oniWaitForAnyStream", status, &self.name)?;
         let kind = if index == 0 { Kind::Color } else { Kind::Depth };
         let mut frame: *mut Frame = std::ptr::null_mut();
-        // SAFETY: the stream is alive and has a frame, which gets a place.
+        // SAFETY: the stream is valid and has a frame, whose pointer is writable.
         let status = unsafe { (self.api.oniStreamReadFrame)(self.streams[kind as usize], &mut frame) };
         self.api.check("oniStreamReadFrame", status, &self.name)?;
-        // SAFETY: the library made the frame; it is alive until it is released.
+        // SAFETY: the library made the frame; it is valid until its release.
         let image = unsafe { image(&*frame) };
-        // SAFETY: the frame came from the library and is not used any more.
+        // SAFETY: the frame came from the library and is not used afterwards.
         unsafe { (self.api.oniFrameRelease)(frame) };
         Ok(Some((kind, image?)))
     }
@@ -188,13 +188,13 @@ impl OpenDevice {
 impl Drop for OpenDevice {
     fn drop(&mut self) {
         for stream in self.streams.into_iter().filter(|stream| !stream.is_null()) {
-            // SAFETY: the stream is alive; stopping a stopped stream is allowed.
+            // SAFETY: the stream is valid; stopping a stopped stream is allowed.
             unsafe {
                 (self.api.oniStreamStop)(stream);
                 (self.api.oniStreamDestroy)(stream);
             }
         }
-        // SAFETY: the device is alive and has no streams any more.
+        // SAFETY: the device is valid and its streams are destroyed.
         unsafe { (self.api.oniDeviceClose)(self.device) };
     }
 }
@@ -231,7 +231,7 @@ pub(super) fn depth_unit_m(mode: VideoMode) -> f64 {
 /// A copy of an image.
 ///
 /// # Safety
-/// The frame is alive: `data` points to `size` bytes.
+/// The frame must be valid: `data` points to `size` bytes.
 unsafe fn image(frame: &Frame) -> Result<RawImage, Invalid> {
     let format = pixel_format(frame.mode.format)?;
     let number = |value: c_int| usize::try_from(value).unwrap_or(0);

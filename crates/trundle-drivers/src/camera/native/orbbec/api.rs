@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 const LOG_SEVERITY_OFF: c_int = 5;
 const EXCEPTION_CAMERA_DISCONNECTED: c_int = 2;
-/// How to get the permission to open an Orbbec camera.
+/// Remedy for a missing permission to open an Orbbec camera.
 const PERMISSION_REMEDY: &str = "install the udev rules of OrbbecSDK: run 'sudo scripts/env_setup/install_udev_rules.sh' of \
     https://github.com/orbbec/OrbbecSDK_v2 and plug the camera in again";
 /// Remedy for other errors.
@@ -46,7 +46,7 @@ impl OrbbecError {
 }
 
 impl OrbbecApi {
-    /// Loads the library; `setting` is its file in the settings, if there is one. The library writes no log.
+    /// Loads the library; `setting` is its file in the settings, if given. The library writes no log.
     ///
     /// # Errors
     /// When the library is missing, broken, or of another version.
@@ -68,25 +68,25 @@ impl OrbbecApi {
         self.library.path_of(self.ob_get_version as *const ())
     }
 
-    /// Silences the log, and names the folder of extensions beside the library.
+    /// Disables the log, and sets the folder of extensions next to the library.
     fn prepare(&self) -> Result<(), OrbbecError> {
         // SAFETY: the function takes a number.
         self.call(|error| unsafe { (self.ob_set_logger_severity)(LOG_SEVERITY_OFF, error) })?;
         let folder = self.file().with_file_name("extensions");
         let Ok(text) = CString::new(folder.to_string_lossy().as_bytes()) else { return Ok(()) };
         if folder.is_dir() {
-            // SAFETY: the text is alive.
+            // SAFETY: the text is valid.
             self.call(|error| unsafe { (self.ob_set_extensions_directory)(text.as_ptr(), error) })?;
         }
         Ok(())
     }
 
-    /// A connection to the library. It leaves the network alone: only USB cameras are found.
+    /// A connection to the library. Network devices are not enumerated: only USB cameras are found.
     pub(super) fn context(self: &Arc<Self>) -> Result<Handle<Context>, OrbbecError> {
         // SAFETY: the function takes the place of an error only.
         let context =
             self.owned(self.ob_delete_context, |error| unsafe { (self.ob_create_context)(error) })?;
-        // SAFETY: the context is alive.
+        // SAFETY: the context is valid.
         self.call(|error| unsafe { (self.ob_enable_net_device_enumeration)(context.get(), false, error) })?;
         Ok(context)
     }
@@ -161,7 +161,7 @@ impl<T> Drop for Handle<T> {
     }
 }
 
-/// A copy of a text of the library; empty if there is none.
+/// A copy of a text of the library; empty for a null pointer.
 ///
 /// # Safety
 /// `text` is null or ends with a zero.

@@ -49,7 +49,7 @@ pub struct OrbbecCamera {
     running: Running,
 }
 
-/// A started pipeline. The order of the fields is the order in which they are freed.
+/// A started pipeline. The order of the fields is the order of their release.
 #[derive(Debug)]
 struct Running {
     pipeline: Handle<Pipeline>,
@@ -60,7 +60,7 @@ struct Running {
 }
 
 impl OrbbecCamera {
-    /// Opens a camera, starts its streams, and waits for the first frame, which tells the intrinsics.
+    /// Opens a camera, starts its streams, and waits for the first frame, which contains the intrinsics.
     ///
     /// # Errors
     /// When the camera is missing, in use, forbidden, silent or without these streams, its intrinsics are unusable, or `selection` is a
@@ -117,17 +117,17 @@ impl Running {
         settings: &OrbbecSettings,
         name: String,
     ) -> Result<Self, OrbbecError> {
-        // SAFETY: the device is alive.
+        // SAFETY: the device is valid.
         let pipeline = api.owned(api.ob_delete_pipeline, |error| unsafe {
             (api.ob_create_pipeline_with_device)(device.get(), error)
         })?;
         let config = config(api, settings)?;
-        // SAFETY: the pipeline is alive.
+        // SAFETY: the pipeline is valid.
         let synced = api.call(|error| unsafe { (api.ob_pipeline_enable_frame_sync)(pipeline.get(), error) });
         if let Err(error) = synced {
             tracing::warn!(?error, name, "the camera does not synchronize colour and depth");
         }
-        // SAFETY: both objects are alive.
+        // SAFETY: both objects are valid.
         api.call(|error| unsafe {
             (api.ob_pipeline_start_with_config)(pipeline.get(), config.get(), error)
         })?;
@@ -150,7 +150,7 @@ impl Running {
 
     fn next_set(&self, timeout: Duration) -> Result<Option<Handle<Frame>>, OrbbecError> {
         let ms = u32::try_from(timeout.as_millis()).unwrap_or(u32::MAX);
-        // SAFETY: the pipeline is alive.
+        // SAFETY: the pipeline is valid.
         self.api.owned_or_none(self.api.ob_delete_frame, |error| unsafe {
             (self.api.ob_pipeline_wait_for_frameset)(self.pipeline.get(), ms, error)
         })
@@ -159,7 +159,7 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // SAFETY: the pipeline is alive; it was started.
+        // SAFETY: the pipeline is valid; it was started.
         let stopped =
             self.api.call(|error| unsafe { (self.api.ob_pipeline_stop)(self.pipeline.get(), error) });
         if let Err(error) = stopped {
@@ -174,7 +174,7 @@ fn config(api: &Arc<OrbbecApi>, settings: &OrbbecSettings) -> Result<Handle<Conf
     let streams =
         [(STREAM_COLOR, settings.color_size, FORMAT_RGB), (STREAM_DEPTH, settings.depth_size, FORMAT_Y16)];
     for (stream, (width, height), format) in streams {
-        // SAFETY: the object is alive.
+        // SAFETY: the object is valid.
         api.call(|error| unsafe {
             (api.ob_config_enable_video_stream)(
                 config.get(),
@@ -205,7 +205,7 @@ fn find(
     };
     let found = entries.into_iter().zip(0_u32..).find(|(entry, _)| is_wanted(entry));
     let (entry, index) = found.ok_or_else(|| CameraError::NoDevice { kind: name.clone() })?;
-    // SAFETY: the list is alive, and the index is below its length.
+    // SAFETY: the list is valid, and the index is below its length.
     let device = api.owned(api.ob_delete_device, |error| unsafe {
         (api.ob_device_list_get_device)(list.get(), index, error)
     });

@@ -20,17 +20,17 @@ pub(super) fn device_list(
     api: &Arc<OrbbecApi>,
     context: &Handle<Context>,
 ) -> Result<Handle<DeviceList>, OrbbecError> {
-    // SAFETY: the context is alive.
+    // SAFETY: the context is valid.
     api.owned(api.ob_delete_device_list, |error| unsafe { (api.ob_query_device_list)(context.get(), error) })
 }
 
-/// Facts that the library reports of each camera of its list.
+/// Facts about each camera in the library's list.
 pub(super) fn entries(api: &OrbbecApi, list: &Handle<DeviceList>) -> Result<Vec<DeviceEntry>, OrbbecError> {
-    // SAFETY: the list is alive.
+    // SAFETY: the list is valid.
     let count = api.call(|error| unsafe { (api.ob_device_list_get_count)(list.get(), error) })?;
     (0..count)
         .map(|index| {
-            // SAFETY: the list is alive, the index is below its length, and its texts end with a zero.
+            // SAFETY: the list is valid, the index is below its length, and its texts end with a zero.
             let name = api.call(|error| unsafe {
                 text((api.ob_device_list_get_device_name)(list.get(), index, error))
             })?;

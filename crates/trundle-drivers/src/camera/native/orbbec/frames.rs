@@ -40,7 +40,7 @@ pub(super) struct FrameSet {
 impl FrameSet {
     /// The images of a set; `None` if one is missing.
     pub(super) fn new(api: &Arc<OrbbecApi>, set: &Handle<Frame>) -> Result<Option<Self>, OrbbecError> {
-        // SAFETY: the set is alive.
+        // SAFETY: the set is valid.
         let color = api.owned_or_none(api.ob_delete_frame, |error| unsafe {
             (api.ob_frameset_get_color_frame)(set.get(), error)
         })?;
@@ -58,7 +58,7 @@ impl FrameSet {
 
     /// Length of one unit of depth \[m\].
     pub(super) fn depth_unit_m(&self, api: &OrbbecApi) -> Result<f64, OrbbecError> {
-        // SAFETY: the frame is alive and holds depth.
+        // SAFETY: the frame is valid and holds depth.
         let mm =
             api.call(|error| unsafe { (api.ob_depth_frame_get_value_scale)(self.depth.get(), error) })?;
         Ok(f64::from(mm) * M_PER_MM)
@@ -72,7 +72,7 @@ impl FrameSet {
     ) -> Result<(StreamInfo, StreamInfo, Pose3), CameraError> {
         let color = profile(api, &self.color).map_err(|error| error.of(device))?;
         let depth = profile(api, &self.depth).map_err(|error| error.of(device))?;
-        // SAFETY: both profiles are alive.
+        // SAFETY: both profiles are valid.
         let raw = api.call(|error| unsafe {
             (api.ob_stream_profile_get_extrinsic_to)(depth.get(), color.get(), error)
         });
@@ -87,7 +87,7 @@ impl FrameSet {
 }
 
 fn profile(api: &Arc<OrbbecApi>, frame: &Handle<Frame>) -> Result<Handle<Profile>, OrbbecError> {
-    // SAFETY: the frame is alive.
+    // SAFETY: the frame is valid.
     api.owned(api.ob_delete_stream_profile, |error| unsafe {
         (api.ob_frame_get_stream_profile)(frame.get(), error)
     })
@@ -101,7 +101,7 @@ fn stream_info(
     device: &str,
 ) -> Result<StreamInfo, CameraError> {
     let named = |error: OrbbecError| error.of(device);
-    // SAFETY: the profile is alive and that of an image.
+    // SAFETY: the profile is valid and that of an image.
     let raw = api.call(|error| unsafe { (api.ob_video_stream_profile_get_intrinsic)(profile.get(), error) });
     // SAFETY: as above.
     let lens =
@@ -117,7 +117,7 @@ fn stream_info(
 }
 
 fn format(api: &OrbbecApi, frame: &Handle<Frame>, device: &str) -> Result<PixelFormat, CameraError> {
-    // SAFETY: the frame is alive.
+    // SAFETY: the frame is valid.
     let number = api.call(|error| unsafe { (api.ob_frame_get_format)(frame.get(), error) });
     let number = number.map_err(|error| error.of(device))?;
     let unknown =
@@ -131,7 +131,7 @@ fn image(api: &OrbbecApi, frame: &Handle<Frame>, device: &str) -> Result<RawImag
 }
 
 fn pixels(api: &OrbbecApi, frame: &Handle<Frame>, format: PixelFormat) -> Result<RawImage, OrbbecError> {
-    // SAFETY: the frame is alive and holds an image.
+    // SAFETY: the frame is valid and holds an image.
     let width = api.call(|error| unsafe { (api.ob_video_frame_get_width)(frame.get(), error) })?;
     // SAFETY: as above.
     let height = api.call(|error| unsafe { (api.ob_video_frame_get_height)(frame.get(), error) })?;
@@ -144,7 +144,7 @@ fn pixels(api: &OrbbecApi, frame: &Handle<Frame>, format: PixelFormat) -> Result
     let bytes = if start.is_null() || size == 0 {
         Vec::new()
     } else {
-        // SAFETY: the library holds `size` bytes from `start` on while the frame is alive.
+        // SAFETY: the library holds `size` bytes from `start` on while the frame is valid.
         unsafe { std::slice::from_raw_parts(start, size as usize) }.to_vec()
     };
     let stamp = i64::try_from(micros).unwrap_or(i64::MAX).saturating_mul(NANOS_PER_US);

@@ -47,7 +47,7 @@ opaque! {
     Profile;
 }
 
-/// Where a function stores its error.
+/// Pointer through which a function returns its error.
 pub(super) type ErrorOut = *mut *mut RawError;
 
 /// `ob_camera_intrinsic`.

@@ -19,7 +19,7 @@ const M_PER_MM: f64 = 1e-3;
 /// A camera of the library, with the largest error of its distortion \[px\].
 ///
 /// # Errors
-/// When a number is out of range, the model is that of a fisheye lens, or the fit is off by more than 0.5 px.
+/// When a number is out of range, the model is that of a fisheye lens, or the error of the fit exceeds 0.5 px.
 pub fn pinhole_camera(raw: Intrinsic, lens: LensDistortion) -> Result<(PinholeCamera, f64), Invalid> {
     let side = |pixels: i16| usize::try_from(pixels).unwrap_or(0);
     let size = (side(raw.width), side(raw.height));

@@ -1,6 +1,6 @@
 //! Orbbec cameras (Gemini 330, Femto, Astra 2) through OrbbecSDK 2.
 //!
-//! Never met a device: loading, version, the empty device list and the errors are tested with version 2.9.3 of the library; streams,
+//! Not tested with a device. Loading, version, the empty device list and the errors are tested with version 2.9.3 of the library; streams,
 //! intrinsics and stamps follow its documentation.
 //!
 //! | module | content |
@@ -9,8 +9,8 @@
 //! | [`intrinsics`] | lens models and poses |
 //! | [`functions`] | the functions of the library |
 //! | `api` | loading, calls, objects, errors |
-//! | `device_list` | what is connected |
-//! | `frames` | frames and what they tell of their streams |
+//! | `device_list` | connected cameras |
+//! | `frames` | frames and the stream data in them |
 
 mod api;
 pub mod camera;

@@ -44,7 +44,7 @@ pub(super) struct RealSenseError {
 }
 
 impl RealSenseApi {
-    /// Loads the library; `setting` is its file in the settings, if there is one.
+    /// Loads the library; `setting` is its file in the settings, if given.
     ///
     /// # Errors
     /// When the library is missing, broken, or of another version.
@@ -57,7 +57,7 @@ impl RealSenseApi {
     /// Version of the library.
     ///
     /// # Errors
-    /// When the library does not tell it.
+    /// When the library does not report its version.
     pub fn version(&self) -> Result<LibraryVersion, CameraError> {
         // SAFETY: the function takes the place of an error only.
         let number = self.call(|error| unsafe { (self.rs2_get_api_version)(error) });
@@ -111,7 +111,7 @@ impl RealSenseApi {
     }
 }
 
-/// A copy of a text of the library; empty if there is none.
+/// A copy of a text of the library; empty for a null pointer.
 ///
 /// # Safety
 /// `text` is null or ends with a zero.

@@ -16,10 +16,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_core::Invalid;
 
-/// Silence of a stopped recording that means its end: 0.5 s. The library reports a recording as stopped until its thread has started, and
-/// again while the last frames are on their way. Source: ours.
+/// Silence of a stopped recording that counts as its end: 0.5 s. The library reports a recording as stopped before its thread has started,
+/// and again before the last frames are delivered. Source: ours.
 const END_SILENCE: Duration = Duration::from_millis(500);
-/// Time between two queries of the state of a recording that delivers nothing. Source: ours.
+/// Period of queries of the state of a silent recording. Source: ours.
 const STATUS_PERIOD: Duration = Duration::from_millis(20);
 
 /// A RealSense camera, or a recording of one.
@@ -59,8 +59,8 @@ impl RealSenseCamera {
         Ok(Self { info, running, pairing, gyro, quiet_since: None, has_ended: false })
     }
 
-    /// The samples of the gyro since the last call, oldest first. Empty without [`RealSenseSettings::gyro`]. The library puts the newest
-    /// sample into each set of images: the rate is that of the images, too low to integrate.
+    /// The samples of the gyro since the last call, oldest first. Empty without [`RealSenseSettings::gyro`]. The library adds only the
+    /// newest sample to each set of images: the rate of the images is too low for an integration.
     pub fn take_gyro(&mut self) -> Vec<GyroSample> {
         self.gyro.take()
     }
@@ -170,11 +170,11 @@ fn unavailable(device: DeviceEntry, settings: &RealSenseSettings) -> CameraError
     }
 }
 
-/// Makes a recording wait for its reader, and for the start of all its sensors: the library drops what comes before.
+/// Makes a recording wait for its reader, and for the start of all its sensors: the library drops earlier data.
 fn prepare_file(request: &Request, selection: &Selection) -> Result<DeviceEntry, CameraError> {
     let name = selection.describe("RealSense");
     let prepared = request.resolved_device().and_then(|device| {
-        // SAFETY: the device is alive and a recording.
+        // SAFETY: the device is valid and a recording.
         request.api.call(|error| unsafe {
             (request.api.rs2_playback_device_set_real_time)(device.get(), 0, error)
         })?;

@@ -28,15 +28,15 @@ fn connected(
     api: &Arc<RealSenseApi>,
     context: &Handle<Context>,
 ) -> Result<Vec<Handle<Device>>, RealSenseError> {
-    // SAFETY: the context is alive.
+    // SAFETY: the context is valid.
     let list = api.owned(api.rs2_delete_device_list, |error| unsafe {
         (api.rs2_query_devices)(context.get(), error)
     })?;
-    // SAFETY: the list is alive.
+    // SAFETY: the list is valid.
     let count = api.call(|error| unsafe { (api.rs2_get_device_count)(list.get(), error) })?;
     (0..count)
         .map(|index| {
-            // SAFETY: the list is alive, and the index is below its length.
+            // SAFETY: the list is valid, and the index is below its length.
             api.owned(api.rs2_delete_device, |error| unsafe {
                 (api.rs2_create_device)(list.get(), index, error)
             })
@@ -44,7 +44,7 @@ fn connected(
         .collect()
 }
 
-/// Description of a device by itself.
+/// A device's own description.
 pub(super) fn entry(api: &RealSenseApi, device: &Handle<Device>) -> Result<DeviceEntry, RealSenseError> {
     Ok(DeviceEntry {
         name: info(api, device, CAMERA_INFO_NAME)?,
@@ -56,13 +56,13 @@ pub(super) fn entry(api: &RealSenseApi, device: &Handle<Device>) -> Result<Devic
 
 /// A text of the device; empty if it has none.
 fn info(api: &RealSenseApi, device: &Handle<Device>, number: c_int) -> Result<String, RealSenseError> {
-    // SAFETY: the device is alive.
+    // SAFETY: the device is valid.
     let is_there =
         api.call(|error| unsafe { (api.rs2_supports_device_info)(device.get(), number, error) })?;
     if is_there == 0 {
         return Ok(String::new());
     }
-    // SAFETY: the device is alive.
+    // SAFETY: the device is valid.
     let value = api.call(|error| unsafe { (api.rs2_get_device_info)(device.get(), number, error) })?;
     // SAFETY: the text belongs to the device and ends with a zero.
     Ok(unsafe { text(value) })

@@ -5,7 +5,7 @@ use super::constants::EXCEPTION_CAMERA_DISCONNECTED;
 use crate::camera::CameraError;
 use std::ffi::c_int;
 
-/// How to get the permission to open a RealSense camera.
+/// Remedy for a missing permission to open a RealSense camera.
 const PERMISSION_REMEDY: &str = "install the udev rules of librealsense: copy 99-realsense-libusb.rules from \
     https://github.com/realsenseai/librealsense/tree/master/config to /etc/udev/rules.d, run 'sudo udevadm control --reload' and plug the camera in again";
 /// Remedy for other errors.

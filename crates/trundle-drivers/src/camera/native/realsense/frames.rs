@@ -27,7 +27,7 @@ pub(super) enum Content {
     Other,
 }
 
-/// The frames inside a set; the frame itself where it is alone.
+/// The frames inside a set; for a single frame, the frame itself.
 pub(super) fn parts(
     api: &Arc<RealSenseApi>,
     frame: Handle<Frame>,
@@ -35,11 +35,11 @@ pub(super) fn parts(
     if !is_a(api, &frame, EXTENSION_COMPOSITE_FRAME)? {
         return Ok(vec![frame]);
     }
-    // SAFETY: the frame is alive and a set.
+    // SAFETY: the frame is valid and a set.
     let count = api.call(|error| unsafe { (api.rs2_embedded_frames_count)(frame.get(), error) })?;
     (0..count)
         .map(|index| {
-            // SAFETY: the set is alive, and the index is below its length. The result is a reference of its own.
+            // SAFETY: the set is valid, and the index is below its length. The result is a separate reference.
             api.owned(api.rs2_release_frame, |error| unsafe {
                 (api.rs2_extract_frame)(frame.get(), index, error)
             })
@@ -48,7 +48,7 @@ pub(super) fn parts(
 }
 
 fn is_a(api: &RealSenseApi, frame: &Handle<Frame>, extension: c_int) -> Result<bool, RealSenseError> {
-    // SAFETY: the frame is alive.
+    // SAFETY: the frame is valid.
     let answer =
         api.call(|error| unsafe { (api.rs2_is_frame_extendable_to)(frame.get(), extension, error) })?;
     Ok(answer != 0)
@@ -56,7 +56,7 @@ fn is_a(api: &RealSenseApi, frame: &Handle<Frame>, extension: c_int) -> Result<b
 
 /// A copy of a frame that is not a set.
 pub(super) fn content(api: &RealSenseApi, frame: &Handle<Frame>) -> Result<Content, RealSenseError> {
-    // SAFETY: the frame is alive, and its profile lives longer.
+    // SAFETY: the frame is valid, and its profile outlives it.
     let profile = api.call(|error| unsafe { (api.rs2_get_frame_stream_profile)(frame.get(), error) })?;
     let data = profile_data(api, profile)?;
     match (data.stream, pixel_format(data.format)) {
@@ -85,7 +85,7 @@ fn image(
     format: crate::camera::PixelFormat,
 ) -> Result<Content, RealSenseError> {
     let frame_pointer = frame.get();
-    // SAFETY: the frame is alive and holds an image.
+    // SAFETY: the frame is valid and holds an image.
     let width = api.call(|error| unsafe { (api.rs2_get_frame_width)(frame_pointer, error) })?;
     // SAFETY: as above.
     let height = api.call(|error| unsafe { (api.rs2_get_frame_height)(frame_pointer, error) })?;
@@ -110,7 +110,7 @@ fn image(
 
 /// A copy of the data.
 fn bytes(api: &RealSenseApi, frame: &Handle<Frame>) -> Result<Vec<u8>, RealSenseError> {
-    // SAFETY: the frame is alive.
+    // SAFETY: the frame is valid.
     let size = api.call(|error| unsafe { (api.rs2_get_frame_data_size)(frame.get(), error) })?;
     // SAFETY: as above.
     let start = api.call(|error| unsafe { (api.rs2_get_frame_data)(frame.get(), error) })?.cast::<u8>();
@@ -118,12 +118,12 @@ fn bytes(api: &RealSenseApi, frame: &Handle<Frame>) -> Result<Vec<u8>, RealSense
     if start.is_null() || size == 0 {
         return Ok(Vec::new());
     }
-    // SAFETY: the library holds `size` bytes from `start` on while the frame is alive.
+    // SAFETY: the library holds `size` bytes from `start` on while the frame is valid.
     Ok(unsafe { std::slice::from_raw_parts(start, size) }.to_vec())
 }
 
 fn stamp(api: &RealSenseApi, frame: &Handle<Frame>) -> Result<Stamp, RealSenseError> {
-    // SAFETY: the frame is alive.
+    // SAFETY: the frame is valid.
     let ms = api.call(|error| unsafe { (api.rs2_get_frame_timestamp)(frame.get(), error) })?;
     Ok(Stamp::from_nanos((ms * NANOS_PER_MS).round() as i64))
 }

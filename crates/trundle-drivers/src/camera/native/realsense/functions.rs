@@ -44,7 +44,7 @@ opaque! {
     Frame;
 }
 
-/// Where a function stores its error.
+/// Pointer through which a function returns its error.
 pub(super) type ErrorOut = *mut *mut RawError;
 
 /// `rs2_intrinsics`.

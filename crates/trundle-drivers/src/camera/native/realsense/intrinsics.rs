@@ -17,7 +17,7 @@ const MODEL_BROWN_CONRADY: c_int = 4;
 /// computes both by the same formula: its function `rs2_deproject_pixel_to_point` inverts the modified one for the model named inverse.
 ///
 /// # Errors
-/// When a number is out of range, the model is that of a fisheye lens, or the fit is off by more than 0.5 px.
+/// When a number is out of range, the model is that of a fisheye lens, or the error of the fit exceeds 0.5 px.
 pub fn pinhole_camera(raw: &Intrinsics) -> Result<(PinholeCamera, f64), Invalid> {
     let size = (usize::try_from(raw.width).unwrap_or(0), usize::try_from(raw.height).unwrap_or(0));
     let focal = (f64::from(raw.fx), f64::from(raw.fy));

@@ -1,9 +1,10 @@
 //! RealSense cameras (D415, D435, D435i, D455) through librealsense2.
 //!
-//! Checked against version 2.59.1 with recordings of a software device. No real camera was at hand: start-up, errors and speeds of a real
-//! one follow the documentation.
+//! Tested with version 2.59.1 and recordings of a software device. It was not tested with a real camera: start-up, errors and speeds follow
+//! the documentation.
 //!
-//! librealsense 2.59 counts its use in a file. It sends that file only after consent in its viewer; nothing here gives it.
+//! librealsense 2.59 records statistics of its use in a file. It sends that file only after consent in its viewer; this driver gives no
+//! consent.
 //!
 //! | module | content |
 //! |---|---|
@@ -13,8 +14,8 @@
 //! | [`intrinsics`] | lens models and poses |
 //! | [`functions`] | the functions of the library |
 //! | `api`, `handle`, `error` | loading, calls, objects, errors |
-//! | `device_list`, `request`, `streams` | what is connected, what is asked, what is offered |
-//! | `running`, `frames`, `pairing` | a started pipeline, frames as they come, pairs |
+//! | `device_list`, `request`, `streams` | connected cameras, requested streams, offered streams |
+//! | `running`, `frames`, `pairing` | a started pipeline, received frames, pairs |
 
 mod api;
 pub mod camera;

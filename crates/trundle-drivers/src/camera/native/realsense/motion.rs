@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use trundle_core::{Stamp, Vector3};
 
-/// Samples kept for the reader; older ones are dropped. Source: ours; 3 s at 30 Hz.
+/// Maximum number of stored samples; older ones are dropped. Source: ours; 3 s at 30 Hz.
 const MAX_SAMPLES: usize = 90;
 
 /// A sample of the gyro.
@@ -11,7 +11,7 @@ const MAX_SAMPLES: usize = 90;
 pub struct GyroSample {
     /// Time of the sample on the clock of the images.
     pub device_stamp: Stamp,
-    /// Turn rate around the axes of the gyro, which are those of the depth camera \[rad/s\].
+    /// Turn rate around the axes of the depth camera \[rad/s\].
     pub rate: Vector3,
 }
 
@@ -23,7 +23,7 @@ pub(super) struct GyroSamples {
 }
 
 impl GyroSamples {
-    /// Appends a sample. One with the stamp of the sample before it is left out: frame sets repeat them.
+    /// Appends a sample. A sample with the stamp of the previous one is skipped: frame sets repeat samples.
     pub(super) fn push(&mut self, sample: GyroSample) {
         if self.last == Some(sample.device_stamp) {
             return;

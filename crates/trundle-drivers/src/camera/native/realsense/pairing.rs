@@ -7,7 +7,7 @@ use crate::camera::{CameraFrame, RawImage};
 use std::ffi::c_int;
 use trundle_core::Invalid;
 
-/// Puts images of the same time together. A set of the library may repeat an image of the set before it, or hold images of different times.
+/// Pairs images of the same time. A set of the library may repeat an image of the previous set, or contain images of different times.
 #[derive(Debug)]
 pub(super) struct Pairing {
     pair: ImagePair,
@@ -76,7 +76,7 @@ mod tests {
     use crate::camera::PixelFormat;
     use trundle_core::Stamp;
 
-    /// An image with a number, 33 ms after the one before.
+    /// An image with a number, 33 ms after the previous one.
     fn image(stream: c_int, number: u64, domain: c_int) -> Content {
         let stamp = Stamp::from_nanos(number as i64 * 33_000_000);
         let image = RawImage::packed(PixelFormat::Gray8, (1, 1), vec![0], stamp);

@@ -1,4 +1,4 @@
-//! The streams asked of librealsense2.
+//! The streams requested from librealsense2.
 
 use super::RealSenseSettings;
 use super::api::RealSenseError;
@@ -17,7 +17,7 @@ use std::sync::Arc;
 const ANY: c_int = 0;
 const ANY_INDEX: c_int = -1;
 
-/// A pipeline that is not started, and the request for it.
+/// A pipeline before its start, and its request.
 pub(super) struct Request {
     pub(super) api: Arc<RealSenseApi>,
     pub(super) context: Handle<Context>,
@@ -38,7 +38,7 @@ impl Request {
             Selection::Serial(serial) => {
                 let text = c_string(serial)?;
                 request.enable_live(settings).map_err(|error| error.of(serial))?;
-                // SAFETY: the request and the text are alive.
+                // SAFETY: the request and the text are valid.
                 let enabled = request.api.call(|error| unsafe {
                     (api.rs2_config_enable_device)(request.config.get(), text.as_ptr(), error)
                 });
@@ -51,7 +51,7 @@ impl Request {
 
     /// Whether a camera or recording offers these streams.
     pub(super) fn can_resolve(&self) -> Result<bool, RealSenseError> {
-        // SAFETY: both objects are alive.
+        // SAFETY: both objects are valid.
         let found = self.api.call(|error| unsafe {
             (self.api.rs2_config_can_resolve)(self.config.get(), self.pipeline.get(), error)
         })?;
@@ -61,7 +61,7 @@ impl Request {
     /// The device that the request leads to.
     pub(super) fn resolved_device(&self) -> Result<Handle<Device>, RealSenseError> {
         let api = &self.api;
-        // SAFETY: both objects are alive.
+        // SAFETY: both objects are valid.
         let profile = api.owned(api.rs2_delete_pipeline_profile, |error| unsafe {
             (api.rs2_config_resolve)(self.config.get(), self.pipeline.get(), error)
         })?;
@@ -70,7 +70,7 @@ impl Request {
 
     fn empty(api: &Arc<RealSenseApi>) -> Result<Self, RealSenseError> {
         let context = api.context()?;
-        // SAFETY: the context is alive.
+        // SAFETY: the context is valid.
         let pipeline = api.owned(api.rs2_delete_pipeline, |error| unsafe {
             (api.rs2_create_pipeline)(context.get(), error)
         })?;
@@ -86,13 +86,13 @@ impl Request {
         self.enable_gyro(settings)
     }
 
-    /// The streams of a recording, in the form recorded. It is played once.
+    /// The streams of a recording, in the recorded format. The recording is played once.
     fn select_file(&self, file: &Path, settings: &RealSenseSettings) -> Result<(), CameraError> {
         let place = file.display().to_string();
         std::fs::File::open(file).map_err(|source| CameraError::Io { place: place.clone(), source })?;
         let text = c_string(&place)?;
         let api = &self.api;
-        // SAFETY: the request and the text are alive.
+        // SAFETY: the request and the text are valid.
         api.call(|error| unsafe {
             (api.rs2_config_enable_device_from_file_repeat_option)(self.config.get(), text.as_ptr(), 0, error)
         })
@@ -115,7 +115,7 @@ impl Request {
     ) -> Result<(), RealSenseError> {
         let number = |pixels: usize| c_int::try_from(pixels).unwrap_or(c_int::MAX);
         let (width, height) = (number(width), number(height));
-        // SAFETY: the request is alive.
+        // SAFETY: the request is valid.
         self.api.call(|error| unsafe {
             (self.api.rs2_config_enable_stream)(
                 self.config.get(),
@@ -136,7 +136,7 @@ pub(super) fn device_of(
     api: &Arc<RealSenseApi>,
     profile: &Handle<PipelineProfile>,
 ) -> Result<Handle<Device>, RealSenseError> {
-    // SAFETY: the profile is alive.
+    // SAFETY: the profile is valid.
     api.owned(api.rs2_delete_device, |error| unsafe {
         (api.rs2_pipeline_profile_get_device)(profile.get(), error)
     })

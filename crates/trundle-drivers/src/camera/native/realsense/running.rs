@@ -13,7 +13,7 @@ use std::ffi::c_uint;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// A started pipeline. The order of the fields is the order in which they are freed.
+/// A started pipeline. The order of the fields is the order of their release.
 #[derive(Debug)]
 pub(super) struct Running {
     pipeline: Handle<Pipeline>,
@@ -32,14 +32,14 @@ impl Running {
         name: &str,
     ) -> Result<(Self, Handle<PipelineProfile>), CameraError> {
         let Request { api, context, pipeline, config } = request;
-        // SAFETY: the objects are alive.
+        // SAFETY: the objects are valid.
         let started = api.owned(api.rs2_delete_pipeline_profile, |error| unsafe {
             (api.rs2_pipeline_start_with_config)(pipeline.get(), config.get(), error)
         });
         let started = started.map_err(|error| error.of(name))?;
         let device = device_of(&api, &started).map_err(|error| error.of(name))?;
         if !is_live {
-            // SAFETY: the device is alive and a recording.
+            // SAFETY: the device is valid and a recording.
             api.call(|error| unsafe { (api.rs2_playback_device_resume)(device.get(), error) })
                 .map_err(|error| error.of(name))?;
         }
@@ -47,7 +47,7 @@ impl Running {
         Ok((Self { pipeline, device, hub, _config: config, _context: context, api }, started))
     }
 
-    /// Description of the camera by itself.
+    /// The camera's own description.
     pub(super) fn info(
         &self,
         about: DeviceEntry,
@@ -75,7 +75,7 @@ impl Running {
     pub(super) fn wait(&self, timeout: Duration) -> Result<Option<Handle<Frame>>, RealSenseError> {
         let ms = c_uint::try_from(timeout.as_millis()).unwrap_or(c_uint::MAX);
         let mut set: *mut Frame = std::ptr::null_mut();
-        // SAFETY: the pipeline is alive, and the set has a place.
+        // SAFETY: the pipeline is valid, and the set is writable.
         let is_there = self.api.call(|error| unsafe {
             (self.api.rs2_pipeline_try_wait_for_frames)(self.pipeline.get(), &mut set, ms, error)
         })?;
@@ -86,7 +86,7 @@ impl Running {
     /// Whether a live camera was unplugged.
     pub(super) fn is_unplugged(&self) -> Result<bool, RealSenseError> {
         let Some(hub) = &self.hub else { return Ok(false) };
-        // SAFETY: both objects are alive.
+        // SAFETY: both objects are valid.
         let is_connected = self.api.call(|error| unsafe {
             (self.api.rs2_device_hub_is_device_connected)(hub.get(), self.device.get(), error)
         })?;
@@ -95,7 +95,7 @@ impl Running {
 
     /// Whether a recording has ended.
     pub(super) fn is_played(&self) -> Result<bool, RealSenseError> {
-        // SAFETY: the device is alive and a recording.
+        // SAFETY: the device is valid and a recording.
         let status = self.api.call(|error| unsafe {
             (self.api.rs2_playback_device_get_current_status)(self.device.get(), error)
         })?;
@@ -105,7 +105,7 @@ impl Running {
 
 impl Drop for Running {
     fn drop(&mut self) {
-        // SAFETY: the pipeline is alive; it was started.
+        // SAFETY: the pipeline is valid and started.
         let stopped =
             self.api.call(|error| unsafe { (self.api.rs2_pipeline_stop)(self.pipeline.get(), error) });
         if let Err(error) = stopped {
@@ -115,6 +115,6 @@ impl Drop for Running {
 }
 
 fn hub(api: &Arc<RealSenseApi>, context: &Handle<Context>) -> Result<Handle<DeviceHub>, RealSenseError> {
-    // SAFETY: the context is alive.
+    // SAFETY: the context is valid.
     api.owned(api.rs2_delete_device_hub, |error| unsafe { (api.rs2_create_device_hub)(context.get(), error) })
 }

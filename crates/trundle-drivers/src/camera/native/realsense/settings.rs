@@ -9,12 +9,12 @@ const DEFAULT_SIZE_PX: (usize, usize) = (640, 480);
 /// Frames per second \[Hz\]. Source: ours, the rate of the Kinect V2.
 const DEFAULT_RATE_HZ: u32 = 30;
 /// Time from the middle of the exposure to the arrival of a frame \[s\]. Source: ours, assumed: half an exposure of 8 ms, one frame of
-/// readout and depth computation, transfer. Measure it where it matters.
+/// readout and depth computation, transfer. Measure the delay if it matters.
 const DEFAULT_DELAY_S: f64 = 0.045;
 /// Longest delay: 1 s. A longer one is refused. Source: ours, the limit of a camera stream.
 const MAX_DELAY_S: f64 = 1.0;
 
-/// Settings to request from a RealSense camera. A recording delivers its own sizes and rates.
+/// Settings to request from a RealSense camera. A recording has its own sizes and rates.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RealSenseSettings {
     /// Columns and rows of the colour image \[px\]. Default 640 x 480.

@@ -31,7 +31,7 @@ pub(super) fn streams(
     started: &Handle<PipelineProfile>,
     device: &str,
 ) -> Result<Streams, CameraError> {
-    // SAFETY: the profile is alive.
+    // SAFETY: the profile is valid.
     let list = api.owned(api.rs2_delete_stream_profiles_list, |error| unsafe {
         (api.rs2_pipeline_profile_get_streams)(started.get(), error)
     });
@@ -60,11 +60,11 @@ fn profiles(
     api: &RealSenseApi,
     list: &Handle<ProfileList>,
 ) -> Result<Vec<(*const Profile, ProfileData)>, RealSenseError> {
-    // SAFETY: the list is alive.
+    // SAFETY: the list is valid.
     let count = api.call(|error| unsafe { (api.rs2_get_stream_profiles_count)(list.get(), error) })?;
     (0..count)
         .map(|index| {
-            // SAFETY: the list is alive, and the index is below its length.
+            // SAFETY: the list is valid, and the index is below its length.
             let profile =
                 api.call(|error| unsafe { (api.rs2_get_stream_profile)(list.get(), index, error) })?;
             Ok((profile, profile_data(api, profile)?))
@@ -78,7 +78,7 @@ pub(super) fn profile_data(
     profile: *const Profile,
 ) -> Result<ProfileData, RealSenseError> {
     let [mut stream, mut format, mut index, mut id, mut rate_hz] = [0; 5];
-    // SAFETY: the profile is alive, and each number has a place.
+    // SAFETY: the profile is valid, and each number is writable.
     api.call(|error| unsafe {
         (api.rs2_get_stream_profile_data)(
             profile,
@@ -100,7 +100,7 @@ fn stream_info(
     device: &str,
 ) -> Result<StreamInfo, CameraError> {
     let mut raw = Intrinsics::default();
-    // SAFETY: the profile is alive, and the intrinsics have a place.
+    // SAFETY: the profile is valid, and the intrinsics are writable.
     api.call(|error| unsafe { (api.rs2_get_video_stream_intrinsics)(*profile, &mut raw, error) })
         .map_err(|error| error.of(device))?;
     let unusable = |problem| CameraError::IntrinsicsUnusable { stream, problem };
@@ -128,7 +128,7 @@ fn extrinsics(
     device: &str,
 ) -> Result<Pose3, CameraError> {
     let mut raw = Extrinsics::default();
-    // SAFETY: both profiles are alive, and the extrinsics have a place.
+    // SAFETY: both profiles are valid, and the extrinsics are writable.
     api.call(|error| unsafe { (api.rs2_get_extrinsics)(from, to, &mut raw, error) })
         .map_err(|error| error.of(device))?;
     pose(&raw).map_err(|problem| CameraError::IntrinsicsUnusable { stream: "depth", problem })
@@ -136,22 +136,22 @@ fn extrinsics(
 
 /// Length of one unit of depth \[m\].
 pub(super) fn depth_unit_m(api: &Arc<RealSenseApi>, device: &Handle<Device>) -> Result<f64, RealSenseError> {
-    // SAFETY: the device is alive.
+    // SAFETY: the device is valid.
     let list = api
         .owned(api.rs2_delete_sensor_list, |error| unsafe { (api.rs2_query_sensors)(device.get(), error) })?;
-    // SAFETY: the list is alive.
+    // SAFETY: the list is valid.
     let count = api.call(|error| unsafe { (api.rs2_get_sensors_count)(list.get(), error) })?;
     for index in 0..count {
-        // SAFETY: the list is alive, and the index is below its length.
+        // SAFETY: the list is valid, and the index is below its length.
         let sensor = api.owned(api.rs2_delete_sensor, |error| unsafe {
             (api.rs2_create_sensor)(list.get(), index, error)
         })?;
-        // SAFETY: the sensor is alive.
+        // SAFETY: the sensor is valid.
         let is_depth = api.call(|error| unsafe {
             (api.rs2_is_sensor_extendable_to)(sensor.get(), EXTENSION_DEPTH_SENSOR, error)
         })?;
         if is_depth != 0 {
-            // SAFETY: the sensor is alive and measures depth.
+            // SAFETY: the sensor is valid and measures depth.
             return api
                 .call(|error| unsafe { (api.rs2_get_depth_scale)(sensor.get(), error) })
                 .map(f64::from);
