@@ -112,7 +112,7 @@ impl ParticleMapper {
     /// Processes a scan that was taken with the base at `odometry` (x m, y m, theta rad, the wheels' frame).
     ///
     /// Returns `processed`; `still`: the robot has hardly moved and the scan is not used; `refused`: odometry or stamp cannot be; after a map was
-    /// loaded, `lost` and `found`.
+    /// loaded, `lost` and `found`; `paused`: the last scans contradict the loaded map and are taken out of it.
     fn update(
         &mut self,
         py: Python<'_>,
@@ -125,6 +125,7 @@ impl ParticleMapper {
             ScanUpdate::Refused(_) => "refused",
             ScanUpdate::Processed(_) => "processed",
             ScanUpdate::Lost(_) => "lost",
+            ScanUpdate::Paused(_) => "paused",
             ScanUpdate::Found(_) => "found",
         })
     }

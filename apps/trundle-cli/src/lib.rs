@@ -111,10 +111,9 @@ fn run_command(cli: Cli) -> Result<Outcome, AppError> {
         Command::Sim(args) => on_threads(args.common.threads, || sim::run(&args)),
         Command::Dock(args) => on_threads(args.common.threads, || dock::run(&args)),
         Command::Experiment(args) => on_threads(args.common().threads, || experiment::run(&args)),
-        Command::Vocabulary(args) => match args.common() {
-            Some(common) => on_threads(common.threads, || vocabulary::run(&args)),
-            None => vocabulary::run(&args),
-        },
+        Command::Vocabulary(args) => {
+            on_threads(args.common().and_then(|common| common.threads), || vocabulary::run(&args))
+        }
         Command::Config(args) => robot_file::print(&args),
         Command::Devices(args) => Ok(devices::run(&args)),
         Command::ServeCamera(args) => devices::serve(&args),

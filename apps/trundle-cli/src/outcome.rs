@@ -18,13 +18,10 @@ pub enum Outcome {
 impl Outcome {
     /// Reached, or missed for a reason that is printed.
     pub fn unless(failure: Option<String>) -> Self {
-        match failure {
-            Some(failure) => {
-                console::print_error(&AppError::Input(failure));
-                Self::Missed
-            }
-            None => Self::Reached,
-        }
+        failure.map_or(Self::Reached, |failure| {
+            console::print_error(&AppError::Input(failure));
+            Self::Missed
+        })
     }
 }
 

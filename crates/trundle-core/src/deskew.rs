@@ -4,7 +4,7 @@ use crate::{BeamTimes, Pose2, Scan, Stamp};
 
 /// Poses of the base over a scan, between which it moves evenly: eight stretches of a turn at 5 Hz are 25 ms each. Source: ours, the period
 /// of wheel readings.
-const STRETCHES: usize = 8;
+const STRETCH_COUNT: usize = 8;
 
 /// The scan as if all its beams were measured at its stamp, by the poses of the base over its beams' times.
 ///
@@ -26,13 +26,13 @@ struct Motion {
 impl Motion {
     fn new(scan: &Scan, times: BeamTimes, odom_from_base: impl Fn(Stamp) -> Option<Pose2>) -> Option<Self> {
         let last_s = times.of(scan.beams().len().saturating_sub(1));
-        let (first_s, stretch_s) = (times.first_s, (last_s - times.first_s) / STRETCHES as f64);
+        let (first_s, stretch_s) = (times.first_s, (last_s - times.first_s) / STRETCH_COUNT as f64);
         let base_from_odom = odom_from_base(scan.stamp())?.inverse();
         let pose = |k: usize| {
             let stamp = scan.stamp().after(first_s + k as f64 * stretch_s);
             Some(base_from_odom * odom_from_base(stamp)?)
         };
-        let base_from_base_at = (0..=STRETCHES).map(pose).collect::<Option<_>>()?;
+        let base_from_base_at = (0..=STRETCH_COUNT).map(pose).collect::<Option<_>>()?;
         Some(Self { first_s, stretch_s, base_from_base_at })
     }
 
@@ -40,8 +40,8 @@ impl Motion {
         if self.stretch_s == 0.0 {
             return self.base_from_base_at[0];
         }
-        let place = ((time_s - self.first_s) / self.stretch_s).clamp(0.0, STRETCHES as f64);
-        let k = (place as usize).min(STRETCHES - 1);
+        let place = ((time_s - self.first_s) / self.stretch_s).clamp(0.0, STRETCH_COUNT as f64);
+        let k = (place as usize).min(STRETCH_COUNT - 1);
         self.base_from_base_at[k].interpolate(&self.base_from_base_at[k + 1], place - k as f64)
     }
 }
@@ -75,6 +75,7 @@ mod tests {
     #[test]
     fn a_scan_without_a_pose_at_each_beam_stays_as_it_is() {
         let (scan, odom_from_base) = wall();
+        let odom_from_base = &odom_from_base;
         let known_from = |first: Stamp| move |stamp: Stamp| odom_from_base(stamp).filter(|_| stamp >= first);
         assert_eq!(deskewed(scan.clone(), known_from(Stamp::from_nanos(-50_000_000))), scan);
         assert_ne!(deskewed(scan.clone(), known_from(Stamp::from_nanos(-100_000_001))), scan);

@@ -28,7 +28,7 @@ pub struct RobotConfig {
     /// Sensor from which the map is drawn and by which safety stops. Default the depth camera.
     pub sight: RangeSource,
     /// Whether each beam of a laser's scan is put to where the base was by the odometry when it was measured, where the laser says the
-    /// times of its beams. Default true.
+    /// times of its beams. Default false: in the robot its effect was not measured.
     pub deskew: bool,
     /// Geometry of the base. Default: the Kobuki.
     pub drive: DifferentialDrive,
@@ -100,7 +100,7 @@ impl Default for RobotConfig {
             footprint_radius: Footprint::KOBUKI.circumscribed_radius(),
             footprint: None,
             sight: RangeSource::DepthCamera,
-            deskew: true,
+            deskew: false,
             drive: DifferentialDrive::KOBUKI,
             limits: DriveLimits::KOBUKI,
             camera: PinholeCamera::kinect_v2(),

@@ -61,9 +61,7 @@ use trundle_mapping::MapperConfig;
 /// order give the same reports.
 #[derive(Debug)]
 pub struct Robot {
-    range_source: RangeSource,
-    /// Whether scans of a laser are deskewed.
-    deskews_laser: bool,
+    range_sensor: RangeSensor,
     base_from_camera: Pose3,
     /// Standard deviation of the position above which the pose is lost \[m\].
     lost_sigma: f64,
@@ -82,6 +80,14 @@ pub struct Robot {
     settings: [RunSetting; 2],
     latest: Latest,
     times: StageTimes,
+}
+
+/// The sensor of the scans.
+#[derive(Debug, Clone, Copy)]
+struct RangeSensor {
+    source: RangeSource,
+    /// Whether scans of a laser are deskewed.
+    deskews: bool,
 }
 
 /// State that later steps take from earlier ones.
@@ -123,8 +129,7 @@ impl Robot {
         let map_hz = config.schedule.validated()?.map_hz;
         let mapping = MapperConfig { blind_range, ..config.mapping.clone() };
         Ok(Self {
-            range_source: config.sight,
-            deskews_laser: config.deskew,
+            range_sensor: RangeSensor { source: config.sight, deskews: config.deskew },
             base_from_camera,
             lost_sigma: config.mission_executor.lost_sigma,
             odometry: WheelOdometry::new(config.drive, config.odometry.clone())?,
@@ -172,7 +177,7 @@ impl Robot {
             SensorEvent::Cliff(cliff) => self.steering.on_cliff(cliff.over_edge),
             SensorEvent::Odometry(odometry) => self.on_odometry(odometry, &mut report),
             SensorEvent::Body(event) => self.on_body(event, &mut report),
-            SensorEvent::Scan(scan) if self.range_source == RangeSource::Laser => {
+            SensorEvent::Scan(scan) if self.range_sensor.source == RangeSource::Laser => {
                 self.on_laser(scan, &mut report);
             }
             // The grid of a robot with a depth camera ignores lasers; truth is for evaluation alone.
@@ -217,7 +222,7 @@ impl Robot {
 
     /// An event of the body: a condition that begins stops the robot at once, one that ends lets it go on, and in silence time goes on.
     fn on_body(&mut self, event: &BodyEvent, report: &mut StepReport) {
-        let before = self.latest.body.hold(self.range_source);
+        let before = self.latest.body.hold(self.range_sensor.source);
         self.latest.body.update(event.kind);
         if self.latest.body.is_lifted() {
             self.latest.pose_monitor.add_lift(event.stamp);
@@ -234,7 +239,7 @@ impl Robot {
 
     /// Acts at once on a change of what holds the robot.
     fn on_hold(&mut self, before: Option<MotionHold>, now: Stamp, report: &mut StepReport) {
-        let hold = self.latest.body.hold(self.range_source);
+        let hold = self.latest.body.hold(self.range_sensor.source);
         if before != hold {
             event_log::hold(now, hold);
             self.decide(now, report);
@@ -268,7 +273,7 @@ impl Robot {
             scan: self.latest.scan_with_odometry(),
             seen: self.latest.camera_health.seen(),
             wheels: self.latest.odometry.as_ref().map(|odometry| odometry.stamp),
-            hold: self.latest.body.hold(self.range_source),
+            hold: self.latest.body.hold(self.range_sensor.source),
             motion: self.motion_sense(now),
             dynamic_obstacles: self.obstacles.view(),
             station: StationState {
@@ -278,7 +283,8 @@ impl Robot {
             zones: self.zones.view(),
         };
         self.steering.step(&world, &mut self.times, report);
-        let by_hand = WorldState { hold: self.latest.body.hold_besides_pause(self.range_source), ..world };
+        let by_hand =
+            WorldState { hold: self.latest.body.hold_besides_pause(self.range_sensor.source), ..world };
         let by_hand =
             self.steering.teleop.step(&by_hand).map(|twist| self.zones.slowed(twist, world.estimate.pose));
         report.twist = by_hand.or(report.twist);
@@ -300,7 +306,7 @@ impl Robot {
     /// The source that shows how the robot moves.
     fn motion_sense(&self, now: Stamp) -> MotionSense {
         let is_seen = || self.latest.located.is_some_and(|located| now - located <= MAX_VISUAL_MOTION_AGE_S);
-        match self.range_source {
+        match self.range_sensor.source {
             _ if !self.odometry.wheels_are_unresponsive() => MotionSense::Wheels,
             RangeSource::DepthCamera if !is_seen() => MotionSense::Nothing,
             RangeSource::DepthCamera | RangeSource::Laser => MotionSense::Sight,

@@ -31,7 +31,7 @@ pub struct ScanCounts {
     /// Stamp of the first scan that was left out.
     pub first_pause: Option<Stamp>,
     /// Whether mapping is paused.
-    is_paused: bool,
+    pub(super) is_paused: bool,
 }
 
 impl ScanCounts {

@@ -2,6 +2,7 @@
 //!
 //! `cargo run --release -p trundle-experiments --example deskew -- ../shared/data/nav [SEEDS]` prints, for each laser and map, the error of
 //! the trajectory after alignment by mean place and mean heading, and of the heading, over all seeds.
+#![allow(clippy::print_stdout, clippy::unwrap_used, reason = "a measurement for the terminal")]
 
 use std::path::PathBuf;
 use trundle_app::AppError;

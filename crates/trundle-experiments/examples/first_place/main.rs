@@ -2,6 +2,12 @@
 //!
 //! `cargo run --release -p trundle-experiments --example first_place -- ../shared/data/nav [STARTS] [MAP]`
 //! prints, for each map and laser, the number of starts at which the first place told as known was right and wrong, and the time to it.
+#![allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    clippy::unwrap_used,
+    reason = "a measurement for the terminal"
+)]
 
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};

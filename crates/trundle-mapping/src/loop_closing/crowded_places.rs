@@ -7,7 +7,7 @@ use trundle_core::Pose2;
 /// Side of a place \[m\]. Source: ours, three gates of the filter.
 const PLACE_SIDE_M: f64 = 1.0;
 /// Directions that a place is seen in. Source: ours, those of a camera's or a half-turn laser's view that differ.
-const HEADINGS: f64 = 8.0;
+const HEADING_COUNT: f64 = 8.0;
 /// Scans of a place in one direction that are kept, the newest. Source: ours; a cell is drawn by several of them.
 const MAX_SCANS_PER_PLACE: usize = 4;
 /// Newest scans that are all kept: those of the last submap and more. Source: ours.
@@ -27,7 +27,7 @@ pub(crate) fn crowded(poses: &[Pose2], first_of_run: usize) -> Vec<bool> {
 }
 
 fn place(pose: Pose2) -> (i64, i64, i64) {
-    let heading = (pose.theta / TAU * HEADINGS).floor().rem_euclid(HEADINGS);
+    let heading = (pose.theta / TAU * HEADING_COUNT).floor().rem_euclid(HEADING_COUNT);
     ((pose.x / PLACE_SIDE_M).floor() as i64, (pose.y / PLACE_SIDE_M).floor() as i64, heading as i64)
 }
 

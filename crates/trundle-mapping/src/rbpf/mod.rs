@@ -14,7 +14,6 @@ pub(crate) mod odometry_noise;
 pub(crate) mod particle_set;
 mod propagate;
 pub(crate) mod proposal;
-mod relocation;
 pub(crate) mod resampling;
 pub(crate) mod rng;
 mod scan_difference;

@@ -74,7 +74,7 @@ impl Robot {
             }
             Outcome::Decided { decision_worker, decision, asked } => {
                 let is_newest = self.latest.odometry.is_some_and(|odometry| odometry.stamp == asked);
-                let is_held = self.latest.body.hold(self.range_source).is_some();
+                let is_held = self.latest.body.hold(self.range_sensor.source).is_some();
                 report.twist = self.steering.on_decided(decision_worker, &decision, is_newest && !is_held);
                 report.twist.into_iter().for_each(|twist| self.odometry.set_command(twist));
                 report.replanned = decision.replanned;

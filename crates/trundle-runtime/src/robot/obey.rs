@@ -91,7 +91,7 @@ impl Robot {
 
     fn pause(&mut self, is_paused: bool, now: Stamp, report: &mut StepReport) {
         self.steering.teleop.release();
-        let before = self.latest.body.hold(self.range_source);
+        let before = self.latest.body.hold(self.range_sensor.source);
         self.latest.body.set_paused(is_paused);
         self.on_hold(before, now, report);
     }

@@ -26,7 +26,11 @@ impl Robot {
     /// The scan with each beam where the base was by the odometry when it was measured.
     fn deskewed(&self, scan: &Scan) -> Scan {
         let odom_from_base = |stamp| self.localizer.odometry_at(stamp).ok().map(|odometer| odometer.pose);
-        if self.deskews_laser { trundle_core::deskewed(scan.clone(), odom_from_base) } else { scan.clone() }
+        if self.range_sensor.deskews {
+            trundle_core::deskewed(scan.clone(), odom_from_base)
+        } else {
+            scan.clone()
+        }
     }
 
     /// While the pose is unknown, applies the pose that global localization found, or begins the search.
@@ -62,7 +66,7 @@ impl Robot {
     /// located image for 0.8 s, a contradiction means that the robot was carried away.
     pub(super) fn is_consistent_with_map(&mut self, scan: &Scan) -> bool {
         let (now, watch) = (scan.stamp(), &mut self.latest.scan_map_consistency);
-        if self.range_source == RangeSource::Laser {
+        if self.range_sensor.source == RangeSource::Laser {
             return true;
         }
         if self.latest.located.is_some_and(|located| now - located <= MAX_VISUAL_MOTION_AGE_S) {

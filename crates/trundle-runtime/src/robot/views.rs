@@ -129,6 +129,6 @@ impl Robot {
 
     /// The condition under which no wheel may turn; none where the robot may drive.
     pub fn hold(&self) -> Option<MotionHold> {
-        self.latest.body.hold(self.range_source)
+        self.latest.body.hold(self.range_sensor.source)
     }
 }
