@@ -3,7 +3,7 @@
 use crate::fusion::correction::VisualPose;
 use crate::pose_monitor::displacement::{DisplacementMonitor, ImageEvidence, VisualUse};
 use crate::pose_monitor::recent_scans::RecentScans;
-use crate::pose_monitor::visual_jump::{PoseBelief, VisualJump};
+use crate::pose_monitor::visual_jump::{Drift, PoseBelief, VisualJump};
 use crate::pose_monitor::visual_motion::{VisualMotion, VisualMotionMonitor};
 use trundle_core::{OccupancyGrid, Pose2, Pose3, Scan, Stamp};
 
@@ -24,7 +24,13 @@ pub struct PoseMonitor {
     displacement: DisplacementMonitor,
     motion: VisualMotionMonitor,
     recent: RecentScans,
+    /// When two scans last showed that wheels or gyro were wrong.
+    wrong_odometry: Option<Stamp>,
 }
+
+/// Time after wheels or gyro were wrong during which the estimate may have drifted beyond its standard deviations \[s\]. Source: ours, the
+/// age of the scans that odometry joins.
+const WRONG_ODOMETRY_S: f64 = 20.0;
 
 /// A visual pose with all that it is judged by.
 #[derive(Debug, Clone, Copy)]
@@ -88,13 +94,19 @@ impl PoseMonitor {
         }
         match self.motion_of(evidence) {
             VisualMotion::Own => {}
-            VisualMotion::OwnAgainstWheels => self.recent.restart(evidence.odom_from_base, evidence.scan),
+            VisualMotion::OwnAgainstWheels => {
+                self.wrong_odometry = Some(evidence.visual.stamp);
+                self.recent.restart(evidence.odom_from_base, evidence.scan);
+            }
             VisualMotion::Other => return VisualVerdict::Ignored,
             VisualMotion::FrameMoved => return VisualVerdict::FrameMoved,
         }
         let VisualEvidence { visual, found, belief, grid, odom_from_base, .. } = *evidence;
         let Some((found, belief)) = found.zip(belief) else { return VisualVerdict::Accepted };
-        match VisualJump::judge(&belief, found, odom_from_base, (&self.recent, grid)) {
+        let is_odometry_wrong =
+            self.wrong_odometry.is_some_and(|since| visual.stamp - since <= WRONG_ODOMETRY_S);
+        let drift = Drift { belief, is_odometry_wrong };
+        match VisualJump::judge(&drift, found, odom_from_base, (&self.recent, grid)) {
             VisualJump::Allowed => VisualVerdict::Accepted,
             VisualJump::Refused if visual.recognised && !evidence.is_corrected => {
                 VisualVerdict::FalseRecognition

@@ -16,6 +16,15 @@ pub struct PoseBelief {
     pub is_lost: bool,
 }
 
+/// How far the estimate may have drifted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Drift {
+    /// The estimate.
+    pub(crate) belief: PoseBelief,
+    /// Whether wheels or gyro were wrong lately: the standard deviations do not hold.
+    pub(crate) is_odometry_wrong: bool,
+}
+
 /// What to do with a visual pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum VisualJump {
@@ -41,11 +50,12 @@ const DECISIVE_NATS: f64 = 6.0;
 impl VisualJump {
     /// The verdict on the visual pose `found`, at `odom_from_base`, of a robot that was not carried away.
     pub(crate) fn judge(
-        belief: &PoseBelief,
+        drift: &Drift,
         found: Pose2,
         odom_from_base: Pose2,
         scans: (&RecentScans, &OccupancyGrid),
     ) -> Self {
+        let Drift { belief, is_odometry_wrong } = drift;
         let off = belief.pose.inverse() * found;
         let is_within =
             |distance: f64, turn: f64| off.position().norm() <= distance && off.theta.abs() <= turn;
@@ -60,7 +70,7 @@ impl VisualJump {
         let (recent, grid) = scans;
         let nats_at = |pose: Pose2| recent.log_likelihood(grid, pose, odom_from_base);
         let nats = nats_at(found) - nats_at(belief.pose);
-        let needed = match (is_likely, is_drift) {
+        let needed = match (is_likely || is_drift && *is_odometry_wrong, is_drift) {
             (true, _) => -DECISIVE_NATS,
             (false, true) => 0.0,
             (false, false) => DECISIVE_NATS,
@@ -90,7 +100,8 @@ mod tests {
             let odom_from_base = Pose2::new(0.0, 0.0, 0.175 * (f64::from(i) - 4.0));
             recent.add(odom_from_base, &room.scan(truth * odom_from_base, f64::from(i)));
         }
-        VisualJump::judge(belief, found, Pose2::IDENTITY, (&recent, &map.map()))
+        let drift = Drift { belief: *belief, is_odometry_wrong: false };
+        VisualJump::judge(&drift, found, Pose2::IDENTITY, (&recent, &map.map()))
     }
 
     #[test]
@@ -129,5 +140,22 @@ mod tests {
         assert_eq!(verdict(&lost(100.0), &room, (&room, far), far), VisualJump::Allowed);
         let look_alike = Pose2::new(0.0, 0.0, PI) * BELIEF.pose;
         assert_eq!(verdict(&lost(0.4), &room, (&room, BELIEF.pose), look_alike), VisualJump::Refused);
+    }
+
+    #[test]
+    fn a_step_beyond_the_standard_deviations_needs_scans_that_do_not_object_unless_the_odometry_was_wrong() {
+        let room = Room::with_corner_box();
+        let step = BELIEF.pose * Pose2::new(0.0, 0.0, 0.12);
+        let judge = |is_odometry_wrong, scan_of: Pose2| {
+            let mut recent = RecentScans::default();
+            recent.add(Pose2::IDENTITY, &room.scan(scan_of, 0.0));
+            let drift = Drift { belief: BELIEF, is_odometry_wrong };
+            VisualJump::judge(&drift, step, Pose2::IDENTITY, (&recent, &room.map()))
+        };
+        // A scan between both poses that is a little nearer to the estimate: worse at the step, not decisively so.
+        let between = BELIEF.pose * Pose2::new(0.0, 0.0, 0.05);
+        assert_eq!(judge(false, between), VisualJump::Refused);
+        assert_eq!(judge(true, between), VisualJump::Allowed);
+        assert_eq!(judge(false, step), VisualJump::Allowed, "the scan is that of the step");
     }
 }
