@@ -10,7 +10,7 @@ mod sweep;
 pub use empty_map::{empty_map_cause, no_overlap_cause, no_return_cause, range_unit_hint};
 pub(crate) use motion::Motion;
 pub use options::LaserLogOptions;
-pub(crate) use order::insert_in_order;
+pub(crate) use order::{insert_in_order, require_order};
 pub use sources::LaserLogSources;
 pub(crate) use sources::{chosen, is_named};
 pub(crate) use sweep::{MAX_BEAMS, check_sweep};

@@ -16,19 +16,22 @@ pub(crate) fn insert_in_order<T>(
     stamp_of: impl Fn(&T) -> Stamp,
 ) -> Result<(), String> {
     let stamp = stamp_of(&entry);
-    match entries.last().map(&stamp_of) {
+    require_order(entries.last().map(&stamp_of), stamp)?;
+    let later = entries.iter().rev().take_while(|other| stamp_of(other) > stamp).count();
+    entries.insert(entries.len() - later, entry);
+    Ok(())
+}
+
+/// Refuses a stamp that is more than [`MAX_DISORDER_S`] before the `last` one.
+///
+/// # Errors
+/// Names both stamps.
+pub(crate) fn require_order(last: Option<Stamp>, stamp: Stamp) -> Result<(), String> {
+    match last {
         Some(last) if last - stamp > MAX_DISORDER_S => {
             Err(format!("time goes back from {last} s to {stamp} s"))
         }
-        Some(last) if stamp < last => {
-            let later = entries.iter().rev().take_while(|other| stamp_of(other) > stamp).count();
-            entries.insert(entries.len() - later, entry);
-            Ok(())
-        }
-        _ => {
-            entries.push(entry);
-            Ok(())
-        }
+        _ => Ok(()),
     }
 }
 

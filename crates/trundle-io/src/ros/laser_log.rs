@@ -7,6 +7,7 @@ use super::messages::LaserScan;
 use crate::carmen::read_carmen;
 use crate::laser_log::{
     LaserLog, LaserLogOptions, LaserLogScan, LaserLogSources, LaserMount, Motion, insert_in_order,
+    require_order,
 };
 use crate::{Expected, IoError};
 use std::path::Path;
@@ -112,6 +113,7 @@ fn take(
     motion: &Motion,
     max_range: Option<f64>,
 ) -> Result<(), String> {
+    require_order(log.scans.last().map(|scan| scan.scan.stamp()), message.stamp)?;
     let odom_from_base = motion.at(message.stamp)?;
     let converted = convert(message, mount, max_range)?;
     let scan = LaserLogScan { odom_from_base, scan: converted.scan };

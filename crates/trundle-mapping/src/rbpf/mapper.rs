@@ -265,7 +265,7 @@ impl ParticleMapper {
 
     /// The next scans are searched for in the map. A wrong place would contradict the given map, and mapping pause again.
     fn search_anew(&mut self) {
-        (self.global_search, self.search_pyramid) = (Some(GlobalSearch::of_first_proof()), None);
+        (self.global_search, self.search_pyramid) = (Some(GlobalSearch::default()), None);
         self.gate = UpdateGate::default();
         self.odometry.map_from_odom = None;
     }

@@ -21,8 +21,6 @@ pub enum Lost {
     SeveralPlaces,
     /// The search ended at its budget before all places were compared.
     Unfinished,
-    /// One place fits, but it was not seen from elsewhere yet: the robot must move on.
-    Unconfirmed,
 }
 
 /// Search of the combined last scans in the whole map.
@@ -39,49 +37,14 @@ pub(crate) struct GlobalSearch {
     credit: i64,
     /// Result of the last search.
     last: Lost,
-    /// Distance and turn between the scans so far: cells, rad.
-    moved: Moved,
-    candidate: Option<Candidate>,
-    /// Whether a proved place is passed before it is seen from elsewhere.
-    is_first_proof_enough: bool,
 }
-
-/// Sums of a motion, cells and rad.
-#[derive(Debug, Clone, Copy, Default)]
-struct Moved {
-    way: f64,
-    turn: f64,
-}
-
-/// A place that the last searches found.
-#[derive(Debug, Clone, Copy)]
-struct Candidate {
-    /// Cells, rad.
-    map_from_odom: Pose2,
-    /// Motion at the first of these searches.
-    first: Moved,
-    /// Number of these searches.
-    times: usize,
-}
-
-/// Number of searches that must find one place, none in between another. Noise and the shape of the map favour a wrong place in one view, not in several.
-/// Source: ours.
-const MIN_TIMES: usize = 4;
-/// Distance over which they must find it \[m\]. A turn over [`MIN_TURN_RAD`] does instead. Source: ours.
-const MIN_WAY_M: f64 = 1.0;
-/// Turn over which they must find it \[rad\]. Source: ours, a quarter.
-const MIN_TURN_RAD: f64 = std::f64::consts::FRAC_PI_2;
-/// Distance of two places that are one \[m\]: the odometry errs by less between two searches. Source: ours.
-const MAX_PLACE_DISTANCE_M: f64 = 0.5;
-/// Turn between two places that are one \[rad\]. Source: ours.
-const MAX_PLACE_TURN_RAD: f64 = 0.2;
 
 /// Lookups that accrue in a second of the scans' time [1/s]: about a tenth of a core. Source: ours.
 const LOOKUPS_PER_SECOND: f64 = 1e8;
-/// Largest credit, and that of the first scan: about forty seconds of a core. Source: ours.
-const MAX_CREDIT_LOOKUPS: i64 = 40_000_000_000;
+/// Largest credit, and that of the first scan: about ten seconds of a core. Source: ours.
+const MAX_CREDIT_LOOKUPS: i64 = 10_000_000_000;
 /// Lookups of one search at most. Source: ours.
-const MAX_SEARCH_LOOKUPS: u64 = 20_000_000_000;
+const MAX_SEARCH_LOOKUPS: u64 = 4_000_000_000;
 
 impl Default for GlobalSearch {
     fn default() -> Self {
@@ -90,9 +53,6 @@ impl Default for GlobalSearch {
             now: Stamp::default(),
             credit: MAX_CREDIT_LOOKUPS,
             last: Lost::NothingToSee,
-            moved: Moved::default(),
-            candidate: None,
-            is_first_proof_enough: false,
         }
     }
 }
@@ -106,29 +66,17 @@ const MIN_POINTS: usize = 30;
 /// Minimum fraction of points that the map explains \[1\]. A lower fraction is another or a changed building: some place of
 /// a large map always explains half of the points. Source: ours.
 const MIN_EXPLAINED: f64 = 0.75;
-/// That fraction for a place that an earlier search proved: scans over a longer way and in turns agree less with each other. Source: ours.
-const MIN_EXPLAINED_CONFIRMED: f64 = 0.6;
 /// Sigma of the position of a robot that may be anywhere \[cells\]. Source: ours.
 const UNKNOWN_POSITION_SIGMA_CELLS: f64 = 1e5;
 /// Sigma of the heading of a robot that may be anywhere \[rad\]. Source: ours.
 const UNKNOWN_HEADING_SIGMA_RAD: f64 = 100.0;
 
 impl GlobalSearch {
-    /// A search that passes a place at its first proof: for a caller that notices a wrong one.
-    pub(crate) fn of_first_proof() -> Self {
-        Self { is_first_proof_enough: true, ..Self::default() }
-    }
-
     /// Adds a scan taken with the base at `odom_from_base` (cells).
     pub(crate) fn push(&mut self, shape: &ScanPoints, odom_from_base: Pose2, stamp: Stamp) {
         let accrued = (stamp - self.now).max(0.0) * LOOKUPS_PER_SECOND;
         self.credit = self.credit.saturating_add(accrued as i64).min(MAX_CREDIT_LOOKUPS);
         self.now = stamp;
-        if let Some((_, last)) = self.scans.last() {
-            let step = last.inverse() * odom_from_base;
-            self.moved.way += step.position().norm();
-            self.moved.turn += step.theta.abs();
-        }
         if self.scans.len() == MAX_SCANS {
             self.scans.remove(0);
         }
@@ -148,55 +96,15 @@ impl GlobalSearch {
         let budget = LookupBudget::new(MAX_SEARCH_LOOKUPS);
         let found = self.search_within(models, (pyramid, map), &budget);
         self.credit -= budget.used() as i64;
-        let confirmed = found.and_then(|best| match best.doubt {
-            None if self.is_first_proof_enough => Ok(best.place),
-            _ => self.confirm(models.0, &best),
-        });
-        confirmed.inspect_err(|lost| self.last = *lost)
+        found.inspect_err(|lost| self.last = *lost)
     }
 
-    /// Passes a place that a search proved and that stayed the best one in the whole map as the robot moved on.
-    fn confirm(&mut self, config: &ParticleConfig, best: &BestPlace) -> Result<CloudMatch, Lost> {
-        let Some((_, odom_from_base)) = self.scans.last() else { return Err(Lost::NothingToSee) };
-        let cells = 1.0 / config.map.resolution;
-        let pose = best.place.pose;
-        let is_same = |known: &Candidate| {
-            let off = (known.map_from_odom * *odom_from_base).inverse() * pose;
-            off.position().norm() < MAX_PLACE_DISTANCE_M * cells && off.theta.abs() < MAX_PLACE_TURN_RAD
-        };
-        let known = self.candidate.filter(is_same);
-        self.candidate = match (known, best.doubt) {
-            (None, Some(doubt)) => {
-                self.candidate = None;
-                return Err(doubt);
-            }
-            (known, _) => {
-                let (first, times) = known.map_or((self.moved, 1), |known| (known.first, known.times + 1));
-                Some(Candidate { map_from_odom: pose * odom_from_base.inverse(), first, times })
-            }
-        };
-        if self.is_seen_from_elsewhere(cells) && best.is_told() {
-            return Ok(best.place);
-        }
-        Err(best.doubt.unwrap_or(Lost::Unconfirmed))
-    }
-
-    /// Whether enough searches found the candidate, over enough way or turn. `cells`: in a metre.
-    fn is_seen_from_elsewhere(&self, cells: f64) -> bool {
-        let is_seen = |Candidate { first, times, .. }: &Candidate| {
-            let (way, turn) = (self.moved.way - first.way, self.moved.turn - first.turn);
-            *times >= MIN_TIMES && (way >= MIN_WAY_M * cells || turn >= MIN_TURN_RAD)
-        };
-        self.candidate.as_ref().is_some_and(is_seen)
-    }
-
-    /// The best place in the whole map.
     fn search_within(
         &self,
         (config, likelihood): (&ParticleConfig, &Likelihood),
         (pyramid, map): (&Pyramid, &TileMap),
         budget: &LookupBudget,
-    ) -> Result<BestPlace, Lost> {
+    ) -> Result<CloudMatch, Lost> {
         let Some((_, last)) = self.scans.last() else { return Err(Lost::NothingToSee) };
         let (mut cloud, mut taken) = (ScanPoints::default(), BTreeSet::new());
         let parts = self.scans.iter().rev().map(|(shape, odom)| (shape, last.inverse() * *odom));
@@ -225,33 +133,20 @@ impl GlobalSearch {
         }
         let unseen = 0.5 * config.outliers.ln() * cloud.points.len() as f64 / config.correlation;
         let is_proved =
-            |best: &CloudMatch| best.log_likelihood - unseen > MIN_PROOF_NATS && best.degenerate == 0;
-        let best = *found.first().ok_or(Lost::NothingFits)?;
+            |best: &&CloudMatch| best.log_likelihood - unseen > MIN_PROOF_NATS && best.degenerate == 0;
+        if std::env::var("DBG").is_ok() {
+            for f in &found {
+                eprint!(
+                    "[{:.0} {:.1} {:.2} ll {:.0} ex {:.3} deg {}] ",
+                    f.pose.x, f.pose.y, f.pose.theta, f.log_likelihood, f.explained, f.degenerate
+                );
+            }
+            eprintln!("points {} unseen {unseen:.0} scans {}", cloud.points.len(), self.scans.len());
+        }
+        let best = found.first().filter(is_proved).filter(|best| best.explained >= MIN_EXPLAINED);
+        let best = best.ok_or(Lost::NothingFits)?;
         let rival = found.get(1).map_or(f64::NEG_INFINITY, |rival| rival.log_likelihood);
-        let has_rival = best.log_likelihood - rival <= MIN_MARGIN_NATS;
-        let doubt = if !is_proved(&best) || best.explained < MIN_EXPLAINED {
-            Some(Lost::NothingFits)
-        } else {
-            has_rival.then_some(Lost::SeveralPlaces)
-        };
-        Ok(BestPlace { place: best, has_rival, doubt })
-    }
-}
-
-/// The best place of a search.
-#[derive(Debug, Clone, Copy)]
-struct BestPlace {
-    place: CloudMatch,
-    /// Whether another one fits nearly as well.
-    has_rival: bool,
-    /// Why it is not proved; `None` if it is.
-    doubt: Option<Lost>,
-}
-
-impl BestPlace {
-    /// Whether it may be told once it is confirmed.
-    fn is_told(&self) -> bool {
-        !self.has_rival && self.place.explained >= MIN_EXPLAINED_CONFIRMED
+        if best.log_likelihood - rival > MIN_MARGIN_NATS { Ok(*best) } else { Err(Lost::SeveralPlaces) }
     }
 }
 
