@@ -134,15 +134,6 @@ impl GlobalSearch {
         let unseen = 0.5 * config.outliers.ln() * cloud.points.len() as f64 / config.correlation;
         let is_proved =
             |best: &&CloudMatch| best.log_likelihood - unseen > MIN_PROOF_NATS && best.degenerate == 0;
-        if std::env::var("DBG").is_ok() {
-            for f in &found {
-                eprint!(
-                    "[{:.0} {:.1} {:.2} ll {:.0} ex {:.3} deg {}] ",
-                    f.pose.x, f.pose.y, f.pose.theta, f.log_likelihood, f.explained, f.degenerate
-                );
-            }
-            eprintln!("points {} unseen {unseen:.0} scans {}", cloud.points.len(), self.scans.len());
-        }
         let best = found.first().filter(is_proved).filter(|best| best.explained >= MIN_EXPLAINED);
         let best = best.ok_or(Lost::NothingFits)?;
         let rival = found.get(1).map_or(f64::NEG_INFINITY, |rival| rival.log_likelihood);

@@ -14,8 +14,14 @@ pub(crate) struct OdometryTrack {
     pub since_keyframe: Option<OdometryFactor>,
     /// Whether the newest frame contradicts that motion: a keyframe does not take it over.
     is_doubted: bool,
+    /// Number of frames since the newest keyframe that contradict it.
+    contradictions: usize,
     floor: FloorAxis,
 }
+
+/// Number of frames since a keyframe that may contradict the odometry. With more the odometry is wrong: a thing that moves before the
+/// camera contradicts it in single frames, wheels that are stuck in one after the other. Source: ours.
+const MAX_CONTRADICTIONS: usize = 2;
 
 impl OdometryTrack {
     /// Takes the motion prior of a frame and its duration, s.
@@ -36,6 +42,10 @@ impl OdometryTrack {
     /// Notes whether the newest frame contradicts the odometry.
     pub fn set_doubted(&mut self, is_doubted: bool) {
         self.is_doubted = is_doubted;
+        self.contradictions += usize::from(is_doubted);
+        if self.contradictions > MAX_CONTRADICTIONS {
+            self.interrupt();
+        }
     }
 
     /// The factor for a new keyframe, if the keyframe before is still in the map.
@@ -51,5 +61,6 @@ impl OdometryTrack {
     /// Restarts at a keyframe.
     pub fn start_at(&mut self, keyframe: KeyframeId) {
         self.since_keyframe = Some(OdometryFactor::at(keyframe));
+        self.contradictions = 0;
     }
 }
