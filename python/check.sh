@@ -17,7 +17,8 @@ python3 -c 'import sys; sys.exit(sys.version_info < (3, 10))' || skip "Python is
 "$venv/bin/python" -m pip install --quiet --disable-pip-version-check -r python/requirements.txt >/dev/null 2>&1 ||
     skip "maturin, numpy, gymnasium and evo cannot be had: no network?"
 
-# The crates are those of the release build of the program.
+# The build finds maturin by the search path. The crates are those of the release build of the program.
+export PATH="$venv/bin:$PATH"
 begin=$(date +%s)
 "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps --force-reinstall ./python
 echo "ok   pip install ./python, $(($(date +%s) - begin)) s"

@@ -39,7 +39,7 @@ pub struct TrialPlan {
     pub faults: FaultSchedule,
     /// Fault of the computer.
     pub computer_fault: Option<ComputerFault>,
-    /// Images a second; `None`: the rate of [`SimConfig`].
+    /// Images per second; `None` if they come at the rate of [`trundle_sim::SimConfig`].
     pub camera_rate_hz: Option<f64>,
 }
 
