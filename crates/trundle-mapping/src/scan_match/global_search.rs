@@ -41,10 +41,10 @@ pub(crate) struct GlobalSearch {
 
 /// Lookups that accrue in a second of the scans' time [1/s]: about a tenth of a core. Source: ours.
 const LOOKUPS_PER_SECOND: f64 = 1e8;
-/// Largest credit, and that of the first scan: about ten seconds of a core. Source: ours.
-const MAX_CREDIT_LOOKUPS: i64 = 10_000_000_000;
+/// Largest credit, and that of the first scan: about forty seconds of a core. Source: ours.
+const MAX_CREDIT_LOOKUPS: i64 = 40_000_000_000;
 /// Lookups of one search at most. Source: ours.
-const MAX_SEARCH_LOOKUPS: u64 = 4_000_000_000;
+const MAX_SEARCH_LOOKUPS: u64 = 20_000_000_000;
 
 impl Default for GlobalSearch {
     fn default() -> Self {

@@ -11,16 +11,16 @@ use trundle_estimation::{Correction, Localizer};
 impl Robot {
     /// A scan of a laser that is the range source.
     pub(super) fn on_laser(&mut self, scan: &Scan, report: &mut StepReport) {
-        let scan = &self.deskewed(scan);
+        let scan = self.deskewed(scan);
         let odometer = self.odometry_at(scan.stamp());
         if let Some(odometer) = odometer {
-            self.latest.pose_monitor.add_scan(odometer.pose, scan);
+            self.latest.pose_monitor.add_scan(odometer.pose, &scan);
             let (perception, times) = (self.perception.as_mut(), &mut self.times);
             let place =
-                perception.and_then(|perception| perception.search_pose(odometer.pose, scan, true, times));
+                perception.and_then(|perception| perception.search_pose(odometer.pose, &scan, true, times));
             self.apply_global_localization(place);
         }
-        self.on_scan(scan.clone(), report);
+        self.on_scan(scan, report);
     }
 
     /// The scan with each beam where the base was by the odometry when it was measured.
