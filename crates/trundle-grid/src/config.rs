@@ -62,7 +62,7 @@ impl MapperConfig {
         Self { resolution, half_extent, ..self }
     }
 
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a value is outside the range documented at its field, or a clamp does not reach its threshold.

@@ -82,10 +82,10 @@ impl Default for ParticleConfig {
 }
 
 impl ParticleConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("particles", self.particles as f64, "", 1.0, 1000.0)?;
         require_in("move_gate", self.move_gate, "m", 0.0, 5.0)?;

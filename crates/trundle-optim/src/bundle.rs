@@ -26,7 +26,7 @@ impl Default for BundleConfig {
 }
 
 impl BundleConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When `steps` is zero or another number is not positive.

@@ -26,7 +26,7 @@ impl Default for PoseConfig {
 }
 
 impl PoseConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a count is zero or `converged` is not positive.

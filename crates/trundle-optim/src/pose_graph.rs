@@ -24,7 +24,7 @@ impl Default for PoseGraphConfig {
 }
 
 impl PoseGraphConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When `steps` is zero or another number is not positive.

@@ -46,7 +46,7 @@ impl Default for FollowerConfig {
 }
 
 impl FollowerConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

@@ -32,7 +32,7 @@ impl Default for PathTrackingConfig {
 }
 
 impl PathTrackingConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range, or the least gain is above the most.

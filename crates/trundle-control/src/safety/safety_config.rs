@@ -73,7 +73,7 @@ impl Default for SafetyConfig {
 }
 
 impl SafetyConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

@@ -63,7 +63,7 @@ impl Default for StabilizerConfig {
 }
 
 impl StabilizerConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

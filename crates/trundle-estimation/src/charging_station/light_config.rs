@@ -55,7 +55,7 @@ impl Default for StationLightConfig {
 }
 
 impl StationLightConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

@@ -61,10 +61,10 @@ impl Default for DepthScanConfig {
 }
 
 impl DepthScanConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("band_low", self.band_low, "m", 0.0, 1.0)?;
         require_in("band_high", self.band_high, "m", self.band_low + 0.01, 5.0)?;

@@ -26,7 +26,7 @@ impl Default for ScanFusionConfig {
 }
 
 impl ScanFusionConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside the range of its field.

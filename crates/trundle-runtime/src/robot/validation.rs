@@ -5,7 +5,7 @@ use crate::config::RobotConfig;
 use trundle_core::Invalid;
 
 impl RobotConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// Names the first number that is outside its range.

@@ -14,7 +14,7 @@ const MIN_SLOPE_PAIRS: usize = 4;
 /// surface. Source: ours.
 const MAX_SLOPE_DEPTH_RATIO: f64 = 0.1;
 
-/// Largest standard deviation of a depth that makes a point, as a fraction of the depth: 0.1.
+/// Largest standard deviation of a depth that makes a point, as a fraction of the depth: 0.1. Source: ours.
 pub(crate) const MAX_RELATIVE_SIGMA: f64 = 0.1;
 
 /// Range and noise of the depth camera.

@@ -29,8 +29,8 @@ pub struct LocalMappingConfig {
     pub found_ratio: f64,
     /// The solver. Default 5 steps.
     pub bundle: BundleConfig,
-    /// Work on bundle adjustment and loop search per frame, in counted operations of some 20 ns, 1 or more. A larger number refines the map
-    /// sooner and makes each frame slower. Default 100,000: 2 ms.
+    /// Work on bundle adjustment per frame, in counted operations of some 20 ns, 1 or more. A larger number refines the map sooner and
+    /// makes each frame slower. Default 100,000: 2 ms.
     pub work_per_frame: usize,
 }
 

@@ -1,16 +1,15 @@
-//! Tracked poses that contradict the wheels, one after the other.
+//! Successive tracked poses that contradict the wheels.
 
 use trundle_core::Stamp;
 
-/// Points that agree on one pose and outweigh the wheels at once: 100. Fewer have to persist for
-/// [`MIN_CONFLICT_S`]. Source: ours.
+/// Number of agreeing points that outweigh the wheels at once: 100. Fewer points must persist for [`MIN_CONFLICT_S`]. Source: ours.
 const MIN_CONVINCING_POINTS: usize = 100;
 /// Time for which fewer points must contradict the wheels before they outweigh them: 0.3 s. Source: ours.
 const MIN_CONFLICT_S: f64 = 0.3;
 
-/// Since when tracked poses have contradicted the wheels.
+/// Start of the contradiction between tracked poses and wheels.
 ///
-/// Few points, all in one corner of a bare wall, can agree by chance, but only for a short time.
+/// A few points in one corner of a bare wall can agree by chance, but only for a short time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct OdometryConflict {
     since: Option<Stamp>,

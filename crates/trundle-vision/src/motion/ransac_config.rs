@@ -37,7 +37,7 @@ impl Default for RansacConfig {
 }
 
 impl RansacConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside the range that its field names.

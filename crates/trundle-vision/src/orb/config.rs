@@ -44,7 +44,7 @@ impl OrbConfig {
     /// Nearer than this to the border, px of its octave, no feature is found: there is nothing to describe it by.
     pub const MARGIN: usize = super::patch::BORDER_PX;
 
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside the range that its field names.

@@ -55,10 +55,10 @@ impl Default for ScanMatchConfig {
 }
 
 impl ScanMatchConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("window", self.window, "m", 0.0, 1.0)?;
         require_in("window_deg", self.window_deg, "deg", 0.0, 45.0)?;
