@@ -1,4 +1,4 @@
-//! Loop candidates along trajectories whose loops are known.
+//! Loop candidates along trajectories with known loops.
 
 use crate::loop_closing::candidates::candidates;
 use crate::pose_graph::{Constraint, RelativeUncertainty, reach};

@@ -11,7 +11,7 @@ use trundle_core::Pose2;
 pub(crate) struct RelativeUncertainty {
     /// Covariance (m, m, rad) in the map's axes.
     pub(crate) covariance: Matrix3<f64>,
-    /// Length of the path along the ties, m.
+    /// Length of the path along the constraints, m.
     pub(crate) way: f64,
 }
 
@@ -123,7 +123,7 @@ impl PartialOrd for Entry {
 }
 
 impl Ord for Entry {
-    /// The least cost first; of equals the lower number.
+    /// The smallest cost first; of equal costs the lower number.
     fn cmp(&self, other: &Self) -> Ordering {
         other.cost.total_cmp(&self.cost).then(other.pose.cmp(&self.pose))
     }
