@@ -1,4 +1,4 @@
-//! Validation of a robot's configuration: a configuration is valid when a robot can be made of it.
+//! Validation of a robot's configuration, by building a robot from it.
 
 use super::Robot;
 use crate::config::RobotConfig;
