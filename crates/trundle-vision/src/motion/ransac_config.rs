@@ -40,7 +40,7 @@ impl RansacConfig {
     /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is outside the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
         if !(self.confidence > 0.0 && self.confidence < 1.0) {
             return Err(Invalid::new("ransac.confidence", self.confidence, "", "above 0, below 1"));
