@@ -16,8 +16,8 @@ pub struct StabilizerConfig {
     pub k_alpha: f64,
     /// Turn rate per approach angle (goal heading against bearing), 1/s, -20 to -0.001. Default -1 (ours).
     pub k_beta: f64,
-    /// Distance from the goal below which the approach angle fades and the turn on the spot corrects the heading, m, 0.001 to
-    /// 10. Default 0.15 (ours).
+    /// Distance from the goal below which the approach angle fades out, m, 0.001 to 10. A turn on the spot then corrects the heading.
+    /// Default 0.15 (ours).
     pub shaping_distance: f64,
     /// Largest approach angle in the law, rad, 0 to 1.5. It bounds the detour of the arc. Default 0.8 (ours).
     pub max_approach: f64,
