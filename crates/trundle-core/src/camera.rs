@@ -23,18 +23,18 @@ pub struct Distortion {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Unchecked")]
 pub struct PinholeCamera {
-    /// Width of the image, px, 1 to 16384. Default 512: the depth camera of a Kinect V2.
+    /// Width of the image, px, 1 to 16384. Without the table 512: the depth camera of a Kinect V2.
     width: usize,
-    /// Height of the image, px, 1 to 16384. Default 424.
+    /// Height of the image, px, 1 to 16384. Without the table 424.
     height: usize,
     /// Focal length along x, px, above 0. A wrong value distorts distances and turns; `trundle calibrate camera` measures it. Default
     /// 361.56.
     fx: f64,
-    /// Focal length along y, px, above 0. Default 367.19.
+    /// Focal length along y, px, above 0. Without the table 367.19.
     fy: f64,
-    /// Principal point along x, px, from the centre of the left column. Default 255.5.
+    /// Principal point along x, px, from the centre of the left column. Without the table 255.5.
     cx: f64,
-    /// Principal point along y, px, from the centre of the top row. Default 211.5.
+    /// Principal point along y, px, from the centre of the top row. Without the table 211.5.
     cy: f64,
     /// Lens distortion.
     distortion: Distortion,
