@@ -27,8 +27,8 @@ pub struct PinholeCamera {
     width: usize,
     /// Height of the image, px, 1 to 16384. Without the table 424.
     height: usize,
-    /// Focal length along x, px, above 0. A wrong value distorts distances and turns; `trundle calibrate camera` measures it. Default
-    /// 361.56.
+    /// Focal length along x, px, above 0. A wrong value distorts distances and turns; `trundle calibrate camera` measures it.
+    /// Without the table 361.56.
     fx: f64,
     /// Focal length along y, px, above 0. Without the table 367.19.
     fy: f64,
