@@ -30,7 +30,7 @@ struct LeftOutPose {
 
 /// The stored scan that represents a scan after others were dropped.
 #[derive(Debug, Clone, Copy)]
-struct Heir {
+struct Successor {
     /// Number of the stored scan after dropping.
     number: usize,
     /// Number of the stored scan before dropping.
@@ -38,12 +38,12 @@ struct Heir {
 }
 
 /// For each scan, the scan itself or the previous kept one.
-fn heirs(goes: &[bool]) -> Vec<Heir> {
-    let mut heir = Heir { number: 0, old: 0 };
+fn successors(goes: &[bool]) -> Vec<Successor> {
+    let mut heir = Successor { number: 0, old: 0 };
     let mut kept = 0;
     let mut next = |k: usize| {
         if !goes[k] {
-            heir = Heir { number: kept, old: k };
+            heir = Successor { number: kept, old: k };
             kept += 1;
         }
         heir
@@ -58,7 +58,7 @@ pub(crate) fn every_second(all: usize, count: usize) -> Vec<bool> {
 
 /// The number of scan `k` after dropping, or that of the previous kept scan.
 pub(crate) fn number_after(goes: &[bool], k: usize) -> usize {
-    if k < goes.len() { heirs(goes)[k].number } else { goes.iter().filter(|goes| !**goes).count() }
+    if k < goes.len() { successors(goes)[k].number } else { goes.iter().filter(|goes| !**goes).count() }
 }
 
 impl ScanHistory {
@@ -94,9 +94,9 @@ impl ScanHistory {
     pub(crate) fn thin(&mut self, trajectory: &mut Vec<(Stamp, Pose2)>, goes: &[bool]) {
         let poses: Vec<Pose2> = trajectory.iter().map(|(_, pose)| *pose).collect();
         self.measure(&poses);
-        let heirs = heirs(goes);
+        let successors = successors(goes);
         let renamed = |k: usize| {
-            let Heir { number, old } = heirs[k];
+            let Successor { number, old } = successors[k];
             (number as u32, if old == k { Pose2::IDENTITY } else { poses[old].inverse() * poses[k] })
         };
         for left in &mut self.left_out {

@@ -70,7 +70,7 @@ impl Likelihood {
     /// ln p(z | m, x) of all points at a pose (cells of the window, rad).
     pub(crate) fn log_likelihood(&self, window: &TileWindow<'_>, shape: &ScanPoints, pose: Pose2) -> f64 {
         let mut sum = 0.0_f32;
-        self.tell(&mut sum, window, shape, pose);
+        self.evaluate_all(&mut sum, window, shape, pose);
         f64::from(sum)
     }
 
@@ -82,16 +82,22 @@ impl Likelihood {
         pose: Pose2,
     ) -> ScanEquations {
         let mut sums = Sums::default();
-        self.tell(&mut sums, window, shape, pose);
+        self.evaluate_all(&mut sums, window, shape, pose);
         sums.equations()
     }
 
     /// Passes all points to a sink, eight at a time.
-    fn tell<L: PointSink>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanPoints, pose: Pose2) {
+    fn evaluate_all<L: PointSink>(
+        &self,
+        to: &mut L,
+        window: &TileWindow<'_>,
+        shape: &ScanPoints,
+        pose: Pose2,
+    ) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
             // SAFETY: the processor has the only feature that the function is compiled for.
-            return unsafe { self.tell_by_avx2(to, window, shape, pose) };
+            return unsafe { self.evaluate_by_avx2(to, window, shape, pose) };
         }
         self.tell_plainly(to, window, shape, pose);
     }
@@ -99,7 +105,7 @@ impl Likelihood {
     /// The same arithmetic in vectors of eight, with the order of all sums: the same bits.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn tell_by_avx2<L: PointSink>(
+    fn evaluate_by_avx2<L: PointSink>(
         &self,
         to: &mut L,
         window: &TileWindow<'_>,

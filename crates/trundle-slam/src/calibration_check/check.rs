@@ -38,10 +38,10 @@ pub(crate) struct CalibrationCheck {
     moved: Option<Pose3>,
     pairs: Vec<Pair>,
     /// The running fit of the camera settings to the first pairs.
-    judgement: Option<ModelSelection>,
+    camera_fit: Option<ModelSelection>,
     /// Number of pairs in the last evaluation.
-    judged: usize,
-    camera_judged: bool,
+    evaluated_pairs: usize,
+    is_camera_evaluated: bool,
     range: DepthRange,
     travel: TravelledDistance,
     registration: Registration,
@@ -73,11 +73,11 @@ impl CalibrationCheck {
         self.moved = self.moved.zip(prior).map(|(moved, prior)| moved * prior);
         if self.frames.is_multiple_of(FRAME_STRIDE) {
             self.calibration_issues.extend(self.range.record(depth, config));
-            if !self.camera_judged && self.pairs.len() < MAX_PAIRS {
+            if !self.is_camera_evaluated && self.pairs.len() < MAX_PAIRS {
                 self.compare(frame, model);
             }
         }
-        self.judge(&model.camera);
+        self.evaluate(&model.camera);
         self.frames += 1;
     }
 
@@ -98,19 +98,19 @@ impl CalibrationCheck {
     }
 
     /// Evaluates the camera settings in some rounds per frame, and again after every three new pairs.
-    fn judge(&mut self, camera: &PinholeCamera) {
+    fn evaluate(&mut self, camera: &PinholeCamera) {
         let count = self.pairs.len() / 3 * 3;
-        if self.judgement.is_none() && count >= MIN_PAIRS && count > self.judged {
-            self.judgement = Some(ModelSelection::of(&self.pairs[..count]));
-            self.judged = count;
+        if self.camera_fit.is_none() && count >= MIN_PAIRS && count > self.evaluated_pairs {
+            self.camera_fit = Some(ModelSelection::of(&self.pairs[..count]));
+            self.evaluated_pairs = count;
         }
-        let pairs = &self.pairs[..self.judged];
-        let Some(suspicion) = self.judgement.as_mut().and_then(|j| j.advance(pairs, camera)) else { return };
-        self.judgement = None;
-        self.camera_judged = suspicion.is_some() || self.judged >= MAX_PAIRS;
+        let pairs = &self.pairs[..self.evaluated_pairs];
+        let Some(suspicion) = self.camera_fit.as_mut().and_then(|j| j.advance(pairs, camera)) else { return };
+        self.camera_fit = None;
+        self.is_camera_evaluated = suspicion.is_some() || self.evaluated_pairs >= MAX_PAIRS;
         self.calibration_issues.extend(suspicion);
-        if self.camera_judged {
-            (self.pairs, self.anchor, self.judged) = (Vec::new(), None, 0);
+        if self.is_camera_evaluated {
+            (self.pairs, self.anchor, self.evaluated_pairs) = (Vec::new(), None, 0);
         }
     }
 }

@@ -65,12 +65,12 @@ impl Registration {
             let (sum, count) = under.fold((0.0, 0), |(sum, count), value| (sum + value, count + 1));
             *score += sum / f64::from(count.max(1)) / mean;
         }
-        if self.is_open() { None } else { self.judge() }
+        if self.is_open() { None } else { self.evaluate() }
     }
 
     /// Reports a shift if both halves of the images agree on it and its size is plausible. Without a registration error the halves
     /// disagree.
-    fn judge(&self) -> Option<CalibrationIssue> {
+    fn evaluate(&self) -> Option<CalibrationIssue> {
         let [a, b] = [shift_of(&self.scores[0])?, shift_of(&self.scores[1])?];
         let same = (a.0 - b.0).abs() <= MAX_SHIFT_DIFFERENCE_BLOCKS
             && (a.1 - b.1).abs() <= MAX_SHIFT_DIFFERENCE_BLOCKS;

@@ -35,7 +35,11 @@ pub(crate) fn essential_graph(
         seen.into_iter().map(|(pair, by)| as_now(pair, by + Matrix6::identity() * MIN_INFORMATION)).collect();
     for tie in odometry_and_floor_constraints(map, &ids, |i| i == 0) {
         let is_floor = tie.from == ids.len();
-        constraints.push(if is_floor { tie } else { as_now((tie.from, tie.to), believed(&tie, &poses)) });
+        constraints.push(if is_floor {
+            tie
+        } else {
+            as_now((tie.from, tie.to), robust_information(&tie, &poses))
+        });
     }
     let (from, to) = (place(found.candidate), place(keyframe));
     let from_to = poses[from].inverse() * found.visual_from_camera;
@@ -64,7 +68,7 @@ fn pairs(map: &LandmarkMap, ids: &[KeyframeId], tied_by: usize) -> BTreeSet<(usi
 }
 
 /// Information of an odometry constraint at these poses, reduced by the Huber loss where the wheels slipped.
-fn believed(tie: &PoseConstraint, poses: &[Pose3]) -> Matrix6<f64> {
+fn robust_information(tie: &PoseConstraint, poses: &[Pose3]) -> Matrix6<f64> {
     let off = (tie.from_to.inverse() * poses[tie.from].inverse() * poses[tie.to]).log();
     tie.information * Huber::beyond(CHI2_95_6).weight(off.dot(&(tie.information * off)))
 }

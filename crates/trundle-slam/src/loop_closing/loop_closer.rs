@@ -69,7 +69,7 @@ impl LoopCloser<'_> {
         pending: &mut Option<ConsistencyCheck<()>>,
     ) -> Option<LoopClosure> {
         let keyframe = search.keyframe;
-        let place = self.believable_place(map, search, pending)?;
+        let place = self.accepted_place(map, search, pending)?;
         let before = map.keyframe(keyframe).visual_from_camera;
         let (seen_before, points) = (place.candidate, place.points);
         let mapper = LocalMapper::new(self.model, self.mapping, self.tracking);
@@ -80,7 +80,7 @@ impl LoopCloser<'_> {
     }
 
     /// The place that the keyframe shows: at once where the drift explains the correction, else after several keyframes in a row.
-    fn believable_place(
+    fn accepted_place(
         &self,
         map: &LandmarkMap,
         search: LoopSearch,

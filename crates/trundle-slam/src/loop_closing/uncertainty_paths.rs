@@ -72,7 +72,7 @@ impl UncertaintyPaths {
 fn edges(map: &LandmarkMap, ids: &[KeyframeId], config: &LoopConfig) -> Vec<Vec<(usize, PathUncertainty)>> {
     let mut edges = vec![Vec::new(); ids.len()];
     for (at, (_, keyframe)) in map.keyframes().enumerate() {
-        let parent = keyframe.tree.parent.iter().filter(|_| !keyframe.tree.is_astray);
+        let parent = keyframe.tree.parent.iter().filter(|_| !keyframe.tree.shares_no_landmark);
         let seen = parent.chain(&keyframe.tree.loops).map(|id| (*id, config.drift_part));
         let odometry = keyframe.odometry.iter().map(|odometry| (odometry.from, config.drift_part_on_wheels));
         for (other, part) in seen.chain(odometry) {
@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn a_parent_without_common_landmarks_is_not_a_constraint() {
         let (mut map, ids) = line(&[0.0, 1.0, 2.0]);
-        map.keyframe_mut(ids[1]).tree.is_astray = true;
+        map.keyframe_mut(ids[1]).tree.shares_no_landmark = true;
         let config = LoopConfig::default();
         assert_eq!(UncertaintyPaths::from(&map, ids[0], &config).to(ids[2]), None);
         map.keyframe_mut(ids[1]).odometry = Some(OdometryFactor::at(ids[0]));

@@ -14,7 +14,7 @@ impl LandmarkMap {
         let nearest = self.covisible(id, 1).into_iter().map(|(other, _)| other).find(|other| *other < id);
         if let Some(parent) = nearest.or_else(before) {
             self.set_parent(id, parent);
-            self.keyframe_mut(id).tree.is_astray = nearest.is_none();
+            self.keyframe_mut(id).tree.shares_no_landmark = nearest.is_none();
         }
     }
 
@@ -56,7 +56,7 @@ impl LandmarkMap {
         tree.successor_of.extend(gone.tree.successor_of);
         for child in gone.tree.children {
             self.set_parent(child, parent);
-            self.keyframe_mut(child).tree.is_astray |= gone.tree.is_astray;
+            self.keyframe_mut(child).tree.shares_no_landmark |= gone.tree.shares_no_landmark;
         }
         true
     }

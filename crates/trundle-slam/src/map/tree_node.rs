@@ -9,7 +9,7 @@ pub(crate) struct TreeNode {
     pub parent: Option<KeyframeId>,
     /// Whether the keyframe shared no landmark with its parent, the previous keyframe: the first keyframe of a merged map, or one placed by
     /// odometry alone.
-    pub is_astray: bool,
+    pub shares_no_landmark: bool,
     pub children: Vec<KeyframeId>,
     /// Keyframes that close a loop with this one.
     pub loops: Vec<KeyframeId>,

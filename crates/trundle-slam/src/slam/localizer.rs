@@ -66,7 +66,7 @@ impl Localizer<'_> {
         let tracker = self.tracker(active, &bow);
         if let Some(tracked) = track(&tracker, state, expected) {
             let localized = self.checked_by_map(state, &tracker, tracked, expected);
-            let is_believed = state.odometry_conflict.believes(stamp, localized.points_against_odometry());
+            let is_believed = state.odometry_conflict.accepts(stamp, localized.points_against_odometry());
             return is_believed.then_some(Localization { map: active.id, localized });
         }
         let found = relocalize(&tracker);
