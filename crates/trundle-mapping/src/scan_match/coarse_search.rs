@@ -268,7 +268,9 @@ mod tests {
             let (mut one, mut other) = (NO_SUMS, NO_SUMS);
             search.sum_rows::<11>(&window, guess, &mut one);
             search.sum_rows_plainly::<11>(&window, guess, &mut other);
-            prop_assert!(one == other && one.as_flattened().iter().any(|sum| *sum > 0));
+            prop_assert!(one == other);
+            // A scan that looks away from the wall meets nothing; too many of them fail the test.
+            prop_assume!(one.as_flattened().iter().any(|sum| *sum > 0));
         }
     }
 }
