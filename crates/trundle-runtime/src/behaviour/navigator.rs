@@ -20,6 +20,7 @@ pub(crate) use commands::safety_input;
 use crate::world_state::WorldState;
 use crate::{
     behaviour::drive_state::DriveState,
+    behaviour::machine::StateMachine,
     behaviour::progress_checker::ProgressChecker,
     behaviour::relative_motion::{RelativeMotion, RelativeMotionDrive},
     behaviour::sight_recovery::SightRecovery,
@@ -30,7 +31,7 @@ use crate::{
     goal_approach::{GoalApproach, GoalApproachReport},
     mission::executor_config::MissionExecutorConfig,
     operator::RunSetting,
-    reason::Reason,
+    reason::{Reason, TransitionReason},
     schedule::Ticker,
     stage::{Stage, StageTimes},
 };
@@ -91,7 +92,7 @@ pub(crate) struct Navigator {
     improve_due: Ticker,
     goal: Goal,
     plan: Option<Box<PlanResult>>,
-    state: DriveState,
+    machine: StateMachine,
     touched: bool,
     /// Bumper contacts since the goal was given.
     touches: u32,
@@ -151,7 +152,7 @@ impl Navigator {
             improve_due: Ticker::new(config.schedule.improve_hz),
             goal: Goal::Stay,
             plan: None,
-            state: DriveState::Idle,
+            machine: StateMachine::default(),
             touched: false,
             touches: 0,
             over_edge: false,
@@ -195,7 +196,7 @@ impl Navigator {
     /// Sets the goal. A robot that follows a trajectory continues to the new goal without a stop.
     pub(crate) fn set_goal(&mut self, goal: Goal) {
         let is_maneuver = matches!(goal, Goal::Align(_) | Goal::Station(_) | Goal::Relative(_));
-        let rolls_on = self.state == DriveState::Driving && goal.pose().is_some() && !is_maneuver;
+        let rolls_on = *self.state() == DriveState::Driving && goal.pose().is_some() && !is_maneuver;
         self.goal = goal;
         self.plan = None;
         self.held_since = None;
@@ -215,24 +216,26 @@ impl Navigator {
         if !rolls_on {
             self.follower.halt();
         }
-        self.state = match goal {
+        let state = match goal {
             Goal::Stay => DriveState::Idle,
             Goal::Exact(_) | Goal::Viewpoint(_) if rolls_on => DriveState::Driving,
             Goal::Align(pose) if self.goal_approach.begin_at(pose) => DriveState::Maneuvering,
             Goal::Station(_) | Goal::Relative(_) => DriveState::Maneuvering,
             _ => DriveState::Initializing,
         };
+        self.machine.change(state, TransitionReason::GoalGiven);
     }
 
     /// A change of the bumper.
     pub(crate) fn touch(&mut self, pressed: bool) {
         self.touches += u32::from(pressed && !self.touched);
         self.touched = pressed;
-        if self.touches >= MAX_BUMPER_CONTACTS && !self.state.is_over() {
+        if self.touches >= MAX_BUMPER_CONTACTS && !self.state().is_over() {
             // Repeated contacts show that the map lacks the obstacle, or has it at a wrong place.
             self.follower.halt();
             self.goal_approach.reset();
-            self.state = DriveState::Stopped { reason: Reason::RepeatedContact { contacts: self.touches } };
+            let reason = Reason::RepeatedContact { contacts: self.touches };
+            self.machine.change(DriveState::Stopped { reason }, TransitionReason::RepeatedContact);
         }
     }
 
@@ -242,7 +245,7 @@ impl Navigator {
     }
 
     pub(crate) fn state(&self) -> &DriveState {
-        &self.state
+        self.machine.state()
     }
 
     /// Report of turns and straight moves for the goal.
@@ -274,9 +277,9 @@ impl Navigator {
     /// Initializes: the robot does not move before the first view.
     fn initialize(&mut self, s: &WorldState<'_>) {
         self.started.get_or_insert(s.now);
-        if self.state == DriveState::Initializing && self.is_initialized(s) && self.goal.pose().is_some() {
+        if *self.state() == DriveState::Initializing && self.is_initialized(s) && self.goal.pose().is_some() {
             self.visibility.home.get_or_insert(s.estimate.pose.position());
-            self.state = DriveState::Planning;
+            self.machine.change(DriveState::Planning, TransitionReason::Initialized);
         }
     }
 
@@ -287,28 +290,28 @@ impl Navigator {
 
     /// Checks that the pose is known and that the robot makes progress.
     fn monitor(&mut self, s: &WorldState<'_>) {
-        if self.state.is_over() {
+        if self.state().is_over() {
             return;
         }
-        let is_lost = matches!(self.state, DriveState::Lost { .. });
+        let is_lost = matches!(self.state(), DriveState::Lost { .. });
         match self.lost_reason(s) {
             Some(reason) if !is_lost => {
                 self.follower.halt();
                 self.goal_approach.reset();
                 self.plan = None;
-                self.state = DriveState::Lost { reason };
+                self.machine.change(DriveState::Lost { reason }, TransitionReason::PoseLost);
             }
             None if is_lost && position_sigma(&s.estimate) < 0.5 * self.config.lost_sigma => {
                 self.spin = Spin::default();
                 // The robot may have been carried here.
                 self.visibility.home = None;
-                self.state = DriveState::Initializing;
+                self.machine.change(DriveState::Initializing, TransitionReason::PoseFound);
             }
             _ => {}
         }
-        let turns_count = matches!(self.state, DriveState::FinalApproach | DriveState::Maneuvering)
-            || self.state == DriveState::Driving
-            || self.goal == Goal::Spin && self.state == DriveState::Initializing;
+        let turns_count = matches!(self.state(), DriveState::FinalApproach | DriveState::Maneuvering)
+            || *self.state() == DriveState::Driving
+            || self.goal == Goal::Spin && *self.state() == DriveState::Initializing;
         if s.hold.is_some() {
             // A safety stop is not a fault of the goal.
             return self.progress.restart();
@@ -326,10 +329,11 @@ impl Navigator {
             return;
         }
         let is_in_vain = self.sight_recovery.sees(s.estimate.pose.position());
-        let waits = matches!(self.state, DriveState::Waiting { .. });
+        let waits = matches!(self.state(), DriveState::Waiting { .. });
         if is_in_vain && waits && matches!(self.goal, Goal::Viewpoint(_)) {
             self.follower.halt();
-            self.state = DriveState::Stopped { reason: Reason::NoSightOnPath };
+            let reason = Reason::NoSightOnPath;
+            self.machine.change(DriveState::Stopped { reason }, TransitionReason::NoSightOnPath);
         }
     }
 
@@ -351,15 +355,16 @@ impl Navigator {
     }
 
     fn stop_without_progress(&mut self, stood: f64) {
-        let (state, cause) = (self.state.name(), self.state.reason().cloned().map(Box::new));
+        let (state, cause) = (self.state().name(), self.state().reason().cloned().map(Box::new));
         self.follower.halt();
         self.goal_approach.reset();
-        self.state = DriveState::Stopped { reason: Reason::NoProgress { time: stood, state, cause } };
+        let reason = Reason::NoProgress { time: stood, state, cause };
+        self.machine.change(DriveState::Stopped { reason }, TransitionReason::NoProgress);
     }
 
     /// At the end of the trajectory: an arc, or turns and straight moves; or it is near enough.
     fn begin_final_approach(&mut self, s: &WorldState<'_>) {
-        self.state = DriveState::FinalApproach;
+        self.machine.change(DriveState::FinalApproach, TransitionReason::TrajectoryEnd);
         let (Goal::Exact(goal) | Goal::Align(goal)) = self.goal else {
             self.follower.halt();
             return;
@@ -379,15 +384,14 @@ impl Navigator {
     /// Sets the state by the follower's phase.
     fn note_progress(&mut self, follow: &FollowReport, s: &WorldState<'_>, times: &mut StageTimes) {
         self.note_viewpoint(follow, s.now);
-        let moving = matches!(self.state, DriveState::Driving | DriveState::FinalApproach);
+        let moving = matches!(self.state(), DriveState::Driving | DriveState::FinalApproach);
         match follow.phase {
             _ if !moving => {}
-            FollowPhase::Settled => self.state = DriveState::Arrived,
-            FollowPhase::Approaching | FollowPhase::Turning if self.state == DriveState::Driving => {
+            FollowPhase::Settled => self.machine.change(DriveState::Arrived, TransitionReason::GoalReached),
+            FollowPhase::Approaching | FollowPhase::Turning if *self.state() == DriveState::Driving => {
                 times.measure(Stage::Planning, || self.begin_final_approach(s));
             }
             FollowPhase::Approaching | FollowPhase::Turning => {
-                self.state = DriveState::FinalApproach;
                 times.measure(Stage::Planning, || self.select_approach(s));
             }
             FollowPhase::Tracking if follow.off_track => {

@@ -8,7 +8,7 @@ use crate::{
     behaviour::spin::{SPIN_TURNS, face, turn_to},
     behaviour::station_drive::{StationGoal, StationProgress},
     goal_approach::Progress,
-    reason::Reason,
+    reason::{Reason, TransitionReason},
     stage::{Stage, StageTimes},
 };
 use trundle_control::{FollowReport, MotionSense, SafetyAction, SafetyInput, SafetyMemory};
@@ -34,7 +34,7 @@ impl Navigator {
         times: &mut StageTimes,
     ) -> Twist2 {
         let pose = s.estimate.pose;
-        match &self.state {
+        match self.state() {
             DriveState::Initializing if self.goal == Goal::Spin => self.spin_once(s),
             DriveState::Recovering { .. } if self.is_wedged => Twist2::new(-REVERSE_SPEED_M_S, 0.0),
             DriveState::Recovering { .. } if matches!(self.viewpoint, Viewpoint::Going(..)) => follow.twist,
@@ -63,7 +63,7 @@ impl Navigator {
         let Goal::Viewpoint(view) = self.goal else { return Twist2::ZERO };
         let twist = turn_to(s.estimate.pose, view.theta);
         if twist == Twist2::ZERO {
-            self.state = DriveState::Arrived;
+            self.machine.change(DriveState::Arrived, TransitionReason::GoalReached);
         }
         twist
     }
@@ -95,7 +95,7 @@ impl Navigator {
             return Twist2::ZERO;
         }
         if self.spin.has_turned(SPIN_TURNS) {
-            self.state = DriveState::Arrived;
+            self.machine.change(DriveState::Arrived, TransitionReason::GoalReached);
             return Twist2::ZERO;
         }
         self.spin.twist(s.estimate.pose)
@@ -108,9 +108,10 @@ impl Navigator {
                 self.sight_recovery.held(twist);
                 return twist;
             }
-            Progress::Settled => self.state = DriveState::Arrived,
+            Progress::Settled => self.machine.change(DriveState::Arrived, TransitionReason::GoalReached),
             Progress::GivenUp(failure) => {
-                self.state = DriveState::Stopped { reason: Reason::FinalApproach(failure) };
+                let reason = Reason::FinalApproach(failure);
+                self.machine.change(DriveState::Stopped { reason }, TransitionReason::MotionFailed);
             }
         }
         Twist2::ZERO
@@ -118,7 +119,7 @@ impl Navigator {
 
     fn relative_motion(&self) -> Option<RelativeMotion> {
         match self.goal {
-            Goal::Relative(motion) if self.state == DriveState::Maneuvering => Some(motion),
+            Goal::Relative(motion) if *self.state() == DriveState::Maneuvering => Some(motion),
             _ => None,
         }
     }
@@ -128,7 +129,7 @@ impl Navigator {
         let Some(motion) = self.relative_motion().filter(|_| self.is_rested(s)) else { return Twist2::ZERO };
         let twist = self.relative_drive.step(motion, s.estimate.pose);
         if twist.is_none() {
-            self.state = DriveState::Arrived;
+            self.machine.change(DriveState::Arrived, TransitionReason::GoalReached);
         }
         twist.unwrap_or_default()
     }
@@ -140,7 +141,7 @@ impl Navigator {
 
     fn station_goal(&self) -> Option<StationGoal> {
         match self.goal {
-            Goal::Station(goal) if self.state == DriveState::Maneuvering => Some(goal),
+            Goal::Station(goal) if *self.state() == DriveState::Maneuvering => Some(goal),
             _ => None,
         }
     }
@@ -150,9 +151,10 @@ impl Navigator {
         let Some(goal) = self.station_goal().filter(|_| self.is_rested(s)) else { return Twist2::ZERO };
         match self.station_drive.step(&goal, s, self.touched, self.reach) {
             StationProgress::Moving(twist) => return twist,
-            StationProgress::Done => self.state = DriveState::Arrived,
+            StationProgress::Done => self.machine.change(DriveState::Arrived, TransitionReason::GoalReached),
             StationProgress::Failed(failure) => {
-                self.state = DriveState::Stopped { reason: Reason::Docking(failure) };
+                let reason = Reason::Docking(failure);
+                self.machine.change(DriveState::Stopped { reason }, TransitionReason::MotionFailed);
             }
         }
         Twist2::ZERO
@@ -170,22 +172,24 @@ impl Navigator {
                 _ => None,
             };
             if self.relative_drive.is_blocked(stop.is_some(), s.now) {
-                self.state = stop.map_or(DriveState::Arrived, |reason| DriveState::Stopped {
+                let to = stop.map_or(DriveState::Arrived, |reason| DriveState::Stopped {
                     reason: Reason::Safety(reason),
                 });
+                self.machine.change(to, TransitionReason::MotionFailed);
             }
             return report.twist;
         }
-        match (report.action, &self.state) {
+        match (report.action, self.state()) {
             (
                 SafetyAction::Stop(reason),
                 DriveState::Driving | DriveState::FinalApproach | DriveState::Waiting { .. },
             ) => {
-                if !matches!(self.state, DriveState::Waiting { .. }) {
+                if !matches!(self.state(), DriveState::Waiting { .. }) {
                     self.sight_recovery.held(twist);
                 }
                 self.held_since.get_or_insert(s.now);
-                self.state = DriveState::Waiting { reason: Reason::Safety(reason) };
+                let reason = Reason::Safety(reason);
+                self.machine.change(DriveState::Waiting { reason }, TransitionReason::SafetyStop);
             }
             (SafetyAction::Stop(reason), DriveState::Recovering { .. })
                 if matches!(self.viewpoint, Viewpoint::Going(..)) =>
@@ -193,7 +197,8 @@ impl Navigator {
                 self.viewpoint = Viewpoint::Settled;
                 self.follower.halt();
                 self.held_since.get_or_insert(s.now);
-                self.state = DriveState::Waiting { reason: Reason::Safety(reason) };
+                let reason = Reason::Safety(reason);
+                self.machine.change(DriveState::Waiting { reason }, TransitionReason::SafetyStop);
             }
             (SafetyAction::Stop(_), DriveState::Maneuvering)
                 if twist != Twist2::ZERO && !self.is_blind(s) =>
@@ -204,7 +209,7 @@ impl Navigator {
                 if self.follower.end().is_some() && !(self.touched || self.over_edge) =>
             {
                 self.held_since = None;
-                self.state = DriveState::Driving;
+                self.machine.change(DriveState::Driving, TransitionReason::SafetyPass);
             }
             _ => {}
         }
@@ -268,7 +273,8 @@ mod tests {
     fn lose_sight_and_find_it(navigator: &mut Navigator, grid: &OccupancyGrid, from: Stamp) -> Stamp {
         let mut times = StageTimes::default();
         let mut pose = Pose2::new(3.0, 2.0, 0.0);
-        navigator.state = DriveState::Waiting { reason: Reason::Safety(StopReason::StaleImage { age: 1.0 }) };
+        let reason = Reason::Safety(StopReason::StaleImage { age: 1.0 });
+        navigator.machine.place(DriveState::Waiting { reason });
         navigator.held_since = Some(from);
         for i in 1..=(BLIND / STEP) as i32 {
             let now = from.after(STEP * f64::from(i));
@@ -279,10 +285,9 @@ mod tests {
         assert!(pose.theta > 0.5, "it turns to find its sight: {}", pose.theta);
         let sees = |after: f64| from.after(BLIND + after);
         for now in (1..50).map(|i| sees(STEP * f64::from(i))) {
-            navigator.state = match &navigator.state {
-                over if over.is_over() => over.clone(),
-                _ => DriveState::Waiting { reason: Reason::PathOutOfView },
-            };
+            if !navigator.state().is_over() {
+                navigator.machine.place(DriveState::Waiting { reason: Reason::PathOutOfView });
+            }
             navigator.step(&WorldState { seen: Some(now), ..at_rest(grid, now, pose) }, &mut times);
         }
         sees(1.0)
@@ -295,7 +300,7 @@ mod tests {
         let (held, mut times) = (Stamp::default().after(10.0), StageTimes::default());
         let seen = held.after(20.0);
         for (blind, turns) in [(1.0, false), (2.9, false), (3.1, true)] {
-            navigator.state = DriveState::Waiting { reason: Reason::MovingObstacle };
+            navigator.machine.place(DriveState::Waiting { reason: Reason::MovingObstacle });
             navigator.held_since = Some(held);
             let s = WorldState { seen: Some(seen), ..at_rest(&grid, seen.after(blind), pose) };
             let twist = navigator.step(&s, &mut times).twist;

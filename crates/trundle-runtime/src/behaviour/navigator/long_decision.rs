@@ -14,7 +14,7 @@ impl Navigator {
         if self.goal.pose().is_none() {
             return false;
         }
-        match &self.state {
+        match self.state() {
             DriveState::Idle | DriveState::Arrived | DriveState::Stopped { .. } => false,
             DriveState::Lost { .. } | DriveState::FinalApproach => false,
             DriveState::Maneuvering => true,
@@ -36,7 +36,7 @@ impl Navigator {
 
     /// The controller that continues the last decision.
     pub(crate) fn fallback(&self) -> FallbackController {
-        let follows = match &self.state {
+        let follows = match self.state() {
             DriveState::Driving => true,
             DriveState::Recovering { .. } => matches!(self.viewpoint, Viewpoint::Going(..)),
             DriveState::FinalApproach => !matches!(self.goal, Goal::Viewpoint(_)),

@@ -209,7 +209,7 @@ mod tests {
         assert_eq!(grid.at(at), Cell::Unknown);
         // The floor remains unseen: every observation is without result, no path is left, and the reason is reported.
         navigator.set_goal(super::super::Goal::Exact(goal));
-        navigator.state = crate::behaviour::drive_state::DriveState::Planning;
+        navigator.machine.place(crate::behaviour::drive_state::DriveState::Planning);
         let mut looks = 0;
         for i in 1..600 {
             let s = at_rest(&grid, Stamp::default().after(0.2 * f64::from(i)), pose);
@@ -225,7 +225,7 @@ mod tests {
             }
         }
         assert!((1..=MAX_VAIN_VIEWS).contains(&looks), "{looks} looks");
-        let reason = navigator.state.reason().unwrap().to_string();
+        let reason = navigator.state().reason().unwrap().to_string();
         assert!(reason.contains("no free path") && reason.contains("could not be observed"), "{reason}");
     }
 

@@ -5,7 +5,7 @@ use crate::world_state::WorldState;
 use crate::{
     behaviour::drive_state::DriveState,
     behaviour::spin::Spin,
-    reason::{NoPath, Reason},
+    reason::{NoPath, Reason, TransitionReason},
     stage::{Stage, StageTimes},
 };
 use trundle_core::{Pose2, Stamp, Twist2, Vector2};
@@ -26,7 +26,7 @@ const NO_PATH_CONFIRMATION_S: f64 = 2.0;
 impl Navigator {
     /// Whether a plan is due: at the beginning, or after a check rejects the old plan.
     pub(super) fn wants_plan(&mut self, s: &WorldState<'_>) -> bool {
-        match &self.state {
+        match self.state() {
             DriveState::Idle | DriveState::Arrived | DriveState::Stopped { .. } => false,
             DriveState::Initializing
             | DriveState::FinalApproach
@@ -74,10 +74,10 @@ impl Navigator {
             self.without_path(NoPath::GoalInZone { zone }, s);
             return false;
         }
-        if matches!(self.state, DriveState::Waiting { .. }) && self.starts_maneuver_if_possible(goal, s) {
+        if matches!(self.state(), DriveState::Waiting { .. }) && self.starts_maneuver_if_possible(goal, s) {
             return false;
         }
-        let from = match (&self.state, self.follower.reference()) {
+        let from = match (self.state(), self.follower.reference()) {
             (DriveState::Driving, Some(_)) if self.is_off_track => (s.estimate.pose, s.estimate.twist),
             (DriveState::Driving, Some(reference)) => (reference.pose, reference.twist),
             // On the path to a viewpoint the plan starts from the reference too.
@@ -100,7 +100,7 @@ impl Navigator {
             Plan::Found(plan) if plan.is_continuous || s.estimate.twist.v.abs() < STANDING_SPEED_M_S => {
                 self.follower.follow(plan.trajectory.clone(), goal);
                 self.plan = Some(plan);
-                self.state = DriveState::Driving;
+                self.machine.change(DriveState::Driving, TransitionReason::PlanFound);
                 self.held_since = None;
                 self.no_path_since = None;
                 self.blocked_at = None;
@@ -110,12 +110,12 @@ impl Navigator {
                 true
             }
             Plan::Found(_) => {
-                self.hold(Reason::StoppingToReplan, s.now);
+                self.hold(Reason::StoppingToReplan, TransitionReason::StoppingToReplan, s.now);
                 false
             }
             Plan::Blocked { .. } if self.is_free_but_for_movers(s, from, goal) => {
                 self.no_path_since = None;
-                self.hold(Reason::MovingObstacle, s.now);
+                self.hold(Reason::MovingObstacle, TransitionReason::MovingObstacle, s.now);
                 false
             }
             refused => {
@@ -137,7 +137,7 @@ impl Navigator {
         long: Option<Box<PlanResult>>,
         s: &WorldState<'_>,
     ) -> Option<Box<PlanResult>> {
-        if self.state == DriveState::Driving {
+        if *self.state() == DriveState::Driving {
             self.stop_for_path_in_view(s);
             return None;
         }
@@ -146,7 +146,8 @@ impl Navigator {
                 self.follower.halt();
                 self.plan = None;
             }
-            self.state = DriveState::Recovering { reason: Reason::UnseenFloor { at } };
+            let reason = Reason::UnseenFloor { at };
+            self.machine.change(DriveState::Recovering { reason }, TransitionReason::UnseenFloor);
             self.held_since = None;
             return None;
         }
@@ -162,8 +163,8 @@ impl Navigator {
 
     /// Stops a drive whose path is not observed in time, until another plan exists. Returns false: no new plan exists.
     fn stop_for_path_in_view(&mut self, s: &WorldState<'_>) -> bool {
-        if self.state == DriveState::Driving {
-            self.hold(Reason::PathOutOfView, s.now);
+        if *self.state() == DriveState::Driving {
+            self.hold(Reason::PathOutOfView, TransitionReason::PathOutOfView, s.now);
         }
         false
     }
@@ -176,7 +177,7 @@ impl Navigator {
 
     /// During a drive: a new plan that continues from the reference and arrives sooner replaces the old one.
     pub(super) fn improved(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> bool {
-        let (Some(goal), DriveState::Driving) = (self.goal.pose(), &self.state) else { return false };
+        let (Some(goal), DriveState::Driving) = (self.goal.pose(), self.state()) else { return false };
         let (Some(old), Some(reference)) = (&self.plan, self.follower.reference()) else { return false };
         let left = old.trajectory.duration() - reference.time;
         if left < MIN_IMPROVABLE_S || !self.improve_due.due(s.now) {
@@ -212,7 +213,8 @@ impl Navigator {
     fn without_path(&mut self, cause: NoPath, s: &WorldState<'_>) {
         let is_final = self.is_final(&cause, s.now);
         if matches!(self.viewpoint, Viewpoint::Going(..)) {
-            self.state = DriveState::Recovering { reason: self.no_path(cause) };
+            let reason = self.no_path(cause);
+            self.machine.change(DriveState::Recovering { reason }, TransitionReason::NoPath);
             return;
         }
         self.is_wedged = self.is_polygon && matches!(cause, NoPath::StartInObstacle { .. });
@@ -224,13 +226,14 @@ impl Navigator {
         };
         let reason = self.no_path(cause);
         let has_looked = self.spin.has_turned(MAX_SPINS) && !self.is_wedged;
-        self.state = if is_final {
+        let state = if is_final {
             DriveState::Stopped { reason }
         } else if has_looked && !self.seeks_viewpoint(s) {
             DriveState::Waiting { reason }
         } else {
             DriveState::Recovering { reason }
         };
+        self.machine.change(state, TransitionReason::NoPath);
     }
 
     /// Whether the goal ends without a wait for a path. A viewpoint ends immediately; another goal that does not wait ends if no path
@@ -258,7 +261,7 @@ impl Navigator {
     pub(super) fn start_maneuver(&mut self) {
         self.follower.halt();
         self.held_since = None;
-        self.state = DriveState::Maneuvering;
+        self.machine.change(DriveState::Maneuvering, TransitionReason::ManeuverChosen);
     }
 
     /// The reason for a missing path, with the floor excluded from the search.
@@ -266,9 +269,9 @@ impl Navigator {
         Reason::NoPath { cause, unseen: self.visibility.keep_out() }
     }
 
-    fn hold(&mut self, reason: Reason, now: Stamp) {
+    fn hold(&mut self, reason: Reason, why: TransitionReason, now: Stamp) {
         self.follower.halt();
         self.held_since.get_or_insert(now);
-        self.state = DriveState::Waiting { reason };
+        self.machine.change(DriveState::Waiting { reason }, why);
     }
 }

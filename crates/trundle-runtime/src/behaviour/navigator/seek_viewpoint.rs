@@ -130,7 +130,7 @@ impl Navigator {
 
     /// Whether the robot is at rest during the recovery: to choose a viewpoint, or to observe.
     pub(super) fn observes_at_rest(&self) -> bool {
-        let recovers = matches!(self.state, DriveState::Recovering { .. });
+        let recovers = matches!(self.state(), DriveState::Recovering { .. });
         recovers && matches!(self.viewpoint, Viewpoint::Looking(_) | Viewpoint::Choosing(..))
     }
 }

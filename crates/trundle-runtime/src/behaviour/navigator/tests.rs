@@ -105,7 +105,7 @@ fn of_all_states_only_driving_rolls_on_to_the_next_goal() {
     ];
     let after = |state: &DriveState, goal| {
         let mut navigator = navigator();
-        navigator.state = state.clone();
+        navigator.machine.place(state.clone());
         navigator.set_goal(goal);
         navigator.state().name()
     };
@@ -368,7 +368,7 @@ fn only_states_that_may_plan_are_given_to_a_worker() {
     let takes_long = |state: DriveState, goal| {
         let mut navigator = navigator();
         navigator.set_goal(goal);
-        navigator.state = state;
+        navigator.machine.place(state);
         navigator.may_take_long(&s)
     };
     let goal = Goal::Exact(AHEAD);

@@ -47,7 +47,7 @@ mod tests {
     fn sent_to(goal: Pose2, s: &WorldState<'_>) -> Navigator {
         let mut navigator = navigator();
         navigator.set_goal(Goal::Exact(goal));
-        navigator.state = DriveState::Planning;
+        navigator.machine.place(DriveState::Planning);
         navigator.take_zones(s);
         navigator.replan(goal, s);
         navigator
@@ -81,7 +81,7 @@ mod tests {
             let s = WorldState { zones: zones.view(), ..at_rest(&grid, Stamp::default(), start) };
             let navigator = sent_to(Pose2::new(3.2, 2.2, 0.0), &s);
             assert!(navigator.plan.is_none());
-            let reason = navigator.state.reason().unwrap().to_string();
+            let reason = navigator.state().reason().unwrap().to_string();
             assert!(reason.contains("the goal is in the no-go zone 'rug'"), "{reason}");
         }
         let zones = zones(&grid, ZoneKind::NoGo, Pose2::new(3.0, 2.0, 0.0));
@@ -96,7 +96,7 @@ mod tests {
         let grid = floor(|_| false);
         let s = at_rest(&grid, Stamp::default(), START);
         let mut navigator = sent_to(GOAL, &s);
-        assert_eq!(navigator.state, DriveState::Driving);
+        assert_eq!(*navigator.state(), DriveState::Driving);
         let zones = zones(&grid, ZoneKind::NoGo, START);
         let s = WorldState { zones: zones.view(), ..at_rest(&grid, Stamp::default().after(0.02), START) };
         assert!(navigator.may_take_long(&s));
