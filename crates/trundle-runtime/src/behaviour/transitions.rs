@@ -6,16 +6,35 @@ use TransitionReason as R;
 /// A state without its data.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum StateKind {
+    /// No goal.
     Idle,
-    Initializing,
-    Planning,
-    Driving,
-    FinalApproach,
-    Maneuvering,
-    Waiting,
-    Recovering,
-    Lost,
+    /// At rest until the opening is over and the first scan is in the grid.
+    Initialize,
+    /// One turn on the spot that observes the surroundings.
+    Spin,
+    /// About to plan, at rest.
+    Plan,
+    /// Following a trajectory.
+    Drive,
+    /// Point stabilisation onto the exact goal.
+    Approach,
+    /// A turn on the spot to the heading of a viewpoint.
+    Face,
+    /// Turns and straight moves onto the exact goal.
+    Maneuver,
+    /// A turn or a straight drive relative to the robot's pose.
+    Relative,
+    /// A motion at a charging station.
+    Station,
+    /// At rest until the way is free: stopped by the safety monitor, or without a path.
+    Wait,
+    /// No path is known: turns on the spot, or a drive to a viewpoint.
+    Recover,
+    /// The pose is unknown: turning on the spot to recognise a place.
+    Relocalize,
+    /// At rest at the goal.
     Arrived,
+    /// The goal is abandoned.
     Stopped,
 }
 
@@ -41,47 +60,47 @@ pub(crate) struct Transition {
 use StateKind::*;
 
 /// States in which a plan to the goal may be made.
-const PLANS: Source = Source::Of(&[Planning, Driving, Waiting, Recovering]);
+const PLANS: Source = Source::Of(&[Plan, Drive, Wait, Recover]);
 
 /// All transitions.
 pub(crate) const TRANSITIONS: &[Transition] = &[
-    Transition { from: Source::Any, reason: R::GoalGiven, to: &[Idle, Initializing, Maneuvering] },
-    Transition { from: Source::Of(&[Driving]), reason: R::GoalGiven, to: &[Driving] },
-    Transition { from: Source::Of(&[Initializing]), reason: R::Initialized, to: &[Planning] },
-    Transition { from: PLANS, reason: R::PlanFound, to: &[Driving] },
-    Transition { from: PLANS, reason: R::StoppingToReplan, to: &[Waiting] },
-    Transition { from: PLANS, reason: R::MovingObstacle, to: &[Waiting] },
-    Transition { from: Source::Of(&[Driving]), reason: R::PathOutOfView, to: &[Waiting] },
     Transition {
-        from: Source::Of(&[Planning, Waiting, Recovering]),
-        reason: R::UnseenFloor,
-        to: &[Recovering],
+        from: Source::Any,
+        reason: R::GoalGiven,
+        to: &[Idle, Initialize, Spin, Maneuver, Relative, Station],
     },
-    Transition { from: PLANS, reason: R::NoPath, to: &[Recovering, Stopped] },
-    Transition { from: Source::Of(&[Waiting, Recovering]), reason: R::NoPath, to: &[Waiting] },
+    Transition { from: Source::Of(&[Drive]), reason: R::GoalGiven, to: &[Drive] },
+    Transition { from: Source::Of(&[Initialize]), reason: R::Initialized, to: &[Plan] },
+    Transition { from: PLANS, reason: R::PlanFound, to: &[Drive] },
+    Transition { from: PLANS, reason: R::StoppingToReplan, to: &[Wait] },
+    Transition { from: PLANS, reason: R::MovingObstacle, to: &[Wait] },
+    Transition { from: Source::Of(&[Drive]), reason: R::PathOutOfView, to: &[Wait] },
+    Transition { from: Source::Of(&[Plan, Wait, Recover]), reason: R::UnseenFloor, to: &[Recover] },
+    Transition { from: PLANS, reason: R::NoPath, to: &[Recover, Stopped] },
+    Transition { from: Source::Of(&[Wait, Recover]), reason: R::NoPath, to: &[Wait] },
     Transition {
-        from: Source::Of(&[Driving, FinalApproach, Waiting, Recovering]),
+        from: Source::Of(&[Drive, Approach, Face, Wait, Recover]),
         reason: R::SafetyStop,
-        to: &[Waiting],
+        to: &[Wait],
     },
-    Transition { from: Source::Of(&[Waiting]), reason: R::SafetyPass, to: &[Driving] },
-    Transition { from: Source::Of(&[Driving]), reason: R::TrajectoryEnd, to: &[FinalApproach] },
+    Transition { from: Source::Of(&[Wait]), reason: R::SafetyPass, to: &[Drive] },
+    Transition { from: Source::Of(&[Drive]), reason: R::TrajectoryEnd, to: &[Approach, Face] },
     Transition {
-        from: Source::Of(&[Planning, Driving, FinalApproach, Waiting, Recovering]),
+        from: Source::Of(&[Plan, Drive, Approach, Wait, Recover]),
         reason: R::ManeuverChosen,
-        to: &[Maneuvering],
+        to: &[Maneuver],
     },
     Transition {
-        from: Source::Of(&[Initializing, Driving, FinalApproach, Maneuvering]),
+        from: Source::Of(&[Spin, Drive, Approach, Face, Maneuver, Relative, Station]),
         reason: R::GoalReached,
         to: &[Arrived],
     },
-    Transition { from: Source::Of(&[Maneuvering]), reason: R::MotionFailed, to: &[Stopped] },
+    Transition { from: Source::Of(&[Maneuver, Relative, Station]), reason: R::MotionFailed, to: &[Stopped] },
     Transition { from: Source::Active, reason: R::RepeatedContact, to: &[Stopped] },
-    Transition { from: Source::Of(&[Waiting]), reason: R::NoSightOnPath, to: &[Stopped] },
+    Transition { from: Source::Of(&[Wait]), reason: R::NoSightOnPath, to: &[Stopped] },
     Transition { from: Source::Active, reason: R::NoProgress, to: &[Stopped] },
-    Transition { from: Source::Active, reason: R::PoseLost, to: &[Lost] },
-    Transition { from: Source::Of(&[Lost]), reason: R::PoseFound, to: &[Initializing] },
+    Transition { from: Source::Active, reason: R::PoseLost, to: &[Relocalize] },
+    Transition { from: Source::Of(&[Relocalize]), reason: R::PoseFound, to: &[Initialize, Spin] },
 ];
 
 impl StateKind {
@@ -107,50 +126,4 @@ pub(crate) fn is_allowed(from: StateKind, reason: TransitionReason, to: StateKin
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use std::collections::BTreeSet;
-
-    const KINDS: [StateKind; 11] = [
-        Idle,
-        Initializing,
-        Planning,
-        Driving,
-        FinalApproach,
-        Maneuvering,
-        Waiting,
-        Recovering,
-        Lost,
-        Arrived,
-        Stopped,
-    ];
-    /// A row for each state, a column for each next state, both in the order of `KINDS`; `#`: some reason leads there.
-    const NEXT: [&str; 11] = [
-        "##...#.....", // idle
-        "###..#..###", // initializing
-        "##.#.####.#", // planning
-        "##.########", // driving
-        "##...##.###", // final approach
-        "##...#..###", // maneuvering
-        "##.#.####.#", // waiting
-        "##.#.####.#", // recovering
-        "##...#..#.#", // lost
-        "##...#.....", // arrived
-        "##...#.....", // stopped
-    ];
-
-    fn reasons() -> BTreeSet<TransitionReason> {
-        TRANSITIONS.iter().map(|row| row.reason).collect()
-    }
-
-    #[test]
-    fn every_pair_of_states_is_allowed_or_refused_as_drawn() {
-        for (from, row) in KINDS.into_iter().zip(NEXT) {
-            let drawn: String = KINDS
-                .into_iter()
-                .map(|to| if reasons().iter().any(|why| is_allowed(from, *why, to)) { '#' } else { '.' })
-                .collect();
-            assert_eq!(drawn, row, "{from:?}");
-        }
-    }
-}
+mod tests;

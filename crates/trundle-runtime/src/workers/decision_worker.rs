@@ -3,7 +3,8 @@
 use crate::world_state::WorldState;
 use crate::{
     behaviour::drive_state::DriveState,
-    behaviour::navigator::{Decision, Goal, Navigator},
+    behaviour::goal::Goal,
+    behaviour::navigator::{Decision, Navigator},
     config::RobotConfig,
     mission::MissionState,
     mission::executor::MissionExecutor,
@@ -44,7 +45,7 @@ impl DecisionWorker {
     /// One decision.
     pub(crate) fn step(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> Decision {
         let (executor, navigator) = (&mut self.executor, &mut self.navigator);
-        if let Some(goal) = times.measure(Stage::Supervision, || executor.step(s, navigator.state())) {
+        if let Some(goal) = times.measure(Stage::Supervision, || executor.step(s, &navigator.state())) {
             navigator.set_goal(goal);
         }
         navigator.step(s, times)
@@ -53,7 +54,7 @@ impl DecisionWorker {
     /// Whether the next decision may take longer than a control step: a plan, a search for frontiers, a search for turns and straight
     /// moves. A short decision counted as long costs little.
     pub(crate) fn may_take_long(&self, s: &WorldState<'_>) -> bool {
-        self.executor.may_take_long(s, self.navigator.state()) || self.navigator.may_take_long(s)
+        self.executor.may_take_long(s, &self.navigator.state()) || self.navigator.may_take_long(s)
     }
 
     /// The controller that continues the last decision.
@@ -67,7 +68,7 @@ impl DecisionWorker {
         let state = match self.executor.failure() {
             Some(reason) if finished => DriveState::Stopped { reason },
             None if finished => DriveState::Arrived,
-            _ => self.navigator.state().clone(),
+            _ => self.navigator.state(),
         };
         (state, finished)
     }
@@ -119,10 +120,10 @@ mod tests {
         worker.begin(&MissionState::new(Mission::new(vec![Task::Return]).unwrap()));
         assert_eq!(
             worker.navigator.state(),
-            &DriveState::Initializing,
+            DriveState::Initializing,
             "the robot may roll on to the next goal"
         );
         worker.begin(&MissionState::default());
-        assert_eq!(worker.navigator.state(), &DriveState::Idle);
+        assert_eq!(worker.navigator.state(), DriveState::Idle);
     }
 }
