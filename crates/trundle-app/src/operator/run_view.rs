@@ -8,7 +8,7 @@ use trundle_core::{
     Vector3,
 };
 use trundle_planning::MovingObstacle;
-use trundle_runtime::{DriveState, MotionHold, RunSetting, Task, TaskRecord};
+use trundle_runtime::{DriveState, MotionHold, RunSetting, Task, TaskRecord, TransitionReason};
 
 /// State of a run after a step. Large parts are shared with earlier views that have equal parts.
 #[derive(Debug, Clone)]
@@ -23,6 +23,8 @@ pub struct RunView {
     pub twist: Twist2,
     /// State of the run; after the end of the mission, the result of the whole mission.
     pub state: RunState,
+    /// Reason for the last change of state; `None` without a robot, before the first change and after the end of the mission.
+    pub transition: Option<TransitionReason>,
     /// The mission.
     pub mission: MissionView,
     /// The battery; `None` if the body has not reported it.
@@ -74,6 +76,7 @@ impl RunView {
             odometry: None,
             twist: Twist2::ZERO,
             state: RunState::Activity(activity),
+            transition: None,
             mission: MissionView::default(),
             battery: None,
             hold: None,

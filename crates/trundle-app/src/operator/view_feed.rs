@@ -79,6 +79,7 @@ impl ViewFeed {
             odometry: robot.odometry(),
             twist: self.twist,
             state: RunState::Robot(report.state.clone()),
+            transition: report.transition,
             mission: self.mission.clone(),
             battery: robot.battery(),
             hold: robot.hold(),

@@ -89,7 +89,9 @@ impl Navigator {
             Goal::Spin => State::Spin(Spin::default()),
             Goal::Exact(_) | Goal::Viewpoint(_) | Goal::Align(_) => State::Initialize,
         };
-        self.machine.change(state.because(TransitionReason::GoalGiven));
+        let is_dropped = goal == Goal::Stay;
+        let why = if is_dropped { TransitionReason::GoalDropped } else { TransitionReason::GoalGiven };
+        self.machine.change(state.because(why));
     }
 
     /// A change of the bumper.

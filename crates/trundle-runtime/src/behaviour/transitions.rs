@@ -67,8 +67,9 @@ pub(crate) const TRANSITIONS: &[Transition] = &[
     Transition {
         from: Source::Any,
         reason: R::GoalGiven,
-        to: &[Idle, Initialize, Spin, Maneuver, Relative, Station],
+        to: &[Initialize, Spin, Maneuver, Relative, Station],
     },
+    Transition { from: Source::Any, reason: R::GoalDropped, to: &[Idle] },
     Transition { from: Source::Of(&[Drive]), reason: R::GoalGiven, to: &[Drive] },
     Transition { from: Source::Of(&[Initialize]), reason: R::Initialized, to: &[Plan] },
     Transition { from: PLANS, reason: R::PlanFound, to: &[Drive] },

@@ -1,13 +1,17 @@
 //! Reasons for the changes of the robot's state.
 
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// The reason for a change of the robot's state. The documentation of each variant is its text in the table of transitions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum TransitionReason {
-    /// The mission executor gives a goal, or takes it away.
+    /// The mission executor gives a goal.
     GoalGiven,
+    /// The mission executor takes the goal away.
+    GoalDropped,
     /// The robot has stood for the time of the opening, and a scan exists.
     Initialized,
     /// The planner finds a path to the goal that the camera observes in time.
@@ -50,6 +54,7 @@ impl fmt::Display for TransitionReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::GoalGiven => "a goal is given",
+            Self::GoalDropped => "the goal is taken away",
             Self::Initialized => "the surroundings are in view",
             Self::PlanFound => "a path is found",
             Self::StoppingToReplan => "the new plan starts from rest",

@@ -8,6 +8,7 @@ use crate::{
     config::RobotConfig,
     mission::MissionState,
     mission::executor::MissionExecutor,
+    reason::TransitionReason,
     stage::{Stage, StageTimes},
     workers::fallback_controller::FallbackController,
 };
@@ -71,6 +72,12 @@ impl DecisionWorker {
             _ => self.navigator.state(),
         };
         (state, finished)
+    }
+
+    /// Reason for the last change of the drive's state; `None` after the end of the mission.
+    pub(crate) fn transition(&self) -> Option<TransitionReason> {
+        let (_, is_finished) = self.state();
+        self.navigator.transition().filter(|_| !is_finished)
     }
 }
 

@@ -2,9 +2,8 @@
 
 use super::*;
 
-/// Time without sight, s; a control step, s.
-const BLIND: f64 = 5.0;
-const STEP: f64 = 0.02;
+/// Time without sight \[s\].
+const BLIND_S: f64 = 5.0;
 
 /// Makes the robot wait without a usable scan, turn, and regain a scan; returns the stamp of that scan.
 fn lose_sight_and_find_it(navigator: &mut Navigator, grid: &OccupancyGrid, from: Stamp) -> Stamp {
@@ -12,15 +11,15 @@ fn lose_sight_and_find_it(navigator: &mut Navigator, grid: &OccupancyGrid, from:
     let mut pose = Pose2::new(3.0, 2.0, 0.0);
     let reason = Reason::Safety(StopReason::StaleImage { age: 1.0 });
     navigator.machine.place(waiting(reason, Some(from)));
-    for i in 1..=(BLIND / STEP) as i32 {
-        let now = from.after(STEP * f64::from(i));
+    for i in 1..=(BLIND_S / STEP_S) as i32 {
+        let now = from.after(STEP_S * f64::from(i));
         let s = WorldState { seen: Some(from.after(-1.0)), ..at_rest(grid, now, pose) };
         let twist = navigator.step(&s, &mut times).twist;
-        pose = pose.advance(twist, STEP);
+        pose = pose.advance(twist, STEP_S);
     }
     assert!(pose.theta > 0.5, "it turns to find its sight: {}", pose.theta);
-    let sees = |after: f64| from.after(BLIND + after);
-    for now in (1..50).map(|i| sees(STEP * f64::from(i))) {
+    let sees = |after: f64| from.after(BLIND_S + after);
+    for now in (1..50).map(|i| sees(STEP_S * f64::from(i))) {
         if !navigator.state().is_over() {
             navigator.machine.place(waiting(Reason::PathOutOfView, Some(from)));
         }
