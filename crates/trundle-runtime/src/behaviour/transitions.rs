@@ -59,6 +59,10 @@ pub(crate) struct Transition {
 
 use StateKind::*;
 
+/// States without a goal to reach. Each other state is active.
+const OVER: &[StateKind] = &[Idle, Arrived, Stopped];
+/// States of a search for a path: they share the data of the search.
+const SEARCH: &[StateKind] = &[Plan, Wait, Recover];
 /// States in which a plan to the goal may be made.
 const PLANS: Source = Source::Of(&[Plan, Drive, Wait, Recover]);
 
@@ -76,7 +80,7 @@ pub(crate) const TRANSITIONS: &[Transition] = &[
     Transition { from: PLANS, reason: R::StoppingToReplan, to: &[Wait] },
     Transition { from: PLANS, reason: R::MovingObstacle, to: &[Wait] },
     Transition { from: Source::Of(&[Drive]), reason: R::PathOutOfView, to: &[Wait] },
-    Transition { from: Source::Of(&[Plan, Wait, Recover]), reason: R::UnseenFloor, to: &[Recover] },
+    Transition { from: Source::Of(SEARCH), reason: R::UnseenFloor, to: &[Recover] },
     Transition { from: PLANS, reason: R::NoPath, to: &[Recover, Stopped] },
     Transition { from: Source::Of(&[Wait, Recover]), reason: R::NoPath, to: &[Wait] },
     Transition {
@@ -107,7 +111,7 @@ pub(crate) const TRANSITIONS: &[Transition] = &[
 impl StateKind {
     /// Whether the state has no goal to reach.
     pub(crate) fn is_over(self) -> bool {
-        matches!(self, Idle | Arrived | Stopped)
+        OVER.contains(&self)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Rules of the navigator: its transitions between states, and its commands in each state.
 
 mod sight;
+mod transitions;
 mod unseen;
 mod zones;
 

@@ -6,7 +6,7 @@ use crate::behaviour::path_search::viewpoint::{ViewTarget, Viewpoint};
 use trundle_planning::Plan;
 
 /// A lane along x whose bend into a side lane along y, at x from 2.6 to 3.2 m, was never seen.
-fn unseen_bend() -> OccupancyGrid {
+pub(super) fn unseen_bend() -> OccupancyGrid {
     let mut grid = floor(|at| at.y > 1.4 && at.y < 2.2);
     let geometry = *grid.geometry();
     for k in 0..geometry.len() {

@@ -66,6 +66,21 @@ fn a_goal_in_a_no_go_zone_is_refused_by_its_name_also_from_inside() {
 }
 
 #[test]
+fn a_plan_made_after_the_zones_changed_is_not_rejected_for_them() {
+    let grid = floor(|_| false);
+    let mut navigator = sent_to(GOAL, &at_rest(&grid, Stamp::default(), START));
+    navigator.machine.place(waiting(Reason::MovingObstacle, None));
+    let zones = zones(&grid, ZoneKind::NoGo, START);
+    let replans = |after: f64, navigator: &mut Navigator| {
+        let now = Stamp::default().after(after);
+        let s = WorldState { zones: zones.view(), seen: Some(now), ..at_rest(&grid, now, START) };
+        navigator.step(&s, &mut StageTimes::default()).replanned
+    };
+    assert!(replans(0.02, &mut navigator), "the wait ends with a plan around the zone");
+    assert!(!replans(0.3, &mut navigator), "this plan respects the zone");
+}
+
+#[test]
 fn a_zone_on_the_path_ends_the_plan_and_the_next_one_goes_around() {
     let grid = floor(|_| false);
     let s = at_rest(&grid, Stamp::default(), START);
