@@ -45,7 +45,7 @@ impl History {
         let (name, reason) = (view.state.name(), view.state.reason());
         // A reason that only counts on is the same state.
         if self.states.back().is_none_or(|last| last.name != name) {
-            let reason = reason.or_else(|| view.transition.map(|transition| transition.to_string()));
+            let reason = reason.or_else(|| view.state.transition().map(|transition| transition.to_string()));
             self.states.push_back(StateEntry { time, name: name.to_owned(), reason });
             self.states_so_far += 1;
         } else if let Some(last) = self.states.back_mut() {
