@@ -69,15 +69,15 @@ impl StateTable {
             [TRANSITIONS, REASONS, STATES].map(|file| parse(root, file).map(|parsed| (file, parsed.items)));
         let (transitions, reasons, states) = (transitions?, reasons?, states?);
         let consts = consts(&transitions.1);
-        let constant = |name: &str| {
+        let value = |name: &str| {
             consts.get(name).copied().ok_or_else(|| format!("{TRANSITIONS}: no constant {name}"))
         };
-        let rows = elements(constant("TRANSITIONS")?)?.into_iter().map(|row| read_row(row, &consts));
+        let rows = elements(value("TRANSITIONS")?)?.into_iter().map(|row| read_row(row, &consts));
         Ok(Self {
             states: variants(&transitions, "StateKind")?,
             shown: published(&states.1)?,
-            over: names(constant("OVER")?)?,
-            search: names(constant("SEARCH")?)?,
+            over: names(value("OVER")?)?,
+            search: names(value("SEARCH")?)?,
             reasons: variants(&reasons, "TransitionReason")?.into_iter().collect(),
             rows: rows.collect::<Result<_, _>>()?,
         })
@@ -102,11 +102,15 @@ fn variants((file, items): &(&str, Vec<Item>), name: &str) -> Result<Vec<(String
 
 /// The constants by name.
 fn consts(items: &[Item]) -> BTreeMap<String, &Expr> {
-    let of = |item| match item {
-        &Item::Const(ref constant) => Some((constant.ident.to_string(), &*constant.expr)),
+    items.iter().filter_map(constant).collect()
+}
+
+/// Name and value of a constant.
+fn constant(item: &Item) -> Option<(String, &Expr)> {
+    match item {
+        Item::Const(constant) => Some((constant.ident.to_string(), &constant.expr)),
         _ => None,
-    };
-    items.iter().filter_map(of).collect()
+    }
 }
 
 fn read_row(row: &Expr, consts: &BTreeMap<String, &Expr>) -> Result<Row, String> {

@@ -7,6 +7,7 @@ use crate::behaviour::state::{Change, Drive, Next, Recover, State, Wait};
 use crate::behaviour::tools::Tools;
 use crate::reason::{NoPath, Reason, TransitionReason};
 use crate::world_state::WorldState;
+use std::ops::ControlFlow;
 use trundle_core::{Pose2, Stamp, Twist2, Vector2};
 use trundle_planning::{Plan, PlanResult};
 
@@ -55,8 +56,8 @@ pub(crate) fn replan(
         InView::Plan(plan) => plan,
         InView::Asking => return Planned::to(stop_for_path_in_view(tools, search, query, s)),
         InView::Unseen(at, long) => match observe_first(tools, search, query, (at, long), s) {
-            Ok(long) => Plan::Found(long),
-            Err(next) => return Planned::to(next),
+            ControlFlow::Continue(long) => Plan::Found(long),
+            ControlFlow::Break(next) => return Planned::to(next),
         },
     };
     react(tools, search, query, plan, s)
@@ -99,26 +100,26 @@ pub(crate) fn no_go_zone(goal: Pose2, s: &WorldState<'_>) -> Option<NoPath> {
 }
 
 /// Handles a path that enters unseen floor at a place: the robot drives to a viewpoint of that floor. Without a viewpoint the robot takes
-/// the long path, if there is one. An error is the change of state, if any.
+/// the long path, if there is one. A break holds the change of state, if any.
 fn observe_first(
     tools: &mut Tools,
     search: &mut PathSearch,
     query: &Query,
     (at, long): (Vector2, Option<Box<PlanResult>>),
     s: &WorldState<'_>,
-) -> Result<Box<PlanResult>, Next> {
+) -> ControlFlow<Next, Box<PlanResult>> {
     if query.is_driving {
-        return Err(stop_for_path_in_view(tools, search, query, s));
+        return ControlFlow::Break(stop_for_path_in_view(tools, search, query, s));
     }
     if search.seeks_view_of(at, &mut tools.planner, &mut tools.follower, s) {
-        return Err(observe(tools, search, at));
+        return ControlFlow::Break(observe(tools, search, at));
     }
     search.viewpoint = Default::default();
     match long {
-        Some(long) => Ok(long),
+        Some(long) => ControlFlow::Continue(long),
         // The next plan avoids this floor.
-        None if tools.planner.visibility.bar(at, s.now) => Err(None),
-        None => Err(without_path(tools, search, NoPath::Blocked { nearest: at }, s)),
+        None if tools.planner.visibility.bar(at, s.now) => ControlFlow::Break(None),
+        None => ControlFlow::Break(without_path(tools, search, NoPath::Blocked { nearest: at }, s)),
     }
 }
 
