@@ -66,5 +66,6 @@ pub use trundle_ros2 as ros2;
 pub use trundle_runtime as runtime;
 pub use trundle_sim as sim;
 pub use trundle_slam as slam;
+pub use trundle_surface as surface;
 pub use trundle_vision as vision;
 pub use trundle_viz as viz;
