@@ -1,4 +1,4 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | book | golden | results | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | book | golden | results | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | states | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
 mod aarch64;
@@ -16,6 +16,7 @@ mod robot_memory;
 mod ros_interfaces;
 mod seeds;
 mod settings;
+mod states;
 mod tidy;
 mod workspace;
 
@@ -75,6 +76,8 @@ enum Chore {
     },
     /// Write the reference of settings from the doc comments of the configuration structs.
     Settings,
+    /// Write diagram and tables of docs/explanation/behaviour.md from the state machine's table of transitions.
+    States,
     /// Write the Rust structures of the ROS 2 interfaces in crates/trundle-ros2/interfaces.
     RosInterfaces,
     /// Demo on one thread, on two, and replayed: all three must write the same bytes.
@@ -122,6 +125,7 @@ fn main() -> ExitCode {
         }
         Chore::Results { measure } => results::run(&root, &measure),
         Chore::Settings => settings::run(&root, false),
+        Chore::States => states::run(&root, false),
         Chore::RosInterfaces => ros_interfaces::run(&root, false),
         Chore::ReplayCheck { seed } => replay_check::run(&root, seed),
         Chore::Fuzz(options) => fuzz::run(&root, &options),

@@ -259,7 +259,7 @@ fn quoted(attribute: &Attribute) -> String {
 }
 
 /// The doc comment, on one line.
-fn doc(attrs: &[Attribute]) -> String {
+pub(crate) fn doc(attrs: &[Attribute]) -> String {
     let line = |a: &Attribute| match &a.meta.require_name_value().ok()?.value {
         syn::Expr::Lit(syn::ExprLit { lit: syn::Lit::Str(text), .. }) => Some(text.value().trim().to_owned()),
         _ => None,
@@ -296,7 +296,8 @@ fn inner_type(ty: &Type) -> String {
     last.ident.to_string()
 }
 
-fn snake(name: &str) -> String {
+/// A name in `CamelCase` as `snake_case`.
+pub(crate) fn snake(name: &str) -> String {
     let mut snake = String::new();
     for c in name.chars() {
         if c.is_uppercase() && !snake.is_empty() {

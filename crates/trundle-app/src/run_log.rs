@@ -3,7 +3,7 @@
 use crate::BodyLog;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Pose2, SensorEvent, Stamp, Twist2};
-use trundle_runtime::{DriveState, Reason, StepReport};
+use trundle_runtime::{DriveState, Reason, StepReport, TransitionReason};
 use trundle_slam::Tracking;
 
 /// The log of a run for evaluation and pictures. All content comes from the data, none from the wall clock.
@@ -50,6 +50,9 @@ pub struct StateChange {
     pub at: f64,
     /// The new state.
     pub state: DriveState,
+    /// Reason for the change; files of earlier versions hold none.
+    #[serde(default)]
+    pub transition: Option<TransitionReason>,
     /// The estimated pose, map frame.
     pub pose: Pose2,
 }
@@ -108,7 +111,7 @@ impl RunLog {
             && self.changes.last().is_none_or(|last| last.state.name() != report.state.name())
         {
             let (at, state, pose) = (self.elapsed(), report.state.clone(), estimate.pose);
-            self.changes.push(StateChange { at, state, pose });
+            self.changes.push(StateChange { at, state, transition: report.transition, pose });
         }
         self.state = report.state.clone();
         self.plans += usize::from(report.replanned);

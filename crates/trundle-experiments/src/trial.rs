@@ -118,7 +118,7 @@ impl Trial {
         let row = |change: &StateChange| {
             let Pose2 { x, y, theta } = change.pose;
             let place = format!("({x:.2} m, {y:.2} m, {:.0} deg)", theta.to_degrees());
-            vec![format!("{:.1}", change.at), place, change.state.to_string()]
+            vec![format!("{:.1}", change.at), place, change.state.explained(change.transition)]
         };
         let title = format!("{}, seed {}", self.name, self.seed);
         let table = Table::new(&title, ["time, s", "estimated place", "what it began to do"]);
@@ -352,11 +352,13 @@ mod tests {
     #[test]
     fn the_table_of_states_has_a_row_for_each_change() {
         let mut trial = fixtures::arrived("1", 4, (0.0, 0.0, 0.0), 0);
-        let state = trundle_runtime::DriveState::Arrived;
-        trial.changes = vec![StateChange { at: 12.5, state, pose: Pose2::new(1.0, 2.0, 0.0) }];
+        let (state, pose) = (trundle_runtime::DriveState::Arrived, Pose2::new(1.0, 2.0, 0.0));
+        let transition = Some(trundle_runtime::TransitionReason::GoalReached);
+        trial.changes = vec![StateChange { at: 12.5, state, transition, pose }];
         let html = trundle_viz::Report::new("x").table(trial.state_table()).to_html();
         assert!(
             html.contains("1, seed 4") && html.contains("12.5") && html.contains("(1.00 m, 2.00 m, 0 deg)")
         );
+        assert!(html.contains("arrived: the goal is reached"));
     }
 }

@@ -45,6 +45,7 @@ impl History {
         let (name, reason) = (view.state.name(), view.state.reason());
         // A reason that only counts on is the same state.
         if self.states.back().is_none_or(|last| last.name != name) {
+            let reason = reason.or_else(|| view.state.transition().map(|transition| transition.to_string()));
             self.states.push_back(StateEntry { time, name: name.to_owned(), reason });
             self.states_so_far += 1;
         } else if let Some(last) = self.states.back_mut() {
@@ -67,5 +68,31 @@ impl History {
     pub fn states_after(&self, known: usize) -> (Vec<StateEntry>, usize) {
         let missing = self.states_so_far.saturating_sub(known).min(self.states.len());
         (self.states.iter().skip(self.states.len() - missing).cloned().collect(), self.states_so_far)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use trundle_app::operator::{Activity, RunState};
+    use trundle_core::{Stamp, Twist2};
+    use trundle_runtime::{DriveState, Reason, TransitionReason};
+
+    fn view(state: DriveState, transition: TransitionReason) -> RunView {
+        let activity = Activity { name: "x", reason: None };
+        let state = RunState::Robot(state, Some(transition));
+        RunView { state, ..RunView::of_activity(Stamp::default(), Pose2::IDENTITY, Twist2::ZERO, activity) }
+    }
+
+    #[test]
+    fn a_state_shows_its_own_reason_or_the_reason_for_the_change_to_it() {
+        let mut history = History::default();
+        history.add(&view(DriveState::Driving, TransitionReason::PlanFound), 1);
+        let reason = Reason::MovingObstacle;
+        history
+            .add(&view(DriveState::Waiting { reason: reason.clone() }, TransitionReason::MovingObstacle), 1);
+        let (states, _) = history.states_after(0);
+        let shown: Vec<_> = states.iter().map(|state| state.reason.clone().unwrap()).collect();
+        assert_eq!(shown, [TransitionReason::PlanFound.to_string(), reason.to_string()]);
     }
 }

@@ -42,7 +42,7 @@ pub use mission::executor_config::MissionExecutorConfig;
 pub use mission::{DockFailure, Mission, MissionState, Task, TaskEnd, TaskRecord};
 pub use operator::{OperatorCommand, PoseGuess, RunSetting, TELEOP_SILENCE_S, require_loadable};
 pub use range_source::RangeSource;
-pub use reason::{NoPath, Reason, ReasonKind, TaskFailure};
+pub use reason::{NoPath, Reason, ReasonKind, TaskFailure, TransitionReason};
 pub use report::{PoseMeasurements, StepReport};
 pub use robot::{MissionProgress, Robot};
 pub use schedule::Schedule;

@@ -3,6 +3,7 @@
 mod kind;
 mod no_path;
 mod recorded;
+mod transition;
 
 use crate::goal_approach::ApproachFailure;
 use crate::mission::dock_failure::DockFailure;
@@ -12,6 +13,7 @@ pub use no_path::NoPath;
 use recorded::RecordedReason;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
+pub use transition::TransitionReason;
 use trundle_control::{SlowReason, StopReason};
 use trundle_core::Vector2;
 

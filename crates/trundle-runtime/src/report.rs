@@ -1,6 +1,6 @@
 //! The report of a step.
 
-use crate::{behaviour::drive_state::DriveState, checkpoint::Checkpoint};
+use crate::{behaviour::drive_state::DriveState, checkpoint::Checkpoint, reason::TransitionReason};
 use std::sync::Arc;
 use trundle_core::{PoseEstimate, Stamp, Twist2};
 use trundle_estimation::{MotionIncrement, PlanarMeasurement, VisualPose};
@@ -26,6 +26,8 @@ pub struct StepReport {
     pub checkpoint: Option<Arc<Checkpoint>>,
     /// State of the robot.
     pub state: DriveState,
+    /// Reason for the last change of the state; `None` before the first change, and after the end of the mission.
+    pub transition: Option<TransitionReason>,
     /// Whether the step made a new plan.
     pub replanned: bool,
     /// Whether an operator's command replaced the map.

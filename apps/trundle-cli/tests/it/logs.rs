@@ -27,7 +27,11 @@ fn state_changes_are_printed_where_they_are_asked_for_and_always_in_log_txt() {
 
     let log = std::fs::read_to_string(folder("silent").join("log.txt")).unwrap();
     assert!(log.starts_with("info: run in 'demo', seed 2: go to ("), "{log}");
-    assert!(log.contains(" s: idle -> initializing\n") && log.contains("-> driving\n"), "{log}");
+    assert!(
+        log.contains(" s: idle -> initializing: a goal is given\n")
+            && log.contains("-> driving: a path is found\n"),
+        "{log}"
+    );
     assert!(log.lines().last().unwrap().starts_with("info: run over after 6."), "{log}");
     for name in ["variable", "flag"] {
         assert_eq!(std::fs::read_to_string(folder(name).join("log.txt")).unwrap(), log, "{name}");

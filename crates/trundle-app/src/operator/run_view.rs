@@ -8,7 +8,7 @@ use trundle_core::{
     Vector3,
 };
 use trundle_planning::MovingObstacle;
-use trundle_runtime::{DriveState, MotionHold, RunSetting, Task, TaskRecord};
+use trundle_runtime::{DriveState, MotionHold, RunSetting, Task, TaskRecord, TransitionReason};
 
 /// State of a run after a step. Large parts are shared with earlier views that have equal parts.
 #[derive(Debug, Clone)]
@@ -48,8 +48,8 @@ pub struct RunView {
 /// State of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RunState {
-    /// A robot decides.
-    Robot(DriveState),
+    /// A robot decides: its state, and the reason for the last change of the state.
+    Robot(DriveState, Option<TransitionReason>),
     /// No robot decides: a drive by hand, a tracked sequence.
     Activity(Activity),
 }
@@ -91,7 +91,7 @@ impl RunView {
 impl fmt::Display for RunState {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Robot(state) => state.fmt(f),
+            Self::Robot(state, _) => state.fmt(f),
             Self::Activity(activity) => f.write_str(activity.name),
         }
     }
@@ -102,7 +102,7 @@ impl RunState {
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
-            Self::Robot(state) => state.name(),
+            Self::Robot(state, _) => state.name(),
             Self::Activity(activity) => activity.name,
         }
     }
@@ -111,8 +111,17 @@ impl RunState {
     #[must_use]
     pub fn reason(&self) -> Option<String> {
         match self {
-            Self::Robot(state) => state.reason().map(ToString::to_string),
+            Self::Robot(state, _) => state.reason().map(ToString::to_string),
             Self::Activity(activity) => activity.reason.clone(),
+        }
+    }
+
+    /// Reason for the last change of a robot's state; `None` before the first change and after the end of the mission.
+    #[must_use]
+    pub fn transition(&self) -> Option<TransitionReason> {
+        match self {
+            Self::Robot(_, transition) => *transition,
+            Self::Activity(_) => None,
         }
     }
 
@@ -120,7 +129,7 @@ impl RunState {
     #[must_use]
     pub fn drive(&self) -> Option<&DriveState> {
         match self {
-            Self::Robot(state) => Some(state),
+            Self::Robot(state, _) => Some(state),
             Self::Activity(_) => None,
         }
     }

@@ -78,7 +78,7 @@ impl ViewFeed {
             estimate: robot.estimate(),
             odometry: robot.odometry(),
             twist: self.twist,
-            state: RunState::Robot(report.state.clone()),
+            state: RunState::Robot(report.state.clone(), report.transition),
             mission: self.mission.clone(),
             battery: robot.battery(),
             hold: robot.hold(),

@@ -143,7 +143,7 @@ pub struct StateEntry {
     pub time: f64,
     /// The state in one or two words.
     pub name: String,
-    /// Reason why the robot does not move.
+    /// Reason why the robot does not move, or for the change to a state with motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
 }

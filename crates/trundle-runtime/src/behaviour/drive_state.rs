@@ -1,25 +1,13 @@
 //! The states of the robot.
 
-use crate::reason::Reason;
+use crate::reason::{Reason, TransitionReason};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// State of the robot; states without progress carry a reason.
+/// State of the robot as front ends show it; states without progress carry a reason.
 ///
-/// A new goal leads from any state to `Initializing` (before the first plan) or `Planning`. A stop by the safety monitor leads to
-/// `Waiting`, a too uncertain estimate to `Lost`.
-///
-/// | state | leads to |
-/// |---|---|
-/// | idle | initializing, planning |
-/// | initializing | planning; arrived, if the goal is a turn on the spot |
-/// | planning | driving, maneuvering, recovering |
-/// | driving | final approach, maneuvering, planning, waiting |
-/// | final approach, maneuvering | arrived, waiting, stopped |
-/// | waiting | driving, planning, maneuvering, stopped |
-/// | recovering | driving, waiting |
-/// | lost | initializing, stopped |
-/// | arrived, stopped | initializing, with the next goal |
+/// Several states of the state machine may show as one. `docs/explanation/behaviour.md` has the diagram of the state machine and the
+/// table of its transitions.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
@@ -87,6 +75,15 @@ impl DriveState {
             | Self::Lost { reason }
             | Self::Stopped { reason } => Some(reason),
             _ => None,
+        }
+    }
+
+    /// The state with its reason; a state without a reason with the reason for the change to it.
+    #[must_use]
+    pub fn explained(&self, transition: Option<TransitionReason>) -> String {
+        match transition.filter(|_| self.reason().is_none()) {
+            Some(transition) => format!("{self}: {transition}"),
+            None => self.to_string(),
         }
     }
 

@@ -1,45 +1,31 @@
 //! The navigator: from a goal and the world state to a safe twist.
 
-mod camera_fov;
-mod commands;
-mod known_floor;
 mod long_decision;
-mod plan_in_view;
-mod plans;
-mod seek_viewpoint;
 #[cfg(test)]
 pub(crate) mod testing;
 #[cfg(test)]
 mod tests;
-mod viewpoint;
-mod visibility_constraint;
-mod zone_limits;
-
-pub(crate) use commands::safety_input;
 
 use crate::world_state::WorldState;
 use crate::{
+    behaviour::contacts::Contacts,
     behaviour::drive_state::DriveState,
+    behaviour::goal::Goal,
+    behaviour::machine::StateMachine,
     behaviour::progress_checker::ProgressChecker,
-    behaviour::relative_motion::{RelativeMotion, RelativeMotionDrive},
-    behaviour::sight_recovery::SightRecovery,
     behaviour::spin::Spin,
-    behaviour::station_drive::{StationDrive, StationGoal},
-    bumper,
+    behaviour::state::{Drive, Relative, State, Station},
+    behaviour::tools::Tools,
     config::RobotConfig,
-    goal_approach::{GoalApproach, GoalApproachReport},
+    goal_approach::GoalApproachReport,
     mission::executor_config::MissionExecutorConfig,
     operator::RunSetting,
-    reason::Reason,
-    schedule::Ticker,
+    reason::{Reason, TransitionReason},
     stage::{Stage, StageTimes},
 };
-use camera_fov::CameraFov;
-use trundle_control::{FollowPhase, FollowReport, Follower, MotionSense, SafetyMonitor};
-use trundle_core::{Footprint, Invalid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
-use trundle_planning::{PlanResult, Planner};
-use viewpoint::Viewpoint;
-use visibility_constraint::VisibilityConstraint;
+use trundle_control::{MotionSense, SafetyInput, SafetyMemory, SafetyMonitor};
+use trundle_core::{Footprint, Invalid, PoseEstimate, Twist2};
+use trundle_planning::PlanResult;
 
 /// Decision of a control step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,288 +34,172 @@ pub(crate) struct Decision {
     pub(crate) replanned: bool,
 }
 
-/// Goal of the robot, map frame.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Goal {
-    /// Stand exactly here.
-    Exact(Pose2),
-    /// A viewpoint: the robot need not reach it exactly, and skips it if it is blocked.
-    Viewpoint(Pose2),
-    /// Turns and straight moves onto this pose from near by.
-    Align(Pose2),
-    /// A motion at a charging station.
-    Station(StationGoal),
-    /// A motion relative to the robot's present pose.
-    Relative(RelativeMotion),
-    /// Turn on the spot once.
-    Spin,
-    /// Stay at the present pose.
-    Stay,
-}
-
-impl Goal {
-    fn pose(self) -> Option<Pose2> {
-        match self {
-            Self::Exact(pose) | Self::Viewpoint(pose) | Self::Align(pose) => Some(pose),
-            Self::Station(_) | Self::Relative(_) | Self::Spin | Self::Stay => None,
-        }
-    }
-}
-
 /// Computes a safe twist from a goal and the world state: plans, follows the trajectory, approaches the goal, and waits. Without a path the
 /// robot turns on the spot and observes. The safety monitor checks each twist last. In narrow space docking makes the approach.
 #[derive(Debug)]
 pub(crate) struct Navigator {
     config: MissionExecutorConfig,
-    planner: Planner,
-    /// The camera's field of view on the floor; none with a laser as range source.
-    camera_fov: Option<CameraFov>,
-    follower: Follower,
-    goal_approach: GoalApproach,
+    machine: StateMachine,
+    tools: Tools,
     safety: SafetyMonitor,
-    check_due: Ticker,
-    improve_due: Ticker,
-    goal: Goal,
-    plan: Option<Box<PlanResult>>,
-    state: DriveState,
-    touched: bool,
-    /// Bumper contacts since the goal was given.
-    touches: u32,
-    over_edge: bool,
-    started: Option<Stamp>,
-    held_since: Option<Stamp>,
-    spin: Spin,
-    sight_recovery: SightRecovery,
-    /// Whether a goal that no path leads to ends, in place of a wait for a path.
-    ends_without_path: bool,
-    /// Stamp of the first plan without a path since the last plan with one; `None` after a plan with a path.
-    no_path_since: Option<Stamp>,
-    /// Place where the path to the goal is blocked, if there is no path.
-    blocked_at: Option<Vector2>,
-    viewpoint: Viewpoint,
-    visibility: VisibilityConstraint,
-    /// A disc can always turn away.
-    is_polygon: bool,
-    /// Whether the outline is too near to an obstacle for a turn: the robot backs out, as far as safety permits.
-    is_wedged: bool,
-    /// Whether the robot is too far from its reference to continue from it.
-    is_off_track: bool,
     progress: ProgressChecker,
-    /// The safety monitor's timeout of images, s.
-    image_timeout: f64,
-    /// Radius of the disc around the robot, m.
-    radius: f64,
-    /// Distance from the base's origin to its front, m.
-    reach: f64,
-    station_drive: StationDrive,
-    relative_drive: RelativeMotionDrive,
     /// Twist of the last step before the safety monitor.
     wanted: Twist2,
-    /// Version of the zones that the planner has.
-    zones_version: u64,
-    /// Whether the plan was made before the zones changed.
-    is_before_zones: bool,
 }
 
-/// Number of bumper contacts after which the navigator gives up a goal. Source: ours.
-const MAX_BUMPER_CONTACTS: u32 = 3;
 /// Standard deviation of the position \[m\] above which the position is unknown. Source: ours.
 const UNKNOWN_POSITION_SIGMA_M: f64 = 50.0;
-/// Duration of a safety stop before the navigator plans again from the present pose \[s\]. Source: ours.
-const SAFETY_HOLD_BEFORE_REPLAN_S: f64 = 1.0;
 
 impl Navigator {
     pub(crate) fn new(config: &RobotConfig, footprint: &Footprint) -> Result<Self, Invalid> {
         Ok(Self {
             config: config.mission_executor.validated()?,
-            planner: Planner::new(config.planning, footprint, config.limits, config.drive)?,
-            camera_fov: CameraFov::of(config)?,
-            follower: Follower::new(config.control.clone(), config.drive, config.limits)?,
-            goal_approach: GoalApproach::new(&config.docking, footprint)?,
+            machine: StateMachine::default(),
+            tools: Tools::new(config, footprint)?,
             safety: SafetyMonitor::new(config.safety.clone(), footprint)?,
-            check_due: Ticker::new(config.schedule.validated()?.check_hz),
-            improve_due: Ticker::new(config.schedule.improve_hz),
-            goal: Goal::Stay,
-            plan: None,
-            state: DriveState::Idle,
-            touched: false,
-            touches: 0,
-            over_edge: false,
-            started: None,
-            held_since: None,
-            spin: Spin::default(),
-            sight_recovery: SightRecovery::default(),
-            ends_without_path: false,
-            no_path_since: None,
-            blocked_at: None,
-            viewpoint: Viewpoint::Unknown,
-            visibility: VisibilityConstraint::default(),
-            is_polygon: matches!(footprint, Footprint::Polygon { .. }),
-            is_wedged: false,
-            is_off_track: false,
             progress: ProgressChecker::default(),
-            image_timeout: config.safety.image_timeout,
-            radius: footprint.circumscribed_radius(),
-            reach: bumper::front_of(footprint),
-            station_drive: StationDrive::default(),
-            relative_drive: RelativeMotionDrive::default(),
             wanted: Twist2::ZERO,
-            zones_version: 0,
-            is_before_zones: false,
         })
     }
 
     /// Whether goals that no path leads to end, in place of a wait for a path.
     pub(crate) fn end_without_path(&mut self, ends: bool) {
-        self.ends_without_path = ends;
+        self.tools.ends_without_path = ends;
     }
 
     /// Changes a setting. A speed counts from the next plan on.
     pub(crate) fn change(&mut self, setting: RunSetting) {
         match setting {
-            RunSetting::Speed(speed) => self.planner.limit_speed(speed),
+            RunSetting::Speed(speed) => self.tools.planner.planner.limit_speed(speed),
             RunSetting::Patience(patience) => self.config.patience = patience,
         }
     }
 
     /// Sets the goal. A robot that follows a trajectory continues to the new goal without a stop.
     pub(crate) fn set_goal(&mut self, goal: Goal) {
-        let is_maneuver = matches!(goal, Goal::Align(_) | Goal::Station(_) | Goal::Relative(_));
-        let rolls_on = self.state == DriveState::Driving && goal.pose().is_some() && !is_maneuver;
-        self.goal = goal;
-        self.plan = None;
-        self.held_since = None;
-        self.no_path_since = None;
-        self.blocked_at = None;
-        self.viewpoint = Viewpoint::Unknown;
-        self.visibility.restart();
-        self.is_off_track = false;
-        self.touches = 0;
-        self.sight_recovery = SightRecovery::default();
-        self.spin = Spin::default();
-        self.goal_approach.reset();
-        self.station_drive = StationDrive::default();
-        self.relative_drive = RelativeMotionDrive::default();
+        let rolls_on = matches!(self.machine.state(), State::Drive(_)) && goal.is_driven_to();
+        self.tools.restart(goal, rolls_on);
         self.progress.restart();
-        self.check_due.hurry();
-        if !rolls_on {
-            self.follower.halt();
-        }
-        self.state = match goal {
-            Goal::Stay => DriveState::Idle,
-            Goal::Exact(_) | Goal::Viewpoint(_) if rolls_on => DriveState::Driving,
-            Goal::Align(pose) if self.goal_approach.begin_at(pose) => DriveState::Maneuvering,
-            Goal::Station(_) | Goal::Relative(_) => DriveState::Maneuvering,
-            _ => DriveState::Initializing,
+        let state = match goal {
+            Goal::Stay => State::Idle,
+            Goal::Exact(_) | Goal::Viewpoint(_) if rolls_on => State::Drive(Drive::default()),
+            Goal::Align(pose) if self.tools.goal_approach.begin_at(pose) => State::Maneuver,
+            Goal::Station(goal) => State::Station(Station::new(goal)),
+            Goal::Relative(motion) => State::Relative(Relative::new(motion)),
+            Goal::Spin => State::Spin(Spin::default()),
+            Goal::Exact(_) | Goal::Viewpoint(_) | Goal::Align(_) => State::Initialize,
         };
+        let is_dropped = goal == Goal::Stay;
+        let why = if is_dropped { TransitionReason::GoalDropped } else { TransitionReason::GoalGiven };
+        self.machine.change(state.because(why));
     }
 
     /// A change of the bumper.
     pub(crate) fn touch(&mut self, pressed: bool) {
-        self.touches += u32::from(pressed && !self.touched);
-        self.touched = pressed;
-        if self.touches >= MAX_BUMPER_CONTACTS && !self.state.is_over() {
-            // Repeated contacts show that the map lacks the obstacle, or has it at a wrong place.
-            self.follower.halt();
-            self.goal_approach.reset();
-            self.state = DriveState::Stopped { reason: Reason::RepeatedContact { contacts: self.touches } };
+        self.tools.contacts.touch(pressed);
+        if self.tools.contacts.are_too_many() && !self.machine.state().kind().is_over() {
+            self.tools.halt();
+            let reason = Reason::RepeatedContact { contacts: self.tools.contacts.count };
+            self.machine.stop(reason, TransitionReason::RepeatedContact);
         }
     }
 
     /// A change of the cliff sensors.
     pub(crate) fn cliff(&mut self, over_edge: bool) {
-        self.over_edge = over_edge;
+        self.tools.contacts.over_edge = over_edge;
     }
 
-    pub(crate) fn state(&self) -> &DriveState {
-        &self.state
+    /// The state as front ends show it.
+    pub(crate) fn state(&self) -> DriveState {
+        self.machine.state().published()
+    }
+
+    /// Reason for the last change of state; `None` before the first one.
+    pub(crate) fn transition(&self) -> Option<TransitionReason> {
+        self.machine.reason()
     }
 
     /// Report of turns and straight moves for the goal.
     pub(crate) fn docking(&self) -> &GoalApproachReport {
-        self.goal_approach.report()
+        self.tools.goal_approach.report()
     }
 
     pub(crate) fn plan(&self) -> Option<&PlanResult> {
-        self.plan.as_deref()
+        self.tools.plan.as_ref().map(|plan| &*plan.result)
     }
 
     /// Executes one control step: an optional new plan, a command, and the check by the safety monitor.
     pub(crate) fn step(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> Decision {
-        self.take_zones(s);
-        self.initialize(s);
-        self.monitor(s);
-        self.monitor_sight(s);
-        let goal = self.goal.pose().filter(|_| self.wants_plan(s));
-        let replanned = goal.is_some_and(|goal| times.measure(Stage::Planning, || self.replan(goal, s)));
-        let replanned = replanned || self.improved(s, times);
-        let follow = times.measure(Stage::Control, || self.follower.step(&s.estimate, s.now));
-        self.note_progress(&follow, s, times);
-        self.wanted = self.wanted(&follow, s, times);
-        let twist = times.measure(Stage::Safety, || self.guard(self.wanted, s));
-        self.follower.sent(twist);
+        self.prepare(s);
+        let (machine, tools) = (&mut self.machine, &mut self.tools);
+        let replanned = machine.plan(tools, s, times);
+        let follow = times.measure(Stage::Control, || tools.follower.step(&s.estimate, s.now));
+        machine.follow(tools, &follow, s, times);
+        self.wanted = machine.tick(tools, &follow, s, times);
+        let twist = times.measure(Stage::Safety, || self.guard(s));
+        self.tools.follower.sent(twist);
         Decision { twist, replanned }
     }
 
-    /// Initializes: the robot does not move before the first view.
-    fn initialize(&mut self, s: &WorldState<'_>) {
-        self.started.get_or_insert(s.now);
-        if self.state == DriveState::Initializing && self.is_initialized(s) && self.goal.pose().is_some() {
-            self.visibility.home.get_or_insert(s.estimate.pose.position());
-            self.state = DriveState::Planning;
+    /// What every state shares: zones, the opening, and the checks of pose, progress and view.
+    fn prepare(&mut self, s: &WorldState<'_>) {
+        if self.tools.planner.take_zones(s) {
+            self.tools.check_due.hurry();
         }
+        self.tools.opening.start(s.now);
+        self.machine.prepare(&mut self.tools, s);
+        if !self.machine.state().kind().is_over() {
+            self.monitor_pose(s);
+            self.monitor_progress(s);
+        }
+        self.monitor_sight(s);
     }
 
-    /// Whether the initialization is over: the robot has stood long enough, and a scan exists.
-    fn is_initialized(&self, s: &WorldState<'_>) -> bool {
-        s.scan.is_some() && self.started.is_some_and(|started| s.now - started >= self.config.opening)
-    }
-
-    /// Checks that the pose is known and that the robot makes progress.
-    fn monitor(&mut self, s: &WorldState<'_>) {
-        if self.state.is_over() {
-            return;
-        }
-        let is_lost = matches!(self.state, DriveState::Lost { .. });
+    /// Checks that the pose is known.
+    fn monitor_pose(&mut self, s: &WorldState<'_>) {
+        let is_lost = matches!(self.machine.state(), State::Relocalize { .. });
         match self.lost_reason(s) {
             Some(reason) if !is_lost => {
-                self.follower.halt();
-                self.goal_approach.reset();
-                self.plan = None;
-                self.state = DriveState::Lost { reason };
+                self.tools.halt();
+                self.tools.plan = None;
+                let state = State::Relocalize { reason };
+                self.machine.change(state.because(TransitionReason::PoseLost));
             }
             None if is_lost && position_sigma(&s.estimate) < 0.5 * self.config.lost_sigma => {
-                self.spin = Spin::default();
                 // The robot may have been carried here.
-                self.visibility.home = None;
-                self.state = DriveState::Initializing;
+                self.tools.planner.visibility.home = None;
+                let spins = self.tools.goal == Goal::Spin;
+                let state = if spins { State::Spin(Spin::default()) } else { State::Initialize };
+                self.machine.change(state.because(TransitionReason::PoseFound));
             }
             _ => {}
         }
-        let turns_count = matches!(self.state, DriveState::FinalApproach | DriveState::Maneuvering)
-            || self.state == DriveState::Driving
-            || self.goal == Goal::Spin && self.state == DriveState::Initializing;
+    }
+
+    /// Checks that the robot makes progress.
+    fn monitor_progress(&mut self, s: &WorldState<'_>) {
         if s.hold.is_some() {
             // A safety stop is not a fault of the goal.
             return self.progress.restart();
         }
-        let stood = self.progress.standing_for(s.now, s.estimate.pose, turns_count);
-        if stood > self.config.patience {
-            self.stop_without_progress(stood);
+        let turns_count = self.machine.makes_progress_by_turns();
+        let time = self.progress.standing_for(s.now, s.estimate.pose, turns_count);
+        if time > self.config.patience {
+            let state = self.state();
+            let (state, cause) = (state.name(), state.reason().cloned().map(Box::new));
+            self.tools.halt();
+            self.machine.stop(Reason::NoProgress { time, state, cause }, TransitionReason::NoProgress);
         }
     }
 
-    /// Checks whether a usable scan came back after a time without one. If a turn restored the view twice at one place, the path to the
-    /// viewpoint leads into the camera's blind range, and the navigator gives up the viewpoint.
+    /// If a turn restored the view twice at one place, the path to the viewpoint leads into the camera's blind range, and the navigator
+    /// gives up the viewpoint.
     fn monitor_sight(&mut self, s: &WorldState<'_>) {
-        if self.is_blind(s) {
-            return;
-        }
-        let is_in_vain = self.sight_recovery.sees(s.estimate.pose.position());
-        let waits = matches!(self.state, DriveState::Waiting { .. });
-        if is_in_vain && waits && matches!(self.goal, Goal::Viewpoint(_)) {
-            self.follower.halt();
-            self.state = DriveState::Stopped { reason: Reason::NoSightOnPath };
+        let is_in_vain = self.tools.sight.is_restored_in_vain(s);
+        let waits = matches!(self.machine.state(), State::Wait(_));
+        if is_in_vain && waits && self.tools.goal.is_viewpoint() {
+            self.tools.follower.halt();
+            self.machine.stop(Reason::NoSightOnPath, TransitionReason::NoSightOnPath);
         }
     }
 
@@ -350,52 +220,39 @@ impl Navigator {
         None
     }
 
-    fn stop_without_progress(&mut self, stood: f64) {
-        let (state, cause) = (self.state.name(), self.state.reason().cloned().map(Box::new));
-        self.follower.halt();
-        self.goal_approach.reset();
-        self.state = DriveState::Stopped { reason: Reason::NoProgress { time: stood, state, cause } };
+    /// Safety's word on the wanted twist.
+    fn guard(&mut self, s: &WorldState<'_>) -> Twist2 {
+        let Contacts { touched, over_edge, .. } = self.tools.contacts;
+        let input = safety_input(s, self.wanted, touched, over_edge);
+        let report = self.safety.check(&SafetyInput { station: self.machine.permission(s), ..input });
+        self.machine.on_safety(&mut self.tools, self.wanted, report.action, s);
+        report.twist
     }
+}
 
-    /// At the end of the trajectory: an arc, or turns and straight moves; or it is near enough.
-    fn begin_final_approach(&mut self, s: &WorldState<'_>) {
-        self.state = DriveState::FinalApproach;
-        let (Goal::Exact(goal) | Goal::Align(goal)) = self.goal else {
-            self.follower.halt();
-            return;
-        };
-        let preview = self.follower.preview_stabilization(s.estimate.pose, goal);
-        self.goal_approach.consider(s, goal, preview);
-        self.select_approach(s);
-    }
-
-    /// A part of choosing how to settle.
-    fn select_approach(&mut self, s: &WorldState<'_>) {
-        if self.goal_approach.takes_over(s) {
-            self.start_maneuver();
-        }
-    }
-
-    /// Sets the state by the follower's phase.
-    fn note_progress(&mut self, follow: &FollowReport, s: &WorldState<'_>, times: &mut StageTimes) {
-        self.note_viewpoint(follow, s.now);
-        let moving = matches!(self.state, DriveState::Driving | DriveState::FinalApproach);
-        match follow.phase {
-            _ if !moving => {}
-            FollowPhase::Settled => self.state = DriveState::Arrived,
-            FollowPhase::Approaching | FollowPhase::Turning if self.state == DriveState::Driving => {
-                times.measure(Stage::Planning, || self.begin_final_approach(s));
-            }
-            FollowPhase::Approaching | FollowPhase::Turning => {
-                self.state = DriveState::FinalApproach;
-                times.measure(Stage::Planning, || self.select_approach(s));
-            }
-            FollowPhase::Tracking if follow.off_track => {
-                self.is_off_track = true;
-                self.plan = None;
-            }
-            FollowPhase::Tracking | FollowPhase::Idle => {}
-        }
+/// Input of the safety monitor for a twist.
+pub(crate) fn safety_input<'a>(
+    s: &WorldState<'a>,
+    twist: Twist2,
+    touched: bool,
+    over_edge: bool,
+) -> SafetyInput<'a> {
+    SafetyInput {
+        now: s.now,
+        twist,
+        scan: s.scan,
+        memory: Some(SafetyMemory {
+            grid: s.grid,
+            unconfirmed: s.dynamic_obstacles.unconfirmed,
+            map_from_base: s.estimate.pose,
+        }),
+        touched,
+        over_edge,
+        hold: s.hold,
+        image: s.seen,
+        wheels: s.wheels,
+        motion: s.motion,
+        station: None,
     }
 }
 

@@ -1,7 +1,7 @@
 //! The task of driving onto the charging station: search its light, survey its axis, drive onto the contacts.
 
 use crate::behaviour::drive_state::DriveState;
-use crate::behaviour::navigator::Goal;
+use crate::behaviour::goal::Goal;
 use crate::behaviour::station_drive::StationGoal;
 use crate::mission::dock_failure::DockFailure;
 use crate::mission::light_search::LightSearch;

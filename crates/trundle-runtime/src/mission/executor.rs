@@ -3,7 +3,7 @@
 use crate::world_state::WorldState;
 use crate::{
     behaviour::drive_state::DriveState,
-    behaviour::navigator::Goal,
+    behaviour::goal::Goal,
     behaviour::relative_motion::RelativeMotion,
     behaviour::station_drive::StationGoal,
     mission::dock_task::{DockStep, DockTask},

@@ -3,7 +3,7 @@
 use super::sensor_watch::SensorChange;
 use crate::behaviour::drive_state::DriveState;
 use crate::operator::{PoseGuess, RunSetting};
-use crate::reason::Reason;
+use crate::reason::{Reason, TransitionReason};
 use trundle_control::MotionHold;
 use trundle_core::{GridGeometry, Invalid, MapAnnotations, Pose2, Stamp, difference_of_angles};
 use trundle_estimation::{VisualVerdict, WheelCounts, WheelReport};
@@ -95,10 +95,11 @@ pub(super) fn annotated(at: Stamp, annotations: &MapAnnotations) {
     );
 }
 
-/// Logs a change of the state, or of the kind of its reason.
-pub(super) fn state(at: Stamp, last: &DriveState, new: &DriveState) {
+/// Logs a state that differs from the last one, with its reason or the reason for the change, or a state with a reason of another kind.
+pub(super) fn state(at: Stamp, last: &DriveState, new: &DriveState, transition: Option<TransitionReason>) {
     let kind = |state: &DriveState| state.reason().map(Reason::kind);
     if last.name() != new.name() {
+        let new = new.explained(transition);
         tracing::info!("{:.3} s: {} -> {new}", at.as_secs(), last.name());
     } else if kind(last) != kind(new) {
         tracing::info!("{:.3} s: still {new}", at.as_secs());

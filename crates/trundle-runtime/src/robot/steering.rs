@@ -9,6 +9,7 @@ use crate::{
     config::RobotConfig,
     mission::MissionState,
     operator::RunSetting,
+    reason::TransitionReason,
     report::StepReport,
     stage::{Stage, StageTimes},
     workers::decision_worker::DecisionWorker,
@@ -29,6 +30,8 @@ pub(super) struct Steering {
     mission: MissionState,
     /// The newest drive state, and whether the mission is over.
     state: (DriveState, bool),
+    /// Reason for the newest change of state.
+    transition: Option<TransitionReason>,
 }
 
 impl Steering {
@@ -43,6 +46,7 @@ impl Steering {
             teleop: TeleopController::new(config, footprint)?,
             mission: MissionState::default(),
             state: Default::default(),
+            transition: None,
         })
     }
 
@@ -82,10 +86,12 @@ impl Steering {
     pub(super) fn complete(&mut self, now: Stamp, report: &mut StepReport) {
         if let Some(decision_worker) = &self.decision_worker {
             let state = decision_worker.state();
-            event_log::state(now, &self.state.0, &state.0);
-            self.state = state;
+            let transition = decision_worker.transition();
+            event_log::state(now, &self.state.0, &state.0, transition);
+            (self.state, self.transition) = (state, transition);
         }
         (report.state, report.finished) = self.state.clone();
+        report.transition = self.transition;
     }
 
     /// The mission with the progress of the decision worker.

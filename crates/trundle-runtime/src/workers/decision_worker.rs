@@ -3,10 +3,12 @@
 use crate::world_state::WorldState;
 use crate::{
     behaviour::drive_state::DriveState,
-    behaviour::navigator::{Decision, Goal, Navigator},
+    behaviour::goal::Goal,
+    behaviour::navigator::{Decision, Navigator},
     config::RobotConfig,
     mission::MissionState,
     mission::executor::MissionExecutor,
+    reason::TransitionReason,
     stage::{Stage, StageTimes},
     workers::fallback_controller::FallbackController,
 };
@@ -44,7 +46,7 @@ impl DecisionWorker {
     /// One decision.
     pub(crate) fn step(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> Decision {
         let (executor, navigator) = (&mut self.executor, &mut self.navigator);
-        if let Some(goal) = times.measure(Stage::Supervision, || executor.step(s, navigator.state())) {
+        if let Some(goal) = times.measure(Stage::Supervision, || executor.step(s, &navigator.state())) {
             navigator.set_goal(goal);
         }
         navigator.step(s, times)
@@ -53,7 +55,7 @@ impl DecisionWorker {
     /// Whether the next decision may take longer than a control step: a plan, a search for frontiers, a search for turns and straight
     /// moves. A wrong true costs little.
     pub(crate) fn may_take_long(&self, s: &WorldState<'_>) -> bool {
-        self.executor.may_take_long(s, self.navigator.state()) || self.navigator.may_take_long(s)
+        self.executor.may_take_long(s, &self.navigator.state()) || self.navigator.may_take_long(s)
     }
 
     /// The controller that continues the last decision.
@@ -67,9 +69,15 @@ impl DecisionWorker {
         let state = match self.executor.failure() {
             Some(reason) if finished => DriveState::Stopped { reason },
             None if finished => DriveState::Arrived,
-            _ => self.navigator.state().clone(),
+            _ => self.navigator.state(),
         };
         (state, finished)
+    }
+
+    /// Reason for the last change of the drive's state; `None` after the end of the mission.
+    pub(crate) fn transition(&self) -> Option<TransitionReason> {
+        let (_, is_finished) = self.state();
+        self.navigator.transition().filter(|_| !is_finished)
     }
 }
 
@@ -119,10 +127,10 @@ mod tests {
         worker.begin(&MissionState::new(Mission::new(vec![Task::Return]).unwrap()));
         assert_eq!(
             worker.navigator.state(),
-            &DriveState::Initializing,
+            DriveState::Initializing,
             "the robot may roll on to the next goal"
         );
         worker.begin(&MissionState::default());
-        assert_eq!(worker.navigator.state(), &DriveState::Idle);
+        assert_eq!(worker.navigator.state(), DriveState::Idle);
     }
 }

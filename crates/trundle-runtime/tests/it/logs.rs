@@ -7,7 +7,7 @@ use tracing::field::{Field, Visit};
 use tracing::span::{Attributes, Id, Record};
 use tracing::{Event, Level, Metadata, Subscriber};
 use trundle_core::{Pose2, SensorEvent, Stamp, Touch, WheelTicks};
-use trundle_runtime::{LazyImage, Robot};
+use trundle_runtime::{DriveState, LazyImage, Reason, Robot, TransitionReason};
 
 /// Keeps level and message of each event.
 #[derive(Debug, Clone, Default)]
@@ -69,8 +69,8 @@ fn drive(robot: &mut Robot, seconds: f64, until: f64) {
 fn each_change_of_state_is_one_event_with_time_and_reason() {
     let lines = events_of(Level::INFO, || drive(&mut robot(Pose2::new(1.5, 0.0, 0.0)), 5.0, 3.0));
     let changes: Vec<&String> = lines.iter().filter(|line| line.contains(" -> ")).collect();
-    assert!(changes[0].ends_with("idle -> initializing"), "{changes:?}");
-    assert!(changes.iter().any(|line| line.ends_with("-> driving")), "{changes:?}");
+    assert!(changes[0].ends_with("idle -> initializing: a goal is given"), "{changes:?}");
+    assert!(changes.iter().any(|line| line.ends_with("-> driving: a path is found")), "{changes:?}");
     let last = changes.last().unwrap();
     assert!(last.contains("driving -> waiting: the newest image") && last.contains(" s: "), "{last}");
     assert!(changes.len() < 8, "a reason whose numbers alone change is not a new event: {changes:?}");
@@ -126,4 +126,13 @@ fn each_dropped_image_is_logged_with_its_cause() {
         "image of 0.300 s dropped: the run is over",
     ];
     assert_eq!(lines, expected);
+}
+
+#[test]
+fn a_state_with_a_reason_of_its_own_shows_that_and_another_the_reason_for_the_change() {
+    let transition = Some(TransitionReason::PlanFound);
+    assert_eq!(DriveState::Driving.explained(transition), "driving: a path is found");
+    assert_eq!(DriveState::Driving.explained(None), "driving");
+    let waiting = DriveState::Waiting { reason: Reason::MovingObstacle };
+    assert_eq!(waiting.explained(transition), waiting.to_string());
 }

@@ -1,7 +1,10 @@
 //! Maps, robots and world states for the tests of the navigator.
 
 use super::Navigator;
+use crate::behaviour::path_search::PathSearch;
+use crate::behaviour::state::{State, Wait};
 use crate::config::RobotConfig;
+use crate::reason::Reason;
 use crate::world_state::{DynamicObstacles, WorldState};
 use trundle_control::MotionSense;
 use trundle_core::{Cell, OccupancyGrid, Pose2, PoseEstimate, Stamp, Twist2, Vector2};
@@ -19,7 +22,7 @@ pub(crate) fn floor(hidden: impl Fn(Vector2) -> bool) -> OccupancyGrid {
     grid
 }
 
-pub(super) fn navigator() -> Navigator {
+pub(crate) fn navigator() -> Navigator {
     let config = RobotConfig::default();
     let footprint = config.footprint().unwrap();
     Navigator::new(&config, &footprint).unwrap()
@@ -40,4 +43,13 @@ pub(crate) fn at_rest(grid: &OccupancyGrid, now: Stamp, pose: Pose2) -> WorldSta
         station: crate::world_state::StationState::default(),
         zones: crate::zones::ZoneView::default(),
     }
+}
+
+/// A wait since this stamp.
+pub(crate) fn waiting(reason: Reason, held_since: Option<Stamp>) -> State {
+    State::Wait(Wait {
+        reason,
+        search: PathSearch { held_since, ..PathSearch::default() },
+        interrupted: None,
+    })
 }

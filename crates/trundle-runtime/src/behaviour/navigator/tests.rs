@@ -1,12 +1,20 @@
 //! Rules of the navigator: its transitions between states, and its commands in each state.
 
-use super::testing::{at_rest, floor, navigator};
+mod no_path;
+mod sight;
+mod transitions;
+mod unseen;
+mod zones;
+
+use super::testing::{at_rest, floor, navigator, waiting};
 use super::*;
+use crate::behaviour::contacts::MAX_BUMPER_CONTACTS;
+use crate::behaviour::path_search::PathSearch;
 use crate::reason::ReasonKind;
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 use trundle_control::{SafetyScan, StopReason};
-use trundle_core::{Beam, Cell, CellIndex, DriveLimits, OccupancyGrid, Scan};
+use trundle_core::{Beam, Cell, CellIndex, DriveLimits, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
 
 /// Period of the control loop \[s\].
 const STEP_S: f64 = 0.02;
@@ -93,28 +101,29 @@ const AHEAD: Pose2 = Pose2 { x: 4.8, y: 2.0, theta: 0.0 };
 fn of_all_states_only_driving_rolls_on_to_the_next_goal() {
     let reason = Reason::MovingObstacle;
     let states = [
-        DriveState::Idle,
-        DriveState::Planning,
-        DriveState::Driving,
-        DriveState::FinalApproach,
-        DriveState::Maneuvering,
-        DriveState::Waiting { reason: reason.clone() },
-        DriveState::Lost { reason: reason.clone() },
-        DriveState::Arrived,
-        DriveState::Stopped { reason },
+        State::Idle,
+        State::Plan(PathSearch::default()),
+        State::Drive(Drive::default()),
+        State::Approach,
+        State::Face(0.0),
+        State::Maneuver,
+        waiting(reason.clone(), None),
+        State::Relocalize { reason: reason.clone() },
+        State::Arrived,
+        State::Stopped { reason },
     ];
-    let after = |state: &DriveState, goal| {
+    let after = |state: &State, goal| {
         let mut navigator = navigator();
-        navigator.state = state.clone();
+        navigator.machine.place(state.clone());
         navigator.set_goal(goal);
         navigator.state().name()
     };
     for state in states {
-        let next = if state == DriveState::Driving { "driving" } else { "initializing" };
-        assert_eq!(after(&state, Goal::Exact(AHEAD)), next, "{state}");
-        assert_eq!(after(&state, Goal::Viewpoint(AHEAD)), next, "{state}");
-        assert_eq!(after(&state, Goal::Spin), "initializing", "{state}");
-        assert_eq!(after(&state, Goal::Stay), "idle", "{state}");
+        let next = if matches!(state, State::Drive(_)) { "driving" } else { "initializing" };
+        assert_eq!(after(&state, Goal::Exact(AHEAD)), next, "{state:?}");
+        assert_eq!(after(&state, Goal::Viewpoint(AHEAD)), next, "{state:?}");
+        assert_eq!(after(&state, Goal::Spin), "initializing", "{state:?}");
+        assert_eq!(after(&state, Goal::Stay), "idle", "{state:?}");
     }
 }
 
@@ -123,14 +132,14 @@ fn a_bumper_that_stays_pressed_is_one_contact() {
     let mut navigator = navigator();
     navigator.set_goal(Goal::Exact(AHEAD));
     (0..50).for_each(|_| navigator.touch(true));
-    assert_eq!((navigator.touches, navigator.state().name()), (1, "initializing"));
+    assert_eq!((navigator.tools.contacts.count, navigator.state().name()), (1, "initializing"));
     [false, true, false].into_iter().for_each(|pressed| navigator.touch(pressed));
     assert!(!navigator.state().is_over());
     navigator.touch(true);
     let reason = Reason::RepeatedContact { contacts: MAX_BUMPER_CONTACTS };
-    assert_eq!(*navigator.state(), DriveState::Stopped { reason });
+    assert_eq!(navigator.state(), DriveState::Stopped { reason });
     navigator.set_goal(Goal::Exact(AHEAD));
-    assert!(!navigator.state().is_over() && navigator.touches == 0, "another goal counts anew");
+    assert!(!navigator.state().is_over() && navigator.tools.contacts.count == 0, "another goal counts anew");
 }
 
 #[test]
@@ -139,7 +148,7 @@ fn contacts_change_nothing_for_a_robot_that_has_arrived() {
     for pressed in [true, false].repeat(5) {
         navigator.touch(pressed);
     }
-    assert_eq!(*navigator.state(), DriveState::Idle);
+    assert_eq!(navigator.state(), DriveState::Idle);
 }
 
 #[test]
@@ -149,10 +158,10 @@ fn nothing_moves_before_the_opening_is_over_and_a_scan_is_there() {
     for _ in 0..(2.0 * opening / STEP_S) as usize {
         assert_eq!(base.step_with(|s| s.scan = None).twist, Twist2::ZERO);
     }
-    assert_eq!(*base.navigator.state(), DriveState::Initializing, "no scan shows the floor");
+    assert_eq!(base.navigator.state(), DriveState::Initializing, "no scan shows the floor");
     let mut base = Base::to(Goal::Exact(AHEAD));
     assert!(base.run(opening - STEP_S).iter().all(|twist| *twist == Twist2::ZERO));
-    assert_eq!(*base.navigator.state(), DriveState::Initializing);
+    assert_eq!(base.navigator.state(), DriveState::Initializing);
     assert!(base.run_to("driving").unwrap() < 15);
 }
 
@@ -166,7 +175,7 @@ fn a_spin_turns_once_around_and_ends_at_rest() {
         assert_eq!(twist.v, 0.0);
         turned += twist.omega * STEP_S;
     }
-    assert_eq!(*base.navigator.state(), DriveState::Arrived);
+    assert_eq!(base.navigator.state(), DriveState::Arrived);
     assert!((1.0..1.1).contains(&(turned / std::f64::consts::TAU)), "{turned} rad");
     assert_eq!(base.run(0.1).last(), Some(&Twist2::ZERO));
 }
@@ -195,7 +204,7 @@ fn a_pose_that_is_lost_is_known_again_only_well_below_the_limit() {
     let limit = base.navigator.config.lost_sigma;
     let mut with_sigma = |sigma: f64| {
         base.step_with(|s| s.estimate.covariance = nalgebra::Matrix3::from_diagonal_element(sigma * sigma));
-        base.navigator.state().clone()
+        base.navigator.state()
     };
     assert_eq!(with_sigma(0.99 * limit).name(), "initializing");
     let DriveState::Lost { reason } = with_sigma(1.01 * limit) else { panic!("{limit} m is the limit") };
@@ -254,7 +263,7 @@ fn patience_counts_from_the_last_progress_and_names_the_state() {
         else {
             panic!("{}", base.navigator.state())
         };
-        assert_eq!((*state, cause), ("initializing", &None));
+        assert_eq!((state, cause), ("initializing", None));
     }
 }
 
@@ -273,7 +282,7 @@ fn a_safety_stop_holds_a_driving_robot_and_ends_with_its_cause() {
     else {
         panic!("{}", base.navigator.state())
     };
-    assert!((1.1..1.3).contains(age), "{age} s");
+    assert!((1.1..1.3).contains(&age), "{age} s");
     assert_eq!(base.run_to("driving"), Some(0), "with the first image that shows something");
     assert!(base.run_to("arrived").is_some() && base.pose.distance(&AHEAD) < 0.03, "{:?}", base.pose);
 }
@@ -300,90 +309,32 @@ fn a_maneuver_whose_straight_move_ends_before_a_wall_goes_on_by_a_turn() {
 }
 
 #[test]
-fn a_wall_across_the_room_is_waited_for_and_driven_through_once_it_is_gone() {
-    let mut base = Base::to(Goal::Exact(AHEAD));
-    base.wall(Cell::Occupied);
-    base.run_to("recovering").unwrap();
-    assert_eq!(base.navigator.state().reason().unwrap().kind(), ReasonKind::PathBlocked);
-    base.run_to("waiting").unwrap();
-    assert_eq!(base.navigator.state().reason().unwrap().kind(), ReasonKind::PathBlocked);
-    assert!(base.pose.x < 3.9, "{:?}", base.pose);
-    base.wall(Cell::Free);
-    assert!(base.run_to("arrived").is_some(), "{}", base.navigator.state());
-}
-
-#[test]
-fn a_viewpoint_without_a_path_is_given_up_at_once_and_a_goal_is_not() {
-    for (goal, name) in [(Goal::Viewpoint(AHEAD), "stopped"), (Goal::Exact(AHEAD), "recovering")] {
-        let mut base = Base::to(goal);
-        base.wall(Cell::Occupied);
-        base.run(base.navigator.config.opening + 0.5);
-        assert_eq!(base.navigator.state().name(), name, "{goal:?}");
-        assert!(base.navigator.state().reason().unwrap().is_due_to(ReasonKind::PathBlocked));
-        assert!(base.navigator.plan().is_none());
-    }
-}
-
-#[test]
-fn a_goal_that_does_not_wait_ends_once_no_plan_finds_a_path_to_it() {
-    let in_the_wall = Pose2::new(5.95, 2.0, 0.0);
-    for (goal, kind) in [(AHEAD, ReasonKind::PathBlocked), (in_the_wall, ReasonKind::TooLittleRoom)] {
-        let mut base = Base::to(Goal::Exact(goal));
-        base.navigator.end_without_path(true);
-        if goal == AHEAD {
-            base.wall(Cell::Occupied);
-        }
-        let opening = base.navigator.config.opening;
-        let seconds = base.run_to("stopped").unwrap() as f64 * STEP_S;
-        assert!((opening + 2.0..opening + 2.5).contains(&seconds), "{seconds} s");
-        assert_eq!(base.navigator.state().reason().unwrap().kind(), kind);
-        base.run(1.0);
-        assert_eq!(base.twist, Twist2::ZERO);
-    }
-}
-
-#[test]
-fn a_wall_of_one_second_ends_no_goal() {
-    let mut base = Base::to(Goal::Exact(AHEAD));
-    base.navigator.end_without_path(true);
-    base.wall(Cell::Occupied);
-    base.run(base.navigator.config.opening + 1.0);
-    assert_eq!(base.navigator.state().name(), "recovering");
-    base.wall(Cell::Free);
-    assert!(base.run_to("arrived").is_some(), "{}", base.navigator.state());
-}
-
-#[test]
-fn a_goal_in_a_wall_is_refused_with_that_reason() {
-    let mut base = Base::to(Goal::Viewpoint(Pose2::new(5.95, 2.0, 0.0)));
-    base.run_to("stopped").unwrap();
-    assert_eq!(base.navigator.state().reason().unwrap().kind(), ReasonKind::TooLittleRoom);
-}
-
-#[test]
 fn only_states_that_may_plan_are_given_to_a_worker() {
     let grid = floor(|_| false);
     let s = at_rest(&grid, Stamp::default().after(10.0), AHEAD);
     let reason = || Reason::MovingObstacle;
-    let takes_long = |state: DriveState, goal| {
+    let takes_long = |state: State, goal| {
         let mut navigator = navigator();
         navigator.set_goal(goal);
-        navigator.state = state;
+        navigator.machine.place(state);
         navigator.may_take_long(&s)
     };
     let goal = Goal::Exact(AHEAD);
-    for state in [DriveState::Idle, DriveState::Arrived, DriveState::FinalApproach] {
+    for state in [State::Idle, State::Arrived, State::Approach, State::Face(0.0)] {
         assert!(!takes_long(state, goal));
     }
-    assert!(!takes_long(DriveState::Stopped { reason: reason() }, goal));
-    assert!(!takes_long(DriveState::Lost { reason: reason() }, goal));
-    for state in
-        [DriveState::Initializing, DriveState::Planning, DriveState::Maneuvering, DriveState::Driving]
-    {
-        assert!(takes_long(state.clone(), goal), "{state}");
+    assert!(!takes_long(State::Stopped { reason: reason() }, goal));
+    assert!(!takes_long(State::Relocalize { reason: reason() }, goal));
+    for state in [
+        State::Initialize,
+        State::Plan(PathSearch::default()),
+        State::Maneuver,
+        State::Drive(Drive::default()),
+    ] {
+        assert!(takes_long(state.clone(), goal), "{state:?}");
         assert!(!takes_long(state, Goal::Spin), "a turn needs no plan");
     }
-    assert!(takes_long(DriveState::Waiting { reason: reason() }, goal), "a check is due");
+    assert!(takes_long(waiting(reason(), None), goal), "a check is due");
 }
 
 #[test]
@@ -429,7 +380,7 @@ proptest! {
                 break;
             }
         }
-        prop_assert_eq!(base.navigator.state(), &DriveState::Arrived);
+        prop_assert_eq!(base.navigator.state(), DriveState::Arrived);
         let off = goal.inverse() * base.pose;
         prop_assert!(off.position().norm() < 0.03 && off.theta.abs() < 0.05, "{off:?}");
     }
@@ -448,7 +399,7 @@ proptest! {
             });
             prop_assert_eq!((decision.twist, decision.replanned), (Twist2::ZERO, false));
         }
-        prop_assert_eq!(base.navigator.state(), &DriveState::Idle);
+        prop_assert_eq!(base.navigator.state(), DriveState::Idle);
     }
 
     #[test]

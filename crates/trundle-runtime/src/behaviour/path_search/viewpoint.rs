@@ -1,12 +1,14 @@
 //! Viewpoints: poses from which the robot observes a blocked path or unknown floor.
 
-use super::{camera_fov::CameraFov, known_floor::is_in_sight, visibility_constraint::VisibilityConstraint};
+use crate::behaviour::path_planner::camera_fov::CameraFov;
+use crate::behaviour::path_planner::known_floor::is_in_sight;
+use crate::behaviour::path_planner::visibility_constraint::VisibilityConstraint;
 use std::f64::consts::TAU;
 use trundle_core::{Cell, OccupancyGrid, Pose2, Stamp, Trajectory, Vector2, difference_of_angles};
 
 /// The path to a viewpoint.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) enum Viewpoint {
+pub(crate) enum Viewpoint {
     /// No viewpoint was searched since the last plan.
     #[default]
     Unknown,
@@ -22,7 +24,7 @@ pub(super) enum Viewpoint {
 
 /// Target of an observation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum ViewTarget {
+pub(crate) enum ViewTarget {
     /// The obstacle that blocks the path.
     Blockage,
     /// Floor that has not been observed.
@@ -36,7 +38,7 @@ const VIEWPOINT_BEARINGS: usize = 16;
 /// Number of viewpoints, the nearest first, to which a path is planned, one per step. Source: ours.
 const MAX_VIEWPOINT_PLANS: usize = 4;
 /// These poses by decreasing distance: the nearest is last and tried first.
-pub(super) fn best_last(mut places: Vec<Pose2>) -> Vec<Pose2> {
+pub(crate) fn best_last(mut places: Vec<Pose2>) -> Vec<Pose2> {
     places.truncate(MAX_VIEWPOINT_PLANS);
     places.reverse();
     places
@@ -44,7 +46,7 @@ pub(super) fn best_last(mut places: Vec<Pose2>) -> Vec<Pose2> {
 
 /// Places on the map's free floor with a clear line of sight to `at`, nearest to `here` first. Occupied cells on the last `own_size` m do
 /// not block the line.
-pub(super) fn places(
+pub(crate) fn places(
     grid: &OccupancyGrid,
     here: Pose2,
     at: Vector2,
@@ -64,7 +66,7 @@ pub(super) fn places(
 
 /// Viewpoints from which the camera observes the floor at `at`, without those of earlier observations. The present place comes first if a
 /// turn is enough; then the nearest places.
-pub(super) fn sights(
+pub(crate) fn sights(
     grid: &OccupancyGrid,
     here: Pose2,
     at: Vector2,
@@ -117,7 +119,7 @@ mod tests {
 
     #[test]
     fn a_sight_shows_the_floor_to_the_camera_wherever_it_looks_and_is_none_of_the_old_ones() {
-        use super::super::testing::floor;
+        use crate::behaviour::navigator::testing::floor;
         let (grid, here) = (floor(|at| at.x > 4.0), Pose2::new(3.0, 2.0, 0.0));
         let at = Vector2::new(4.5, 2.0);
         for aside in [0.0, 1.0, -2.5] {

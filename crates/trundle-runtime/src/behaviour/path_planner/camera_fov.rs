@@ -9,13 +9,13 @@ use trundle_mapping::DepthScanner;
 
 /// The camera's field of view on the floor: a sector.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct CameraFov {
+pub(crate) struct CameraFov {
     /// Position and direction of the sector in the base frame.
-    pub(super) base_from_sector: Pose2,
+    pub(crate) base_from_sector: Pose2,
     /// Half the angle of the field of view, rad.
-    pub(super) half_angle: f64,
+    pub(crate) half_angle: f64,
     /// Minimum distance of visible floor, m.
-    pub(super) nearest: f64,
+    pub(crate) nearest: f64,
 }
 
 /// Angle at the edge of the image that does not count as seen \[rad\]. Source: ours.
@@ -35,7 +35,7 @@ const START_RADIUS_M: f64 = 0.8;
 
 impl CameraFov {
     /// The field of view of the robot's camera. None for a laser, whose blind range is negligible, and for a lens that is too narrow.
-    pub(super) fn of(config: &RobotConfig) -> Result<Option<Self>, Invalid> {
+    pub(crate) fn of(config: &RobotConfig) -> Result<Option<Self>, Invalid> {
         let base_from_camera = config.mount.validated()?.base_from_camera();
         let scanner = DepthScanner::new(config.camera, base_from_camera, config.scan.clone())?;
         let half_angle = (config.camera.width() as f64 / 2.0 / config.camera.fx()).atan() - IMAGE_EDGE_RAD;
@@ -47,7 +47,7 @@ impl CameraFov {
 
     /// The first place of the path at which the disc of `radius` covers unseen floor. Unseen floor is unknown and not observed from an
     /// earlier pose, or was observed without result.
-    pub(super) fn first_unseen(
+    pub(crate) fn first_unseen(
         self,
         way: &[TrajectoryPoint],
         grid: &OccupancyGrid,
@@ -77,7 +77,7 @@ impl CameraFov {
     }
 
     /// Whether a point is in the camera's view from base pose `from`, without an occupied cell in between.
-    pub(super) fn shows(self, grid: &OccupancyGrid, from: Pose2, at: Vector2) -> bool {
+    pub(crate) fn shows(self, grid: &OccupancyGrid, from: Pose2, at: Vector2) -> bool {
         let sector = from * self.base_from_sector;
         let to = sector.inverse().transform(at);
         (self.nearest..MAX_SEEN_RANGE_M).contains(&to.norm())
@@ -87,7 +87,7 @@ impl CameraFov {
 }
 
 /// The unknown cells within `radius` of a point, without those around the start pose.
-pub(super) fn unknown_about(
+pub(crate) fn unknown_about(
     grid: &OccupancyGrid,
     at: Vector2,
     radius: f64,
@@ -113,8 +113,8 @@ fn is_near(a: Pose2, b: Pose2) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::floor;
     use super::*;
+    use crate::behaviour::navigator::testing::floor;
     use trundle_core::{Stamp, Trajectory, Twist2};
 
     const VIEW: CameraFov = CameraFov { base_from_sector: Pose2::IDENTITY, half_angle: 0.5, nearest: 0.6 };

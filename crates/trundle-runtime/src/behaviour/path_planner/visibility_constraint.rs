@@ -4,11 +4,11 @@ use trundle_core::{Cell, OccupancyGrid, Stamp, Vector2};
 
 /// Unseen floor on the path to the present goal, and its observations.
 #[derive(Debug, Clone, Default)]
-pub(super) struct VisibilityConstraint {
+pub(crate) struct VisibilityConstraint {
     /// Position at which the robot started, map frame.
-    pub(super) home: Option<Vector2>,
+    pub(crate) home: Option<Vector2>,
     /// Places at which the candidate paths entered unseen floor.
-    pub(super) virtual_obstacles: Vec<Vector2>,
+    pub(crate) virtual_obstacles: Vec<Vector2>,
     /// Observations of the last 20 s.
     looks: Vec<Look>,
     /// Number of observations without result since the goal was given.
@@ -27,38 +27,38 @@ struct Look {
 }
 
 /// Radius of a virtual obstacle around a point that the path must not reach before it is observed \[m\]. Source: ours.
-pub(super) const VIRTUAL_OBSTACLE_RADIUS_M: f64 = 0.3;
+pub(crate) const VIRTUAL_OBSTACLE_RADIUS_M: f64 = 0.3;
 /// Number of virtual obstacles of one search. Source: ours.
-pub(super) const MAX_VIRTUAL_OBSTACLES: usize = 3;
+pub(crate) const MAX_VIRTUAL_OBSTACLES: usize = 3;
 /// Number of views of one place. Source: ours.
 const MAX_VIEWS_PER_PLACE: usize = 2;
 /// Smallest distance between two viewpoints of one place \[m\]. Source: ours.
 const MIN_VIEWPOINT_SPACING_M: f64 = 0.4;
 /// Maximum number of observations per goal without result. Observations with a result count as exploration, which has a separate limit.
 /// Source: ours.
-pub(super) const MAX_VAIN_VIEWS: usize = 12;
+pub(crate) const MAX_VAIN_VIEWS: usize = 12;
 /// Time after which an observation without result may be repeated \[s\]: a person in front of the place may have left. Source: ours.
 const VAIN_VIEW_RETRY_S: f64 = 20.0;
 
 impl VisibilityConstraint {
     /// For the next goal.
-    pub(super) fn restart(&mut self) {
+    pub(crate) fn restart(&mut self) {
         *self = Self { home: self.home, ..Self::default() };
     }
 
     /// Records an observation of `at` from `from`.
-    pub(super) fn record_observation(&mut self, at: Vector2, from: Vector2, now: Stamp) {
+    pub(crate) fn record_observation(&mut self, at: Vector2, from: Vector2, now: Stamp) {
         self.looks.push(Look { at, from, since: now, is_in_vain: true });
         self.in_vain += 1;
     }
 
     /// Records the arrival at the last viewpoint.
-    pub(super) fn note_arrival(&mut self, now: Stamp) {
+    pub(crate) fn note_arrival(&mut self, now: Stamp) {
         self.looks.last_mut().into_iter().for_each(|look| look.since = now);
     }
 
     /// Marks the observations whose floor the newest map shows: they had a result.
-    pub(super) fn note_seen(&mut self, floor: &OccupancyGrid) {
+    pub(crate) fn note_seen(&mut self, floor: &OccupancyGrid) {
         for look in &mut self.looks {
             let is_seen = look.is_in_vain && floor.at(look.at) != Cell::Unknown;
             look.is_in_vain &= !is_seen;
@@ -67,7 +67,7 @@ impl VisibilityConstraint {
     }
 
     /// Drops old observations: floor that was hidden then may be in view.
-    pub(super) fn forget(&mut self, now: Stamp) {
+    pub(crate) fn forget(&mut self, now: Stamp) {
         self.looks.retain(|look| now - look.since < VAIN_VIEW_RETRY_S);
         self.keep_out.retain(|(_, since)| now - *since < VAIN_VIEW_RETRY_S);
     }
@@ -81,27 +81,27 @@ impl VisibilityConstraint {
     }
 
     /// Whether this floor was observed. Floor that is unknown after an observation remains unknown during the drive.
-    pub(super) fn was_observed(&self, at: Vector2) -> bool {
+    pub(crate) fn was_observed(&self, at: Vector2) -> bool {
         self.observations_of(at).next().is_some()
     }
 
     /// Whether another observation of `at` may have a result.
-    pub(super) fn is_worth_observing(&self, at: Vector2) -> bool {
+    pub(crate) fn is_worth_observing(&self, at: Vector2) -> bool {
         self.observations_of(at).count() < MAX_VIEWS_PER_PLACE && !self.is_exhausted()
     }
 
     /// Whether the observations without result have reached their limit for this goal.
-    pub(super) fn is_exhausted(&self) -> bool {
+    pub(crate) fn is_exhausted(&self) -> bool {
         self.in_vain >= MAX_VAIN_VIEWS
     }
 
     /// Whether `from` is far enough from the earlier observations of `at`.
-    pub(super) fn is_elsewhere(&self, at: Vector2, from: Vector2) -> bool {
+    pub(crate) fn is_elsewhere(&self, at: Vector2, from: Vector2) -> bool {
         self.observations_of(at).all(|old| (old - from).norm() > MIN_VIEWPOINT_SPACING_M)
     }
 
     /// Adds a keep-out zone. Returns whether the zone is new.
-    pub(super) fn bar(&mut self, at: Vector2, now: Stamp) -> bool {
+    pub(crate) fn bar(&mut self, at: Vector2, now: Stamp) -> bool {
         let is_new = self.keep_out.iter().all(|(old, _)| (old - at).norm() > VIRTUAL_OBSTACLE_RADIUS_M / 2.0);
         if is_new {
             self.keep_out.push((at, now));
@@ -110,20 +110,20 @@ impl VisibilityConstraint {
     }
 
     /// Centres of the keep-out zones.
-    pub(super) fn bars(&self) -> Vec<Vector2> {
+    pub(crate) fn bars(&self) -> Vec<Vector2> {
         self.keep_out.iter().map(|(at, _)| *at).collect()
     }
 
     /// Centre of the newest keep-out zone.
-    pub(super) fn keep_out(&self) -> Option<Vector2> {
+    pub(crate) fn keep_out(&self) -> Option<Vector2> {
         self.keep_out.last().map(|(at, _)| *at)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::floor;
     use super::*;
+    use crate::behaviour::navigator::testing::floor;
 
     #[test]
     fn floor_observed_in_vain_is_observed_again_after_a_while() {

@@ -1,12 +1,12 @@
 //! The search for a viewpoint, the path to it, and the observation there.
 
-use super::Navigator;
-use super::known_floor::is_in_sight;
+use super::PathSearch;
 use super::viewpoint::{ViewTarget, Viewpoint, best_last, places, sights};
-use crate::behaviour::drive_state::DriveState;
+use crate::behaviour::path_planner::PathPlanner;
+use crate::behaviour::path_planner::known_floor::is_in_sight;
 use crate::world_state::WorldState;
-use trundle_control::{FollowPhase, FollowReport};
-use trundle_core::{Cell, Stamp, Twist2, Vector2};
+use trundle_control::{FollowPhase, FollowReport, Follower};
+use trundle_core::{Cell, Pose2, Stamp, Twist2, Vector2};
 use trundle_planning::Plan;
 
 /// Distances from which a blockage is seen whole and well \[m\]. Source: ours.
@@ -16,9 +16,19 @@ const BLOCKAGE_DEPTH_M: f64 = 0.35;
 /// Duration of a view \[s\]: several scans are integrated. Source: ours.
 const VIEWING_DURATION_S: f64 = 1.0;
 
-impl Navigator {
+impl PathSearch {
+    /// Whether the robot drives to a viewpoint.
+    pub(crate) fn is_going(&self) -> bool {
+        matches!(self.viewpoint, Viewpoint::Going(..))
+    }
+
     /// Starts the drive to a viewpoint of the blocked place; returns false if the robot is at such a viewpoint.
-    pub(super) fn seeks_viewpoint(&mut self, s: &WorldState<'_>) -> bool {
+    pub(crate) fn seeks_viewpoint(
+        &mut self,
+        planner: &mut PathPlanner,
+        follower: &mut Follower,
+        s: &WorldState<'_>,
+    ) -> bool {
         let Some(at) = self.blocked_at else { return false };
         if !matches!(
             self.viewpoint,
@@ -29,35 +39,41 @@ impl Navigator {
             let stands_well = VIEWING_RANGE_M.contains(&(at - here.position()).norm())
                 && is_in_sight(s.grid, here.position(), at, own_size);
             let places =
-                if stands_well { Vec::new() } else { places(s.grid, here, at, own_size, self.camera_fov) };
+                if stands_well { Vec::new() } else { places(s.grid, here, at, own_size, planner.camera_fov) };
             self.viewpoint = Viewpoint::Choosing(ViewTarget::Blockage, best_last(places));
         }
-        self.plan_to_viewpoint(s)
+        self.plan_to_viewpoint(planner, follower, s)
     }
 
     /// Starts the drive to a viewpoint of the unseen floor at `at`, on the path to the goal. Returns false without a viewpoint, and after
     /// observations of this floor without result.
-    pub(super) fn seeks_view_of(&mut self, at: Vector2, s: &WorldState<'_>) -> bool {
+    pub(crate) fn seeks_view_of(
+        &mut self,
+        at: Vector2,
+        planner: &mut PathPlanner,
+        follower: &mut Follower,
+        s: &WorldState<'_>,
+    ) -> bool {
         match &self.viewpoint {
             Viewpoint::Going(..) => return true,
             Viewpoint::Looking(until) if s.now < *until => return true,
             Viewpoint::Choosing(ViewTarget::UnknownFloor, _) => {}
             _ => {
-                let worth = self.visibility.is_worth_observing(at);
-                let places = if worth {
-                    sights(s.floor(), s.estimate.pose, at, self.camera_fov, &self.visibility)
-                } else {
-                    Vec::new()
-                };
                 self.blocked_at = Some(at);
-                self.viewpoint = Viewpoint::Choosing(ViewTarget::UnknownFloor, best_last(places));
+                self.viewpoint =
+                    Viewpoint::Choosing(ViewTarget::UnknownFloor, best_last(views_of(at, planner, s)));
             }
         }
-        self.plan_to_viewpoint(s)
+        self.plan_to_viewpoint(planner, follower, s)
     }
 
     /// Plans to one of the candidate viewpoints. Returns whether a path exists or another candidate is left.
-    fn plan_to_viewpoint(&mut self, s: &WorldState<'_>) -> bool {
+    fn plan_to_viewpoint(
+        &mut self,
+        planner: &mut PathPlanner,
+        follower: &mut Follower,
+        s: &WorldState<'_>,
+    ) -> bool {
         let Viewpoint::Choosing(aim, places) = &mut self.viewpoint else {
             return self.is_at_viewpoint_or_going();
         };
@@ -67,13 +83,13 @@ impl Navigator {
             return false;
         };
         if let Plan::Found(plan) =
-            self.planner.plan(s.permitted_floor(), s.estimate.pose, Twist2::ZERO, place)
-            && self.first_unseen(plan.trajectory.points(), s.floor()).is_none()
+            planner.planner.plan(s.permitted_floor(), s.estimate.pose, Twist2::ZERO, place)
+            && planner.first_unseen(plan.trajectory.points(), s.floor()).is_none()
         {
             if let (ViewTarget::UnknownFloor, Some(at)) = (aim, self.blocked_at) {
-                self.visibility.record_observation(at, place.position(), s.now);
+                planner.visibility.record_observation(at, place.position(), s.now);
             }
-            self.follower.follow(plan.trajectory.clone(), place);
+            follower.follow(plan.trajectory.clone(), place);
             self.viewpoint = Viewpoint::Going(aim, plan.trajectory);
         }
         true
@@ -86,7 +102,7 @@ impl Navigator {
 
     /// Whether a plan to the goal is due during the drive to a viewpoint: an obstacle may have left, or unseen floor may have been
     /// observed.
-    pub(super) fn needs_new_plan(&self, s: &WorldState<'_>) -> bool {
+    pub(crate) fn needs_new_plan(&self, s: &WorldState<'_>) -> bool {
         match &self.viewpoint {
             Viewpoint::Going(ViewTarget::UnknownFloor, _) => {
                 self.blocked_at.is_none_or(|at| s.floor().at(at) != Cell::Unknown)
@@ -97,40 +113,53 @@ impl Navigator {
     }
 
     /// At the end of the path to a viewpoint, or off this path, the robot observes.
-    pub(super) fn note_viewpoint(&mut self, follow: &FollowReport, now: Stamp) {
-        let is_going = matches!(self.viewpoint, Viewpoint::Going(..));
+    pub(crate) fn on_follow(
+        &mut self,
+        planner: &mut PathPlanner,
+        follower: &mut Follower,
+        follow: &FollowReport,
+        now: Stamp,
+    ) {
         let is_over = matches!(follow.phase, FollowPhase::Settled | FollowPhase::Idle);
-        if is_going && (is_over || follow.off_track) {
-            self.observe_from_here(now);
+        if self.is_going() && (is_over || follow.off_track) {
+            self.observe_from_here(planner, follower, now);
         }
     }
 
     /// Ends the drive to a viewpoint that does not show its target on the newest map, or that is occupied. The robot then observes from its
     /// present place.
-    pub(super) fn watch_path_to_viewpoint(&mut self, s: &WorldState<'_>) {
-        let (Viewpoint::Going(_, way), Some(reference)) = (&self.viewpoint, self.follower.reference()) else {
+    pub(crate) fn watch_path_to_viewpoint(
+        &mut self,
+        planner: &mut PathPlanner,
+        follower: &mut Follower,
+        s: &WorldState<'_>,
+    ) {
+        let (Viewpoint::Going(_, way), Some(reference)) = (&self.viewpoint, follower.reference()) else {
             return;
         };
-        if !self.is_still_good(way, reference.time, s) {
-            self.observe_from_here(s.now);
+        if !planner.is_still_good(way, reference.time, s) {
+            self.observe_from_here(planner, follower, s.now);
         }
     }
 
     /// Ends the drive to a viewpoint.
-    fn observe_from_here(&mut self, now: Stamp) {
-        self.follower.halt();
+    fn observe_from_here(&mut self, planner: &mut PathPlanner, follower: &mut Follower, now: Stamp) {
+        follower.halt();
         self.viewpoint = match self.viewpoint {
             Viewpoint::Going(ViewTarget::UnknownFloor, _) => {
-                self.visibility.note_arrival(now);
+                planner.visibility.note_arrival(now);
                 Viewpoint::Looking(now.after(VIEWING_DURATION_S))
             }
             _ => Viewpoint::Settled,
         };
     }
+}
 
-    /// Whether the robot is at rest during the recovery: to choose a viewpoint, or to observe.
-    pub(super) fn observes_at_rest(&self) -> bool {
-        let recovers = matches!(self.state, DriveState::Recovering { .. });
-        recovers && matches!(self.viewpoint, Viewpoint::Looking(_) | Viewpoint::Choosing(..))
+/// Candidate viewpoints of unseen floor; none after its observations without result.
+fn views_of(at: Vector2, planner: &PathPlanner, s: &WorldState<'_>) -> Vec<Pose2> {
+    if planner.visibility.is_worth_observing(at) {
+        sights(s.floor(), s.estimate.pose, at, planner.camera_fov, &planner.visibility)
+    } else {
+        Vec::new()
     }
 }

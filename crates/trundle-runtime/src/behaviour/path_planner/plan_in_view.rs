@@ -1,6 +1,6 @@
 //! Plans paths along which the camera observes the floor ahead in time.
 
-use super::Navigator;
+use super::PathPlanner;
 use super::camera_fov::unknown_about;
 use super::visibility_constraint::{MAX_VIRTUAL_OBSTACLES, VIRTUAL_OBSTACLE_RADIUS_M};
 use crate::world_state::WorldState;
@@ -9,7 +9,7 @@ use trundle_planning::{Plan, PlanResult};
 
 /// Result of the search for a path within the camera's view.
 #[derive(Debug)]
-pub(super) enum InView {
+pub(crate) enum InView {
     /// A path to drive, or none.
     Plan(Plan),
     /// Place at which the best path enters unseen floor, and a longer path without unseen floor if one was found.
@@ -23,9 +23,9 @@ const MAX_SEEN_PATH_RATIO: f64 = 1.5;
 /// Duration that is allowed in addition \[s\]. Source: ours.
 const MAX_SEEN_PATH_EXTRA_S: f64 = 10.0;
 
-impl Navigator {
+impl PathPlanner {
     /// A plan along which the camera observes the floor ahead, if such a plan is not much longer. Uses two queries at most.
-    pub(super) fn plan_in_view(
+    pub(crate) fn plan_in_view(
         &mut self,
         s: &WorldState<'_>,
         (from, twist): (Pose2, Twist2),
@@ -75,12 +75,12 @@ impl Navigator {
     }
 
     /// First place at which a path enters floor that the camera does not observe in time.
-    pub(super) fn first_unseen(&self, way: &[TrajectoryPoint], floor: &OccupancyGrid) -> Option<Vector2> {
+    pub(crate) fn first_unseen(&self, way: &[TrajectoryPoint], floor: &OccupancyGrid) -> Option<Vector2> {
         self.camera_fov?.first_unseen(way, floor, self.radius, &self.visibility)
     }
 
     /// Whether the rest of a path, from `time` \[s\] on, is free on the newest map, and its floor was or will be observed.
-    pub(super) fn is_still_good(&self, way: &Trajectory, time: f64, s: &WorldState<'_>) -> bool {
+    pub(crate) fn is_still_good(&self, way: &Trajectory, time: f64, s: &WorldState<'_>) -> bool {
         let rest = &way.points()[way.points().partition_point(|point| point.time < time)..];
         self.planner.validate_trajectory(s.permitted_floor(), way, time).is_ok()
             && self.first_unseen(rest, s.floor()).is_none()
@@ -127,9 +127,9 @@ fn wall_off(floor: &mut OccupancyGrid, at: Vector2, ends: [Vector2; 2], radius: 
 
 #[cfg(test)]
 mod tests {
-    use super::super::testing::{at_rest, floor, navigator};
-    use super::super::visibility_constraint::MAX_VAIN_VIEWS;
     use super::*;
+    use crate::behaviour::navigator::testing::{at_rest, floor};
+    use crate::config::RobotConfig;
     use trundle_core::Stamp;
 
     #[test]
@@ -156,103 +156,33 @@ mod tests {
         grid
     }
 
-    fn asked(navigator: &mut Navigator, s: &WorldState<'_>, goal: Pose2) -> InView {
-        let ask = |_| navigator.plan_in_view(s, (s.estimate.pose, Twist2::ZERO), goal);
+    fn planner() -> PathPlanner {
+        let config = RobotConfig::default();
+        PathPlanner::new(&config, &config.footprint().unwrap()).unwrap()
+    }
+
+    fn asked(planner: &mut PathPlanner, s: &WorldState<'_>, goal: Pose2) -> InView {
+        let ask = |_| planner.plan_in_view(s, (s.estimate.pose, Twist2::ZERO), goal);
         (0..=MAX_VIRTUAL_OBSTACLES).map(ask).find(|found| !matches!(found, InView::Asking)).unwrap()
     }
 
     #[test]
     fn a_path_is_chosen_that_shows_the_floor_it_leads_onto() {
-        let (grid, mut navigator) = (beside_a_bed(), navigator());
+        let (grid, mut planner) = (beside_a_bed(), planner());
         let (from, goal) = (Pose2::new(4.45, 1.75, -1.57), Pose2::new(2.75, 0.7, 3.1));
         let s = at_rest(&grid, Stamp::default(), from);
         let found = |plan: Plan| match plan {
             Plan::Found(plan) => plan.trajectory,
             other => panic!("{other:?}"),
         };
-        let best = found(navigator.planner.plan(&grid, from, Twist2::ZERO, goal));
-        assert!(
-            navigator.first_unseen(best.points(), &grid).is_some(),
-            "the best way cuts the unseen corner"
-        );
-        let InView::Plan(shown) = asked(&mut navigator, &s, goal) else { panic!("there is one in view") };
+        let best = found(planner.planner.plan(&grid, from, Twist2::ZERO, goal));
+        assert!(planner.first_unseen(best.points(), &grid).is_some(), "the best way cuts the unseen corner");
+        let InView::Plan(shown) = asked(&mut planner, &s, goal) else { panic!("there is one in view") };
         let shown = found(shown);
-        assert_eq!(navigator.first_unseen(shown.points(), &grid), None);
+        assert_eq!(planner.first_unseen(shown.points(), &grid), None);
         assert!(shown.duration() < MAX_SEEN_PATH_RATIO * best.duration() + MAX_SEEN_PATH_EXTRA_S);
-        navigator.camera_fov = None;
-        let InView::Plan(any) = asked(&mut navigator, &s, goal) else { panic!("a laser sees all") };
+        planner.camera_fov = None;
+        let InView::Plan(any) = asked(&mut planner, &s, goal) else { panic!("a laser sees all") };
         assert_eq!(found(any), best);
-    }
-
-    /// A lane along x whose bend into a side lane along y, at x from 2.6 to 3.2 m, was never seen.
-    fn unseen_bend() -> OccupancyGrid {
-        let mut grid = floor(|at| at.y > 1.4 && at.y < 2.2);
-        let geometry = *grid.geometry();
-        for k in 0..geometry.len() {
-            let at = geometry.center(geometry.cell(k));
-            let is_lane = (0.8..1.4).contains(&at.y) && (0.3..3.2).contains(&at.x);
-            let is_side_lane = (2.6..3.2).contains(&at.x) && (0.8..3.7).contains(&at.y);
-            if !is_lane && !is_side_lane {
-                grid.set(geometry.cell(k), Cell::Occupied);
-            }
-        }
-        grid
-    }
-
-    #[test]
-    fn where_no_path_shows_the_floor_in_time_it_is_observed_first_and_never_driven_on_unseen() {
-        let (grid, mut navigator) = (unseen_bend(), navigator());
-        let goal = Pose2::new(2.9, 3.2, 1.57);
-        let mut pose = Pose2::new(2.6, 1.1, 0.0);
-        let s = at_rest(&grid, Stamp::default(), pose);
-        let InView::Unseen(at, _) = asked(&mut navigator, &s, goal) else { panic!("the bend hides it") };
-        assert_eq!(grid.at(at), Cell::Unknown);
-        // The floor remains unseen: every observation is without result, no path is left, and the reason is reported.
-        navigator.set_goal(super::super::Goal::Exact(goal));
-        navigator.state = crate::behaviour::drive_state::DriveState::Planning;
-        let mut looks = 0;
-        for i in 1..600 {
-            let s = at_rest(&grid, Stamp::default().after(0.2 * f64::from(i)), pose);
-            navigator.replan(goal, &s);
-            assert!(navigator.plan.is_none(), "no way is driven that leads there");
-            if let Some(end) = navigator.follower.end() {
-                // The simulated robot moves to the end of its path in one step.
-                pose = end;
-                navigator.follower.halt();
-                navigator.viewpoint = super::super::viewpoint::Viewpoint::Settled;
-                looks += 1;
-                assert!(navigator.camera_fov.unwrap().shows(&grid, pose, navigator.blocked_at.unwrap()));
-            }
-        }
-        assert!((1..=MAX_VAIN_VIEWS).contains(&looks), "{looks} looks");
-        let reason = navigator.state.reason().unwrap().to_string();
-        assert!(reason.contains("no free path") && reason.contains("could not be observed"), "{reason}");
-    }
-
-    #[test]
-    fn the_path_to_a_viewpoint_ends_where_it_is_blocked_or_leads_onto_unseen_floor() {
-        use super::super::viewpoint::{ViewTarget, Viewpoint};
-        let ends_on = |floor_by_now: &OccupancyGrid| {
-            let (grid, mut navigator) = (floor(|_| false), navigator());
-            let (from, place) = (Pose2::new(1.0, 2.0, 0.0), Pose2::new(4.0, 2.0, 0.0));
-            let Plan::Found(plan) = navigator.planner.plan(&grid, from, Twist2::ZERO, place) else {
-                panic!("nothing is in the way")
-            };
-            navigator.follower.follow(plan.trajectory.clone(), place);
-            navigator.viewpoint = Viewpoint::Going(ViewTarget::UnknownFloor, plan.trajectory);
-            let s = at_rest(floor_by_now, Stamp::default(), from);
-            navigator.follower.step(&s.estimate, s.now);
-            navigator.watch_path_to_viewpoint(&s);
-            let halts = navigator.follower.reference().is_none();
-            assert_eq!(halts, matches!(navigator.viewpoint, Viewpoint::Looking(_)));
-            halts
-        };
-        assert!(!ends_on(&floor(|_| false)), "all is as it was");
-        assert!(!ends_on(&floor(|at| at.x > 5.0)), "unseen beyond the place");
-        // A chair that hides its own side: the camera does not observe the floor to the side of the robot.
-        assert!(ends_on(&floor(|at| at.x < 1.6 && at.y > 2.05)));
-        let mut blocked = floor(|_| false);
-        (0..80).for_each(|row| blocked.set(CellIndex { col: 50, row }, Cell::Occupied));
-        assert!(ends_on(&blocked));
     }
 }

@@ -3,7 +3,7 @@
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Vector2};
 
 /// The cells whose centres are within `radius` of a point, m; empty around a point outside the map.
-pub(super) fn cells_about(
+pub(crate) fn cells_about(
     grid: &OccupancyGrid,
     at: Vector2,
     radius: f64,
@@ -23,7 +23,7 @@ pub(super) fn cells_about(
 }
 
 /// Whether no occupied cell is between two points. The last `own_size` m are ignored, because an obstacle hides its own cells.
-pub(super) fn is_in_sight(grid: &OccupancyGrid, from: Vector2, to: Vector2, own_size: f64) -> bool {
+pub(crate) fn is_in_sight(grid: &OccupancyGrid, from: Vector2, to: Vector2, own_size: f64) -> bool {
     let (way, step) = (to - from, grid.geometry().resolution / 2.0);
     let count = ((way.norm() - own_size).max(0.0) / step) as usize;
     let mut points = (0..count).map(|i| from + way * (i as f64 * step / way.norm()));

@@ -1,0 +1,29 @@
+//! The search for a path: everything that was seen and tried since the last plan.
+
+mod seek_viewpoint;
+pub(crate) mod viewpoint;
+
+use super::spin::Spin;
+use trundle_core::{Stamp, Vector2};
+use viewpoint::Viewpoint;
+
+/// Data of the search for a path, shared by planning, waiting and recovering. A plan ends the search.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct PathSearch {
+    /// Stamp of the first stop of this search.
+    pub(crate) held_since: Option<Stamp>,
+    /// Stamp of the first plan without a path.
+    pub(crate) no_path_since: Option<Stamp>,
+    /// Place where the path to the goal is blocked.
+    pub(crate) blocked_at: Option<Vector2>,
+    pub(crate) viewpoint: Viewpoint,
+    /// The turns on the spot that observed the surroundings.
+    pub(crate) spin: Spin,
+}
+
+impl PathSearch {
+    /// A search that begins with a stop.
+    pub(crate) fn held(now: Stamp) -> Self {
+        Self { held_since: Some(now), ..Self::default() }
+    }
+}

@@ -1,0 +1,14 @@
+//! What the robot does in each state: one file a state.
+
+pub(crate) mod approach;
+pub(crate) mod drive;
+pub(crate) mod initialize;
+pub(crate) mod maneuver;
+pub(crate) mod plan;
+pub(crate) mod recover;
+pub(crate) mod relative;
+pub(crate) mod relocalize;
+pub(crate) mod replan;
+pub(crate) mod spin_once;
+pub(crate) mod station;
+pub(crate) mod wait;
