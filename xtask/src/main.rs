@@ -1,4 +1,4 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | golden | results | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | golden | packages | results | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
 mod aarch64;
@@ -7,6 +7,7 @@ mod compare;
 mod fault_scenarios;
 mod fuzz;
 mod golden;
+mod packages;
 mod program;
 mod replay_check;
 mod results;
@@ -57,6 +58,8 @@ enum Chore {
         #[arg(long, default_value = "release")]
         profile: String,
     },
+    /// Pack every crate as for a registry, without network; check the packages and the facade's features.
+    Packages,
     /// Write docs/results.md from results/*.json.
     Results {
         /// Repeat this measurement first (its name in results/); may be given several times.
@@ -108,6 +111,7 @@ fn main() -> ExitCode {
         Chore::Golden { update, only, profile } => {
             golden::run(&root, &golden::Options { update, only, profile })
         }
+        Chore::Packages => packages::run(&root),
         Chore::Results { measure } => results::run(&root, &measure),
         Chore::Settings => settings::run(&root, false),
         Chore::RosInterfaces => ros_interfaces::run(&root, false),

@@ -50,13 +50,25 @@ pub fn drop_recording(out: &Path) {
     let _ = std::fs::remove_file(out.join("recording.mcap"));
 }
 
+/// Standard output of `cargo` with `args`, in the workspace.
+pub fn cargo_output(root: &Path, args: &[&str]) -> Result<String, String> {
+    let output = Command::new(cargo_path()).args(args).current_dir(root).stdin(Stdio::null()).output();
+    let output = output.map_err(|e| format!("cannot start cargo {}: {e}", args.join(" ")))?;
+    if !output.status.success() {
+        return Err(format!("cargo {}: {}", args.join(" "), String::from_utf8_lossy(&output.stderr).trim()));
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// What cargo knows of the workspace: its packages and folders.
+pub fn metadata(root: &Path) -> Result<serde_json::Value, String> {
+    let text = cargo_output(root, &["metadata", "--format-version=1", "--no-deps", "--offline"])?;
+    serde_json::from_str(&text).map_err(|e| format!("cargo metadata: {e}"))
+}
+
 /// The folder of build results.
 pub fn target(root: &Path) -> Result<PathBuf, String> {
-    let args = ["metadata", "--format-version=1", "--no-deps", "--offline"];
-    let output = Command::new(cargo_path()).args(args).current_dir(root).stdin(Stdio::null()).output();
-    let output = output.map_err(|e| format!("cannot start cargo metadata: {e}"))?;
-    let metadata: serde_json::Value =
-        serde_json::from_slice(&output.stdout).map_err(|e| format!("cargo metadata: {e}"))?;
+    let metadata = metadata(root)?;
     let target = metadata["target_directory"].as_str().ok_or("cargo metadata names no target_directory")?;
     Ok(PathBuf::from(target))
 }

@@ -12,6 +12,7 @@ mod finding;
 mod glossary;
 mod leftovers;
 mod lockfile;
+mod manifest;
 mod markdown;
 mod modules;
 mod prose;
@@ -72,6 +73,7 @@ fn all_findings(root: &Path) -> Result<Vec<Finding>, String> {
         shape::check,
         leftovers::check,
         lockfile::check,
+        manifest::check,
         markdown::check,
         modules::check,
         type_names::check,
