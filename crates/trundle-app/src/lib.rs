@@ -31,6 +31,7 @@ mod checkpoint_file;
 mod checkpoint_writer;
 pub mod convert;
 pub mod dock;
+pub mod doctor;
 mod encoded_body;
 mod error;
 pub mod evaluation;

@@ -6,6 +6,7 @@ mod calibrate;
 mod config;
 mod demo;
 mod dock;
+mod doctor;
 mod endings;
 mod eval_trajectory;
 mod experiment_shards;
