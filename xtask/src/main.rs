@@ -1,9 +1,10 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | golden | packages | results | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | golden | packages | dist | deb | reproduce | results | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
 mod aarch64;
 mod ci;
 mod compare;
+mod dist;
 mod fault_scenarios;
 mod fuzz;
 mod golden;
@@ -58,6 +59,16 @@ enum Chore {
         #[arg(long, default_value = "release")]
         profile: String,
     },
+    /// Build the program of a release; print its size and checksum.
+    Dist,
+    /// Build the Debian package, check its content, unpack it and run its program. Skipped if tools are missing.
+    Deb {
+        /// For aarch64.
+        #[arg(long)]
+        arm64: bool,
+    },
+    /// Build the committed sources at two paths: both programs must have the same bytes. Takes two builds from nothing.
+    Reproduce,
     /// Pack every crate as for a registry, without network; check the packages and the facade's features.
     Packages,
     /// Write docs/results.md from results/*.json.
@@ -111,6 +122,9 @@ fn main() -> ExitCode {
         Chore::Golden { update, only, profile } => {
             golden::run(&root, &golden::Options { update, only, profile })
         }
+        Chore::Dist => dist::run(&root, None),
+        Chore::Deb { arm64 } => dist::deb::run(&root, arm64),
+        Chore::Reproduce => dist::reproduce::run(&root),
         Chore::Packages => packages::run(&root),
         Chore::Results { measure } => results::run(&root, &measure),
         Chore::Settings => settings::run(&root, false),

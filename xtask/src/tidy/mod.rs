@@ -7,6 +7,7 @@ mod allowed;
 mod arrows;
 mod citations;
 mod cited_files;
+mod cited_tests;
 mod constants;
 mod finding;
 mod glossary;
@@ -67,6 +68,7 @@ fn all_findings(root: &Path) -> Result<Vec<Finding>, String> {
         arrows::check,
         citations::check,
         cited_files::check,
+        cited_tests::check,
         constants::check,
         glossary::check,
         purity::check,

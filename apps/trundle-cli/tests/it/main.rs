@@ -21,6 +21,8 @@ mod live_run;
 mod logs;
 mod map;
 mod missions;
+#[cfg(target_os = "linux")]
+mod no_open_port;
 mod no_success;
 mod nothing_lost;
 mod plan;

@@ -1,0 +1,49 @@
+#!/usr/bin/env bash
+# The supply: licences, sources and published faults of the dependencies, by cargo-deny and npm. Parts that need the network or a missing
+# tool are skipped by name.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+failed=0
+
+# cargo-deny is used where it is installed: building it takes longer than the check is worth in each run.
+tools=${TRUNDLE_TOOLS:-target/tools}
+PATH=$PWD/$tools/bin:$PATH
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+if ! cargo deny --version >/dev/null 2>&1; then
+    echo "skipped: licences, sources and advisories of the crates (cargo install --locked cargo-deny --root $tools)"
+else
+    if cargo deny --offline --log-level error check licenses bans sources; then
+        echo "ok   licences, bans and sources of the crates"
+    else
+        failed=1
+    fi
+    # The database is a git repository: without it nothing is known, with a finding the check fails.
+    if timeout 120 cargo deny --log-level error fetch db >"$log" 2>&1; then
+        if cargo deny --offline --log-level error check advisories; then
+            echo "ok   advisories of the crates"
+        else
+            failed=1
+        fi
+    else
+        echo "skipped: advisories of the crates (the database cannot be had: $(tail -n 1 "$log" | cut -c1-120))"
+    fi
+fi
+
+audit() {
+    local folder=$1
+    if ! command -v npm >/dev/null; then
+        echo "skipped: npm audit of $folder (no npm)"
+    elif (cd "$folder" && timeout 120 npm audit --package-lock-only --audit-level=moderate >"$log" 2>&1); then
+        echo "ok   npm audit of $folder"
+    elif grep -q "^# npm audit report" "$log"; then
+        cat "$log"
+        failed=1
+    else
+        echo "skipped: npm audit of $folder ($(grep -m 1 'npm ' "$log" | cut -c1-120))"
+    fi
+}
+audit crates/trundle-live/page
+audit bench/live
+audit bench/fleet
+exit "$failed"
