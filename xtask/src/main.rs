@@ -70,7 +70,11 @@ enum Chore {
     /// Build the committed sources at two paths: both programs must have the same bytes. Takes two builds from nothing.
     Reproduce,
     /// Pack every crate as for a registry, without network; check the packages and the facade's features.
-    Packages,
+    Packages {
+        /// Build every feature of the facade alone, not only the algorithms'.
+        #[arg(long)]
+        every_feature: bool,
+    },
     /// Write docs/results.md from results/*.json.
     Results {
         /// Repeat this measurement first (its name in results/); may be given several times.
@@ -125,7 +129,7 @@ fn main() -> ExitCode {
         Chore::Dist => dist::run(&root, None),
         Chore::Deb { arm64 } => dist::deb::run(&root, arm64),
         Chore::Reproduce => dist::reproduce::run(&root),
-        Chore::Packages => packages::run(&root),
+        Chore::Packages { every_feature } => packages::run(&root, every_feature),
         Chore::Results { measure } => results::run(&root, &measure),
         Chore::Settings => settings::run(&root, false),
         Chore::RosInterfaces => ros_interfaces::run(&root, false),

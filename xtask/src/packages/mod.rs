@@ -19,10 +19,11 @@ pub struct Published {
     version: String,
 }
 
-/// Packs every crate that is published, without network, and checks the packages and the facade's features.
-pub fn run(root: &Path) -> Verdict {
+/// Packs every crate that is published, without network, and checks the packages and the facade's features: the usual ones, or
+/// every one.
+pub fn run(root: &Path, every_feature: bool) -> Verdict {
     let packages = published(root)?;
-    let findings = [check_packages(root, &packages)?, features::check(root)?].concat();
+    let findings = [check_packages(root, &packages)?, features::check(root, every_feature)?].concat();
     findings.iter().for_each(|finding| println!("{finding}"));
     println!("packages: {} packed, {} errors", packages.len(), findings.len());
     Ok(findings.is_empty())
