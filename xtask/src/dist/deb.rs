@@ -13,7 +13,7 @@ const COPIED: [(&str, &str); 5] = [
     ("packaging/debian/robot.conf", "robot.conf"),
     ("CHANGELOG.md", "changelog"),
     ("NOTICE", "NOTICE"),
-    ("LICENSE-APACHE", "LICENSE-APACHE"),
+    ("packaging/debian/copyright", "copyright"),
 ];
 /// Files that the program writes: its arguments and the file.
 const WRITTEN: [(&[&str], &str); 5] = [
@@ -70,7 +70,34 @@ fn collect(root: &Path, own: &Path, folder: &Path) -> Result<(), String> {
     for (args, to) in WRITTEN {
         std::fs::write(folder.join(to), output(own, args)?).map_err(failed(&folder.join(to)))?;
     }
-    output(own, &["man", &folder.join("man").display().to_string()]).map(|_| ())
+    let pages = folder.join("man");
+    output(own, &["man", &pages.display().to_string()])?;
+    let entries = std::fs::read_dir(&pages).map_err(|e| format!("cannot list {}: {e}", pages.display()))?;
+    let pages = entries.flatten().map(|entry| entry.path());
+    let log = folder.join("changelog.Debian");
+    std::fs::write(&log, debian_changelog(root)?).map_err(failed(&log))?;
+    pages.chain([folder.join("changelog"), log]).try_for_each(|file| compress(&file))
+}
+
+/// The changelog of the package in Debian's form, with the date of the last commit.
+fn debian_changelog(root: &Path) -> Result<String, String> {
+    let metadata = program::metadata(root)?;
+    let packages = metadata["packages"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let package =
+        packages.iter().find(|package| package["name"] == "trundle-cli").ok_or("no package trundle-cli")?;
+    let version = package["version"].as_str().unwrap_or_default();
+    let maintainer = package["metadata"]["deb"]["maintainer"].as_str().unwrap_or_default();
+    let folder = root.display().to_string();
+    let date = output(Path::new("git"), &["-C", &folder, "log", "-1", "--format=%cD"])?;
+    let date = String::from_utf8_lossy(&date).trim().to_owned();
+    Ok(format!(
+        "trundle ({version}-1) unstable; urgency=medium\n\n  * The changes are in changelog.gz.\n\n -- {maintainer}  {date}\n"
+    ))
+}
+
+/// Compresses a file as Debian's policy asks (12.1, 12.7), without name and time.
+fn compress(file: &Path) -> Result<(), String> {
+    output(Path::new("gzip"), &["-9", "--no-name", "--force", &file.display().to_string()]).map(|_| ())
 }
 
 /// Packs; the package.

@@ -6,6 +6,9 @@ use crate::workspace::Verdict;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+/// Folder of the clone, below the build results. It is kept: the next run builds what has changed.
+const CLONE: &str = "reproduce/a-clone-at-another-path";
+
 /// Builds the committed sources here and in a clone at another path. Returns whether both programs have the same bytes.
 pub fn run(root: &Path) -> Verdict {
     if !is_clean(root)? {
@@ -13,8 +16,13 @@ pub fn run(root: &Path) -> Verdict {
             "the sources have changes, and a clone has only what is committed: commit them first".into()
         );
     }
-    let clone = program::scratch(root, "reproduce")?.join("a-clone-at-another-path");
-    git(root, &["clone", "--quiet", ".", &clone.display().to_string()])?;
+    let clone = program::target(root)?.join(CLONE);
+    if !clone.exists() {
+        git(root, &["clone", "--quiet", "--no-checkout", ".", &clone.display().to_string()])?;
+    }
+    let commit = git(root, &["rev-parse", "HEAD"])?;
+    git(&clone, &["fetch", "--quiet", "origin", commit.trim()])?;
+    git(&clone, &["checkout", "--quiet", "--force", "--detach", commit.trim()])?;
     let sums = [checksum(root)?, checksum(&clone)?];
     println!("{}", if sums[0] == sums[1] { "the same bytes" } else { "not the same bytes" });
     Ok(sums[0] == sums[1])
