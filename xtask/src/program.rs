@@ -83,6 +83,24 @@ pub fn scratch(root: &Path, name: &str) -> Result<PathBuf, String> {
     Ok(folder)
 }
 
+/// Standard output of a program that must succeed.
+pub fn output(program: &Path, args: &[&str]) -> Result<Vec<u8>, String> {
+    let output = Command::new(program).args(args).stdin(Stdio::null()).output();
+    let output = output.map_err(|e| format!("cannot start {}: {e}", program.display()))?;
+    if !output.status.success() {
+        let why = String::from_utf8_lossy(&output.stderr).trim().to_owned();
+        return Err(format!("{} {}: {}: {why}", program.display(), args.join(" "), output.status));
+    }
+    Ok(output.stdout)
+}
+
+/// Whether a program can be started.
+pub fn answers(program: &str, argument: &str) -> bool {
+    let mut process = Command::new(program);
+    process.arg(argument).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    process.status().is_ok_and(|status| status.success())
+}
+
 fn cargo_path() -> std::ffi::OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }

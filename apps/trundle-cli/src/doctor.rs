@@ -4,7 +4,7 @@ use crate::console;
 use crate::outcome::Outcome;
 use clap::Args;
 use std::path::PathBuf;
-use trundle::app::doctor::{Level, System, examine};
+use trundle::app::doctor::{System, examine};
 
 /// `trundle doctor`
 #[derive(Debug, Args)]
@@ -23,12 +23,6 @@ pub struct DoctorArgs {
 /// `trundle doctor`.
 pub fn run(args: &DoctorArgs) -> Outcome {
     let report = examine(&System::this_computer(), &args.out);
-    if args.json {
-        console::print(&report.json());
-    } else {
-        console::print_table(&report.rows());
-        let (problems, warnings) = (report.count(Level::Problem), report.count(Level::Warning));
-        console::print(&format!("{problems} problems, {warnings} warnings"));
-    }
-    if report.count(Level::Problem) == 0 { Outcome::Reached } else { Outcome::Missed }
+    console::print(&if args.json { report.json() } else { report.text() });
+    if report.is_well() { Outcome::Reached } else { Outcome::Missed }
 }

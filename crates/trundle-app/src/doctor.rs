@@ -1,13 +1,14 @@
 //! The check of a computer before the first drive: processor, clock, rights, disk, devices, ROS 2 and limits, each with its remedy.
 //!
 //! ```
-//! use trundle_app::doctor::{Level, System, examine};
+//! use trundle_app::doctor::{CheckLevel, System, examine};
 //!
 //! let report = examine(&System::this_computer(), std::path::Path::new("out"));
-//! assert!(report.checks.iter().all(|check| check.level == Level::Ok || check.remedy.is_some()));
+//! assert!(report.checks.iter().all(|check| check.level == CheckLevel::Ok || check.remedy.is_some()));
 //! ```
 
 mod cgroup;
+mod check;
 mod clock;
 mod devices;
 mod disk;
@@ -17,47 +18,12 @@ mod rights;
 mod ros;
 mod system;
 
+pub use check::{Check, CheckLevel};
 pub use system::System;
 
+use crate::aligned_table;
 use serde::Serialize;
 use std::path::Path;
-
-/// Result of one check.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Check {
-    /// The checked thing, in two words at most.
-    pub topic: &'static str,
-    /// Level of the finding.
-    pub level: Level,
-    /// The finding, in words.
-    pub finding: String,
-    /// The remedy, in words or as a command; `None` if all is well.
-    pub remedy: Option<String>,
-}
-
-/// Level of a finding.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Level {
-    /// All is well.
-    Ok,
-    /// Some uses of the program are slower or not possible.
-    Warning,
-    /// The program cannot do its work.
-    Problem,
-}
-
-impl Level {
-    /// The level's word.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Ok => "ok",
-            Self::Warning => "warning",
-            Self::Problem => "problem",
-        }
-    }
-}
 
 /// All checks of a computer.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -69,41 +35,31 @@ pub struct DoctorReport {
 impl DoctorReport {
     /// Number of checks of a level.
     #[must_use]
-    pub fn count(&self, level: Level) -> usize {
+    pub fn count(&self, level: CheckLevel) -> usize {
         self.checks.iter().filter(|check| check.level == level).count()
     }
 
-    /// The checks, a row each: level, topic, finding with remedy.
+    /// Whether there is no problem.
     #[must_use]
-    pub fn rows(&self) -> Vec<Vec<String>> {
-        self.checks.iter().map(Check::row).collect()
+    pub fn is_well(&self) -> bool {
+        self.count(CheckLevel::Problem) == 0
+    }
+
+    /// The checks as a table: level, topic, finding with remedy; then the number of problems and warnings.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let mut lines = aligned_table(&self.checks.iter().map(Check::row).collect::<Vec<_>>());
+        let (problems, warnings) = (self.count(CheckLevel::Problem), self.count(CheckLevel::Warning));
+        lines.push(format!("{problems} problems, {warnings} warnings"));
+        lines.join("\n")
     }
 
     /// The checks as JSON, with the number of problems and warnings.
     #[must_use]
     pub fn json(&self) -> String {
-        let (problems, warnings) = (self.count(Level::Problem), self.count(Level::Warning));
+        let (problems, warnings) = (self.count(CheckLevel::Problem), self.count(CheckLevel::Warning));
         let value = serde_json::json!({ "problems": problems, "warnings": warnings, "checks": self.checks });
         format!("{value:#}")
-    }
-}
-
-impl Check {
-    fn ok(topic: &'static str, finding: impl Into<String>) -> Self {
-        Self { topic, level: Level::Ok, finding: finding.into(), remedy: None }
-    }
-
-    fn warning(topic: &'static str, finding: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { topic, level: Level::Warning, finding: finding.into(), remedy: Some(remedy.into()) }
-    }
-
-    fn problem(topic: &'static str, finding: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self { level: Level::Problem, ..Self::warning(topic, finding, remedy) }
-    }
-
-    fn row(&self) -> Vec<String> {
-        let remedy = self.remedy.as_ref().map_or_else(String::new, |remedy| format!(": {remedy}"));
-        vec![self.level.word().to_owned(), self.topic.to_owned(), format!("{}{remedy}", self.finding)]
     }
 }
 
@@ -152,8 +108,8 @@ mod tests {
         for text in texts {
             let checks = broken(text);
             assert!(checks.len() >= 9, "{checks:?}");
-            assert!(checks.iter().all(|check| check.level != Level::Problem), "{text:?}: {checks:?}");
-            assert!(checks.iter().any(|check| check.level == Level::Warning), "{text:?}: {checks:?}");
+            assert!(checks.iter().all(|check| check.level != CheckLevel::Problem), "{text:?}: {checks:?}");
+            assert!(checks.iter().any(|check| check.level == CheckLevel::Warning), "{text:?}: {checks:?}");
         }
     }
 
@@ -166,15 +122,8 @@ mod tests {
         assert!(of("processor").finding.contains("core"), "{report:?}");
         assert!(of("clock").finding.contains("monotonic"), "{report:?}");
         assert!(of("locked memory").finding.contains("locked"), "{report:?}");
-        assert_ne!(of("disk").level, Level::Problem, "{report:?}");
+        assert_ne!(of("disk").level, CheckLevel::Problem, "{report:?}");
         let json: serde_json::Value = serde_json::from_str(&report.json()).unwrap();
         assert_eq!(json["checks"].as_array().unwrap().len(), report.checks.len());
-    }
-
-    #[test]
-    fn rows_have_level_topic_and_remedy() {
-        let row = Check::problem("disk", "1 MB are free", "free some").row();
-        assert_eq!(row, ["problem", "disk", "1 MB are free: free some"]);
-        assert_eq!(Check::ok("disk", "9 GB are free").row()[2], "9 GB are free");
     }
 }

@@ -88,7 +88,7 @@ pub use progress::Progress;
 pub use recorder::{FileRecorder, RunRecorder};
 pub use recording_content::RecordingContent;
 pub use replayer::RunReplayer;
-pub use robot_file::{load_robot, parse_robot};
+pub use robot_file::{load_robot, parse_robot, robot_schema, write_robot};
 pub use run::{AFTER_ARRIVAL_S, run_on_body};
 pub use run_log::{RunLog, StateChange, TrackCounts};
 pub use run_mark::{RunMark, RunMarkMessage};

@@ -2,10 +2,9 @@
 
 use super::{build, deb_content, sha256};
 use crate::aarch64::TARGET;
-use crate::program;
+use crate::program::{self, answers, output};
 use crate::workspace::Verdict;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
 
 /// Files of the sources that the package has as they are.
 const COPIED: [(&str, &str); 5] = [
@@ -127,22 +126,4 @@ fn pack(root: &Path, is_arm64: bool) -> Result<PathBuf, String> {
         .map(|entry| entry.path())
         .filter(|path| path.extension().is_some_and(|end| end == "deb"));
     packages.next().ok_or(format!("cargo deb wrote no package into {out}"))
-}
-
-/// Standard output of a program that must succeed.
-pub fn output(program: &Path, args: &[&str]) -> Result<Vec<u8>, String> {
-    let output = Command::new(program).args(args).stdin(Stdio::null()).output();
-    let output = output.map_err(|e| format!("cannot start {}: {e}", program.display()))?;
-    if !output.status.success() {
-        let why = String::from_utf8_lossy(&output.stderr).trim().to_owned();
-        return Err(format!("{} {}: {}: {why}", program.display(), args.join(" "), output.status));
-    }
-    Ok(output.stdout)
-}
-
-/// Whether a program can be started.
-pub fn answers(program: &str, argument: &str) -> bool {
-    let mut process = Command::new(program);
-    process.arg(argument).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
-    process.status().is_ok_and(|status| status.success())
 }

@@ -1,7 +1,6 @@
 //! Content of the Debian package: its files, and the program and the service of an unpacked system.
 
-use super::deb::{answers, output};
-use crate::program;
+use crate::program::{self, answers, output};
 use std::path::Path;
 use std::process::{Command, Stdio};
 

@@ -12,9 +12,9 @@ const ABSENT: [(&str, &[&str]); 5] = [
     ("runtime", &["trundle-sim", "trundle-app", "trundle-experiments", "trundle-live"]),
 ];
 /// Features that each check builds alone: those that a user of one algorithm chooses.
-const USUAL: [&str; 5] = ["slam", "mapping", "planning", "docking", "sim"];
+const ALGORITHM_FEATURES: [&str; 5] = ["slam", "mapping", "planning", "docking", "sim"];
 /// Features that a release builds alone as well. `full` is what the workspace builds, `ros2` and `mqtt` are the program's.
-const OTHERS: [&str; 8] = ["", "estimation", "control", "drivers", "io", "eval", "viz", "runtime"];
+const OTHER_FEATURES: [&str; 8] = ["", "estimation", "control", "drivers", "io", "eval", "viz", "runtime"];
 
 /// The findings, one sentence each.
 pub fn check(root: &Path, every: bool) -> Result<Vec<String>, String> {
@@ -25,7 +25,7 @@ pub fn check(root: &Path, every: bool) -> Result<Vec<String>, String> {
         findings
             .extend(found.map(|name| format!("trundle, feature {feature}: compiles {name}, expected not")));
     }
-    for feature in USUAL.iter().chain(OTHERS.iter().filter(|_| every)) {
+    for feature in ALGORITHM_FEATURES.iter().chain(OTHER_FEATURES.iter().filter(|_| every)) {
         let args =
             ["check", "--quiet", "--package", "trundle", "--no-default-features", "--features", feature];
         if !program::cargo(root, &args, &[])? {
@@ -65,7 +65,9 @@ mod tests {
         let text =
             std::fs::read_to_string(crate::workspace::root().join("crates/trundle/Cargo.toml")).unwrap();
         let manifest: toml::Table = text.parse().unwrap();
-        let listed = [&USUAL[..], &OTHERS, &["default", "full", "ros2", "mqtt", "kinect2-usb"]].concat();
+        let listed =
+            [&ALGORITHM_FEATURES[..], &OTHER_FEATURES, &["default", "full", "ros2", "mqtt", "kinect2-usb"]]
+                .concat();
         for feature in manifest["features"].as_table().unwrap().keys() {
             assert!(listed.contains(&feature.as_str()), "{feature}");
         }

@@ -1,6 +1,7 @@
 //! Limits of the control group: memory and processor time of a container or a service.
 
-use super::{Check, System};
+use super::check::Check;
+use super::system::System;
 
 /// Memory limit below which a run may not fit \[MB\]. Source: as for available memory.
 const MIN_MEMORY_MB: u64 = 500;
@@ -90,7 +91,7 @@ fn unread(topic: &'static str) -> Check {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::doctor::Level;
+    use crate::doctor::check::CheckLevel;
 
     /// The checks of a system with these files.
     fn checks(files: &[(&str, &str)]) -> Vec<Check> {
@@ -111,7 +112,7 @@ mod tests {
             ("sys/fs/cgroup/cpu.max", "max 100000\n"),
         ]);
         assert_eq!(two[0].finding, "at most 100 MB, expected 500 MB or more");
-        assert_eq!((two[0].level, two[1].finding.as_str()), (Level::Warning, "no limit"));
+        assert_eq!((two[0].level, two[1].finding.as_str()), (CheckLevel::Warning, "no limit"));
         let one = checks(&[
             ("proc/self/cgroup", "4:memory:/x\n1:cpu,cpuacct:/\n0::/\n"),
             ("sys/fs/cgroup/memory/x/memory.limit_in_bytes", "9223372036854771712\n"),
@@ -119,6 +120,6 @@ mod tests {
             ("sys/fs/cgroup/cpu/cpu.cfs_period_us", "100000\n"),
         ]);
         assert_eq!(one[0].finding, "no limit");
-        assert!(one[1].level == Level::Warning && one[1].finding.starts_with("at most 0.50 cores"));
+        assert!(one[1].level == CheckLevel::Warning && one[1].finding.starts_with("at most 0.50 cores"));
     }
 }

@@ -1,6 +1,7 @@
 //! The monotonic clock, which stamps the sensors, and the state of the wall clock.
 
-use super::{Check, System};
+use super::check::Check;
+use super::system::System;
 use std::time::Instant;
 
 /// File of the kernel that names its source of time.
@@ -11,7 +12,7 @@ const SLOW_SOURCES: [&str; 3] = ["hpet", "acpi_pm", "jiffies"];
 const SYNCHRONISED: &str = "/run/systemd/timesync/synchronized";
 const TIME_DAEMONS: [&str; 3] = ["/run/chrony", "/run/ntpd.pid", "/run/openntpd.pid"];
 /// Number of readings that must not go back. Source: ours.
-const READINGS: usize = 10_000;
+const CLOCK_READINGS: usize = 10_000;
 
 /// Checks of both clocks.
 pub fn check(system: &System) -> Vec<Check> {
@@ -20,7 +21,7 @@ pub fn check(system: &System) -> Vec<Check> {
 
 fn monotonic(system: &System) -> Check {
     let topic = "clock";
-    let readings: Vec<Instant> = (0..READINGS).map(|_| Instant::now()).collect();
+    let readings: Vec<Instant> = (0..CLOCK_READINGS).map(|_| Instant::now()).collect();
     if !readings.is_sorted() {
         return Check::problem(
             topic,
@@ -59,7 +60,7 @@ fn wall(system: &System) -> Check {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::doctor::Level;
+    use crate::doctor::check::CheckLevel;
 
     #[test]
     fn slow_sources_and_time_services_are_recognised() {
@@ -73,9 +74,9 @@ mod tests {
         write(SOURCE_FILE, "hpet\n");
         assert!(monotonic(&system).finding.contains("hpet"));
         write(SOURCE_FILE, "arch_sys_counter\n");
-        assert_eq!(monotonic(&system).level, Level::Ok);
-        assert_eq!(wall(&system).level, Level::Warning);
+        assert_eq!(monotonic(&system).level, CheckLevel::Ok);
+        assert_eq!(wall(&system).level, CheckLevel::Warning);
         write(SYNCHRONISED, "");
-        assert_eq!(wall(&system).level, Level::Ok);
+        assert_eq!(wall(&system).level, CheckLevel::Ok);
     }
 }

@@ -1,6 +1,6 @@
 //! Base and cameras: ports, libraries and what is plugged in.
 
-use super::Check;
+use super::check::Check;
 use trundle_drivers::camera::native::{LibraryReport, LibraryState, NativeKind, list_devices, reports};
 use trundle_drivers::{PortAccess, SerialDevice, serial_devices};
 
@@ -71,7 +71,7 @@ fn plugged_in(kind: NativeKind, report: &LibraryReport) -> Option<Check> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::doctor::Level;
+    use crate::doctor::check::CheckLevel;
     use std::path::PathBuf;
 
     #[test]
@@ -82,8 +82,8 @@ mod tests {
             access,
         };
         let level = |access| bases(&[device(access)])[0].level;
-        assert_eq!(level(PortAccess::NoRights), Level::Problem);
-        assert_eq!(level(PortAccess::Free), Level::Ok);
+        assert_eq!(level(PortAccess::NoRights), CheckLevel::Problem);
+        assert_eq!(level(PortAccess::Free), CheckLevel::Ok);
         assert_eq!(bases(&[device(PortAccess::Free)]).len(), 1, "a Kobuki is there");
         assert_eq!(bases(&[]).len(), 1, "none is");
     }

@@ -1,6 +1,6 @@
 //! Disk space and the right to write, of the folder that runs write to.
 
-use super::Check;
+use super::check::Check;
 use crate::free_space::{MIN_FREE_BYTES, free_bytes};
 use std::path::Path;
 
@@ -52,7 +52,7 @@ fn is_writable(folder: &Path) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::doctor::Level;
+    use crate::doctor::check::CheckLevel;
 
     #[test]
     #[cfg(target_os = "linux")]
@@ -60,9 +60,10 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let checks = check(&place.path().join("a/b"));
         assert!(
-            checks[0].finding.ends_with(&place.path().display().to_string()) || checks[0].level != Level::Ok
+            checks[0].finding.ends_with(&place.path().display().to_string())
+                || checks[0].level != CheckLevel::Ok
         );
         let refused = check(Path::new("/proc/no-such-folder"));
-        assert_eq!(refused[0].level, Level::Problem, "{refused:?}");
+        assert_eq!(refused[0].level, CheckLevel::Problem, "{refused:?}");
     }
 }

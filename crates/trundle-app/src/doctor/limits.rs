@@ -1,6 +1,7 @@
 //! Limits of the process that matter in real time: priority and locked memory.
 
-use super::{Check, System};
+use super::check::Check;
+use super::system::System;
 
 /// Locked memory below which a control process does not fit \[bytes\]. Source: `docs/how-to/small-computer.md`, the robot's memory.
 const MIN_LOCKED_BYTES: u64 = 512 << 20;
@@ -55,7 +56,7 @@ fn soft_limit(text: &str, name: &str) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::doctor::Level;
+    use crate::doctor::check::CheckLevel;
 
     #[test]
     fn limits_are_read() {
@@ -65,8 +66,8 @@ mod tests {
         assert_eq!(soft_limit(text, "Max locked memory"), Some(8 << 20));
         assert_eq!(soft_limit("Max locked memory unlimited x", "Max locked memory"), Some(u64::MAX));
         assert_eq!(soft_limit(text, "Max nice priority"), None);
-        assert_eq!(locked(Some(8 << 20)).level, Level::Warning);
-        assert_eq!(priority(Some(95)).level, Level::Ok);
-        assert_eq!(priority(Some(0)).level, Level::Warning);
+        assert_eq!(locked(Some(8 << 20)).level, CheckLevel::Warning);
+        assert_eq!(priority(Some(95)).level, CheckLevel::Ok);
+        assert_eq!(priority(Some(0)).level, CheckLevel::Warning);
     }
 }

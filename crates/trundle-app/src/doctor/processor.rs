@@ -1,6 +1,7 @@
 //! Processor and memory.
 
-use super::{Check, System};
+use super::check::Check;
+use super::system::System;
 
 /// Flags of the instructions that the kernels use, of x86-64 and of aarch64. Source: the kernels of vision, grid and mapping.
 const VECTOR_FLAGS: [&str; 2] = ["avx2", "asimd"];

@@ -1,6 +1,7 @@
 //! Rights to devices: groups of the user, and the udev rules.
 
-use super::{Check, System};
+use super::check::Check;
+use super::system::System;
 
 /// Groups with rights to devices: the name, and what its members may open. Source: Debian's and Ubuntu's groups.
 const GROUPS: [(&str, &str); 2] = [("dialout", "serial ports"), ("video", "cameras")];
@@ -67,7 +68,7 @@ fn rules(system: &System) -> Check {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::doctor::Level;
+    use crate::doctor::check::CheckLevel;
 
     const STATUS: &str =
         "Name:\ttrundle\nUid:\t1000\t1000\t1000\t1000\nGid:\t1000\t1000\t1000\t1000\nGroups:\t20 1000 \n";
@@ -75,12 +76,12 @@ mod tests {
     #[test]
     fn groups_of_the_user_are_read() {
         let groups = "root:x:0:\ndialout:x:20:ann\nvideo:x:44:\n";
-        assert_eq!(group(STATUS, groups, "dialout", "serial ports").level, Level::Ok);
+        assert_eq!(group(STATUS, groups, "dialout", "serial ports").level, CheckLevel::Ok);
         let video = group(STATUS, groups, "video", "cameras");
-        assert!(video.level == Level::Warning && video.remedy.unwrap().contains("usermod -aG video"));
+        assert!(video.level == CheckLevel::Warning && video.remedy.unwrap().contains("usermod -aG video"));
         assert!(group(STATUS, "", "video", "cameras").finding.starts_with("no group video"));
         let root = STATUS.replace("1000", "0");
-        assert_eq!(group(&root, groups, "video", "cameras").level, Level::Ok);
+        assert_eq!(group(&root, groups, "video", "cameras").level, CheckLevel::Ok);
         assert_eq!(group_id("video:x", "video"), None);
     }
 }

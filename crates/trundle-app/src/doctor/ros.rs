@@ -1,6 +1,7 @@
 //! Variables of ROS 2: the domain, the middleware and the range of the search for other nodes.
 
-use super::{Check, System};
+use super::check::Check;
+use super::system::System;
 
 /// Largest domain. Source: RTPS 2.3, 9.6.1.1: ports end at 65535.
 const MAX_DOMAIN: u16 = 232;
@@ -69,7 +70,7 @@ fn range(system: &System) -> Check {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::doctor::Level;
+    use crate::doctor::check::CheckLevel;
     use std::path::Path;
 
     #[test]
@@ -78,7 +79,7 @@ mod tests {
             let checks = check(&System::of(Path::new("/"), variables));
             checks.iter().map(|check| check.level).collect::<Vec<_>>()
         };
-        use Level::{Ok, Problem, Warning};
+        use CheckLevel::{Ok, Problem, Warning};
         assert_eq!(levels(&[]), [Ok, Ok, Ok]);
         assert_eq!(
             levels(&[("ROS_DOMAIN_ID", "232"), ("RMW_IMPLEMENTATION", "rmw_zenoh_cpp")]),
