@@ -26,7 +26,8 @@ fn a_wrong_domain_is_a_problem_with_exit_code_1() {
     assert_eq!(output.status.code(), Some(1), "{text}");
     let line = text.lines().find(|line| line.contains("ROS_DOMAIN_ID is")).unwrap();
     assert!(
-        line.starts_with("problem") && line.contains("expected 0 to 232: export ROS_DOMAIN_ID=0"),
+        line.trim_start().starts_with("problem")
+            && line.contains("expected 0 to 232: export ROS_DOMAIN_ID=0"),
         "{line}"
     );
 }
