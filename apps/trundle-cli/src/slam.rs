@@ -2,19 +2,21 @@
 
 mod args;
 
-use args::FirstCameraArgs;
 pub use args::{CameraArgs, SlamArgs};
+use args::{FirstCameraArgs, SurfaceArgs};
 
 use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
+use crate::output_args::write_file;
 use trundle::app::AppError;
 use trundle::app::sequence::{FirstCamera, SequenceRequest, track_sequence, write_sequence};
+use trundle::app::surface::{SurfaceRequest, surface_files};
 use trundle::live::RunFacts;
 
 /// `trundle slam DIR`.
 pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
-    let request = args.request()?;
+    let (request, surface) = (args.request()?, args.surface.request()?);
     let input = request.open()?;
     let folder = logging::output_folder(&args.result.out)?;
     let display = console::StepDisplay::new(args.common.quiet);
@@ -22,12 +24,16 @@ pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
     let run = track_sequence(&request, &input, &folder, &display, link)?;
     drop(page);
     let output = write_sequence(&request, &input, &run, folder)?;
+    let made = surface_files(&surface, &input, &run.trajectory.poses, &display)?;
+    made.files.iter().try_for_each(|(path, bytes)| write_file(path, bytes))?;
     if !args.common.quiet {
         console::print_table(&output.rows);
+        console::print_table(&made.rows);
         run.clock_tables().iter().for_each(|table| console::print_table(table));
         console::print(&format!("See {}", output.folder.join("report.html").display()));
     }
-    Ok(Outcome::unless(run.failure().map(|failure| format!("{}: {failure}", args.input.display()))))
+    let failure = run.failure().map(|failure| format!("{}: {failure}", args.input.display()));
+    Ok(Outcome::unless(failure.or(made.failure)))
 }
 
 impl SlamArgs {
@@ -50,5 +56,13 @@ impl SlamArgs {
             record: self.result.record,
             robot: self.robot.robot_if_given()?.map(Box::new),
         })
+    }
+}
+
+impl SurfaceArgs {
+    fn request(&self) -> Result<SurfaceRequest, AppError> {
+        let Self { mesh, cloud, octomap, heights, voxel } = self;
+        let [mesh, cloud, octomap, heights] = [mesh, cloud, octomap, heights].map(Option::as_deref);
+        SurfaceRequest::new(mesh, cloud, octomap, heights, *voxel)
     }
 }

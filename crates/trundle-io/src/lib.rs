@@ -42,6 +42,7 @@ mod sequence_camera;
 mod stamp_text;
 mod stamp_unit;
 mod summary;
+mod surface;
 mod toml_text;
 mod tum;
 mod warnings;
@@ -81,6 +82,7 @@ pub use ros::{
 pub use sequence_camera::SequenceCamera;
 pub use stamp_text::parse_stamp;
 pub use summary::Summary;
+pub use surface::{HeightFiles, HeightGrid, SurfaceData, glb_bytes, height_files, octomap_bytes, ply_bytes};
 pub use tum::{
     TrajectoryFile, TumFrame, TumSequence, TumWriter, odometry_text, read_odometry, read_trajectory,
     read_trajectory_file, trajectory_text, trajectory_text_from_planar,

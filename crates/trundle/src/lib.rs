@@ -44,8 +44,8 @@
 //!
 //! # Features
 //!
-//! `full` is the default: all but `ros2` and `mqtt`. Without it, `slam`, `mapping`, `estimation`, `planning`, `control`, `docking`, `sim`,
-//! `drivers`, `io`, `eval` and `viz` are the modules of these names, with the modules that they need. `runtime` is the whole robot
+//! `full` is the default: all but `ros2` and `mqtt`. Without it, `slam`, `mapping`, `estimation`, `planning`, `control`, `docking`, `surface`,
+//! `sim`, `drivers`, `io`, `eval` and `viz` are the modules of these names, with the modules that they need. `runtime` is the whole robot
 //! without simulator. `core` is always there. No feature changes a result.
 //!
 //! `crates/trundle/examples` contains eight numbered examples.
@@ -89,6 +89,8 @@ pub use trundle_runtime as runtime;
 pub use trundle_sim as sim;
 #[cfg(feature = "slam")]
 pub use trundle_slam as slam;
+#[cfg(feature = "surface")]
+pub use trundle_surface as surface;
 #[cfg(feature = "slam")]
 pub use trundle_vision as vision;
 #[cfg(feature = "viz")]

@@ -14,7 +14,8 @@ const ABSENT: [(&str, &[&str]); 5] = [
 /// Features that each check builds alone: those that a user of one algorithm chooses.
 const ALGORITHM_FEATURES: [&str; 5] = ["slam", "mapping", "planning", "docking", "sim"];
 /// Features that a release builds alone as well. `full` is what the workspace builds, `ros2` and `mqtt` are the program's.
-const OTHER_FEATURES: [&str; 8] = ["", "estimation", "control", "drivers", "io", "eval", "viz", "runtime"];
+const OTHER_FEATURES: [&str; 9] =
+    ["", "estimation", "control", "surface", "drivers", "io", "eval", "viz", "runtime"];
 
 /// The findings, one sentence each.
 pub fn check(root: &Path, every: bool) -> Result<Vec<String>, String> {

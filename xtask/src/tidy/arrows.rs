@@ -4,7 +4,7 @@ use super::finding::Finding;
 use super::tree::{File, Package, Tree};
 
 /// The crates of algorithms: none depends on another.
-pub const ALGORITHM_CRATES: [&str; 7] = [
+pub const ALGORITHM_CRATES: [&str; 8] = [
     "trundle-vision",
     "trundle-slam",
     "trundle-mapping",
@@ -12,6 +12,7 @@ pub const ALGORITHM_CRATES: [&str; 7] = [
     "trundle-planning",
     "trundle-control",
     "trundle-docking",
+    "trundle-surface",
 ];
 /// The edges: they depend on core alone.
 pub const EDGES: [&str; 5] = ["trundle-sim", "trundle-io", "trundle-drivers", "trundle-viz", "trundle-eval"];

@@ -2,7 +2,7 @@
 
 use crate::common_args::{BagTopicsArgs, Common, NumberArg, RobotArgs, choice};
 use crate::live::ViewArgs;
-use crate::output_args::OutputDirArg;
+use crate::output_args::{OutputDirArg, OutputFileArg};
 use clap::Args;
 use std::path::PathBuf;
 use trundle::app::RecordingContent;
@@ -50,6 +50,9 @@ pub struct SlamArgs {
     /// What is written.
     #[command(flatten)]
     pub result: SlamResultArgs,
+    /// The surface of what the camera saw.
+    #[command(flatten)]
+    pub surface: SurfaceArgs,
     /// The live page: it shows the tracking, and takes no commands.
     #[command(flatten)]
     pub live: ViewArgs,
@@ -73,6 +76,26 @@ pub struct SlamResultArgs {
     /// Folder for the results; the last run in it is kept as DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/slam")]
     pub out: OutputDirArg,
+}
+
+/// The surface of what the camera saw, along the final trajectory.
+#[derive(Debug, Args)]
+pub struct SurfaceArgs {
+    /// Write the surface as triangles with colours, .glb or .ply
+    #[arg(long, value_name = "FILE")]
+    pub mesh: Option<OutputFileArg>,
+    /// Write the surface as points with colours and normals, .ply
+    #[arg(long, value_name = "FILE")]
+    pub cloud: Option<OutputFileArg>,
+    /// Write free and occupied voxels in OctoMap's binary form, .bt
+    #[arg(long, value_name = "FILE")]
+    pub octomap: Option<OutputFileArg>,
+    /// Write heights over the floor as a 16-bit .png, with a .yaml beside it
+    #[arg(long, value_name = "FILE")]
+    pub heights: Option<OutputFileArg>,
+    /// Side of a voxel of the surface, m, 0.004 to 0.5 [default: 0.02]
+    #[arg(long, value_name = "M", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
+    pub voxel: Option<f64>,
 }
 
 /// The pose of the first camera.

@@ -8,9 +8,14 @@
 //!
 //! Reaction and braking over the free distance s: v t + v^2 / (2 a) <= s, so v = -a t + sqrt(a^2 t^2 + 2 a s).
 
+mod free_motion;
 pub(crate) mod hold;
 pub(crate) mod obstacles;
 pub(crate) mod safety_action;
 pub(crate) mod safety_config;
+pub(crate) mod safety_input;
 pub(crate) mod safety_monitor;
 pub(crate) mod station_motion;
+
+#[cfg(test)]
+mod tests;

@@ -2,7 +2,40 @@
 
 use super::hold::MotionHold;
 use std::fmt;
-use trundle_core::Vector2;
+use trundle_core::{Twist2, Vector2};
+
+/// Decision of the monitor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SafetyReport {
+    /// The twist to send: always safe, always finite.
+    pub twist: Twist2,
+    /// The change of the command, and its reason.
+    pub action: SafetyAction,
+}
+
+impl SafetyReport {
+    pub(super) fn pass(twist: Twist2) -> Self {
+        Self { twist, action: SafetyAction::Pass }
+    }
+
+    pub(super) fn stop(reason: StopReason) -> Self {
+        Self { twist: Twist2::ZERO, action: SafetyAction::Stop(reason) }
+    }
+
+    /// The twist slowed to at most this speed, m/s, on its own curve.
+    pub(super) fn slowed(twist: Twist2, speed: f64, reason: SlowReason) -> Self {
+        let part = speed / twist.v.abs();
+        if part >= 1.0 {
+            return Self::pass(twist);
+        }
+        Self { twist: Twist2::new(twist.v * part, twist.omega * part), action: SafetyAction::Slow(reason) }
+    }
+
+    /// The slower of two decisions, this one if both are equal.
+    pub(super) fn slower(self, other: Self) -> Self {
+        if other.twist.v.abs() < self.twist.v.abs() { other } else { self }
+    }
+}
 
 /// Decision of the safety monitor about a command.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -125,15 +158,28 @@ impl fmt::Display for StopReason {
             Self::NoImage => f.write_str("no image or scan yet"),
             Self::NothingSeen => f.write_str("no image has shown anything yet"),
             Self::StaleImage { age } => {
-                write!(f, "the newest image or scan that shows something is {age:.2} s old")
+                write!(f, "the newest image or scan that shows something is {}", Age(*age))
             }
             Self::NothingTellsMotion => {
                 write!(f, "{}, and no image measures the motion", SlowReason::WheelsCountNothing)
             }
             Self::NoWheels => f.write_str("no wheel reading yet"),
-            Self::StaleWheels { age } => write!(f, "the newest wheel reading is {age:.2} s old"),
+            Self::StaleWheels { age } => write!(f, "the newest wheel reading is {}", Age(*age)),
             Self::Held(hold) => hold.fmt(f),
             Self::NotFinite => f.write_str("the command is not a number"),
+        }
+    }
+}
+
+/// Age of a reading, s; negative if its stamp is ahead of the clock.
+struct Age(f64);
+
+impl fmt::Display for Age {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0 < 0.0 {
+            write!(f, "stamped {:.2} s ahead of the clock: let both devices use one clock", -self.0)
+        } else {
+            write!(f, "{:.2} s old", self.0)
         }
     }
 }

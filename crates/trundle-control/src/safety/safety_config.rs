@@ -1,7 +1,7 @@
 //! Margins, time-outs and speeds of the safety monitor.
 
 use serde::{Deserialize, Serialize};
-use trundle_core::{Invalid, require_in};
+use trundle_core::{Invalid, Twist2, require_in};
 
 /// When to slow down and when to stop.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -10,7 +10,8 @@ pub struct SafetyConfig {
     /// Deceleration to count on, m/s^2, 0.05 to 20. Default 0.5: [`DriveLimits::KOBUKI`](trundle_core::DriveLimits::KOBUKI);
     /// the base can do more.
     pub deceleration: f64,
-    /// Angular deceleration to count on when a polygon turns on the spot, rad/s^2, 0.1 to 100. Default 3, as above.
+    /// Angular deceleration to count on, rad/s^2, 0.1 to 100. Default 3, as above. It limits turns on the spot, and tight curves:
+    /// the robot brakes along its curve, and takes as long as the slower of speed and turn rate.
     pub angular_deceleration: f64,
     /// From an image to the response of the wheels, s, 0 to 2, at least. Default 0.2: an image period, processing, delay and lag.
     pub latency: f64,
@@ -117,9 +118,18 @@ impl SafetyConfig {
         }
     }
 
-    /// The highest speed from which the robot stops within `distance` m, `latency` s after the image.
-    pub(super) fn speed_for(&self, distance: f64, latency: f64) -> f64 {
-        braking_speed(self.deceleration, latency, distance)
+    /// The highest speed, m/s, from which the robot stops within `distance` m on the curve of `twist`, `latency` s after the image.
+    pub(super) fn speed_for(&self, twist: Twist2, distance: f64, latency: f64) -> f64 {
+        let curvature = (twist.omega / twist.v).abs();
+        let deceleration = self.deceleration.min(self.angular_deceleration / curvature);
+        braking_speed(deceleration, latency, distance)
+    }
+
+    /// Distance from the command to rest, m: reaction, then braking along the curve. The slower of speed and turn rate sets the duration.
+    pub(super) fn braking_distance(&self, twist: Twist2, latency: f64) -> f64 {
+        let (v, omega) = (twist.v.abs(), twist.omega.abs());
+        let duration = (v / self.deceleration).max(omega / self.angular_deceleration);
+        v * (latency + duration / 2.0)
     }
 
     /// The highest turn rate from which it stops within `angle` rad, `latency` s after the image.
@@ -140,12 +150,17 @@ mod tests {
     #[test]
     fn reaction_and_braking_use_exactly_the_free_distance() {
         let config = SafetyConfig::default().validated().unwrap();
-        let v = config.speed_for(0.8, config.latency);
-        assert!((v * config.latency + v * v / (2.0 * config.deceleration) - 0.8).abs() < 1e-12);
-        assert_eq!(config.speed_for(0.0, 0.2), 0.0);
-        assert_eq!(config.speed_for(-1.0, 0.2), 0.0);
+        // Straight, a wide curve, and a curve so tight that the turn rate takes longer to brake than the speed.
+        for curvature in [0.0, 2.0, 20.0] {
+            let speed =
+                |distance, latency| config.speed_for(Twist2::new(0.3, 0.3 * curvature), distance, latency);
+            let v = speed(0.8, config.latency);
+            let twist = Twist2::new(v, v * curvature);
+            assert!((config.braking_distance(twist, config.latency) - 0.8).abs() < 1e-12, "{curvature}");
+            assert_eq!((speed(0.0, 0.2), speed(-1.0, 0.2)), (0.0, 0.0));
+            assert!(speed(0.8, config.latency_for(0.5)) < v, "a late image");
+        }
         assert_eq!(config.latency_for(0.05), 0.2, "a fresh image");
-        assert!(config.speed_for(0.8, config.latency_for(0.5)) < v, "a late one");
         assert_eq!((config.speed_at_age(0.1), config.speed_at_age(0.8)), (f64::INFINITY, 0.0));
         assert!((config.speed_at_age(0.5) - 0.35).abs() < 1e-12);
     }

@@ -1,0 +1,86 @@
+//! The number of an option as text, refused with option, value, unit and accepted range.
+
+/// Finite numbers that an option accepts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NumberText {
+    /// Unit, as `m`; empty without a unit.
+    unit: &'static str,
+    range: NumberRange,
+}
+
+/// Accepted finite numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NumberRange {
+    /// All of them.
+    Any,
+    /// 0 or more.
+    FromZero,
+    /// Above 0.
+    AboveZero,
+    /// Above 0, to this.
+    UpTo(f64),
+}
+
+impl NumberText {
+    /// Numbers of `range` in `unit`.
+    #[must_use]
+    pub const fn new(unit: &'static str, range: NumberRange) -> Self {
+        Self { unit, range }
+    }
+
+    fn takes(self, value: f64) -> bool {
+        value.is_finite()
+            && match self.range {
+                NumberRange::Any => true,
+                NumberRange::FromZero => value >= 0.0,
+                NumberRange::AboveZero => value > 0.0,
+                NumberRange::UpTo(limit) => value > 0.0 && value <= limit,
+            }
+    }
+
+    fn wanted(self) -> String {
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" in {}", self.unit) };
+        let range = match self.range {
+            NumberRange::Any => String::new(),
+            NumberRange::FromZero => ", 0 or more".to_owned(),
+            NumberRange::AboveZero => ", above 0".to_owned(),
+            NumberRange::UpTo(limit) => format!(", above 0 and at most {limit}"),
+        };
+        format!("a number{unit}{range}")
+    }
+
+    /// The number of the text given to `option`.
+    ///
+    /// # Errors
+    /// When the text is no finite number, or the number is outside the range: option, value, unit and what is expected.
+    pub fn read(self, option: &str, text: &str) -> Result<f64, String> {
+        let wanted = self.wanted();
+        match text.trim().parse::<f64>() {
+            Ok(value) if self.takes(value) => Ok(value),
+            Ok(value) if value.is_finite() => {
+                let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+                Err(format!("{option} is {value}{unit}, expected {wanted}"))
+            }
+            _ => Err(format!("{option} is '{text}', expected {wanted}")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::NumberRange::{AboveZero, Any, FromZero, UpTo};
+    use super::*;
+
+    #[test]
+    fn numbers_are_refused_with_option_value_unit_and_what_is_expected() {
+        let refused =
+            |range, unit, text: &str| NumberText::new(unit, range).read("--near", text).unwrap_err();
+        assert_eq!(NumberText::new("m", FromZero).read("--near", " 0.5"), Ok(0.5));
+        assert_eq!(refused(FromZero, "m", "abc"), "--near is 'abc', expected a number in m, 0 or more");
+        assert_eq!(refused(FromZero, "m", "-1"), "--near is -1 m, expected a number in m, 0 or more");
+        assert_eq!(refused(Any, "deg", "NaN"), "--near is 'NaN', expected a number in deg");
+        assert_eq!(refused(AboveZero, "", "0"), "--near is 0, expected a number, above 0");
+        let long = refused(UpTo(10.0), "s", "11");
+        assert_eq!(long, "--near is 11 s, expected a number in s, above 0 and at most 10");
+    }
+}

@@ -1,0 +1,203 @@
+//! The surface of a tracked sequence: a mesh, a cloud of points, an octree and a height map.
+
+mod request;
+#[cfg(test)]
+mod tests;
+
+pub use request::{MeshFormat, SurfaceRequest};
+
+use crate::sequence_input::SequenceInput;
+use crate::{AppError, StepProgress, stop};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use trundle_core::{PinholeCamera, Pose3, RgbdImage, Stamp};
+use trundle_io::{HeightGrid, SurfaceData, glb_bytes, height_files, octomap_bytes, ply_bytes};
+use trundle_surface::{HeightMap, OccupiedVoxels, SurfaceMap, SurfaceMesh, VoxelState, surface_mesh};
+
+/// Distance of the camera from the last image that was used, above which an image is used \[m\]. Source: ours.
+const MIN_DISTANCE_M: f64 = 0.1;
+/// Turn of the camera since the last image that was used, above which an image is used \[rad\]. Source: ours, 5 deg.
+const MIN_TURN_RAD: f64 = 0.087;
+/// Time since the last image that was used, above which an image is used \[s\]: what moves before a camera at rest disappears. Source: ours.
+const MAX_PAUSE_S: f64 = 1.0;
+/// Smallest connected part of the mesh, vertices: smaller ones are noise. Source: ours, 0.02 m^2 at voxels of 2 cm.
+const MIN_PART_VERTICES: usize = 50;
+/// Height up to which surfaces count in the height map \[m\]: tables do, ceilings do not. Source: ours.
+const HEIGHT_MAP_CEILING_M: f64 = 1.8;
+
+/// The files of a surface, and the numbers of its making.
+#[derive(Debug, Clone, Default)]
+pub struct SurfaceFiles {
+    /// Path and content.
+    pub files: Vec<(PathBuf, Vec<u8>)>,
+    /// Table for a front end: name and value.
+    pub rows: Vec<Vec<String>>,
+    /// Why there is no surface; `None` if there is one.
+    pub failure: Option<String>,
+}
+
+/// Lays the images of `input` along `poses` (map from camera, by rising stamps) and makes the files of `request`. An interrupted run makes
+/// them from the images up to there.
+///
+/// # Errors
+/// When images cannot be read or a picture cannot be encoded.
+pub fn surface_files(
+    request: &SurfaceRequest,
+    input: &SequenceInput,
+    poses: &[(Stamp, Pose3)],
+    progress: &dyn StepProgress,
+) -> Result<SurfaceFiles, AppError> {
+    if request.is_empty() {
+        return Ok(SurfaceFiles::default());
+    }
+    let mut surface = Surface::new(request)?;
+    let camera = input.camera.model.camera;
+    progress.begin(Some(input.len()));
+    for (i, frame) in input.frames()?.enumerate() {
+        let frame = frame?;
+        if let Some(pose) = pose_at(poses, frame.stamp())
+            && surface.is_due(frame.stamp(), pose)
+            && let Ok(image) = frame.decode()
+        {
+            surface.integrate(&image, &camera, pose)?;
+        }
+        progress.advance();
+        if stop::is_requested(|| format!("surface of {} of {} images", i + 1, input.len())) {
+            break;
+        }
+    }
+    progress.end();
+    surface.files(request, &input.path)
+}
+
+/// The pose at a stamp.
+fn pose_at(poses: &[(Stamp, Pose3)], stamp: Stamp) -> Option<Pose3> {
+    poses.binary_search_by_key(&stamp, |(at, _)| *at).ok().map(|index| poses[index].1)
+}
+
+/// A surface in the making.
+struct Surface {
+    map: SurfaceMap,
+    voxels: Option<OccupiedVoxels>,
+    last: Option<(Stamp, Pose3)>,
+    images: usize,
+    seconds: f64,
+}
+
+impl Surface {
+    fn new(request: &SurfaceRequest) -> Result<Self, AppError> {
+        let octree = request.octomap.as_ref().map(|_| OccupiedVoxels::new(request.octomap_resolution()));
+        Ok(Self {
+            map: SurfaceMap::new(request.config())?,
+            voxels: octree.transpose()?,
+            last: None,
+            images: 0,
+            seconds: 0.0,
+        })
+    }
+
+    /// Whether an image shows something new: the camera moved, or time passed.
+    fn is_due(&self, stamp: Stamp, pose: Pose3) -> bool {
+        self.last.is_none_or(|(at, last)| {
+            let [x, y, z, turn @ ..]: [f64; 6] = (last.inverse() * pose).log().into();
+            x.hypot(y).hypot(z) > MIN_DISTANCE_M
+                || turn[0].hypot(turn[1]).hypot(turn[2]) > MIN_TURN_RAD
+                || stamp - at > MAX_PAUSE_S
+        })
+    }
+
+    fn integrate(&mut self, image: &RgbdImage, camera: &PinholeCamera, pose: Pose3) -> Result<(), AppError> {
+        let clock = Instant::now();
+        self.map.integrate(image, camera, &pose)?;
+        self.seconds += clock.elapsed().as_secs_f64();
+        if let Some(voxels) = &mut self.voxels {
+            voxels.integrate(image, camera, &pose, self.map.config())?;
+        }
+        (self.last, self.images) = (Some((image.stamp(), pose)), self.images + 1);
+        Ok(())
+    }
+
+    fn files(&self, request: &SurfaceRequest, input: &Path) -> Result<SurfaceFiles, AppError> {
+        let mesh = surface_mesh(&self.map).without_specks(MIN_PART_VERTICES);
+        if mesh.vertices.is_empty() {
+            return Ok(SurfaceFiles {
+                files: Vec::new(),
+                rows: Vec::new(),
+                failure: Some(self.failure(input)),
+            });
+        }
+        let mut files = Vec::new();
+        if let Some((path, format)) = &request.mesh {
+            let bytes = match format {
+                MeshFormat::Glb => glb_bytes(&data_of(&mesh)),
+                MeshFormat::Ply => ply_bytes(&data_of(&mesh)),
+            };
+            files.push((path.clone(), bytes));
+        }
+        if let Some(path) = &request.cloud {
+            files.push((path.clone(), ply_bytes(&SurfaceData { triangles: &[], ..data_of(&mesh) })));
+        }
+        if let (Some(path), Some(voxels)) = (&request.octomap, &self.voxels) {
+            let states = voxels.iter().map(|(voxel, state)| (voxel, state == VoxelState::Occupied));
+            files.push((path.clone(), octomap_bytes(voxels.resolution(), states)));
+        }
+        if let Some(path) = &request.heights {
+            files.extend(heights_of(&mesh, path, request.height_resolution())?);
+        }
+        Ok(SurfaceFiles { files, rows: self.rows(&mesh), failure: None })
+    }
+
+    /// Why there is no surface.
+    fn failure(&self, input: &Path) -> String {
+        let (config, images) = (self.map.config(), self.images);
+        let (near, far) = (config.min_depth, config.max_depth);
+        format!(
+            "{}: no surface: {images} images with a pose were used, and none shows a surface twice between {near} and {far} m",
+            input.display()
+        )
+    }
+
+    fn rows(&self, mesh: &SurfaceMesh) -> Vec<Vec<String>> {
+        let row = |name: &str, value: String| vec![name.to_owned(), value];
+        vec![
+            row("images in the surface", self.images.to_string()),
+            row("surface, triangles", format!("{:.1} m^2, {}", mesh.area(), mesh.triangles.len())),
+            row("memory of the voxels", format!("{:.0} MB", self.map.memory() as f64 / 1e6)),
+            row(
+                "surface, wall clock an image",
+                format!("{:.1} ms", 1e3 * self.seconds / self.images.max(1) as f64),
+            ),
+        ]
+    }
+}
+
+/// The picture of the heights and its description.
+fn heights_of(mesh: &SurfaceMesh, path: &Path, resolution: f64) -> Result<Vec<(PathBuf, Vec<u8>)>, AppError> {
+    let Some(map) = HeightMap::of(mesh, resolution, HEIGHT_MAP_CEILING_M)? else {
+        tracing::warn!(
+            "{}: no upward surface below {HEIGHT_MAP_CEILING_M} m was seen: not written",
+            path.display()
+        );
+        return Ok(Vec::new());
+    };
+    let grid = HeightGrid {
+        resolution: map.resolution,
+        origin: map.origin,
+        width: map.width,
+        heights: &map.heights,
+    };
+    let written = height_files(path, &grid)?;
+    Ok(vec![
+        (path.to_owned(), written.picture),
+        (path.with_extension("yaml"), written.description.into_bytes()),
+    ])
+}
+
+fn data_of(mesh: &SurfaceMesh) -> SurfaceData<'_> {
+    SurfaceData {
+        vertices: &mesh.vertices,
+        normals: &mesh.normals,
+        colors: &mesh.colors,
+        triangles: &mesh.triangles,
+    }
+}

@@ -1,0 +1,100 @@
+//! Request for the files of a surface.
+
+use crate::AppError;
+use std::path::{Path, PathBuf};
+use trundle_surface::SurfaceConfig;
+
+/// Side of an octree's voxel over that of the surface \[1\]: planners in space need less detail than eyes. Source: ours.
+const OCTREE_RATIO: f64 = 2.5;
+/// Smallest side of an octree's voxel and of a cell of the height map \[m\]. Source: ours.
+const MIN_CELL_M: f64 = 0.05;
+
+/// Format of a mesh.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeshFormat {
+    /// Binary glTF.
+    Glb,
+    /// Binary PLY.
+    Ply,
+}
+
+/// The files of a surface that are asked for.
+#[derive(Debug, Clone, Default)]
+pub struct SurfaceRequest {
+    /// Triangles with colours.
+    pub mesh: Option<(PathBuf, MeshFormat)>,
+    /// Points with colours and normals, PLY.
+    pub cloud: Option<PathBuf>,
+    /// Free and occupied voxels, OctoMap's binary form.
+    pub octomap: Option<PathBuf>,
+    /// Heights over the floor, a 16-bit PNG and a YAML file.
+    pub heights: Option<PathBuf>,
+    /// Side of a voxel, m; `None` for the default.
+    pub voxel: Option<f64>,
+}
+
+impl SurfaceRequest {
+    /// A request for these files.
+    ///
+    /// # Errors
+    /// When a name has another ending than its format, or the voxel's side is outside its range.
+    pub fn new(
+        mesh: Option<&Path>,
+        cloud: Option<&Path>,
+        octomap: Option<&Path>,
+        heights: Option<&Path>,
+        voxel: Option<f64>,
+    ) -> Result<Self, AppError> {
+        let mesh = mesh.map(|path| Ok::<_, AppError>((path.to_owned(), mesh_format(path)?))).transpose()?;
+        let named = |path: Option<&Path>, ending| path.map(|path| require_ending(path, ending)).transpose();
+        let request = Self {
+            mesh,
+            cloud: named(cloud, "ply")?,
+            octomap: named(octomap, "bt")?,
+            heights: named(heights, "png")?,
+            voxel,
+        };
+        request.config().validated()?;
+        Ok(request)
+    }
+
+    /// Whether no file is asked for.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.mesh.is_none() && self.cloud.is_none() && self.octomap.is_none() && self.heights.is_none()
+    }
+
+    pub(super) fn config(&self) -> SurfaceConfig {
+        let default = SurfaceConfig::default();
+        SurfaceConfig { voxel: self.voxel.unwrap_or(default.voxel), ..default }
+    }
+
+    /// Side of an octree's voxel, m.
+    pub(super) fn octomap_resolution(&self) -> f64 {
+        (self.config().voxel * OCTREE_RATIO).max(MIN_CELL_M)
+    }
+
+    /// Side of a cell of the height map, m.
+    pub(super) fn height_resolution(&self) -> f64 {
+        self.config().voxel.max(MIN_CELL_M)
+    }
+}
+
+fn mesh_format(path: &Path) -> Result<MeshFormat, AppError> {
+    match ending(path).as_deref() {
+        Some("glb") => Ok(MeshFormat::Glb),
+        Some("ply") => Ok(MeshFormat::Ply),
+        _ => Err(AppError::Input(format!("{}: a mesh is written as .glb or .ply", path.display()))),
+    }
+}
+
+fn require_ending(path: &Path, expected: &str) -> Result<PathBuf, AppError> {
+    if ending(path).as_deref() == Some(expected) {
+        return Ok(path.to_owned());
+    }
+    Err(AppError::Input(format!("{}: expected a name that ends in .{expected}", path.display())))
+}
+
+fn ending(path: &Path) -> Option<String> {
+    path.extension().map(|ending| ending.to_string_lossy().to_lowercase())
+}
