@@ -2,7 +2,7 @@
 
 use super::goal_refusal::GoalRefusal;
 use super::masks::{SpeedMaskLimits, read_lanes, set_keep_out, set_speed_mask};
-use super::numbers::PlanTimes;
+use super::plan_times::PlanTimes;
 use crate::{AppError, read_map};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
