@@ -1,6 +1,7 @@
 //! SLAM on a recorded RGB-D sequence: tracking, the comparison with ground truth, and the folder of results.
 
 mod comparison;
+mod floor_mount;
 mod live_view;
 mod numbers;
 mod odometry_prior;

@@ -47,6 +47,8 @@ pub struct SequenceInput {
     pub camera: SequenceCamera,
     /// The robot that carries the camera: the robot of a recording, else the default robot.
     pub robot: RobotConfig,
+    /// Height, tilt and roll of the first camera by the floor in the images, if they were searched and show it.
+    pub floor_mount: Option<CameraMount>,
     source: Source,
 }
 
@@ -57,6 +59,10 @@ enum Source {
 }
 
 impl SequenceInput {
+    fn new(path: &Path, camera: SequenceCamera, robot: RobotConfig, source: Source) -> Self {
+        Self { path: path.to_owned(), camera, robot, floor_mount: None, source }
+    }
+
     /// Whether `path` is read as RGB-D images: a TUM RGB-D folder, a recording of trundle, or a bag with images and without scans of a
     /// laser. With `topics` given, any bag counts as images.
     #[must_use]
@@ -113,7 +119,7 @@ impl SequenceInput {
             }
             None => {}
         }
-        Ok(Self { path: path.to_owned(), camera, robot, source: Source::Bag(Box::new(sequence)) })
+        Ok(Self::new(path, camera, robot, Source::Bag(Box::new(sequence))))
     }
 
     fn of_folder(options: &SequenceOptions<'_>) -> Result<Self, AppError> {
@@ -124,7 +130,7 @@ impl SequenceInput {
         let sequence = TumSequence::open(options.path, *depth_scale, TumSequence::MAX_DIFFERENCE)?;
         log_warnings(sequence.warnings());
         let source = Source::Folder(Box::new(sequence.with_size(lens.width(), lens.height())));
-        Ok(Self { path: options.path.to_owned(), camera, robot: RobotConfig::default(), source })
+        Ok(Self::new(options.path, camera, RobotConfig::default(), source))
     }
 
     /// The images of a recording that was read before.
@@ -151,7 +157,7 @@ impl SequenceInput {
         log_warnings(&camera.warnings);
         run.warn_of_cut();
         let robot = run.robot().cloned().unwrap_or_default();
-        Ok(Self { path: options.path.to_owned(), camera, robot, source: Source::Recording(Box::new(run)) })
+        Ok(Self::new(options.path, camera, robot, Source::Recording(Box::new(run))))
     }
 
     /// Depth units per metre in the images.
@@ -235,14 +241,16 @@ impl SequenceInput {
         }
     }
 
-    /// Mount of the camera on the robot, the pose of a level first camera; `None` if the input does not contain it.
+    /// Mount of the camera on the robot, the pose of a level first camera: by the input, else by the floor in its images. `None` if neither
+    /// is known.
     #[must_use]
     pub fn level_from_first_camera(&self) -> Option<Pose3> {
-        match &self.source {
+        let given = match &self.source {
             Source::Folder(_) => None,
             Source::Recording(run) => run.robot().map(|robot| robot.mount.base_from_camera()),
             Source::Bag(sequence) => sequence.base_from_camera(),
-        }
+        };
+        given.or_else(|| self.floor_mount.map(|mount| mount.base_from_camera()))
     }
 
     /// The images in order, not decoded.

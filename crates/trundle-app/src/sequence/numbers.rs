@@ -6,6 +6,7 @@ use crate::evaluation::TrajectoryEvaluation;
 use crate::report::wall_clock;
 use crate::sequence_input::SequenceInput;
 use trundle_io::Summary;
+use trundle_runtime::CameraMount;
 
 /// The table of a tracked sequence, all but the wall clock's part.
 #[must_use]
@@ -44,7 +45,15 @@ pub fn sequence_rows(
         rows.push(row("RPE rmse, frame to frame", format!("{:.2} cm", relative.translation.rmse * 1e2)));
         rows.push(row("RPE rmse, rotation", format!("{:.3} deg", relative.rotation.rmse.to_degrees())));
     }
+    if let Some(mount) = &input.floor_mount {
+        rows.push(row("first camera, by the floor", mount_text(mount)));
+    }
     rows
+}
+
+/// Height, tilt and roll.
+fn mount_text(mount: &CameraMount) -> String {
+    format!("{:.3} m, tilt {:.2} deg, roll {:.2} deg", mount.z, mount.pitch_deg, mount.roll_deg)
 }
 
 /// Frames with a pose, and the share without one.
@@ -70,6 +79,7 @@ pub fn summary(
         .set("cut", input.cut_report())
         .set("camera", &input.camera.name)
         .set("camera_assumed", input.camera.is_assumed)
+        .set("camera_by_floor", input.floor_mount)
         .set("seed", request.seed)
         .set("frames", c.ok + c.weak + c.dead_reckoned + c.lost)
         .set("frames_unreadable", &run.unreadable)

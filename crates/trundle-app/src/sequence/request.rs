@@ -1,5 +1,6 @@
 //! Request to track a sequence: camera, first pose, map, seed.
 
+use super::floor_mount::{FoundFloor, found_floor};
 use crate::sequence_input::{SequenceInput, SequenceOptions};
 use crate::vocabulary_file::vocabulary_or_builtin;
 use crate::{AppError, RecordingContent};
@@ -47,11 +48,11 @@ pub struct SequenceRequest {
 /// Pose of the first camera above the floor; `None` everywhere for the input's own.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct FirstCamera {
-    /// Height above the floor, m; default 1 m.
+    /// Height above the floor, m; default that of the floor in the images, else 1 m.
     pub height: Option<f64>,
-    /// Downward tilt, deg; default 0.
+    /// Downward tilt, deg; default as the height, else 0.
     pub tilt_deg: Option<f64>,
-    /// Roll to its right, deg; default 0.
+    /// Roll to its right, deg; default as the height, else 0.
     pub roll_deg: Option<f64>,
 }
 
@@ -91,8 +92,32 @@ impl SequenceRequest {
         if self.first_camera.is_asked() {
             let mount = &mut input.robot.mount;
             (mount.z, mount.pitch_deg, mount.roll_deg) = self.first_camera.asked();
+        } else if self.map.is_none() && self.robot.is_none() && input.level_from_first_camera().is_none() {
+            self.find_floor(&mut input)?;
         }
         Ok(input)
+    }
+
+    /// Takes the first camera's height, tilt and roll from the floor in the images.
+    fn find_floor(&self, input: &mut SequenceInput) -> Result<(), AppError> {
+        let path = self.path.display();
+        let Some(FoundFloor { mount: found, images: (seen, searched) }) = found_floor(input)? else {
+            tracing::warn!(
+                "{path}: the first images show no floor, so the height of the first camera is taken as {DEFAULT_CAMERA_HEIGHT_M} m and its \
+                 tilt as 0 deg: give --height (m), --tilt and --roll (deg) for a level map"
+            );
+            return Ok(());
+        };
+        tracing::info!(
+            "{path}: first camera at {:.3} m, tilt {:.2} deg, roll {:.2} deg, by the floor in {seen} of {searched} images",
+            found.z,
+            found.pitch_deg,
+            found.roll_deg
+        );
+        let mount = &mut input.robot.mount;
+        (mount.z, mount.pitch_deg, mount.roll_deg) = (found.z, found.pitch_deg, found.roll_deg);
+        input.floor_mount = Some(found);
+        Ok(())
     }
 
     /// The pose of the first camera above the floor: by the request, else by the robot file or the robot of a recording.

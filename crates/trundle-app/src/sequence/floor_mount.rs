@@ -1,0 +1,144 @@
+//! Height, tilt and roll of the first camera by the floor in the first images.
+
+use crate::AppError;
+use crate::sequence_input::SequenceInput;
+use trundle_core::{DepthImage, PinholeCamera, Pose3, Vector2, Vector3};
+use trundle_estimation::{FloorMount, FloorSearch, FloorView};
+use trundle_runtime::CameraMount;
+
+/// Number of images from which those with the floor are taken, of a camera that is fixed on a robot. Source: ours, 20 to 40 s.
+const FIRST_IMAGES: usize = 600;
+/// Images from one that is searched to the next, of a camera that is fixed on a robot. Source: ours.
+const IMAGE_STEP: usize = 20;
+/// Images that are searched of a camera that moves by itself: its pose is then still that of the first one. Source: ours.
+const HAND_HELD_IMAGES: usize = 3;
+/// Smallest share of the searched images that must show the same floor \[1\]. Source: ours.
+const MIN_IMAGE_SHARE: f64 = 0.5;
+/// Tilts from which the search starts, each good for 20 deg around it \[deg\]. Source: ours, cameras of robots first.
+const START_TILTS_DEG: [f64; 3] = [0.0, 30.0, 60.0];
+/// Pixels between two samples below the floor.
+const SAMPLE_STEP_PX: usize = 8;
+/// Distance below a plane from which a point shows that the plane is a table and not the floor \[m\]. Source: ours.
+const BELOW_FLOOR_M: f64 = 0.1;
+/// Largest share of points below the floor \[1\]: stairs and errors of depth. Source: ours.
+const MAX_BELOW_SHARE: f64 = 0.05;
+
+/// The pose of the first camera above the floor that the images show.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FoundFloor {
+    /// Height, tilt and roll; the camera is above the origin.
+    pub(super) mount: CameraMount,
+    /// Images that show this floor, of those that were searched.
+    pub(super) images: (usize, usize),
+}
+
+/// The floor in the first images; `None` if less than half of them show one.
+///
+/// # Errors
+/// When the images cannot be read.
+pub(super) fn found_floor(input: &SequenceInput) -> Result<Option<FoundFloor>, AppError> {
+    let depths = first_depths(input)?;
+    let camera = &input.camera.model.camera;
+    Ok(START_TILTS_DEG.into_iter().find_map(|tilt| floor_near(&depths, camera, (tilt, 0.0))))
+}
+
+/// The depth of some of the first images.
+fn first_depths(input: &SequenceInput) -> Result<Vec<DepthImage>, AppError> {
+    let is_fixed = input.odometry().is_some();
+    let (count, step) = if is_fixed { (FIRST_IMAGES, IMAGE_STEP) } else { (HAND_HELD_IMAGES, 1) };
+    let mut depths = Vec::new();
+    for frame in input.frames()?.take(count).step_by(step) {
+        if let Ok(image) = frame?.decode() {
+            depths.push(image.into_images().1);
+        }
+    }
+    Ok(depths)
+}
+
+/// The floor of a camera with about this tilt and roll, deg.
+fn floor_near(
+    depths: &[DepthImage],
+    camera: &PinholeCamera,
+    (pitch_deg, roll_deg): (f64, f64),
+) -> Option<FoundFloor> {
+    let level = CameraMount { x: 0.0, y: 0.0, z: 0.0, yaw_deg: 0.0, pitch_deg, roll_deg };
+    let mut search = FloorSearch::new(up_of(&level.base_from_camera()));
+    depths.iter().for_each(|depth| search.add(depth, camera));
+    let views = search.views();
+    let floor = FloorMount::of(&views, None)?;
+    let mount = CameraMount {
+        z: floor.height.value,
+        pitch_deg: floor.pitch.value.to_degrees(),
+        roll_deg: floor.roll.value.to_degrees(),
+        ..level
+    };
+    let plane = FloorView { up: up_of(&mount.base_from_camera()), height: mount.z };
+    let is_lowest = depths.iter().all(|depth| share_below(&plane, depth, camera) <= MAX_BELOW_SHARE);
+    let is_common = views.len() as f64 >= MIN_IMAGE_SHARE * depths.len() as f64;
+    (is_lowest && is_common).then_some(FoundFloor { mount, images: (views.len(), depths.len()) })
+}
+
+/// Upward axis in the camera frame.
+fn up_of(base_from_camera: &Pose3) -> Vector3 {
+    base_from_camera.inverse().rotate(Vector3::z())
+}
+
+/// Share of the points of an image below a plane.
+fn share_below(plane: &FloorView, depth: &DepthImage, camera: &PinholeCamera) -> f64 {
+    let rows = (0..depth.height()).step_by(SAMPLE_STEP_PX);
+    let pixels = rows.flat_map(|y| (0..depth.width()).step_by(SAMPLE_STEP_PX).map(move |x| (x, y)));
+    let (mut below, mut all) = (0_usize, 0_usize);
+    for (x, y) in pixels.filter(|&pixel| depth[pixel] > 0.0) {
+        let rectified = camera.undistort(Vector2::new(x as f64, y as f64));
+        let point = camera.unproject(rectified, f64::from(depth[(x, y)]));
+        all += 1;
+        below += usize::from(plane.up.dot(&point) + plane.height < -BELOW_FLOOR_M);
+    }
+    below as f64 / all.max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Depth of a floor under a camera, up to a wall 3 m ahead, with a table of `table` m height over a part of the view.
+    fn scene(mount: &CameraMount, table: Option<f64>) -> DepthImage {
+        let camera = PinholeCamera::kinect_v2();
+        let base_from_camera = mount.base_from_camera();
+        DepthImage::from_fn(camera.width(), camera.height(), |x, y| {
+            let way = base_from_camera.rotate(camera.unproject(Vector2::new(x as f64, y as f64), 1.0));
+            let wall = 3.0 / way.x;
+            let down = |height: f64| if way.z < 0.0 { (height - mount.z) / way.z } else { f64::INFINITY };
+            let top = table.map(down).filter(|at| (1.0..2.0).contains(&(at * way.x)) && way.y.abs() < 0.6);
+            top.unwrap_or_else(|| down(0.0)).min(wall) as f32
+        })
+    }
+
+    fn mount(z: f64, pitch_deg: f64, roll_deg: f64) -> CameraMount {
+        CameraMount { x: 0.0, y: 0.0, z, yaw_deg: 0.0, pitch_deg, roll_deg }
+    }
+
+    #[test]
+    fn height_tilt_and_roll_are_found_from_a_start_20_degrees_off() {
+        let camera = PinholeCamera::kinect_v2();
+        for (truth, tilt) in [(mount(0.45, 8.0, 0.0), 0.0), (mount(1.4, 35.0, 5.0), 30.0)] {
+            let depths = vec![scene(&truth, None); 3];
+            let found = floor_near(&depths, &camera, (tilt, 0.0)).unwrap();
+            assert!((found.mount.z - truth.z).abs() < 2e-3, "{found:?}");
+            assert!((found.mount.pitch_deg - truth.pitch_deg).abs() < 0.1, "{found:?}");
+            assert!((found.mount.roll_deg - truth.roll_deg).abs() < 0.1, "{found:?}");
+            assert_eq!(found.images, (3, 3));
+        }
+    }
+
+    #[test]
+    fn a_wall_is_no_floor_and_neither_is_a_table_with_floor_below() {
+        let camera = PinholeCamera::kinect_v2();
+        let wall = DepthImage::filled(camera.width(), camera.height(), 2.0);
+        assert_eq!(floor_near(&[wall], &camera, (0.0, 0.0)), None);
+        let above_table = scene(&mount(1.3, 30.0, 0.0), Some(0.7));
+        if let Some(found) = floor_near(&[above_table], &camera, (30.0, 0.0)) {
+            assert!((found.mount.z - 1.3).abs() < 0.01, "the table is not the floor: {found:?}");
+        }
+    }
+}
