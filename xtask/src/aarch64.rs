@@ -10,8 +10,11 @@ use crate::{compare::compare_folders, program};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-const TARGET: &str = "aarch64-unknown-linux-gnu";
+/// Name of the processor family for the compiler.
+pub const TARGET: &str = "aarch64-unknown-linux-gnu";
 const LINKER: &str = "aarch64-linux-gnu-gcc";
+/// Variable of cargo with that linker.
+pub const LINKER_VARIABLE: (&str, &str) = ("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER", LINKER);
 /// Names of the emulator of single programs: Debian's static one, and others'.
 const EMULATORS: [&str; 2] = ["qemu-aarch64-static", "qemu-aarch64"];
 /// Folder of the aarch64 C library in Debian's and Ubuntu's `libc6-arm64-cross`.
@@ -78,10 +81,7 @@ impl Tools {
     /// `cargo` for aarch64.
     fn cargo(&self, root: &Path, args: &[&str]) -> Verdict {
         let runner = format!("{} -L {LIBRARIES}", self.emulator);
-        let env = [
-            ("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER", LINKER),
-            ("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER", &runner),
-        ];
+        let env = [LINKER_VARIABLE, ("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER", &runner)];
         program::cargo(root, args, &env)
     }
 }
@@ -184,6 +184,11 @@ fn ends(root: &Path, program: &[PathBuf], command: &str, folder: &Path) -> Verdi
     process.args(&program[1..]).args(words).arg("--quiet").current_dir(folder).stdin(Stdio::null());
     let status = process.status().map_err(|e| format!("cannot start {}: {e}", program[0].display()))?;
     Ok(matches!(status.code(), Some(0 | 1)))
+}
+
+/// Whether this computer can build for aarch64.
+pub fn builds() -> bool {
+    has_standard_library() && answers(LINKER)
 }
 
 /// Whether the compiler has the standard library of aarch64.

@@ -1,7 +1,7 @@
 //! Everything that must hold before a change is merged.
 
 use crate::workspace::Verdict;
-use crate::{book, fault_scenarios, fuzz, golden, program, replay_check, tidy};
+use crate::{book, fault_scenarios, fuzz, golden, packages, program, replay_check, tidy};
 use std::path::Path;
 use std::time::Instant;
 
@@ -16,7 +16,7 @@ const TEST: Step = Step {
     check: |root| program::cargo(root, &["test", "--workspace"], &[]),
 };
 
-const REST: [Step; 11] = [
+const REST: [Step; 12] = [
     Step {
         name: "cargo fmt --all --check",
         check: |root| program::cargo(root, &["fmt", "--all", "--check"], &[]),
@@ -28,6 +28,7 @@ const REST: [Step; 11] = [
         },
     },
     Step { name: "cargo xtask tidy", check: tidy::run },
+    Step { name: "cargo xtask packages", check: |root| packages::run(root, false) },
     Step {
         name: "RUSTDOCFLAGS=-Dwarnings cargo doc --workspace --no-deps",
         check: |root| {

@@ -1,14 +1,16 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | book | golden | results | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | states | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | book | golden | packages | dist | deb | reproduce | results | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | states | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
 mod aarch64;
 mod book;
 mod ci;
 mod compare;
+mod dist;
 mod fault_scenarios;
 mod fuzz;
 mod golden;
 mod markdown;
+mod packages;
 mod program;
 mod replay_check;
 mod results;
@@ -68,6 +70,22 @@ enum Chore {
         #[arg(long, default_value = "release")]
         profile: String,
     },
+    /// Build the program of a release; print its size and checksum.
+    Dist,
+    /// Build the Debian package, check its content, unpack it and run its program. Skipped if tools are missing.
+    Deb {
+        /// For aarch64.
+        #[arg(long)]
+        arm64: bool,
+    },
+    /// Build the committed sources at two paths: both programs must have the same bytes. Takes two builds from nothing.
+    Reproduce,
+    /// Pack every crate as for a registry, without network; check the packages and the facade's features.
+    Packages {
+        /// Build every feature of the facade alone, not only the algorithms'.
+        #[arg(long)]
+        every_feature: bool,
+    },
     /// Write docs/results.md from results/*.json.
     Results {
         /// Repeat this measurement first (its name in results/); may be given several times.
@@ -123,6 +141,10 @@ fn main() -> ExitCode {
         Chore::Golden { update, only, profile } => {
             golden::run(&root, &golden::Options { update, only, profile })
         }
+        Chore::Dist => dist::run(&root, None),
+        Chore::Deb { arm64 } => dist::deb::run(&root, arm64),
+        Chore::Reproduce => dist::reproduce::run(&root),
+        Chore::Packages { every_feature } => packages::run(&root, every_feature),
         Chore::Results { measure } => results::run(&root, &measure),
         Chore::Settings => settings::run(&root, false),
         Chore::States => states::run(&root, false),

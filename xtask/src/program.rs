@@ -50,13 +50,25 @@ pub fn drop_recording(out: &Path) {
     let _ = std::fs::remove_file(out.join("recording.mcap"));
 }
 
+/// Standard output of `cargo` with `args`, in the workspace.
+pub fn cargo_output(root: &Path, args: &[&str]) -> Result<String, String> {
+    let output = Command::new(cargo_path()).args(args).current_dir(root).stdin(Stdio::null()).output();
+    let output = output.map_err(|e| format!("cannot start cargo {}: {e}", args.join(" ")))?;
+    if !output.status.success() {
+        return Err(format!("cargo {}: {}", args.join(" "), String::from_utf8_lossy(&output.stderr).trim()));
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+/// What cargo knows of the workspace: its packages and folders.
+pub fn metadata(root: &Path) -> Result<serde_json::Value, String> {
+    let text = cargo_output(root, &["metadata", "--format-version=1", "--no-deps", "--offline"])?;
+    serde_json::from_str(&text).map_err(|e| format!("cargo metadata: {e}"))
+}
+
 /// The folder of build results.
 pub fn target(root: &Path) -> Result<PathBuf, String> {
-    let args = ["metadata", "--format-version=1", "--no-deps", "--offline"];
-    let output = Command::new(cargo_path()).args(args).current_dir(root).stdin(Stdio::null()).output();
-    let output = output.map_err(|e| format!("cannot start cargo metadata: {e}"))?;
-    let metadata: serde_json::Value =
-        serde_json::from_slice(&output.stdout).map_err(|e| format!("cargo metadata: {e}"))?;
+    let metadata = metadata(root)?;
     let target = metadata["target_directory"].as_str().ok_or("cargo metadata names no target_directory")?;
     Ok(PathBuf::from(target))
 }
@@ -69,6 +81,24 @@ pub fn scratch(root: &Path, name: &str) -> Result<PathBuf, String> {
     }
     std::fs::create_dir_all(&folder).map_err(|e| format!("cannot create {}: {e}", folder.display()))?;
     Ok(folder)
+}
+
+/// Standard output of a program that must succeed.
+pub fn output(program: &Path, args: &[&str]) -> Result<Vec<u8>, String> {
+    let output = Command::new(program).args(args).stdin(Stdio::null()).output();
+    let output = output.map_err(|e| format!("cannot start {}: {e}", program.display()))?;
+    if !output.status.success() {
+        let why = String::from_utf8_lossy(&output.stderr).trim().to_owned();
+        return Err(format!("{} {}: {}: {why}", program.display(), args.join(" "), output.status));
+    }
+    Ok(output.stdout)
+}
+
+/// Whether a program can be started.
+pub fn answers(program: &str, argument: &str) -> bool {
+    let mut process = Command::new(program);
+    process.arg(argument).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    process.status().is_ok_and(|status| status.success())
 }
 
 fn cargo_path() -> std::ffi::OsString {

@@ -6,6 +6,7 @@ use crate::data::DataArgs;
 use crate::demo::DemoArgs;
 use crate::devices::{DevicesArgs, ServeCameraArgs};
 use crate::dock::DockArgs;
+use crate::doctor::DoctorArgs;
 use crate::eval::EvalArgs;
 use crate::experiment::ExperimentArgs;
 use crate::map::MapArgs;
@@ -71,6 +72,8 @@ pub enum Command {
     Vocabulary(VocabularyArgs),
     /// Print the whole robot file with its defaults, or check one.
     Config(ConfigArgs),
+    /// Check this computer before the first drive: clock, rights, disk, devices, limits, each with its remedy.
+    Doctor(DoctorArgs),
     /// List the connected devices, and the missing ones.
     Devices(DevicesArgs),
     /// Write the frames of a camera to standard output; `run` starts it for cameras whose library may crash.

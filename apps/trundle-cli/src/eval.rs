@@ -11,6 +11,7 @@ use args::{MapsArgs, RelationsArgs, TrajectoryArgs, Which};
 use trundle::app::AppError;
 use trundle::app::evaluation::{
     MapEvaluation, RelationEvaluation, RelationReference, TrajectoryEvaluation, write_evaluation,
+    write_summary_folder,
 };
 use trundle::eval::{AbsoluteConfig, Delta, RelativeConfig};
 use trundle::io::Summary;
@@ -64,9 +65,5 @@ fn map(args: &MapsArgs) -> Result<(), AppError> {
 
 /// Writes a folder with only the summary, if requested.
 fn write_summary(out: Option<&OutputDirArg>, summary: &Summary) -> Result<(), AppError> {
-    let Some(out) = out else { return Ok(()) };
-    let folder = logging::output_folder(out)?;
-    folder.write("summary.json", summary.to_json().as_bytes())?;
-    folder.commit()?;
-    Ok(())
+    out.map_or(Ok(()), |out| write_summary_folder(summary, logging::output_folder(out)?))
 }

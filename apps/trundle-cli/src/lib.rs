@@ -9,6 +9,7 @@ mod data;
 mod demo;
 mod devices;
 mod dock;
+mod doctor;
 mod eval;
 mod experiment;
 mod live;
@@ -115,6 +116,7 @@ fn run_command(cli: Cli) -> Result<Outcome, AppError> {
             on_threads(args.common().and_then(|common| common.threads), || vocabulary::run(&args))
         }
         Command::Config(args) => robot_file::print(&args),
+        Command::Doctor(args) => Ok(doctor::run(&args)),
         Command::Devices(args) => Ok(devices::run(&args)),
         Command::ServeCamera(args) => devices::serve(&args),
         Command::GuardBase => devices::guard(),

@@ -8,8 +8,6 @@ use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
 use args::PlaceArg;
-use std::sync::OnceLock;
-use std::time::Instant;
 use trundle::app::AppError;
 use trundle::app::plan::{
     GoalRefusal, NamedPose, OffMap, PlanFiles, PlanRequest, PlanTimes, curve_lines, plan_rows, write_plan,
@@ -26,10 +24,7 @@ pub fn run(args: &PlanArgs) -> Result<Outcome, AppError> {
     if let (Some(path), Some(warning)) = (&args.speed_mask, request.speed_mask_warning()) {
         console::warn(&format!("{}: {warning}", path.display()));
     }
-    request.planner.set_clock(Some(seconds));
-    let start = seconds();
-    let plan = request.plan();
-    let times = PlanTimes { all: seconds() - start, stages: request.planner.stage_times() };
+    let (plan, times) = request.timed_plan();
     let folder = logging::output_folder(&args.out)?;
     match plan {
         Ok(plan) => report_plan(args, &mut request, &plan, robot.limits, times, folder),
@@ -92,10 +87,4 @@ impl PlanArgs {
         };
         Ok((look_up(&self.from)?, self.goal.iter().map(look_up).collect::<Result<_, _>>()?))
     }
-}
-
-/// Wall-clock time since the first call, s.
-fn seconds() -> f64 {
-    static BEGIN: OnceLock<Instant> = OnceLock::new();
-    BEGIN.get_or_init(Instant::now).elapsed().as_secs_f64()
 }

@@ -5,9 +5,8 @@ use crate::output_args::OutputDirArg;
 use crate::{console, logging};
 use clap::Args;
 use std::path::PathBuf;
-use trundle::app::{AppError, load_robot};
-use trundle::io::Summary;
-use trundle::runtime::settings::{json_schema, to_commented_toml};
+use trundle::app::{AppError, load_robot, robot_schema, write_robot};
+use trundle::runtime::settings::to_commented_toml;
 
 /// `trundle config`
 #[derive(Debug, Args)]
@@ -32,24 +31,15 @@ pub struct ConfigArgs {
 /// `trundle config [FILE]`: the whole robot file.
 pub fn print(args: &ConfigArgs) -> Result<Outcome, AppError> {
     if args.schema {
-        console::print(&schema_text());
+        console::print(&robot_schema());
         return Ok(Outcome::Reached);
     }
     let config = load_robot(args.file.as_deref(), &args.set)?;
-    let text = to_commented_toml(&config);
     if let Some(out) = &args.out {
-        let folder = logging::output_folder(out)?;
-        folder.write("robot.toml", text.as_bytes())?;
-        folder.write("robot.schema.json", schema_text().as_bytes())?;
-        folder.write("summary.json", Summary::new("config").set("robot", &config).to_json().as_bytes())?;
-        folder.commit()?;
+        write_robot(&config, logging::output_folder(out)?)?;
     }
     if !args.quiet {
-        console::print(text.trim_end());
+        console::print(to_commented_toml(&config).trim_end());
     }
     Ok(Outcome::Reached)
-}
-
-fn schema_text() -> String {
-    serde_json::to_string_pretty(&json_schema()).expect("invariant: a JSON value is text")
 }

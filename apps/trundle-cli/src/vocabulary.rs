@@ -7,15 +7,13 @@ use crate::outcome::Outcome;
 use crate::output_args::write_file;
 use args::{ExportArgs, ImportArgs, InfoArgs, RecallArgs, TrainArgs};
 pub use args::{VocabularyArgs, VocabularyCommand};
-use std::path::Path;
-use std::sync::Arc;
 use std::time::Instant;
 use trundle::app::AppError;
 use trundle::app::vocabulary_file::{
-    read_dbow2_vocabulary, read_vocabulary, vocabulary_or_builtin, vocabulary_rows,
+    named_vocabularies, read_dbow2_vocabulary, vocabulary_or_builtin, vocabulary_rows,
 };
 use trundle::experiments::vocabulary::{PlaceRecall, VocabularyTraining, recall_table};
-use trundle::vision::{Vocabulary, VocabularyConfig};
+use trundle::vision::VocabularyConfig;
 
 /// `trundle vocabulary ...`.
 pub fn run(args: &VocabularyArgs) -> Result<Outcome, AppError> {
@@ -50,20 +48,11 @@ fn train(args: &TrainArgs) -> Result<(), AppError> {
 fn recall(args: &RecallArgs) -> Result<(), AppError> {
     let sources = args.sources.sources();
     sources.require_any()?;
-    let (names, vocabularies): (Vec<_>, Vec<_>) = vocabularies(args)?.into_iter().unzip();
+    let (names, vocabularies): (Vec<_>, Vec<_>) = named_vocabularies(&args.vocabularies)?.into_iter().unzip();
     let display = console::StepDisplay::new(args.common.quiet);
     let measured = PlaceRecall::measure(&vocabularies, &sources, &display)?;
     console::print_table(&recall_table(&names, &measured));
     Ok(())
-}
-
-/// The vocabularies to measure, with their names.
-fn vocabularies(args: &RecallArgs) -> Result<Vec<(String, Arc<Vocabulary>)>, AppError> {
-    if args.vocabularies.is_empty() {
-        return Ok(vec![("built in".to_owned(), Vocabulary::builtin())]);
-    }
-    let name = |path: &Path| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    args.vocabularies.iter().map(|path| Ok((name(path), Arc::new(read_vocabulary(path)?)))).collect()
 }
 
 fn info(args: &InfoArgs) -> Result<(), AppError> {

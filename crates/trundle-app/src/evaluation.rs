@@ -8,6 +8,6 @@ mod relations;
 mod trajectory_evaluation;
 
 pub use map_evaluation::MapEvaluation;
-pub use output::write_evaluation;
+pub use output::{write_evaluation, write_summary_folder};
 pub use relations::{RelationEvaluation, RelationReference, unrounded_trajectory};
 pub use trajectory_evaluation::TrajectoryEvaluation;

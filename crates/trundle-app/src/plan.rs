@@ -7,11 +7,13 @@ mod numbers;
 mod off_map;
 mod output;
 mod picture;
+mod plan_times;
 mod request;
 
 pub use goal_refusal::{GoalRefusal, MovedGoal};
 pub use masks::SpeedMaskLimits;
-pub use numbers::{PlanTimes, curve_lines, plan_rows};
+pub use numbers::{curve_lines, plan_rows};
 pub use off_map::OffMap;
 pub use output::{write_plan, write_refusal};
+pub use plan_times::PlanTimes;
 pub use request::{NamedPose, PlanFiles, PlanRequest};

@@ -3,8 +3,9 @@
 use crate::{AppError, settings::read_text};
 use std::fmt::Display;
 use std::path::Path;
+use trundle_io::{OutputFolder, Summary};
 use trundle_runtime::RobotConfig;
-use trundle_runtime::settings::RobotFile;
+use trundle_runtime::settings::{RobotFile, json_schema, to_commented_toml};
 
 /// The robot of a robot file, or the default robot, with `overrides` (each `key=value`) on top. Deprecated keys are logged as
 /// warnings.
@@ -33,4 +34,22 @@ pub fn parse_robot(text: &str, name: Option<&str>, overrides: &[String]) -> Resu
         tracing::warn!("{}", named(":", warning));
     }
     Ok(read.config)
+}
+
+/// Writes a robot into a folder: robot.toml, robot.schema.json and summary.json.
+///
+/// # Errors
+/// When a file cannot be written.
+pub fn write_robot(config: &RobotConfig, folder: OutputFolder) -> Result<(), AppError> {
+    folder.write("robot.toml", to_commented_toml(config).as_bytes())?;
+    folder.write("robot.schema.json", robot_schema().as_bytes())?;
+    folder.write("summary.json", Summary::new("config").set("robot", config).to_json().as_bytes())?;
+    folder.commit()?;
+    Ok(())
+}
+
+/// The JSON schema of robot files, as text.
+#[must_use]
+pub fn robot_schema() -> String {
+    format!("{:#}", json_schema())
 }

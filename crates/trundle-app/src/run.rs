@@ -2,7 +2,8 @@
 
 use crate::encoded_body::{EncodedBody, RunInput};
 use crate::operator::FrontEnd;
-use crate::{AppError, FinishedRun, RunLog, RunRecorder, RunSession, RunSetup, stop};
+use crate::{AppError, FinishedRun, RunLog, RunRecorder, RunSession, RunSetup, ServiceNotifier, stop};
+use std::time::Instant;
 
 /// Time for which a run continues after the arrival of the robot \[s\]. Motion after this time is not recorded. Source: ours.
 pub const AFTER_ARRIVAL_S: f64 = 0.5;
@@ -20,9 +21,12 @@ pub fn run_on_body(
     front_end: impl Into<FrontEnd>,
 ) -> Result<FinishedRun, AppError> {
     let mut session = RunSession::new(setup, recorder, log, front_end.into())?;
+    let mut service =
+        if setup.real_time { ServiceNotifier::from_environment() } else { ServiceNotifier::default() };
     let mut finished = None;
     while let Some(input) = next_input(body, &session)? {
         let is_finished = session.step(input, body)?;
+        service.note_step(Instant::now());
         let now = session.log().now;
         let is_over =
             is_finished && !setup.is_operated && now - *finished.get_or_insert(now) >= AFTER_ARRIVAL_S;
@@ -34,6 +38,7 @@ pub fn run_on_body(
             break;
         }
     }
+    service.note_end();
     session.finish(body)
 }
 

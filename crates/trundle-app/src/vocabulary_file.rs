@@ -14,6 +14,18 @@ pub fn vocabulary_or_builtin(path: Option<&Path>) -> Result<Arc<Vocabulary>, App
     path.map_or_else(|| Ok(Vocabulary::builtin()), |path| read_vocabulary(path).map(Arc::new))
 }
 
+/// The vocabularies of files with the files' names, else the program's own.
+///
+/// # Errors
+/// Names the file and the reason.
+pub fn named_vocabularies(paths: &[PathBuf]) -> Result<Vec<(String, Arc<Vocabulary>)>, AppError> {
+    if paths.is_empty() {
+        return Ok(vec![("built in".to_owned(), Vocabulary::builtin())]);
+    }
+    let name = |path: &Path| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    paths.iter().map(|path| Ok((name(path), Arc::new(read_vocabulary(path)?)))).collect()
+}
+
 /// The size of a vocabulary, a row for each number. `milliseconds`: wall-clock time of reading.
 #[must_use]
 pub fn vocabulary_rows(vocabulary: &Vocabulary, milliseconds: f64) -> Vec<Vec<String>> {

@@ -41,14 +41,15 @@ pub fn page(measurements: &BTreeMap<String, Measurement>, limits: &[String]) -> 
     page
 }
 
-/// The commands of a subject: a line for each machine.
+/// The commands of a subject in one line, by machine.
 fn commands(measurements: &[(&String, &Measurement)]) -> String {
     let mut machines: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for (name, m) in measurements {
         let entry = format!("`{name}`: `{}`, commit `{}`, {}", m.command, m.commit, m.date);
         machines.entry(&m.machine).or_default().push(entry);
     }
-    machines.iter().map(|(machine, entries)| format!("On {machine}: {}.\n", entries.join("; "))).collect()
+    let parts = machines.iter().map(|(machine, entries)| format!("On {machine}: {}", entries.join("; ")));
+    parts.collect::<Vec<_>>().join(". ") + ".\n"
 }
 
 fn row(measurement: &Measurement, figure: &Figure) -> String {

@@ -8,11 +8,13 @@ mod arrows;
 mod book_pages;
 mod citations;
 mod cited_files;
+mod cited_tests;
 mod constants;
 mod finding;
 mod glossary;
 mod leftovers;
 mod lockfile;
+mod manifest;
 mod markdown;
 mod modules;
 mod prose;
@@ -68,12 +70,14 @@ fn all_findings(root: &Path) -> Result<Vec<Finding>, String> {
         book_pages::check,
         citations::check,
         cited_files::check,
+        cited_tests::check,
         constants::check,
         glossary::check,
         purity::check,
         shape::check,
         leftovers::check,
         lockfile::check,
+        manifest::check,
         markdown::check,
         modules::check,
         type_names::check,

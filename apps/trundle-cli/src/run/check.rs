@@ -37,8 +37,5 @@ pub fn check(args: &RunArgs) -> Result<Outcome, AppError> {
 fn print(report: &HardwareReport) {
     console::print_table(&report.rows);
     console::print_table(&report.values.rows());
-    report.notes.iter().for_each(|note| console::print(&format!("note: {note}")));
-    if report.problems.is_empty() {
-        console::print("No problem found.");
-    }
+    report.closing_lines().iter().for_each(|line| console::print(line));
 }

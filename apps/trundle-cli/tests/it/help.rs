@@ -3,7 +3,7 @@
 use crate::program::{refusal, trundle};
 
 /// Every command and subcommand.
-const COMMANDS: [&[&str]; 39] = [
+const COMMANDS: [&[&str]; 40] = [
     &[],
     &["demo"],
     &["replay"],
@@ -39,6 +39,7 @@ const COMMANDS: [&[&str]; 39] = [
     &["vocabulary", "export"],
     &["vocabulary", "recall"],
     &["config"],
+    &["doctor"],
     &["data"],
     &["data", "fetch-list"],
     &["completions"],

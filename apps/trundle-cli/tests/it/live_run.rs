@@ -82,13 +82,49 @@ fn first_number(table: &str, row: &str) -> f64 {
     rest.split_whitespace().next().unwrap().trim_end_matches(',').parse().unwrap()
 }
 
+/// A service manager that listens to its service, as systemd does.
+struct ServiceManager {
+    socket: std::os::unix::net::UnixDatagram,
+    path: PathBuf,
+}
+
+impl ServiceManager {
+    fn start(folder: &Path) -> Self {
+        let path = folder.join("notify");
+        let socket = std::os::unix::net::UnixDatagram::bind(&path).unwrap();
+        socket.set_nonblocking(true).unwrap();
+        Self { socket, path }
+    }
+
+    /// A service that is ended after 4 s without a message. The socket holds the few messages of a run.
+    fn starts(&self, mut command: Command) -> Command {
+        command.env("NOTIFY_SOCKET", &self.path).env("WATCHDOG_USEC", "4000000");
+        command
+    }
+
+    /// The service was ready, then alive. Only Linux has such managers.
+    fn was_notified(&self) {
+        if !cfg!(target_os = "linux") {
+            return;
+        }
+        let mut bytes = [0; 256];
+        let next =
+            || self.socket.recv(&mut bytes).ok().map(|n| String::from_utf8_lossy(&bytes[..n]).into_owned());
+        let messages: Vec<String> = std::iter::from_fn(next).collect();
+        assert_eq!(messages.first().map(String::as_str), Some("READY=1\nWATCHDOG=1"), "{messages:?}");
+        assert!(messages.iter().any(|text| text == "WATCHDOG=1"), "{messages:?}");
+    }
+}
+
 #[test]
 fn a_goal_is_reached_over_a_serial_line_and_a_camera_stream() {
     let folder = tempfile::tempdir().unwrap();
     let robot = EmulatedRobot::start(folder.path());
     let arguments = ["--goal", "0.6,0,0", "--time-limit", RUN_LIMIT_S, "--record", "all"];
-    let output = robot.run(&arguments).output().unwrap();
+    let manager = ServiceManager::start(folder.path());
+    let output = manager.starts(robot.run(&arguments)).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", text(&output));
+    manager.was_notified();
     let summary = robot.summary();
     assert_eq!((summary["command"].as_str(), summary["success"].as_bool()), (Some("run"), Some(true)));
     assert_eq!(summary["battery_end"]["voltage_v"], 16.5);

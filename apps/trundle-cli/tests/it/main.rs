@@ -6,6 +6,7 @@ mod calibrate;
 mod config;
 mod demo;
 mod dock;
+mod doctor;
 mod endings;
 mod eval_trajectory;
 mod experiment_shards;
@@ -20,6 +21,8 @@ mod live_run;
 mod logs;
 mod map;
 mod missions;
+#[cfg(target_os = "linux")]
+mod no_open_port;
 mod no_success;
 mod nothing_lost;
 mod plan;

@@ -4,7 +4,7 @@ use super::TrajectoryEvaluation;
 use super::page::{page, pictures};
 use crate::AppError;
 use std::path::PathBuf;
-use trundle_io::{OutputFolder, trajectory_text};
+use trundle_io::{OutputFolder, Summary, trajectory_text};
 
 /// Writes the page, its pictures, the aligned trajectory and the summary; the folder. `subtitle` names the evaluated trajectory.
 ///
@@ -22,4 +22,14 @@ pub fn write_evaluation(
     folder.write("report.html", page(found, subtitle).to_html().as_bytes())?;
     folder.write("summary.json", found.summary().to_json().as_bytes())?;
     Ok(folder.commit()?)
+}
+
+/// Writes a folder with the summary alone.
+///
+/// # Errors
+/// When the file cannot be written.
+pub fn write_summary_folder(summary: &Summary, folder: OutputFolder) -> Result<(), AppError> {
+    folder.write("summary.json", summary.to_json().as_bytes())?;
+    folder.commit()?;
+    Ok(())
 }

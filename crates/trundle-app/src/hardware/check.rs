@@ -53,6 +53,15 @@ pub struct HardwareReport {
     pub values: Calibration,
 }
 
+impl HardwareReport {
+    /// The parts that were not checked, a line each, and a line if no fault was found.
+    #[must_use]
+    pub fn closing_lines(&self) -> Vec<String> {
+        let notes = self.notes.iter().map(|note| format!("note: {note}"));
+        notes.chain(self.problems.is_empty().then(|| "No problem found.".to_owned())).collect()
+    }
+}
+
 /// Starts base and camera without driving and measures their data; a person may push the robot during the check.
 ///
 /// # Errors

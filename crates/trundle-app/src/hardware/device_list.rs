@@ -6,6 +6,14 @@ use trundle_drivers::camera::kinect2::usb::ids::KINECT2_UDEV_RULE;
 use trundle_drivers::camera::native::{LibraryReport, LibraryState, NativeKind, list_devices, reports};
 use trundle_drivers::{KOBUKI_UDEV_PORT, KOBUKI_UDEV_RULE, PortAccess, SerialDevice, serial_devices};
 
+/// Udev rule of RealSense cameras, by their product's name: other devices have the vendor's number as well. Source: the names that
+/// librealsense lists ("Intel(R) RealSense(TM) Depth Camera 435").
+const REALSENSE_UDEV_RULE: &str = "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"8086\", ATTR{product}==\"*RealSense*\", MODE=\"0660\", \
+    GROUP=\"plugdev\", TAG+=\"uaccess\"";
+/// Udev rule of Orbbec's cameras, by the vendor's number. Source: the USB ID database.
+const ORBBEC_UDEV_RULE: &str =
+    "SUBSYSTEM==\"usb\", ATTR{idVendor}==\"2bc5\", MODE=\"0660\", GROUP=\"plugdev\", TAG+=\"uaccess\"";
+
 /// The udev rules that give the devices their names and rights.
 #[must_use]
 pub fn udev_rules() -> String {
@@ -13,7 +21,10 @@ pub fn udev_rules() -> String {
         "# Written by `trundle devices --udev`. Install: save as /etc/udev/rules.d/60-trundle.rules, then\n\
          # sudo udevadm control --reload && sudo udevadm trigger\n\
          # Kobuki: {KOBUKI_UDEV_PORT}\n{KOBUKI_UDEV_RULE}\n\
-         # Kinect V2: members of the group plugdev may open it\n{KINECT2_UDEV_RULE}"
+         # Depth cameras: members of the group plugdev may open them\n\
+         # Kinect V2\n{KINECT2_UDEV_RULE}\n\
+         # RealSense\n{REALSENSE_UDEV_RULE}\n\
+         # Orbbec\n{ORBBEC_UDEV_RULE}"
     )
 }
 
@@ -79,12 +90,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_udev_rules_name_the_kobuki_and_both_kinects() {
+    fn the_udev_rules_name_the_kobuki_and_the_cameras() {
         let rules = udev_rules();
         for part in [
             "SYMLINK+=\"kobuki\"",
             "\"045e\", ATTR{idProduct}==\"02c4\"",
             "\"045e\", ATTR{idProduct}==\"02d8\"",
+            "\"8086\", ATTR{product}==\"*RealSense*\"",
+            "\"2bc5\"",
         ] {
             assert!(rules.contains(part), "{part} in {rules}");
         }

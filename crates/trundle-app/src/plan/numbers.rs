@@ -2,22 +2,14 @@
 
 use super::goal_refusal::{GoalRefusal, MovedGoal};
 use super::off_map::OffMap;
+use super::plan_times::PlanTimes;
 use super::request::PlanRequest;
 use trundle_core::Vector2;
 use trundle_io::{Summary, table_csv};
-use trundle_planning::{Curve, MAX_CLEARANCE_M, MultiGoalPlan, Plan, PlanningTimes, clearance_text};
+use trundle_planning::{Curve, MAX_CLEARANCE_M, MultiGoalPlan, Plan, clearance_text};
 
 /// Distance of two points of the curve in `curve.csv` and in pictures \[m\]. Source: ours.
 const CURVE_SAMPLE_SPACING_M: f64 = 0.02;
-
-/// Wall-clock time of planning, s.
-#[derive(Debug, Clone, Copy)]
-pub struct PlanTimes {
-    /// Total time.
-    pub all: f64,
-    /// By stage.
-    pub stages: PlanningTimes,
-}
 
 /// All curves, in order.
 pub fn curves(plan: &MultiGoalPlan) -> impl Iterator<Item = &Curve> {

@@ -1,8 +1,9 @@
 //! The folder of a plan, or of the reason for its absence.
 
 use super::goal_refusal::{GoalRefusal, MovedGoal};
-use super::numbers::{PlanTimes, coefficients_csv, constraints_csv, curve_csv, no_plan_summary, summary};
+use super::numbers::{coefficients_csv, constraints_csv, curve_csv, no_plan_summary, summary};
 use super::picture;
+use super::plan_times::PlanTimes;
 use super::request::PlanRequest;
 use crate::AppError;
 use std::path::PathBuf;

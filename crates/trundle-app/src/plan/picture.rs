@@ -1,7 +1,8 @@
 //! The plan in pictures, and their page.
 
 use super::goal_refusal::{GoalRefusal, MovedGoal};
-use super::numbers::{PlanTimes, curves, plan_rows, points};
+use super::numbers::{curves, plan_rows, points};
+use super::plan_times::PlanTimes;
 use super::request::PlanRequest;
 use trundle_core::{DriveLimits, Pose2, Vector2};
 use trundle_planning::{HalfPlane, MultiGoalPlan, Plan};

@@ -2,9 +2,12 @@
 
 use super::goal_refusal::GoalRefusal;
 use super::masks::{SpeedMaskLimits, read_lanes, set_keep_out, set_speed_mask};
+use super::plan_times::PlanTimes;
 use crate::{AppError, read_map};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::time::Instant;
 use trundle_core::{Footprint, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle_planning::{MultiGoalPlan, Plan, Planner, PlannerConfig, UnknownIs, WaypointGraph};
 use trundle_runtime::RobotConfig;
@@ -164,6 +167,17 @@ impl PlanRequest {
         })
     }
 
+    /// The plan through all goals, and the wall-clock time of planning.
+    ///
+    /// # Errors
+    /// The plan has those of [`PlanRequest::plan`].
+    pub fn timed_plan(&mut self) -> (Result<MultiGoalPlan, GoalRefusal>, PlanTimes) {
+        self.planner.set_clock(Some(clock_s));
+        let start = clock_s();
+        let plan = self.plan();
+        (plan, PlanTimes { all: clock_s() - start, stages: self.planner.stage_times() })
+    }
+
     fn plan_through(&mut self, goals: &[Pose2]) -> Result<MultiGoalPlan, (usize, Plan)> {
         let (start, grid) = (self.start.pose, &self.grid);
         match &self.graph {
@@ -180,4 +194,10 @@ impl PlanRequest {
         };
         self.graph.as_ref().map(of).unwrap_or_default()
     }
+}
+
+/// Wall-clock time since the first call \[s\].
+fn clock_s() -> f64 {
+    static BEGIN: OnceLock<Instant> = OnceLock::new();
+    BEGIN.get_or_init(Instant::now).elapsed().as_secs_f64()
 }

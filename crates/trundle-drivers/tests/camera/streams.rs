@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use trundle_drivers::camera::pipe::{
-    FrameLimits, FrameParser, StreamCamera, StreamWriter, header_line, parse_header,
+    FrameLimits, FrameParser, ProcessCamera, StreamCamera, StreamWriter, header_line, parse_header,
 };
 use trundle_drivers::camera::{CameraError, CameraFrame, CameraInfo, DepthCamera};
 
@@ -47,6 +47,21 @@ fn a_file_gives_the_frames_written_and_ends() {
     let (found, error) = read_all(&mut camera);
     assert!(error.is_none() && found == frames(5));
     assert_eq!((camera.counts().frames, camera.counts().skipped_bytes), (5, 0));
+}
+
+#[test]
+#[cfg(unix)]
+fn a_process_that_crashes_is_a_lost_camera_and_no_more() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("frames.trfr");
+    std::fs::write(&path, stream(&info(), &frames(2))).unwrap();
+    let mut crashing = std::process::Command::new("sh");
+    crashing.args(["-c", "cat \"$0\"; kill -SEGV $$"]).arg(&path);
+    let mut camera = ProcessCamera::start(crashing, "crashing", LONG).unwrap();
+    for _ in 0..2 {
+        assert!(camera.next_frame(LONG).unwrap().is_some());
+    }
+    assert!(matches!(camera.next_frame(LONG), Err(CameraError::Unplugged { .. })));
 }
 
 #[test]

