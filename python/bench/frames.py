@@ -1,4 +1,4 @@
-"""Frames a second of SLAM from Python against the same loop in Rust, in one process, by turns.
+"""Frames per second of SLAM from Python and of the same loop in Rust, alternately in one process.
 
 usage: frames.py [--folder TUM_FOLDER] [--camera freiburg1] [--rounds 3]; `cargo xtask results --measure python` writes results/python.json
 
@@ -18,7 +18,7 @@ import numpy as np
 import trundle
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-#: Frames a second of Python that are enough, as a part of those of Rust.
+#: Smallest accepted ratio of the frame rates of Python and Rust.
 GOAL = 0.95
 
 
@@ -31,7 +31,7 @@ def by_python(folder, camera):
 
 
 def timed(run, folder, camera):
-    """Trajectory, seconds of processor time of all threads, and seconds by the clock."""
+    """Trajectory, seconds of processor time of all threads, and wall-clock seconds."""
     clock, processor = time.perf_counter(), time.process_time()
     trajectory = run(folder, camera)
     return trajectory, time.process_time() - processor, time.perf_counter() - clock

@@ -1,4 +1,4 @@
-"""SLAM on a TUM RGB-D folder: where was the camera when it took each image?
+"""SLAM on a TUM RGB-D folder: the camera's pose at each image.
 
 python 01_slam_a_folder.py [FOLDER [CAMERA]]; without a folder, images of the simulator.
 """
@@ -9,7 +9,7 @@ import trundle
 
 
 def track_folder(folder: str, camera: str) -> None:
-    """Tracks all images of a folder, writes trajectory.txt, and prints the error where the folder has the truth."""
+    """Tracks all images of a folder, writes trajectory.txt, and prints the error if the folder has ground truth."""
     slam = trundle.RgbdSlam(camera)
     sequence = trundle.TumSequence(folder, trundle.Camera.named(camera).depth_scale)
     for image in sequence:
@@ -25,7 +25,7 @@ def track_folder(folder: str, camera: str) -> None:
 
 
 def track_simulated_images() -> None:
-    """Tracks the camera of a robot that drives an arc, and compares with the truth."""
+    """Tracks the camera of a robot that drives an arc, and compares its poses with the truth."""
     simulator = trundle.Simulator("room", seed=1)
     slam = trundle.RgbdSlam(simulator.camera)
     for _ in range(10):

@@ -25,7 +25,7 @@ def pose(text: str) -> tuple[float, float, float]:
 
 
 def plan(grid: trundle.OccupancyGrid, start: tuple[float, float, float], goal: tuple[float, float, float]) -> None:
-    """Plans for a round robot and prints where it is at each second."""
+    """Plans for a round robot and prints its pose at each second."""
     found = trundle.plan(grid, start, goal, footprint=0.17)
     print(found["message"])
     if not found["found"]:
@@ -38,7 +38,7 @@ def plan(grid: trundle.OccupancyGrid, start: tuple[float, float, float], goal: t
 
 
 def settle() -> None:
-    """20 cm sideways in a corridor of 0.9 m, for a robot of 0.6 x 0.4 m."""
+    """Moves a robot of 0.6 x 0.4 m by 20 cm sideways in a corridor of 0.9 m."""
     walls = [np.array([[-2.0, y], [2.0, y]]) for y in (-0.45, 0.45)]
     corners = [(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)]
     found = trundle.dock(walls, start=(0, -0.1, 0), goal=(0, 0.1, 0), footprint=corners)

@@ -1,4 +1,4 @@
-"""The simulator as a Gymnasium environment, and a policy that random search improves.
+"""The simulator as a Gymnasium environment, with a policy improved by random search.
 
 python 04_simulate_and_train.py; a few seconds on two cores.
 """
@@ -11,7 +11,7 @@ ROBOTS, STEPS, ROUNDS = 16, 60, 3
 
 
 def act(policy: np.ndarray, observation: dict[str, np.ndarray]) -> np.ndarray:
-    """Turns to the goal and away from what is near: three gains for each robot, shape (robots, 3)."""
+    """A policy that turns to the goal and away from near obstacles: three gains per robot, shape (robots, 3)."""
     ahead, left = observation["goal"][:, 0], observation["goal"][:, 1]
     bearing = np.arctan2(left, ahead)
     ranges = observation["ranges"]
@@ -23,7 +23,7 @@ def act(policy: np.ndarray, observation: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def returns(env: DriveToGoalVector, policies: np.ndarray) -> np.ndarray:
-    """Sum of rewards of each policy, all robots in the same room."""
+    """Sum of rewards of each policy, with all robots in the same room."""
     observation, _ = env.reset(seed=[1] * ROBOTS)
     total = np.zeros(ROBOTS)
     for _ in range(STEPS):

@@ -1,4 +1,4 @@
-"""The whole robot on a simulated body: it starts in an unknown room, drives to a goal and writes the map that it drew.
+"""The whole robot on a simulated body: a drive through an unknown room to a goal, and the map of the room.
 
 python 05_whole_robot.py [SCENE]. Replace `Simulator` by your robot: give `Robot.step` each reading, and the base each twist.
 """

@@ -1,4 +1,4 @@
-//! Arrays of numpy: checked on the way in, moved or borrowed on the way out.
+//! Arrays of numpy: inputs are checked, results are moved or borrowed.
 
 use crate::errors::value_error;
 use crate::numbers::wrong_type;
@@ -11,10 +11,10 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use trundle::core::{ColorImage, DepthImage};
 
-/// An array of one dtype and number of axes, as one block of memory in C order. Only an array that is no such block is copied.
+/// An array of this dtype and number of axes, as one block of memory in C order. An array in another order is copied.
 ///
 /// # Errors
-/// `TypeError` for another dtype or no array, `ValueError` for another number of axes. Both name `shape`, the expected one.
+/// `TypeError` for another dtype or an object that is no array; `ValueError` for another number of axes. Both name the expected `shape`.
 pub fn array<'py, T: Element, D: Dimension>(
     object: &Bound<'py, PyAny>,
     name: &str,
@@ -57,7 +57,7 @@ pub fn rows<const N: usize>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<V
     Ok(slice(&array, name)?.as_chunks::<N>().0.to_vec())
 }
 
-/// The numbers of an array that [`array`] gave.
+/// The numbers of an array from [`array`].
 pub fn slice<'a, T: Element, D: Dimension>(
     array: &'a PyReadonlyArray<'_, T, D>,
     name: &str,
@@ -68,7 +68,7 @@ pub fn slice<'a, T: Element, D: Dimension>(
 /// A colour image from uint8 of shape (height, width, 3), in `memory`.
 ///
 /// # Errors
-/// As [`array`]; and for other than 3 channels, or a side of 0.
+/// As [`array`]; also for a number of channels other than 3, or a side of 0.
 pub fn color_image(object: &Bound<'_, PyAny>, mut memory: Vec<[u8; 3]>) -> PyResult<ColorImage> {
     const SHAPE: &str = "(height, width, 3)";
     let array = array::<u8, numpy::Ix3>(object, "rgb", SHAPE)?;
@@ -83,8 +83,8 @@ pub fn color_image(object: &Bound<'_, PyAny>, mut memory: Vec<[u8; 3]>) -> PyRes
     ColorImage::new(width, height, memory).map_err(value_error)
 }
 
-/// A depth image from uint16 in units of 1 / `depth_scale` m, or from float32 in m; what is not a positive number is no depth.
-/// In `memory`.
+/// A depth image from uint16 in units of 1 / `depth_scale` m, or from float32 in m, in `memory`. Values that are not positive count as
+/// missing depth.
 ///
 /// # Errors
 /// As [`array`], and for a side of 0.
@@ -117,7 +117,7 @@ fn size_of<T: Element>(array: &PyReadonlyArray<'_, T, numpy::Ix2>) -> (usize, us
     (array.shape()[1], array.shape()[0])
 }
 
-/// An array of shape (rows, N); its memory is that of the list.
+/// An array of shape (rows, N) in the memory of the list.
 pub fn from_rows<const N: usize, T: Element>(
     py: Python<'_>,
     rows: Vec<[T; N]>,
@@ -126,7 +126,7 @@ pub fn from_rows<const N: usize, T: Element>(
     PyArray1::from_vec(py, rows.into_flattened()).reshape([count, N])
 }
 
-/// An array of one axis; its memory is that of the list.
+/// An array of one axis in the memory of the list.
 pub fn from_list<T: Element>(py: Python<'_>, list: Vec<T>) -> Bound<'_, PyArray1<T>> {
     PyArray1::from_vec(py, list)
 }

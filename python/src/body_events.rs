@@ -11,7 +11,7 @@ use trundle::core::{
     BodyEvent, BodyEventKind, Device, Invalid, Link, Odometry as CoreOdometry, PerWheel, Pose2, Stamp,
 };
 
-/// Odometry that the body computed itself, in place of wheels and gyro.
+/// Odometry computed by the body, in place of wheels and gyro.
 ///
 /// `pose` `odom_from_base` (x m, y m, theta rad); `twist` (v m/s, omega rad/s); `covariance` float64 (3, 3) of the pose as a right
 /// perturbation (m, m, rad).
@@ -77,7 +77,7 @@ impl Odometry {
     }
 }
 
-/// A condition of the body that stops the robot or lets it go on.
+/// A condition of the body that stops the robot, or its end.
 ///
 /// >>> trundle.BodyCondition.link(1.5, "camera", False).stamp
 /// 1.5
@@ -89,7 +89,7 @@ pub struct BodyCondition {
 
 #[pymethods]
 impl BodyCondition {
-    /// No sensor has reported for a while: time goes on.
+    /// A time without sensor readings, which advances the robot's time to `stamp` s.
     #[staticmethod]
     fn silence(stamp: f64) -> PyResult<Self> {
         Self::of(stamp, BodyEventKind::Silence)
@@ -107,7 +107,7 @@ impl BodyCondition {
         Self::of(stamp, BodyEventKind::Link(Link { device, is_up }))
     }
 
-    /// Wheels hang in the air: the robot is lifted.
+    /// State of the wheel-drop sensors: a dropped wheel means a lifted robot.
     #[staticmethod]
     fn wheel_drop(stamp: f64, left: bool, right: bool) -> PyResult<Self> {
         Self::of(stamp, BodyEventKind::WheelDrop(PerWheel { left, right }))
@@ -131,7 +131,7 @@ impl BodyCondition {
     }
 }
 
-/// The true pose of a simulated robot; robots ignore it.
+/// The true pose of a simulated robot, which `Robot` ignores.
 ///
 /// >>> events = trundle.Simulator("room", 1, camera=None).step((0, 0), duration=0.05)
 /// >>> next(event for event in events if isinstance(event, trundle.Truth)).pose.shape

@@ -9,8 +9,9 @@ use trundle::io::{CameraModel, KINECT_V2_DEPTH_SCALE};
 
 /// A pinhole camera with lens distortion, and the unit of its depth images.
 ///
-/// `width`, `height`, `fx`, `fy`, `cx`, `cy` in px; `distortion` k1, k2, p1, p2, k3 in the order of OpenCV; `readout` s, the time between
-/// first and last row of a rolling shutter; `depth_scale`, the units of uint16 depth images in a metre, else 1000: millimetres.
+/// `width`, `height`, `fx`, `fy`, `cx`, `cy` in px; `distortion` k1, k2, p1, p2, k3 in the order of OpenCV; `readout` s is the time between
+/// first and last row of a rolling shutter; `depth_scale` is the number of units of uint16 depth images per metre, by default 1000
+/// (millimetres).
 ///
 /// >>> camera = trundle.Camera(640, 480, 525.0, 525.0, 319.5, 239.5, depth_scale=5000)
 /// >>> camera.width, camera.fx, camera.depth_scale
@@ -54,7 +55,7 @@ impl Camera {
     }
 
     /// The camera of a preset (freiburg1, freiburg2, freiburg3, kinect_v2) or of a file: TOML of trundle, YAML of ORB-SLAM or ROS, JSON of
-    /// Open3D. A file without a depth scale means millimetres.
+    /// Open3D. The depth unit of a file without a depth scale is the millimetre.
     #[staticmethod]
     fn named(name: PathBuf) -> PyResult<Self> {
         let model = CameraModel::named(&name.to_string_lossy()).map_err(io_error)?;
@@ -110,13 +111,13 @@ impl Camera {
         self.model.camera.readout()
     }
 
-    /// Units of uint16 depth images in a metre.
+    /// Number of units of uint16 depth images per metre.
     #[getter]
     fn depth_scale(&self) -> f64 {
         self.model.depth_scale
     }
 
-    /// The text of a camera file, for `Camera.named`.
+    /// The text of a camera file, to be read by `Camera.named`.
     fn to_toml(&self) -> String {
         self.model.to_toml()
     }
@@ -136,7 +137,7 @@ impl Camera {
     }
 }
 
-/// A camera, or the name of one ([`Camera::named`]), with another depth scale where one is given.
+/// A camera, or the name of one ([`Camera::named`]), with this depth scale if given.
 pub fn camera_model(object: &Bound<'_, PyAny>, depth_scale: Option<f64>) -> PyResult<CameraModel> {
     let model = if let Ok(camera) = object.cast::<Camera>() {
         camera.get().model

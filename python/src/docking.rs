@@ -15,12 +15,12 @@ use trundle::docking::{DockingConfig, DockingPlan, Motion, Obstacle, ObstacleSce
 /// Plans turns in place and straight moves from `start` to `goal`, both (3,): x m, y m, theta rad, exact for the footprint.
 ///
 /// `obstacles` is an `OccupancyGrid`, or a list of float64 arrays (corners, 2) m: one row is a point, two a wall, more a convex polygon.
-/// `footprint` is a radius in m, or the corners (N, 2) m of a convex polygon, else that of `config`; `margin` m to every obstacle;
-/// `unknown_is_free` whether unknown cells are no obstacles; `config` a `RobotConfig`, else a Kobuki.
+/// `footprint` is a radius in m, or the corners (N, 2) m of a convex polygon, by default that of `config`; `margin` m is the distance from
+/// every obstacle; `unknown_is_free` states whether unknown cells are free; `config` is a `RobotConfig`, by default a Kobuki.
 ///
 /// Returns a dictionary with the same keys for every outcome: `found`; `outcome` ("found", "impossible", "refused"); `message`, a sentence;
-/// `kinds`, a list of "turn" and "drive"; `amounts` (N,) rad or m; `starts` and `durations` (N,) s; `poses` (N + 1, 3); `duration` s; `bound` s,
-/// below which no manoeuvre with this margin takes; `margin` m kept.
+/// `kinds`, a list of "turn" and "drive"; `amounts` (N,) rad or m; `starts` and `durations` (N,) s; `poses` (N + 1, 3); `duration` s;
+/// `bound` s, the lower bound of the duration of any manoeuvre with this margin; `margin` m of the result.
 ///
 /// >>> import numpy as np
 /// >>> walls = [np.array([[-2.0, y], [2.0, y]]) for y in (-0.45, 0.45)]

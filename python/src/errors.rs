@@ -1,4 +1,4 @@
-//! Errors of the crates as Python exceptions, with their own sentences.
+//! Errors of the crates as Python exceptions with the same messages.
 
 use pyo3::PyErr;
 use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyPermissionError, PyRuntimeError, PyValueError};
@@ -12,7 +12,7 @@ pub fn value_error(problem: impl Display) -> PyErr {
     PyValueError::new_err(problem.to_string())
 }
 
-/// `OSError` where the system refused a file, `ValueError` where its content is not accepted.
+/// `OSError` if the system refuses a file, `ValueError` for invalid content.
 pub fn io_error(error: IoError) -> PyErr {
     let text = error.to_string();
     match error {
@@ -26,7 +26,7 @@ pub fn io_error(error: IoError) -> PyErr {
     }
 }
 
-/// As [`io_error`] for files, `RuntimeError` where the machine refused, else `ValueError`.
+/// As [`io_error`] for files, `RuntimeError` if the system refuses, else `ValueError`.
 pub fn app_error(error: AppError) -> PyErr {
     match error {
         AppError::Io(error) => io_error(error),

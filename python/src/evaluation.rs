@@ -11,7 +11,8 @@ use trundle::eval::{
     relative_pose_error,
 };
 
-/// The absolute trajectory error of `estimate` against `reference`, both float64 (N, 8): stamp s, x y z m, qx qy qz qw. evo's numbers.
+/// The absolute trajectory error of `estimate` against `reference`, both float64 (N, 8): stamp s, x y z m, qx qy qz qw. The numbers equal
+/// evo's.
 ///
 /// `align` is "se3" (rotation and translation), "sim3" (and scale) or "none"; `max_difference` s between associated stamps.
 ///
@@ -42,9 +43,10 @@ pub fn ate<'py>(
     Ok(dict)
 }
 
-/// The relative pose error of `estimate` against `reference`, both float64 (N, 8): stamp s, x y z m, qx qy qz qw. evo's numbers.
+/// The relative pose error of `estimate` against `reference`, both float64 (N, 8): stamp s, x y z m, qx qy qz qw. The numbers equal evo's.
 ///
-/// `delta` is the distance of two poses in `unit`: "frames", "s" or "m" along the estimate; `all_pairs` whether a pair starts at every pose.
+/// `delta` is the distance of two poses in `unit`: "frames", "s" or "m" along the estimate; `all_pairs` states whether a pair starts at
+/// every pose.
 ///
 /// Returns a dictionary: `count`, `rmse`, `mean`, `median`, `std`, `min`, `max` of the translation's errors, m; `rotation`, the same of the angles, rad;
 /// `errors` (K, 2) m and rad; `pairs` (K, 2), indices in the estimate.

@@ -11,7 +11,7 @@ use trundle::core::SensorEvent;
 /// Classes of events, for refusals.
 const EXPECTED: &str = "one of Wheels, Gyro, Rgbd, Scan, Touch, Cliff, Odometry, BodyCondition, Truth";
 
-/// The object of an event.
+/// The Python object of an event.
 pub fn event_object(py: Python<'_>, event: SensorEvent) -> PyResult<Bound<'_, PyAny>> {
     Ok(match event {
         SensorEvent::Wheels(reading) => Bound::new(py, Wheels { reading })?.into_any(),
@@ -32,7 +32,7 @@ pub fn event_object(py: Python<'_>, event: SensorEvent) -> PyResult<Bound<'_, Py
     })
 }
 
-/// The event of an object. The pixels of an image are copied: a robot may keep them.
+/// The event of a Python object. The pixels of an image are copied, since a robot may keep them.
 ///
 /// # Errors
 /// `TypeError` for another object.

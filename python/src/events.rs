@@ -5,7 +5,7 @@ use crate::numbers::{seconds, stamp};
 use pyo3::prelude::*;
 use trundle::core::{Cliff as CoreCliff, GyroRate, Invalid, Touch as CoreTouch, WheelTicks, require_finite};
 
-/// Counters of both wheels, 0 to 65535, which wrap.
+/// Encoder counters of both wheels, 0 to 65535, with wrap-around.
 ///
 /// >>> trundle.Wheels(1.5, left=10, right=65535)
 /// Wheels(stamp=1.5, left=10, right=65535)
@@ -123,7 +123,7 @@ impl Touch {
     }
 }
 
-/// The cliff sensors: the floor ends below one of them, or does so no longer.
+/// The cliff sensors: whether the floor ends below one of them.
 ///
 /// >>> trundle.Cliff(1.5, over_edge=False)
 /// Cliff(stamp=1.5, over_edge=False)

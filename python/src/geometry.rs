@@ -8,7 +8,8 @@ use numpy::{PyArray1, PyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use trundle::core::{Invalid, Pose2, Pose3, Stamp, Twist2, Vector3, require_finite};
 
-/// Largest deviation of a rotation matrix from an orthonormal one, and of a quaternion's norm from 1. Source: that of TUM files, 0.02.
+/// Largest deviation of a rotation matrix from an orthonormal one, and of a quaternion's norm from 1. Source: the tolerance of TUM files,
+/// 0.02.
 const MAX_ROTATION_ERROR: f64 = 0.02;
 
 /// x m, y m, theta rad.
@@ -39,7 +40,7 @@ pub fn pose3_array(py: Python<'_>, pose: Pose3) -> PyResult<Bound<'_, PyArray2<f
 /// A pose from a homogeneous matrix of shape (4, 4), float64, m.
 ///
 /// # Errors
-/// `TypeError` and `ValueError` for another dtype or shape; `ValueError` for NaN, and where the upper left is no rotation.
+/// `TypeError` and `ValueError` for another dtype or shape; `ValueError` for NaN, and if the upper left part is no rotation.
 pub fn pose3(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Pose3> {
     let array = array::<f64, numpy::Ix2>(object, name, "(4, 4)")?;
     let &[4, 4] = array.shape() else {
@@ -82,7 +83,7 @@ pub fn planar_array<'py>(py: Python<'py>, poses: &[(Stamp, Pose2)]) -> PyResult<
 /// A trajectory of such rows.
 ///
 /// # Errors
-/// `ValueError` for a stamp or quaternion that is none, with the row.
+/// `ValueError` for an invalid stamp or quaternion, with the row.
 pub fn trajectory(rows: &[[f64; 8]], name: &str) -> PyResult<Vec<(Stamp, Pose3)>> {
     let pose = |(i, row): (usize, &[f64; 8])| {
         let [seconds, x, y, z, qx, qy, qz, qw] = *row;

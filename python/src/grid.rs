@@ -40,7 +40,7 @@ impl OccupancyGrid {
         Ok(Self { grid: Grid::new(geometry, cells?).map_err(value_error)? })
     }
 
-    /// The map of a map_server YAML file and the picture that it names.
+    /// The map of a map_server YAML file with its picture.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let grid = py.detach(|| trundle::app::read_map(&path)).map_err(app_error)?;
@@ -60,7 +60,7 @@ impl OccupancyGrid {
         .map_err(io_error)
     }
 
-    /// A map of lines of text, the highest y first: `#` occupied, `.` free, any other unknown; `resolution` m.
+    /// A map from lines of text, the highest y first: `#` occupied, `.` free, other characters unknown; `resolution` m.
     #[staticmethod]
     fn from_ascii(resolution: f64, art: &str) -> PyResult<Self> {
         Ok(Self { grid: Grid::from_ascii(resolution, art).map_err(value_error)? })
@@ -97,7 +97,7 @@ impl OccupancyGrid {
         (self.grid.geometry().height, self.grid.geometry().width)
     }
 
-    /// The cell at a point (x m, y m) of the map frame: -1, 0 or 100; -1 off the map.
+    /// The cell at a point (x m, y m) of the map frame: -1 (also off the map), 0 or 100.
     fn at(&self, point: &Bound<'_, PyAny>) -> PyResult<i8> {
         let [x, y] = numbers(point, "point", "2 numbers: x m, y m")?;
         Ok(match self.grid.at(Vector2::new(x, y)) {

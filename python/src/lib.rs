@@ -1,7 +1,7 @@
-//! The native module of the Python package `trundle`: the crates behind classes and functions that take and give arrays of numpy.
+//! The native module of the Python package `trundle`: classes and functions of the crates with arrays of numpy.
 //!
-//! Long calls release the interpreter's lock. Input of a wrong type is a `TypeError`, a value that cannot be accepted a `ValueError` with
-//! the sentence of the crates.
+//! Long calls release the interpreter's lock. Input of a wrong type raises `TypeError`; an invalid value raises `ValueError` with the
+//! message of the crates.
 
 mod arrays;
 mod body_events;

@@ -13,7 +13,7 @@ use trundle::mapping::{
 
 /// An occupancy grid from scans at known poses.
 ///
-/// `resolution` m, the side of a cell; `max_range` m, beyond which ranges are not used; `half_extent` m, the largest distance of the map's
+/// `resolution` m, the side of a cell; `max_range` m, beyond which rays are truncated; `half_extent` m, the largest distance of the map's
 /// edge from its origin.
 ///
 /// >>> import numpy as np
@@ -58,19 +58,19 @@ impl GridMapper {
         Ok((done.hits, done.free, done.ignored_beams))
     }
 
-    /// The map: a copy.
+    /// A copy of the map.
     fn grid(&self) -> OccupancyGrid {
         OccupancyGrid { grid: self.mapper.grid().clone() }
     }
 
-    /// Probabilities of occupancy of the map's cells, float32 (rows, columns), 0.5 where nothing is known.
+    /// Probabilities of occupancy of the map's cells, float32 (rows, columns), 0.5 for unknown cells.
     fn probabilities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let geometry = self.mapper.grid().geometry();
         let cells = PyArray1::from_vec(py, self.mapper.probabilities());
         cells.reshape([geometry.height, geometry.width])
     }
 
-    /// Probability of occupancy at a point (x m, y m) of the map frame, 0.5 where nothing is known.
+    /// Probability of occupancy at a point (x m, y m) of the map frame, 0.5 for an unknown cell.
     fn probability_at(&self, point: &Bound<'_, PyAny>) -> PyResult<f64> {
         Ok(self.mapper.probability_at(crate::numbers::point(point, "point")?))
     }
@@ -81,9 +81,10 @@ impl GridMapper {
     }
 }
 
-/// A map from scans and raw odometry, by a Rao-Blackwellised particle filter with loop closure. The map starts at the first scan's base.
+/// A map from scans and raw odometry, by a Rao-Blackwellised particle filter with loop closure. The base at the first scan is the map's
+/// origin.
 ///
-/// `seed` of its random numbers; `particles` their number; `resolution` m, the side of a cell.
+/// `seed` of the random numbers; `particles`, the number of particles; `resolution` m, the side of a cell.
 ///
 /// >>> simulator = trundle.Simulator("room", 1, camera=None, laser="urg-04lx")
 /// >>> mapper = trundle.ParticleMapper(seed=1)
@@ -111,8 +112,8 @@ impl ParticleMapper {
 
     /// Processes a scan that was taken with the base at `odometry` (x m, y m, theta rad, the wheels' frame).
     ///
-    /// Returns `processed`; `still`: the robot has hardly moved and the scan is not used; `refused`: odometry or stamp cannot be; after a map was
-    /// loaded, `lost` and `found`; `paused`: the last scans contradict the loaded map and are taken out of it.
+    /// Returns `processed`; `still` if the robot has hardly moved and the scan is not used; `refused` for an impossible odometry or stamp;
+    /// `lost` or `found` after a map was loaded; `paused` if the last scans contradict the loaded map and are removed from it.
     fn update(
         &mut self,
         py: Python<'_>,
@@ -146,7 +147,7 @@ impl ParticleMapper {
         planar_array(py, &self.mapper.trajectory())
     }
 
-    /// The map of the best particle: a copy.
+    /// A copy of the best particle's map.
     fn grid(&mut self, py: Python<'_>) -> OccupancyGrid {
         py.detach(|| OccupancyGrid { grid: self.mapper.grid().clone() })
     }

@@ -14,7 +14,7 @@ const MAX_TWIST: f64 = 100.0;
 /// N finite numbers of a sequence or array.
 ///
 /// # Errors
-/// `TypeError` for what is no sequence of numbers; `ValueError` for another count, NaN or infinity.
+/// `TypeError` for an object that is no sequence of numbers; `ValueError` for another count, NaN or infinity.
 pub fn numbers<const N: usize>(object: &Bound<'_, PyAny>, name: &str, expected: &str) -> PyResult<[f64; N]> {
     let list: Vec<f64> = object.extract().map_err(|_| wrong_type(object, name, expected))?;
     let count = list.len();
@@ -58,7 +58,7 @@ pub fn point(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Vector2> {
 /// A twist: v m/s, omega rad/s.
 ///
 /// # Errors
-/// As [`numbers`], and for a number that no robot reaches.
+/// As [`numbers`], and for an impossibly large number.
 pub fn twist(object: &Bound<'_, PyAny>, name: &str) -> PyResult<Twist2> {
     let [v, omega] = numbers(object, name, "2 numbers: v m/s, omega rad/s")?;
     for (part, value, unit) in [("v", v, "m/s"), ("omega", omega, "rad/s")] {
@@ -89,7 +89,7 @@ pub fn seconds(stamp: Stamp) -> f64 {
 /// An outline: a radius in metres, or the corners of a convex polygon.
 ///
 /// # Errors
-/// `TypeError` for another kind; `ValueError` where the outline is none.
+/// `TypeError` for another kind; `ValueError` for an invalid outline.
 pub fn footprint(object: &Bound<'_, PyAny>) -> PyResult<Footprint> {
     let expected = "a radius in m, or 3 or more corners (x m, y m) of a convex polygon";
     if let Ok(radius) = object.extract::<f64>() {

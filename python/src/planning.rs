@@ -12,12 +12,12 @@ use trundle::planning::{Plan, PlanResult, Planner};
 
 /// Plans a path with timing from `start` to rest at `goal`, both (3,): x m, y m, theta rad, map frame.
 ///
-/// `footprint` is a radius in m, or the corners (N, 2) m of a convex polygon, else that of `config`; `start_twist` (v m/s, omega rad/s);
-/// `config` a `RobotConfig`, else a Kobuki.
+/// `footprint` is a radius in m, or the corners (N, 2) m of a convex polygon, by default that of `config`; `start_twist` (v m/s, omega
+/// rad/s); `config` is a `RobotConfig`, by default a Kobuki.
 ///
 /// Returns a dictionary with the same keys for every outcome: `found`; `outcome` ("found", "blocked", "start_in_obstacle",
-/// "goal_in_obstacle", "start_outside", "goal_outside"); `message`, a sentence; `nearest` (2,) m, the reachable point nearest to a goal that
-/// no path leads to, else None; `waypoints` (N, 2) m; `cells` (M, 2) m, the path of the search; and the trajectory: `time` (K,) s, `poses`
+/// "goal_in_obstacle", "start_outside", "goal_outside"); `message`, a sentence; `nearest` (2,) m, the reachable point nearest to an
+/// unreachable goal, else None; `waypoints` (N, 2) m; `cells` (M, 2) m, the path of the search; and the trajectory: `time` (K,) s, `poses`
 /// (K, 3), `twists` (K, 2), `duration` s, `length` m, `min_clearance` m.
 ///
 /// >>> room = trundle.OccupancyGrid.from_ascii(0.25, "............\n" * 4 + "............")
@@ -108,7 +108,7 @@ fn outcome(plan: &Plan) -> &'static str {
     }
 }
 
-/// The reachable point nearest to a goal that no path leads to.
+/// The reachable point nearest to an unreachable goal.
 fn nearest(plan: &Plan) -> Option<Vector2> {
     match plan {
         Plan::Blocked { nearest } => Some(*nearest),

@@ -1,4 +1,4 @@
-//! RGB-D images whose pixels numpy reads in place.
+//! RGB-D images, with pixels shared with numpy.
 
 use crate::arrays::{color_image, depth_image};
 use crate::errors::value_error;
@@ -11,8 +11,8 @@ use trundle::io::KINECT_V2_DEPTH_SCALE;
 
 /// A colour image and the depth image registered to it, pixel for pixel.
 ///
-/// `stamp` s; `rgb` uint8 (height, width, 3); `depth` uint16 (height, width) in units of 1 / `depth_scale` m, else mm, or float32 in
-/// metres. A depth of 0, NaN or below 0 is none. The arrays `rgb` and `depth` show the image's own pixels and cannot be written.
+/// `stamp` s; `rgb` uint8 (height, width, 3); `depth` uint16 (height, width) in units of 1 / `depth_scale` m (by default mm), or float32 in
+/// metres. A depth of 0, NaN or below 0 is missing. The arrays `rgb` and `depth` are read-only views of the image's pixels.
 ///
 /// >>> import numpy as np
 /// >>> image = trundle.Rgbd(0.5, np.zeros((4, 6, 3), np.uint8), np.full((4, 6), 1500, np.uint16))
@@ -45,7 +45,7 @@ impl Rgbd {
         seconds(self.image.stamp())
     }
 
-    /// Colours, uint8 (height, width, 3), read-only: the pixels of the image itself.
+    /// Colours, uint8 (height, width, 3): a read-only view of the image's pixels.
     #[getter]
     fn rgb<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray3<u8>>> {
         let color = slf.get().image.color();
@@ -57,7 +57,7 @@ impl Rgbd {
         Ok(array)
     }
 
-    /// Depth along the optical axis, m, float32 (height, width), 0 where there is none, read-only: the pixels of the image itself.
+    /// Depth along the optical axis, m, float32 (height, width), 0 for missing depth: a read-only view of the image's pixels.
     #[getter]
     fn depth<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let depth = slf.get().image.depth();
@@ -78,7 +78,7 @@ impl Rgbd {
 /// Memory of the pixels of an image.
 pub type PixelMemory = (Vec<[u8; 3]>, Vec<f32>);
 
-/// An image of two arrays, in memory that may be that of an earlier image.
+/// An image of two arrays, in memory that may be reused from an earlier image.
 pub fn rgbd_image(
     seconds: f64,
     rgb: &Bound<'_, PyAny>,

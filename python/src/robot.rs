@@ -13,9 +13,9 @@ use pyo3::prelude::*;
 use std::sync::{Mutex, PoisonError};
 use trundle::runtime::{Mission, Robot as Whole, StepReport, Task};
 
-/// The whole robot on any body: sensor events in, twists and poses out. Its map starts at the base's first pose.
+/// The whole robot on any body: sensor events in, twists and poses out. The base's first pose is the map's origin.
 ///
-/// `config` is a `RobotConfig`, else a Kobuki with a Kinect V2.
+/// `config` is a `RobotConfig`, by default a Kobuki with a Kinect V2.
 ///
 /// >>> body = trundle.Simulator("demo", seed=1)
 /// >>> robot = trundle.Robot()
@@ -28,7 +28,7 @@ use trundle::runtime::{Mission, Robot as Whole, StepReport, Task};
 /// ('initializing', (3,))
 #[pyclass(module = "trundle")]
 pub struct Robot {
-    /// The lock is for the type alone, which is not for several threads: pyo3 gives one of them the object at a time.
+    /// The lock makes the type usable across threads; pyo3 allows one thread at a time.
     robot: Mutex<Whole>,
 }
 
@@ -41,9 +41,10 @@ impl Robot {
         Ok(Self { robot: Mutex::new(Whole::new(config).map_err(value_error)?) })
     }
 
-    /// One sensor event through the whole robot: `Wheels`, `Gyro`, `Rgbd`, `Scan`, `Touch`, `Cliff`, `Odometry`, `BodyCondition` or `Truth`, by rising stamp.
+    /// Processes one sensor event by rising stamp: `Wheels`, `Gyro`, `Rgbd`, `Scan`, `Touch`, `Cliff`, `Odometry`, `BodyCondition` or
+    /// `Truth`.
     ///
-    /// Images cost a few milliseconds, plans some tens. Give the base the twist of the result.
+    /// An image takes a few milliseconds, a plan some tens. Send the twist of the result to the base.
     fn step(&mut self, py: Python<'_>, event: &Bound<'_, PyAny>) -> PyResult<Step> {
         let event = event_of(event)?;
         let robot = self.robot();
@@ -56,7 +57,7 @@ impl Robot {
         self.robot().drive_to(pose2(goal, "goal")?).map_err(value_error)
     }
 
-    /// Lets the robot explore until its map is complete; `and_return`: then back to its start.
+    /// Makes the robot explore until its map is complete and, with `and_return`, return to its start.
     #[pyo3(signature = (and_return=false))]
     fn explore(&mut self, and_return: bool) -> PyResult<()> {
         let mut tasks = vec![Task::Explore];
@@ -65,7 +66,7 @@ impl Robot {
         Ok(())
     }
 
-    /// Drops what is left of the mission: the robot brakes to rest.
+    /// Cancels the mission: the robot brakes to rest.
     fn stop(&mut self) {
         self.robot().begin(&Mission::default());
     }
@@ -92,7 +93,7 @@ impl Robot {
         self.robot().scan().map(|scan| Scan { scan: scan.clone() })
     }
 
-    /// Way-points of the newest plan, map frame, m, (N, 2); None where there is none.
+    /// Way-points of the newest plan, map frame, m, (N, 2); None without a plan.
     fn waypoints<'py>(&mut self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         let points = |plan: &trundle::planning::PlanResult| {
             let points = plan.waypoints.points().iter().map(|p| [p.x, p.y]);
@@ -113,7 +114,7 @@ impl Robot {
     }
 }
 
-/// What a sensor event brought.
+/// Result of a sensor event.
 ///
 /// >>> step = trundle.Robot().step(trundle.Wheels(0.0, 0, 0))
 /// >>> step.state, step.twist.tolist(), step.is_finished
@@ -132,7 +133,7 @@ impl Step {
         self.stamp_s
     }
 
-    /// Command for the base, (2,): v m/s, omega rad/s; None where the step commands nothing.
+    /// Command for the base, (2,): v m/s, omega rad/s; None for a step without a command.
     #[getter]
     fn twist<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
         self.report.twist.map(|twist| twist_array(py, twist))
@@ -156,13 +157,13 @@ impl Step {
         self.report.state.name()
     }
 
-    /// Why the robot does not move on; None in a state without a reason.
+    /// Reason why the robot stops; None in a state without a reason.
     #[getter]
     fn reason(&self) -> Option<String> {
         self.report.state.reason().map(ToString::to_string)
     }
 
-    /// Result of the visual tracker; None but on images.
+    /// Result of the visual tracker on an image, else None.
     #[getter]
     fn track(&self) -> Option<Track> {
         self.report.track.clone().map(|report| Track { report })
@@ -174,7 +175,7 @@ impl Step {
         self.report.replanned
     }
 
-    /// Whether the mission is over; `state` holds its outcome.
+    /// Whether the mission is over; `state` is then its outcome.
     #[getter]
     fn is_finished(&self) -> bool {
         self.report.finished

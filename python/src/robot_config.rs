@@ -8,9 +8,10 @@ use trundle::core::Footprint;
 use trundle::runtime::RobotConfig as Config;
 use trundle::runtime::settings::to_commented_toml;
 
-/// The settings of a robot: a robot file (TOML), or a Kobuki with a Kinect V2, with `overrides` on top, each "key=value" in TOML.
+/// The settings of a robot: a robot file (TOML), or a Kobuki with a Kinect V2. Each of `overrides`, "key=value" in TOML, replaces a
+/// setting.
 ///
-/// `seed` is that of the robot's random sampling.
+/// `seed` is the seed of the robot's random samples.
 ///
 /// >>> config = trundle.RobotConfig(overrides=["footprint_radius_m=0.25"])
 /// >>> config.footprint, config.max_speed > 0
@@ -67,7 +68,7 @@ impl RobotConfig {
     }
 }
 
-/// The settings given, else the default ones.
+/// The given settings, else the default ones.
 pub fn robot_config(object: Option<&Bound<'_, PyAny>>) -> PyResult<Config> {
     match object {
         None => Ok(Config::default()),

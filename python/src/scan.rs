@@ -7,9 +7,9 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use trundle::core::{Beam, Invalid, Scan as CoreScan, Vector2, require_positive};
 
-/// A sweep of a 2-D laser in the base's plane, as ROS's LaserScan.
+/// A sweep of a 2-D laser in the base's plane, like ROS's LaserScan.
 ///
-/// `stamp` s; `ranges` float64 (beams,) m: infinity where a beam met nothing within `range_max`, NaN where nothing is known; `angle_min` rad
+/// `stamp` s; `ranges` float64 (beams,) m: infinity for a beam without a hit within `range_max`, NaN for an unknown range; `angle_min` rad
 /// of the first beam from the base's x, `angle_increment` rad; `origin` (x m, y m) of the laser on the base.
 ///
 /// >>> import numpy as np
@@ -51,7 +51,7 @@ impl Scan {
         seconds(self.scan.stamp())
     }
 
-    /// Ranges, m, (beams,): infinity where a beam met nothing, NaN where nothing is known.
+    /// Ranges, m, (beams,): infinity for a beam without a hit, NaN for an unknown range.
     #[getter]
     fn ranges<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         from_list(py, self.scan.beams().iter().map(range_of).collect())
@@ -75,13 +75,13 @@ impl Scan {
         self.scan.angle_increment()
     }
 
-    /// Where the beams start on the base: x m, y m.
+    /// Origin of the beams on the base: x m, y m.
     #[getter]
     fn origin(&self) -> (f64, f64) {
         (self.scan.origin().x, self.scan.origin().y)
     }
 
-    /// Points where beams met something, base frame, m: (N, 2).
+    /// Hit points of the beams, base frame, m: (N, 2).
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         from_rows(py, self.scan.hits().map(Into::into).collect::<Vec<[f64; 2]>>())
     }
@@ -95,7 +95,7 @@ impl Scan {
     }
 }
 
-/// The range of a beam: infinity if it met nothing, NaN if nothing is known.
+/// The range of a beam: infinity without a hit, NaN if unknown.
 pub fn range_of(beam: &Beam) -> f64 {
     match beam {
         Beam::Hit { range } => *range,
@@ -104,7 +104,7 @@ pub fn range_of(beam: &Beam) -> f64 {
     }
 }
 
-/// The beam of a range as ROS's LaserScan holds it (REP 117): infinity is nothing within `range_max`, NaN and -infinity are unknown.
+/// The beam of a range of ROS's LaserScan (REP 117): infinity means no hit within `range_max`; NaN and -infinity mean unknown.
 fn beam(index: usize, range: f64, range_max: f64) -> PyResult<Beam> {
     if range.is_nan() || range == f64::NEG_INFINITY {
         return Ok(Beam::Unseen);

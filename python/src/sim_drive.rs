@@ -8,7 +8,7 @@ const STEP_S: f64 = 0.001;
 /// Largest duration of a drive \[s\]: a longer one is a mistyped number. Source: ours.
 const MAX_DURATION_S: f64 = 3600.0;
 
-/// Drives with `twist` for `duration` s, in whole milliseconds: the events of that time.
+/// Drives with `twist` for `duration` s, in whole milliseconds; returns the events of that time.
 ///
 /// # Errors
 /// When the duration is not from 1 ms to an hour, or the command is not finite.

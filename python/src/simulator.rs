@@ -19,9 +19,9 @@ use trundle::sim::{LaserConfig, Preset, Scene, SimConfig, Simulator as Sim};
 
 /// A simulated Kobuki with camera and laser in a scene.
 ///
-/// `scene` is one of `Simulator.scenes()`, or a file: a scene (TOML), a mesh (glTF), a map (YAML). `seed` is that of scene and noise.
-/// `camera` is "kinect-v2", "kinect-v1" or None; `laser` "rplidar-a1", "urg-04lx", "ust-10lx", "lds-01" or None; `noise` of all sensors;
-/// `start` (x m, y m, theta rad, world frame) in place of the scene's.
+/// `scene` is one of `Simulator.scenes()`, or a file: a scene (TOML), a mesh (glTF), a map (YAML). `seed` is the seed of scene and noise.
+/// `camera` is "kinect-v2", "kinect-v1" or None; `laser` "rplidar-a1", "urg-04lx", "ust-10lx", "lds-01" or None; `noise` switches the noise
+/// of all sensors; `start` (x m, y m, theta rad, world frame) replaces the scene's.
 ///
 /// >>> simulator = trundle.Simulator("room", seed=1)
 /// >>> events = simulator.step((0.2, 0.0), duration=0.2)
@@ -59,7 +59,8 @@ impl Simulator {
         Scene::NAMES.to_vec()
     }
 
-    /// Drives with `twist` (v m/s, omega rad/s) for `duration` s, in whole milliseconds: the list of sensor events of that time, by rising stamp.
+    /// Drives with `twist` (v m/s, omega rad/s) for `duration` s, in whole milliseconds. Returns the list of sensor events of that time, by
+    /// rising stamp.
     #[pyo3(signature = (twist, duration=0.1))]
     fn step<'py>(
         &mut self,
@@ -97,7 +98,8 @@ impl Simulator {
         self.scan.as_ref().map(|scan| scan.clone_ref(py))
     }
 
-    /// The truth now: a dictionary of `stamp` s, `pose` (3,) `world_from_base`, `contacts` so far, `clearance` m to the nearest thing, `path_length` m driven.
+    /// The present truth, a dictionary: `stamp` s, `pose` (3,) `world_from_base`, `contacts` so far, `clearance` m to the nearest obstacle,
+    /// `path_length` m driven.
     fn truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let simulator = &self.simulator;
         let dict = PyDict::new(py);
@@ -109,7 +111,7 @@ impl Simulator {
         Ok(dict)
     }
 
-    /// The moment that the simulation has reached, s.
+    /// Present time of the simulation, s.
     #[getter]
     fn stamp(&self) -> f64 {
         seconds(self.simulator.stamp())
@@ -127,7 +129,7 @@ impl Simulator {
         pose2_array(py, self.simulator.scene().goal)
     }
 
-    /// The scene's goal in the frame of the start, which is that of a robot's map, (3,): x m, y m, theta rad.
+    /// The scene's goal in the frame of the start (a robot's map frame), (3,): x m, y m, theta rad.
     #[getter]
     fn start_from_goal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         pose2_array(py, self.simulator.scene().start_from_goal())
@@ -153,7 +155,7 @@ impl Simulator {
 }
 
 impl Simulator {
-    /// The object of an event; an image and a scan are the newest from now on.
+    /// The object of an event; stores an image or a scan as the newest one.
     fn noted<'py>(&mut self, py: Python<'py>, event: SensorEvent) -> PyResult<Bound<'py, PyAny>> {
         let object = event_object(py, event)?;
         if let Ok(image) = object.cast::<Rgbd>() {
@@ -165,7 +167,7 @@ impl Simulator {
     }
 }
 
-/// The simulated robot of named sensors.
+/// The simulated robot with these sensors.
 pub fn sim_config(camera: Option<&str>, laser: Option<&str>, noise: bool) -> PyResult<SimConfig> {
     let config = match camera {
         Some(name) => preset("camera", name, &SimConfig::CAMERAS)?,
@@ -184,7 +186,7 @@ fn preset<T>(field: &str, name: &str, presets: &[Preset<T>]) -> PyResult<T> {
     })
 }
 
-/// A robot in the scene of a name or file, with that seed for scene and noise.
+/// A robot in the scene of a name or file, with `seed` for scene and noise.
 pub fn simulator(scene: &str, seed: u64, start: Option<Pose2>, config: SimConfig) -> PyResult<Sim> {
     let options = SceneOptions { seed, mesh: MeshOptions::default(), start, station: None };
     let scene = load_scene(scene, options).map_err(app_error)?;

@@ -45,7 +45,7 @@ impl SimulatorPool {
         Ok(Self { scene, config, worlds })
     }
 
-    /// Starts the worlds of these indices anew, each with its seed.
+    /// Restarts the worlds of these indices, each with its seed.
     fn reset(&mut self, py: Python<'_>, indices: Vec<usize>, seeds: Vec<u64>) -> PyResult<()> {
         let count = self.worlds.len();
         if indices.len() != seeds.len() || indices.iter().any(|index| *index >= count) {
@@ -63,7 +63,7 @@ impl SimulatorPool {
         Ok(())
     }
 
-    /// Drives each robot with its row of `twists`, float64 (N, 2): v m/s, omega rad/s, for `duration` s. A robot whose v is NaN is left out.
+    /// Drives each robot with its row of `twists`, float64 (N, 2): v m/s, omega rad/s, for `duration` s. A robot with v = NaN is skipped.
     fn step(&mut self, py: Python<'_>, twists: &Bound<'_, PyAny>, duration: f64) -> PyResult<()> {
         let shape = format!("({}, 2)", self.worlds.len());
         let array = array::<f64, numpy::Ix2>(twists, "twists", &shape)?;
@@ -80,7 +80,7 @@ impl SimulatorPool {
         })
     }
 
-    /// Newest ranges, m, float32 (N, beams): infinity where a beam met nothing, NaN where nothing is known.
+    /// Newest ranges, m, float32 (N, beams): infinity for a beam without a hit, NaN for an unknown range.
     fn ranges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
         let beams = self.worlds.first().map_or(0, |world| world.ranges.len());
         let all: Vec<f32> = self.worlds.iter().flat_map(|world| world.ranges.iter().copied()).collect();
@@ -102,12 +102,12 @@ impl SimulatorPool {
         from_list(py, self.worlds.iter().map(|world| world.simulator.contacts()).collect())
     }
 
-    /// Distance of each robot to the nearest thing that it could touch, m, (N,).
+    /// Distance of each robot to the nearest obstacle, m, (N,).
     fn clearances<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         from_list(py, self.worlds.iter().map(|world| world.simulator.clearance()).collect())
     }
 
-    /// Farthest range that the laser measures, m.
+    /// Largest range of the laser, m.
     #[getter]
     fn range_max(&self) -> f64 {
         self.config.laser.as_ref().map_or(0.0, |laser| laser.range_max)

@@ -17,8 +17,9 @@ use trundle::slam::{Mode, RgbdSlam as Slam, SlamConfig};
 
 /// RGB-D SLAM with a landmark map, loop closure and relocalisation.
 ///
-/// `camera` a `Camera`, or the name of a preset or file; `depth_scale` units of uint16 depth in a metre, else the camera's; `seed` of its
-/// random sampling; `base_from_camera` (4, 4) m, the camera's mount, for odometry of the base. The first camera is at the identity.
+/// `camera` is a `Camera`, or the name of a preset or file; `depth_scale` is the number of units of uint16 depth per metre, by default the
+/// camera's; `seed` is the seed of the random samples; `base_from_camera` (4, 4) m is the camera's mount, for odometry of the base. The
+/// first camera is at the identity.
 ///
 /// >>> import numpy as np
 /// >>> simulator = trundle.Simulator("room", seed=1)
@@ -37,7 +38,7 @@ pub struct RgbdSlam {
     base_from_camera: Option<Pose3>,
     /// `odom_from_base` at the last image.
     last_odometry: Option<Pose2>,
-    /// Memory of the last image of arrays, for the next one.
+    /// Memory of the last image, for reuse.
     memory: PixelMemory,
 }
 
@@ -56,8 +57,7 @@ impl RgbdSlam {
         Self::with(slam, model, base_from_camera)
     }
 
-    /// Continues with the maps of a file that `save` wrote. The camera's pose in them is unknown until a place is recognised: until then the
-    /// state is `lost`.
+    /// Continues with the maps of a file from `save`. The state is `lost` until a place is recognised.
     #[staticmethod]
     #[pyo3(signature = (path, camera, depth_scale=None, seed=0, *, base_from_camera=None))]
     fn load(
@@ -98,7 +98,7 @@ impl RgbdSlam {
         track
     }
 
-    /// Tracks an `Rgbd`, without a copy of its pixels; else as `track`.
+    /// Tracks an `Rgbd` like `track`, without a copy of its pixels.
     #[pyo3(signature = (image, odometry=None))]
     fn track_rgbd(
         &mut self,
@@ -125,18 +125,18 @@ impl RgbdSlam {
         from_rows(py, self.slam.landmarks().map(Into::into).collect::<Vec<[f64; 3]>>())
     }
 
-    /// Completes the refinement of the map, which `track` does in parts between images.
+    /// Completes the refinement of the map, which `track` does in slices between images.
     fn finish(&mut self, py: Python<'_>) {
         py.detach(|| self.slam.finish_refining());
     }
 
-    /// Declares the pose unknown: the camera was carried away, and counts as lost until a place is recognised.
+    /// Declares the pose unknown, after the camera was carried away. The state is `lost` until a place is recognised.
     fn kidnapped(&mut self) {
         self.slam.kidnapped();
         self.last_odometry = None;
     }
 
-    /// Whether the maps change; set it to False to localize only.
+    /// Whether the maps change; False for localization only.
     #[getter]
     fn mapping(&self) -> bool {
         self.slam.mode() == Mode::Mapping
@@ -147,7 +147,7 @@ impl RgbdSlam {
         self.slam.set_mode(if mapping { Mode::Mapping } else { Mode::Localisation });
     }
 
-    /// Settings of the camera that the images contradict, a sentence each.
+    /// Settings of the camera that the images contradict, one sentence each.
     fn calibration_issues(&self) -> Vec<String> {
         self.slam.calibration_issues().iter().map(ToString::to_string).collect()
     }
@@ -225,7 +225,7 @@ fn read_bytes(path: &Path) -> Result<Vec<u8>, IoError> {
 
 /// SLAM on a folder of the TUM RGB-D benchmark, without Python between the images: rows of the trajectory, (N, 8).
 ///
-/// The same as `RgbdSlam.track` on each image of a `TumSequence`, to the bit.
+/// The result is bit-identical to `RgbdSlam.track` on each image of a `TumSequence`.
 #[pyfunction]
 #[pyo3(signature = (folder, camera, depth_scale=None, seed=0))]
 pub fn slam_folder<'py>(

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyIterator, PyTuple};
 use trundle::slam::{TrackReport, Tracking};
 
-/// Where an image was taken; pose, state and covariance, in this order, when unpacked.
+/// Result of tracking an image; unpacks to pose, state and covariance, in this order.
 ///
 /// >>> simulator = trundle.Simulator("room", seed=1)
 /// >>> image = next(event for event in simulator.step((0, 0)) if isinstance(event, trundle.Rgbd))
@@ -34,7 +34,8 @@ impl Track {
         pose3_array(py, self.report.visual_from_camera)
     }
 
-    /// `ok`; `weak`: located by few landmarks; `dead_reckoning`: not located, the last pose moved by the odometry; `lost`: not located.
+    /// Tracking state: `ok`; `weak` (located by few landmarks); `dead_reckoning` (not located, the last pose moved by the odometry); `lost`
+    /// (not located).
     #[getter]
     fn state(&self) -> &'static str {
         match self.report.tracking {

@@ -15,10 +15,10 @@ use trundle::io::{
     read_trajectory as read_poses, replace_file, trajectory_text,
 };
 
-/// A folder of the TUM RGB-D benchmark: a list of `Rgbd` whose images are read when they are asked for.
+/// A folder of the TUM RGB-D benchmark: a list of `Rgbd`, each read on access.
 ///
-/// `depth_scale` units of the depth images in a metre, else 5000; `max_difference` s between the stamps of a colour and a depth image of one
-/// frame, else 0.02.
+/// `depth_scale` is the number of units of depth images per metre, by default 5000; `max_difference` s is the largest difference of the
+/// stamps of a frame's colour and depth image, by default 0.02.
 ///
 /// >>> trundle.TumSequence("/no/such/folder")
 /// Traceback (most recent call last):
@@ -65,13 +65,13 @@ impl TumSequence {
         crate::arrays::from_list(py, stamps)
     }
 
-    /// `world_from_camera`: (N, 8), stamp s, x y z m, qx qy qz qw; None where the folder has none.
+    /// `world_from_camera`: (N, 8), stamp s, x y z m, qx qy qz qw; None if the folder has no ground truth.
     #[getter]
     fn ground_truth<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         self.sequence.ground_truth().map(|poses| trajectory_array(py, poses)).transpose()
     }
 
-    /// `odom_from_base`: (N, 4), stamp s, x m, y m, theta rad; None where the folder has none.
+    /// `odom_from_base`: (N, 4), stamp s, x m, y m, theta rad; None if the folder has no odometry.
     #[getter]
     fn odometry<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
         self.sequence.odometry().map(|poses| planar_array(py, poses)).transpose()
@@ -82,7 +82,7 @@ impl TumSequence {
     }
 }
 
-/// The images of a sequence, one after the other.
+/// Iterator over the images of a sequence.
 #[pyclass]
 struct TumImages {
     sequence: Py<TumSequence>,
@@ -138,7 +138,7 @@ pub fn write_trajectory(py: Python<'_>, path: PathBuf, trajectory: &Bound<'_, Py
     py.detach(|| replace_file(&path, trajectory_text(&poses).as_bytes())).map_err(io_error)
 }
 
-/// A scan of a log, with the odometry of its moment.
+/// A scan of a log, with the odometry at its stamp.
 type LoggedScan<'py> = (Bound<'py, PyArray1<f64>>, Scan);
 
 /// Scans of a laser log, a CARMEN log or a ROS bag: a list of (odometry, `Scan`), the odometry (3,): x m, y m, theta rad.

@@ -1,4 +1,4 @@
-"""Data of the tests: real recordings where they lie beside the project, simulated ones everywhere."""
+"""Data of the tests: real recordings if present beside the project, and simulated ones."""
 
 import pathlib
 
@@ -10,7 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def shared(name):
-    """A file or folder of the shared data; the test is skipped by name where it is absent."""
+    """A file or folder of the shared data. The test is skipped by name if it is absent."""
     found = ROOT.parent / "shared/data" / name
     return found if found.exists() else pytest.skip(f"{name} is absent")
 
@@ -22,7 +22,7 @@ def tum_folder():
 
 @pytest.fixture(scope="session")
 def images():
-    """Eight images of a room, seen by a robot that drives a gentle arc."""
+    """Eight images of a room from a robot that drives an arc."""
     simulator = trundle.Simulator("room", 1)
     found = []
     while len(found) < 8:
@@ -38,5 +38,5 @@ def room():
 
 @pytest.fixture
 def wall_scan():
-    """Ten beams onto a wall 2 m ahead."""
+    """Ten beams that hit a wall 2 m ahead."""
     return trundle.Scan(0.0, np.full(10, 2.0), 0.0, 0.002, range_max=10.0)

@@ -1,4 +1,4 @@
-"""Input that is none: the expected form is named, and nothing panics."""
+"""Invalid input: the error names the expected form, without a panic."""
 
 import inspect
 import itertools
@@ -122,7 +122,7 @@ def test_junk_of_every_kind_is_refused_without_panic(name, call):
     chance = np.random.default_rng(len(name))
     tries = [()] + [(junk,) * count for junk in JUNK for count in range(1, 4)]
     tries += [tuple(JUNK[i] for i in chance.integers(len(JUNK), size=chance.integers(1, 7))) for _ in range(150)]
-    # A simulator of a room takes a while.
+    # Creating a simulator of a room takes seconds.
     for arguments in tries[:: 4 if call is trundle.Simulator else 1]:
         try:
             call(*arguments)

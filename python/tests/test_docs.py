@@ -1,4 +1,4 @@
-"""Every docstring is there, its examples are true, and the stubs have the module's names."""
+"""Docstrings of all public objects, their examples, and the names of the stubs."""
 
 import doctest
 import inspect
@@ -13,7 +13,7 @@ from trundle import _native
 
 
 def documented():
-    """Name and object of everything public."""
+    """Names of all public objects, with the objects."""
     for module in [trundle, trundle.evaluate, trundle.gym]:
         yield module.__name__, module
     for name in trundle.__all__:

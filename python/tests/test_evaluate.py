@@ -1,4 +1,4 @@
-"""ATE and RPE against evo, on real trajectories and on made-up ones."""
+"""ATE and RPE against evo, on real and on synthetic trajectories."""
 
 import copy
 

@@ -15,7 +15,7 @@ def test_the_checker_finds_nothing():
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always")
         check_env(DriveToGoal("room"), skip_render_check=True)
-    # The checker advises bounds of 1 for actions; ours are in m/s and rad/s.
+    # The checker advises bounds of 1 for actions, but these bounds are in m/s and rad/s.
     texts = [str(warning.message) for warning in found if "normalized" not in str(warning.message)]
     assert not [text for text in texts if "infinity" not in text], texts
 

@@ -1,4 +1,4 @@
-"""The simulator, the whole robot on it, and on a body of Python."""
+"""The simulator, and the whole robot on the simulator and on a body in Python."""
 
 import numpy as np
 import pytest

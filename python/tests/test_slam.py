@@ -1,4 +1,4 @@
-"""SLAM: arrays in, poses out, the same bits as without Python."""
+"""SLAM: arrays in, poses out, bit-identical to the Rust crate."""
 
 import itertools
 

@@ -1,4 +1,4 @@
-"""Long calls release the interpreter's lock; two threads in one object are refused."""
+"""Long calls release the interpreter's lock; two threads on one object are refused."""
 
 import threading
 import time

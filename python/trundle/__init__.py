@@ -13,8 +13,8 @@ z up; the camera's is x right, y down, z forward.
 | run the whole robot | `Robot`, `RobotConfig` and the events `Wheels`, `Gyro`, `Rgbd`, `Scan`, `Touch`, `Cliff`, `Odometry`, `BodyCondition` |
 | evaluate | `trundle.evaluate` |
 
-One object is for one thread at a time: a call on an object that another thread is in raises `RuntimeError`. Long calls release the
-interpreter's lock, so that objects of their own run on as many cores as there are threads.
+An object is used by one thread at a time: a concurrent call on the same object raises `RuntimeError`. Long calls release the
+interpreter's lock, so that separate objects run in parallel, one per thread.
 """
 
 from importlib.metadata import PackageNotFoundError, version

@@ -1,4 +1,4 @@
-"""Types of the native module; `help(trundle.RgbdSlam)` and the like print what they do, with shapes and units."""
+"""Types of the native module. `help(trundle.RgbdSlam)` prints the documentation of a class, with shapes and units."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any, Literal, final

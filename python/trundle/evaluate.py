@@ -1,4 +1,4 @@
-"""Errors of a trajectory against the truth: the numbers of evo.
+"""Errors of a trajectory against the truth. The numbers equal evo's.
 
 >>> import numpy as np
 >>> t = np.linspace(0, 6, 61)

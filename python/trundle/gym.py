@@ -1,7 +1,7 @@
 """Gymnasium environments on trundle's simulator: drive to a goal by laser.
 
-`DriveToGoal` is one environment, `DriveToGoalVector` many of them that step on all cores. Both give the same observations, rewards and
-endings for the same seeds and actions. Importing this module registers both as `trundle/DriveToGoal-v0`.
+`DriveToGoal` is one environment; `DriveToGoalVector` is a vector of environments that step on all cores. Both give the same
+observations, rewards and endings for the same seeds and actions. The import of this module registers both as `trundle/DriveToGoal-v0`.
 
 >>> import gymnasium
 >>> env = gymnasium.make("trundle.gym:trundle/DriveToGoal-v0", scene="room")
@@ -25,9 +25,9 @@ from numpy.typing import NDArray
 
 from ._native import RobotConfig, SimulatorPool
 
-#: Distance to the goal at which it counts as reached, m. Source: ours.
+#: Distance within which a goal counts as reached, m. Source: ours.
 REACHED_M = 0.3
-#: Reward for reaching the goal. Progress counts 1 a metre. Source: ours.
+#: Reward for reaching the goal. Progress counts 1 per metre. Source: ours.
 GOAL_REWARD = 10.0
 #: Reward for each contact with an obstacle. Source: ours.
 CONTACT_REWARD = -1.0
@@ -40,11 +40,11 @@ class DriveToGoal(gymnasium.Env[Observation, NDArray[np.float32]]):
 
     Action, float32 of shape (2,): v m/s, omega rad/s for one period.
 
-    Observation, a dictionary of float32: `ranges` (beams,) m, `range_max` where a beam met nothing and 0 where nothing is known; `goal`
-    (3,) the goal seen from the base, x m, y m, theta rad; `twist` (2,) the last action.
+    Observation, a dictionary of float32: `ranges` (beams,) m, with `range_max` for a beam without a hit and 0 for an unknown range;
+    `goal` (3,), the goal in the base frame, x m, y m, theta rad; `twist` (2,), the last action.
 
-    Reward: metres nearer to the goal, `GOAL_REWARD` at the goal, `CONTACT_REWARD` for each contact. Terminated at the goal, truncated at
-    the time limit. `info`: `distance` m, `contacts`, and `pose` (3,) and `clearance` m, the truth.
+    Reward: metres of progress to the goal, `GOAL_REWARD` at the goal, `CONTACT_REWARD` for each contact. Terminated at the goal, truncated at
+    the time limit. `info`: `distance` m, `contacts`, and the true `pose` (3,) and `clearance` m.
     """
 
     metadata: dict[str, Any] = {"render_modes": [], "render_fps": 10}
@@ -59,7 +59,7 @@ class DriveToGoal(gymnasium.Env[Observation, NDArray[np.float32]]):
         time_limit: float = 60.0,
         render_mode: str | None = None,
     ) -> None:
-        """Scene and laser are those of `trundle.Simulator`; `period` s an action lasts, `time_limit` s until truncation."""
+        """Scene and laser as for `trundle.Simulator`; `period` s is the duration of an action, `time_limit` s the time until truncation."""
         if render_mode is not None:
             raise ValueError(f"render_mode is {render_mode!r}, expected None")
         self.render_mode = None
@@ -70,7 +70,7 @@ class DriveToGoal(gymnasium.Env[Observation, NDArray[np.float32]]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Starts anew; the seed is that of scene and noise."""
+        """Restarts the environment; `seed` is the seed of scene and noise."""
         super().reset(seed=seed)
         self._worlds.reset(np.array([0]), [_world_seed(self.np_random)])
         return self._worlds.observation(0), self._worlds.info(0)
@@ -83,10 +83,10 @@ class DriveToGoal(gymnasium.Env[Observation, NDArray[np.float32]]):
 
 
 class DriveToGoalVector(VectorEnv[Observation, NDArray[np.float32], NDArray[Any]]):
-    """Many `DriveToGoal`, stepped by all cores with the interpreter's lock released.
+    """A vector of `DriveToGoal`, stepped by all cores without the interpreter's lock.
 
-    An environment that has ended starts anew in the next step, whose action it ignores (`AutoresetMode.NEXT_STEP`). Environment i of a
-    reset with seed s is that of `DriveToGoal` with seed s + i.
+    An ended environment restarts in the next step and ignores the action of that step (`AutoresetMode.NEXT_STEP`). Environment i of a
+    reset with seed s equals a `DriveToGoal` with seed s + i.
     """
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
@@ -102,7 +102,7 @@ class DriveToGoalVector(VectorEnv[Observation, NDArray[np.float32], NDArray[Any]
         time_limit: float = 60.0,
         render_mode: str | None = None,
     ) -> None:
-        """As `DriveToGoal`, `num_envs` times."""
+        """The arguments are those of `DriveToGoal`; `num_envs` is the number of environments."""
         super().__init__()
         if render_mode is not None:
             raise ValueError(f"render_mode is {render_mode!r}, expected None")
@@ -119,7 +119,7 @@ class DriveToGoalVector(VectorEnv[Observation, NDArray[np.float32], NDArray[Any]
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Starts all anew; environment i takes `seed + i`, or `seed[i]`."""
+        """Restarts all environments; environment i has the seed `seed + i`, or `seed[i]`."""
         seeds: list[int | None] = [None] * self.num_envs
         if isinstance(seed, int):
             seeds = [seed + i for i in range(self.num_envs)]
@@ -138,7 +138,7 @@ class DriveToGoalVector(VectorEnv[Observation, NDArray[np.float32], NDArray[Any]
     def step(
         self, actions: NDArray[np.float32]
     ) -> tuple[Observation, NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
-        """Drives all for one period."""
+        """Drives all robots for one period."""
         ended = self._ended.copy()
         rewards, terminated, truncated = self._worlds.step(np.asarray(actions, np.float32), ~ended)
         if ended.any():
@@ -149,7 +149,7 @@ class DriveToGoalVector(VectorEnv[Observation, NDArray[np.float32], NDArray[Any]
 
 
 class _Worlds:
-    """The simulators of both environments, and what an action brings."""
+    """The simulators of both environments, with rewards and endings."""
 
     def __init__(self, count: int, scene: str, laser: str, noise: bool, period: float, time_limit: float) -> None:
         if count < 1:
@@ -175,7 +175,7 @@ class _Worlds:
         )
 
     def reset(self, indices: NDArray[Any], seeds: list[int]) -> None:
-        """Starts some anew, and waits there for one period, for a first scan."""
+        """Restarts some worlds, and waits for one period for the first scan."""
         self.pool.reset([int(i) for i in indices], seeds)
         waiting = np.full((len(self.steps), 2), np.nan)
         waiting[indices] = 0.0
@@ -186,7 +186,7 @@ class _Worlds:
         self.has_started = True
 
     def step(self, actions: NDArray[np.float32], active: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
-        """Drives the active ones: rewards, whether they are at the goal, whether their time is up."""
+        """Drives the active robots; returns rewards, whether each is at its goal, and whether its time is over."""
         if not self.has_started:
             raise gymnasium.error.ResetNeeded("step before reset")
         if actions.shape != self.twists.shape:
@@ -204,7 +204,7 @@ class _Worlds:
         return np.where(active, rewards, 0.0), reached, active & ~reached & (self.steps >= self.max_steps)
 
     def observations(self) -> Observation:
-        """Of all, stacked."""
+        """Observations of all robots, stacked."""
         ranges = np.nan_to_num(self.pool.ranges(), nan=0.0, posinf=float(self.range_max)).clip(0, self.range_max)
         poses, goals = self.pool.poses(), self.pool.goals()
         ahead, left = (goals[:, :2] - poses[:, :2]).T
@@ -214,11 +214,11 @@ class _Worlds:
         return {"ranges": ranges, "goal": goal, "twist": self.twists.copy()}
 
     def observation(self, index: int) -> Observation:
-        """Of one."""
+        """Observation of one robot."""
         return {key: values[index] for key, values in self.observations().items()}
 
     def infos(self) -> dict[str, Any]:
-        """Of all, stacked."""
+        """Information on all robots, stacked."""
         return {
             "distance": self.distances.copy(),
             "contacts": self.contacts.copy(),
@@ -227,7 +227,7 @@ class _Worlds:
         }
 
     def info(self, index: int) -> dict[str, Any]:
-        """Of one."""
+        """Information on one robot."""
         return {key: values[index] for key, values in self.infos().items()}
 
     def _distances(self) -> NDArray[Any]:

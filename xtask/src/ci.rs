@@ -1,7 +1,7 @@
 //! Everything that must hold before a change is merged.
 
 use crate::workspace::Verdict;
-use crate::{fault_scenarios, fuzz, golden, packages, program, replay_check, tidy};
+use crate::{book, fault_scenarios, fuzz, golden, packages, program, replay_check, tidy};
 use std::path::Path;
 use std::time::Instant;
 
@@ -16,7 +16,7 @@ const TEST: Step = Step {
     check: |root| program::cargo(root, &["test", "--workspace"], &[]),
 };
 
-const REST: [Step; 11] = [
+const REST: [Step; 12] = [
     Step {
         name: "cargo fmt --all --check",
         check: |root| program::cargo(root, &["fmt", "--all", "--check"], &[]),
@@ -42,6 +42,7 @@ const REST: [Step; 11] = [
     },
     Step { name: "cargo xtask golden", check: golden_net },
     Step { name: "trundle demo", check: demo },
+    Step { name: "cargo xtask book", check: book::run },
     Step { name: "cargo xtask replay-check", check: |root| replay_check::run(root, 1) },
     Step { name: "cargo xtask fault-scenarios", check: fault_scenarios::run },
 ];

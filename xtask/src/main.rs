@@ -1,13 +1,15 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | golden | packages | dist | deb | reproduce | results | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | book | golden | packages | dist | deb | reproduce | results | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
 mod aarch64;
+mod book;
 mod ci;
 mod compare;
 mod dist;
 mod fault_scenarios;
 mod fuzz;
 mod golden;
+mod markdown;
 mod packages;
 mod program;
 mod replay_check;
@@ -46,6 +48,14 @@ enum Chore {
         /// Take up all findings into the allow-list: for a new rule only.
         #[arg(long, hide = true)]
         grow: bool,
+    },
+    /// Run the tested commands of docs, build the book with mdbook, and check its links. The build is skipped if mdbook is missing.
+    Book,
+    /// Replace links of the book to files outside docs: called by mdbook, with its JSON on standard input.
+    #[command(hide = true)]
+    BookLinks {
+        /// `supports RENDERER`: mdbook's question whether the renderer is supported.
+        question: Vec<String>,
     },
     /// Compare hashes of twists, poses, grids, maps and plans with the committed ones.
     Golden {
@@ -123,6 +133,8 @@ fn main() -> ExitCode {
         Chore::Ci { tested } => ci::run(&root, tested),
         Chore::Tidy { shrink, grow } if shrink || grow => tidy::shrink(&root, grow),
         Chore::Tidy { .. } => tidy::run(&root),
+        Chore::Book => book::run(&root),
+        Chore::BookLinks { question } => book::repository_links::run(&question),
         Chore::Golden { update, only, profile } => {
             golden::run(&root, &golden::Options { update, only, profile })
         }

@@ -41,7 +41,7 @@ pub struct Cli {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Drive through a simulated room on camera, wheels and gyro alone.
+    /// Drive through a simulated room by camera, wheels and gyro.
     Demo(DemoArgs),
     /// Drive a real robot: base, depth camera, mission.
     Run(RunArgs),
@@ -56,7 +56,7 @@ pub enum Command {
     Map(MapArgs),
     /// Convert RGB-D images with their poses: ROS bag, TUM folder, recording.
     Convert(ConvertArgs),
-    /// Measure the robot's own numbers: camera, mount, wheels, image delay.
+    /// Calibrate the robot: camera, mount, wheels, image delay.
     Calibrate(CalibrateArgs),
     /// Evaluate a trajectory or a map against the truth.
     Eval(EvalArgs),

@@ -35,13 +35,13 @@ pub struct RobotArgs {
     /// Robot file (see `trundle config`).
     #[arg(long, value_name = "FILE")]
     pub config: Option<PathBuf>,
-    /// Set one key on top of the robot file, as `--set control.settling.speed_m_s=0.2`; may be given again.
+    /// Set one key in place of the robot file's, as `--set control.settling.speed_m_s=0.2`; may be repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
 }
 
 impl RobotArgs {
-    /// The robot: the file's or the default one, with the keys set on top.
+    /// The robot of the file, or the default one, with the keys of `--set`.
     ///
     /// # Errors
     /// Names the file or the key, and the fault.
@@ -64,7 +64,7 @@ pub struct MeshArgs {
     /// The axis that points up in a .glb or .gltf.
     #[arg(long, value_name = "AXIS", default_value = "y", hide_short_help = true, value_parser = choice(&UpAxis::CHOICES))]
     pub up: UpAxis,
-    /// Metres a unit of a .glb or .gltf, as 0.01 for centimetres [default: 1]
+    /// Metres per unit of a .glb or .gltf, as 0.01 for centimetres [default: 1]
     #[arg(long, value_name = "M", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub scale: Option<f64>,
     /// Height of the floor in a .glb or .gltf, m: it is moved to z = 0 [default: the lowest large level]

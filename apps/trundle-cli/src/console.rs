@@ -127,7 +127,7 @@ fn hidden_if(quiet: bool, bar: ProgressBar) -> ProgressBar {
     bar
 }
 
-/// Whether a line can be shown and replaced: on a terminal, and not on one that only appends (`TERM=dumb`).
+/// Whether a line can be shown and replaced: on a terminal other than `TERM=dumb`.
 fn can_replace_a_line(is_terminal: bool, term: &str) -> bool {
     is_terminal && term != "dumb"
 }
@@ -139,7 +139,7 @@ mod tests {
     use std::io;
     use std::sync::{Arc, Mutex};
 
-    /// A terminal of some width that keeps the lines drawn.
+    /// A terminal of some width that records its lines.
     #[derive(Debug, Clone)]
     struct Screen {
         width: u16,

@@ -1,4 +1,4 @@
-//! `trundle convert`: RGB-D images with their poses in another form.
+//! `trundle convert`: RGB-D images with their poses, in another format.
 
 use crate::common_args::{BagTopicsArgs, Common};
 use crate::outcome::Outcome;

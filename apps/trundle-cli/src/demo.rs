@@ -88,7 +88,7 @@ fn drive(args: &DemoArgs, setup: &RunSetup, mut body: Simulator) -> Result<Outco
     run_output::write(setup, run?, None, folder, args.common.quiet)
 }
 
-/// The requested goals, or the scene's own; unless the drive is direct, with exploration before and the return after them.
+/// The requested goals, or the scene's. Unless the drive is direct, exploration precedes the goals and the return follows.
 fn mission(args: &DemoMissionArgs, scene: &Scene) -> Result<Mission, AppError> {
     let mut goals: Vec<Pose2> = args.goal.iter().map(|goal| goal.0).collect();
     if goals.is_empty() && !(args.direct && args.dock) {

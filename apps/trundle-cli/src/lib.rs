@@ -40,14 +40,14 @@ use std::ffi::OsString;
 use trundle::app::{AppError, on_threads, stop};
 use trundle::io::{abandon_outputs, abandon_unfinished, wait_for_abandonment};
 
-/// Runs the command line of these arguments, the program's name first. The result is the exit code of the process, which does nothing else:
-/// a command takes over Ctrl-C and SIGTERM, and starts the log.
+/// Runs the command line of these arguments, the program's name first. Returns the exit code of the process. A command handles Ctrl-C and
+/// SIGTERM, and starts the log, so the process must do nothing else.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let matches = with_negative_numbers(Cli::command()).try_get_matches_from(arguments);
     let (cli, matches) = match matches.and_then(|found| Ok((Cli::from_arg_matches(&found)?, found))) {
         Ok(parsed) => parsed,
         Err(usage) => {
-            // Help and version too. A terminal without a reader is no error here.
+            // This case includes help and version. A closed standard output is no error here.
             let _ = usage.print();
             return usage.exit_code() as u8;
         }
@@ -62,13 +62,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     }
 }
 
-/// Takes Ctrl-C as a request if the command has long loops, which read it; else it ends the program.
+/// Handles Ctrl-C: a request to stop for commands with long loops, the end of the program for others.
 fn listen(command: &Command) -> Result<(), AppError> {
     use Command::{Calibrate, Convert, Demo, Experiment, GuardBase, Map, Replay, Run, Sim, Slam};
     match command {
         Calibrate(_) | Convert(_) | Demo(_) | Run(_) | Replay(_) | Slam(_) | Map(_) | Sim(_)
         | Experiment(_) => stop::listen(end_unfinished),
-        // A guard outlives the program that it guards.
+        // A guard must outlive its program.
         GuardBase => stop::ignore(),
         #[cfg(feature = "ros2")]
         Command::Ros2(_) => stop::listen(end_unfinished),
@@ -82,7 +82,7 @@ fn listen(command: &Command) -> Result<(), AppError> {
     }
 }
 
-/// At a second signal: results that are being moved to their place are complete after this, others are removed.
+/// Handles a second signal: completes results that are being moved to their place, and removes others.
 fn end_unfinished(signal: stop::StopSignal) {
     abandon_unfinished();
     console::print_stopped(signal.name(), ", the second signal; unfinished results are removed");

@@ -54,8 +54,8 @@ impl LiveArgs {
         self.zones.as_deref().map_or(Ok(setup.clone()), |file| setup.with_annotations_of(file))
     }
 
-    /// The requested page and broker link of a run, and the run's companions. `link`: the link of another front end. A run that is not
-    /// steered accepts no commands.
+    /// The requested page and broker link of a run, and the run's companions. `link` is the link of another front end. A run without an
+    /// operator accepts no commands.
     pub fn beside(
         &self,
         setup: &RunSetup,

@@ -23,20 +23,20 @@ use trundle::io::{LaserLogOptions, MapImage};
     summary.json."
 )]
 pub struct MapArgs {
-    /// A CARMEN log (or .log.gz), a ROS 2 bag (folder, .mcap, .mcap.zst, .db3), a recording of trundle or a TUM RGB-D folder,
-    /// whose odometry is the motion.
+    /// A CARMEN log (or .log.gz), a ROS 2 bag (folder, .mcap, .mcap.zst, .db3), a recording of trundle or a TUM RGB-D folder. Its odometry
+    /// gives the motion.
     pub log: PathBuf,
     /// Read a recording of trundle that is cut, as by a power failure, up to the cut. A bag is always read up to its cut.
     #[arg(long)]
     pub recover: bool,
-    /// The motion of RGB-D images: the camera's trajectory that `trundle slam` wrote, or another in TUM format. Each pose is
-    /// accepted as exact to 1 cm and 0.003 rad (in a new map), and no loops are looked for.
+    /// Motion of RGB-D images: the camera's trajectory from `trundle slam`, or another in TUM format. In a new map each pose is accepted
+    /// with 1 cm and 0.003 rad (one sigma), and no loops are searched.
     #[arg(long, value_name = "FILE")]
     pub poses: Option<PathBuf>,
-    /// These poses drift, as of odometry by images that closes no loops: only their steps are accepted, and loops are looked for.
+    /// The --poses drift, as those of visual odometry without loop closure: only their steps are used, and loops are searched.
     #[arg(long, requires = "poses")]
     pub poses_drift: bool,
-    /// Particles of the filter.
+    /// Number of particles of the filter.
     #[arg(long, value_name = "N", default_value_t = 30, value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub particles: u16,
     /// Format of the map's picture.
@@ -54,16 +54,16 @@ pub struct MapArgs {
     /// The topics of a bag.
     #[command(flatten)]
     pub topics: BagTopicsArgs,
-    /// Take all beams of a scan as measured at its stamp, also where the log says the time of each.
+    /// Treat all beams of a scan as measured at its stamp, even if the log has the time of each.
     #[arg(long)]
     pub no_deskew: bool,
-    /// Go on with the map of an earlier run, its filter.map: the robot is looked for in it first.
+    /// Continue the map of an earlier run, its filter.map, after localization of the robot in it.
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
-    /// Only find the robot in that map, a filter.map or a map.yaml, and follow it: the map does not change.
+    /// Only localize the robot in the --map, a filter.map or a map.yaml, which does not change.
     #[arg(long, requires = "map")]
     pub localise: bool,
-    /// Folder for the results; the last run in it is kept as DIR.1
+    /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/map")]
     pub out: OutputDirArg,
     /// Options of every command.
@@ -80,7 +80,7 @@ pub fn run(args: &MapArgs) -> Result<Outcome, AppError> {
     let folder = logging::output_folder(&args.out)?;
     let run = map_log(&request, args.localise, &input, &folder, &display)?;
     let place = folder.commit()?;
-    // Entries that were skipped, ranges that cannot be, a laser mounted otherwise.
+    // Warnings: skipped entries, impossible ranges, another mount of the laser.
     let warn = |problem: &dyn Display| console::warn(&format!("{}: {problem}", args.log.display()));
     input.log.warnings().iter().for_each(|warning| warn(&warning));
     run.mount_hint.iter().for_each(|hint| warn(hint));

@@ -1,4 +1,4 @@
-//! The end of a command: its exit code, and a sentence if the command missed its aim.
+//! The end of a command: its exit code, and a sentence on failure.
 
 use crate::console;
 use std::path::PathBuf;
@@ -6,7 +6,7 @@ use trundle::app::exit_codes::{CODE_BAD_INPUT, CODE_INCOMPLETE, CODE_MISSED};
 use trundle::app::{AppError, stop};
 use trundle::io::IoError;
 
-/// Whether a completed command reached its aim.
+/// Result of a completed command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
     /// Exit code 0.
@@ -16,7 +16,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// Reached, or missed for a reason that is printed.
+    /// Reached without a failure; else missed, and the reason is printed.
     pub fn unless(failure: Option<String>) -> Self {
         failure.map_or(Self::Reached, |failure| {
             console::print_error(&AppError::Input(failure));
@@ -25,7 +25,7 @@ impl Outcome {
     }
 }
 
-/// The exit code of a command that writes into `folders`; says on the terminal why it is not 0.
+/// The exit code of a command that writes into `folders`; prints the reason of a code other than 0.
 pub fn end(result: Result<Outcome, AppError>, folders: &[PathBuf]) -> u8 {
     let result = match console::print_failure() {
         Some(error) if result.is_ok() => Err(AppError::Io(IoError::unprinted(error))),

@@ -1,4 +1,4 @@
-//! Arguments that name results, and all others that name files: no result replaces an input.
+//! Arguments for results and for inputs: no result replaces an input.
 
 use clap::ArgMatches;
 use std::ffi::OsString;
@@ -16,7 +16,7 @@ pub struct OutputDirArg(PathBuf);
 #[derive(Debug, Clone)]
 pub struct OutputFileArg(PathBuf);
 
-/// A file that a command reads at its start and may later replace by its own newer result.
+/// A file that a command reads at its start and may replace by its own newer result.
 #[derive(Debug, Clone)]
 pub struct ContinuedFileArg(PathBuf);
 
@@ -65,9 +65,9 @@ impl Deref for OutputFileArg {
 /// The inputs of the present command.
 static INPUTS: OnceLock<InputFiles> = OnceLock::new();
 
-/// Refuses results that would replace an input; the folders that the command writes.
+/// Refuses results that would replace an input; returns the folders that the command writes.
 ///
-/// Every argument that is a path is an input, and so is every text that names a file, except those of the types above.
+/// Inputs are all path arguments, and all texts that name a file, except those of the types above.
 ///
 /// # Errors
 /// Names the result and the input, or the conflicting files.

@@ -1,4 +1,4 @@
-//! `trundle replay`: the robot again, on a recording.
+//! `trundle replay`: a repeated run of the robot on a recording.
 
 use crate::common_args::Common;
 use crate::live::LiveArgs;
@@ -21,7 +21,7 @@ pub struct ReplayArgs {
     /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/replay")]
     pub out: OutputDirArg,
-    /// The live page: it shows, and takes no commands.
+    /// The live page, which accepts no commands.
     #[command(flatten)]
     pub live: LiveArgs,
     /// Options of every command.

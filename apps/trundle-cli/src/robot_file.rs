@@ -14,13 +14,13 @@ use trundle::runtime::settings::to_commented_toml;
 pub struct ConfigArgs {
     /// Check this robot file and print it completely, with defaults for missing keys.
     pub file: Option<PathBuf>,
-    /// Set one key on top of the file; may be given again.
+    /// Set one key in place of the file's; may be repeated.
     #[arg(long, value_name = "KEY=VALUE")]
     pub set: Vec<String>,
     /// Print the JSON schema of robot files instead, for editors.
     #[arg(long)]
     pub schema: bool,
-    /// Write robot.toml, robot.schema.json and summary.json into this folder too.
+    /// Also write robot.toml, robot.schema.json and summary.json into this folder.
     #[arg(long, value_name = "DIR")]
     pub out: Option<OutputDirArg>,
     /// Print nothing.

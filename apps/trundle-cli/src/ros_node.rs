@@ -12,13 +12,13 @@ use trundle::runtime::RobotConfig;
 /// Network and names of a ROS 2 node.
 #[derive(Debug, Args)]
 pub struct RosArgs {
-    /// Domain: nodes of different domains do not see each other [default: ROS_DOMAIN_ID, else 0]
+    /// Domain: nodes of different domains do not communicate [default: ROS_DOMAIN_ID, else 0]
     #[arg(long, value_name = "N")]
     pub ros_domain: Option<u16>,
     /// Networks: loopback, all, or addresses of interfaces. Every computer on these networks can drive the robot.
     #[arg(long, value_name = "IP|all", default_value = "loopback")]
     pub ros_interface: Networks,
-    /// Last: remappings, namespace and parameters, as every ROS 2 node takes them.
+    /// As the last option: remappings, namespace and parameters, as of every ROS 2 node.
     #[arg(long, value_name = "ARG", num_args = 1.., allow_hyphen_values = true)]
     pub ros_args: Vec<String>,
 }

@@ -1,4 +1,4 @@
-//! `trundle vocabulary`: trains, measures and exchanges the visual vocabulary by which places are recognised.
+//! `trundle vocabulary`: trains, measures and converts the visual vocabulary of place recognition.
 
 mod args;
 

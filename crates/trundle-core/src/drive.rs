@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DifferentialDrive {
-    /// Radius of the driven wheels, m.
+    /// Radius of the driven wheels, m. Calibration estimates the remaining error. Without the table 0.035: the Kobuki.
     pub wheel_radius: f64,
-    /// Distance between the driven wheels, m.
+    /// Distance between the driven wheels, m. Without the table 0.23: the Kobuki.
     pub wheelbase: f64,
-    /// Encoder ticks a wheel turn.
+    /// Number of encoder ticks per wheel turn. Without the table 2578.33: the Kobuki.
     pub ticks_per_turn: f64,
 }
 
@@ -57,15 +57,15 @@ impl DifferentialDrive {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DriveLimits {
-    /// Highest speed of either wheel's rim, m/s: |v| + wheelbase / 2 |omega| stays below it.
+    /// Highest speed of each wheel, m/s, which bounds |v| + wheelbase / 2 |omega|. Without the table 0.7: the Kobuki.
     pub wheel_speed: f64,
-    /// Highest forward speed, m/s.
+    /// Highest forward speed, m/s. Without the table 0.7: the Kobuki.
     pub v: f64,
-    /// Highest turn rate, rad/s.
+    /// Highest turn rate, rad/s. Without the table 3.14 (180 deg/s): the Kobuki.
     pub omega: f64,
-    /// Highest change of forward speed, m/s^2.
+    /// Highest acceleration and deceleration, m/s^2. Without the table 0.5 (ours): gentle enough for a robot of 1 m height.
     pub acceleration: f64,
-    /// Highest change of turn rate, rad/s^2.
+    /// Highest angular acceleration and deceleration, rad/s^2. Without the table 3 (ours).
     pub angular_acceleration: f64,
 }
 
@@ -85,7 +85,7 @@ impl DriveLimits {
         angular_acceleration: 3.0,
     };
 
-    /// Passes valid limits through.
+    /// Returns valid limits unchanged.
     ///
     /// # Errors
     /// When a number is not finite and positive.

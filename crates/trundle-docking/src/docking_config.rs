@@ -29,40 +29,41 @@ impl Method {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DockingConfig {
-    /// Planning method. Default: the optimal one.
+    /// Planning method. Default optimal.
     pub method: Method,
     /// Speeds, and the pause between two motions.
     pub limits: MotionLimits,
-    /// Distance from every obstacle, m, 0 to 0.5. Default 0.01 (ours: the position tolerance). A smaller margin is used where start
-    /// or goal are nearer, or where no manoeuvre keeps it.
+    /// Distance of manoeuvres from obstacles, m, 0 to 0.5. A smaller margin is used if start or goal are nearer, or if no manoeuvre keeps
+    /// the margin. Default 0.01 (ours: the position tolerance); in the robot file 0.05, above `safety.stop_margin_m`.
     pub margin: f64,
-    /// Part of the time that a smaller margin must save, 0 to 1. Default 0.25 (ours). 1 keeps the margin wherever a manoeuvre does,
-    /// as [`crate::Positioner`] always does: its poses are measured with noise.
+    /// Fraction of the time that a smaller margin must save, 0 to 1. With 1 the margin is kept whenever a manoeuvre exists, as in
+    /// [`crate::Positioner`], whose measured poses are noisy. Default 0.25 (ours).
     pub margin_saving: f64,
-    /// Overlap of start or goal with an obstacle that counts as an error of the pose, m, 0 to 0.02. Default 0.
+    /// Largest overlap of start or goal with an obstacle that counts as an error of the pose, m, 0 to 0.02. Default 0.
     pub overlap: f64,
-    /// Distance beyond the line from start to goal within which a manoeuvre stays, m, 0.1 to 10. Default 1.5 (ours).
+    /// Distance from the line between start and goal within which manoeuvres are searched, m, 0.1 to 10. A larger value finds more and
+    /// takes longer. Default 1.5 (ours).
     pub reach: f64,
-    /// Largest distance of the goal, m, 0.1 to 20: farther goals need a path first. Default 5 (ours).
+    /// Largest distance of the goal, m, 0.1 to 20. Farther goals need a path first. Default 5 (ours).
     pub max_distance: f64,
     /// Tolerance of the position, m, 0.001 to 0.1; also the side of the certificate's cells. Default 0.01.
     pub position_tolerance: f64,
-    /// Tolerance of the heading, rad, 0.001 to 0.2. Default 1 deg.
+    /// Tolerance of the heading, rad, 0.001 to 0.2. Default 0.0175 (1 deg).
     pub heading_tolerance: f64,
-    /// Nodes of the search for manoeuvres of three and more straight moves, 0 to 10^7. Default 2500 (ours: a second at most, in
-    /// hard problems only).
+    /// Maximum number of nodes in the search for manoeuvres of three and more straight moves, 0 to 10^7. More find more manoeuvres and take
+    /// longer. Default 2500 (ours: at most a second, in hard problems only).
     pub search_nodes: usize,
-    /// Cost limit of the search for many motions per margin, in counted steps of some 10 ns ([`crate::ContactSpace::work`]), 10^5 to
-    /// 10^11. Default 5 * 10^7 (ours: half a second; the hardest of 5,000 corridor problems takes a third of it).
+    /// Cost limit of the search for many motions per margin, in counted steps of some 10 ns ([`crate::ContactSpace::work`]), 10^5 to 10^11.
+    /// Default 5 * 10^7 (ours: half a second; the hardest of 5,000 corridor problems takes a third of it); in the robot file 5 * 10^6.
     pub max_work: u64,
-    /// Cost limit of a whole plan, in the same steps, 10^5 to 10^11: the plan then reports what it has. Default 2 * 10^8 (ours: two
-    /// seconds; the hardest of 5,000 corridor problems takes half of it).
+    /// Cost limit of a whole plan, in the same counted steps, 10^5 to 10^11. At the limit the best manoeuvre so far is the result. Default
+    /// 2 * 10^8 (ours: two seconds; the hardest of 5,000 corridor problems takes half of it); in the robot file 2 * 10^7.
     pub plan_work: u64,
-    /// Cost limit of a whole plan among more than 200 points, if that is less. Default 6 * 10^6 (ours: less than 100 ms among a
-    /// hundred thousand points).
+    /// Cost limit of a whole plan among more than 200 points, in the same counted steps, if smaller than `plan_work`. Default 6 * 10^6
+    /// (ours: less than 100 ms among a hundred thousand points).
     pub points_work: u64,
-    /// Boxes of the branch and bound, 0 to 10^8; fewer, in proportion, with more than 200 segments, as every box tests each.
-    /// Default 400 (ours: a few ms).
+    /// Number of boxes of the branch and bound for the lower bound, 0 to 10^8. With more than 200 segments the number is reduced in
+    /// proportion. Default 400 (ours: a few ms).
     pub bound_boxes: usize,
     /// Relative gap between time and lower bound at which the search ends, 0 to 1. Default 0.01.
     pub gap: f64,
@@ -93,7 +94,7 @@ impl Default for DockingConfig {
     }
 }
 
-/// Factor on the reach of the second search, if none is found within reach. Source: ours.
+/// Factor on the reach of the second search, if the first one finds no manoeuvre. Source: ours.
 pub(crate) const WIDER_REACH_FACTOR: f64 = 2.0;
 
 /// Distance beyond the positions of the base, besides the robot's own radius, within which obstacles matter, m. Source: ours.

@@ -1,9 +1,9 @@
-//! Wheels, gyro, visual poses and scan matches fused to one pose estimate.
+//! Fusion of wheels, gyro, visual poses and scan matches to one pose estimate.
 //!
-//! - [`WheelOdometry`]: encoder ticks and gyro to a continuous pose that drifts, with its covariance.
-//! - [`Localizer`]: an extended Kalman filter on SE(2). It corrects that odometry by visual poses and scan matches at the stamps
-//!   of their measurement, and yields the one [`trundle_core::PoseEstimate`] that planning and control use.
-//! - [`Smoother`]: poses of the last seconds and calibration by one least-squares problem; it runs beside the localizer.
+//! - [`WheelOdometry`]: continuous pose by encoder ticks and gyro, with drift, and its covariance.
+//! - [`Localizer`]: an extended Kalman filter on SE(2). It corrects the odometry by visual poses and scan matches at their stamps, and
+//!   yields the [`trundle_core::PoseEstimate`] of planning and control.
+//! - [`Smoother`]: poses of the last seconds and calibration by one least-squares problem, beside the localizer.
 //! - [`fuse_frames`]: one trajectory of a recorded sequence from several visual maps and the odometry between them.
 //! - [`StationEstimator`]: the pose of a charging station from its infrared light.
 //! - [`OdometryState`]: pose and covariance of the odometry at a stamp. With [`trundle_core::CameraMotion::of_base`] it is the

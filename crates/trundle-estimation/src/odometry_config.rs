@@ -9,51 +9,53 @@ use trundle_core::{Invalid, require_in};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct OdometryConfig {
-    /// Position along the motion, sigma after 1 m, m / sqrt(m), 0 to 1. Default 0.02: wheel radius and floor.
+    /// Noise of the position along the motion: sigma after 1 m, m / sqrt(m), 0 to 1. A larger value trusts images and scans more. Default
+    /// 0.02: wheel radius and floor.
     pub way_noise: f64,
-    /// Position across the motion, sigma after 1 m, m / sqrt(m), 0 to 1. Default 0.001: driven wheels roll and do not slide;
+    /// Noise of the position across the motion: sigma after 1 m, m / sqrt(m), 0 to 1. Default 0.001: driven wheels hardly slide sideways;
     /// models of odometry (Chong and Kleeman 1997) have no such noise.
     pub sideways_noise: f64,
-    /// Position, sigma after a turn of 1 rad, m / sqrt(rad), 0 to 1. Default 0.002: each wheel slips 2 mm in 0.1 m, and the
-    /// contact points of the tyres move.
+    /// Noise of the position by turns: sigma after a turn of 1 rad, m / sqrt(rad), 0 to 1. Default 0.002: each wheel slips 2 mm in 0.1 m,
+    /// and the contact points of the tyres move.
     pub spot_noise: f64,
-    /// Heading by the wheels, sigma after a turn of 1 rad, rad / sqrt(rad), 0 to 1. Default 0.05: the effective wheelbase
+    /// Noise of the heading by the wheels: sigma after a turn of 1 rad, rad / sqrt(rad), 0 to 1. Default 0.05: the effective wheelbase
     /// depends on the contact points of the tyres.
     pub wheel_turn_noise: f64,
-    /// Heading by the wheels, sigma after 1 m, rad / sqrt(m), 0 to 1. Default 0.02: unequal wheels.
+    /// Noise of the heading by the wheels: sigma after 1 m, rad / sqrt(m), 0 to 1. Default 0.02: unequal wheels.
     pub wheel_way_noise: f64,
-    /// Heading by the gyro, sigma after a turn of 1 rad, rad / sqrt(rad), 0 to 1, without the error of the scale. Default 0.002.
+    /// Noise of the heading by the gyro, besides the error of its scale: sigma after a turn of 1 rad, rad / sqrt(rad), 0 to 1. Default
+    /// 0.002.
     pub gyro_turn_noise: f64,
-    /// Heading by the gyro, sigma after 1 s, rad / sqrt(s), 0 to 1, without the error of the bias. Default 0.0007: the angle
+    /// Noise of the heading by the gyro, besides the error of its bias: sigma after 1 s, rad / sqrt(s), 0 to 1. Default 0.0007: the angle
     /// random walk of a small gyro, 0.04 deg / s / sqrt(Hz).
     pub gyro_time_noise: f64,
-    /// Prior sigma of a wheel's radius, as a part of the nominal one, 0 (never estimated) to 0.1. Default 0.01: worn tyres.
+    /// Prior sigma of a wheel's radius, as a fraction of the nominal one, 0 (never estimated) to 0.1. Default 0.01: worn tyres.
     pub wheel_radius_sigma: f64,
     /// Noise of one gyro reading (one sigma), rad/s, above 0, to 1. Default 0.005: a third more than 0.03 deg / s / sqrt(Hz) at 50 Hz.
     pub gyro_rate_noise: f64,
-    /// Prior sigma of the gyro's bias, rad/s, 0 (never estimated) to 1. Default 0.02.
+    /// Prior sigma of the gyro's bias at the start, rad/s, 0 (never estimated) to 1. Default 0.02.
     pub gyro_bias_sigma: f64,
     /// Prior sigma of the gyro's scale, ratio, 0 (never estimated) to 0.1. Default 0.005: a small gyro with a factory
     /// calibration.
     pub gyro_scale_sigma: f64,
-    /// Random walk of the bias, rad/s / sqrt(s), 0 to 0.1. Default 0.0002.
+    /// Random walk of the gyro's bias, rad/s / sqrt(s), 0 to 0.1. A larger value follows a changing bias sooner. Default 0.0002.
     pub gyro_bias_walk: f64,
-    /// Time of wheels at rest after which the robot counts as at rest, s, 0.05 to 10: the bias is then measured. Default 0.3.
+    /// Time of wheels at rest after which the robot counts as at rest, s, 0.05 to 10. The gyro's bias is then measured. Default 0.3.
     pub still_time: f64,
-    /// Largest age of the gyro's last reading, s, 0.02 to 2. An older reading means: no gyro. The last rate is held for as long.
+    /// Largest age of the gyro's last reading, s, 0.02 to 2. Up to this age its rate is extrapolated; beyond it the wheels give the turn.
     /// Default 0.05: two readings at 50 Hz.
     pub gyro_timeout: f64,
-    /// Largest difference of the turn rates by wheels and gyro without slip, rad/s, 0.01 to 10. Default 0.2: above the tick's
-    /// step (0.02 rad/s at 50 Hz) and a wheelbase wrong by 5 % at 180 deg/s.
+    /// Largest difference of the turn rates by wheels and gyro without slip, rad/s, 0.01 to 10. A smaller value detects weaker slips, and
+    /// false ones. Default 0.2: above the tick's step (0.02 rad/s at 50 Hz) and a wheelbase error of 5 % at 180 deg/s.
     pub slip_rate: f64,
-    /// Growth of the variance while slipping, per metre of difference between wheels and gyro, m, 0 to 10. Default 0.1: the
-    /// length of a slip.
+    /// Growth of the variance during a slip, per metre of difference between wheels and gyro, m, 0 to 10. Default 0.1: the length of a
+    /// slip.
     pub slip_length: f64,
     /// Largest speed of a wheel, m/s, 0.05 to 20. Faster readings are rejected. Default 2: three times the Kobuki's maximum.
     pub max_speed: f64,
     /// Largest time between two readings, s, 0.05 to 5. The motion in a longer gap counts as unknown. Default 0.6.
     pub max_gap: f64,
-    /// Speed of the unknown motion in a gap (one sigma), m/s, 0 to 10. Default 0.3. Turns count 3 rad per metre.
+    /// Speed of the unknown motion in a gap (one sigma), m/s, 0 to 10. The turn has 3 rad per metre. Default 0.3.
     pub gap_speed: f64,
 }
 

@@ -28,7 +28,7 @@ impl OdometryConfig {
     }
 }
 
-/// Turn per metre of unknown motion, rad/m. A larger one makes the heading after a gap less certain. Source: ours.
+/// Turn per metre of unknown motion, rad/m. A larger value makes the heading after a gap less certain. Source: ours.
 const GAP_TURN_RAD_PER_M: f64 = 3.0;
 /// Largest distance of an unknown motion, m. Larger variances would lose the noise of later steps to rounding. Source: ours.
 const MAX_GAP_DISTANCE_M: f64 = 10.0;
@@ -55,7 +55,7 @@ pub(crate) fn of_gap(config: &OdometryConfig, gap: f64) -> Matrix3<f64> {
     Matrix3::from_diagonal(&nalgebra::Vector3::new(distance, distance, turn))
 }
 
-/// Motion of the base that no sensor has measured.
+/// Unmeasured motion of the base.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct UnobservedMotion {
     /// Variance of the distance, m^2.

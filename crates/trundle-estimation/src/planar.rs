@@ -109,7 +109,7 @@ mod tests {
         fn a_planar_wobble_of_the_camera_is_the_bases(a in -1.0..1.0, b in -1.0..1.0, c in -1.0..1.0) {
             let turn = nalgebra::UnitQuaternion::from_euler_angles(-1.9, 0.1, -1.5);
             let base_from_camera = Pose3::new(turn, Vector3::new(0.3, -0.2, 0.6));
-            // A planar perturbation of the base, seen as one of the camera.
+            // A planar perturbation of the base as a perturbation of the camera.
             let planar = Vector3::new(a, b, c) * 1e-6;
             let camera = (base_from_camera.inverse() * Pose3::from_pose2(Pose2::exp(planar)) * base_from_camera).log();
             let covariance = planar_covariance(&(camera * camera.transpose()), &base_from_camera);

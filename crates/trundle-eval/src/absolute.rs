@@ -21,7 +21,7 @@ impl Default for AbsoluteConfig {
 }
 
 impl AbsoluteConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When `max_difference` is not finite or below 0.

@@ -23,7 +23,7 @@ impl Default for MapAgreementConfig {
 }
 
 impl MapAgreementConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside the range of its field.

@@ -25,7 +25,7 @@ impl Default for RelationSetsConfig {
 }
 
 impl RelationSetsConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside the range of its field.

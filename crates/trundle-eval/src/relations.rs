@@ -30,7 +30,7 @@ impl Default for RelationConfig {
 }
 
 impl RelationConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When `max_difference` is not finite or below 0.

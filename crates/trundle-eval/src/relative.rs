@@ -24,7 +24,7 @@ impl Default for RelativeConfig {
 }
 
 impl RelativeConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When `max_difference` is not finite or below 0, or `delta` is not above 0.

@@ -1,4 +1,4 @@
-//! The BARN challenge in trundle's simulator: cluttered worlds crossed at up to 2 m/s on a 2-D laser.
+//! The BARN challenge in trundle's simulator: cluttered worlds crossed at up to 2 m/s with a 2-D laser.
 
 mod jackal;
 mod report;
@@ -22,9 +22,9 @@ use worlds::BarnWorld;
 pub struct BarnRequest {
     /// The folder with worlds.csv and obstacles.csv.
     pub data: PathBuf,
-    /// The worlds, from 0, first and last. None: all.
+    /// The first and the last world, from 0. `None` for all.
     pub worlds: Option<IndexRange>,
-    /// Seeds of noise for each world: 1 to this.
+    /// Number of noise seeds per world, from 1.
     pub seeds: u32,
     /// A robot in place of the challenge's Jackal.
     pub robot: Option<RobotConfig>,

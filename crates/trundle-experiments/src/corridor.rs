@@ -124,7 +124,7 @@ impl CorridorTrial {
         manoeuvre_picture(self.around(), footprint, self.ends(), self.found(), None).window(center, half)
     }
 
-    /// Motion by motion.
+    /// A picture of each motion.
     fn steps(&self, found: &Solution, (center, half): (Vector2, f64)) -> Vec<u8> {
         let pictures = step_pictures(self.around(), &self.problem.footprint, self.ends(), found);
         let pictures: Vec<_> =
@@ -169,7 +169,7 @@ fn common_view(trials: &[CorridorTrial]) -> (Vector2, f64) {
     ((low + high) / 2.0, (high - low).amax() / 2.0)
 }
 
-/// The four scenarios side by side, above by the paper's method.
+/// The four scenarios side by side, with the paper's method in the upper row.
 fn together(trials: &[CorridorTrial], view: (Vector2, f64)) -> Vec<u8> {
     let by = |method: &'static str| trials.iter().filter(move |trial| trial.method == method);
     let titled = |trial: &'_ CorridorTrial| {

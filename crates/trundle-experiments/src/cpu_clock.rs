@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// Processor time of this thread: time during which other threads ran does not count.
+/// Processor time of this thread, without the time of other threads.
 #[cfg(unix)]
 pub fn now() -> Duration {
     let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);

@@ -1,6 +1,6 @@
 //! The data sets of experiments that are not part of trundle: description, source, licence and download.
 
-/// A data set that does not come with trundle.
+/// A data set that is not part of trundle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DataSet {
     /// Short name of the data set.
@@ -98,7 +98,7 @@ impl DataSet {
         )
     }
 
-    /// A line for each fact about the data set.
+    /// One line per fact about the data set.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let line = |name: &str, text: &str| format!("  {name:<8} {text}");

@@ -18,9 +18,9 @@ use trundle_viz::{Report, Table, Verdict};
 
 /// Half of the side of the square of starts \[m\]. Source: the room of 6 x 6 m.
 const START_HALF_SIDE_M: f64 = 2.5;
-/// Smallest distance of a start from the station \[m\]: the robot and the station's box have room. Source: ours.
+/// Smallest distance of a start from the station \[m\]: clearance for the robot and the station's box. Source: ours.
 const MIN_START_DISTANCE_M: f64 = 0.5;
-/// Steps of the sequence of starts (Roberts 2018, three dimensions): it fills the space evenly.
+/// Steps of the low-discrepancy sequence of starts (Roberts 2018, three dimensions).
 const START_STEPS: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
 /// Limits of the pose at contact, given by the station's plates.
 const MAX_LATERAL_ERROR_M: f64 = 0.01;
@@ -68,7 +68,7 @@ fn station() -> Pose2 {
     Pose2::new(2.9, 0.4, PI)
 }
 
-/// The start of a seed: evenly over the room, in any heading.
+/// The start of a seed: evenly distributed over the room and over all headings.
 fn start_of(seed: u64) -> Pose2 {
     let at = |i: u64| {
         let [x, y, turn] = START_STEPS.map(|step| (0.5 + i as f64 * step).fract());
@@ -95,7 +95,7 @@ impl DocksOutcome {
         self.trials.iter().map(|(start, trial)| row(start, trial)).collect()
     }
 
-    /// Root of the mean square over the docks that succeeded.
+    /// Root mean square over the successful docks.
     fn rms(&self, of: impl Fn(&DockTrial) -> f64) -> f64 {
         let squares: Vec<f64> = self.docked().map(|trial| of(trial).powi(2)).collect();
         (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()

@@ -19,17 +19,17 @@ pub struct ExperimentContext {
 /// The source of the runs of an experiment.
 #[derive(Debug, Clone, Default)]
 pub enum RunSource {
-    /// Each run is made.
+    /// All runs are executed.
     #[default]
     Made,
     /// The program executes the runs of the shard and stores their results.
     Shard(Arc<ShardWriter>),
-    /// The results were stored by an earlier program run.
+    /// The results are stored results of an earlier execution.
     Kept(Arc<KeptRuns>),
 }
 
 impl RunSource {
-    /// The plans whose runs belong to this source.
+    /// The plans of this source's runs.
     ///
     /// # Errors
     /// When a shard has no run, or a stored run is missing.
@@ -63,7 +63,7 @@ impl RunSource {
         }
     }
 
-    /// Whether the other runs continue after a panic of the run `name`.
+    /// Records a panic of the run `name`; returns whether the other runs continue.
     pub(crate) fn goes_on_without(&self, name: &str) -> bool {
         match self {
             Self::Shard(writer) => {
@@ -74,7 +74,7 @@ impl RunSource {
         }
     }
 
-    /// The runs of a shard that have died, in a sentence; `None` if all are alive.
+    /// A sentence about the runs of a shard that panicked; `None` without a panic.
     #[must_use]
     pub fn dead(&self) -> Option<AppError> {
         let Self::Shard(writer) = self else { return None };
@@ -84,7 +84,7 @@ impl RunSource {
         (count > 0).then_some(AppError::Environment(problem))
     }
 
-    /// Keeps the result of a run that was made for a shard.
+    /// Stores the result of a run of a shard.
     ///
     /// # Errors
     /// When the result cannot be written.

@@ -20,7 +20,7 @@ struct Stage {
     series: Mutex<SeriesView>,
 }
 
-/// A run of an experiment. If no other run is displayed, this run is, until it is dropped.
+/// A run of an experiment. The run is displayed until it is dropped, if no other run is.
 #[derive(Debug)]
 pub struct StagedRun<'d> {
     display: &'d ExperimentDisplay,
@@ -44,7 +44,7 @@ impl From<Progress> for ExperimentDisplay {
 }
 
 impl ExperimentDisplay {
-    /// A display with a line of progress that shows runs to those who watch `operator`.
+    /// A display with a line of progress, which shows runs to the viewers of `operator`.
     #[must_use]
     pub fn with_stage(progress: Progress, operator: Operator) -> Self {
         let stage = Stage { operator, is_taken: AtomicBool::new(false), series: Mutex::default() };
@@ -57,7 +57,7 @@ impl ExperimentDisplay {
         &self.progress
     }
 
-    /// Begins a series of runs; `unit`: the plural name of a run, as "worlds".
+    /// Begins a series of runs; `unit` is the plural name of a run, as "worlds".
     pub fn begin(&self, total: usize, unit: &'static str) {
         self.change(|series| {
             let number = series.number;
@@ -65,7 +65,7 @@ impl ExperimentDisplay {
         });
     }
 
-    /// A run begins: it is displayed if no other run is.
+    /// Begins a run, which is displayed if no other run is.
     #[must_use]
     pub fn enter(&self, name: String) -> StagedRun<'_> {
         let is_on_stage =
@@ -95,7 +95,7 @@ impl Stage {
 }
 
 impl StagedRun<'_> {
-    /// The run's link to those who watch; `None` for a run that is not on the stage.
+    /// The run's link to viewers; `None` for a run that is not displayed.
     #[must_use]
     pub fn link(&self) -> Option<OperatorLink> {
         let stage = self.display.stage.as_ref().filter(|_| self.is_on_stage)?;

@@ -7,9 +7,9 @@ use trundle_runtime::RobotConfig;
 /// The request of an experiment of closed-loop runs.
 #[derive(Debug, Clone)]
 pub struct RunsRequest {
-    /// Seeds of noise and scene: 1 to this.
+    /// Number of seeds of noise and scene, from 1.
     pub seeds: u32,
-    /// Only runs whose name and seed ("lights out, seed 2") contain this.
+    /// Text in the name and seed ("lights out, seed 2") of the selected runs; `None` for all runs.
     pub only: Option<String>,
     /// The robot.
     pub robot: RobotConfig,
@@ -20,10 +20,10 @@ pub trait ExperimentReport {
     /// Whether every limit is met.
     fn is_success(&self) -> bool;
 
-    /// The table for the terminal, header first; empty if the verdict is enough.
+    /// The table for the terminal, header first; empty if the verdict is sufficient.
     fn table(&self) -> Vec<Vec<String>>;
 
-    /// The outcome in a sentence or two.
+    /// The outcome in one or two sentences.
     fn verdict(&self) -> String;
 
     /// Writes report, tables and pictures into a folder.

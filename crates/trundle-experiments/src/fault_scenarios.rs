@@ -1,5 +1,5 @@
-//! Fault scenarios: sensors that fail, wheels that slip, people in the path. There must be no contact. A robot without a usable view
-//! stops, reports why, and goes on when the view is back.
+//! Fault scenarios: failing sensors, slipping wheels, people in the path. Contacts are failures. A robot without a usable view must stop,
+//! report the reason, and continue when the view is back.
 
 use crate::trial::{self, ComputerFault, Trial, TrialPlan};
 use crate::{ExperimentContext, ExperimentReport, RunsRequest, missions};
@@ -11,14 +11,14 @@ use trundle_runtime::{DriveState, Mission, ReasonKind, RobotConfig, Task};
 use trundle_sim::{Fault, FaultKind, FaultSchedule, Person, Scene, WheelSide};
 use trundle_viz::{Figure, Report, Table, Verdict};
 
-/// The end that a scenario must have.
+/// Required end of a scenario.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum End {
     /// At the goal, within 5 cm and 3 deg.
     Arrived,
     /// At rest, with a reason of one of these kinds.
     Stopped(&'static [ReasonKind]),
-    /// Standing with such a reason, or at the goal within 15 cm and 5 deg: it has found its place again by scans alone.
+    /// At rest with a reason of one of these kinds, or at the goal within 15 cm and 5 deg after localization by scans alone.
     FoundOrStopped(&'static [ReasonKind]),
 }
 
@@ -29,7 +29,7 @@ struct FaultScenario {
     /// Faults with start and end, s.
     faults: Vec<(f64, f64, FaultKind)>,
     person: Option<Person>,
-    /// Whether the person is given in the frame of the goal, not of the start.
+    /// Whether the person is in the frame of the goal instead of the start's.
     at_goal: bool,
     computer_fault: Option<ComputerFault>,
     /// As in [`TrialPlan`].
@@ -37,7 +37,7 @@ struct FaultScenario {
     end: End,
 }
 
-/// End of a fault that never ends, s.
+/// End of a permanent fault, s.
 const FOREVER_S: f64 = f64::INFINITY;
 
 /// The fault scenarios.
@@ -154,7 +154,7 @@ pub struct FaultsOutcome {
 /// Runs every fault scenario, with each seed.
 ///
 /// # Errors
-/// When a run cannot be created, or no run has the name asked for.
+/// When a run cannot be created, or no run has the requested name.
 pub fn run(request: &RunsRequest, context: &ExperimentContext) -> Result<FaultsOutcome, AppError> {
     let mut plans = Vec::new();
     for scenario in scenarios() {
@@ -203,13 +203,13 @@ impl ExperimentReport for FaultsOutcome {
     }
 }
 
-/// A person written in a frame, in the world's.
+/// A person of a given frame, in the world frame.
 fn placed(person: Person, world_from_frame: Pose2) -> Person {
     let world = |point: &[f64; 2]| world_from_frame.transform(Vector2::new(point[0], point[1])).into();
     Person { waypoints: person.waypoints.iter().map(world).collect(), ..person }
 }
 
-/// Kidnappings are written in the frame of the robot's start; the simulator needs them in the world's.
+/// Converts a kidnapping from the frame of the robot's start to the world frame.
 fn in_world(kind: FaultKind, scene: &Scene) -> FaultKind {
     match kind {
         FaultKind::Kidnapped { x, y, heading_deg } => {
@@ -222,7 +222,7 @@ fn in_world(kind: FaultKind, scene: &Scene) -> FaultKind {
 
 const HEADER: [&str; 6] = ["scenario", "seed", "as it should", "contacts", "time, s", "end"];
 
-/// Nothing touched, and the end that such a scenario must have.
+/// Whether the run has no contact and the required end of its scenario.
 fn is_good(trial: &Trial) -> bool {
     let numbers = &trial.numbers;
     let end =

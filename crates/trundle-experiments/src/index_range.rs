@@ -1,9 +1,9 @@
-//! Numbers from a first to a last one.
+//! A range of numbers, both ends included.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// Numbers from a first to a last one, both included.
+/// A range of numbers, both ends included.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct IndexRange {
     /// The first.
@@ -21,7 +21,7 @@ impl fmt::Display for IndexRange {
 impl FromStr for IndexRange {
     type Err = String;
 
-    /// `FIRST-LAST`, or a number alone.
+    /// `FIRST-LAST`, or a single number.
     fn from_str(text: &str) -> Result<Self, String> {
         let number = |text: &str| text.trim().parse::<u64>().ok();
         let (first, last) = text.split_once('-').unwrap_or((text, text));

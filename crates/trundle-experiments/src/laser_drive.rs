@@ -13,9 +13,9 @@ use trundle_sim::{HeightBand, LaserConfig, Lights, Scene, SimConfig, Simulator, 
 
 /// Clearance of a start \[m\]. Source: ours.
 const START_CLEARANCE_M: f64 = 0.1;
-/// Number of random cells among which a start is looked for. Source: ours.
+/// Number of random cells in the search for a start. Source: ours.
 const MAX_START_TRIALS: u64 = 100_000;
-/// Speed of the drive \[m/s\]. Source: the usual one of small indoor robots.
+/// Speed of the drive \[m/s\]. Source: the usual speed of small indoor robots.
 const DRIVE_SPEED_M_S: f64 = 0.3;
 /// Turn rate away from an obstacle \[rad/s\]. Source: as the speed.
 const TURN_RATE_RAD_S: f64 = 0.8;
@@ -31,9 +31,9 @@ const CURVE_PERIOD_S: f64 = 4.0;
 pub struct DriveScan {
     /// The scan; beams without a return are unseen, as in a log.
     pub scan: Scan,
-    /// By wheels and gyro.
+    /// Pose by wheels and gyro.
     pub odom_from_base: Pose2,
-    /// The truth.
+    /// True pose.
     pub world_from_base: Pose2,
 }
 
@@ -47,7 +47,7 @@ pub struct LaserDrive {
 }
 
 impl LaserDrive {
-    /// The scans with each beam where the base was by the odometry when it was measured.
+    /// The scans with their beams corrected by the odometry for the motion during the sweep.
     #[must_use]
     pub fn deskewed(mut self) -> Self {
         for entry in &mut self.scans {
@@ -87,7 +87,7 @@ pub fn random_start(map: &OccupancyGrid, world: &World, seed: u64) -> Result<Pos
     Err(AppError::Input(format!("no free start in {MAX_START_TRIALS} random cells of the map, expected one")))
 }
 
-/// Drives for `seconds` of the robot's time from `start`: ahead in curves, and away from what is near.
+/// Drives for `seconds` of the robot's time from `start`: ahead in curves, and away from near obstacles.
 ///
 /// # Errors
 /// When the simulator refuses the start or a number.
@@ -134,7 +134,7 @@ pub fn drive(
     Ok(LaserDrive { scans: placed.collect(), odometry: odometry.clone() })
 }
 
-/// The scan with beams that brought nothing back unseen.
+/// The scan with beams without a return as unseen.
 fn as_in_a_log(scan: Scan) -> Scan {
     let (stamp, origin, angles) = (scan.stamp(), scan.origin(), (scan.angle_min(), scan.angle_increment()));
     let times = scan.beam_times();
@@ -154,9 +154,9 @@ fn as_in_a_log(scan: Scan) -> Scan {
 /// A driver without a goal.
 struct Wander {
     rng: ChaCha8Rng,
-    /// Turn rate while the way is free, rad/s, and when it changes, s.
+    /// Turn rate in free space, rad/s, and the time of its next change, s.
     curve: (f64, f64),
-    /// 1 to the left, -1 to the right.
+    /// Side of the turn: 1 for left, -1 for right.
     side: f64,
     is_turning: bool,
 }
@@ -175,7 +175,7 @@ impl Wander {
             self.curve = (rate, stamp.as_secs() + CURVE_PERIOD_S);
         }
         let nearest = scan.map_or(f64::INFINITY, nearest_ahead);
-        // Once it turns, it turns until there is more space than it needs.
+        // A turn continues until the space ahead exceeds the threshold by a half.
         self.is_turning = nearest < MIN_DISTANCE_AHEAD_M * if self.is_turning { 1.5 } else { 1.0 };
         if self.is_turning {
             return Twist2::new(0.0, self.side * TURN_RATE_RAD_S);

@@ -28,29 +28,29 @@ pub struct LaserPlan {
 /// State for a checker, 50 times per second.
 #[derive(Debug, Clone, Copy)]
 pub struct Moment {
-    /// Since the start, s.
+    /// Time since the start, s.
     pub time: f64,
-    /// In truth, world frame.
+    /// True pose, world frame.
     pub pose: Pose2,
     /// Distance of the estimate from the true position, m.
     pub estimate_error: f64,
     /// The command.
     pub twist: Twist2,
-    /// Beside the outline, in truth, m.
+    /// True clearance of the outline, m.
     pub clearance: f64,
-    /// Separate touches so far.
+    /// Number of separate contacts so far.
     pub contacts: u32,
 }
 
 /// Result of a run.
 pub struct LaserRun {
-    /// From start to end.
+    /// The moments from start to end.
     pub moments: Vec<Moment>,
     /// The robot, with its map.
     pub robot: Robot,
     /// State at the end.
     pub state: DriveState,
-    /// Plans made.
+    /// Number of plans.
     pub plans: usize,
     /// Processor time of each control cycle (odometry, supervision, planning, control and safety), ms.
     pub cycles_ms: Vec<f64>,
@@ -122,7 +122,7 @@ impl LaserRun {
         self.moments.last().expect("invariant: a run begins with a reading of the wheels")
     }
 
-    /// The estimate's greatest distance from truth, m.
+    /// Largest distance of the estimate from truth, m.
     pub fn worst_estimate(&self) -> f64 {
         self.moments.iter().map(|moment| moment.estimate_error).fold(0.0, f64::max)
     }

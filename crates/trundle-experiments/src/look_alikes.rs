@@ -1,4 +1,4 @@
-//! Plain rooms that look alike from several poses, with people in them: no goal may count as reached that is not.
+//! Plain rooms that look alike from several poses, with people. A missed goal must not count as reached.
 
 use crate::trial::{self, Trial, TrialPlan};
 use crate::{ExperimentContext, ExperimentReport, RunsRequest};
@@ -58,7 +58,7 @@ pub fn run(request: &RunsRequest, context: &ExperimentContext) -> Result<LookAli
     Ok(LookAlikesOutcome { trials: trial::run_all(plans, request, context)? })
 }
 
-/// Explore, the goal, back to the start, the goal again.
+/// The plan of a run: explore, the goal, back to the start, the goal again.
 fn plan(seed: u64, variant: Variant, robot: &RobotConfig) -> Result<TrialPlan, AppError> {
     let scene = plain_room(seed, variant.people)?;
     let goal = scene.start_from_goal();
@@ -95,7 +95,7 @@ impl Score {
         }
     }
 
-    /// Whether no arrival is false, the estimate has no jump away from the truth, and the robot touched no obstacle.
+    /// Whether the run has no false arrival, no jump of the estimate away from the truth, and no contact.
     fn is_right(self) -> bool {
         self.false_arrivals == 0 && self.jumps == 0 && self.contacts == 0
     }
@@ -117,7 +117,7 @@ fn is_false(goal: &GoalOutcome) -> bool {
     })
 }
 
-/// Counts the jumps of the estimate away from the truth. Carrying the robot away causes no such jump: there the truth jumps.
+/// Counts the jumps of the estimate away from the truth. A jump of the truth, when the robot is carried, does not count.
 fn jumps(pairs: &[(f64, Pose2, Pose2)]) -> usize {
     let is_jump = |pair: &[(f64, Pose2, Pose2)]| {
         let [(_, believed, truth), (_, next_believed, next_truth)] = pair else { return false };

@@ -24,7 +24,7 @@ struct Story {
     subtitle: &'static str,
 }
 
-/// The room of [Li18] with obstacles: to its other end, mapping during the drive.
+/// The room of [Li18] with obstacles: a drive to its other end with mapping.
 const OBSTACLES: Story = Story {
     name: "obstacles",
     title: "An unknown room with obstacles",

@@ -40,9 +40,9 @@ const TIME_LIMIT_S: f64 = 600.0;
 pub struct MrpbRequest {
     /// The folder with start_goal.csv, actors.csv and maps.
     pub data: PathBuf,
-    /// Only the courses whose name contains this.
+    /// Text in the names of the selected courses; `None` for all.
     pub only: Option<String>,
-    /// Seeds of noise for each course: 1 to this.
+    /// Number of noise seeds per course, from 1.
     pub seeds: u32,
     /// A robot in place of the benchmark's own.
     pub robot: Option<RobotConfig>,
@@ -130,7 +130,7 @@ fn robot() -> RobotConfig {
         scan_heading_sigma_deg: 0.3,
         ..LocalizerConfig::default()
     };
-    // A tenth of the benchmark's tolerance in position, a quarter in heading, which leaves room for errors of the estimate.
+    // A tenth of the benchmark's tolerance in position and a quarter in heading leave a margin for errors of the estimate.
     robot.control = FollowerConfig {
         settling: StabilizerConfig {
             position_tolerance: 0.1 * GOAL_TOLERANCE_M,

@@ -49,7 +49,7 @@ impl StepOut {
         }
     }
 
-    /// The person who is on the path when the robot, by `timetable`, is [`ENCOUNTER_DISTANCE_M`] away.
+    /// The person who steps onto the path when the robot is [`ENCOUNTER_DISTANCE_M`] away by `timetable`.
     fn person(&self, timetable: &[(f64, Vector2)], radius: f64) -> Person {
         let robot_at = self.x - ENCOUNTER_DISTANCE_M - radius;
         let on_the_way = timetable.iter().find(|(_, at)| at.x >= robot_at).map_or(0.0, |(time, _)| *time);
@@ -70,7 +70,7 @@ pub struct PeopleOutcome {
     pub trials: Vec<Trial>,
 }
 
-/// Runs with one person who steps out, a person a seed.
+/// Runs with one person each; each seed is another person.
 ///
 /// # Errors
 /// When a run cannot be created, or no run has the requested name.
@@ -89,7 +89,7 @@ pub fn run(request: &RunsRequest, context: &ExperimentContext) -> Result<PeopleO
     Ok(PeopleOutcome { trials: trial::run_all(plans, request, context)? })
 }
 
-/// Executes the run without a person; the persons step out by its timetable. Every shard executes this run.
+/// Executes the run without a person, whose timetable controls the persons. Every shard executes this run.
 fn run_alone(plan: TrialPlan, context: &ExperimentContext) -> Result<Trial, AppError> {
     let ExperimentContext { display, runs } = context;
     let name = plan.label();
@@ -122,7 +122,7 @@ impl ExperimentReport for PeopleOutcome {
     }
 }
 
-/// Across the room, without people.
+/// The plan of a drive across the room, without people.
 fn plan(name: &str, seed: u64, robot: &RobotConfig) -> Result<TrialPlan, AppError> {
     let mut scene = Scene::by_name("room", seed)?;
     scene.start = Pose2::new(START_XY_M.0, START_XY_M.1, 0.0);

@@ -1,4 +1,4 @@
-//! The point stabilisation of \[Li18\]: eight start poses about one goal, from an empty map, on the robot's own senses.
+//! The point stabilisation of \[Li18\]: eight start poses around one goal, from an empty map, without ground truth.
 
 use crate::trial::{self, Trial, TrialPlan};
 use crate::{ExperimentContext, ExperimentReport, RunsRequest};
@@ -13,11 +13,11 @@ use trundle_viz::{BarChart, Color, Figure, LineStyle, MapPicture, PoseStyle, Rep
 const STARTS: [(f64, f64); 8] =
     [(0.0, 2.4), (2.4, 2.4), (2.4, 0.0), (2.4, -2.4), (0.0, -2.4), (-2.4, -2.4), (-2.4, 0.0), (-2.4, 2.4)];
 
-/// Goal for the mean of |dx| and of |dy|, m.
+/// Largest mean of |dx| and of |dy|, m.
 const MEAN_OFFSET: f64 = 0.004;
 /// Largest distance from the goal in any run, m.
 const MAX_GOAL_DISTANCE_M: f64 = 0.015;
-/// The mean of |dtheta|, rad.
+/// Largest mean of |dtheta|, rad.
 const MEAN_TURN: f64 = 0.8 * std::f64::consts::PI / 180.0;
 
 /// Means of a set of runs: |dx|, |dy|, the largest distance, |dtheta| (m, rad); number of runs without arrival or with a contact.
@@ -56,7 +56,7 @@ pub fn run(request: &RunsRequest, context: &ExperimentContext) -> Result<PosesOu
     Ok(PosesOutcome { trials: trial::run_all(plans(request)?, request, context)? })
 }
 
-/// The runs over a serial line and a stream of camera frames, one run after the other, by the wall clock.
+/// The runs over a serial line and a stream of camera frames, one after the other in real time.
 ///
 /// # Errors
 /// As [`run`].
@@ -144,7 +144,7 @@ impl Means {
     }
 }
 
-/// The trials of start `i`.
+/// The trials from start `i`.
 fn of_start(trials: &[Trial], i: usize) -> impl Iterator<Item = &Trial> {
     let name = (i + 1).to_string();
     trials.iter().filter(move |trial| trial.name == name)

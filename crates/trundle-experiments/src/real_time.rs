@@ -9,13 +9,13 @@ use trundle_runtime::{Mission, RobotConfig, Task, TaskEnd, TaskRecord};
 use trundle_sim::{FaultSchedule, Scene, Simulator};
 use trundle_viz::{Chart, Color, Figure, Report, Table, Verdict};
 
-/// Largest time error of 999 of 1000 commands, ms.
+/// Largest jitter of 999 of 1000 commands, ms.
 const JITTER_MS: f64 = 5.0;
-/// Largest load of the robot's core by all threads.
+/// Largest load of the robot's core by all threads, 0 to 1.
 const MAX_CPU_LOAD: f64 = 0.6;
 /// Largest growth of memory after maps and buffers have reached their size, MB/h.
 const MAX_MEMORY_GROWTH_MB_PER_H: f64 = 10.0;
-/// Time before which memory may grow, s: maps and buffers reach their size.
+/// Time in which memory may grow while maps and buffers reach their size, s.
 const MEMORY_SETTLING_S: f64 = 600.0;
 /// Shortest run whose growth is evaluated, s.
 const MIN_JUDGED_RUN_S: f64 = 2.0 * MEMORY_SETTLING_S;
@@ -26,7 +26,7 @@ const SHORTEST_TASK: f64 = 10.0;
 pub struct Limit {
     /// The figure's name.
     pub name: &'static str,
-    /// The figure; none: it could not be measured.
+    /// The figure; `None` if it could not be measured.
     pub value: Option<f64>,
     /// The limit.
     pub max: f64,
@@ -35,7 +35,7 @@ pub struct Limit {
 }
 
 impl Limit {
-    /// Whether the figure meets its limit. A figure that could not be measured does not.
+    /// Whether the figure meets its limit; false for an unmeasured figure.
     #[must_use]
     pub fn is_kept(&self) -> bool {
         self.value.is_some_and(|value| value <= self.max)
@@ -65,20 +65,20 @@ pub struct RealTimeOutcome {
     pub limits: Vec<Limit>,
     /// Timing of the run.
     pub timing: RealTimeReport,
-    /// Goals reached.
+    /// Number of goals reached.
     pub goals: usize,
-    /// Contacts.
+    /// Number of contacts.
     pub contacts: usize,
-    /// Images dropped.
+    /// Number of images dropped.
     pub images_dropped: usize,
-    /// Whether an exploration did not end.
+    /// Whether an exploration was incomplete.
     pub is_unexplored: bool,
     /// Wall-clock time of the run \[s\].
     pub seconds: f64,
 }
 
-/// Drives forth and back in the demo's scene, and records into `folder`. A run that measures memory explores the scene first. Two equally
-/// long paths lead past its obstacles, and the first drive along the second one would enlarge the map.
+/// Drives to and fro in the demo's scene, and records into `folder`. A run that measures memory explores the scene first, since the map
+/// would grow later: two equally long paths lead past its obstacles.
 ///
 /// # Errors
 /// When the system refuses a thread, or the robot cannot be accepted.
@@ -107,7 +107,7 @@ pub fn run(
     Ok(RealTimeOutcome::of(&run, timing))
 }
 
-/// Limits of the evaluation; the growth of memory only for runs that continue long enough after the scene is mapped.
+/// Limits of the evaluation, with the growth of memory only for long enough runs.
 fn limits(timing: &RealTimeReport) -> Vec<Limit> {
     let end = timing.memory.samples.last().map_or(0.0, |(time, _)| *time);
     let growth = Limit {

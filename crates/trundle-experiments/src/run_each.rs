@@ -1,4 +1,4 @@
-//! Parallel runs of an experiment, until all are done or the user interrupts.
+//! Parallel runs of an experiment, up to the last one or an interrupt.
 
 use crate::experiment_context::{ExperimentContext, RunSource};
 use crate::experiment_display::RunResult;
@@ -11,10 +11,10 @@ use trundle_app::operator::OperatorLink;
 use trundle_app::{AppError, stop};
 
 /// Executes the runs in parallel, one per thread; the results are in the order of the plans. After an interrupt, the results are those of
-/// the finished runs. `unit`: the plural name of a run, as "worlds"; `name_of`: its name on the display.
+/// the finished runs. `unit` is the plural name of a run, as "worlds"; `name_of` gives a run's name on the display.
 ///
 /// # Errors
-/// The first plan that cannot be carried out; [`AppError::Stopped`] if no run is done.
+/// That of the first plan that cannot be executed; [`AppError::Stopped`] if no run is finished.
 pub(crate) fn run_each<P: Send, T: Send + RunResult + Serialize + DeserializeOwned>(
     plans: Vec<P>,
     unit: &'static str,
@@ -34,7 +34,7 @@ pub(crate) fn run_each<P: Send, T: Send + RunResult + Serialize + DeserializeOwn
         let name = name_of(&plan);
         let staged = display.enter(name.clone());
         let result = runs.result(&name, || unless_it_dies(runs, &name, || run(plan, staged.link())))?;
-        // A run may have been broken off by the request to stop.
+        // The request to stop may have interrupted the run.
         let Some(result) = result.filter(|_| !stop::is_requested(count)) else { return Ok(None) };
         runs.keep(&name, &result)?;
         done.fetch_add(1, Ordering::Relaxed);
@@ -46,7 +46,7 @@ pub(crate) fn run_each<P: Send, T: Send + RunResult + Serialize + DeserializeOwn
     if results.is_empty() && total > 0 { Err(AppError::Stopped) } else { Ok(results) }
 }
 
-/// Executes a run. If the run panics, a message names it. The other runs of a shard then continue; any other experiment ends.
+/// Executes a run. A message names a run that panics. The other runs of a shard then continue; any other experiment ends.
 fn unless_it_dies<T>(
     runs: &RunSource,
     name: &str,

@@ -1,4 +1,4 @@
-//! Closed-loop runs of robot and simulator, many at once.
+//! Parallel closed-loop runs of robot and simulator.
 
 use crate::RunsRequest;
 use crate::experiment_context::ExperimentContext;
@@ -20,10 +20,10 @@ use trundle_runtime::{Checkpoint, Mission, Robot, RobotConfig};
 use trundle_sim::{FaultSchedule, Scene, Simulator};
 use trundle_viz::Table;
 
-/// Largest number of names of runs in a message. The rest is left out. Source: ours.
+/// Maximum number of run names in a message. Source: ours.
 const MAX_LISTED_NAMES: usize = 30;
 
-/// A closed-loop run to be made: robot and simulator, with noise, and no truth in the loop.
+/// The plan of a closed-loop run: robot and simulator with noise, without truth in the loop.
 pub struct TrialPlan {
     /// Name in tables.
     pub name: String,
@@ -39,7 +39,7 @@ pub struct TrialPlan {
     pub faults: FaultSchedule,
     /// Fault of the computer.
     pub computer_fault: Option<ComputerFault>,
-    /// Images per second; `None` if they come at the rate of [`trundle_sim::SimConfig`].
+    /// Images per second; `None` for the rate of [`trundle_sim::SimConfig`].
     pub camera_rate_hz: Option<f64>,
 }
 
@@ -79,9 +79,9 @@ impl RunResult for Trial {
 /// A fault of the robot's computer.
 #[derive(Debug, Clone, Copy)]
 pub enum ComputerFault {
-    /// Killed after this time, s, and restarted from its last checkpoint, which may be seconds old.
+    /// The program is killed after this time, s, and restarted from its last checkpoint, which may be seconds old.
     Restart(f64),
-    /// Its disk is full.
+    /// The disk is full.
     FullDisk,
 }
 
@@ -92,18 +92,18 @@ pub struct Trial {
     pub name: String,
     /// The seed.
     pub seed: u64,
-    /// Moves the map frame into the world's.
+    /// Pose of the map frame in the world frame.
     pub world_from_map: Pose2,
     /// The numbers.
     pub numbers: RunNumbers,
     /// True path, world frame.
     #[serde(with = "points")]
     pub driven: Vec<Vector2>,
-    /// When it was at each of these points, s since the beginning.
+    /// Time at each of these points, s since the beginning.
     pub times: Vec<f64>,
-    /// At every image: s since the beginning, the estimated pose and the true one, map frame.
+    /// At every image: time since the beginning, s, the estimated pose and the true one, map frame.
     pub pose_pairs: Vec<(f64, Pose2, Pose2)>,
-    /// The trajectory planned last, world frame.
+    /// The last planned trajectory, world frame.
     #[serde(with = "points")]
     pub planned: Vec<Vector2>,
     /// The map, map frame.
@@ -126,10 +126,10 @@ impl Trial {
     }
 }
 
-/// The plans that the request asks for.
+/// The plans selected by the request.
 ///
 /// # Errors
-/// When there are none; names those that there are.
+/// When no plan is selected; the error names the available ones.
 pub fn selected(mut plans: Vec<TrialPlan>, request: &RunsRequest) -> Result<Vec<TrialPlan>, AppError> {
     let names: BTreeSet<String> = plans.iter().map(|plan| plan.name.clone()).collect();
     if let Some(word) = &request.only {
@@ -145,10 +145,10 @@ pub fn selected(mut plans: Vec<TrialPlan>, request: &RunsRequest) -> Result<Vec<
     Ok(plans)
 }
 
-/// Makes the runs, as many at once as there are threads; the results are in the order of the plans.
+/// Executes the runs, one per thread; the results are in the order of the plans.
 ///
 /// # Errors
-/// The first plan that cannot be carried out.
+/// That of the first plan that cannot be executed.
 pub fn run_all(
     plans: Vec<TrialPlan>,
     request: &RunsRequest,
@@ -158,10 +158,10 @@ pub fn run_all(
     run_each(selected(plans, request)?, "runs", context, name_of, run_one)
 }
 
-/// Makes one run, which is shown to those who `watch`.
+/// Executes one run, displayed to the viewers of `watch`.
 ///
 /// # Errors
-/// When the plan cannot be carried out.
+/// When the plan cannot be executed.
 pub fn run_one(plan: TrialPlan, watch: Option<OperatorLink>) -> Result<Trial, AppError> {
     let TrialPlan { name, seed, scene, mission, robot, faults, computer_fault, camera_rate_hz } = plan;
     let world_from_map = scene.start;
@@ -208,11 +208,11 @@ fn is_stopped(log: &RunLog) -> bool {
     stop::is_requested(|| format!("{:.1} s of a run", log.elapsed()))
 }
 
-/// Runs the robot of `setup` in the simulator without recording and without encoding of images. After `restart` s the robot is
-/// switched off and on again where it stands, with nothing but its last checkpoint.
+/// Runs the robot of `setup` in the simulator without recording and without encoding of images. After `restart` s the robot restarts at its
+/// place from its last checkpoint.
 ///
 /// # Errors
-/// When the robot has made no checkpoint by then, or the run is over before.
+/// When the robot has no checkpoint at that time, or the run ends earlier.
 fn run_unrecorded(
     setup: &RunSetup,
     body: &mut Simulator,
@@ -265,7 +265,7 @@ fn run_unrecorded(
     })
 }
 
-/// The robot that is switched on after a kill at `at` s, with its last checkpoint.
+/// The robot restarted from its last checkpoint after a kill at `at` s.
 fn resumed_after_kill(setup: &RunSetup, checkpoint: Option<&Checkpoint>, at: f64) -> Result<Robot, AppError> {
     let checkpoint = checkpoint.ok_or_else(|| {
         AppError::Input(format!("the restart at {at} s: no checkpoint had been made by then"))
@@ -283,7 +283,7 @@ pub(crate) mod fixtures {
     use trundle_eval::goal_error;
     use trundle_runtime::DriveState;
 
-    /// A run that arrived this far from its goal (m, m, rad), with a number of contacts.
+    /// A run that arrived with this offset from its goal (m, m, rad) and this number of contacts.
     pub fn arrived(name: &str, seed: u64, (dx, dy, dtheta): (f64, f64, f64), contacts: usize) -> Trial {
         let error = goal_error(Pose2::IDENTITY, Pose2::new(dx, dy, dtheta)).unwrap();
         let numbers = RunNumbers {

@@ -8,13 +8,16 @@ use trundle_core::{Invalid, require_in};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MapperConfig {
-    /// Side of a cell, m, 0.005 to 1. Default 0.05.
+    /// Side of a cell, m, 0.005 to 1. Smaller cells show more detail and take more memory and time. Default 0.05.
     pub resolution: f64,
-    /// Log-odds added by a hit, 0.01 to 10. Default 0.85: p = 0.7 (OctoMap, Hornung et al. 2013).
+    /// Log-odds added by a hit, 0.01 to 10. A larger value draws new obstacles sooner, also false ones. Default 0.85: p = 0.7 (OctoMap,
+    /// Hornung et al. 2013).
     pub hit: f64,
-    /// Log-odds subtracted by a free ray, 0.01 to 10. Default 0.4: p = 0.4 (OctoMap).
+    /// Log-odds subtracted by a free ray, 0.01 to 10. A larger value clears moved obstacles sooner, also thin ones. Default 0.4: p = 0.4
+    /// (OctoMap).
     pub free: f64,
-    /// Maximum of the log-odds, 0.1 to 100. Default 3.5: p = 0.97 (OctoMap). The clamp lets the map drop obstacles that moved.
+    /// Maximum of the log-odds, 0.1 to 100. The clamp lets the map drop obstacles that moved; a smaller value drops them sooner. Default
+    /// 3.5: p = 0.97 (OctoMap).
     pub clamp_high: f64,
     /// Minimum of the log-odds, negated, 0.1 to 100. Default 2: p = 0.12 (OctoMap).
     pub clamp_low: f64,
@@ -22,11 +25,11 @@ pub struct MapperConfig {
     pub occupied_above: f64,
     /// Probability below which a cell is published as free, 0 to 0.5. Default 0.196 (map_server).
     pub free_below: f64,
-    /// Maximum range of a ray, m, 0.1 to 200. Longer rays are cut. Default 12.
+    /// Maximum range of a ray, m, 0.1 to 200. Longer rays are truncated. Default 12.
     pub max_range: f64,
-    /// Blind range about the sensor, m, 0 to 10. Within the blind range a ray clears no cell with positive log-odds, and no cell
-    /// behind such a cell: a low obstacle hides below the field of view there. Default 0.65: a Kinect V2, 0.45 m high, 8 deg
-    /// down. `DepthScanner::blind_range` computes the value of a camera mount. 0 for a laser.
+    /// Blind range about the sensor, m, 0 to 10. Within the blind range a ray clears no cell with positive log-odds, and no cell behind
+    /// such a cell: a low obstacle hides below the field of view there. Default 0.65: a Kinect V2, 0.45 m high, 8 deg down.
+    /// `DepthScanner::blind_range` computes the value of a camera mount; a laser has 0.
     pub blind_range: f64,
     /// Maximum distance of two neighbouring hits on one surface, m, 0 (off) to 2. Cells between the two hits are not cleared by
     /// grazing rays. Default 0.3.
@@ -62,7 +65,7 @@ impl MapperConfig {
         Self { resolution, half_extent, ..self }
     }
 
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a value is outside the range documented at its field, or a clamp does not reach its threshold.

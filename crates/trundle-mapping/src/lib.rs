@@ -1,4 +1,4 @@
-//! From depth images to scans, from scans to an occupancy grid, and scans against that grid.
+//! Scans from depth images, occupancy grids from scans, and scan matching against a grid.
 //!
 //! - [`DepthScanner`]: one depth image in, one laser-like [`trundle_core::Scan`] out (the robot's height band, docs/methods.md A2).
 //! - [`GridMapper`]: scans at known poses in, a log-odds occupancy grid out (docs/methods.md A3 with one particle).

@@ -8,49 +8,50 @@ use trundle_grid::MapperConfig;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ParticleConfig {
-    /// Particles, 1 to 1000. Default 30 (\[Grisetti07\] closes its loops with 15 to 80).
+    /// Number of particles, 1 to 1000. More close longer loops; time and memory grow in proportion. Default 30 (\[Grisetti07\] uses 15 to
+    /// 80).
     pub particles: usize,
-    /// The maps. Default: that of a laser with a range of 80 m and no blind range.
+    /// The maps. Default: a laser with a range of 80 m and no blind range.
     pub map: MapperConfig,
     /// The odometry's errors.
     pub motion: MotionConfig,
-    /// Odometry without drift, as the poses of a SLAM with loop closure. Each pose counts as a measurement, not its steps alone, and no
-    /// loops are searched. Default: none, dead reckoning. After [`crate::ParticleMapper::kidnapped`] only the steps are used, since
-    /// the start of that odometry in the map is unknown then.
+    /// Odometry without drift, such as poses of a SLAM with loop closure. Each pose counts as a measurement, and no loops are searched.
+    /// After [`crate::ParticleMapper::kidnapped`] only the steps count, since the pose of that odometry in the map is unknown. Default:
+    /// none, dead reckoning.
     pub pose_prior: Option<PosePriorConfig>,
-    /// A scan is processed when the robot moved this far since the last one, m, 0 to 5. Default 0.3.
+    /// Distance from the last processed scan at which a scan is processed, m, 0 to 5. Default 0.3.
     pub move_gate: f64,
-    /// Or turned this far, deg, 0 to 180. Default 10.
+    /// Turn from the last processed scan at which a scan is processed, deg, 0 to 180. Default 10.
     pub turn_gate_deg: f64,
-    /// Or this long ago, s, 0 to 3600. Default 2: wheels may turn unseen, and stand while the robot is pushed.
+    /// Time since the last processed scan after which a scan is processed, s, 0 to 3600. Default 2: odometry may miss a motion, as when the
+    /// robot is pushed.
     pub wait_gate: f64,
-    /// Odometry that jumps farther than this between two scans is not motion, m, 0.5 to 1000. Default 5.
+    /// Largest motion of the odometry between two scans, m, 0.5 to 1000. A longer step is a jump, not a motion. Default 5.
     pub jump: f64,
     /// One sigma of a range, m, 0.001 to 0.5. Default 0.02 (SICK LMS 200: 0.01 to 0.02).
     pub range_noise: f64,
-    /// Its growth with the square of the range, m/m^2, 0 to 0.1. Default 0: a laser; 0.0015 for a Kinect.
+    /// Growth of the range's sigma with the square of the range, m/m^2, 0 to 0.1. Default 0: a laser; 0.0015 for a Kinect.
     pub range_noise_growth: f64,
-    /// Part of the beams that fit nothing (people, glass), 0.001 to 0.5. Default 0.05.
+    /// Fraction of outlier beams (people, glass), 0.001 to 0.5. Default 0.05.
     pub outliers: f64,
-    /// How many beams err alike, 1 to 100: the log-likelihood of a scan is divided by it. Default 4.
+    /// Number of beams with correlated errors, 1 to 100. The log-likelihood of a scan is divided by it. Default 4.
     pub correlation: f64,
     /// Further divisor of the log-likelihood for the weights of the particles, 1 to 100. Default 9.
     pub weight_correlation: f64,
-    /// Largest number of scans kept for redrawing after a loop, 100 to 1,000,000. Beyond it every second scan of the older half is
-    /// dropped, with its pose. Default 20,000: 10 km of travel, 20 MB at 180 beams.
+    /// Largest number of scans kept for redrawing after a loop, 100 to 1,000,000. Beyond it every second scan of the older half is dropped
+    /// with its pose. Default 20,000: 10 km of travel, 20 MB at 180 beams.
     pub max_scans: usize,
-    /// Poses sampled about the match, 8 to 500. Default 30.
+    /// Number of poses sampled around a match, 8 to 500. Default 30.
     pub samples: usize,
-    /// Resample when the effective number of particles falls below this part of their number, 0 to 1. Default 0.5
-    /// \[Grisetti07\].
+    /// Effective number of particles below which they are resampled, as a fraction of their number, 0 to 1. Default 0.5 \[Grisetti07\].
     pub resample_below: f64,
-    /// Fraction of the steps with wrong odometry: wheels slip, messages are lost; 1e-6 to 0.5. Default 0.01.
+    /// Fraction of the steps with wrong odometry (slipping wheels, lost messages), 1e-6 to 0.5. Default 0.01.
     pub slip_rate: f64,
-    /// In such a step the robot is near the odometry's path, within this (one sigma), m, 0.01 to 2. Default 0.3.
+    /// Distance of the robot from the odometry's path in a wrong step (one sigma), m, 0.01 to 2. Default 0.3.
     pub slip_shift: f64,
-    /// And this, rad, 0.01 to 1. Default 0.5.
+    /// Heading error of a wrong step (one sigma), rad, 0.01 to 1. Default 0.5.
     pub slip_turn: f64,
-    /// A direction is degenerate when it is held by less than this part of the hits, 0 to 1. Default 0.01.
+    /// Fraction of the hits' information below which a direction is degenerate, 0 to 1. Default 0.01.
     pub degenerate_below: f64,
 }
 
@@ -82,10 +83,10 @@ impl Default for ParticleConfig {
 }
 
 impl ParticleConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("particles", self.particles as f64, "", 1.0, 1000.0)?;
         require_in("move_gate", self.move_gate, "m", 0.0, 5.0)?;
@@ -109,13 +110,13 @@ impl ParticleConfig {
     }
 }
 
-/// One sigma of odometry that does not drift.
+/// One sigma of odometry without drift.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PosePriorConfig {
-    /// Sigma in each direction, m, 0.001 to 1. Default 0.01: our own SLAM is 0.2 to 1.2 cm off (docs/results.md).
+    /// Sigma of the position along each axis, m, 0.001 to 1. Default 0.01: trundle's SLAM has errors of 0.2 to 1.2 cm (docs/results.md).
     pub shift: f64,
-    /// Heading, rad, 0.0001 to 1. Default 0.003.
+    /// Sigma of the heading, rad, 0.0001 to 1. Default 0.003.
     pub turn: f64,
 }
 
@@ -133,22 +134,22 @@ impl PosePriorConfig {
     }
 }
 
-/// One sigma of the odometry's error over a motion, by what was driven and turned (\[Thrun05\], sec. 5.4). The defaults
-/// are the customary ones of grid mapping: cheap wheels on tiles and carpets.
+/// One sigma of the odometry's error over a motion, by its distance and turn (\[Thrun05\], sec. 5.4). The defaults are those of common grid
+/// mappers: cheap wheels on tiles and carpets.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MotionConfig {
-    /// Position, m for each m driven, 0 to 2. Default 0.2.
+    /// Position error per distance, m/m, 0 to 2. Default 0.2.
     pub shift_per_metre: f64,
-    /// Position, m for each rad turned, 0 to 2. Default 0.1.
+    /// Position error per turn, m/rad, 0 to 2. Default 0.1.
     pub shift_per_radian: f64,
-    /// Heading, rad for each m driven, 0 to 2. Default 0.1.
+    /// Heading error per distance, rad/m, 0 to 2. Default 0.1.
     pub turn_per_metre: f64,
-    /// Heading, rad for each rad turned, 0 to 2. Default 0.2.
+    /// Heading error per turn, rad/rad, 0 to 2. Default 0.2.
     pub turn_per_radian: f64,
-    /// Position even when nothing moved, m, 0.0001 to 1. Default 0.02.
+    /// Position error without motion, m, 0.0001 to 1. Default 0.02.
     pub min_shift: f64,
-    /// Heading even when nothing moved, rad, 0.0001 to 1. Default 0.01.
+    /// Heading error without motion, rad, 0.0001 to 1. Default 0.01.
     pub min_turn: f64,
 }
 

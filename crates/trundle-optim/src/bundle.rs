@@ -5,17 +5,17 @@ use crate::pose_graph::PoseConstraint;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, PinholeCamera, Pose3, Vector3, require_positive};
 
-/// How [`BundleProblem`] iterates.
+/// Iteration of [`BundleProblem`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct BundleConfig {
-    /// Steps at most, 1 or more. Default 10.
+    /// Maximum number of steps of one bundle adjustment, 1 or more. Default 10; in `slam.mapping.bundle` 5.
     pub steps: usize,
-    /// A relative decrease of the cost below this ends it. Default 1e-4: a local map is refined again soon.
+    /// Relative decrease of the cost below which the adjustment has converged, above 0. Default 1e-4: a local map is refined again soon.
     pub converged: f64,
     /// Levenberg-Marquardt damping at the start, relative to the diagonal, above 0. Default 1e-4.
     pub damping: f64,
-    /// Whether the covariances of the poses are worked out at the end; as much work again as a step or two. Default no.
+    /// Whether the covariances of the poses are computed at the end, at the cost of one or two steps. Default false.
     pub covariances: bool,
 }
 
@@ -26,7 +26,7 @@ impl Default for BundleConfig {
 }
 
 impl BundleConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When `steps` is zero or another number is not positive.

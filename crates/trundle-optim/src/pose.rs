@@ -7,15 +7,15 @@ use nalgebra::{Matrix3x6, Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, PinholeCamera, Pose3, Vector3, require_positive};
 
-/// How [`PoseProblem`] iterates.
+/// Iteration of [`PoseProblem`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PoseConfig {
-    /// Rounds of optimising and re-classifying, 1 or more. Default 4 \[MurArtal17\].
+    /// Number of rounds of optimisation and classification of inliers, 1 or more. Default 4 \[MurArtal17\].
     pub rounds: usize,
-    /// Steps a round at most, 1 or more. Default 10 \[MurArtal17\].
+    /// Maximum number of steps per round, 1 or more. Default 10 \[MurArtal17\].
     pub steps: usize,
-    /// A step shorter than this (m and rad) ends the round. Default 1e-6: far below what pixels resolve.
+    /// Step length (m and rad) below which a round has converged, above 0. Default 1e-6: far below the resolution of pixels.
     pub converged: f64,
 }
 
@@ -26,7 +26,7 @@ impl Default for PoseConfig {
 }
 
 impl PoseConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a count is zero or `converged` is not positive.

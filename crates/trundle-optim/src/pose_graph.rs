@@ -5,13 +5,13 @@ use nalgebra::{Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, Vector3, require_positive};
 
-/// How [`PoseGraph`] iterates.
+/// Iteration of [`PoseGraph`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PoseGraphConfig {
-    /// Steps at most, 1 or more. Default 20 \[MurArtal17\].
+    /// Maximum number of steps of the pose graph, 1 or more. Default 20 \[MurArtal17\].
     pub steps: usize,
-    /// A relative decrease of the cost below this ends it. Default 1e-6.
+    /// Relative decrease of the cost below which the pose graph has converged, above 0. Default 1e-6.
     pub converged: f64,
     /// Levenberg-Marquardt damping at the start, relative to the diagonal, above 0. Default 1e-6.
     pub damping: f64,
@@ -24,7 +24,7 @@ impl Default for PoseGraphConfig {
 }
 
 impl PoseGraphConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When `steps` is zero or another number is not positive.

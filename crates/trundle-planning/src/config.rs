@@ -12,12 +12,12 @@ use trundle_grid::UnknownIs;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PlannerConfig {
-    /// State that unknown space counts as. Default free: a robot that explores must enter it.
+    /// Treatment of unknown space in plans. Default free: an exploring robot must enter unknown space.
     pub unknown: UnknownIs,
-    /// Distance beyond the grid, the start and the goal in which a path may run where unknown is free, m, 0 to 100. 0: never off
-    /// the grid. Default 5 (ours). It is used only when there is no path on the grid.
+    /// Distance beyond grid, start and goal within which a path may leave the grid, if unknown space is free, m, 0 (never) to 100. It is
+    /// used only without a path on the grid. Default 5 (ours).
     pub beyond: f64,
-    /// Distance from a blocked goal at which the robot may stop instead, m, 0 to 100. Default 0: only the goal itself.
+    /// Distance from a blocked goal within which the robot may stop instead, m, 0 to 100. Default 0: only the goal itself.
     pub goal_tolerance: f64,
     /// Cost of low clearance.
     pub room: ClearanceCostConfig,

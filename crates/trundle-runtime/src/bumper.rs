@@ -2,7 +2,7 @@
 
 use trundle_core::{Footprint, Vector2};
 
-/// Half of the bumper's angle \[deg\]: contact is assumed at bearings within it. Source: the Kobuki's front bumper.
+/// Half of the bumper's angle \[deg\]. Contact is assumed at all bearings within it. Source: the Kobuki's front bumper.
 const BUMPER_HALF_ANGLE_DEG: i32 = 30;
 /// Angle between neighbouring contact points \[deg\]: closer than the cells of a map. Source: ours.
 const CONTACT_POINT_STEP_DEG: i32 = 6;

@@ -4,21 +4,22 @@ use nalgebra::Matrix3;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose3, Vector3, require_in};
 
-/// Where the camera sits on the base: in a robot file, angles in degrees.
+/// Pose of the camera on the base; angles are in degrees in a robot file.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CameraMount {
-    /// Forward of the base's origin, m, -2 to 2. Default 0.05: over the Kobuki's front deck.
+    /// Position of the camera forward of the base's origin, m, -2 to 2. Default 0.05: over the Kobuki's front deck.
     pub x: f64,
-    /// Left of the base's origin, m, -2 to 2. Default 0.
+    /// Position of the camera left of the base's origin, m, -2 to 2. Default 0.
     pub y: f64,
-    /// Above the floor, m, 0 to 3. Default 0.45.
+    /// Height of the camera above the floor, m, 0 to 3. Default 0.45.
     pub z: f64,
-    /// Turn to the left, deg, -180 to 180. Default 0.
+    /// Turn of the camera to the left, deg, -180 to 180. Default 0.
     pub yaw_deg: f64,
-    /// Tilt downward, deg, -80 to 80. Default 8: the floor is seen from 0.6 m on.
+    /// Tilt of the camera downward, deg, -80 to 80. A larger tilt shows nearer floor, and less of the walls. Default 8: the floor is
+    /// visible from 0.6 m on.
     pub pitch_deg: f64,
-    /// Roll around the optical axis, deg, -180 to 180. Default 0.
+    /// Roll of the camera around the optical axis, deg, -180 to 180. Default 0.
     pub roll_deg: f64,
 }
 
@@ -32,7 +33,7 @@ impl Default for CameraMount {
 const BODY_FROM_OPTICAL: Matrix3<f64> = Matrix3::new(0.0, 0.0, 1.0, -1.0, 0.0, 0.0, 0.0, -1.0, 0.0);
 
 impl CameraMount {
-    /// Passes a valid mount through.
+    /// Returns a valid mount unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

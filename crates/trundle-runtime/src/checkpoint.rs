@@ -1,4 +1,4 @@
-//! Checkpoints: maps and mission in a file, to resume from after a restart.
+//! Checkpoints: maps and mission in a file, for a resume after a restart.
 
 pub(crate) mod schedule;
 
@@ -11,8 +11,8 @@ use trundle_slam::MapFileError;
 
 /// State of a robot across a restart: its maps, their poses, and the state of its mission.
 ///
-/// As bytes: `TRUNDLEM`, version (u32), checksum (CRC-32 of the rest), length of the notes (u32), the notes as JSON, a byte for
-/// each cell of the floor map (0 unknown, 1 free, 2 occupied), and the visual maps; numbers little endian.
+/// As bytes: `TRUNDLEM`, version (u32), checksum (CRC-32 of the rest), length of the notes (u32), the notes as JSON, one byte per cell of
+/// the floor map (0 unknown, 1 free, 2 occupied), and the visual maps. Numbers are little endian.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Checkpoint {
     /// The visual maps, as [`trundle_slam::RgbdSlam::save`] gives them.
@@ -36,30 +36,30 @@ pub enum CheckpointError {
     /// The file is not a checkpoint.
     #[error("this is not a checkpoint of trundle")]
     Foreign,
-    /// Made by a version that this one does not read.
+    /// The format version is not supported.
     #[error("checkpoint of version {found}, expected {FORMAT_VERSION}")]
     Version {
         /// Version of the checkpoint.
         found: u32,
     },
-    /// Cut off, or changed since it was written.
+    /// The file is cut off or changed.
     #[error("checkpoint is damaged: {what}")]
     Damaged {
         /// The part that does not match.
         what: &'static str,
     },
-    /// The notes are none.
+    /// The notes are invalid.
     #[error("notes of the checkpoint: {0}")]
     Notes(String),
     /// The visual maps are refused.
     #[error("visual maps of the checkpoint: {0}")]
     Visual(#[from] MapFileError),
-    /// A number is out of range, in the memory or in the robot's configuration.
+    /// A number of the checkpoint or of the robot's configuration is out of range.
     #[error(transparent)]
     Invalid(#[from] Invalid),
 }
 
-/// All but the bulk.
+/// The notes: all data except the grid's cells and the visual maps.
 #[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Notes {
@@ -227,7 +227,7 @@ mod tests {
         }
     }
 
-    /// The checkpoint of `memory` with other bytes, its checksum made to fit.
+    /// The checkpoint of `memory` with changed bytes and a correct checksum.
     fn resigned(change: impl FnOnce(&mut Vec<u8>)) -> Result<Checkpoint, CheckpointError> {
         let mut rest = memory().to_bytes().split_off(16);
         change(&mut rest);

@@ -20,15 +20,16 @@ use trundle_slam::SlamConfig;
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
 pub struct RobotConfig {
-    /// Radius of the disc around the base that the robot stays within, m, above 0. Default 0.1755: the Kobuki.
+    /// Radius of the smallest disc around the base's origin that contains the robot, m, above 0. A larger disc keeps the robot farther from
+    /// obstacles and out of narrow passages. Default 0.1755: the Kobuki.
     pub footprint_radius: f64,
-    /// Corners of a convex outline in place of the disc, base frame, m. Default none.
+    /// Corners `[x, y]` of a convex outline in place of the disc, base frame, m. Default none: the disc.
     #[serde(deserialize_with = "corners")]
     pub footprint: Option<Vec<[f64; 2]>>,
-    /// Sensor from which the map is drawn and by which safety stops. Default the depth camera.
+    /// Sensor for mapping and for safety stops. Default depth_camera.
     pub sight: RangeSource,
-    /// Whether each beam of a laser's scan is put to where the base was by the odometry when it was measured, where the laser says the
-    /// times of its beams. Default false: in the robot its effect was not measured.
+    /// Whether the beams of a laser scan are corrected by the odometry for the motion during the sweep. The laser must report the times of
+    /// its beams. Default false: the effect on the robot was not measured.
     pub deskew: bool,
     /// Geometry of the base. Default: the Kobuki.
     pub drive: DifferentialDrive,
@@ -36,11 +37,10 @@ pub struct RobotConfig {
     pub limits: DriveLimits,
     /// The camera's image. Default: Kinect V2.
     pub camera: PinholeCamera,
-    /// Where the camera sits.
+    /// Pose of the camera on the base.
     pub mount: CameraMount,
-    /// Stamp of an image minus the moment at which it was taken, s, -1 to 1. A run subtracts it from the stamp of each image, beside
-    /// the delay that the camera's driver reports itself.
-    /// `trundle calibrate delay` measures it. Default 0.
+    /// Delay of the image stamps: stamp minus time of exposure, s, -1 to 1. A run subtracts it from the stamps, besides the delay reported
+    /// by the camera's driver. `trundle calibrate delay` measures it. Default 0.
     pub image_delay: f64,
     /// Rates of the stages.
     pub schedule: Schedule,
@@ -50,19 +50,19 @@ pub struct RobotConfig {
     pub slam: SlamConfig,
     /// Depth image to scan.
     pub scan: DepthScanConfig,
-    /// Scan against map.
+    /// Scan matching against the map.
     pub scan_match: ScanMatchConfig,
     /// Fusion.
     pub localization: LocalizerConfig,
     /// Occupancy grid.
     pub mapping: MapperConfig,
-    /// Moving obstacles nearby, found in the scans.
+    /// Detection of moving obstacles in the scans.
     pub movers: ObstacleTrackerConfig,
     /// Planning.
     pub planning: PlannerConfig,
-    /// Following trajectories and settling.
+    /// Trajectory following and final approach.
     pub control: FollowerConfig,
-    /// Turns and straight moves onto the goal where it is tight.
+    /// Turns and straight moves onto the goal in narrow spaces.
     pub docking: GoalApproachConfig,
     /// Safety.
     pub safety: SafetyConfig,
@@ -72,7 +72,7 @@ pub struct RobotConfig {
     pub station: StationLightConfig,
 }
 
-/// Corners as a list, or as the text that Nav2's costmaps take.
+/// Corners as a list, or as the text form of Nav2's costmaps.
 fn corners<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Vec<[f64; 2]>>, D::Error> {
     #[derive(Deserialize)]
     struct Corner(#[serde(deserialize_with = "number_list")] Option<[f64; 2]>);
@@ -125,7 +125,7 @@ impl Default for RobotConfig {
 }
 
 impl RobotConfig {
-    /// Refuses a base whose top speed is above the speed that the odometry accepts: at full speed the pose would be lost.
+    /// Refuses a base with a top speed above the odometry's limit: at full speed all readings would be rejected.
     pub(crate) fn require_believable_speeds(&self) -> Result<(), Invalid> {
         let least = self.limits.wheel_speed;
         if self.odometry.max_speed < least {
@@ -135,12 +135,12 @@ impl RobotConfig {
         Ok(())
     }
 
-    /// Refuses an image delay outside -1 to 1 s: it is a mistyped number.
+    /// Refuses an image delay outside -1 to 1 s, probably a mistyped number.
     pub(crate) fn require_image_delay(&self) -> Result<(), Invalid> {
         require_in("image_delay", self.image_delay, "s", -1.0, 1.0).map(drop)
     }
 
-    /// The same robot with every seed of its random sampling drawn from `seed`.
+    /// The same robot with all seeds of its random samples derived from `seed`.
     pub fn with_seed(mut self, seed: u64) -> Self {
         self.slam.seed = seed;
         self
@@ -149,7 +149,7 @@ impl RobotConfig {
     /// The robot's outline: the polygon if there is one, else the disc.
     ///
     /// # Errors
-    /// When the radius is not positive, or the polygon is none that is convex.
+    /// When the radius is not positive, or the polygon is not convex.
     pub fn footprint(&self) -> Result<Footprint, Invalid> {
         match &self.footprint {
             Some(corners) => Footprint::polygon(corners.iter().map(|c| Vector2::new(c[0], c[1])).collect()),

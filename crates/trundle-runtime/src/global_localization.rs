@@ -1,4 +1,4 @@
-//! Global localization: the pose by scans alone, anywhere on the map.
+//! Global localization: the pose anywhere on the map, by scans alone.
 
 use crate::{config::RobotConfig, range_source::RangeSource};
 use nalgebra::Matrix3;
@@ -12,7 +12,7 @@ use trundle_mapping::{Localized, MapLocalizer, MapperConfig, ParticleConfig};
 #[derive(Debug)]
 pub(crate) struct GlobalLocalization {
     config: ParticleConfig,
-    /// Searches so far: each draws its own chances.
+    /// Number of searches; each one has its own random seed.
     searches: u64,
     search: Search,
 }
@@ -20,20 +20,20 @@ pub(crate) struct GlobalLocalization {
 /// State of the search.
 #[derive(Debug)]
 enum Search {
-    /// The place is known.
+    /// No search: the pose is known.
     None,
     /// A search in this map begins with the next scan.
     Prepared(OccupancyGrid),
     UnderWay {
         localizer: Box<MapLocalizer>,
-        /// Scans in a row that the place found explains.
+        /// Number of successive scans that the found pose explains.
         explained: usize,
     },
-    /// In a map that cannot be searched.
+    /// The map cannot be searched.
     Hopeless,
 }
 
-/// A place that was found.
+/// A pose found by the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LocalizedPose {
     /// Stamp of the scan.
@@ -43,10 +43,11 @@ pub(crate) struct LocalizedPose {
     pub(crate) covariance: Matrix3<f64>,
 }
 
-/// Number of scans after the first that must fit a candidate pose if no image can be recognised; the scans are 10 deg or 0.3 m apart.
-/// Source: ours.
+/// Number of scans after the first that must fit a candidate pose, if images have too few features for recognition. The scans are 10 deg or
+/// 0.3 m apart. Source: ours.
 const MIN_CONFIRMING_SCANS: usize = 6;
-/// Number of scans if images have enough features and are not recognised: that is evidence against every pose in the map. Source: ours.
+/// Number of scans that must fit if images have enough features but are not recognised, which is evidence against every pose in the map.
+/// Source: ours.
 const MIN_CONFIRMING_SCANS_SEEN: usize = 18;
 /// Longest time between two scans of a standing robot that still count as consecutive \[s\]. Source: ours.
 const MAX_STANDING_GAP_S: f64 = 3600.0;
@@ -81,13 +82,13 @@ impl GlobalLocalization {
         self.search = Search::Prepared(grid);
     }
 
-    /// The place is known.
+    /// Ends the search, when the pose is known.
     pub(crate) fn end(&mut self) {
         self.search = Search::None;
     }
 
-    /// Adds a scan; returns the pose once certain. `in_the_dark`: the images show too little for place recognition. Cost: linear in the
-    /// map's area for each scan 10 deg or 0.3 m farther on, until a pose is found.
+    /// Adds a scan; returns the pose once certain. `in_the_dark` states that images have too few features for place recognition. Cost until
+    /// a pose is found: linear in the map's area, for each scan 10 deg or 0.3 m after the previous one.
     pub(crate) fn look(
         &mut self,
         odom_from_base: Pose2,
@@ -100,7 +101,7 @@ impl GlobalLocalization {
         match localizer.update(odom_from_base, scan) {
             Localized::Known { map_from_base, covariance, explained, degenerate } => {
                 let fits = explained >= MIN_EXPLAINED_SHARE;
-                // A scan of a single wall is not evidence for or against the pose.
+                // A scan of a single wall is no evidence for or against the pose.
                 *times = if fits { *times + usize::from(degenerate == 0) } else { 0 };
                 let place = || LocalizedPose {
                     stamp: scan.stamp(),
@@ -117,7 +118,7 @@ impl GlobalLocalization {
         }
     }
 
-    /// Makes of a map what can be searched.
+    /// Prepares a map for the search.
     fn get_ready(&mut self) {
         let Search::Prepared(grid) = &self.search else { return };
         self.searches += 1;
@@ -239,7 +240,7 @@ mod tests {
         let along_y = Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, 4.0, 0.1));
         let facing = Pose2::new(3.0, 1.0, std::f64::consts::FRAC_PI_6);
         let own = seen_from(facing, along_y);
-        // The pose's largest variance is lateral; its correlation is positive.
+        // The largest variance of the pose is lateral, with a positive correlation.
         assert!((own[(0, 0)] - 1.75).abs() < 1e-12 && (own[(1, 1)] - 3.25).abs() < 1e-12);
         assert!((own[(0, 1)] - 3.0 * 0.75_f64.sqrt() / 2.0).abs() < 1e-12 && own[(2, 2)] == 0.1);
     }

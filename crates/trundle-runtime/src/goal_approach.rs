@@ -1,8 +1,8 @@
 //! The final approach: an arc, or turns and straight moves.
 //!
 //! In free space an arc is faster. In narrow space turns on the spot and straight moves reach the goal, exact for the footprint. Rule: the
-//! arc, if the simulated arc is free and no slower than the manoeuvre. Both are computed to the end before the choice; each computation
-//! takes only a part of a control step.
+//! arc is chosen if the simulated arc is free and no slower than the manoeuvre. Both are computed completely before the choice, in slices
+//! of a control step.
 
 mod end;
 mod report;
@@ -21,30 +21,29 @@ use trundle_docking::{
     DockingConfig, DockingPlanner, ObstacleScene, Positioner, PositionerConfig, PositionerInput,
 };
 
-/// How the robot settles on its goal.
+/// Settings of the final approach.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
 pub struct GoalApproachConfig {
-    /// Whether turns and straight moves may take over near the goal. Default true.
+    /// Whether turns and straight moves may replace the path near the goal. Default true.
     pub enabled: bool,
-    /// Distance from the goal within which turns and straight moves may take over if no path is found or the safety monitor
-    /// holds the robot, m, 0.05
-    /// to 5. Default 0.6 (ours).
+    /// Distance from the goal within which turns and straight moves may replace a path that is missing or held by the safety monitor, m,
+    /// 0.05 to 5. Default 0.6 (ours).
     pub near: f64,
-    /// Clearance of an arc from obstacles of the map, m, 0 to 0.5. Default 0.02 (ours).
+    /// Clearance of a free arc from obstacles of the map, m, 0 to 0.5. A larger value prefers turns and straight moves. Default 0.02
+    /// (ours).
     pub arc_margin: f64,
-    /// Longest duration of turns and straight moves, s, 1 to 3600. Default 120 (ours: the longest of
-    /// 500 corridor problems took half of it).
+    /// Time limit of turns and straight moves onto one goal, s, 1 to 3600. The goal is then given up. Default 120 (ours: the longest of 500
+    /// corridor problems took half of it).
     pub time_limit: f64,
-    /// Number of stops or waits without a completed motion in between after which docking is given up, 1 to 1000. Default 10
-    /// (ours: at a second each, a person who passes by has passed).
+    /// Number of successive stops or waits without a completed motion after which the goal is given up, 1 to 1000. Default 10 (ours: at a
+    /// second each, a passing person has left).
     pub max_stops: u32,
-    /// Planning of turns and straight moves. Default: as it comes, but a margin of 0.05, so that the safety monitor, which
-    /// stops 0.04 m before an obstacle, does not hold what was planned; and a tenth of the work, because the robot stands
-    /// meanwhile: a whole plan takes 2 * 10^7 counted steps at most, 7 s at 50 Hz.
+    /// Planning of turns and straight moves. Two defaults differ from the planner's. The margin is 0.05, since the safety monitor stops the
+    /// robot 0.04 m before an obstacle. The work is a tenth, since the robot waits: at most 2 * 10^7 counted steps per plan, 7 s at 50 Hz.
     pub planner: DockingConfig,
-    /// Carrying them out. Default: as it comes, but a control step is granted 60,000 counted steps of planning, 0.6 to 1 ms.
+    /// Execution of turns and straight moves. One default differs: 60,000 counted steps of planning per control step, 0.6 to 1 ms.
     pub positioner: PositionerConfig,
 }
 
@@ -90,7 +89,7 @@ pub(crate) struct GoalApproach {
     notes: Notes,
 }
 
-/// Result of a step of the manoeuvre.
+/// Progress of the manoeuvre after a step.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Progress {
     Moving(Twist2),
@@ -104,7 +103,7 @@ impl GoalApproach {
         require_in("docking.arc_margin", config.arc_margin, "m", 0.0, 0.5)?;
         require_in("docking.time_limit", config.time_limit, "s", 1.0, 3600.0)?;
         require_in("docking.max_stops", f64::from(config.max_stops), "", 1.0, 1000.0)?;
-        // Checks the settings once; later positioners use the same settings.
+        // This call checks the settings once; later positioners use the same settings.
         Positioner::new(config.planner.clone(), config.positioner, footprint.clone(), Pose2::IDENTITY)?;
         Ok(Self {
             docker: DockingPlanner::new(config.positioner.planner(config.planner.clone()))?,
@@ -138,8 +137,8 @@ impl GoalApproach {
         self.config.enabled && pose.distance(goal) <= self.config.near
     }
 
-    /// At the end of the trajectory: begins to compare turns and straight moves with the arc of `preview`. The result is in
-    /// [`GoalApproach::takes_over`].
+    /// At the end of the trajectory: begins to compare turns and straight moves with the arc of `preview`. [`GoalApproach::takes_over`]
+    /// gives the result.
     pub(crate) fn consider(&mut self, s: &WorldState<'_>, goal: Pose2, preview: StabilizerPreview) {
         self.choice = None;
         if self.config.enabled {
@@ -152,13 +151,13 @@ impl GoalApproach {
         self.choice.as_ref().is_some_and(ApproachSelection::is_arc_lost)
     }
 
-    /// Computes a part of the choice begun by [`GoalApproach::consider`]; returns whether turns and straight moves take over now. A moving
-    /// robot is first stopped by [`GoalApproach::step`], and its pose is measured at rest.
+    /// Computes a part of the choice begun by [`GoalApproach::consider`]; returns whether turns and straight moves are chosen.
+    /// [`GoalApproach::step`] first stops a moving robot and measures its pose at rest.
     pub(crate) fn takes_over(&mut self, s: &WorldState<'_>) -> bool {
         self.verdict(s) == Verdict::Manoeuvre && self.begin()
     }
 
-    /// Begins turns and straight moves if no path was found, if a manoeuvre exists. The search may take several calls.
+    /// Begins turns and straight moves in place of a missing path, if a manoeuvre exists. The search may take several calls.
     pub(crate) fn begin_if_possible(&mut self, s: &WorldState<'_>, goal: Pose2) -> bool {
         let pose = s.estimate.pose;
         if !self.is_near(&pose, &goal) {
@@ -193,7 +192,7 @@ impl GoalApproach {
             docker: &self.docker,
             footprint: &self.footprint,
             arc_margin: self.config.arc_margin,
-            // The pose is measured before the first motion and after the last one too.
+            // The pose is measured before the first motion and after the last one.
             standing: 2.0 * self.config.positioner.measure_time,
             work: self.config.positioner.step_work,
         };
@@ -257,7 +256,7 @@ impl GoalApproach {
         Progress::GivenUp(failure)
     }
 
-    /// The safety monitor stopped the robot.
+    /// Records that the safety monitor stopped the robot.
     pub(crate) fn interrupted(&mut self, s: &WorldState<'_>) {
         if let Some(positioner) = &mut self.positioner {
             positioner.interrupted(s.now);

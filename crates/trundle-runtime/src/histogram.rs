@@ -2,8 +2,7 @@
 
 /// Quantiles of a stream of positive numbers in constant memory: bins of equal width in the logarithm.
 ///
-/// A quantile is right to 1 %; count, sum and the largest number are exact. Numbers below a millionth count as a millionth,
-/// those above a million as a million.
+/// A quantile has an error of at most 1 %; count, sum and maximum are exact. Numbers are clamped to 10^-6 to 10^6.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Histogram {
     /// Empty until the first value.
@@ -21,7 +20,7 @@ const BIN_RATIO: f64 = 1.02;
 const BIN_COUNT: usize = 1396;
 
 impl Histogram {
-    /// Counts a number; one that is not finite is left out.
+    /// Counts a number. A number that is not finite is ignored.
     pub fn note(&mut self, value: f64) {
         if !value.is_finite() {
             return;
@@ -34,7 +33,7 @@ impl Histogram {
         self.most = self.most.max(value);
     }
 
-    /// Counts all that `other` has counted.
+    /// Adds the counts of `other`.
     pub fn add(&mut self, other: &Self) {
         if other.count == 0 {
             return;

@@ -10,7 +10,7 @@ pub struct LazyImage {
 }
 
 impl LazyImage {
-    /// An image taken at `stamp`, which `load` decodes at its first use; its error is a sentence for people.
+    /// An image taken at `stamp`, which `load` decodes at its first use. An error is a sentence for the user.
     pub fn new(stamp: Stamp, load: impl FnOnce() -> Result<RgbdImage, String> + Send + 'static) -> Self {
         Self { stamp, load: Box::new(load) }
     }

@@ -7,8 +7,8 @@ use trundle_mapping::{DepthScanConfig, DepthScanner, GridMapper, MapperConfig};
 
 /// A floor map of a camera that moves freely, hand-held or on a robot.
 ///
-/// The visual frame must be level: z up, the floor at z = 0. Each image is cut to the height band by tilt and height of its pose.
-/// The scans are kept and drawn when the poses are final.
+/// The visual frame must be level: z up, the floor at z = 0. Each scan is made from the height band by tilt and height of the image's pose.
+/// The scans are kept, and drawn at the final poses.
 #[derive(Debug)]
 pub struct LevelMap {
     scanner: DepthScanner,
@@ -17,18 +17,18 @@ pub struct LevelMap {
 }
 
 impl LevelMap {
-    /// A map still empty, of at most `map_hz` scans per second.
+    /// An empty map, for at most `map_hz` scans per second.
     ///
     /// # Errors
     /// When the scan's configuration is not valid.
     pub fn new(camera: PinholeCamera, scan: DepthScanConfig, map_hz: f64) -> Result<Self, Invalid> {
-        // The mount is each image's own: this one only stands in until the first.
+        // The mount follows from each image; the default is a placeholder until the first one.
         let scanner = DepthScanner::new(camera, CameraMount::default().base_from_camera(), scan)?;
         Ok(Self { scanner, due: Ticker::new(map_hz), scans: BTreeMap::new() })
     }
 
-    /// Keeps the scan of an image taken at `level_from_camera`. An image too soon after the last kept one is left out, and one without a
-    /// scan: a camera that points too steeply up or down, or is below the floor.
+    /// Keeps the scan of an image taken at `level_from_camera`. An image too soon after the last kept one is skipped. An image without a
+    /// scan is skipped too: the camera points too steeply up or down, or is below the floor.
     pub fn note(&mut self, image: &RgbdImage, level_from_camera: Pose3) {
         let Some(base) = base_below(&level_from_camera) else { return };
         let base_from_camera = Pose3::from_pose2(base).inverse() * level_from_camera;
@@ -63,19 +63,19 @@ impl LevelMap {
         Ok(mapper)
     }
 
-    /// The scan of an image, where it is kept, and `level_from_base` of a base below the camera's pose.
+    /// The scan of a kept image, and `level_from_base` of a base below the camera's pose.
     #[must_use]
     pub fn scan_at(&self, stamp: Stamp, level_from_camera: &Pose3) -> Option<(Pose2, &Scan)> {
         Some((base_below(level_from_camera)?, self.scans.get(&stamp)?))
     }
 
-    /// The scan of an image, where it is kept; the base's frame lies under the camera.
+    /// The scan of a kept image, in the frame of a base under the camera.
     #[must_use]
     pub fn scan(&self, stamp: Stamp) -> Option<&Scan> {
         self.scans.get(&stamp)
     }
 
-    /// Distance up to which the camera at its last pose does not see the floor, m.
+    /// Distance within which the floor is not visible to the camera at its last pose, m.
     #[must_use]
     pub fn blind_range(&self) -> f64 {
         self.scanner.blind_range()
@@ -101,8 +101,8 @@ pub fn level_from_first_camera(height: f64, tilt_deg: f64, roll_deg: f64) -> Res
 /// Angle between the optical axis and the vertical \[deg\]. Below it the camera has no heading. Source: ours.
 const MIN_AXIS_TILT_DEG: f64 = 20.0;
 
-/// `level_from_base` of a base under the camera at `level_from_camera`, its heading that of the optical axis; `None` if the axis is
-/// nearly vertical.
+/// `level_from_base` of a base under the camera at `level_from_camera`, with the heading of the optical axis; `None` if the axis is nearly
+/// vertical.
 #[must_use]
 pub fn base_below(level_from_camera: &Pose3) -> Option<Pose2> {
     let axis = level_from_camera.rotate(Vector3::z());
@@ -142,7 +142,7 @@ mod tests {
     #[test]
     fn a_scan_is_drawn_where_the_final_trajectory_has_its_image() {
         let (mut map, at_first) = (level_map(), level_from_first_camera(0.4, 0.0, 0.0).unwrap());
-        // One hit is not an obstacle yet.
+        // A single hit is no obstacle.
         let times = [0.0, 0.25, 0.5, 0.75];
         times.iter().for_each(|time| map.note(&wall(*time), at_first));
         for pose in [Pose2::IDENTITY, Pose2::new(1.0, -0.5, 0.0), Pose2::new(0.5, 1.0, 2.0)] {

@@ -1,8 +1,8 @@
 //! The whole robot: loop, schedule, states, configuration.
 //!
-//! [`Robot`] is one value with one `step`: a sensor event in, a [`StepReport`] out. Here alone SLAM, mapping, localization,
-//! planning, control and docking meet, as core types. Time is the data's: the stamps and the [`Schedule`] decide which stage
-//! runs when, so a recording that is fed again gives the same reports.
+//! [`Robot`] is one value with one `step`: a sensor event in, a [`StepReport`] out. Only this crate connects SLAM, mapping, localization,
+//! planning, control and docking, by core types. Time is that of the data: the stamps and the [`Schedule`] decide when each stage runs, so
+//! a replayed recording gives the same reports.
 
 mod behaviour;
 mod bumper;

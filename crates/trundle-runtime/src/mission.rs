@@ -1,4 +1,4 @@
-//! Missions: tasks in order, and how they ended.
+//! Missions: a sequence of tasks, and their results.
 
 pub(crate) mod dock_failure;
 pub(crate) mod dock_task;
@@ -14,7 +14,7 @@ use std::fmt;
 pub use task::Task;
 use trundle_core::{Invalid, Pose2, Stamp};
 
-/// A sequence of tasks. An unreachable goal is postponed while other tasks wait: to the end, but before a return, for one more attempt.
+/// A sequence of tasks. An unreachable goal gets one more attempt at the end of the mission, before a return.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Mission {
@@ -22,7 +22,7 @@ pub struct Mission {
 }
 
 impl Mission {
-    /// The tasks, to be done in this order.
+    /// A mission of these tasks, in this order.
     ///
     /// # Errors
     /// When a goal is not finite; the error names its index.
@@ -61,16 +61,16 @@ impl MissionState {
         Self { places, left: mission, ended: Vec::new(), by_operator: false }
     }
 
-    /// The same mission, given by an operator.
+    /// The same mission, marked as given by an operator.
     #[must_use]
     pub(crate) fn of_operator(self) -> Self {
         Self { by_operator: true, ..self }
     }
 
-    /// Passes one from a file through.
+    /// Returns a valid state, as from a file, unchanged.
     ///
     /// # Errors
-    /// When a goal is not finite, or tasks and places are not as many.
+    /// When a goal is not finite, or the numbers of tasks and places differ.
     pub fn validated(self) -> Result<Self, Invalid> {
         let (tasks, places) = (self.left.tasks.len(), self.places.len());
         if tasks != places {
@@ -79,7 +79,7 @@ impl MissionState {
         Ok(Self { left: Mission::new(self.left.tasks)?, ..self })
     }
 
-    /// This mission after the robot was switched off and on again.
+    /// This mission after a restart of the robot.
     #[must_use]
     pub(crate) fn after_restart(mut self) -> Self {
         self.ended.iter_mut().for_each(|record| record.before_restart = true);
@@ -134,7 +134,7 @@ pub struct TaskRecord {
     pub to: Stamp,
     /// Estimated pose of the robot at that time, map frame.
     pub pose: Pose2,
-    /// Whether the robot was switched off since: the stamps are of another clock.
+    /// Whether the robot was restarted since, so that the stamps are of another clock.
     pub before_restart: bool,
 }
 

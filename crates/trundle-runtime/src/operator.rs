@@ -1,4 +1,4 @@
-//! Commands of an operator to a robot that runs: a person at a page, or a program.
+//! Commands of an operator (a person or a program) to a running robot.
 
 use crate::mission::executor_config::PATIENCE_RANGE_S;
 use crate::{Mission, RobotConfig};
@@ -9,44 +9,44 @@ use trundle_core::{
 };
 use trundle_mapping::GridMapper;
 
-/// A command of an operator to a robot that runs.
+/// A command of an operator to a running robot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum OperatorCommand {
-    /// Begin this mission in place of the rest of the present one. From an empty mission on the robot brakes to rest.
+    /// Replace the present mission by this one. With an empty mission the robot brakes to rest.
     Begin(Mission),
     /// Stop, and keep the mission.
     Pause,
-    /// Go on after a pause.
+    /// Continue after a pause.
     Continue,
-    /// The pose of the robot, given by the operator.
+    /// Set the pose of the robot.
     SetPose(PoseGuess),
-    /// Change a setting, until the run ends.
+    /// Change a setting until the end of the run.
     Change(RunSetting),
-    /// The zones and named places of the map, in place of the present ones.
+    /// Replace the zones and named places of the map.
     Annotate(MapAnnotations),
-    /// Another map in place of the present one, with the robot file's resolution. Its frame becomes the map frame, and the pose is unknown.
-    /// The mission is cancelled; zones, places and charging station of the old map are dropped. If the cells do not fit, the robot retains
-    /// its map and its mission ([`crate::StepReport::map_replaced`]).
+    /// Replace the map by one with the robot file's resolution. Its frame becomes the map frame, and the pose is unknown. The mission is
+    /// cancelled; zones, places and charging station of the old map are dropped. If the cells do not fit, the robot keeps its map and its
+    /// mission ([`crate::StepReport::map_replaced`]).
     LoadMap(Box<OccupancyGrid>),
-    /// Drive with this twist, checked by the safety monitor: the mission is paused. Without another twist within [`TELEOP_SILENCE_S`] the
-    /// robot stops.
+    /// Drive with this twist under the safety monitor, and pause the mission. Without another twist within [`TELEOP_SILENCE_S`] the robot
+    /// stops.
     Drive(Twist2),
 }
 
-/// Time after the last twist of the operator at which the robot stops \[s\]. With a longer time, the robot would drive on after the loss of
-/// the link. Source: ours; three periods of a page that sends at 10 Hz.
+/// Time after the operator's last twist at which the robot stops \[s\]. With a longer time, the robot would drive on after a loss of the
+/// link. Source: ours; three periods of a page that sends at 10 Hz.
 pub const TELEOP_SILENCE_S: f64 = 0.3;
 
 impl OperatorCommand {
-    /// Takes the mission away: the robot brakes to rest.
+    /// The command that cancels the mission: the robot brakes to rest.
     #[must_use]
     pub fn cancel() -> Self {
         Self::Begin(Mission::default())
     }
 
-    /// The command, its numbers checked.
+    /// Returns a command with valid numbers unchanged.
     ///
     /// # Errors
     /// Names the number that is not finite or outside its range.
@@ -67,7 +67,7 @@ impl OperatorCommand {
     }
 }
 
-/// Refuses a map that a recording cannot hold.
+/// Refuses a map that is too large for a recording.
 fn require_recordable(map: &GridGeometry) -> Result<(), Invalid> {
     let cells = map.len();
     if cells > MAX_TEXT_CELLS {
@@ -77,10 +77,10 @@ fn require_recordable(map: &GridGeometry) -> Result<(), Invalid> {
     Ok(())
 }
 
-/// Refuses a map that a robot of this configuration does not take by [`OperatorCommand::LoadMap`].
+/// Refuses a map that a robot of this configuration cannot use with [`OperatorCommand::LoadMap`].
 ///
 /// # Errors
-/// When it has too many cells, cells of another size, an origin off their multiples, or reaches too far.
+/// When the map has too many cells, cells of another size, an origin off the multiples of the cell size, or too large an extent.
 pub fn require_loadable(map: &GridGeometry, robot: &RobotConfig) -> Result<(), Invalid> {
     require_recordable(map)?;
     GridMapper::require_fits(&robot.mapping, map)
@@ -97,7 +97,7 @@ pub struct PoseGuess {
     pub heading_sigma: f64,
 }
 
-/// Range of the standard deviation of a guessed position \[m\]. Source: ours; below it a person cannot point at a map.
+/// Range of the standard deviation of a guessed position \[m\]. Source: ours; no person points at a map more exactly.
 const POSITION_SIGMA_RANGE_M: (f64, f64) = (0.001, 10.0);
 /// Range of the standard deviation of a guessed heading \[rad\]. Source: ours.
 const HEADING_SIGMA_RANGE_RAD: (f64, f64) = (0.001, std::f64::consts::PI);

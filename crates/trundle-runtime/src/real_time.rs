@@ -3,7 +3,7 @@
 //! The control thread feeds a [`crate::Robot`] with background jobs from an [`Inbox`]. [`WorkerThreads`] runs the jobs, one thread for each
 //! worker. Events and results in the same order give the same reports.
 //!
-//! The loop of a robot's driver, whose own threads put sensor events into the inbox:
+//! The control loop of a robot; the driver's threads put sensor events into the inbox:
 //!
 //! ```no_run
 //! use std::time::Duration;

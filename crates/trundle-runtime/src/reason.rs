@@ -1,4 +1,4 @@
-//! Reasons: why the robot does not move on, and why a task ended undone.
+//! Reasons for stops of the robot and for incomplete tasks.
 
 mod kind;
 mod no_path;
@@ -74,7 +74,7 @@ pub enum Reason {
     FinalApproach(ApproachFailure),
     /// The robot is not on its charging station.
     Docking(DockFailure),
-    /// The mission is over, and these tasks are undone.
+    /// The mission is over, and these tasks failed.
     TasksFailed(Vec<TaskFailure>),
     /// The user ended the run.
     Interrupted,
@@ -87,7 +87,7 @@ pub enum Reason {
     },
 }
 
-/// A task that ended undone.
+/// A failed task.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TaskFailure {
     /// Index of the task in the mission, from 0.
@@ -107,12 +107,12 @@ impl Reason {
         std::iter::once(self.kind()).chain(self.causes().iter().flat_map(|cause| cause.kinds())).collect()
     }
 
-    /// Whether this reason, or a reason behind it, is of a kind.
+    /// Whether this reason, or one of its causes, is of a kind.
     pub fn is_due_to(&self, kind: ReasonKind) -> bool {
         self.kinds().contains(&kind)
     }
 
-    /// The reasons directly behind this one.
+    /// The direct causes of this reason.
     fn causes(&self) -> Vec<&Self> {
         match self {
             Self::NoProgress { cause: Some(cause), .. } => vec![cause],

@@ -53,12 +53,11 @@ use trundle_mapping::MapperConfig;
 
 /// The whole robot: sensor events in; pose, map, plan and twist out.
 ///
-/// It reads no clock and no file, and draws no chance but from the seeds of its configuration: the same events give the
-/// same reports. (Wall-clock times are noted beside it in [`StageTimes`], which only reports read.)
+/// The robot reads no clock and no file, and random numbers come only from the seeds of its configuration: the same events give the same
+/// reports. ([`StageTimes`] records wall-clock times for reports only.)
 ///
-/// By default the robot does everything within the step. After [`Robot::with_background_jobs`] long work leaves as
-/// [`crate::Job`]s, and [`Robot::apply_answer`] applies each result between two events. The same events and results in the same
-/// order give the same reports.
+/// By default the robot does all work within the step. After [`Robot::with_background_jobs`] long work is given out as [`crate::Job`]s, and
+/// [`Robot::apply_answer`] applies each result between two events. The same events and results in the same order give the same reports.
 #[derive(Debug)]
 pub struct Robot {
     range_sensor: RangeSensor,
@@ -66,7 +65,7 @@ pub struct Robot {
     /// Standard deviation of the position above which the pose is lost \[m\].
     lost_sigma: f64,
     odometry: WheelOdometry,
-    /// None while a perception job runs.
+    /// `None` while a perception job runs.
     perception: Option<Box<PerceptionWorker>>,
     images: ImageQueue,
     localizer: Localizer,
@@ -90,7 +89,7 @@ struct RangeSensor {
     deskews: bool,
 }
 
-/// State that later steps take from earlier ones.
+/// State carried from step to step.
 #[derive(Debug, Default)]
 struct Latest {
     odometry: Option<Odometry>,
@@ -99,23 +98,23 @@ struct Latest {
     sensors: SensorWatch,
     /// The newest scan.
     scan: Option<Scan>,
-    /// `odom_from_base` when it was taken.
+    /// `odom_from_base` at the newest scan.
     scan_odometry: Option<Pose2>,
     camera_health: CameraHealth,
     /// Stamp of the newest image that was located.
     located: Option<Stamp>,
     scan_map_consistency: ScanMapConsistency,
-    /// Which visual poses count, and whether the robot was carried away.
+    /// Decides the use of visual poses, and detects a displacement of the robot.
     pose_monitor: PoseMonitor,
-    /// Images that were left out because the camera was frozen.
+    /// Number of images skipped because the camera was frozen.
     frozen: usize,
 }
 
-/// Largest age of a located image \[s\] that still measures the robot's motion. Source: ours.
+/// Largest age of a located image as a measurement of motion \[s\]. Source: ours.
 const MAX_VISUAL_MOTION_AGE_S: f64 = 0.8;
 
 impl Robot {
-    /// A robot that has just been switched on: where it stands is the map's origin.
+    /// A robot after power-on: its pose is the map's origin.
     ///
     /// # Errors
     /// When a number of the configuration is outside its range.
@@ -150,8 +149,8 @@ impl Robot {
         })
     }
 
-    /// Gives the robot a mission in place of what is left of its old one. It begins with the next reading of the wheels. From an
-    /// empty mission on the robot brakes to rest, within the limits of its base.
+    /// Replaces the mission, beginning with the next reading of the wheels. With an empty mission the robot brakes to rest within the
+    /// limits of its base.
     pub fn begin(&mut self, mission: &Mission) {
         self.steering.begin(MissionState::new(mission.clone()));
     }
@@ -165,7 +164,7 @@ impl Robot {
         Ok(())
     }
 
-    /// One sensor event through the whole robot.
+    /// Processes one sensor event.
     pub fn step(&mut self, event: &SensorEvent) -> StepReport {
         let mut report = StepReport::default();
         self.latest.sensors.on_event(event.stamp());
@@ -180,7 +179,7 @@ impl Robot {
             SensorEvent::Scan(scan) if self.range_sensor.source == RangeSource::Laser => {
                 self.on_laser(scan, &mut report);
             }
-            // The grid of a robot with a depth camera ignores lasers; truth is for evaluation alone.
+            // With the depth camera as range source, laser scans are ignored. Truth is for evaluation only.
             _ => {}
         }
         self.complete(&mut report);
@@ -193,13 +192,13 @@ impl Robot {
         self.steering.complete(self.latest.sensors.newest(), report);
     }
 
-    /// A gyro reading: into the odometry.
+    /// Adds a gyro reading to the odometry.
     fn on_gyro(&mut self, gyro: &GyroRate) {
         self.latest.sensors.on_gyro(gyro.stamp);
         self.times.measure(Stage::Odometry, || self.odometry.step_gyro(gyro));
     }
 
-    /// A wheel reading: odometry, prediction, then navigation: a twist leaves.
+    /// Processes a wheel reading: odometry, prediction, navigation, twist.
     fn on_wheels(&mut self, wheels: &WheelTicks, report: &mut StepReport) {
         let odometry = self.times.measure(Stage::Odometry, || self.odometry.step_wheels(wheels));
         report.measurements.motion = self.odometry.increment().copied();
@@ -209,7 +208,7 @@ impl Robot {
         self.drive_on(odometry, wheels.stamp, report);
     }
 
-    /// Odometry that the body computed: as a reading of the wheels. Invalid odometry is dropped.
+    /// Processes odometry computed by the body, like a wheel reading. Invalid odometry is dropped.
     fn on_odometry(&mut self, odometry: &Odometry, report: &mut StepReport) {
         let Ok(odometry) = odometry.checked() else {
             tracing::warn!("odometry of {} s is not finite and is dropped", odometry.stamp);
@@ -220,7 +219,8 @@ impl Robot {
         self.drive_on(odometry, now, report);
     }
 
-    /// An event of the body: a condition that begins stops the robot at once, one that ends lets it go on, and in silence time goes on.
+    /// Processes an event of the body: a new condition stops the robot at once, its end lets the robot continue, and silence advances the
+    /// time.
     fn on_body(&mut self, event: &BodyEvent, report: &mut StepReport) {
         let before = self.latest.body.hold(self.range_sensor.source);
         self.latest.body.update(event.kind);
@@ -237,7 +237,7 @@ impl Robot {
         }
     }
 
-    /// Acts at once on a change of what holds the robot.
+    /// Acts at once on a change of the holding condition.
     fn on_hold(&mut self, before: Option<MotionHold>, now: Stamp, report: &mut StepReport) {
         let hold = self.latest.body.hold(self.range_sensor.source);
         if before != hold {
@@ -246,7 +246,7 @@ impl Robot {
         }
     }
 
-    /// New odometry: prediction, then navigation.
+    /// Processes new odometry: prediction, then navigation.
     fn drive_on(&mut self, odometry: Odometry, now: Stamp, report: &mut StepReport) {
         self.times.measure(Stage::Localization, || self.localizer.predict(&odometry));
         self.latest.odometry = Some(odometry);
@@ -254,7 +254,7 @@ impl Robot {
         self.decide(now, report);
     }
 
-    /// The light of the charging station at the present pose.
+    /// Adds the light of the charging station at the present pose.
     fn add_station_light(&mut self, now: Stamp) {
         let light = self.latest.body.station_light();
         if self.is_pose_known(now) {
@@ -262,7 +262,7 @@ impl Robot {
         }
     }
 
-    /// Navigation by the state of the world at `now`: a twist leaves.
+    /// Navigates by the state of the world at `now`, and commands a twist.
     fn decide(&mut self, now: Stamp, report: &mut StepReport) {
         self.obstacles.forecast(self.latest.scan.as_ref().map(Scan::stamp), now);
         self.update_zones();
@@ -292,7 +292,7 @@ impl Robot {
         self.redraw();
     }
 
-    /// The zones as they count at the present pose, on the present map.
+    /// Updates the zones for the present pose and map.
     fn update_zones(&mut self) {
         let map = ZonedMap {
             grid: self.mapping.grid(),
@@ -303,7 +303,7 @@ impl Robot {
         self.zones.update(self.localizer.estimate().pose, &map);
     }
 
-    /// The source that shows how the robot moves.
+    /// The source that measures the robot's motion.
     fn motion_sense(&self, now: Stamp) -> MotionSense {
         let is_seen = || self.latest.located.is_some_and(|located| now - located <= MAX_VISUAL_MOTION_AGE_S);
         match self.range_sensor.source {
@@ -320,7 +320,7 @@ impl Robot {
         }
     }
 
-    /// The bumper: what presses it enters the map, which the camera may be blind for.
+    /// Processes the bumper: a contact enters the map, since the camera may not see the obstacle.
     fn on_touch(&mut self, pressed: bool) {
         let estimate = self.localizer.estimate();
         if pressed && self.latest.odometry.is_some() && self.is_pose_known(estimate.stamp) {
@@ -336,8 +336,8 @@ impl Robot {
             && position_sigma(&self.localizer.estimate()) < self.lost_sigma
     }
 
-    /// Odometry at the stamp of an image, which may be older than the newest reading. Long after the newest reading it is that reading,
-    /// with the uncertainty of the motion that the base may have made since.
+    /// Odometry at the stamp of an image, which may be older than the newest reading. Long after the newest reading, the result is that
+    /// reading with the uncertainty of a motion since then.
     fn odometry_at(&self, stamp: Stamp) -> Option<OdometryState> {
         let newest = || {
             let odometry = self.latest.odometry.as_ref()?;
@@ -352,7 +352,7 @@ impl Robot {
 }
 
 impl Latest {
-    /// The newest scan with the odometry that carries it to now.
+    /// The newest scan with the odometry since its stamp.
     fn scan_with_odometry(&self) -> Option<SafetyScan<'_>> {
         Some(SafetyScan {
             scan: self.scan.as_ref()?,

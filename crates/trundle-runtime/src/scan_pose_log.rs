@@ -1,4 +1,4 @@
-//! Poses of the scans that were drawn into the grid, for a redraw after a correction.
+//! Poses of the scans in the grid, for a redraw after a correction.
 
 use std::collections::{BTreeMap, BTreeSet};
 use trundle_core::{Pose2, Pose3, Stamp};
@@ -7,7 +7,7 @@ use trundle_core::{Pose2, Pose3, Stamp};
 #[derive(Debug, Default)]
 pub(crate) struct ScanPoseLog {
     visual: BTreeMap<Stamp, Pose3>,
-    /// Number of poses at which the log is thinned; 0: [`MIN_KEPT_POSES`].
+    /// Number of poses at which the log is thinned; 0 means [`MIN_KEPT_POSES`].
     most: usize,
 }
 
@@ -33,13 +33,13 @@ impl ScanPoseLog {
         is_thinned
     }
 
-    /// Whether a scan of then may still move.
+    /// Whether the log has a scan with this stamp.
     pub(crate) fn has(&self, stamp: Stamp) -> bool {
         self.visual.contains_key(&stamp)
     }
 
-    /// Applies the corrected poses of the visual map: `new_from_old` (map frame) of every drawn scan whose pose it has. `base` gives the
-    /// base in the map frame for a camera pose.
+    /// Applies the corrected poses of the visual map; returns `new_from_old` (map frame) of every drawn scan with a corrected pose. `base`
+    /// converts a camera pose to the base's pose in the map frame.
     pub(crate) fn follow(
         &mut self,
         now: &[(Stamp, Pose3)],

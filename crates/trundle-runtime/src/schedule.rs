@@ -3,17 +3,17 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Stamp, require_in};
 
-/// Rates of the stages that do not run with every reading of their sensor.
+/// Rates of the stages that do not run at every reading of their sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
 pub struct Schedule {
-    /// Scans put into the map, 1/s, 0.5 to 30. Default 5: the rate of \[Li18\].
+    /// Rate at which scans enter the map, 1/s, 0.5 to 30. A higher rate takes more time. Default 5: the rate of \[Li18\].
     pub map_hz: f64,
-    /// Checks of the remaining trajectory against the map, 1/s, 0.5 to 30. Default 5: with every new map.
+    /// Rate at which the remaining trajectory is checked against the map, 1/s, 0.5 to 30. Default 5: with every new map.
     pub check_hz: f64,
-    /// Searches for a faster path during a drive, 1/s, 0 (never) to 30. Default 0: floor that was unknown at planning time is
-    /// then driven slowly to the end.
+    /// Rate of searches for a faster path during a drive, 1/s, 0 (never) to 30. Without searches, floor that was unknown at the start of
+    /// the plan is driven slowly. Default 0.
     pub improve_hz: f64,
 }
 
@@ -24,7 +24,7 @@ impl Default for Schedule {
 }
 
 impl Schedule {
-    /// Passes a valid schedule through.
+    /// Returns a valid schedule unchanged.
     ///
     /// # Errors
     /// When a rate is outside its range.
@@ -44,7 +44,7 @@ pub(crate) struct Ticker {
 }
 
 impl Ticker {
-    /// Due `hz` times per second; never for 0.
+    /// A stage due `hz` times per second; never for 0.
     pub(crate) fn new(hz: f64) -> Self {
         Self { period: 1.0 / hz, last: None }
     }

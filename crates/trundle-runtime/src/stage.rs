@@ -17,7 +17,7 @@ pub enum Stage {
     Slam,
     /// Depth image to scan.
     Scan,
-    /// Visual maps to bytes, for a restart.
+    /// Visual maps to bytes, for a checkpoint.
     Checkpoint,
     /// Scan against map.
     ScanMatch,
@@ -100,7 +100,7 @@ pub struct StageCost {
     pub p999_ms: f64,
     /// Milliseconds.
     pub max_ms: f64,
-    /// All runs together, s.
+    /// Total time, s.
     pub total_s: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Long work of the robot as jobs outside the control loop, and the controllers used during a decision job or teleoperation.
+//! Long work of the robot as jobs, and the controllers used during a decision job or teleoperation.
 
 pub(crate) mod decision_worker;
 pub(crate) mod fallback_controller;

@@ -1,4 +1,4 @@
-//! The world state: the input of a decision, by reference, and as a copy for a decision in parallel with the control loop.
+//! The world state, input of a decision: by reference, and as a copy for a decision job.
 
 use crate::zones::{ZoneMasks, ZoneView};
 use std::sync::Arc;
@@ -13,7 +13,7 @@ pub(crate) struct WorldState<'a> {
     pub(crate) now: Stamp,
     pub(crate) estimate: PoseEstimate,
     pub(crate) grid: &'a OccupancyGrid,
-    /// The newest scan, carried by odometry.
+    /// The newest scan, with the odometry since its stamp.
     pub(crate) scan: Option<SafetyScan<'a>>,
     /// Stamp of the newest scan with content.
     pub(crate) seen: Option<Stamp>,
@@ -28,22 +28,22 @@ pub(crate) struct WorldState<'a> {
     pub(crate) zones: ZoneView<'a>,
 }
 
-/// The charging station, as far as the robot knows it.
+/// The robot's knowledge of the charging station.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct StationState {
-    /// Estimated pose of the station. `None` before the robot saw its light.
+    /// Estimated pose of the station. `None` before the first light.
     pub(crate) estimate: Option<StationEstimate>,
     /// Whether the robot is on the contacts of the station.
     pub(crate) is_docked: bool,
 }
 
-/// Moving and new obstacles near by.
+/// Moving and new obstacles nearby.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct DynamicObstacles<'a> {
     pub(crate) movers: &'a [MovingObstacle],
-    /// Hits of new obstacles nearby that no scan has disproved, map frame, m.
+    /// Hits of new nearby obstacles, not refuted by a later scan, map frame, m.
     pub(crate) unconfirmed: &'a [Vector2],
-    /// The map without moving obstacles. `None` if there are none.
+    /// The map without moving obstacles. `None` without moving obstacles.
     pub(crate) static_grid: Option<&'a OccupancyGrid>,
 }
 
@@ -53,18 +53,18 @@ impl<'a> WorldState<'a> {
         self.dynamic_obstacles.static_grid.unwrap_or(self.grid)
     }
 
-    /// The map that plans are made on: the floor, its no-go zones occupied.
+    /// The map for plans: the floor with occupied no-go zones.
     pub(crate) fn permitted_floor(&self) -> &'a OccupancyGrid {
         self.zones.static_grid.or(self.zones.grid).unwrap_or(self.floor())
     }
 
-    /// The map with what moves, its no-go zones occupied.
+    /// The map with moving obstacles and with occupied no-go zones.
     pub(crate) fn permitted_grid(&self) -> &'a OccupancyGrid {
         self.zones.grid.unwrap_or(self.grid)
     }
 }
 
-/// [`WorldState`] that can be taken elsewhere.
+/// A copy of a [`WorldState`], for another thread.
 #[derive(Debug)]
 pub(crate) struct OwnedWorldState {
     now: Stamp,

@@ -1,8 +1,8 @@
 //! The zones of a running robot: the map with no-go zones occupied, speed limits, and the exit from a no-go zone.
 //!
 //! A no-go zone is an obstacle for plans, not for the safety monitor. A robot deeper in a zone than the planner's escape distance may leave
-//! the zone. Until it is out, this zone is costly and slow floor; all other zones apply. A goal in a no-go zone is refused also during the
-//! exit.
+//! it. During the exit, this zone is floor with high cost and low speed, and all other zones apply. A goal in a no-go zone is refused also
+//! during the exit.
 
 use std::sync::Arc;
 use trundle_core::{
@@ -10,7 +10,7 @@ use trundle_core::{
 };
 use trundle_planning::{CostMask, FootprintCheck, SpeedMask, forbid, forbidden_cells, slow_speeds};
 
-/// Highest speed in a no-go zone that the robot leaves \[m/s\]. Source: ours; a slow walk of a person who watches it.
+/// Highest speed in a no-go zone during the exit \[m/s\]. Source: ours; a slow walk of a person beside the robot.
 const LEAVING_SPEED_M_S: f64 = 0.15;
 /// Cost of the cells of a zone that the robot leaves, in per cent of the largest.
 const LEAVING_COST_PERCENT: u8 = 100;
@@ -31,7 +31,7 @@ pub(crate) struct RobotZones {
 /// Demands of the zones on the planner.
 #[derive(Debug, Default)]
 pub(crate) struct ZoneMasks {
-    /// Larger after each change, from 1.
+    /// Version, from 1; increases with each change.
     pub(crate) version: u64,
     /// The limits of the slow zones.
     pub(crate) speeds: Option<SpeedMask>,
@@ -58,9 +58,9 @@ pub(crate) struct ZonedMap<'a> {
     pub(crate) grid: &'a OccupancyGrid,
     /// Revision of the grid.
     pub(crate) revision: u64,
-    /// The grid without what moves.
+    /// The grid without moving obstacles.
     pub(crate) static_grid: Option<&'a OccupancyGrid>,
-    /// Stamp of the scan by which that was made.
+    /// Stamp of the scan of `static_grid`.
     pub(crate) scanned: Option<Stamp>,
 }
 
@@ -109,7 +109,7 @@ impl RobotZones {
         }
     }
 
-    /// A twist of a person, slowed to the limit of the zone at a pose. The robot turns on the same circle.
+    /// A person's twist, scaled to the speed limit of the zone at a pose. The radius of the circle does not change.
     pub(crate) fn slowed(&self, twist: Twist2, pose: Pose2) -> Twist2 {
         let speeds = self.masks.as_ref().and_then(|masks| masks.speeds.as_ref());
         let limit = speeds.map_or(f64::INFINITY, |speeds| speeds.limit(pose.position()));
@@ -117,7 +117,7 @@ impl RobotZones {
         if part < 1.0 { Twist2::new(twist.v * part, twist.omega * part) } else { twist }
     }
 
-    /// Takes the robot's pose and the newest map over.
+    /// Updates the zones by the robot's pose and the newest map.
     pub(crate) fn update(&mut self, pose: Pose2, map: &ZonedMap<'_>) {
         if !self.annotations.zones.iter().any(|zone| zone.kind == ZoneKind::NoGo) {
             return;
@@ -147,7 +147,7 @@ impl RobotZones {
         self.annotations.zones.iter().filter(|zone| zone.kind == ZoneKind::NoGo)
     }
 
-    /// Whether the robot is too deep in a zone to plan with it as an obstacle, or has not left the zone since then.
+    /// Whether the robot leaves a zone: it was too deep in the zone for plans with the zone as an obstacle, and is not out yet.
     fn leaves(&self, zone: &Zone, lattice: &GridGeometry, pose: Pose2) -> bool {
         let overlap = self.check.overlap_with_zone(zone, lattice, pose);
         let is_leaving = self.left.contains(&zone.id);

@@ -96,7 +96,7 @@ impl SimConfig {
         }
     }
 
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range or not finite.

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use trundle_core::Invalid;
 use trundle_vision::OrbConfig;
 
-/// Everything that can be set about the RGB-D SLAM.
+/// All settings of the RGB-D SLAM.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SlamConfig {
@@ -18,19 +18,20 @@ pub struct SlamConfig {
     pub orb: OrbConfig,
     /// Depth camera.
     pub depth: DepthConfig,
-    /// Finding the pose of a frame.
+    /// Pose of a frame.
     pub tracking: TrackingConfig,
-    /// Uncertainty of what is not seen.
+    /// Uncertainty of unobserved motion.
     pub motion: MotionModelConfig,
-    /// When a frame becomes a keyframe.
+    /// Selection of keyframes.
     pub keyframes: KeyframeConfig,
     /// The landmark map.
     pub mapping: LocalMappingConfig,
-    /// Places seen again.
+    /// Loop closing.
     pub loops: LoopConfig,
     /// Seed of the random samples. Default 0.
     pub seed: u64,
-    /// Frames whose poses are kept, the newest ones, 1 or more. Default 108,000: an hour at 30 Hz, some 10 MB.
+    /// Number of newest frames whose poses are kept, 1 or more. A larger number keeps a longer trajectory, of some 100 bytes per frame.
+    /// Default 108,000: an hour at 30 Hz.
     pub kept_frames: usize,
 }
 
@@ -51,10 +52,10 @@ impl Default for SlamConfig {
 }
 
 impl SlamConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
         if self.kept_frames == 0 {
             return Err(Invalid::new("slam.kept_frames", 0, "", "1 or more"));

@@ -3,12 +3,12 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A keyframe of the map. Ids rise in the order of making and are never used twice.
+/// Id of a keyframe of the map. Ids rise in the order of creation and are never reused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct KeyframeId(u32);
 
-/// A landmark of the map. Ids rise in the order of making and are never used twice.
+/// Id of a landmark of the map. Ids rise in the order of creation and are never reused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct LandmarkId(u32);
@@ -20,7 +20,7 @@ macro_rules! arena_id {
                 Self(u32::try_from(index).expect("invariant: an arena holds less than 2^32 things"))
             }
 
-            /// The place in the arena, from 0.
+            /// Index in the arena, from 0.
             pub fn index(self) -> usize {
                 self.0 as usize
             }
@@ -37,13 +37,13 @@ macro_rules! arena_id {
 arena_id!(KeyframeId, "K");
 arena_id!(LandmarkId, "L");
 
-/// A map with a frame of its own. Numbers rise in the order of beginning and are never used twice.
+/// Id of a map with a frame of its own. Ids rise in the order of creation and are never reused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct MapId(pub(crate) u32);
 
 impl MapId {
-    /// Its number.
+    /// The id as a number.
     pub fn number(self) -> u32 {
         self.0
     }

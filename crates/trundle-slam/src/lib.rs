@@ -1,10 +1,10 @@
 //! RGB-D SLAM: from images to a camera trajectory and a landmark map.
 //!
-//! The problem: where was the camera when it took each image? The idea is that of ORB-SLAM2 \[MurArtal17\] on RGB-D. Each frame is
-//! located against landmarks by reprojection. A frame with a new view becomes a keyframe, whose depths make new landmarks, and local
-//! bundle adjustment refines poses and landmarks around it. A place seen again is matched with its existing landmarks, so that a
-//! camera that turns in a room, or stands still, does not drift. Cost: a few ms a frame on one core besides the features, and some
-//! tens of ms a keyframe. See `docs/algorithms/slam.md`.
+//! Problem: the pose of the camera at each image. The idea is that of ORB-SLAM2 \[MurArtal17\] for RGB-D. Each frame is located against
+//! landmarks by reprojection. A frame with a new view becomes a keyframe, whose depths make new landmarks. Local bundle adjustment refines
+//! poses and landmarks around each keyframe. A place in view again is matched with its existing landmarks, so that a camera that turns in a
+//! room, or stands still, does not drift. Cost on one core: a few ms per frame besides the features, and some tens of ms per keyframe. See
+//! `docs/algorithms/slam.md`.
 //!
 //! ```
 //! use trundle_core::{ColorImage, DepthImage, PinholeCamera, RgbdImage, Stamp};
@@ -32,7 +32,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Folders, from images to maps; each uses only those before it:
+//! Folders, from images to maps; each folder uses only those above it in the table:
 //!
 //! | folder | holds |
 //! |---|---|

@@ -1,6 +1,6 @@
 //! The median.
 
-/// The middle one of `values`, of an even number the upper; `None` of none.
+/// The median of `values`, the upper one for an even number; `None` for an empty list.
 pub(crate) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.collect();
     let middle = values.len() / 2;

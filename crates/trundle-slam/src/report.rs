@@ -8,29 +8,29 @@ use serde::{Deserialize, Serialize};
 use trundle_core::{Pose3, Stamp};
 use trundle_vision::Keypoint;
 
-/// Whether maps are made or only used.
+/// Mapping, or localization in fixed maps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
-    /// Maps grow and get better.
+    /// Maps grow and are refined.
     #[default]
     Mapping,
-    /// Maps stay as they are, to the bit.
+    /// Maps do not change.
     Localisation,
 }
 
-/// Two maps that became one.
+/// A merge of two maps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapMerge {
     /// The newer map, which is merged into the older one.
     pub from: MapId,
-    /// The older one, whose frame counts from now on.
+    /// The older map, whose frame is kept.
     pub into: MapId,
-    /// The keyframe that showed both, by its number in the older map.
+    /// The common keyframe, by its id in the older map.
     pub keyframe: KeyframeId,
-    /// Points of the other map found in it.
+    /// Number of points of the other map found in the keyframe.
     pub points: usize,
-    /// How the camera's pose changed: `new_from_old`.
+    /// Correction of the camera's pose: `new_from_old`.
     pub correction: Pose3,
 }
 
@@ -39,34 +39,34 @@ pub struct MapMerge {
 pub struct TrackReport {
     /// Of the image.
     pub stamp: Stamp,
-    /// How well it was located.
+    /// How the frame was located.
     pub tracking: Tracking,
-    /// The map that the camera is in, or was last.
+    /// The map of `visual_from_camera`.
     pub map: MapId,
     /// The camera's pose in the visual frame of that map, which is the first camera's unless another was given.
     pub visual_from_camera: Pose3,
-    /// Covariance of that pose as a right perturbation (m, m, m, rad, rad, rad), against the first keyframe: of the pose
-    /// on the map, and of the map along the chain of keyframes that leads here. Grows while not located.
+    /// Covariance of that pose as a right perturbation (m, m, m, rad, rad, rad), relative to the first keyframe. It contains the error of
+    /// the pose in the map and the drift of the map. It grows while frames are not located.
     pub covariance: Matrix6<f64>,
     /// Features found in the image, without those on depth edges.
     pub features: usize,
-    /// Features matched with landmarks, before what is around them was compared.
+    /// Number of features matched with landmarks, before alignment.
     pub matches: usize,
-    /// Of these, the ones that agree with the pose at 95 %.
+    /// Number of matches that agree with the pose at 95 %.
     pub inliers: usize,
-    /// Whether the pose was found without the motion prediction, from a similar keyframe.
+    /// Whether the pose comes from a similar keyframe, without the motion prediction.
     pub relocalised: bool,
     /// Whether the frame became a keyframe.
     pub new_keyframe: bool,
-    /// The loop that was closed since the last frame, and how that moved the camera: a correction, not a motion.
+    /// The loop closed since the last frame, with its correction of the camera's pose, which is not a motion.
     pub closed_loop: Option<LoopClosure>,
-    /// The map recognised by it, and how that moved the camera.
+    /// The merge by this frame, with its correction of the camera's pose.
     pub merged: Option<MapMerge>,
-    /// How refining the map moved the camera since the last frame: `new_from_old`, a correction, not a motion.
+    /// Correction of the camera's pose by bundle adjustment since the last frame: `new_from_old`, not a motion.
     pub refined: Option<Pose3>,
-    /// Keyframes in the map, after this frame.
+    /// Number of keyframes in the map after this frame.
     pub keyframes: usize,
-    /// Landmarks in the map, after this frame.
+    /// Number of landmarks in the map after this frame.
     pub landmarks: usize,
 }
 
@@ -75,7 +75,7 @@ pub struct TrackReport {
 pub struct FramePose {
     /// Of the image.
     pub stamp: Stamp,
-    /// The map that the camera was in.
+    /// The map of the pose.
     pub map: MapId,
     /// The camera's pose in the frame of that map; `None` if the image did not locate the camera.
     pub visual_from_camera: Option<Pose3>,
@@ -84,8 +84,8 @@ pub struct FramePose {
 /// A feature of the last frame, for pictures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SeenFeature {
-    /// Where it is in the raw image, and how large.
+    /// Position in the raw image, and size.
     pub keypoint: Keypoint,
-    /// Whether it is a landmark that agrees with the pose.
+    /// Whether the feature shows a landmark that agrees with the pose.
     pub tracked: bool,
 }

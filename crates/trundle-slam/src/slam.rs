@@ -27,8 +27,8 @@ use trundle_core::{
 };
 use trundle_vision::{Features, Vocabulary};
 
-/// Translation and rotation of a motion prior that are possible in no time at all: 0.2 m and 0.2 rad. A larger prior is an odometry
-/// that jumped, and is dropped. Source: ours.
+/// Tolerance of a motion prior besides the largest speeds: 0.2 m and 0.2 rad. A larger prior is an odometry that jumped, and is dropped.
+/// Source: ours.
 const MAX_INSTANT_PRIOR: f64 = 0.2;
 
 /// RGB-D SLAM: one image in, the camera's pose out; keeps the landmark map. See the crate's documentation.
@@ -51,7 +51,7 @@ pub struct RgbdSlam {
     calibration: CalibrationCheck,
 }
 
-/// How the map moved the camera between two frames.
+/// Corrections of the camera's pose by the map between two frames.
 #[derive(Debug, Clone, Copy, Default)]
 struct MapCorrections {
     /// `new_from_old` by bundle adjustment.
@@ -92,27 +92,27 @@ impl RgbdSlam {
         self
     }
 
-    /// Recognizes places by this vocabulary from now on; the keyframes so far are described by it.
+    /// Sets the vocabulary of place recognition, also for existing keyframes.
     pub fn set_vocabulary(&mut self, vocabulary: &Arc<Vocabulary>) {
         self.atlas.set_vocabulary(vocabulary);
     }
 
-    /// This tracker with the camera at `visual_from_camera` at the start; call it before the first image. In a loaded map, the camera is
-    /// searched there first.
+    /// This tracker with the camera at `visual_from_camera` at the start; call it before the first image. In a loaded map, the search for
+    /// the camera starts there.
     #[must_use]
     pub fn starting_at(mut self, visual_from_camera: Pose3) -> Self {
         self.tracking.start_at(visual_from_camera);
         self
     }
 
-    /// Declares the pose unknown: the robot was carried away. The camera counts as lost, whatever the odometry, until a place is
+    /// Declares the pose unknown, when the robot was carried away. The camera counts as lost, even with odometry, until a place is
     /// recognized.
     pub fn kidnapped(&mut self) {
         self.tracking.forget_pose();
         self.leave_keyframe();
     }
 
-    /// Maps, or only localizes and leaves the maps as they are.
+    /// Sets mapping or localization in fixed maps.
     pub fn set_mode(&mut self, mode: Mode) {
         self.mode = mode;
     }
@@ -122,9 +122,9 @@ impl RgbdSlam {
         self.mode
     }
 
-    /// Localizes one image. `prior` is the motion since the last image given, `previous_camera_from_camera`, by wheels and gyro.
-    /// Without a prior, or with one that no robot can make in that time, the camera is predicted at constant velocity. An image of
-    /// another size than the camera's, or with nothing in it, counts as an image without features: it is reported as not located.
+    /// Localizes one image. `prior` is the motion since the previous image, `previous_camera_from_camera`, by wheels and gyro. Without a
+    /// prior, or with an impossibly fast one, the camera is predicted at constant velocity. An empty image, or one of a wrong size, counts
+    /// as an image without features and is not located.
     pub fn step(&mut self, image: &RgbdImage, prior: Option<CameraMotion>) -> TrackReport {
         let gray = gray_from_color(image.color());
         let features = self.front_end.extract(&gray);
@@ -132,7 +132,7 @@ impl RgbdSlam {
         self.step_with_features(image.stamp(), features, image.depth(), prior)
     }
 
-    /// A step with features from elsewhere, by an extractor of the same configuration: in another thread, for example.
+    /// A step with given features, from an extractor of the same configuration in another thread, for example.
     pub fn step_with_features(
         &mut self,
         stamp: Stamp,
@@ -168,8 +168,8 @@ impl RgbdSlam {
         }
     }
 
-    /// Completes the refinement of the map, which `step` does in slices between frames. For use before the map is saved, or while the
-    /// camera stands still.
+    /// Completes the refinement of the map, which `step` does in slices between frames. Call it before the map is saved, or while the
+    /// camera is at rest.
     pub fn finish_refining(&mut self) {
         let is_due = |slam: &Self| {
             !slam.loops.is_idle() || slam.atlas.active.optimisation.is_pending(&slam.atlas.active.map)
@@ -179,7 +179,7 @@ impl RgbdSlam {
         }
     }
 
-    /// Searches a loop, else goes on with the bundle adjustment.
+    /// Continues the search for loops; without one, the bundle adjustment.
     fn update_map_between_frames(&mut self, work: usize) {
         self.corrections = MapCorrections::default();
         if self.mode == Mode::Localisation || self.detect_loops() {
@@ -216,7 +216,7 @@ impl RgbdSlam {
         true
     }
 
-    /// Moves the camera along with the map that has changed; `new_from_old` of its pose in the visual frame.
+    /// Moves the camera with a changed map; returns `new_from_old` of its pose in the visual frame.
     fn move_with_map(&mut self) -> Option<Pose3> {
         let active = &self.atlas.active;
         let last = self.trajectory.last().filter(|record| record.map == active.id)?;
@@ -226,35 +226,35 @@ impl RgbdSlam {
         Some(correction)
     }
 
-    /// Pose of every frame that was not lost, of the newest [`SlamConfig::kept_frames`] that were not dropped, in the order of
-    /// `step`: `visual_from_camera` by the present map. Only frames of the active map; other maps have frames of their own.
+    /// Poses of the active map's frames that were not lost, in the order of `step`: `visual_from_camera` by the present map. At most the
+    /// newest [`SlamConfig::kept_frames`] frames, without dropped ones.
     pub fn trajectory(&self) -> Vec<(Stamp, Pose3)> {
         self.trajectory.poses(&self.atlas.active)
     }
 
-    /// Every frame of the newest [`SlamConfig::kept_frames`] that were not dropped, in the order of `step`, by the present maps: also
-    /// those of inactive maps, each in the frame of its own map, and those that no image located.
+    /// All frames in the order of `step`, by the present maps, including those of inactive maps (in the frame of their own map) and those
+    /// not located. At most the newest [`SlamConfig::kept_frames`] frames, without dropped ones.
     pub fn frames(&self) -> Vec<FramePose> {
         self.trajectory.frames(&self.atlas)
     }
 
-    /// Drops the poses of all frames but the last one and those `wanted`: an hour has a hundred thousand frames.
+    /// Drops the poses of all frames except the last one and those `wanted`, to bound memory: an hour has a hundred thousand frames.
     pub fn forget_frames(&mut self, wanted: impl Fn(Stamp) -> bool) {
         self.trajectory.retain(wanted);
     }
 
-    /// All landmarks of the active map, visual frame, m, in the order of their making.
+    /// All landmarks of the active map, visual frame, m, in the order of creation.
     pub fn landmarks(&self) -> impl Iterator<Item = Vector3> + '_ {
         self.atlas.active.map.landmarks().map(|(_, landmark)| landmark.position)
     }
 
-    /// Keyframes of the active map: id, time and `visual_from_camera`, in the order of their making.
+    /// Keyframes of the active map: id, time and `visual_from_camera`, in the order of creation.
     pub fn keyframes(&self) -> impl Iterator<Item = (KeyframeId, Stamp, Pose3)> + '_ {
         self.atlas.active.map.keyframes().map(|(id, k)| (id, k.frame.stamp, k.visual_from_camera))
     }
 
-    /// The covisibility graph of the active map: pairs of keyframes that share at least `min_shared` landmarks, the older first,
-    /// and how many they share \[MurArtal17\].
+    /// The covisibility graph of the active map: pairs of keyframes that share at least `min_shared` landmarks, the older first, with the
+    /// number of common landmarks \[MurArtal17\].
     pub fn covisibility(&self, min_shared: usize) -> Vec<(KeyframeId, KeyframeId, usize)> {
         let map = &self.atlas.active.map;
         let older = |id: KeyframeId| {
@@ -264,12 +264,12 @@ impl RgbdSlam {
         map.keyframes().flat_map(|(id, _)| older(id)).collect()
     }
 
-    /// The loops closed in the active map: the keyframe that had seen the place, and the one that saw it again.
+    /// The loops closed in the active map: the old and the new keyframe of each.
     pub fn loops(&self) -> Vec<(KeyframeId, KeyframeId)> {
         self.atlas.active.map.loops().collect()
     }
 
-    /// All maps, by rising number; more than one when the camera got lost and has not recognized the others.
+    /// All maps, by rising id; several after the camera was lost, until a merge.
     pub fn maps(&self) -> Vec<MapId> {
         self.atlas.maps().into_iter().map(|map| map.id).collect()
     }
@@ -279,12 +279,12 @@ impl RgbdSlam {
         &self.features
     }
 
-    /// Settings that are probably wrong, by the first images; empty if nothing speaks against them.
+    /// Settings that are probably wrong, by the first images.
     pub fn calibration_issues(&self) -> &[CalibrationIssue] {
         self.calibration.issues()
     }
 
-    /// All maps as bytes: versioned, with a checksum, and with the settings they were made with. The trajectory is not part of them.
+    /// All maps as bytes: versioned, with a checksum and the settings of their features. The trajectory is not included.
     ///
     /// The same maps give the same bytes, before and after [`RgbdSlam::load`].
     pub fn save(&self) -> Vec<u8> {
@@ -294,12 +294,12 @@ impl RgbdSlam {
         map_file::save(&self.front_end.model.camera, &self.config, maps)
     }
 
-    /// Continues with saved maps. The camera's pose in them is unknown until a place is recognized, or [`RgbdSlam::starting_at`] gives
-    /// it; until then the camera counts as lost, whatever the odometry.
+    /// Continues with saved maps. The camera counts as lost, even with odometry, until a place is recognized or [`RgbdSlam::starting_at`]
+    /// gives its pose.
     ///
     /// # Errors
-    /// When the configuration is invalid, or the bytes are not a map, of another version, damaged, cut off, made with another
-    /// camera or other features, or contradict themselves. No bytes make it panic.
+    /// When the configuration is invalid, or the bytes are not a map, of another version, damaged, cut off, made with another camera or
+    /// other features, or inconsistent. No input causes a panic.
     pub fn load(bytes: &[u8], camera: PinholeCamera, config: SlamConfig) -> Result<Self, MapFileError> {
         let mut slam = Self::new(camera, config)?;
         let maps = map_file::load(bytes, &slam.front_end.model, &slam.config)?;

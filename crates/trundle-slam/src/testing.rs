@@ -60,7 +60,7 @@ pub(crate) fn painted_points() -> Vec<Vector3> {
     (0..48).map(|i| Vector3::new(0.12 * f64::from(i % 8 - 4), 0.12 * f64::from(i / 8 - 3), 2.0)).collect()
 }
 
-/// A frame of the painted wall, with these points of it as features, each `off` px from where it is.
+/// A frame of the painted wall with these points as features, each with an error of `off` px.
 pub(crate) fn painted_frame(visual_from_camera: Pose3, points: &[Vector3], off: Vector2) -> Frame {
     let model = model();
     let camera_from_visual = visual_from_camera.inverse();
@@ -87,7 +87,7 @@ pub(crate) fn painted_frame(visual_from_camera: Pose3, points: &[Vector3], off: 
     Frame::new(Stamp::default(), features, &image, Vector3::zeros(), (&model, &DepthConfig::default()))
 }
 
-/// The grey value of a point of the wall: textured everywhere, nowhere repeated.
+/// The grey value of a point of the wall: a texture without repetition.
 fn paint(point: Vector3) -> u8 {
     let (x, y) = (point.x * 110.0, point.y * 110.0);
     (120.0 + 50.0 * (0.5 * x + 0.2 * y).sin() + 40.0 * (0.15 * x - 0.6 * y + 1.0).sin()).round() as u8
@@ -105,7 +105,7 @@ pub(crate) fn painted_map() -> (LandmarkMap, KeyframeId) {
     (map, keyframe)
 }
 
-/// How certain a hypothesis is.
+/// Certainty of a hypothesis.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub(crate) enum Certainty {
     Implausible,

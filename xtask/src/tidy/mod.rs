@@ -5,6 +5,7 @@
 
 mod allowed;
 mod arrows;
+mod book_pages;
 mod citations;
 mod cited_files;
 mod cited_tests;
@@ -66,6 +67,7 @@ fn all_findings(root: &Path) -> Result<Vec<Finding>, String> {
     let tree = Tree::read(root)?;
     let rules = [
         arrows::check,
+        book_pages::check,
         citations::check,
         cited_files::check,
         cited_tests::check,

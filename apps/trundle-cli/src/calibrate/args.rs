@@ -54,7 +54,7 @@ pub struct BoardImageArgs {
     /// The board: checkerboard:9x6:25mm (inner corners, side of a square) or apriltag:6x6:88mm:0.3 (tags, side, gap over side)
     #[arg(long, value_name = "BOARD")]
     pub board: Board,
-    /// Estimate the third radial coefficient as well: wide lenses
+    /// Also estimate the third radial coefficient, for wide lenses
     #[arg(long)]
     pub k3: bool,
     /// Write a camera file, for `trundle slam --camera`.

@@ -6,7 +6,7 @@ use trundle::io::RosSequenceOptions;
 /// The topics of a bag.
 #[derive(Debug, Clone, Args)]
 pub struct BagTopicsArgs {
-    /// The topic of a bag's colour images [default: that with the most; `trundle convert BAG --list` lists all]
+    /// The topic of a bag's colour images [default: the one with the largest number of images; `trundle convert BAG --list` lists all]
     #[arg(long, value_name = "TOPIC")]
     pub color_topic: Option<String>,
     /// The topic of a bag's depth images, registered to colour [default: the only one in the frame of colour]
@@ -15,7 +15,7 @@ pub struct BagTopicsArgs {
     /// The topic of the camera_info of a bag's colour images [default: the one with the same prefix]
     #[arg(long, value_name = "TOPIC")]
     pub info_topic: Option<String>,
-    /// The topic of a bag's odometry, or of its transforms [default: that with the most odometry]
+    /// The topic of a bag's odometry, or of its transforms [default: the one with the largest number of messages]
     #[arg(long, value_name = "TOPIC")]
     pub odom_topic: Option<String>,
 }

@@ -13,7 +13,7 @@ pub struct PlaceArgs {
     /// Start of the robot, world frame: m, m, deg [default: the scene's own, or a free place]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     pub start: Option<PoseArg>,
-    /// A charging station, world frame: the middle of its front on the floor, x out of the front: m, m, deg [default: none]
+    /// A charging station, world frame: the middle of its front on the floor, x axis out of the front: m, m, deg [default: none]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     pub station: Option<PoseArg>,
     /// Axis, scale and floor of a mesh.

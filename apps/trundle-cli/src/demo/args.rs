@@ -36,7 +36,7 @@ pub struct DemoArgs {
     /// Faults and their times: a TOML file as for `trundle sim --faults`.
     #[arg(long, value_name = "FILE")]
     pub faults: Option<PathBuf>,
-    /// Give the run up after this much of the robot's time, s [default: 600 a goal, 1800 for exploring]
+    /// End the run after this time of the robot, s [default: 600 per goal, 1800 for exploring]
     #[arg(long, value_name = "S", value_parser = NumberArg::above_zero("s"), allow_negative_numbers = true)]
     pub time_limit: Option<f64>,
     /// The robot's settings.
@@ -62,7 +62,7 @@ pub struct DemoMissionArgs {
     /// Drive straight to the goal, mapping during the drive [default: explore until the map is complete, drive to the goals, return]
     #[arg(long)]
     pub direct: bool,
-    /// Drive onto the charging station at the end: with --direct and without --goal that alone.
+    /// Drive onto the charging station at the end; with --direct and without --goal this is the only task.
     #[arg(long)]
     pub dock: bool,
 }

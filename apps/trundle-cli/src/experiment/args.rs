@@ -36,7 +36,7 @@ pub enum Which {
     Barn(BarnArgs),
     /// The courses of the local-planning benchmark MRPB 1.0, with and without people, with a 2-D laser.
     Mrpb(MrpbArgs),
-    /// By the clock on the wall for many minutes: jitter of control, load of the robot's core, memory.
+    /// A drive in real time for many minutes: jitter of control, load of the robot's core, memory.
     RealTime(RealTimeArgs),
     /// The four corridor scenarios of Hong (2024), by the paper's method and by the optimal one.
     Corridor(CorridorArgs),
@@ -59,7 +59,7 @@ pub struct SeriesArgs {
     /// The robot's settings.
     #[command(flatten)]
     pub robot: RobotArgs,
-    /// The live page: it shows the runs, and takes no commands.
+    /// The live page, which shows the runs and accepts no commands.
     #[command(flatten)]
     pub live: ViewArgs,
     /// Options of every command.
@@ -85,7 +85,7 @@ pub struct RunsArgs {
 /// `trundle experiment poses`
 #[derive(Debug, Args)]
 pub struct PosesArgs {
-    /// Drive over a serial line to an emulated Kobuki and a stream of camera frames, by the wall clock: about 15 s a run.
+    /// Drive an emulated Kobuki over a serial line, with a stream of camera frames, in real time: about 15 s per run.
     #[arg(long, conflicts_with = "shard")]
     pub wires: bool,
     /// Options of every experiment of runs.
@@ -163,7 +163,7 @@ pub struct RealTimeArgs {
     /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/real-time")]
     pub out: OutputDirArg,
-    /// The live page: it shows the runs, and takes no commands.
+    /// The live page, which shows the runs and accepts no commands.
     #[command(flatten)]
     pub live: ViewArgs,
     /// Options of every command.

@@ -1,4 +1,4 @@
-//! The options of `trundle map` that are about a laser log.
+//! The options of `trundle map` for laser logs.
 
 use crate::common_args::NumberArg;
 use clap::Args;
@@ -7,25 +7,25 @@ use trundle::io::LaserLogOptions;
 /// The laser of a log, and the topics of a bag.
 #[derive(Debug, Args)]
 pub struct LaserArgs {
-    /// How far ahead of the base the laser sits, m [default: what the log says]
+    /// Position of the laser ahead of the base's origin, m [default: the log's]
     #[arg(long, value_name = "M", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub laser_x: Option<f64>,
-    /// How far the laser is turned to the left, deg [default: what the log says]
+    /// Turn of the laser to the left, deg [default: the log's]
     #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
     pub laser_turn: Option<f64>,
-    /// The laser hangs upside down.
+    /// The laser is mounted upside down.
     #[arg(long)]
     pub upside_down: bool,
-    /// Ranges from here on are not returns, m [default: the reading at which many end]
+    /// Range from which on readings are no returns, m [default: the most frequent largest reading]
     #[arg(long, value_name = "M", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub max_range: Option<f64>,
-    /// The topic of the scans, in a CARMEN log the name of the lines, as RAWLASER2 [default: that with the most scans]
+    /// The topic of the scans; in a CARMEN log the name of the lines, as RAWLASER2 [default: the one with the largest number of scans]
     #[arg(long, value_name = "TOPIC")]
     pub scan_topic: Option<String>,
 }
 
 impl LaserArgs {
-    /// How the log is read.
+    /// The options for reading the log.
     pub fn options(&self) -> LaserLogOptions {
         LaserLogOptions {
             laser_x: self.laser_x,
@@ -37,7 +37,7 @@ impl LaserArgs {
         }
     }
 
-    /// The first option that is given.
+    /// The first given option.
     pub fn first_given(&self) -> Option<&'static str> {
         let options = [
             ("--laser-x", self.laser_x.is_some()),

@@ -14,12 +14,12 @@ use std::str::FromStr;
     Exit code: 0 a plan for every goal, 1 there is none (why, and a picture, are written instead), 2 bad input, nothing is written."
 )]
 pub struct PlanArgs {
-    /// A map in map_server's form.
+    /// A map in map_server's format.
     pub map: PathBuf,
     /// Start: a pose in the map frame (m, m, deg), or a place of --places.
     #[arg(long, value_name = "X,Y,DEG|NAME", allow_hyphen_values = true)]
     pub from: PlaceArg,
-    /// Goal: a pose in the map frame (m, m, deg), or a place of --places. Again for the next one.
+    /// Goal: a pose in the map frame (m, m, deg), or a place of --places; may be repeated for further goals.
     #[arg(
         long,
         visible_alias = "to",
@@ -28,7 +28,7 @@ pub struct PlanArgs {
         required = true
     )]
     pub goal: Vec<PlaceArg>,
-    /// Named places: TOML, a table a place with x, y, heading_deg.
+    /// Named places: TOML, one table per place with x, y, heading_deg.
     #[arg(long, value_name = "FILE")]
     pub places: Option<PathBuf>,
     /// Keep-out mask in Nav2's format: black is forbidden, grey (mode scale) has extra costs.
@@ -37,7 +37,7 @@ pub struct PlanArgs {
     /// Speed mask, as Nav2's: the darker the slower; black sets no limit.
     #[arg(long, value_name = "MASK.yaml")]
     pub speed_mask: Option<PathBuf>,
-    /// Way-point graph, GeoJSON as Nav2's route server has it: drive along its lanes.
+    /// Way-point graph, in the GeoJSON format of Nav2's route server: drive along its lanes.
     #[arg(long, value_name = "FILE")]
     pub graph: Option<PathBuf>,
     /// If a goal is blocked, stop at the nearest reachable point, at most this far away, m [default when given: 1]

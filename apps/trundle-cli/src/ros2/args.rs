@@ -36,7 +36,7 @@ pub struct Ros2Args {
     /// Network and names.
     #[command(flatten)]
     pub ros: RosArgs,
-    /// Goal in the map frame: m, m, deg; may be given again.
+    /// Goal in the map frame: m, m, deg; may be repeated.
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true, conflicts_with_all = ["explore", "mission"])]
     pub goal: Vec<PoseArg>,
     /// Explore until the map is complete, then return.

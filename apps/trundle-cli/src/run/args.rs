@@ -63,7 +63,7 @@ pub struct RunOptions {
     /// Recognise places by this vocabulary, in trundle's form [default: the built-in one]
     #[arg(long, value_name = "FILE")]
     pub vocabulary: Option<PathBuf>,
-    /// Give the run up after this time, s [default: none]
+    /// End the run after this time, s [default: none]
     #[arg(long, value_name = "S", value_parser = NumberArg::above_zero("s"), allow_negative_numbers = true)]
     pub time_limit: Option<f64>,
     /// The robot's settings.
@@ -106,7 +106,7 @@ impl RunArgs {
 #[derive(Debug, Args)]
 #[group(required = true, multiple = true)]
 pub struct MissionArgs {
-    /// Goal in the map frame, which starts at the robot: m, m, deg; may be given again for the next one.
+    /// Goal in the map frame, which starts at the robot: m, m, deg; may be repeated for further goals.
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true, conflicts_with_all = ["explore", "mission", "resume"])]
     pub goal: Vec<PoseArg>,
     /// Explore until the map is complete, then return to the start.
@@ -121,7 +121,7 @@ pub struct MissionArgs {
     /// Resume the mission and the maps of a checkpoint.
     #[arg(long, value_name = "CHECKPOINT")]
     pub resume: Option<ContinuedFileArg>,
-    /// Drive nowhere: show rates, delays, image size, signs of the encoders (push the robot by hand) and tilt of the camera.
+    /// Do not drive; show rates, delays, image size, signs of the encoders (push the robot by hand) and tilt of the camera.
     #[arg(long, conflicts_with_all = ["goal", "explore", "dock", "mission", "resume"])]
     pub check: bool,
 }

@@ -32,10 +32,10 @@ pub struct SlamArgs {
     /// The pose of the first camera.
     #[command(flatten)]
     pub first_camera: FirstCameraArgs,
-    /// Begin with the visual map of an earlier run (its visual.map): the camera is localized in it
+    /// Begin with the visual map of an earlier run (its visual.map), and localize the camera in it
     #[arg(long, value_name = "FILE")]
     pub map: Option<PathBuf>,
-    /// Only locate the camera in the map given: it stays as it is
+    /// Only localize the camera in the --map, which does not change
     #[arg(long, requires = "map")]
     pub localise: bool,
     /// Recognise places by this vocabulary, in trundle's form [default: the built-in one]
@@ -47,13 +47,13 @@ pub struct SlamArgs {
     /// Seed of the random sampling.
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// What is written.
+    /// The output.
     #[command(flatten)]
     pub result: SlamResultArgs,
     /// The surface of what the camera saw.
     #[command(flatten)]
     pub surface: SurfaceArgs,
-    /// The live page: it shows the tracking, and takes no commands.
+    /// The live page, which shows the tracking and accepts no commands.
     #[command(flatten)]
     pub live: ViewArgs,
     /// Options of every command.
@@ -61,19 +61,19 @@ pub struct SlamArgs {
     pub common: Common,
 }
 
-/// What `trundle slam` writes.
+/// The output of `trundle slam`.
 #[derive(Debug, Args)]
 pub struct SlamResultArgs {
-    /// Write the poses of the images' last map alone [default: all frames, by images and odometry, where the input has odometry]
+    /// Write only the poses in the last visual map [default: all frames, by images and odometry, if the input has odometry]
     #[arg(long)]
     pub visual_only: bool,
     /// Format of the map's picture.
     #[arg(long, value_name = "FORMAT", default_value = "pgm", value_parser = choice(&MapImage::CHOICES))]
     pub map_image: MapImage,
-    /// Content of recording.mcap; none leaves it out, events leaves out the images.
+    /// Content of recording.mcap: all, events (without images) or none (no file).
     #[arg(long, value_name = "WHAT", default_value = "all", value_parser = choice(&RecordingContent::CHOICES))]
     pub record: RecordingContent,
-    /// Folder for the results; the last run in it is kept as DIR.1
+    /// Folder for the results; the previous run in it is renamed to DIR.1
     #[arg(long, value_name = "DIR", default_value = "out/slam")]
     pub out: OutputDirArg,
 }
@@ -101,13 +101,13 @@ pub struct SurfaceArgs {
 /// The pose of the first camera.
 #[derive(Debug, Args)]
 pub struct FirstCameraArgs {
-    /// Height of the first camera above the floor, m, for the map [default: the recorded robot's, else 1]
+    /// Height of the first camera above the floor, m, for the map [default: the recorded robot's, else by the floor in the images, else 1]
     #[arg(long, value_name = "M", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub height: Option<f64>,
-    /// Downward tilt of the first camera, deg, for the map [default: the recorded robot's, else 0]
+    /// Downward tilt of the first camera, deg, for the map [default: as the height, else 0]
     #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
     pub tilt: Option<f64>,
-    /// Roll of the first camera to its right, deg, for the map [default: the recorded robot's, else 0]
+    /// Roll of the first camera to its right, deg, for the map [default: as the height, else 0]
     #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
     pub roll: Option<f64>,
 }

@@ -19,13 +19,13 @@ pub struct VocabularyArgs {
 /// Actions on a vocabulary.
 #[derive(Debug, Subcommand)]
 pub enum VocabularyCommand {
-    /// Train one on recorded images and on views of simulated scenes.
+    /// Train a vocabulary on recorded images and on views of simulated scenes.
     Train(TrainArgs),
-    /// Say how large one is.
+    /// Print the size of a vocabulary.
     Info(InfoArgs),
-    /// Write one in the text form of DBoW2, which ORB-SLAM programs read.
+    /// Write a vocabulary in the text format of DBoW2, which ORB-SLAM programs read.
     Export(ExportArgs),
-    /// Read one in the text form of DBoW2.
+    /// Read a vocabulary in the text format of DBoW2.
     Import(ImportArgs),
     /// Measure the place recognition rate of one or more vocabularies.
     Recall(RecallArgs),
@@ -50,7 +50,7 @@ pub struct Sources {
     /// Frames of each folder: FIRST-LAST, from 0 [default: all]
     #[arg(long, value_name = "A-B")]
     pub frames: Option<IndexRange>,
-    /// A scene to draw views of, built in or a glTF file; may be given again.
+    /// A scene for views, built in or a glTF file; may be repeated.
     #[arg(long = "scene", value_name = "NAME|FILE")]
     pub scenes: Vec<String>,
     /// Seeds of the furniture and textures of built-in scenes, and of the places: FIRST-LAST.
@@ -59,10 +59,10 @@ pub struct Sources {
     /// Views of each scene and seed, at random places with clearance, by Kinect V2 and v1 alternately.
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub views: u32,
-    /// glTF files have z up, not y.
+    /// glTF files have z up instead of y.
     #[arg(long)]
     pub z_up: bool,
-    /// ORB features of an image, at most.
+    /// Maximum number of ORB features per image.
     #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub features_per_image: u32,
 }
@@ -91,7 +91,7 @@ pub struct TrainArgs {
     /// Sources of images.
     #[command(flatten)]
     pub sources: Sources,
-    /// A folder of descriptors that another program made: a file an image, 32 bytes a descriptor.
+    /// A folder of descriptors from another program: one file per image, 32 bytes per descriptor.
     #[arg(long, value_name = "DIR")]
     pub descriptors: Option<PathBuf>,
     /// Children of a node.
@@ -133,7 +133,7 @@ pub struct ExportArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Example: trundle vocabulary import ORBvoc.txt --out orb.voc")]
 pub struct ImportArgs {
-    /// A vocabulary in the text form of DBoW2.
+    /// A vocabulary in the text format of DBoW2.
     pub text: PathBuf,
     /// The file to write.
     #[arg(long, value_name = "FILE")]
@@ -145,7 +145,7 @@ pub struct ImportArgs {
 #[command(after_help = "Example: trundle vocabulary recall --scene office --seeds 91-93\n\n\
     A place is recognised when the view most like a second look at it was taken within 0.75 m and 25 deg of it.")]
 pub struct RecallArgs {
-    /// A vocabulary to measure; may be given again [default: the program's own]
+    /// A vocabulary to measure; may be repeated [default: the program's own]
     #[arg(long = "vocabulary", value_name = "FILE")]
     pub vocabularies: Vec<PathBuf>,
     /// Sources of images.

@@ -5,28 +5,27 @@ use crate::stabilization::stabilizer_config::StabilizerConfig;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
-/// How the robot follows a trajectory to its goal.
+/// Settings of trajectory following and of the final approach.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FollowerConfig {
     /// The tracking law.
     pub tracking: PathTrackingConfig,
-    /// Settling at the goal.
+    /// Final approach to the goal.
     pub settling: StabilizerConfig,
-    /// The reference starts to wait when it is this far ahead of the robot, m, 0 to 1. Default 0.04: what the lag of the
-    /// motors costs when starting.
+    /// Distance of the reference ahead of the robot from which the reference slows down, m, 0 to 1. A larger value tolerates more lag.
+    /// Default 0.04: the lag of the motors at a start.
     pub wait_from: f64,
-    /// The reference stands still when it is this far ahead of the robot, m, above `wait_from`, to 2. Default 0.12 (ours).
+    /// Distance of the reference ahead of the robot at which the reference stops, m, above `wait_from`, to 2. Default 0.12 (ours).
     pub wait_at: f64,
-    /// The reference's speed never falls below this part for an error beside the path, 0.05 to 1: that error only shrinks in
-    /// motion. Default 0.4 (ours).
+    /// Smallest fraction of the reference's speed with a cross-track error, 0.05 to 1. The error only shrinks in motion. Default 0.4
+    /// (ours).
     pub min_rate: f64,
-    /// The reference waits in the same way for a heading error, from a half of this to the whole, rad, 0.05 to 3.
-    /// Default 0.5 (ours).
+    /// Heading error at which the reference stops, rad, 0.05 to 3. It slows down from half of the error on. Default 0.5 (ours).
     pub wait_heading: f64,
-    /// The reference's twist is taken this much ahead, s, 0 to 0.5: command delay and motor lag. Default 0.06 (ours).
+    /// Lead of the reference's twist, s, 0 to 0.5, which compensates command delay and motor lag. Default 0.06 (ours).
     pub lead: f64,
-    /// Farther than this from its reference the robot is reported off the trajectory, m, 0.02 to 5. Default 0.25 (ours).
+    /// Distance from the reference beyond which the robot is off the trajectory and plans again, m, 0.02 to 5. Default 0.25 (ours).
     pub stray_distance: f64,
 }
 
@@ -46,7 +45,7 @@ impl Default for FollowerConfig {
 }
 
 impl FollowerConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

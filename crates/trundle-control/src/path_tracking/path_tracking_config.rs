@@ -13,15 +13,15 @@ use trundle_core::{Invalid, Twist2, require_in};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PathTrackingConfig {
-    /// Gain of the error beside the path, 1/m^2, 0.01 to 100. \[Li18\] prints 1: an error then takes metres to go. Default 16:
-    /// a quarter of a metre to 1/e (ours, measured in `tests/it/path_tracking.rs`).
+    /// Gain of the cross-track error, 1/m^2, 0.01 to 100. An error falls to 1/e over 1 / sqrt(`k_cross`) metres of path. A larger gain
+    /// corrects sooner, with more turning. Default 16 (ours, measured in `tests/it/path_tracking.rs`); \[Li18\] prints 1.
     pub k_cross: f64,
-    /// Damping ratio, 0.3 to 3. Default 1: no overshoot.
+    /// Damping ratio of the tracking error, 0.3 to 3. A smaller ratio overshoots. Default 1: no overshoot.
     pub damping: f64,
-    /// Least feedback along and in heading, 1/s, 0.1 to 20: what remains when the reference stands. Default 2 (ours).
+    /// Smallest feedback gain along the path and in heading, 1/s, 0.1 to 20, effective at a resting reference. Default 2 (ours).
     pub gain_min: f64,
-    /// Most feedback along and in heading, 1/s, 0.1 to 20. Default 4: with 0.1 s from camera to wheel the phase margin
-    /// stays above 60 deg.
+    /// Largest feedback gain along the path and in heading, 1/s, 0.1 to 20. A larger gain oscillates with delays. Default 4: with 0.1 s
+    /// from camera to wheel the phase margin stays above 60 deg.
     pub gain_max: f64,
 }
 
@@ -32,7 +32,7 @@ impl Default for PathTrackingConfig {
 }
 
 impl PathTrackingConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range, or the least gain is above the most.

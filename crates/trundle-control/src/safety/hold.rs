@@ -35,3 +35,23 @@ impl fmt::Display for MotionHold {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_hold_says_what_to_do() {
+        let holds = [
+            (MotionHold::WheelDrop, "put the robot on the floor"),
+            (MotionHold::OverCurrent, "free the wheel"),
+            (MotionHold::AdapterConnected, "unplug"),
+            (MotionHold::DeviceLost(Device::Camera), "the camera does not answer"),
+            (MotionHold::BatteryEmpty, "charge"),
+            (MotionHold::Paused, "paused by a person"),
+        ];
+        for (hold, remedy) in holds {
+            assert!(hold.to_string().contains(remedy), "{hold}");
+        }
+    }
+}

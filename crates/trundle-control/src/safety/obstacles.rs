@@ -70,7 +70,7 @@ pub(super) fn collect_memory(memory: &SafetyMemory<'_>, reach: f64, found: &mut 
 mod tests {
     use super::*;
     use std::f64::consts::FRAC_PI_2;
-    use trundle_core::{Beam, Stamp};
+    use trundle_core::{Beam, GridGeometry, Stamp};
 
     #[test]
     fn the_scan_is_carried_forward() {
@@ -85,6 +85,20 @@ mod tests {
         collect_scan(&view, 2.0, &mut points);
         assert_eq!(points.len(), 1);
         assert!((points[0].at - Vector2::new(0.6, 0.0)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_cell_counts_if_its_nearest_side_is_within_reach() {
+        let geometry = GridGeometry::new(0.1, Vector2::new(-1.0, 2.0), 30, 30).unwrap();
+        let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
+        grid.set(trundle_core::CellIndex { col: 9, row: 14 }, Cell::Occupied);
+        let memory =
+            SafetyMemory { grid: &grid, unconfirmed: &[], map_from_base: Pose2::new(0.45, 3.45, 0.0) };
+        for (reach, count) in [(0.46, 1), (0.44, 0)] {
+            let mut points = Vec::new();
+            collect_memory(&memory, reach, &mut points);
+            assert_eq!(points.len(), count, "{reach} m");
+        }
     }
 
     #[test]

@@ -7,49 +7,47 @@ use trundle_core::{Invalid, Twist2, require_in};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SafetyConfig {
-    /// Deceleration to count on, m/s^2, 0.05 to 20. Default 0.5: [`DriveLimits::KOBUKI`](trundle_core::DriveLimits::KOBUKI);
-    /// the base can do more.
+    /// Deceleration of the base in a stop, m/s^2, 0.05 to 20. A larger value allows faster driving near obstacles; above the base's own the
+    /// robot would stop too late. Default 0.5: [`DriveLimits::KOBUKI`](trundle_core::DriveLimits::KOBUKI); the base can do more.
     pub deceleration: f64,
-    /// Angular deceleration to count on, rad/s^2, 0.1 to 100. Default 3, as above. It limits turns on the spot, and tight curves:
-    /// the robot brakes along its curve, and takes as long as the slower of speed and turn rate.
+    /// Angular deceleration of the base in a stop, rad/s^2, 0.1 to 100. It limits turns on the spot and tight curves: the robot brakes along
+    /// its curve for as long as the slower of speed and turn rate takes. Default 3: `DriveLimits::KOBUKI`.
     pub angular_deceleration: f64,
-    /// From an image to the response of the wheels, s, 0 to 2, at least. Default 0.2: an image period, processing, delay and lag.
+    /// Smallest time from an image to the response of the wheels, s, 0 to 2. A larger value slows the robot near obstacles. Default 0.2: an
+    /// image period, processing, delay and lag.
     pub latency: f64,
-    /// Room left before an obstacle ahead, m, 0 to 1. Default 0.04 (ours).
+    /// Distance from an obstacle ahead at which the robot stops, m, 0 to 1. Default 0.04 (ours).
     pub stop_margin: f64,
-    /// Room on either side within which an obstacle stops the robot, m, 0 to 0.5. Default 0.01: the noise of a scan point.
-    /// A cell of the map counts as round.
+    /// Distance from an obstacle on either side within which the robot stops, m, 0 to 0.5. A cell of the map counts as a disc. Default
+    /// 0.01: the noise of a scan point.
     pub side_margin: f64,
-    /// Room on either side within which an obstacle slows the robot to `creep_speed`, m, at least `side_margin`, to 1.
-    /// Default 0.05 (ours).
+    /// Distance from an obstacle on either side within which the robot slows to `creep_speed`, m, at least `side_margin`, to 1. Default
+    /// 0.05 (ours).
     pub slow_margin: f64,
     /// Speed past obstacles within `slow_margin`, m/s, 0.02 to 1. Default 0.12 (ours).
     pub creep_speed: f64,
     /// Highest speed backward, out of the camera's view, m/s, 0.02 to 2. Default 0.2 (ours).
     pub reverse_speed: f64,
-    /// Highest speed of backing out while the bumper is pressed, m/s, 0.01 to 0.5. The robot backs out at 0.05. Default 0.05 (ours).
+    /// Highest speed of backing out while the bumper is pressed, m/s, 0.01 to 0.5. The robot backs out at 0.05 m/s. Default 0.05 (ours).
     pub back_out_speed: f64,
-    /// Highest speed while the wheels are commanded and the encoders count nothing, m/s, 0.02 to 2. Default 0.15 (ours): 1 cm
-    /// from image to
-    /// image.
+    /// Highest speed of commanded wheels without encoder counts, m/s, 0.02 to 2. Default 0.15 (ours): 1 cm from image to image.
     pub uncounted_speed: f64,
     /// Speed below which a command is replaced by a stop, m/s, 0.001 to 0.1. Default 0.01 (ours).
     pub min_speed: f64,
-    /// Range around the robot in which safety reads the map, m from the footprint, 0 to 5. Default 0.8: the camera's blind
-    /// zone, and what
-    /// lies beside its view.
+    /// Distance from the footprint within which the safety monitor also reads the map, m from the footprint, 0 to 5. Default 0.8: the
+    /// camera's blind zone, and the area beside its view.
     pub memory_reach: f64,
-    /// Age of the newest image above which the robot stops, s, 0.05 to 60. Default 0.8: twelve images missing (ours). Below it
-    /// the speed falls with the age.
+    /// Age of the newest image above which the robot stops, s, 0.05 to 60. At smaller ages the speed limit falls with the age. Default 0.8:
+    /// twelve missing images (ours).
     pub image_timeout: f64,
-    /// Age of the newest wheel reading above which the robot stops, s, 0.02 to 60. Default 0.2: ten readings missing (ours).
+    /// Age of the newest wheel reading above which the robot stops, s, 0.02 to 60. Default 0.2: ten missing readings (ours).
     pub wheels_timeout: f64,
 }
 
-/// Time from a command to the response of the wheels, s. Larger: slower by late images. Source: delay and lag of the Kobuki,
-/// and a control period.
+/// Time from a command to the response of the wheels, s. A larger time makes the robot slower with late images. Source: delay and lag of
+/// the Kobuki, and a control period.
 const COMMAND_RESPONSE_S: f64 = 0.12;
-/// Highest speed by images older than the latency, m/s. Larger: less slowing. Source: the top speed of the Kobuki.
+/// Highest speed with images older than the latency, m/s. A larger speed slows the robot less. Source: the top speed of the Kobuki.
 const LATE_IMAGE_SPEED_M_PER_S: f64 = 0.7;
 
 impl Default for SafetyConfig {
@@ -74,7 +72,7 @@ impl Default for SafetyConfig {
 }
 
 impl SafetyConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.
@@ -101,7 +99,7 @@ impl SafetyConfig {
         Ok(self)
     }
 
-    /// Time from an image of this age to the response of the wheels, s: late images cost speed, not safety.
+    /// Time from an image of this age to the response of the wheels, s. Late images reduce speed, not safety.
     pub(super) fn latency_for(&self, age: f64) -> f64 {
         self.latency.max(age + COMMAND_RESPONSE_S)
     }

@@ -3,42 +3,41 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
-/// How the robot settles on a goal pose.
+/// Gains and tolerances of the final approach to a goal pose.
 ///
-/// The default gains give the linearised law one double root: the distance and both angles fall by 1/e per second, without
-/// overshoot, and slowly enough for a base that answers within 0.1 s.
+/// The default gains give the linearised law one double root: distance and both angles fall to 1/e in a second without overshoot. A base
+/// with a response time of 0.1 s can follow.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct StabilizerConfig {
-    /// Speed by distance, 1/s, 0.05 to 10. Default 1 (ours).
+    /// Speed per distance from the goal, 1/s, 0.05 to 10. A larger gain approaches faster. Default 1 (ours).
     pub k_rho: f64,
-    /// Turn rate by bearing, 1/s, above `k_rho`, to 20. Default 3 (ours).
+    /// Turn rate per bearing of the goal, 1/s, above `k_rho`, to 20. Default 3 (ours).
     pub k_alpha: f64,
-    /// Turn rate by approach angle, 1/s, -20 to -0.001. Default -1 (ours).
+    /// Turn rate per approach angle (goal heading against bearing), 1/s, -20 to -0.001. Default -1 (ours).
     pub k_beta: f64,
-    /// Distance from the goal below which the approach angle fades and the turn on the spot corrects the heading, m, 0.001 to
-    /// 10. Default 0.15 (ours).
+    /// Distance from the goal below which the approach angle fades out, m, 0.001 to 10. A turn on the spot then corrects the heading.
+    /// Default 0.15 (ours).
     pub shaping_distance: f64,
-    /// Largest approach angle that the law uses, rad, 0 to 1.5: it bounds the detour. Default 0.8 (ours).
+    /// Largest approach angle in the law, rad, 0 to 1.5. It bounds the detour of the arc. Default 0.8 (ours).
     pub max_approach: f64,
-    /// Highest speed, m/s, 0.01 to 10. Default 0.25 (ours).
+    /// Highest speed of the approach, m/s, 0.01 to 10. Default 0.25 (ours).
     pub speed: f64,
-    /// Lowest speed while approaching, m/s, 0 to 0.1: motors stick below, and the last
-    /// centimetres would take seconds. Default 0.035: at 0.1 s of delay and lag the robot rolls on for 3.5 mm.
+    /// Lowest speed of the approach, m/s, 0 to 0.1. Slower motors stick, and the last centimetres would take seconds. Default 0.035: with
+    /// 0.1 s of delay and lag the robot overruns by 3.5 mm.
     pub creep_speed: f64,
-    /// Highest turn rate, rad/s, 0.05 to 20. Default 1.2 (ours).
+    /// Highest turn rate of the approach, rad/s, 0.05 to 20. Default 1.2 (ours).
     pub turn_rate: f64,
-    /// Turn rate by heading error when turning on the spot, 1/s, 0.1 to 10. Default 2.5 (ours).
+    /// Turn rate per heading error in turns on the spot, 1/s, 0.1 to 10. Default 2.5 (ours).
     pub k_turn: f64,
-    /// Allowed distance from the goal, m, 0.001 to 1. Default 0.01. The approach ends at 0.4 of it and is repeated when the
-    /// error exceeds it.
+    /// Allowed distance from the goal, m, 0.001 to 1. The approach ends at 0.4 of this distance and is repeated beyond it. A smaller value
+    /// takes longer. Default 0.01.
     pub position_tolerance: f64,
-    /// Allowed heading error, rad, 0.001 to 1. Default 0.5 deg. The turn ends at half of it.
+    /// Allowed heading error, rad, 0.001 to 1. The turn ends at half of it. Default 0.0087 (0.5 deg).
     pub heading_tolerance: f64,
-    /// A settled robot moves again when an error grows beyond this many tolerances, 1 to 100. Default 2.5 (ours).
+    /// Error at which a robot at its goal moves again, in tolerances, 1 to 100. Default 2.5 (ours).
     pub release: f64,
-    /// Number of repeated approaches to one goal before an error of `release` times the tolerance is accepted, 0 to 100.
-    /// Default 4 (ours).
+    /// Number of repeated approaches to one goal after which an error of `release` tolerances is accepted, 0 to 100. Default 4 (ours).
     pub attempts: u32,
 }
 
@@ -63,7 +62,7 @@ impl Default for StabilizerConfig {
 }
 
 impl StabilizerConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

@@ -7,11 +7,11 @@ use trundle_core::{Invalid, require_in};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Hong24Config {
-    /// w1 of f = w1 t + w2 d, 1/s, 0 to 1000. Default 1.
+    /// Weight w1 of the time in the cost f = w1 t + w2 d, 1/s, 0 to 1000. Default 1.
     pub time_weight: f64,
-    /// w2, 1/m, 0 to 10^6. Default 60: a centimetre of lateral deviation costs 0.6 s.
+    /// Weight w2 of the lateral deviation in that cost, 1/m, 0 to 10^6. Default 60: a centimetre costs 0.6 s.
     pub lateral_weight: f64,
-    /// Step at which turns are sampled, rad, 0.001 to 0.5. Default 1 deg.
+    /// Step at which turns are sampled, rad, 0.001 to 0.5. Default 0.0175 (1 deg).
     pub angle_step: f64,
     /// Step at which straights are sampled, m, 0.001 to 0.5. Default 0.01.
     pub distance_step: f64,
@@ -21,7 +21,7 @@ pub struct Hong24Config {
     pub lateral_threshold: f64,
     /// Tolerance of the longitudinal deviation, m, 0.001 to 0.1. Default 0.01.
     pub longitudinal_threshold: f64,
-    /// Tolerance of the angular deviation, rad, 0.001 to 0.2. Default 1 deg.
+    /// Tolerance of the angular deviation, rad, 0.001 to 0.2. Default 0.0175 (1 deg).
     pub angle_threshold: f64,
     /// Distance of a recovery move, m, 0.01 to 1. Default 0.1.
     pub recovery: f64,

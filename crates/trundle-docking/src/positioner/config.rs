@@ -8,37 +8,38 @@ use trundle_core::{Invalid, require_in};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PositionerConfig {
-    /// Time at rest before every decision while the pose is averaged, s, 0.02 to 10. Default 0.4: with the time to come to rest it
-    /// is the planner's `switch_time`.
+    /// Time at rest before every decision, in which the pose is averaged, s, 0.02 to 10. Default 0.4: with the time to come to rest, the
+    /// planner's `switch_time`.
     pub measure_time: f64,
-    /// Part of the tolerances within which motions aim to end, 0.05 to 1. Default 0.7: the pose measured at rest is then within them.
+    /// Fraction of the tolerances within which motions shall end, 0.05 to 1. Default 0.7: the pose measured at rest is then within the
+    /// tolerances.
     pub aim: f64,
     /// Number of tolerances beyond which a robot at its goal moves again, 1 to 100. Default 2.
     pub release: f64,
     /// Number of further motions within `release` tolerances of the goal before the pose is accepted, 0 to 100. Default 6.
     pub attempts: u32,
-    /// Smallest speed command, m/s, 0.001 to 0.2: motors stick below. Default 0.02.
+    /// Smallest speed command, m/s, 0.001 to 0.2. Slower motors stick. Default 0.02.
     pub creep_speed: f64,
     /// Smallest turn rate command, rad/s, 0.001 to 1. Default 0.06.
     pub creep_rate: f64,
-    /// Delay from command to motion, s, 0 to 1: braking begins that much earlier. Default 0.08.
+    /// Delay from command to motion, s, 0 to 1, by which braking begins earlier. Default 0.08.
     pub delay: f64,
-    /// Part of the acceleration used for braking, 0.1 to 1. Default 0.7.
+    /// Fraction of the acceleration used for braking, 0.1 to 1. Default 0.7.
     pub braking: f64,
     /// Turn rate per heading error during a straight move, 1/s, 0 to 10. Default 1.5.
     pub heading_gain: f64,
-    /// Overlap with an obstacle that counts as an error of the pose, m, 0 to 0.02. Default 0.005: more than twice the error of a
-    /// localisation of 2 mm.
+    /// Largest overlap with an obstacle that counts as an error of the pose, m, 0 to 0.02. Default 0.005: more than twice a localization
+    /// error of 2 mm.
     pub overlap: f64,
-    /// Standard deviations of the pose that the margin covers, 0 to 10: the margin is [`crate::margin_of`], at least the planner's
-    /// own, at most `max_margin`. Default 3.
+    /// Number of standard deviations of the pose that the margin covers, 0 to 10. The margin ([`crate::margin_of`]) is at least the
+    /// planner's and at most `max_margin`. Default 3.
     pub sigmas: f64,
     /// Largest margin for an uncertain pose, m, 0 to 0.5. Default 0.05 (ours).
     pub max_margin: f64,
-    /// Wait before the next plan when there is no manoeuvre, s, 0.1 to 100. Default 1.
+    /// Time without a manoeuvre before the next plan, s, 0.1 to 100. Default 1.
     pub patience: f64,
-    /// Work of planning per step, in counted steps of some 10 ns ([`crate::ContactSpace::work`]), 10^4 to 10^11: the robot is at rest until
-    /// the plan is complete. Default 2 * 10^6 (ours: 20 ms, a fifth of a step at 10 Hz).
+    /// Work of planning per step, in counted steps of some 10 ns ([`crate::ContactSpace::work`]), 10^4 to 10^11. The robot is at rest until
+    /// the plan is complete. Default 2 * 10^6 (ours: 20 ms, a fifth of a step at 10 Hz); in the robot file 60,000.
     pub step_work: u64,
 }
 
@@ -64,8 +65,8 @@ impl Default for PositionerConfig {
 }
 
 impl PositionerConfig {
-    /// The planner's configuration for closed loop: poses are noisy, so that an overlap may be an error, and a smaller margin is kept
-    /// only if there is no other manoeuvre.
+    /// The planner's configuration for closed loop with noisy poses: an overlap may be an error, and a smaller margin is used only without
+    /// another manoeuvre.
     pub fn planner(&self, docking: DockingConfig) -> DockingConfig {
         DockingConfig { overlap: self.overlap, margin_saving: 1.0, ..docking }
     }

@@ -39,7 +39,7 @@ impl Default for KobukiBaseConfig {
 }
 
 impl KobukiBaseConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside of its range.

@@ -3,7 +3,7 @@
 use crate::odometry_config::OdometryConfig;
 use nalgebra::{Matrix2, RowVector2};
 
-/// Bias and scale of the gyro, estimated at rest and from turns that the camera measured: a Kalman filter of two numbers.
+/// Kalman filter of the gyro's bias and scale, updated at rest and by turns that the camera measured.
 #[derive(Debug, Clone)]
 pub(crate) struct GyroCalibration {
     /// Bias, rad/s.
@@ -17,7 +17,7 @@ pub(crate) struct GyroCalibration {
     is_measured: bool,
     /// Time since the last update of the bias, s.
     time_since_update: f64,
-    /// Consecutive turns outside the gate.
+    /// Number of consecutive turns outside the gate.
     rejected_in_row: usize,
 }
 
@@ -34,14 +34,14 @@ pub(crate) struct VisualTurn {
     pub(crate) duration: f64,
 }
 
-/// Gate of the innovation, sigmas. Rates and turns farther off are rejected. Source: ours.
+/// Gate of the innovation, sigmas. Rates and turns beyond it are rejected. Source: ours.
 const GATE_SIGMAS: f64 = 4.0;
 /// Random walk of the scale, 1 / sqrt(s). The scale's variance grows by its square each second. Source: ours.
 const SCALE_RANDOM_WALK: f64 = 3e-5;
 /// Smallest sigma of the scale, ratio. The limit lets the filter follow changes, because errors of neighbouring turns are correlated.
 /// Source: ours.
 const MIN_SCALE_SIGMA: f64 = 3e-4;
-/// Number of consecutive rejected turns that resets the filter: the gyro itself has changed. Source: ours.
+/// Number of consecutive rejected turns that resets the filter, as after a change of the gyro. Source: ours.
 const MAX_REJECTED_TURNS: usize = 3;
 /// Correlation time of the bias error, s: the interval between keyframes. A longer time makes the heading less certain. Source: ours.
 const BIAS_CORRELATION_S: f64 = 1.0;
@@ -78,7 +78,7 @@ impl GyroCalibration {
         self.scale
     }
 
-    /// Whether the bias was ever measured.
+    /// Whether the bias was measured.
     pub(crate) fn is_measured(&self) -> bool {
         self.is_measured
     }
@@ -97,7 +97,7 @@ impl GyroCalibration {
         by_turn * turn.abs() + by_time * dt
     }
 
-    /// Prediction step of the filter: bias and scale walk for `dt` s.
+    /// Prediction step of the filter: random walks of bias and scale over `dt` s.
     pub(crate) fn predict(&mut self, config: &OdometryConfig, dt: f64) {
         self.time_since_update += dt;
         let grown = |variance: f64, walk: f64, max: f64| (variance + walk * walk * dt).min(max);

@@ -1,6 +1,6 @@
 //! Kalman filter of one scalar.
 
-/// A scalar estimated while driving: a Kalman filter with a random walk.
+/// A Kalman filter of a scalar with a random walk, updated during the drive.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ScalarKalman {
     value: f64,
@@ -12,11 +12,11 @@ pub(crate) struct ScalarKalman {
 const MIN_SIGMA: f64 = 3e-4;
 /// Random walk from one measurement to the next, ratio (one sigma): tyre wear, floors, temperature. Source: ours.
 const RANDOM_WALK_SIGMA: f64 = 1e-4;
-/// Gate of the innovation, sigmas. Measurements farther off are rejected. Source: ours.
+/// Gate of the innovation, sigmas. Measurements beyond it are rejected. Source: ours.
 const GATE_SIGMAS: f64 = 4.0;
 
 impl ScalarKalman {
-    /// The filter without any measurement. A sigma of 0 means: known, never estimated.
+    /// The filter without any measurement. A sigma of 0 means a known value, which is never estimated.
     pub(crate) fn new(value: f64, sigma: f64) -> Self {
         Self { value, variance: sigma * sigma }
     }

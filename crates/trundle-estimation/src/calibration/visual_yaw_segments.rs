@@ -1,10 +1,10 @@
-//! Segments of the heading that camera and gyro both measured.
+//! Segments of the heading measured by both camera and gyro.
 
 use crate::calibration::gyro_calibration::VisualTurn;
 use nalgebra::UnitQuaternion;
 use trundle_core::{Stamp, wrap_angle};
 
-/// Cuts the camera's heading into segments whose turns can be compared with the gyro's.
+/// Splits the camera's heading into segments for comparison with the gyro.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct VisualYawSegments {
     segment: Option<Segment>,
@@ -28,15 +28,15 @@ pub(crate) struct VisualHeading {
     pub(crate) stamp: Stamp,
     /// Heading by the odometry, rad.
     pub(crate) by_odometry: f64,
-    /// Orientation by the camera, in a frame at rest.
+    /// Orientation by the camera, in a fixed frame.
     pub(crate) by_camera: UnitQuaternion<f64>,
     /// Length of the path by the wheels, m.
     pub(crate) path_length: f64,
 }
 
-/// Turn that completes a segment, rad. Shorter segments measure the scale poorly. Source: ours.
+/// Turn at which a segment may end, rad. Shorter segments measure the scale poorly. Source: ours.
 const MIN_SEGMENT_TURN_RAD: f64 = 0.8;
-/// Time that completes a segment, s. Shorter segments measure the bias poorly. Source: ours.
+/// Time at which a segment may end, s. Shorter segments measure the bias poorly. Source: ours.
 const MIN_SEGMENT_S: f64 = 3.0;
 /// Largest turn rate at a segment's end, rad/s: the camera's error of a fast turn then counts once per turn. Source: ours.
 const MAX_END_TURN_RATE_RAD_S: f64 = 0.2;

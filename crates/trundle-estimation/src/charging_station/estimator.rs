@@ -8,11 +8,11 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use trundle_core::{DockInfrared, Invalid, Pose2, difference_of_angles};
 
-/// The station's pose, and how sure it is.
+/// The station's pose with its covariance.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StationEstimate {
-    /// `map_from_station`: on the floor at the middle of its front, x out of the front.
+    /// `map_from_station`: origin on the floor at the middle of the front, x axis out of the front.
     pub pose: Pose2,
     /// Covariance in the station's frame (right perturbation): along its axis \[m\], across it \[m\], heading \[rad\].
     pub covariance: [[f64; 3]; 3],
@@ -49,9 +49,9 @@ impl StationEstimate {
 const PARTICLE_COUNT: usize = 1000;
 /// Number of candidates of the first reading. Source: ours.
 const FIRST_GUESS_COUNT: usize = 8000;
-/// Motion between readings that count \[m\]. Readings of one place are not independent. Source: ours.
+/// Smallest motion between two used readings \[m\]. Readings of one place are not independent. Source: ours.
 const MIN_MOTION_M: f64 = 0.01;
-/// Turn between readings that count \[rad\]. Source: ours.
+/// Smallest turn between two used readings \[rad\]. Source: ours.
 const MIN_TURN_RAD: f64 = 0.026;
 /// Exponent of a reading's likelihood: readings of neighbouring places depend on each other. Source: ours.
 const LIKELIHOOD_EXPONENT: f64 = 0.3;
@@ -114,7 +114,7 @@ impl StationEstimator {
         self.around(map_from_station, CONTACT_SIGMA);
     }
 
-    /// Starts with an estimate of an earlier run.
+    /// Restores an estimate of an earlier run.
     pub fn restore(&mut self, estimate: &StationEstimate) {
         let sigma = [0, 1, 2].map(|k: usize| estimate.covariance[k][k].max(0.0).sqrt());
         self.around(estimate.pose, sigma);
@@ -126,7 +126,7 @@ impl StationEstimator {
         self.contradictions = 0;
     }
 
-    /// The estimate. `None` before light was seen.
+    /// The estimate. `None` before the first light.
     pub fn estimate(&self) -> Option<StationEstimate> {
         if self.particles.is_empty() {
             return None;

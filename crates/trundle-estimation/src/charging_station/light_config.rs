@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
-/// Geometry of sectors and receivers, and how far a reading is trusted.
+/// Geometry of sectors and receivers, and probabilities of wrong readings.
 ///
-/// The vendor's documentation names sectors and receivers and gives no numbers. The defaults are ours; measure them on the real station.
+/// The vendor's documentation names sectors and receivers without numbers. The defaults are ours; measure them on the real station.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct StationLightConfig {
@@ -19,7 +19,7 @@ pub struct StationLightConfig {
     pub far_range: f64,
     /// Distance of the receivers from the base's origin, m, 0 to 2. Default 0.15 (ours).
     pub receiver_radius: f64,
-    /// Bearing of the left receiver and its axis; the right one is its mirror image, deg, 0 to 120. Default 60 (ours).
+    /// Bearing of the left receiver and of its axis, base frame, deg, 0 to 120. The right one is its mirror image. Default 60 (ours).
     pub receiver_bearing_deg: f64,
     /// Half of a receiver's field of view, deg, 5 to 90. Default 60 (ours).
     pub receiver_half_view_deg: f64,
@@ -27,11 +27,12 @@ pub struct StationLightConfig {
     pub sector_edge_deg: f64,
     /// Half width of the edge of a receiver's field of view, deg, 0.1 to 45. Default 5 (ours).
     pub view_edge_deg: f64,
-    /// Half width of the edge between near, far and dark, part of the distance, 0.01 to 1. Default 0.15 (ours).
+    /// Half width of the edges between near, far and dark, as a fraction of the distance, 0.01 to 1. Default 0.15 (ours).
     pub range_edge: f64,
-    /// Probability that a field is missed, or seen where it is not, 0.001 to 0.5. Default 0.02 (ours).
+    /// Probability that a receiver misses a field or reports an absent one, 0.001 to 0.5. A larger value trusts readings less. Default 0.02
+    /// (ours).
     pub outlier_probability: f64,
-    /// Smallest probability of a dark receiver, 0.001 to 1: something may stand between. Default 0.2 (ours).
+    /// Smallest probability of a dark receiver, 0.001 to 1: an object may hide the station. Default 0.2 (ours).
     pub dark_likelihood: f64,
 }
 
@@ -55,7 +56,7 @@ impl Default for StationLightConfig {
 }
 
 impl StationLightConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

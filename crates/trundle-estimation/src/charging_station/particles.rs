@@ -6,7 +6,7 @@ use trundle_core::{Pose2, difference_of_angles};
 
 /// Shrinkage towards the mean in resampling, with which the kernel preserves mean and covariance. Source: Liu and West 2001.
 const SHRINKAGE_FACTOR: f64 = 0.95;
-/// Effective part of the particles below which resampling takes place. Source: the usual half.
+/// Effective fraction of the particles below which they are resampled. Source: the usual half.
 const MIN_EFFECTIVE_PART: f64 = 0.5;
 
 /// A candidate.
@@ -25,7 +25,7 @@ impl Particles {
         self.0.is_empty()
     }
 
-    /// Multiplies each weight by its likelihood; returns the mean likelihood, 0 if no weight is left.
+    /// Multiplies each weight by its likelihood; returns the mean likelihood, or 0 if all weights vanish.
     pub(super) fn weigh(&mut self, likelihood: impl Fn(Pose2) -> f64) -> f64 {
         for particle in &mut self.0 {
             particle.weight *= likelihood(particle.map_from_station);
@@ -37,7 +37,7 @@ impl Particles {
         sum
     }
 
-    /// Number of particles that count.
+    /// Effective number of particles.
     fn effective_size(&self) -> f64 {
         1.0 / self.0.iter().map(|particle| particle.weight * particle.weight).sum::<f64>()
     }
@@ -107,7 +107,7 @@ fn moved(mean: Pose2, off: Vector3<f64>) -> Pose2 {
     mean * Pose2::new(off.x, off.y, off.z)
 }
 
-/// A matrix whose product with its transpose is the covariance; of a singular covariance, the diagonal only.
+/// A matrix whose product with its transpose is the covariance; for a singular covariance, only of the diagonal.
 fn factor(covariance: &Matrix3<f64>) -> Matrix3<f64> {
     covariance.cholesky().map_or_else(
         || Matrix3::from_diagonal(&covariance.diagonal().map(|v| v.max(0.0).sqrt())),

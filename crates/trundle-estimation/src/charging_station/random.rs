@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-/// 2^64 over the golden ratio: steps that fill the circle evenly.
+/// 2^64 over the golden ratio: steps of this size are evenly distributed.
 const GOLDEN_RATIO_STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// A generator: SplitMix64 (Steele, Lea, Flood 2014).
@@ -21,12 +21,12 @@ impl Random {
         x ^ (x >> 31)
     }
 
-    /// In (0, 1).
+    /// Uniform in (0, 1).
     pub(super) fn unit(&mut self) -> f64 {
         ((self.bits() >> 12) as f64 + 0.5) / (1_u64 << 52) as f64
     }
 
-    /// Between two numbers.
+    /// Uniform between two numbers.
     pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }

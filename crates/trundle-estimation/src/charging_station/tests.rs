@@ -4,7 +4,7 @@ use super::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{DockBeams, DockInfrared, Pose2, difference_of_angles};
 
-/// Sharp light of the default geometry, as an independent closed form: the field at a receiver.
+/// Light of the default geometry with sharp edges, as an independent closed form.
 fn light(station_from_base: Pose2) -> DockInfrared {
     let at = |bearing_deg: f64| {
         let (s, c) = bearing_deg.to_radians().sin_cos();
@@ -48,7 +48,7 @@ fn spin(x: f64, y: f64) -> Vec<Pose2> {
     (0..380).map(|deg| Pose2::new(x, y, f64::from(deg).to_radians())).collect()
 }
 
-/// Straight across the axis at a distance and back, then a sweep of the heading nearer.
+/// A path across the axis at a distance and back, then a turn nearer to the station.
 fn survey() -> Vec<Pose2> {
     let across = |x: f64, heading: f64| {
         (-35..=35).map(move |i| Pose2::new(x, 0.01 * f64::from(i) * heading.signum(), heading))
@@ -103,7 +103,7 @@ fn crossing_the_axis_at_two_distances_gives_the_axis() {
 
 #[test]
 fn the_reported_uncertainty_is_the_true_one() {
-    // The first turn leaves the distance open, and the survey does not.
+    // The first turn does not determine the distance; the survey does.
     let rough = after(Pose2::IDENTITY, 5, &spin(2.0, 0.6)).unwrap();
     let fine = after(Pose2::IDENTITY, 5, &survey()).unwrap();
     assert!(rough.distance_sigma() > 3.0 * fine.distance_sigma());

@@ -8,11 +8,11 @@ pub(crate) struct GyroFault {
     last: Option<GyroRate>,
     /// Time since the output last changed, s.
     unchanged_for: f64,
-    /// The output contradicted the wheels and has not changed since.
+    /// Whether the output contradicted the wheels and has not changed since.
     is_frozen: bool,
 }
 
-/// Time of equal readings after which a gyro may be frozen, s: noise changes the output of a working one. Source: ours.
+/// Time of equal readings after which a gyro may be frozen, s. Noise changes the output of a working gyro. Source: ours.
 const MAX_UNCHANGED_S: f64 = 0.3;
 /// Difference of the turn rates by gyro and wheels that proves a frozen gyro, rad/s. Source: ours.
 const MAX_RATE_DIFFERENCE_RAD_S: f64 = 0.1;
@@ -35,8 +35,8 @@ impl GyroFault {
         self.unchanged_for > MAX_UNCHANGED_S
     }
 
-    /// Whether the gyro is frozen, for a turn rate by the wheels of `by_wheels` rad/s and a bias of `bias` rad/s. A frozen gyro is reported
-    /// until its output changes: slow turns do not contradict it.
+    /// Whether the gyro is frozen, at a turn rate by the wheels of `by_wheels` rad/s and a bias of `bias` rad/s. A frozen gyro is reported
+    /// until its output changes, since slow turns do not contradict it.
     pub(crate) fn contradicts(&mut self, by_wheels: f64, bias: f64) -> bool {
         let differs = |last: GyroRate| (last.omega - bias - by_wheels).abs() > MAX_RATE_DIFFERENCE_RAD_S;
         self.is_frozen |= self.is_suspect() && self.last.is_some_and(differs);

@@ -61,7 +61,7 @@ impl WheelFault {
         self.is_unresponsive
     }
 
-    /// Whether the command must make at least one wheel roll: a base without a tick is then not at rest.
+    /// Whether the command must make at least one wheel roll. A base without ticks is then not at rest.
     pub(crate) fn is_commanded_to_roll(&self, half_base: f64) -> bool {
         self.command.v.abs() + self.command.omega.abs() * half_base > MIN_ROLLING_SPEED_M_S
     }

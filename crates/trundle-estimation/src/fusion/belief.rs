@@ -18,7 +18,7 @@ pub(crate) struct Measurement {
     pub(crate) noise: Matrix3<f64>,
     /// Added to the prior's covariance before the update.
     pub(crate) prior_inflation: Matrix3<f64>,
-    /// Variances of the measurement's frame. Measurements in one frame never make the belief more certain than that frame.
+    /// Variances of the measurement's frame: a lower bound of the belief's variances after measurements in that frame.
     pub(crate) variance_floor: Vector3<f64>,
 }
 

@@ -8,13 +8,15 @@ use trundle_core::{Invalid, require_in};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LocalizerConfig {
-    /// Noise of a visual position added to the covariance of the pose (one sigma), m, 0.001 to 1. Default 0.02.
+    /// Noise of a visual position added to the covariance of the pose (one sigma), m, 0.001 to 1. A larger value trusts wheels and scans
+    /// more. Default 0.02.
     pub visual_position_sigma: f64,
     /// Noise of a visual heading added to the covariance of the pose (one sigma), deg, 0.01 to 30. Default 0.6.
     pub visual_heading_sigma_deg: f64,
-    /// Factor on the sigma of a weak visual pose, 1 to 100. Default 3.
+    /// Factor on the sigma of a weak visual pose, from few landmarks, 1 to 100. Default 3.
     pub weak_factor: f64,
-    /// Noise of a scan match's position added to its covariance (one sigma), m, 0.001 to 1. Default 0.02.
+    /// Noise of a scan match's position added to its covariance (one sigma), m, 0.001 to 1. A larger value trusts scan matches less.
+    /// Default 0.02.
     pub scan_position_sigma: f64,
     /// Noise of a scan match's heading added to its covariance (one sigma), deg, 0.01 to 30. Default 0.5.
     pub scan_heading_sigma_deg: f64,
@@ -23,21 +25,23 @@ pub struct LocalizerConfig {
     pub min_position_sigma: f64,
     /// Smallest sigma of the heading after any number of corrections, deg, 0 to 30. Default 0.45.
     pub min_heading_sigma_deg: f64,
-    /// Largest sigma of the position that still anchors a visual map, m, 0.01 to 10. Default 0.5.
+    /// Largest sigma of the position at which a new visual map is anchored in the map, m, 0.01 to 10. Default 0.5.
     pub anchor_sigma: f64,
-    /// Gate of the Mahalanobis distance, sigmas, 1 to 100. Measurements farther off are rejected. Default 4: one correct
-    /// measurement in 1000.
+    /// Gate of the Mahalanobis distance, sigmas, 1 to 100. Measurements beyond it are rejected. Default 4: rejects one correct measurement
+    /// in 1000.
     pub gate: f64,
-    /// Number of consecutive rejected visual poses that starts a recovery, 2 to 1000. Default 8: half a second.
+    /// Number of consecutive rejected visual poses after which the estimate or the visual map is moved, 2 to 1000. Default 8: half a
+    /// second.
     pub recover_after: usize,
     /// Difference of the motions by camera and wheels between two visual poses that counts as a jump, m, 0.01 to 10.
     /// Default 0.1: three times the slip of 1/15 s at 0.5 m/s.
     pub jump_distance: f64,
     /// Difference of the turns by camera and wheels between two visual poses that counts as a jump, deg, 0.1 to 180. Default 6.
     pub jump_turn_deg: f64,
-    /// Largest delay of a measurement, s, 0.1 to 60. Default 2.
+    /// Largest delay of a measurement behind the newest odometry, s, 0.1 to 60. Older ones are rejected; a larger value takes more memory.
+    /// Default 2.
     pub history: f64,
-    /// Largest lead of a measurement over the newest odometry, s, 0 to 1. Default 0.1.
+    /// Largest lead of a measurement over the newest odometry, s, 0 to 1. Later ones are rejected. Default 0.1.
     pub max_lead: f64,
 }
 

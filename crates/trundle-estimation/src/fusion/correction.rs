@@ -102,7 +102,7 @@ pub enum Prediction {
     NothingNew,
     /// Older than the last reading: rejected.
     TimeWentBack {
-        /// By how much, s.
+        /// Difference of the stamps, s.
         by: f64,
     },
     /// A number in the reading is not finite: rejected.

@@ -15,11 +15,11 @@ use trundle_core::{Invalid, Odometry, Pose2, Pose3, PoseEstimate, Stamp, Twist2}
 
 /// The pose estimate: odometry, corrected by visual poses and scan matches.
 ///
-/// Problem: the base's pose in the map frame, at the rate of the wheels. One source is smooth but drifts; the absolute sources are slower
-/// and late. Method: an extended Kalman filter on SE(2) with right perturbations. The error is in the base frame, a measurement is a whole
-/// pose (H = I), and odometry moves the covariance by the adjoint. Each measurement is applied at its stamp and transported forward through
-/// the later odometry. Visual errors are correlated in time, therefore corrections never reduce a variance below a floor. Cost: one step
-/// per reading; a late correction costs one step per later entry.
+/// Problem: the base's pose in the map frame, at the rate of the wheels. Odometry is smooth but drifts; the absolute sources are slower and
+/// late. Method: an extended Kalman filter on SE(2) with right perturbations. The error is in the base frame, a measurement is a whole pose
+/// (H = I), and odometry moves the covariance by the adjoint. Each measurement is applied at its stamp and transported forward by the later
+/// odometry. Visual errors are correlated in time, therefore variances have a lower bound. Cost: one step per reading; a late correction
+/// costs one step per later entry.
 ///
 /// | symbol | here | unit |
 /// |---|---|---|
@@ -217,8 +217,8 @@ impl Localizer {
         self.divergence = DivergenceCheck::default();
     }
 
-    /// Discards the poses of the visual maps in the map, for example after the map was replaced. Its next pose anchors each visual map
-    /// again.
+    /// Discards the poses of the visual maps in the map, for example after the map was replaced. The next pose of each visual map anchors
+    /// it again.
     pub fn forget_visual_maps(&mut self) {
         self.visual.set_anchors(BTreeMap::new());
     }
@@ -245,7 +245,7 @@ impl Localizer {
     /// Applies a measurement far from the belief: the prior is inflated by their distance.
     fn apply_inflated(&mut self, moment: &Moment, measurement: Measurement) {
         let (innovation, _) = moment.belief.innovation(&measurement);
-        // A factor of ten: the update closes over nine tenths of the distance.
+        // With a factor of ten, the update closes nine tenths of the distance.
         let prior_inflation = innovation * innovation.transpose() * 10.0;
         self.insert(moment, Measurement { prior_inflation, ..measurement });
     }

@@ -40,7 +40,7 @@ pub(crate) struct Moment {
 }
 
 impl MeasurementBuffer {
-    /// A buffer that begins with `belief` at the stamp of `odometry`; no update brings a variance below `min_variances`.
+    /// A buffer that begins with `belief` at the stamp of `odometry`; `min_variances` bound the variances after updates.
     pub(crate) fn new(odometry: &Odometry, belief: Belief, min_variances: Vector3<f64>) -> Self {
         let node = Node { stamp: odometry.stamp, odometry: odometry.into(), measurement: None, belief };
         Self { nodes: VecDeque::from([node]), newest_odometry: *odometry, min_variances }

@@ -19,7 +19,7 @@ use trundle_core::{Pose2, Pose3};
 #[derive(Debug, Clone)]
 pub(crate) struct VisualFrame {
     base_from_camera: Pose3,
-    /// Anchor of each visual map. A map that starts while another is lost has a separate frame.
+    /// Anchor of each visual map. A map that starts after tracking was lost has a separate frame.
     anchors: BTreeMap<u32, Anchor>,
     /// The visual map of the last pose.
     current: u32,
@@ -31,7 +31,7 @@ pub(crate) struct VisualFrame {
 pub struct VisualAnchor {
     /// The visual map's frame in the map.
     pub map_from_visual: Pose3,
-    /// Symmetric; x (m), y (m), theta (rad). All 0: certain, the anchor is fixed.
+    /// Symmetric; x (m), y (m), theta (rad). With all 0 the anchor is certain and fixed.
     pub covariance: [[f64; 3]; 3],
 }
 
@@ -89,7 +89,7 @@ impl VisualFrame {
         Some((map_from_visual * visual.visual_from_camera * self.base_from_camera.inverse()).to_pose2())
     }
 
-    /// Anchors the visual frame at the pose in which a visual pose agrees with the belief: gravity is along the base's z axis.
+    /// Anchors the visual frame so that the visual pose agrees with the belief; gravity is along the base's z axis.
     pub(crate) fn anchor(&mut self, belief: &Belief, visual: &VisualPose) {
         let map_from_camera = Pose3::from_pose2(belief.pose) * self.base_from_camera;
         let map_from_visual = (map_from_camera * visual.visual_from_camera.inverse()).renormalized();
@@ -138,7 +138,7 @@ impl VisualFrame {
         let to_base = adjoint(&measurement.pose.inverse());
         let Some(spread) = symmetric(before.covariance + measurement.noise).cholesky() else { return };
         let gain = anchor.covariance * to_base.transpose() * spread.inverse();
-        // An anchor too far ahead measures the base too far ahead.
+        // An anchor with an error ahead gives measured poses the same error.
         let off = Pose2::exp(-(gain * innovation));
         anchor.map_from_visual = (Pose3::from_pose2(off) * anchor.map_from_visual).renormalized();
         anchor.covariance = symmetric(anchor.covariance - gain * to_base * anchor.covariance);

@@ -1,4 +1,4 @@
-//! Motion between two readings of the wheels, as the sensors measured it.
+//! Measured motion between two readings of the wheels.
 
 use nalgebra::Matrix3;
 use trundle_core::Stamp;

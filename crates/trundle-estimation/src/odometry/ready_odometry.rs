@@ -1,8 +1,8 @@
-//! Odometry that the body computes itself, as increments of our own.
+//! Odometry computed by the body, as increments of the robot's odometry.
 //!
-//! Problem: a body restarts its odometry at any pose, and its stamps may jump. Idea: only the motion between two readings counts. It is
-//! checked like a reading of wheels: a reading from the past, after a gap, or with too high a speed does not move the pose. The covariance
-//! grows by the growth of the body's covariance; without growth, by the noise of wheels without a gyro. Cost: O(1).
+//! Problem: a body restarts its odometry at any pose, and its stamps may jump. Idea: only the motion between two readings is used, with the
+//! checks of a wheel reading. A reading from the past, after a gap, or with too high a speed does not move the pose. The covariance grows
+//! as the body's covariance; if that does not grow, by the noise of wheels without a gyro. Cost: O(1).
 
 use super::wheel_odometry::WheelOdometry;
 use crate::odometry::report::WheelReport;

@@ -1,4 +1,4 @@
-//! Use of each reading of the wheels.
+//! Use of the readings of the wheels.
 
 /// Use of one reading of the wheels.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -30,31 +30,31 @@ pub enum WheelReport {
         /// Speed of the faster wheel, m/s.
         speed: f64,
     },
-    /// Second consecutive reading at impossible counts: the encoders were reset. The motion between is unknown. The motion enters the
-    /// covariance instead of the pose.
+    /// Second consecutive reading at impossible counts: the encoders were reset. The motion in between is unknown and enters the covariance
+    /// instead of the pose.
     Restarted,
 }
 
 /// Number of readings of each kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct WheelCounts {
-    /// Applied, with or without slip.
+    /// Number of applied readings, with or without slip.
     pub used: usize,
-    /// Applied with slip.
+    /// Number of readings applied with slip.
     pub slipping: usize,
     /// Number of readings not newer than the last one.
     pub time_went_back: usize,
     /// Number of readings after a gap.
     pub gaps: usize,
-    /// Above the speed limit.
+    /// Number of readings above the speed limit.
     pub too_fast: usize,
-    /// Resets of the encoders.
+    /// Number of resets of the encoders.
     pub restarts: usize,
-    /// Readings of the gyro that were not newer than the last one, or not finite.
+    /// Number of gyro readings that were not newer than the last one, or not finite.
     pub gyro_refused: usize,
 }
 
-/// The newest report and the counts of all.
+/// The newest report, and the counts of all reports.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ReportLog {
     pub(crate) newest: WheelReport,

@@ -21,7 +21,7 @@ impl OdometryState {
         (motion, without_negative_variances(noise))
     }
 
-    /// The state a fraction of the motion from here to `later`.
+    /// The state at a fraction of the motion from here to `later`.
     pub(crate) fn towards(&self, later: &Self, fraction: f64) -> Self {
         let (motion, noise) = later.since(self);
         let part = Pose2::exp(motion.log() * fraction);

@@ -4,7 +4,7 @@ use trundle_core::{GyroRate, Stamp};
 
 /// The integral of the gyro's rate, read at the stamps of the wheels.
 ///
-/// A reading is the mean rate since the previous one: a gyro's output filter passes half its own rate of readings. Trapezoids over such
+/// A reading is the mean rate since the previous one, since a gyro's output filter passes half of its reading rate. Trapezoids over such
 /// means would lag by half a period (one degree at the start of a turn of 100 deg/s). After the newest reading its rate is extrapolated;
 /// the next reading corrects this part.
 #[derive(Debug, Clone, Default)]
@@ -73,7 +73,7 @@ mod tests {
                     integral.push(rate, 0.1);
                 }
             }
-            // The integral of 0.5 t dt over 2 s, rad; late readings cost the first 40 ms, and the last 20 ms are held.
+            // The integral of 0.5 t dt over 2 s, rad. Late readings lose the first 40 ms, and the last 20 ms are extrapolated.
             assert!((sum - 1.0).abs() < if gyro_first { 1e-12 } else { 6e-4 }, "{sum}");
         }
     }

@@ -23,12 +23,12 @@ use trundle_core::{
 ///
 /// Problem: integrate encoder ticks to a pose. Between two readings the base drives an arc. The length of the arc is the mean of the two
 /// wheels' distances. The angle of the arc comes from the gyro without its bias; without a gyro, from the difference of the distances over
-/// the wheelbase. The exponential map of SE(2) integrates the arc exactly. Counters wrap at 2^16; a difference is read as the shorter way
-/// round. Wheels at rest for [`OdometryConfig::still_time`] are a robot at rest, which calibrates the gyro's bias. Gyro and camera
+/// the wheelbase. The exponential map of SE(2) integrates the arc exactly. Counters wrap at 2^16; a difference is taken in the shorter
+/// direction. Wheels at rest for [`OdometryConfig::still_time`] are a robot at rest, which calibrates the gyro's bias. Gyro and camera
 /// calibrate the wheels' radii while driving ([`WheelOdometry::add_visual_pose`]). Wheels with a command to roll
 /// ([`WheelOdometry::set_command`]) and no counts are a fault: the covariance grows by the commanded motion. Cost: O(1).
 ///
-/// A reading from the past, after a gap, or of an impossible speed never makes the pose jump: see [`WheelReport`].
+/// The pose never jumps by a reading from the past, after a gap, or of an impossible speed: see [`WheelReport`].
 #[derive(Debug, Clone)]
 pub struct WheelOdometry {
     pub(super) drive: DifferentialDrive,
@@ -174,9 +174,9 @@ impl WheelOdometry {
         [left, right].map(|ratio| ratio * self.drive.wheel_radius)
     }
 
-    /// Adds a visual pose: at `stamp` the camera measured the base at `visual_from_base`, in a frame at rest, and the odometry
-    /// had it at `odom_from_base`. Distances calibrate the wheels' radii, turns the gyro. Images may be late, but must come in
-    /// order. A pose that is not finite breaks the visual track.
+    /// Adds a visual pose: at `stamp` the base was at `visual_from_base` by the camera (fixed frame) and at `odom_from_base` by the
+    /// odometry. Distances calibrate the wheels' radii, turns the gyro. Images may be late, but must come in order. A pose that is not
+    /// finite breaks the visual track.
     pub fn add_visual_pose(&mut self, stamp: Stamp, odom_from_base: Pose2, visual_from_base: Pose3) {
         if !(visual_from_base.is_finite() && odom_from_base.is_finite()) {
             self.break_visual_track(stamp);
@@ -194,7 +194,7 @@ impl WheelOdometry {
         }
     }
 
-    /// Ends the track of visual poses at `stamp`: the frame of the next visual pose is another one.
+    /// Ends the track of visual poses at `stamp`, before a pose in another visual frame.
     pub fn break_visual_track(&mut self, stamp: Stamp) {
         self.wheel_calibration.break_visual_track();
         self.yaw_segments.interrupt(stamp);
@@ -248,13 +248,13 @@ impl WheelOdometry {
         self.resting_since = if rests { self.resting_since.or(Some(stamp)) } else { None };
         let turn_by_wheels = (wheels.right - wheels.left) / self.drive.wheelbase;
         let is_unresponsive = self.wheel_fault.is_unresponsive();
-        // Wheels without counts and a gyro without changes may both be at fault: neither can verify the other.
+        // Wheels without counts and a gyro without changes may both be faulty and cannot verify each other.
         let is_frozen = self.gyro_fault.contradicts(turn_by_wheels / wheels.dt, self.gyro_calibration.bias())
             || is_unresponsive && self.gyro_fault.is_suspect();
         let measured_turn = self.measured_turn(stamp, wheels.dt).filter(|_| !is_frozen);
         let turn_by_gyro = measured_turn.map(|turn| self.gyro_calibration.corrected_turn(turn, wheels.dt));
-        // The gyro's noise does not turn a robot at rest. One reading without a tick does not prove rest: slow wheels give such readings
-        // too.
+        // The gyro's noise must not turn a robot at rest. A single reading without a tick is no proof of rest: slow wheels give such
+        // readings.
         let may_rest = rests && (self.is_at_rest(stamp) || !self.gyro_calibration.is_measured());
         let is_noise = may_rest && turn_by_gyro.is_some_and(|turn| self.is_noise(turn / wheels.dt));
         let turn = if is_noise { 0.0 } else { turn_by_gyro.unwrap_or(turn_by_wheels) };

@@ -1,25 +1,25 @@
-//! Whether the robot was carried away: what images, scans and the base show.
+//! Evidence from images, scans and the base that the robot was carried away.
 
 use crate::pose_monitor::scan_continuity::{Continuity, ScanContinuity};
 use trundle_core::{Pose2, Scan, Stamp};
 
-/// Evidence that the robot stands elsewhere than odometry leads.
+/// Evidence that the robot is not at the pose of the odometry.
 ///
-/// Images that are not located, and scans that contradict the map, are no such evidence: people and moved furniture cause both.
-/// A break in the sequence of scans is certain evidence. A doubtful sequence, a time without scans and a wheel that hung are possible
-/// evidence: they need images that show enough and are not located.
+/// Images that are not located, and scans that contradict the map, are no such evidence: people and moved furniture cause both. A break in
+/// the sequence of scans is certain evidence. A doubtful sequence, a time without scans, and a wheel drop are possible evidence, which
+/// needs images with enough features that are not located.
 ///
-/// Evidence ends with a recognised place, and with a scan that shows again what stood before the break. An image that is only tracked ends
-/// it as long as tracking has not paused since then: after a pause, tracking goes on from the pose that odometry leads to.
+/// Evidence ends with a recognised place, or with a scan that shows the surfaces from before the break. A tracked image ends it only if
+/// tracking has not paused since the evidence: after a pause, tracking continues from the odometry's pose.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct DisplacementMonitor {
     continuity: ScanContinuity,
     evidence: Option<Evidence>,
-    /// Since when images that show enough have not been located.
+    /// Start of the time in which images with enough features are not located.
     unlocated: Option<Stamp>,
-    /// Stamp at which global localization last began in that time.
+    /// Last start of global localization in that time.
     searched: Option<Stamp>,
-    /// Whether scans gave the last pose.
+    /// Whether global localization by scans gave the last pose.
     is_placed_by_scans: bool,
 }
 
@@ -29,48 +29,48 @@ struct Evidence {
     since: Stamp,
     /// Whether two successive scans contradict the odometry.
     is_certain: bool,
-    /// Whether an image was not located since then.
+    /// Whether an image was not located since the evidence.
     is_track_cut: bool,
 }
 
-/// What an image shows of the robot's place.
+/// Evidence of an image about the robot's place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ImageEvidence {
     /// A place was recognised, and the pose accepted.
     Recognised,
-    /// It was tracked from the image before, and the pose accepted.
+    /// The image was tracked from the previous one, and the pose accepted.
     Tracked,
-    /// It has enough features, and was not located.
+    /// The image has enough features, but was not located.
     Unlocated,
-    /// It has too few features to be located.
+    /// The image has too few features for a location.
     Blind,
 }
 
-/// What a visual pose may do.
+/// Allowed use of a visual pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum VisualUse {
-    /// Correct the estimate, if scans and motion agree.
+    /// The pose corrects the estimate, if scans and motion agree.
     Checked,
-    /// Give the pose anywhere.
+    /// The pose is accepted anywhere.
     Anywhere,
-    /// Nothing: tracking went on from a pose that is wrong.
+    /// The pose is not used: tracking continued from a wrong pose.
     Nothing,
 }
 
-/// Time after the evidence without a located image \[s\] after which the robot is elsewhere. Shorter than the 30 images at 30 Hz after
-/// which visual tracking goes on from the pose of the odometry. Source: ours.
+/// Time after the evidence without a located image \[s\] after which the robot counts as displaced. It is shorter than the 30 images at 30
+/// Hz after which visual tracking continues from the odometry's pose. Source: ours.
 const DISPLACED_AFTER_S: f64 = 0.8;
-/// Time between two searches \[s\]. Source: ours.
+/// Time between two starts of global localization \[s\]. Source: ours.
 const SEARCH_AGAIN_S: f64 = 1.5;
-/// Time after certain evidence \[s\] after which a robot whose images show too little to be located is elsewhere. Source: ours, a scan
-/// that contradicts the map decides sooner.
+/// Time after certain evidence \[s\] after which a robot with images of too few features counts as displaced. Source: ours; a scan that
+/// contradicts the map decides sooner.
 const BLIND_DISPLACED_AFTER_S: f64 = 3.0;
-/// Time after the evidence without a located image \[s\] after which the pose is in doubt, and nothing enters the map. Source: ours, longer
-/// than a few blurred images.
+/// Time after the evidence without a located image \[s\] after which the pose is doubtful and mapping pauses. Source: ours; longer than a
+/// few blurred images.
 const DOUBTFUL_AFTER_S: f64 = 0.3;
 
 impl DisplacementMonitor {
-    /// Takes in a scan, taken at `odom_from_base`. Whether odometry does not explain how it follows from the ones before.
+    /// Records a scan taken at `odom_from_base`. Returns whether odometry does not explain its difference from the previous scans.
     pub(crate) fn add_scan(&mut self, odom_from_base: Pose2, scan: &Scan) -> bool {
         let continuity = self.continuity.add(odom_from_base, scan);
         match continuity {
@@ -82,7 +82,7 @@ impl DisplacementMonitor {
         matches!(continuity, Continuity::Broken | Continuity::Unknown)
     }
 
-    /// A wheel hangs.
+    /// Records a wheel drop.
     pub(crate) fn add_lift(&mut self, now: Stamp) {
         self.may_be_displaced(now);
     }
@@ -98,7 +98,7 @@ impl DisplacementMonitor {
         self.evidence.get_or_insert(Evidence { since, is_certain: false, is_track_cut: false });
     }
 
-    /// What a visual pose may do, `recognised` or only tracked.
+    /// Allowed use of a visual pose, `recognised` or tracked.
     pub(crate) fn visual_use(&self, recognised: bool) -> VisualUse {
         match self.evidence {
             Some(evidence) if recognised && evidence.is_certain => VisualUse::Anywhere,
@@ -107,7 +107,7 @@ impl DisplacementMonitor {
         }
     }
 
-    /// Takes in an image. Whether the robot is elsewhere: global localization begins.
+    /// Records an image. Returns whether the robot is displaced and global localization begins.
     pub(crate) fn add_image(&mut self, now: Stamp, image: ImageEvidence) -> bool {
         if matches!(image, ImageEvidence::Recognised | ImageEvidence::Tracked) {
             self.settle();
@@ -137,8 +137,8 @@ impl DisplacementMonitor {
         is_time && self.unlocated_since().is_some_and(is_long)
     }
 
-    /// Takes in an image that cannot be located: after certain evidence it begins one search. It ends a time of unlocated images that was
-    /// too short for a search.
+    /// Records an image with too few features. After certain evidence it begins one search. It ends a time of unlocated images that was too
+    /// short for a search.
     fn add_blind(&mut self, now: Stamp) -> bool {
         if self.unlocated.is_some_and(|since| now - since <= DISPLACED_AFTER_S) {
             self.unlocated = None;
@@ -148,7 +148,8 @@ impl DisplacementMonitor {
         self.searched.is_none() && self.evidence.is_some_and(is_long)
     }
 
-    /// Scans gave the pose. Images that are not located do not make it unknown again until one is located, or the scans break again.
+    /// Records that scans gave the pose. Unlocated images do not make the pose unknown again until an image is located, or the scans break
+    /// again.
     pub(crate) fn localized_by_scans(&mut self) {
         self.settle();
         self.is_placed_by_scans = true;
@@ -159,12 +160,12 @@ impl DisplacementMonitor {
         self.evidence.is_some()
     }
 
-    /// Whether images that show enough have not been located for a short time since the evidence that the robot was carried away.
+    /// Whether, after evidence of displacement, images with enough features are not located for a short time.
     pub(crate) fn is_doubtful(&self, now: Stamp) -> bool {
         self.unlocated_since().is_some_and(|since| now - since > DOUBTFUL_AFTER_S)
     }
 
-    /// Since when images that show enough have not been located, from the evidence that the robot was carried away on.
+    /// Start of the time without located images, not before the evidence of displacement.
     fn unlocated_since(&self) -> Option<Stamp> {
         Some(self.unlocated?.max(self.evidence?.since))
     }
@@ -180,7 +181,7 @@ mod tests {
     use super::*;
     use crate::pose_monitor::testing::Room;
 
-    /// The seconds at which the robot counts as elsewhere; images come every 0.1 s, and show what `evidence` says.
+    /// The times, s, at which the robot counts as displaced; images come every 0.1 s with this `evidence`.
     fn elsewhere(monitor: &mut DisplacementMonitor, evidence: impl Fn(u32) -> ImageEvidence) -> Vec<f64> {
         let time = |i: u32| 0.1 * f64::from(i);
         (0..60)
@@ -189,7 +190,7 @@ mod tests {
             .collect()
     }
 
-    /// A monitor whose scans show that the robot was put elsewhere.
+    /// A monitor after scans that show a displacement.
     fn displaced() -> DisplacementMonitor {
         let mut monitor = DisplacementMonitor::default();
         let room = Room::with_corner_box();

@@ -1,7 +1,7 @@
-//! The pose monitor: whether the robot stands where the estimate says.
+//! The pose monitor: checks the estimate of the robot's pose.
 //!
-//! A visual pose can be that of a look-alike place, and tracking can follow a person. Scans and wheels object to such poses. The
-//! estimate is given up only with evidence that the robot was carried away.
+//! A visual pose can belong to a look-alike place, and tracking can follow a person. Scans and wheels contradict such poses. The estimate
+//! is abandoned only on evidence that the robot was carried away.
 
 pub(crate) mod displacement;
 pub(crate) mod monitor;

@@ -1,4 +1,4 @@
-//! The pose monitor: which visual poses may correct the estimate, and when the robot is elsewhere.
+//! The pose monitor: decides the use of visual poses, and detects a displacement of the robot.
 
 use crate::fusion::correction::VisualPose;
 use crate::pose_monitor::displacement::{DisplacementMonitor, ImageEvidence, VisualUse};
@@ -7,47 +7,47 @@ use crate::pose_monitor::visual_jump::{Drift, PoseBelief, VisualJump};
 use crate::pose_monitor::visual_motion::{VisualMotion, VisualMotionMonitor};
 use trundle_core::{OccupancyGrid, Pose2, Pose3, Scan, Stamp};
 
-/// Decides what a visual pose is used for, and whether the robot was carried away.
+/// Decides the use of visual poses, and whether the robot was carried away.
 ///
-/// Problem: in rooms that look alike, and before people who move, images show a pose where the robot is not. Method: three questions, each
-/// with its own evidence.
+/// Problem: in look-alike rooms, and with moving people in view, images can give a wrong pose. Method: three questions, each with its own
+/// evidence.
 ///
-/// 1. Was the robot carried away? Two successive scans do not follow from each other by odometry, or a wheel hung.
-/// 2. Do images follow something that moves? Images and wheels measure different motions, and two scans fit the wheels.
-/// 3. Is a place recognised where the robot is not? The visual pose lies away from the estimate, and the scans of the last
-///    seconds fit the map worse there.
+/// 1. Was the robot carried away? Evidence: odometry does not explain the difference of two successive scans, or a wheel dropped.
+/// 2. Do images follow a moving object? Evidence: images and wheels measure different motions, and two scans fit the wheels.
+/// 3. Is a recognised place a look-alike? Evidence: the visual pose is away from the estimate, and the scans of the last seconds fit the
+///    map worse there.
 ///
-/// A robot that was carried away is located anywhere. Any other stays where odometry and scans lead. Cost: one comparison of two scans for
-/// each image, and one ray for each 5 deg of twelve scans for a visual pose away from the estimate.
+/// After a displacement, a visual pose anywhere is accepted. Otherwise odometry and scans determine the pose. Cost: one comparison of two
+/// scans per image; for a visual pose away from the estimate, one ray per 5 deg of twelve scans.
 #[derive(Debug, Clone, Default)]
 pub struct PoseMonitor {
     displacement: DisplacementMonitor,
     motion: VisualMotionMonitor,
     recent: RecentScans,
-    /// When two scans last showed that wheels or gyro were wrong.
+    /// Last stamp at which two scans showed that wheels or gyro were wrong.
     wrong_odometry: Option<Stamp>,
 }
 
-/// Time after wheels or gyro were wrong during which the estimate may have drifted beyond its standard deviations \[s\]. Source: ours, the
-/// age of the scans that odometry joins.
+/// Time after an error of wheels or gyro in which the drift may exceed the standard deviations \[s\]. Source: ours, the maximum age of the
+/// scans in a comparison.
 const WRONG_ODOMETRY_S: f64 = 20.0;
 
-/// A visual pose with all that it is judged by.
+/// A visual pose with the evidence for its verdict.
 #[derive(Debug, Clone, Copy)]
 pub struct VisualEvidence<'a> {
     /// The visual pose.
     pub visual: &'a VisualPose,
-    /// Whether the visual map was just corrected: its poses from before say nothing of the motion.
+    /// Whether the visual map was just corrected: earlier poses then give no motion.
     pub is_corrected: bool,
-    /// The base in the frame of the visual map.
+    /// Pose of the base in the frame of the visual map.
     pub visual_from_base: Pose3,
     /// `map_from_base` by the visual pose; `None` before its visual map is anchored.
     pub found: Option<Pose2>,
-    /// The odometry at the image.
+    /// Pose by the odometry at the image.
     pub odom_from_base: Pose2,
     /// The scan of the image's depth.
     pub scan: Option<&'a Scan>,
-    /// The estimate at the image; `None` where it does not reach back.
+    /// The estimate at the image; `None` if the image is too old.
     pub belief: Option<PoseBelief>,
     /// The map, without this scan.
     pub grid: &'a OccupancyGrid,
@@ -56,18 +56,18 @@ pub struct VisualEvidence<'a> {
 /// Use of a visual pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VisualVerdict {
-    /// It corrects the estimate, by its covariance.
+    /// The pose corrects the estimate, by its covariance.
     Accepted,
-    /// It follows something that moves, or tracking went on from a wrong pose after the robot was carried away.
+    /// The pose follows a moving object, or tracking continued from a wrong pose after a displacement.
     Ignored,
-    /// The frame of its visual map has moved: it is anchored anew at the estimate.
+    /// The frame of the visual map has moved; the map is anchored again at the estimate.
     FrameMoved,
-    /// A place was recognised where the robot is not.
+    /// The recognised place is a look-alike.
     FalseRecognition,
 }
 
 impl PoseMonitor {
-    /// Takes in a scan, taken at `odom_from_base`.
+    /// Records a scan taken at `odom_from_base`.
     pub fn add_scan(&mut self, odom_from_base: Pose2, scan: &Scan) {
         if self.displacement.add_scan(odom_from_base, scan) {
             self.recent.restart(odom_from_base, Some(scan));
@@ -76,7 +76,7 @@ impl PoseMonitor {
         }
     }
 
-    /// A wheel hangs.
+    /// Records a wheel drop.
     pub fn add_lift(&mut self, now: Stamp) {
         self.displacement.add_lift(now);
     }
@@ -115,12 +115,12 @@ impl PoseMonitor {
         }
     }
 
-    /// Takes in what an image shows of the place. Whether the robot is elsewhere: global localization begins.
+    /// Records the evidence of an image. Returns whether the robot is displaced and global localization begins.
     pub fn add_image(&mut self, now: Stamp, evidence: ImageEvidence) -> bool {
         self.displacement.add_image(now, evidence)
     }
 
-    /// Scans gave the pose. Images that are not located do not make it unknown again until one is located.
+    /// Records that scans gave the pose. Unlocated images do not make the pose unknown again until an image is located.
     pub fn localized_by_scans(&mut self) {
         self.displacement.localized_by_scans();
     }
@@ -130,12 +130,12 @@ impl PoseMonitor {
         self.displacement.is_displaced()
     }
 
-    /// Whether images have shown for a short time that the robot may be elsewhere: nothing enters the map.
+    /// Whether the robot may be displaced, by images of a short time. Mapping then pauses.
     pub fn is_doubtful(&self, now: Stamp) -> bool {
         self.displacement.is_doubtful(now)
     }
 
-    /// What the images move with. Across a recognition there is no motion.
+    /// Verdict on the motion by images. A recognition interrupts the motion.
     fn motion_of(&mut self, evidence: &VisualEvidence<'_>) -> VisualMotion {
         let VisualEvidence { visual, visual_from_base, odom_from_base, scan, .. } = *evidence;
         if visual.recognised {

@@ -1,4 +1,4 @@
-//! The scans of the last seconds, taken from different poses.
+//! The scans of the last seconds, from different poses.
 
 use crate::pose_monitor::scan_likelihood::scan_log_likelihood;
 use std::collections::VecDeque;
@@ -6,22 +6,22 @@ use trundle_core::{OccupancyGrid, Pose2, Scan};
 
 /// Scans from different poses, joined by odometry.
 ///
-/// A person can fill one scan. An estimate that has drifted is wrong for all scans of the last seconds, so that together they decide
-/// between two poses.
+/// A person can fill one scan. A drifted estimate is wrong for all scans of the last seconds, so that all together decide between two
+/// poses.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RecentScans(VecDeque<(Pose2, Scan)>);
 
-/// Age up to which a scan counts \[s\]: odometry hardly drifts meanwhile. Source: ours.
+/// Maximum age of a scan \[s\]: odometry hardly drifts in this time. Source: ours.
 const MAX_AGE_S: f64 = 20.0;
 /// Largest number of scans. Source: ours, the cost of a comparison.
 const MAX_SCANS: usize = 12;
-/// Motion after which a scan counts as from another pose \[m\]. Source: ours.
+/// Smallest distance between the poses of two scans \[m\]. Source: ours.
 const SPACING_M: f64 = 0.3;
-/// The same for the turn \[rad\]: 10 deg. Source: ours.
+/// Smallest turn between the poses of two scans \[rad\]: 10 deg. Source: ours.
 const SPACING_RAD: f64 = 0.175;
 
 impl RecentScans {
-    /// Takes in a scan, taken at `odom_from_base`.
+    /// Records a scan taken at `odom_from_base`.
     pub(crate) fn add(&mut self, odom_from_base: Pose2, scan: &Scan) {
         self.0.retain(|(_, kept)| scan.stamp() - kept.stamp() <= MAX_AGE_S);
         let is_elsewhere = |(last, _): &(Pose2, Scan)| {
@@ -36,13 +36,13 @@ impl RecentScans {
         }
     }
 
-    /// The scans so far were taken at other poses than odometry says: only `scan` counts, taken at `odom_from_base`.
+    /// Drops all scans, when odometry was wrong between them, and restarts with `scan`, taken at `odom_from_base`.
     pub(crate) fn restart(&mut self, odom_from_base: Pose2, scan: Option<&Scan>) {
         self.0.clear();
         self.0.extend(scan.map(|scan| (odom_from_base, scan.clone())));
     }
 
-    /// Log-likelihood of the scans for a robot that stands at `map_from_base` now, at `odom_from_base` \[nats\].
+    /// Log-likelihood of the scans for a robot at `map_from_base`, with the odometry at `odom_from_base` \[nats\].
     pub(crate) fn log_likelihood(
         &self,
         grid: &OccupancyGrid,

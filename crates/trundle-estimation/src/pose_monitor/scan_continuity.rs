@@ -1,33 +1,33 @@
-//! Continuity of the scans: whether odometry explains how a scan follows from the one before.
+//! Continuity of the scans: whether odometry explains the difference of successive scans.
 
 use std::f64::consts::TAU;
 use trundle_core::{Beam, Pose2, Scan, Vector2};
 
-/// Compares each scan with the last one that shows enough.
+/// Compares each scan with the last one with enough points.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ScanContinuity {
     last: Option<KeptScan>,
-    /// The last scan before a break, against which later scans are compared too.
+    /// The last scan before a break; later scans are also compared with this one.
     before_break: Option<KeptScan>,
 }
 
-/// How a scan follows from the one before.
+/// Relation of a scan to the previous one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Continuity {
-    /// The scan shows the same surfaces, moved as odometry says.
+    /// The scan shows the same surfaces, moved by the odometry.
     Continuous,
-    /// The scan shows other surfaces: the sensor was moved otherwise, or covered.
+    /// The scan shows other surfaces: the sensor moved differently from the odometry, or was covered.
     Broken,
-    /// The scan shows a part of the same surfaces only.
+    /// The scan shows only a part of the same surfaces.
     Doubtful,
-    /// The scans break again, and show what stood before the first break: the sensor was covered for a while. A look-alike place comes
-    /// into view without a second break.
+    /// The scans break again and show the surfaces from before the first break: the sensor was covered for a while. A look-alike place
+    /// comes into view without a second break.
     Restored,
-    /// The scans before are too long ago, and have too little in common with this one.
+    /// The previous scans are too old, and have too little in common with this one.
     Unknown,
 }
 
-/// A scan with the odometry's pose when it was taken.
+/// A scan with the odometry's pose at its stamp.
 #[derive(Debug, Clone)]
 struct KeptScan {
     scan: Scan,
@@ -36,23 +36,23 @@ struct KeptScan {
 
 /// Tolerance of a range between two scans \[m\]: noise, and the error of the motion in between. Source: ours.
 const RANGE_TOLERANCE_M: f64 = 0.1;
-/// The same as a share of the range. Source: ours.
+/// Tolerance of a range as a fraction of the range. Source: ours.
 const RANGE_TOLERANCE_SHARE: f64 = 0.04;
-/// Smallest number of points of a scan that lie in the view of the next one. Source: ours.
+/// Smallest number of points of a scan in the view of the next one. Source: ours.
 const MIN_COMMON_POINTS: usize = 20;
-/// Share of the common points that are seen again, below which the sequence is broken. Three people who walk past leave 0.7, a
-/// robot that is put elsewhere 0.04 in a furnished room. Source: docs/experiments/pose-monitor.md.
+/// Fraction of the common points seen again below which the sequence is broken. Three people who walk past leave 0.7; a displacement in a
+/// furnished room leaves 0.04. Source: docs/experiments/pose-monitor.md.
 const BROKEN_SHARE: f64 = 0.4;
-/// Share of the common points that are seen again, below which the sequence is doubtful: a robot that is put before another wall at the same
-/// distance leaves 0.55. Source: docs/experiments/pose-monitor.md.
+/// Fraction of the common points seen again below which the sequence is doubtful. A displacement to another wall at the same distance
+/// leaves 0.55. Source: docs/experiments/pose-monitor.md.
 const DOUBTFUL_SHARE: f64 = 0.65;
-/// Share from which a scan shows again what stood before the break. Source: ours.
+/// Fraction of the common points from which a scan shows the surfaces from before the break. Source: ours.
 const RESTORED_SHARE: f64 = 0.8;
-/// Time without a comparison \[s\] after which nothing is known of the motion in between. Source: ours, a robot cannot be put elsewhere sooner.
+/// Time without a comparison \[s\] after which the motion in between is unknown. Source: ours, the shortest time to carry a robot away.
 const MAX_GAP_S: f64 = 1.0;
 
 impl ScanContinuity {
-    /// Compares a scan, taken at `odom_from_base`, with the ones before.
+    /// Compares a scan taken at `odom_from_base` with the previous ones.
     pub(crate) fn add(&mut self, odom_from_base: Pose2, scan: &Scan) -> Continuity {
         if scan.hits().count() < MIN_COMMON_POINTS {
             return self.without_comparison(scan);
@@ -79,7 +79,7 @@ impl ScanContinuity {
         continuity
     }
 
-    /// Another source has shown the pose: the break is explained.
+    /// Ends a break, after another source gave the pose.
     pub(crate) fn settle(&mut self) {
         self.before_break = None;
     }
@@ -94,7 +94,7 @@ impl ScanContinuity {
 }
 
 impl KeptScan {
-    /// The share of the points of an earlier scan, moved by odometry, that this scan shows; `None` with few of them in its view.
+    /// Fraction of an earlier scan's points, moved by odometry, that this scan shows; `None` with few points in its view.
     fn share_of(&self, earlier: &Self) -> Option<f64> {
         let base_from_earlier = self.odom_from_base.inverse() * earlier.odom_from_base;
         let (mut again, mut common) = (0_usize, 0_usize);
@@ -107,11 +107,11 @@ impl KeptScan {
     }
 }
 
-/// Difference of ranges above which a point counts as one of another surface \[m\]. Source: ours.
+/// Difference of ranges above which a point belongs to another surface \[m\]. Source: ours.
 const MAX_RESIDUAL_M: f64 = 0.3;
 
-/// Mean difference of ranges between the points of an earlier scan, moved by `base_from_earlier`, and a scan, m; each at most 0.3 m. `None`
-/// with few of the points in its view.
+/// Mean difference of ranges between an earlier scan's points, moved by `base_from_earlier`, and a scan, m; each difference at most 0.3 m.
+/// `None` with few points in view.
 pub(crate) fn mean_residual(earlier: &Scan, base_from_earlier: Pose2, scan: &Scan) -> Option<f64> {
     let residuals = earlier.hits().filter_map(|point| residual(scan, base_from_earlier.transform(point)));
     let (sum, count) = residuals.fold((0.0, 0_usize), |(sum, count), residual| (sum + residual, count + 1));
@@ -128,7 +128,7 @@ fn residual(scan: &Scan, point: Vector2) -> Option<f64> {
     near.iter().filter_map(off).reduce(f64::min)
 }
 
-/// Whether a scan has a hit at a point of the base frame; `None` outside its view, or where it measures nothing.
+/// Whether a scan has a hit at a point of the base frame; `None` outside its view, or without a measurement there.
 fn shows(scan: &Scan, point: Vector2) -> Option<bool> {
     let (range, near) = beams_near(scan, point)?;
     let tolerance = RANGE_TOLERANCE_M.max(RANGE_TOLERANCE_SHARE * range);
@@ -144,7 +144,7 @@ fn shows(scan: &Scan, point: Vector2) -> Option<bool> {
     is_measured.then_some(false)
 }
 
-/// The range of a point of the base frame from the sensor, m, and the three beams about it; `None` outside the view.
+/// The range of a point of the base frame from the sensor, m, and the three nearest beams; `None` outside the view.
 fn beams_near(scan: &Scan, point: Vector2) -> Option<(f64, &[Beam])> {
     let way = point - scan.origin();
     let beam = (way.y.atan2(way.x) - scan.angle_min()).rem_euclid(TAU) / scan.angle_increment();

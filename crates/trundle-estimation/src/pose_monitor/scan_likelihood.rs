@@ -2,21 +2,21 @@
 
 use trundle_core::{Beam, Cell, OccupancyGrid, Pose2, Scan, Vector2};
 
-/// Angle between two beams that are compared \[rad\]: 5 deg. Errors of nearer ones are correlated. Source: ours.
+/// Angle between two compared beams \[rad\]: 5 deg. Errors of nearer beams are correlated. Source: ours.
 const BEAM_SPACING_RAD: f64 = 0.087;
 /// Standard deviation of a range against the map \[m\]: cells, pose and noise. Source: ours.
 const RANGE_SIGMA_M: f64 = 0.1;
-/// The same for each metre of the range: the error of the heading on oblique walls. Source: ours.
+/// Growth of that standard deviation with the range \[m/m\]: the error of the heading on oblique walls. Source: ours.
 const RANGE_SIGMA_PER_M: f64 = 0.03;
-/// Probability that something that the map does not know stands before the wall: a person, a chair. Source: ours.
+/// Probability of an unmapped object in front of the wall: a person, a chair. Source: ours.
 const P_IN_FRONT: f64 = 0.2;
-/// Probability of a range beyond the wall of the map: a thing that was removed, or a wrong range. Source: ours.
+/// Probability of a range beyond the wall of the map: a removed object, or a wrong range. Source: ours.
 const P_BEYOND: f64 = 0.1;
 /// Extent of the uniform distribution of ranges \[m\]. Source: a Kinect V2's range.
 const MAX_RANGE_M: f64 = 8.0;
 /// Distance behind a beam's end in which its wall is searched \[m\]. Source: ours, ten standard deviations at 5 m.
 const BEHIND_END_M: f64 = 2.5;
-/// Share of the log-likelihood that counts: beams share the errors of pose and map. Source: ours.
+/// Exponent of the likelihood: beams have common errors of pose and map. Source: ours.
 const LIKELIHOOD_EXPONENT: f64 = 0.3;
 
 /// Natural logarithm of the likelihood ratio of a scan, base at `pose`, against a scan that is equally likely at all ranges \[nats\].
@@ -37,14 +37,14 @@ pub(crate) fn scan_log_likelihood(grid: &OccupancyGrid, pose: Pose2, scan: &Scan
     LIKELIHOOD_EXPONENT * (0..scan.beams().len()).step_by(step).map(beam).sum::<f64>()
 }
 
-/// Range of the first occupied cell along a beam, up to `reach`, m. Unknown cells hide nothing.
+/// Range of the first occupied cell along a beam, up to `reach`, m. Rays pass unknown cells.
 fn wall_range(grid: &OccupancyGrid, origin: Vector2, direction: Vector2, reach: f64) -> Option<f64> {
     let step = 0.5 * grid.geometry().resolution;
     let count = (reach / step) as usize;
     (0..count).map(|i| i as f64 * step).find(|range| grid.at(origin + direction * *range) == Cell::Occupied)
 }
 
-/// A beam that met something at `range`, in a cell `end`.
+/// Likelihood ratio of a beam with a hit at `range`, in a cell of class `end`.
 fn hit_ratio(wall: Option<f64>, end: Cell, range: f64) -> f64 {
     let uniform = 1.0 / MAX_RANGE_M;
     let Some(wall) = wall else { return if end == Cell::Unknown { 0.0 } else { P_IN_FRONT.ln() } };
@@ -59,7 +59,7 @@ fn hit_ratio(wall: Option<f64>, end: Cell, range: f64) -> f64 {
     (p / uniform).ln()
 }
 
-/// A beam that met nothing up to `range`.
+/// Likelihood ratio of a beam without a hit up to `range`.
 fn free_ratio(wall: Option<f64>, range: f64) -> f64 {
     let is_through = wall.is_some_and(|wall| range > wall + 3.0 * range_sigma(wall));
     if is_through { P_BEYOND.ln() } else { 0.0 }

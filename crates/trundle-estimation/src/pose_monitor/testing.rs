@@ -5,7 +5,7 @@ use trundle_core::{Beam, Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Sc
 /// An axis-parallel box: its lower and its upper corner \[m\].
 pub(crate) type Block = [Vector2; 2];
 
-/// A room of 4 x 3 m about the origin, which looks alike half a turn on, with boxes in it.
+/// A room of 4 x 3 m around the origin, symmetric by half a turn, with boxes.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Room {
     pub(crate) blocks: Vec<Block>,
@@ -21,14 +21,14 @@ impl Room {
         Self { blocks: vec![[Vector2::new(1.2, 0.7), HALF]] }
     }
 
-    /// The same with a person of 0.4 m at a point.
+    /// This room with a person of 0.4 m at a point.
     pub(crate) fn with_person(mut self, at: Vector2) -> Self {
         let half = Vector2::new(0.2, 0.2);
         self.blocks.push([at - half, at + half]);
         self
     }
 
-    /// Its map, in cells of 5 cm; unknown outside.
+    /// The room's map, in cells of 5 cm; unknown outside.
     pub(crate) fn map(&self) -> OccupancyGrid {
         let geometry = GridGeometry::new(0.05, Vector2::new(-2.5, -2.0), 100, 80).unwrap();
         let mut grid = OccupancyGrid::filled(geometry, Cell::Unknown);

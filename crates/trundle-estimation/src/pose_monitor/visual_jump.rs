@@ -1,48 +1,48 @@
-//! Visual poses that lead away from the estimate: the scans decide.
+//! Visual poses away from the estimate, decided by scans.
 
 use crate::pose_monitor::recent_scans::RecentScans;
 use trundle_core::{OccupancyGrid, Pose2};
 
-/// The estimate, as far as a jump away from it is judged.
+/// The estimate, for the verdict on a jump.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PoseBelief {
     /// `map_from_base`.
     pub pose: Pose2,
     /// Standard deviation of the position, m.
     pub position_sigma: f64,
-    /// The same of the heading, rad.
+    /// Standard deviation of the heading, rad.
     pub heading_sigma: f64,
-    /// Whether it is too uncertain for scans to be compared with the map there.
+    /// Whether the estimate is too uncertain for a comparison of scans with the map.
     pub is_lost: bool,
 }
 
-/// How far the estimate may have drifted.
+/// Possible drift of the estimate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Drift {
     /// The estimate.
     pub(crate) belief: PoseBelief,
-    /// Whether wheels or gyro were wrong lately: the standard deviations do not hold.
+    /// Whether wheels or gyro were wrong recently: the drift may exceed the standard deviations.
     pub(crate) is_odometry_wrong: bool,
 }
 
-/// What to do with a visual pose.
+/// Verdict on a visual pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum VisualJump {
-    /// It is near the estimate, or the scans do not object: the localizer decides by its covariance.
+    /// The pose is near the estimate, or the scans do not contradict it. The localizer decides by its covariance.
     Allowed,
-    /// The scans contradict it, or it is far away and they do not confirm it.
+    /// The scans contradict the pose, or do not confirm a far one.
     Refused,
 }
 
 /// Distance of a visual pose from the estimate within which the localizer alone decides \[m\]. Source: ours.
 const NEAR_M: f64 = 0.25;
-/// The same for the heading \[rad\]: 6 deg. Source: ours.
+/// Angle of a visual pose from the estimate within which the localizer alone decides \[rad\]: 6 deg. Source: ours.
 const NEAR_RAD: f64 = 0.1;
-/// Distance that an estimate may have drifted beyond its standard deviations \[m\]: scans must not object. Source: ours.
+/// Possible drift of the position beyond the standard deviations \[m\]. Within it, scans must not contradict the pose. Source: ours.
 const DRIFT_M: f64 = 1.0;
-/// The same for the heading \[rad\]: 20 deg. Source: ours.
+/// Possible drift of the heading beyond the standard deviations \[rad\]: 20 deg. Source: ours.
 const DRIFT_RAD: f64 = 0.35;
-/// Standard deviations within which the drift of an estimate is likely \[1\]: scans must object decisively. Source: ours.
+/// Number of standard deviations of a likely drift \[1\]. Within it, only a decisive contradiction by scans refuses the pose. Source: ours.
 const DRIFT_SIGMAS: f64 = 3.0;
 /// Log-likelihood ratio of the scans above which they decide between two poses \[nats\]. Source: ours, 400 to 1.
 const DECISIVE_NATS: f64 = 6.0;
@@ -93,7 +93,7 @@ mod tests {
         is_lost: false,
     };
 
-    /// The verdict after scans of a room by a robot that turned by 40 deg to where it stands.
+    /// The verdict after scans of a room during a turn by 40 deg.
     fn verdict(belief: &PoseBelief, map: &Room, (room, truth): (&Room, Pose2), found: Pose2) -> VisualJump {
         let mut recent = RecentScans::default();
         for i in 0..5 {
@@ -152,7 +152,7 @@ mod tests {
             let drift = Drift { belief: BELIEF, is_odometry_wrong };
             VisualJump::judge(&drift, step, Pose2::IDENTITY, (&recent, &room.map()))
         };
-        // A scan between both poses that is a little nearer to the estimate: worse at the step, not decisively so.
+        // A scan between both poses, slightly nearer to the estimate: worse at the visual pose, but not decisively.
         let between = BELIEF.pose * Pose2::new(0.0, 0.0, 0.05);
         assert_eq!(judge(false, between), VisualJump::Refused);
         assert_eq!(judge(true, between), VisualJump::Allowed);

@@ -1,19 +1,19 @@
-//! Images that follow something that moves: a person who fills the view.
+//! Detection of images that follow a moving object, such as a person who fills the view.
 
 use crate::pose_monitor::scan_continuity::mean_residual;
 use std::collections::VecDeque;
 use trundle_core::{Pose2, Pose3, Scan, Stamp};
 
-/// Compares the motion by images with that by wheels and gyro; where they contradict each other, two scans decide.
+/// Compares the motion by images with that by wheels and gyro; two scans decide a contradiction.
 ///
-/// Both motions predict from a scan of a second ago what the present scan measures. Neither the map nor the estimate has a part in it, so
-/// that a wrong estimate cannot confirm itself.
+/// Each motion predicts the present scan from a scan of a second ago. Map and estimate are not used, so that a wrong estimate cannot
+/// confirm itself.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct VisualMotionMonitor {
     window: VecDeque<Moment>,
     /// Number of the visual map of the window.
     map: u32,
-    /// When images last followed something that moves, since the visual frame was last anchored.
+    /// Last stamp at which images followed a moving object, since the visual frame was anchored.
     conflict: Option<Stamp>,
 }
 
@@ -26,34 +26,34 @@ struct Moment {
     scan: Scan,
 }
 
-/// What the motion by images is.
+/// Verdict on the motion by images.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum VisualMotion {
-    /// That of the robot, or nothing says otherwise.
+    /// The robot's motion, or no contradiction.
     Own,
-    /// That of the robot: wheels or gyro measured another one, and two scans fit the images.
+    /// The robot's motion: wheels or gyro measured another one, and two scans fit the images.
     OwnAgainstWheels,
-    /// That of something else in view.
+    /// The motion of another object in view.
     Other,
-    /// That of the robot again, after that of something else: the frame of the visual map has moved.
+    /// The robot's motion after that of another object: the frame of the visual map has moved.
     FrameMoved,
 }
 
-/// Length of a motion \[s\]. Source: ours, a slow walker makes 0.3 m in it.
+/// Duration of a compared motion \[s\]. Source: ours; a slow walker moves 0.3 m in this time.
 const WINDOW_S: f64 = 1.0;
-/// Difference of the two motions up to which they agree \[m\]. Source: ours, the noise of a visual position.
+/// Largest difference of two agreeing motions \[m\]. Source: ours, the noise of a visual position.
 const AGREEMENT_M: f64 = 0.025;
-/// The same for the turn \[rad\]: 1 deg. Source: ours.
+/// Largest difference of the turns of two agreeing motions \[rad\]: 1 deg. Source: ours.
 const AGREEMENT_RAD: f64 = 0.0175;
-/// Part of a motion that its own error may have \[1\]: the scale of depth and wheel radii. Source: ours.
+/// Largest error of a motion as a fraction of it \[1\]: the scale of depth and wheel radii. Source: ours.
 const SCALE_ERROR: f64 = 0.05;
 /// Difference of the mean range residuals above which scans decide \[m\]. Source: ours, the noise of a mean.
 const DECISIVE_RESIDUAL_M: f64 = 0.004;
-/// Time without a contradiction after which the visual map stands still again \[s\]. Source: ours.
+/// Time without a contradiction after which the visual map counts as fixed again \[s\]. Source: ours.
 const CALM_S: f64 = 1.5;
 
 impl VisualMotionMonitor {
-    /// Takes in a located image of a visual map, with the scan of its depth.
+    /// Records a located image of a visual map, with the scan of its depth.
     pub(crate) fn add(
         &mut self,
         (map, visual_from_base): (u32, Pose3),
@@ -83,7 +83,7 @@ impl VisualMotionMonitor {
         }
     }
 
-    /// The visual frame was anchored anew, or has moved: motions across it say nothing.
+    /// Restarts after the visual frame was anchored again or has moved: motions across this event are invalid.
     pub(crate) fn restart(&mut self) {
         self.window.clear();
         self.conflict = None;
@@ -91,8 +91,8 @@ impl VisualMotionMonitor {
 }
 
 impl Moment {
-    /// Whether the motion by images since `earlier` is that of something else; `Some(false)` where it is the robot's against the wheels,
-    /// `None` where images and wheels agree, or scans do not decide.
+    /// Whether the motion by images since `earlier` is that of another object. `Some(false)`: the robot's, against the wheels. `None`:
+    /// images and wheels agree, or scans do not decide.
     fn follows_another(&self, earlier: &Self) -> Option<bool> {
         let by_wheels = earlier.odom_from_base.inverse() * self.odom_from_base;
         let by_images = (earlier.visual_from_base.inverse() * self.visual_from_base).to_pose2();
@@ -114,7 +114,7 @@ mod tests {
     use super::*;
     use crate::pose_monitor::testing::Room;
 
-    /// What images every 0.1 s show of a robot whose wheels, images and body move as given, in m/s along x.
+    /// Verdicts on images every 0.1 s for a robot whose wheels, images and body move along x with these speeds, m/s.
     fn motions(
         by_wheels: impl Fn(f64) -> f64,
         by_images: impl Fn(f64) -> f64,
@@ -135,7 +135,7 @@ mod tests {
         (0..60).map(at).collect()
     }
 
-    /// Walks 0.3 m in the second second.
+    /// Position of a walker who moves 0.3 m in the second second.
     fn walker(time: f64) -> f64 {
         0.3 * (time - 1.0).clamp(0.0, 1.0)
     }

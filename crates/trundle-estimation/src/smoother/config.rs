@@ -23,7 +23,7 @@ pub struct WindowConfig {
     pub length: f64,
     /// Largest number of keyframes in the window, 4 to 1000. Default 100.
     pub max_keyframes: usize,
-    /// Distance between two keyframes, m, 0.001 to 1. Default 0.05: the error of a visual pose is the same over less.
+    /// Distance between two keyframes, m, 0.001 to 1. Default 0.05: the error of visual poses is constant over a shorter distance.
     pub keyframe_distance: f64,
     /// Turn between two keyframes, deg, 0.1 to 90. Default 5.
     pub keyframe_turn_deg: f64,
@@ -38,9 +38,9 @@ pub struct WindowConfig {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SmootherNoise {
-    /// White noise of a visual position (one sigma), m, 1e-4 to 1. Default 0.001: three times that of drives in the simulator.
+    /// White noise of a visual position (one sigma), m, 1e-4 to 1. Default 0.001: three times that of simulated drives.
     pub visual_white_position: f64,
-    /// White noise of a visual heading (one sigma), deg, 0.001 to 30. Default 0.03: twice that of drives in the simulator.
+    /// White noise of a visual heading (one sigma), deg, 0.001 to 30. Default 0.03: twice that of simulated drives.
     pub visual_white_heading_deg: f64,
     /// Error of the visual map's parts besides the covariance of the pose (one sigma), m, 0 to 1. Default 0.001.
     pub visual_map_position: f64,
@@ -51,15 +51,16 @@ pub struct SmootherNoise {
     /// Distance over which errors of visual poses are correlated (factor 1/e), m, 0.01 to 100. Default 10: drives
     /// in the simulator.
     pub correlation_distance: f64,
-    /// Turn over which they are correlated, rad, 0.01 to 100. Default 4: the camera views another part of the map.
+    /// Turn over which errors of visual poses are correlated, rad, 0.01 to 100. Default 4: the camera views another part of the map.
     pub correlation_turn: f64,
     /// Noise of a scan match's position added to its covariance (one sigma), m, 0.001 to 1. Default 0.02.
     pub scan_position: f64,
     /// Noise of a scan match's heading added to its covariance (one sigma), deg, 0.01 to 30. Default 0.5.
     pub scan_heading_deg: f64,
-    /// Distance over which errors of scan matches are correlated (factor 1/e), m, 0.01 to 100. Default 0.3: a scan's hits move on.
+    /// Distance over which errors of scan matches are correlated (factor 1/e), m, 0.01 to 100. Default 0.3: the hits are then other parts
+    /// of the walls.
     pub scan_correlation_distance: f64,
-    /// Turn over which they are correlated, rad, 0.01 to 100. Default 0.3.
+    /// Turn over which errors of scan matches are correlated, rad, 0.01 to 100. Default 0.3.
     pub scan_correlation_turn: f64,
     /// Prior sigma of the wheelbase's error, ratio, 0.0001 to 0.1. Default 0.005.
     pub wheelbase_sigma: f64,
@@ -73,7 +74,7 @@ pub struct SmootherNoise {
 pub struct SmootherLimits {
     /// Gate of an innovation, sigmas, 1 to 100. Default 5.
     pub gate: f64,
-    /// Probability of a recognised place that is wrong, before it is compared with the estimate, 1e-6 to 0.5. Default 0.01.
+    /// Prior probability that a recognised place is wrong, 1e-6 to 0.5. Default 0.01.
     pub wrong_place_probability: f64,
     /// Largest lead of a measurement over the newest motion, s, 0 to 1. Default 0.1.
     pub max_lead: f64,

@@ -1,30 +1,30 @@
 //! The error of visual poses along the path, and the switch of a recognised place.
 //!
-//! Problem: errors of neighbouring visual poses are nearly equal, because they come from the part of the visual map in view. Averages of
+//! Problem: errors of neighbouring visual poses are nearly equal, because they come from the visible part of the visual map. Averages of
 //! such poses gain little, but their differences measure the motion well. Idea: the error is a state of each keyframe, a Gauss-Markov
 //! process along the path. With distance and turn it decays to zero with the covariance of the map part. A recognised place restarts the
-//! process. A switch tells whether the place is right: its weight is the posterior probability against an error of any size.
+//! process. A switch states whether the place is correct: its weight is the posterior probability against an error of any size.
 
 use super::preintegration::Preintegrated;
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-/// Step of the error from the keyframe before.
+/// Step of the error from the previous keyframe.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ErrorStep {
-    /// Covariance of the error far from here, in the axes of the visual map.
+    /// Stationary covariance of the error, in the axes of the visual map.
     pub(crate) stationary: Matrix3<f64>,
     /// Distance (m) and turn (rad) over which the error decays to 1/e.
     pub(crate) correlation: (f64, f64),
-    /// Displacement of the visual pose since the keyframe before, in the axes of the visual map, m.
+    /// Displacement of the visual pose since the previous keyframe, in the axes of the visual map, m.
     pub(crate) displacement: Vector2<f64>,
-    /// Whether the process starts again here, and how.
+    /// Restart of the process at this keyframe, if any.
     pub(crate) start: Option<ErrorStart>,
 }
 
 /// Start of the error of visual poses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum ErrorStart {
-    /// A visual map begins: its frame is defined here, and the error is zero.
+    /// A visual map begins: the image defines its frame, with zero error.
     NewMap,
     /// A place was recognised, or the visual frame jumped.
     Place(PlaceSwitch),
@@ -33,23 +33,23 @@ pub(crate) enum ErrorStart {
 /// The switch of a recognised place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PlaceSwitch {
-    /// Probability that the place is right, 0 to 1.
+    /// Probability that the place is correct, 0 to 1.
     pub(crate) weight: f64,
-    /// Prior log-odds that the place is right, before any comparison.
+    /// Prior log-odds that the place is correct.
     pub(crate) prior_log_odds: f64,
 }
 
-/// Sigmas of the error at a wrong place: m, m, rad. Any place in a room. Source: ours.
+/// Sigmas of the error at a wrong place, anywhere in a room: m, m, rad. Source: ours.
 pub(crate) const WRONG_PLACE_SIGMAS: Vector3<f64> = Vector3::new(5.0, 5.0, 1.8);
 /// Variance of the error of the first visual pose of a map, m^2 and rad^2. Source: ours; it keeps the equations definite.
 const NEW_MAP_VARIANCE: f64 = 1e-8;
-/// Least variance of the error's step, relative to its stationary one: two keyframes at rest. Source: ours.
+/// Smallest variance of the error's step, relative to its stationary variance: two keyframes at rest. Source: ours.
 const MIN_STEP_RATIO: f64 = 1e-4;
 
 impl ErrorStep {
-    /// The error after a motion, and its derivative by the previous error; `trust` is that in the last recognised place.
+    /// The error after a motion, and its derivative by the previous error; `trust` is the probability of the last recognised place.
     ///
-    /// A map part rotated by an angle shifts the visual pose: by the rotated displacement minus the displacement.
+    /// A map part rotated by an angle shifts the visual pose by the rotated displacement minus the displacement.
     pub(crate) fn moved(
         &self,
         before: &Vector3<f64>,
@@ -67,11 +67,11 @@ impl ErrorStep {
         (moved * keep, by * keep)
     }
 
-    /// The factor of the previous error; `trust` is that in the last recognised place.
+    /// The factor of the previous error; `trust` is the probability of the last recognised place.
     fn keep(&self, motion: &Preintegrated, trust: f64) -> f64 {
         match self.start {
             Some(_) => 0.0,
-            // The error at a wrong place is constant: it does not decay.
+            // The error at a wrong place is constant and does not decay.
             None => 1.0 - trust * (1.0 - self.correlated(motion)),
         }
     }
@@ -82,7 +82,7 @@ impl ErrorStep {
         (-motion.distance / distance - motion.turned / turn).exp()
     }
 
-    /// Covariance of the new part of the error at a right place.
+    /// Covariance of the new part of the error at a correct place.
     pub(crate) fn noise(&self, motion: &Preintegrated) -> Matrix3<f64> {
         match self.start {
             Some(ErrorStart::NewMap) => Matrix3::identity() * NEW_MAP_VARIANCE,
@@ -94,7 +94,7 @@ impl ErrorStep {
         }
     }
 
-    /// Information of the new part of the error: at an uncertain place the mean over right and wrong.
+    /// Information of the new part of the error; at an uncertain place, the mean over correct and wrong.
     pub(crate) fn information(&self, motion: &Preintegrated) -> Option<Matrix3<f64>> {
         let right = self.noise(motion).try_inverse()?;
         let Some(ErrorStart::Place(switch)) = self.start else { return Some(right) };
@@ -119,7 +119,7 @@ impl PlaceSwitch {
         Self { weight: 1.0 - wrong_probability, prior_log_odds }
     }
 
-    /// This switch with the posterior weight, by the error of the place without the place itself.
+    /// This switch with the posterior weight, by the error of the place from all other factors.
     #[must_use]
     pub(crate) fn judged(
         &self,

@@ -68,7 +68,7 @@ pub(crate) struct ScanFactor {
 }
 
 impl ScanFactor {
-    /// Measured less predicted pose in the axes of the base.
+    /// Measured minus predicted pose in the axes of the base.
     pub(crate) fn linearise(&self, state: &ChainState) -> Unary {
         let residual = (state.pose.inverse() * self.pose).log();
         let mut by_chain = SMatrix::<f64, 3, CHAIN_SIZE>::zeros();
@@ -97,11 +97,11 @@ impl Unary {
     }
 }
 
-/// All that couples keyframe `i` with the next one: motion, comparison of wheels and gyro, gyro at rest, error of the visual poses, bias.
+/// Coupling of keyframe `i` with the next one: motion, comparison of wheels and gyro, gyro at rest, error of the visual poses, bias.
 pub(crate) struct Link<'a> {
     pub(crate) motion: &'a Preintegrated,
     pub(crate) error: &'a ErrorStep,
-    /// Trust that the error of the visual poses returns to its mean, 0 to 1.
+    /// Probability that the error of the visual poses returns to its mean, 0 to 1.
     pub(crate) trust: f64,
     pub(crate) config: &'a OdometryConfig,
 }
@@ -138,7 +138,7 @@ impl Link<'_> {
         add_pair(system, i, (&by_from, &by_to, &by_border), &information, &found.residual)
     }
 
-    /// The turn by the wheels against that between the poses.
+    /// Adds the difference of the turn by the wheels and that between the poses.
     fn add_comparison(
         &self,
         system: &mut WindowSystem,
@@ -184,7 +184,7 @@ impl Link<'_> {
         residual.dot(&(information * residual))
     }
 
-    /// The bias walks; the gyro of a robot at rest measures it.
+    /// Adds the random walk of the bias, and its measurement by the gyro at rest.
     fn add_bias(&self, system: &mut WindowSystem, i: usize, (from, to): (&ChainState, &ChainState)) -> f64 {
         let walk = self.config.gyro_bias_walk.powi(2) * self.motion.duration + MIN_BIAS_WALK_VARIANCE;
         let off = to.bias - from.bias;
@@ -220,7 +220,7 @@ pub(crate) struct MotionResidual {
     pub(crate) by_parameters: SMatrix<f64, 3, 5>,
 }
 
-/// The motion between two poses less that by wheels and gyro.
+/// The motion between two poses minus that by wheels and gyro.
 pub(crate) fn linearise_motion(
     motion: &Preintegrated,
     (from, to): (&ChainState, &ChainState),

@@ -163,7 +163,7 @@ impl Smoother {
         self.window.as_ref().map_or(0, |window| window.solutions)
     }
 
-    /// Number of measurements after which the window had no solution; the estimate then went on without them.
+    /// Number of measurements after which the window had no solution and the measurement was dropped.
     pub fn failures(&self) -> usize {
         self.failures
     }
@@ -233,7 +233,7 @@ impl Smoother {
         ErrorStep { stationary: own + map_part, correlation, displacement, start }
     }
 
-    /// A keyframe without measurements, if none was made for long.
+    /// Adds a keyframe without measurements after a long time without keyframes.
     fn add_timed_keyframe(&mut self, stamp: Stamp) {
         let Some(window) = &self.window else { return };
         if self.head.duration < longest_time(&self.config.window, &self.head) {
@@ -266,7 +266,7 @@ impl Smoother {
     }
 
     /// Inserts a keyframe with an image after keyframe `k` and solves the window. It replaces the newest keyframe if that one is near its
-    /// predecessor: the newest image is used, and images with a common error count once.
+    /// predecessor, so that images with a common error count once.
     pub(super) fn insert_image(&mut self, k: usize, keyframe: Keyframe) {
         let Some(window) = &mut self.window else { return };
         let is_newest = k + 1 == window.keyframes.len();

@@ -1,4 +1,4 @@
-//! Measurements into the smoother.
+//! Inputs of the smoother.
 
 use super::fixed_lag::Smoother;
 use super::measurement::{MeasurementUse, PlanarMeasurement};
@@ -12,7 +12,7 @@ impl Smoother {
         visual_intake::add(self, visual)
     }
 
-    /// Adds a scan match, `map_from_base` with a covariance that counts the map's own.
+    /// Adds a scan match, `map_from_base` with a covariance that includes the map's.
     pub fn add_scan(&mut self, scan: &PlanarMeasurement) -> MeasurementUse {
         scan_intake::add(self, scan)
     }

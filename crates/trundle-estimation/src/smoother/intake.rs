@@ -23,16 +23,16 @@ pub(super) struct Located {
 /// The keyframe that a measurement belongs to.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Target {
-    /// Keyframe `k`, which the base reaches from the measurement's pose by `motion`.
+    /// Keyframe `k`, at `motion` from the measurement's pose.
     Existing {
         /// Number of the keyframe.
         k: usize,
         /// Motion from the measurement to the keyframe.
         motion: Pose2,
     },
-    /// A new one after keyframe `k`.
+    /// A new keyframe after keyframe `k`.
     New {
-        /// Number of the keyframe before.
+        /// Number of the previous keyframe.
         k: usize,
     },
 }
@@ -84,7 +84,7 @@ fn motion_to(smoother: &Smoother, window: &Window, stamp: Stamp, k: usize) -> Po
     }
 }
 
-/// Motion (m, rad without signs) from the last keyframe that `has` a measurement to a stamp after keyframe `k`.
+/// Path from the last keyframe that `has` a measurement to a stamp after keyframe `k`.
 pub(super) fn path_since(
     smoother: &Smoother,
     window: &Window,
@@ -128,7 +128,7 @@ pub(super) fn velocity(smoother: &Smoother) -> Vector3<f64> {
 pub(super) struct Path {
     /// Length, m.
     pub(super) distance: f64,
-    /// Sum of the turns without sign, rad.
+    /// Sum of the absolute turns, rad.
     pub(super) turned: f64,
 }
 

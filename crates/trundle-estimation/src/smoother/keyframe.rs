@@ -6,16 +6,16 @@ use super::preintegration::Preintegrated;
 use super::state::ChainState;
 use trundle_core::Stamp;
 
-/// A keyframe: a stamp with its unknowns, the link from the keyframe before, and its measurements.
+/// A keyframe: a stamp with its unknowns, the link from the previous keyframe, and its measurements.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Keyframe {
     pub(crate) stamp: Stamp,
     pub(crate) state: ChainState,
-    /// Motion from the keyframe before.
+    /// Motion from the previous keyframe.
     pub(crate) motion: Preintegrated,
-    /// Step of the visual error from the keyframe before.
+    /// Step of the visual error from the previous keyframe.
     pub(crate) error: ErrorStep,
-    /// Probability that the place recognised last, here or before, is right.
+    /// Probability that the last recognised place, at this keyframe or earlier, is correct.
     pub(crate) trust: f64,
     pub(crate) visual: Option<VisualFactor>,
     pub(crate) scan: Option<ScanFactor>,

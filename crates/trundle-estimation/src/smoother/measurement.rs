@@ -1,4 +1,4 @@
-//! Measurements of the smoother, and the use that was made of each.
+//! Measurements of the smoother, and their use.
 
 use super::innovation::Innovation;
 use nalgebra::Matrix3;
@@ -26,7 +26,7 @@ pub enum MeasurementUse {
     Switched {
         /// Agreement with the prediction.
         innovation: Innovation,
-        /// Probability that the place is right, 0 to 1.
+        /// Probability that the place is correct, 0 to 1.
         weight: f64,
     },
     /// Outside the gate: unused.

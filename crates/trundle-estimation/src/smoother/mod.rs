@@ -2,8 +2,8 @@
 //!
 //! Problem: one pose at the rate of the wheels with a consistent covariance. Odometry drifts; measurements are late, correlated and
 //! sometimes of a wrong place. Idea: the poses of a window, the error of the visual poses along it and the calibration are unknowns of one
-//! least-squares problem. Late measurements enter at their stamp, correlated errors are in the model, and later data evaluate a recognised
-//! place again. Keyframes that leave the window remain as a Gaussian prior.
+//! least-squares problem. Late measurements enter at their stamp, correlated errors are modelled, and later data re-evaluate a recognised
+//! place. Keyframes that leave the window remain as a Gaussian prior.
 //!
 //! The graph: a chain of keyframes, each with pose x, error e of the visual pose and bias b of the gyro. Factors between neighbours: the
 //! motion by wheels and gyro, the decay of e and the walk of b. Factors on a keyframe: a visual pose (x, e, anchor of the visual map, delay
@@ -19,8 +19,8 @@
 //! | prior of fixed linearisation \[Huang10\] | `Prior` | |
 //! | normal equations | `trundle_optim::ArrowSystem` | |
 //!
-//! Cost: O(K) for K keyframes and a measurement; 0.35 ms at 100 keyframes. No memory is allocated once the window is full. The page
-//! docs/algorithms/smoother.md has the equations.
+//! Cost: O(K) for K keyframes and a measurement; 0.35 ms at 100 keyframes. A full window allocates no memory. The equations are in
+//! docs/algorithms/smoother.md.
 
 pub(crate) mod calibration;
 pub(crate) mod config;

@@ -1,4 +1,4 @@
-//! The increments of the window, read between any two stamps.
+//! The increments of the window, with the motion between any two stamps.
 
 use super::preintegration::{Parameters, Preintegrated};
 use crate::odometry::motion_increment::MotionIncrement;
@@ -48,7 +48,7 @@ impl MotionBuffer {
         motion.add(&self.config, self.drive.wheelbase, increment);
     }
 
-    /// The motion between two stamps, of which the later one is not beyond the newest increment.
+    /// The motion between two stamps; the later one must not be beyond the newest increment.
     pub(crate) fn between(&self, from: Stamp, to: Stamp, at: Parameters) -> Preintegrated {
         let mut motion = Preintegrated::new(at);
         let first = self.increments.partition_point(|increment| increment.stamp <= from);

@@ -68,7 +68,7 @@ impl Predicted {
         Innovation::new(&measured.residual, &self.spread(measured, noise))
     }
 
-    /// Takes the error of the visual poses out: it starts again.
+    /// Removes the error of the visual poses, before its restart.
     pub(crate) fn forget_error(&mut self) {
         self.state.error = Vector3::zeros();
         self.covariance.fixed_rows_mut::<3>(ERROR_PLACE).fill(0.0);

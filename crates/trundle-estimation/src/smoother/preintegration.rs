@@ -58,7 +58,7 @@ pub(crate) struct Preintegrated {
     pub(crate) duration: f64,
     /// Length of the path, m.
     pub(crate) distance: f64,
-    /// Sum of all turns without sign, rad.
+    /// Sum of all absolute turns, rad.
     pub(crate) turned: f64,
 }
 
@@ -71,7 +71,7 @@ pub(crate) struct WheelTurn {
     pub(crate) by_parameters: RowSVector<f64, PARAMETER_COUNT>,
     /// Variance without slip, rad^2.
     variance: f64,
-    /// Turn by slip, rad, without sign.
+    /// Absolute turn by slip, rad.
     slip: f64,
     /// Whether both gyro and wheels measured all turns and can be compared.
     is_second: bool,
@@ -88,7 +88,7 @@ pub(crate) struct GyroAtRest {
     pub(crate) turn: f64,
 }
 
-/// Smallest sigma of a motion between two keyframes, m and rad: rounding and the floor's give. Source: ours.
+/// Smallest sigma of a motion between two keyframes, m and rad: rounding and a soft floor. Source: ours.
 const MIN_SIGMA: f64 = 1e-4;
 
 impl Preintegrated {

@@ -13,8 +13,8 @@ use trundle_optim::ArrowMarginal;
 /// The prior: information and right side at a fixed point.
 ///
 /// A keyframe that leaves the window is removed by a Schur complement at its last linearisation point. The prior keeps this point: later
-/// steps move the residual and never the derivatives (a prior of fixed linearisation). The first keyframe fixes the map frame. No direction
-/// is then unobservable, and mixed linearisation points add no false information (Huang et al. 2010).
+/// steps change the residual but not the derivatives (a prior of fixed linearisation). The first keyframe fixes the map frame. All
+/// directions are therefore observable, and mixed linearisation points add no false information (Huang et al. 2010).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Prior {
     information: JointMatrix,
@@ -40,12 +40,12 @@ pub(crate) struct PriorSigmas {
     pub(crate) delay: f64,
 }
 
-/// Smallest sigma of an unknown, in its unit. A calibration that is never estimated has this value. Source: ours; it keeps the equations
-/// definite.
+/// Smallest sigma of an unknown, in its unit. A calibration value that is never estimated has this sigma. Source: ours; it keeps the
+/// equations definite.
 const MIN_SIGMA: f64 = 1e-7;
 /// Sigma of the pose at power-on, m and rad: it defines the map frame. Source: ours; it keeps the equations definite.
 const START_SIGMA: f64 = 1e-5;
-/// Sigma of an anchor before any measurement, m and rad. Source: ours; no building is larger.
+/// Sigma of an anchor before any measurement, m and rad. Source: ours; larger than any building.
 const UNKNOWN_ANCHOR_SIGMA: f64 = 1e3;
 /// Random walks, ratio per sqrt(s): gyro's scale, wheels' radii and base; s per sqrt(s): delay; m and rad per sqrt(s): anchors. Source:
 /// ours; they let the unknowns follow changes.
@@ -74,7 +74,7 @@ impl Prior {
         Self { information, gradient: JointVector::zeros(), chain, border }
     }
 
-    /// The rest of a keyframe that was removed, at these values; `time` s have passed.
+    /// The prior from a removed keyframe at these values, after `time` s.
     pub(crate) fn after(
         marginal: &ArrowMarginal<CHAIN_SIZE, BORDER_SIZE>,
         chain: ChainState,
@@ -135,7 +135,7 @@ impl Prior {
         step.dot(&moved) - 2.0 * step.dot(&self.gradient)
     }
 
-    /// Replaces the estimate of the anchor in a slot: by `anchor` with this covariance, or by unknown.
+    /// Replaces the estimate of the anchor in a slot by `anchor` with this covariance, or by an unknown one.
     pub(crate) fn set_anchor(
         &mut self,
         slot: usize,

@@ -11,10 +11,10 @@ use trundle_core::Pose2;
 /// Correlation of the errors of two scan matches above which the second one is redundant. Source: ours.
 const MAX_CORRELATION: f64 = 0.98;
 
-/// Adds a scan match, `map_from_base` with a covariance that counts the map's own.
+/// Adds a scan match, `map_from_base` with a covariance that includes the map's.
 ///
-/// Errors of neighbouring matches are correlated, because both use the part of the map in view. For a constant, a match with correlation r
-/// to the previous one has the information of one with the (1 + r) / (1 - r)-fold variance (the sum over a Gauss-Markov sequence).
+/// Errors of neighbouring matches are correlated, because both use the visible part of the map. A match with correlation r to the previous
+/// one has the information of an independent match with (1 + r) / (1 - r) times the variance (the sum over a Gauss-Markov sequence).
 pub(super) fn add(smoother: &mut Smoother, scan: &PlanarMeasurement) -> MeasurementUse {
     let is_positive = (0..3).all(|i| scan.covariance[(i, i)] >= 0.0);
     if !(scan.pose.is_finite() && scan.covariance.iter().all(|v| v.is_finite()) && is_positive) {

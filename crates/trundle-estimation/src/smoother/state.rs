@@ -22,7 +22,7 @@ pub(crate) const WHEELS_PLACE: usize = 1;
 pub(crate) const DELAY_PLACE: usize = 4;
 /// Place of the first anchor.
 pub(crate) const FIRST_ANCHOR_PLACE: usize = 5;
-/// Number of visual maps with an anchor in the window. More maps than that in one window are rare. Source: ours.
+/// Number of visual maps with an anchor in the window. More maps in one window are rare. Source: ours.
 pub(crate) const ANCHOR_SLOTS: usize = 3;
 
 /// Unknowns of one keyframe and the border together.
@@ -57,7 +57,7 @@ pub(crate) struct BorderState {
     pub(crate) scale: f64,
     /// True over nominal: left radius, right radius, wheelbase.
     pub(crate) wheels: Vector3<f64>,
-    /// Delay of the camera: an image shows the robot this long before its stamp, s.
+    /// Delay of the camera: stamp of an image minus its exposure, s.
     pub(crate) delay: f64,
     /// `map_from_visual` in the plane, by slot.
     pub(crate) anchors: [Pose2; ANCHOR_SLOTS],

@@ -16,9 +16,10 @@ use crate::planar::{planar_covariance, symmetric};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use trundle_core::{Pose2, Pose3};
 
-/// Probability that a visual pose outside the gate is wrong: the visual frame jumped as likely as the base did. Source: ours.
+/// Prior probability that a visual pose outside the gate is wrong: a jump of the visual frame is as likely as one of the base. Source:
+/// ours.
 const JUMP_WRONG_PROBABILITY: f64 = 0.5;
-/// Weight of a place above which the estimate starts from this place. Source: ours.
+/// Weight of a place above which the estimate restarts at this place. Source: ours.
 const PROBABLY_RIGHT: f64 = 0.5;
 /// Variance of the first visual pose of a map, m^2 and rad^2. Source: ours; it keeps the equations definite.
 const FIRST_IMAGE_VARIANCE: f64 = 1e-9;

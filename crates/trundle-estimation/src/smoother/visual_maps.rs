@@ -39,7 +39,7 @@ pub(crate) struct StoredAnchor {
 pub(crate) enum SlotFor {
     /// The slot belongs to the map.
     Known(usize),
-    /// The map owned one before; its anchor must be set again.
+    /// The map had a slot earlier; its stored anchor must be set.
     Stored(usize, StoredAnchor),
     /// The map is new.
     New(usize),

@@ -13,15 +13,15 @@ use crate::planar::symmetric;
 use nalgebra::Matrix3;
 use trundle_core::{Pose2, Stamp};
 
-/// Keyframes by stamp, with the common unknowns and what has left the window.
+/// Keyframes by stamp, with the common unknowns and the prior of removed keyframes.
 #[derive(Debug, Clone)]
 pub(crate) struct Window {
     pub(crate) keyframes: Vec<Keyframe>,
     pub(crate) border: BorderState,
     pub(crate) prior: Prior,
-    /// Factorised at the newest values.
+    /// Normal equations, factorised at the newest values.
     system: WindowSystem,
-    /// Two keyframes, of which the first leaves.
+    /// Normal equations of the two oldest keyframes; the first one is removed.
     leaving: WindowSystem,
     /// Values before a step.
     before: Vec<ChainState>,
@@ -31,8 +31,7 @@ pub(crate) struct Window {
 
 /// Largest number of solutions after a measurement. Source: ours; the second one changes little.
 const MAX_STEPS: usize = 3;
-/// A step below which the solution has converged, m, rad, rad/s and ratio. Source: ours; such a step changes the derivatives by a
-/// thousandth.
+/// Largest step of a converged solution, m, rad, rad/s and ratio. Source: ours; such a step changes the derivatives by a thousandth.
 const CONVERGED_STEP: f64 = 2e-3;
 /// Relative rise of the cost after which a step is undone. Source: ours: above rounding.
 const MAX_COST_RISE: f64 = 1e-3;
@@ -86,7 +85,7 @@ impl Window {
 
     /// The estimate of keyframe `k`.
     pub(crate) fn estimated(&self, k: usize) -> Predicted {
-        // Keyframes may have left since the system was factorised.
+        // Keyframes may have been removed since the factorisation.
         let gone = self.system.count() - self.keyframes.len();
         Predicted::of(self.keyframes[k].state, &self.system.covariance(k + gone))
     }
@@ -165,7 +164,7 @@ impl Window {
         size.max(step.amax())
     }
 
-    /// Takes the last step back.
+    /// Undoes the last step.
     fn restore(&mut self, border: &BorderState) {
         self.border = *border;
         for (keyframe, before) in self.keyframes.iter_mut().zip(&self.before) {
@@ -173,7 +172,7 @@ impl Window {
         }
     }
 
-    /// Integrates the motions again whose calibration has changed beyond first order.
+    /// Integrates motions again after a change of the calibration beyond first order.
     fn integrate_again(&mut self, motions: &MotionBuffer) {
         for k in 1..self.keyframes.len() {
             let at = parameters(self.keyframes[k - 1].state.bias, &self.border);
@@ -247,7 +246,8 @@ impl Window {
         is_moved
     }
 
-    /// The switch of keyframe `k`, by the error of the visual pose without the place: the factor of the place is taken from the posterior.
+    /// The switch of keyframe `k`, by the error of the visual pose from all other factors: the factor of the place is subtracted from the
+    /// posterior.
     fn judged(&self, k: usize, switch: &PlaceSwitch) -> Option<PlaceSwitch> {
         let keyframe = &self.keyframes[k];
         let posterior: Matrix3<f64> =

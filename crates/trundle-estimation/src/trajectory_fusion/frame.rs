@@ -1,4 +1,4 @@
-//! A frame of a sequence, as images and odometry give it.
+//! Pose and motion of a frame by images and odometry.
 
 use trundle_core::{CameraMotion, Pose3, Stamp};
 
@@ -9,14 +9,14 @@ pub struct SequenceFrame {
     pub stamp: Stamp,
     /// Pose by the image; `None` if the image did not locate the camera.
     pub visual: Option<MapPose>,
-    /// Motion since the frame before by odometry, with its covariance; `None` if it was not measured.
+    /// Motion since the previous frame by odometry, with its covariance; `None` if not measured.
     pub motion: Option<CameraMotion>,
 }
 
 /// A pose in one of the visual maps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapPose {
-    /// Number of the map; the lowest number placed gives the frame of the fused trajectory.
+    /// Number of the map; the placed map with the lowest number gives the frame of the fused trajectory.
     pub map: u32,
     /// Pose of the camera in the map's frame, m and rad.
     pub map_from_camera: Pose3,

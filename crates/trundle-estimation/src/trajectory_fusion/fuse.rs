@@ -7,16 +7,17 @@ use super::odometry_path::OdometryPath;
 use std::collections::BTreeMap;
 use trundle_core::{CameraMotion, Pose3};
 
-/// `world_from_camera` of each frame, m and rad; the world is the frame of the lowest map placed. `None` where no measured motion leads
-/// from a map that is placed: of maps without odometry between them, those with the most frames are placed.
+/// `world_from_camera` of each frame, m and rad; the world is the frame of the placed map with the lowest number. `None` for a frame that
+/// measured motion does not connect with a placed map. Of groups of maps without odometry between them, the group with the largest number
+/// of frames is placed.
 ///
-/// A frame that an image located keeps its pose in its map to the bit. See the module for the method.
+/// A located frame keeps the exact pose in its map. The module describes the method.
 pub fn fuse_frames(frames: &[SequenceFrame]) -> Vec<Option<Pose3>> {
     let maps = Maps::of(frames);
     let world_from_map = lay_out(&maps.counts(), &maps.links(frames));
     let place = |frame: &SequenceFrame| {
         let MapPose { map, map_from_camera } = frame.visual?;
-        // The world's own map stays to the bit.
+        // Poses in the world's own map do not change.
         let world_from_map = world_from_map[maps.index(map)]?;
         let is_world = world_from_map == Pose3::identity();
         Some(if is_world { map_from_camera } else { (world_from_map * map_from_camera).renormalized() })
@@ -46,7 +47,7 @@ impl Maps {
         self.0.range(..map).count()
     }
 
-    /// The odometry wherever one map is left and another one entered.
+    /// The odometry between the last frame in one map and the first in the next.
     fn links(&self, frames: &[SequenceFrame]) -> Vec<MapLink> {
         let located = frames.iter().enumerate().filter_map(|(i, frame)| Some((i, frame.visual?)));
         let located: Vec<(usize, MapPose)> = located.collect();
@@ -63,7 +64,7 @@ impl Maps {
     }
 }
 
-/// Places the frames that no image located, run by run.
+/// Places the frames that were not located, run by run.
 fn fill_gaps(frames: &[SequenceFrame], poses: &mut [Option<Pose3>]) {
     let steps: Vec<Option<CameraMotion>> = frames.iter().map(|frame| frame.motion).collect();
     let mut start = 0;

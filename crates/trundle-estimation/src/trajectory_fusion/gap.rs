@@ -1,15 +1,15 @@
-//! The frames between two located ones, along the odometry.
+//! Poses of the frames between two located ones, by the odometry.
 
 use super::odometry_path::OdometryPath;
 use trundle_core::{CameraMotion, Pose3};
 use trundle_optim::{PoseConstraint, PoseGraph, PoseGraphConfig};
 
-/// A run of frames that no image located, and the odometry along it.
+/// A run of frames that were not located, with the odometry along it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gap<'a> {
-    /// Pose of the frame before the run, if there is one that is placed.
+    /// Pose of the frame before the run, if placed.
     pub(super) before: Option<Pose3>,
-    /// Pose of the frame after the run, if there is one that is placed.
+    /// Pose of the frame after the run, if placed.
     pub(super) after: Option<Pose3>,
     /// Motion to each frame of the run, and to the frame after it.
     pub(super) steps: &'a [Option<CameraMotion>],
@@ -18,7 +18,7 @@ pub(super) struct Gap<'a> {
 }
 
 impl Gap<'_> {
-    /// The poses of the run's frames: between both ends by all steps, else as far as the steps reach from either end.
+    /// The poses of the run's frames: by both ends and all steps, else by the measured steps from either end.
     pub(super) fn poses(&self) -> Vec<Option<Pose3>> {
         if let Some(poses) = self.between_both_ends() {
             return poses.into_iter().map(Some).collect();
@@ -36,7 +36,7 @@ impl Gap<'_> {
         poses
     }
 
-    /// Dead reckoning from the frame before.
+    /// Dead reckoning from the frame before the run.
     fn forward(&self) -> Vec<Option<Pose3>> {
         let step = |pose: &mut Option<Pose3>, step: &Option<CameraMotion>| {
             *pose = pose.zip(*step).map(|(pose, step)| (pose * step.motion).renormalized());

@@ -4,12 +4,12 @@ use super::odometry_path::OdometryPath;
 use trundle_core::Pose3;
 use trundle_optim::{PoseConstraint, PoseGraph, PoseGraphConfig};
 
-/// Where a map lies in another one by the odometry of frames between them.
+/// Relative pose of two maps by the odometry between them.
 #[derive(Debug, Clone)]
 pub(super) struct MapLink(PoseConstraint);
 
 impl MapLink {
-    /// The link from a frame of map `from` to one of map `to`, each with its pose in its map; `None` if the path has no information.
+    /// The link from a frame of map `from` to a frame of map `to`, each with its pose in its map; `None` if the path has no information.
     pub(super) fn new(from: (usize, Pose3), to: (usize, Pose3), path: &OdometryPath) -> Option<Self> {
         let camera_from_to = to.1.inverse();
         let from_to = (from.1 * path.motion * camera_from_to).renormalized();
@@ -27,15 +27,15 @@ impl MapLink {
     }
 }
 
-/// `world_from_map` of each map, where `frames` of each map are located: of the linked maps with the most frames, the first of which is
-/// the world. The others are `None`.
+/// `world_from_map` of each map in the group of linked maps with the largest number of frames; the first map of the group is the world.
+/// `None` for other maps. `frames` are the numbers of located frames per map.
 pub(super) fn lay_out(frames: &[usize], links: &[MapLink]) -> Vec<Option<Pose3>> {
     let mut best: (usize, Vec<Option<Pose3>>) = (0, vec![None; frames.len()]);
     for first in 0..frames.len() {
         let chained = chained_from(first, frames.len(), links);
         let located =
             chained.iter().zip(frames).filter(|(pose, _)| pose.is_some()).map(|(_, count)| count).sum();
-        // Of maps that are linked with each other the first is met first.
+        // The loop reaches the first map of each group first.
         if located > best.0 {
             best = (located, chained);
         }
@@ -43,7 +43,7 @@ pub(super) fn lay_out(frames: &[usize], links: &[MapLink]) -> Vec<Option<Pose3>>
     refined(&best.1, links).unwrap_or(best.1)
 }
 
-/// The maps that are linked with map `first`, which is the world, by one path of links each.
+/// Poses of the maps linked with map `first` (the world), by one path of links each.
 fn chained_from(first: usize, count: usize, links: &[MapLink]) -> Vec<Option<Pose3>> {
     let mut poses = vec![None; count];
     poses[first] = Some(Pose3::identity());
@@ -63,7 +63,7 @@ fn chained_from(first: usize, count: usize, links: &[MapLink]) -> Vec<Option<Pos
 /// The placed maps by all links between them; `None` if the graph is not valid.
 fn refined(chained: &[Option<Pose3>], links: &[MapLink]) -> Option<Vec<Option<Pose3>>> {
     let poses = chained.iter().map(|pose| pose.unwrap_or_default()).collect();
-    // A map without a place has no link to those with one.
+    // A map without a pose has no link to a map with one.
     let first = chained.iter().position(Option::is_some)?;
     let fixed: Vec<bool> = chained.iter().enumerate().map(|(i, pose)| i == first || pose.is_none()).collect();
     let is_placed = |link: &&MapLink| chained[link.0.from].is_some();

@@ -1,10 +1,10 @@
-//! One trajectory of all frames of a sequence: visual maps laid into one frame by the odometry between them.
+//! One trajectory of all frames of a sequence: visual maps placed in one frame by the odometry between them.
 //!
-//! Problem: images locate frames in visual maps, each with a frame of its own; in the dark no image locates anything. Idea: the poses of
-//! a visual map are exact to each other, so that a map is one rigid body. The odometry between two maps is a constraint of a pose graph
-//! over the maps \[Grisetti10\]. A run of frames between two located ones follows the odometry; a pose graph with both ends fixed
-//! distributes the error over it by the covariances of the steps. Where images locate all frames, nothing changes by odometry.
-//! Cost: linear in the frames.
+//! Problem: images locate frames in visual maps, each with its own coordinate frame; in the dark, frames are not located. Idea: the poses
+//! within a visual map are exact relative to each other, so that a map is one rigid body. The odometry between two maps is a constraint of
+//! a pose graph over the maps \[Grisetti10\]. A run of frames between two located ones follows the odometry; a pose graph with both ends
+//! fixed distributes the error by the covariances of the steps. If images locate all frames, odometry changes no pose. Cost: linear in the
+//! frames.
 //!
 //! | symbol | name here | unit |
 //! |---|---|---|

@@ -14,12 +14,12 @@ const MAST_SWAY_SIGMA_RAD: f64 = 5e-4;
 pub(super) struct OdometryPath {
     /// `first_camera_from_last_camera`.
     pub(super) motion: Pose3,
-    /// Of `motion` as a right perturbation (m, m, m, rad, rad, rad).
+    /// Covariance of `motion` as a right perturbation (m, m, m, rad, rad, rad).
     covariance: Matrix6<f64>,
 }
 
 impl OdometryPath {
-    /// The whole of these steps; `None` if one was not measured, or has no covariance.
+    /// The composition of these steps; `None` if one was not measured, or has no covariance.
     pub(super) fn over(steps: impl IntoIterator<Item = Option<CameraMotion>>) -> Option<Self> {
         let start = Self { motion: Pose3::identity(), covariance: Matrix6::zeros() };
         steps.into_iter().try_fold(start, |path, step| path.then(&step?))

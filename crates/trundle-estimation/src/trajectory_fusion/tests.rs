@@ -1,4 +1,4 @@
-//! A drive along a curve, with visual maps that end in the dark.
+//! A drive along a curve with dark stretches that end visual maps.
 
 use super::frame::{MapPose, SequenceFrame};
 use super::fuse::fuse_frames;
@@ -8,7 +8,7 @@ use trundle_core::{CameraMotion, Pose2, Pose3, Stamp};
 /// Number of frames of the drive.
 const FRAME_COUNT: usize = 60;
 
-/// Pose of the base at frame `i`: 2 cm and 0.5 deg a frame.
+/// Pose of the base at frame `i`: 2 cm and 0.5 deg per frame.
 fn base_at(i: usize) -> Pose2 {
     (0..i).fold(Pose2::IDENTITY, |pose, _| pose * Pose2::new(0.02, 0.0, 0.0087))
 }
@@ -21,7 +21,7 @@ fn camera_at(i: usize) -> Pose3 {
     Pose3::from_pose2(base_at(i)) * base_from_camera()
 }
 
-/// The odometry's motion to frame `i`, longer by the share `error` than the true one.
+/// The odometry's motion to frame `i`, longer than the true one by the fraction `error`.
 fn step_to(i: usize, error: f64) -> CameraMotion {
     let mut motion = base_at(i - 1).inverse() * base_at(i);
     motion.x *= 1.0 + error;
@@ -29,7 +29,7 @@ fn step_to(i: usize, error: f64) -> CameraMotion {
     CameraMotion::of_base((motion, noise), base_from_camera())
 }
 
-/// Where map `map` lies in map 0.
+/// Pose of map `map` in map 0.
 fn world_from(map: u32) -> Pose3 {
     Pose3::exp(Vector6::new(0.3, -0.2, 0.1, 0.2, -0.1, 0.7) * f64::from(map))
 }
@@ -71,7 +71,7 @@ fn a_second_map_is_laid_into_the_first_by_the_path_between() {
     };
     assert!(worst(&fuse_frames(&drive(0.0, two_maps))) < 1e-9);
     let off = worst(&fuse_frames(&drive(0.1, two_maps)));
-    // 42 cm in the dark, a tenth too long.
+    // 42 cm in the dark, with 10 % error of odometry.
     assert!((0.03..0.045).contains(&off), "{off} m");
 }
 
@@ -80,7 +80,7 @@ fn a_map_met_again_takes_the_error_out_of_the_path() {
     let again = |i: usize| if (20..40).contains(&i) { None } else { Some(0) };
     let off = worst(&fuse_frames(&drive(0.1, again)));
     assert!(off < 0.01, "both ends are known: {off} m");
-    // Map 0, the dark, map 1, the dark, map 0: the two paths share the error.
+    // Map 0, dark, map 1, dark, map 0: the error is distributed over both dark paths.
     let around = |i: usize| match i {
         0..15 | 45.. => Some(0),
         25..35 => Some(1),

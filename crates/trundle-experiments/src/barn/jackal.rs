@@ -36,7 +36,7 @@ pub fn robot() -> RobotConfig {
     robot.odometry = OdometryConfig { max_speed: 5.0, ..OdometryConfig::default() };
     robot.mapping = MapperConfig { max_range: 10.0, ..MapperConfig::default() };
     robot.planning = PlannerConfig {
-        // A laser covers the floor ahead: the robot stops from this speed within 0.2 m.
+        // The laser covers the floor ahead, and the robot stops from this speed within 0.2 m.
         timing: TimingConfig { slow_speed: 0.5, unknown_speed: 1.0, ..TimingConfig::default() },
         room: ClearanceCostConfig::default(),
         ..PlannerConfig::default()
@@ -50,7 +50,7 @@ pub fn robot() -> RobotConfig {
         creep_speed: 0.4,
         ..SafetyConfig::default()
     };
-    // Long enough to measure the gyro's bias; the laser's first scan is a first view.
+    // Long enough for the gyro's bias; the laser's first scan is a sufficient view.
     robot.mission_executor.opening = 0.6;
     robot
 }

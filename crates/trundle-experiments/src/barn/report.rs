@@ -8,7 +8,7 @@ use trundle_viz::{
     BarChart, Color, DotStyle, Figure, LineStyle, MapPicture, PoseStyle, Report, Table, Verdict,
 };
 
-/// Share of runs that must reach the goal without a contact; below it the experiment fails. Source: ours.
+/// Smallest fraction of runs at the goal without a contact; below it the experiment fails. Source: ours.
 const MIN_SUCCESS_SHARE: f64 = 0.97;
 /// Mean score of the runs; below it the experiment fails. Source: ours.
 const MIN_MEAN_SCORE: f64 = 0.45;
@@ -67,10 +67,10 @@ impl BarnMeans {
     }
 }
 
-/// Worlds in the table, the worst first. Source: ours.
+/// Maximum number of worlds in the table. Source: ours.
 const MAX_TABLE_WORLDS: usize = 15;
 
-/// The worst first, then by time over optimal time.
+/// The trials with the worst first, then by time over optimal time.
 fn worst_first(trials: &[BarnTrial]) -> Vec<&BarnTrial> {
     let mut sorted: Vec<&BarnTrial> = trials.iter().collect();
     let slowness = |trial: &BarnTrial| trial.time / trial.world.optimal_time;

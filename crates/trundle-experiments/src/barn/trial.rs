@@ -1,4 +1,4 @@
-//! A world of the BARN challenge, crossed or not, with the challenge's score.
+//! A run through a world of the BARN challenge, with the challenge's score.
 
 use super::worlds::BarnWorld;
 use crate::RunResult;
@@ -14,7 +14,7 @@ pub const TIME_LIMIT_S: f64 = 100.0;
 pub const GOAL_TOLERANCE_M: f64 = 1.0;
 /// Distance from the start at which the clock starts \[m\]. Source: the BARN challenge.
 pub const CLOCK_START_M: f64 = 0.1;
-/// A run that ends less than this time before the limit counts as out of time \[s\]. Source: ours.
+/// Time before the limit from which a run counts as out of time \[s\]. Source: ours.
 const OUT_OF_TIME_MARGIN_S: f64 = 1.0;
 
 /// A run through a world.
@@ -38,7 +38,7 @@ pub struct BarnTrial {
     pub(super) min_clearance: f64,
     /// Largest distance of the estimate from truth, m.
     pub(super) max_estimate_error: f64,
-    /// Plans made.
+    /// Number of plans.
     pub(super) plans: usize,
     /// Control cycle: median and maximum, ms.
     pub(super) cycle_ms: (f64, f64),
@@ -84,7 +84,7 @@ impl BarnTrial {
         }
     }
 
-    /// The outcome, in a word or two.
+    /// The outcome in one or two words.
     pub(super) fn outcome_text(&self) -> String {
         match self.success {
             true => "goal reached".to_owned(),

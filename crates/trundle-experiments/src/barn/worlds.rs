@@ -16,7 +16,7 @@ pub struct BarnWorld {
     pub id: usize,
     /// The shortest path at 2 m/s, s.
     pub optimal_time: f64,
-    /// Middles of the cylinders, m.
+    /// Centres of the cylinders, m.
     #[serde(with = "points")]
     pub cylinders: Vec<Vector2>,
 }

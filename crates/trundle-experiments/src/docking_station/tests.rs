@@ -110,7 +110,7 @@ fn plates_that_do_not_charge_are_tried_three_times() {
     let trial = dock(plan).unwrap();
     assert_eq!(kinds(&trial), [ReasonKind::TasksFailed, ReasonKind::NoCharging]);
     assert!(trial.state.to_string().contains("after 3 attempts"), "{}", trial.state);
-    // The robot pushes only the station, gently.
+    // The robot pushes only the station, and only slowly.
     assert_touched_only_the_station(&trial);
     assert!((1..=3).contains(&trial.contacts), "{} contacts", trial.contacts);
     let fastest =

@@ -1,4 +1,4 @@
-//! A run that should end on the charging station.
+//! A run with the charging station as its goal.
 
 use crate::laser_run::{LaserPlan, LaserRun, drive, hokuyo};
 use crate::simulated::simulated_body;
@@ -13,7 +13,7 @@ use trundle_sim::{FaultSchedule, Scene, SimConfig};
 /// Time limit of a run \[s\]. Source: ours.
 const TIME_LIMIT_S: f64 = 600.0;
 
-/// A run that shall end on the charging station.
+/// The plan of a run with the charging station as its goal.
 pub struct DockPlan {
     /// The place with its station, if any, and the robot's start.
     pub scene: Scene,
@@ -64,7 +64,7 @@ impl DockTrial {
     }
 }
 
-/// The simulated body of a robot, with a camera, or with a laser in place of it if the laser is the range source.
+/// The simulated body of a robot, with a camera, or with a laser instead if the laser is the range source.
 ///
 /// # Errors
 /// When a number of the robot is outside its range.
@@ -77,7 +77,7 @@ pub fn body_of(robot: &RobotConfig) -> Result<SimConfig, AppError> {
     Ok(body)
 }
 
-/// Makes a run, which is shown to those who `watch`: its result, and the whole run.
+/// Executes a run, displayed to viewers of `watch`. Returns its result and the whole run.
 ///
 /// # Errors
 /// When a number of the plan is outside its range, or the start is not free.

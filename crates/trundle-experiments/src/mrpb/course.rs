@@ -18,18 +18,18 @@ pub struct Course {
     map: String,
     /// The benchmark's number of the pair.
     pub test: usize,
-    /// Frame of the map, the world frame.
+    /// Start pose, world frame (that of the map).
     pub start: Pose2,
-    /// World frame.
+    /// Goal pose, world frame.
     pub goal: Pose2,
     /// People on the course.
     pub people: Vec<Person>,
 }
 
-/// The place of the benchmark that has no walls: its map is only the frame of a picture.
+/// The benchmark's place without walls, whose map is only the frame of a picture.
 const OPEN: &str = "empty_world";
 
-/// Every pair of a folder, those with people once with and once without them.
+/// All pairs of a folder; a pair with people also without them.
 ///
 /// # Errors
 /// When `start_goal.csv` or `actors.csv` is missing or a line is invalid.
@@ -59,7 +59,7 @@ impl Course {
         Self { scenario, map, test: 1, start, goal, people: Vec::new() }
     }
 
-    /// Scenario, number, and whether it has people.
+    /// Name with scenario, number, and presence of people.
     pub fn name(&self) -> String {
         let with = if self.people.is_empty() { "" } else { ", with people" };
         format!("{} {}{with}", self.scenario, self.test)

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Metrics {
     /// Safety: minimum clearance, m.
     pub min_clearance: f64,
-    /// Safety: the part of the time spent nearer to an obstacle than [`NEAR_OBSTACLE_M`], 0 to 1.
+    /// Safety: fraction of the time nearer to an obstacle than [`NEAR_OBSTACLE_M`], 0 to 1.
     pub time_near: f64,
     /// Efficiency: time from start to goal, s.
     pub time: f64,
@@ -24,7 +24,7 @@ pub struct Metrics {
 
 /// Clearance below which an obstacle counts as near \[m\]. Source: ours.
 pub const NEAR_OBSTACLE_M: f64 = 0.1;
-/// Smoothness uses every second moment: 25 Hz of 50 Hz. Source: MRPB 1.0.
+/// Stride of the moments for smoothness: 25 Hz of 50 Hz. Source: MRPB 1.0.
 const SMOOTHNESS_STRIDE: usize = 2;
 
 impl Metrics {

@@ -1,4 +1,4 @@
-//! The report of the MRPB experiment: one row a run, with the benchmark's metrics and pictures.
+//! The report of the MRPB experiment: one row per run, with the benchmark's metrics and pictures.
 
 use super::metrics::NEAR_OBSTACLE_M;
 use super::trial::{GOAL_TOLERANCE_M, GOAL_TOLERANCE_RAD, MAX_MEAN_CYCLE_MS, MrpbTrial};
@@ -47,7 +47,7 @@ fn outcome_text(trial: &MrpbTrial) -> String {
     }
 }
 
-/// For the terminal.
+/// The rows for the terminal.
 pub(super) fn rows(trials: &[MrpbTrial]) -> Vec<Vec<String>> {
     std::iter::once(HEADER.map(str::to_owned).to_vec()).chain(trials.iter().map(row)).collect()
 }

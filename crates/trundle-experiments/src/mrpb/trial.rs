@@ -1,4 +1,4 @@
-//! A course of the MRPB benchmark, driven or not.
+//! A run over a course of the MRPB benchmark.
 
 use super::course::Course;
 use super::metrics::Metrics;
@@ -13,7 +13,7 @@ use trundle_runtime::DriveState;
 pub const GOAL_TOLERANCE_M: f64 = 0.2;
 /// Heading difference within which the goal counts as reached \[rad\]. Source: MRPB 1.0.
 pub const GOAL_TOLERANCE_RAD: f64 = 0.1;
-/// Mean time of a control cycle \[ms\]; with more the run fails. Source: ours.
+/// Largest mean time of a control cycle \[ms\]. With more the run fails. Source: ours.
 pub const MAX_MEAN_CYCLE_MS: f64 = 2.0;
 
 /// A run over a course.
@@ -27,9 +27,9 @@ pub struct MrpbTrial {
     pub(super) metrics: Metrics,
     /// Number of contacts.
     pub(super) contacts: u32,
-    /// Distance from the goal at the end, in truth, m.
+    /// True distance from the goal at the end, m.
     pub(super) distance: f64,
-    /// Angle from the goal's heading at the end, in truth, rad.
+    /// True heading error at the end, rad.
     pub(super) turn: f64,
     /// Largest distance of the estimate from truth, m.
     pub(super) max_estimate_error: f64,

@@ -1,9 +1,9 @@
 //! The arguments that decide on the runs of an experiment.
 
-/// Options that differ between the shards of one experiment, or that the manifest holds otherwise.
+/// Options that differ between the shards of one experiment, or that the manifest stores separately.
 const LEFT_OUT: [&str; 8] =
     ["--shard", "--run", "--out", "--threads", "--live", "--live-tokens", "--config", "--set"];
-/// The same for options without a value.
+/// Such options without a value.
 const FLAGS_LEFT_OUT: [&str; 4] = ["-q", "--quiet", "-v", "--verbose"];
 
 /// The words after `trundle experiment` without the options that differ between the shards of one experiment.

@@ -11,11 +11,11 @@ use trundle_app::AppError;
 #[derive(Debug)]
 pub struct KeptRuns {
     manifest: ShardManifest,
-    /// The result of each run, by its name, as JSON, with the folder that holds it.
+    /// The result of each run by its name, as JSON, with its folder.
     results: BTreeMap<String, (Value, PathBuf)>,
 }
 
-/// Maximum number of missing runs named in a message; the message counts the others. Source: ours.
+/// Maximum number of missing runs named in a message. Source: ours.
 const MAX_NAMED: usize = 10;
 
 impl KeptRuns {

@@ -10,11 +10,11 @@ use trundle_runtime::RobotConfig;
 /// The source of an experiment's runs.
 #[derive(Debug, Clone)]
 pub enum RunOrigin {
-    /// Each run is made.
+    /// All runs are executed.
     Made,
-    /// The program executes and stores a part of the runs; with a name, only the run of this name.
+    /// A part of the runs is executed and stored; with a name, only the run of this name.
     Shard(Box<ShardManifest>, Option<String>),
-    /// Shards stored the runs.
+    /// The runs are stored by shards.
     Kept(Arc<KeptRuns>),
 }
 

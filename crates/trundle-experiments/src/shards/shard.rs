@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
-/// Part `index` of `count` parts of the runs of an experiment: every `count`-th run, from the `index`-th on.
+/// Part `index` of `count` parts of the runs of an experiment: every `count`-th run, starting with the `index`-th.
 ///
 /// Its text is `K/N`, K from 1 to N.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,4 +1,4 @@
-//! The folder of a shard: its manifest, and a line for each of its runs.
+//! The folder of a shard: its manifest, and one line per run.
 
 use super::Shard;
 use serde::de::DeserializeOwned;
@@ -14,7 +14,7 @@ pub const SHARD_FILE: &str = "shard.json";
 /// Name of the file of the runs in the folder of a shard.
 pub(super) const RUNS_FILE: &str = "runs.jsonl";
 
-/// The experiment of a shard, by which a merge makes the same plan of runs.
+/// The experiment of a shard, from which a merge makes the same plan of runs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ShardManifest {
@@ -90,19 +90,19 @@ impl ShardWriter {
         }
     }
 
-    /// Notes a run that has died.
+    /// Records a run that panicked.
     pub(crate) fn note_dead(&self, run: &str) {
         self.dead.lock().unwrap_or_else(PoisonError::into_inner).push(run.to_owned());
     }
 
-    /// The runs that have died, sorted.
+    /// The runs that panicked, sorted.
     pub(crate) fn dead(&self) -> Vec<String> {
         let mut dead = self.dead.lock().unwrap_or_else(PoisonError::into_inner).clone();
         dead.sort();
         dead
     }
 
-    /// Keeps the result of a run.
+    /// Stores the result of a run.
     ///
     /// # Errors
     /// When the file cannot be written, or the result could not be read back.
@@ -116,7 +116,7 @@ impl ShardWriter {
         };
         let line = RunLine { run: run.to_owned(), result };
         let text = serde_json::to_string(&line).map_err(|error| failed(&error))?;
-        // A number that is not finite has no form in JSON.
+        // JSON has no form for a number that is not finite.
         serde_json::from_str::<RunLine<T>>(&text).map_err(|error| failed(&error))?;
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
         file.write_all((text + "\n").as_bytes()).map_err(|error| failed(&error))

@@ -10,11 +10,11 @@ use trundle_sim::Simulator;
 /// The result of a drive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SimDrive {
-    /// Time of the robot, s.
+    /// Simulated time, s.
     pub time: f64,
-    /// Images taken.
+    /// Number of images.
     pub images: usize,
-    /// Sweeps of the laser.
+    /// Number of laser sweeps.
     pub scans: usize,
     /// Distance driven, m.
     pub distance: f64,
@@ -98,7 +98,7 @@ pub fn drive_simulator(
     })
 }
 
-/// When the drive is over, s, if that is known: at the driver's end or the duration, the sooner of both.
+/// Known end of the drive, s: the earlier of the driver's end and the duration.
 fn end_s(duration: Option<f64>, driver: &dyn SimDriver) -> Option<f64> {
     duration.into_iter().chain(driver.end_s()).reduce(f64::min)
 }

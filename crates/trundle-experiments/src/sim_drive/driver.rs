@@ -16,10 +16,10 @@ pub trait SimDriver {
     /// The twist for a robot with the true pose `pose`.
     ///
     /// # Errors
-    /// When the driver's device failed.
+    /// When the driver's device fails.
     fn twist(&mut self, stamp: Stamp, pose: Pose2) -> Result<Twist2, AppError>;
 
-    /// When the drive is over, s, if that is known.
+    /// End of the drive, s; `None` if unknown.
     fn end_s(&self) -> Option<f64>;
 
     /// Number of reached way-points and of all way-points; `None` without way-points.
@@ -34,14 +34,14 @@ pub trait SimDriver {
     fn show_scan(&mut self, _scan: &Scan, _robot: &Simulator) {}
 }
 
-/// Does not move.
+/// A driver that does not move.
 #[derive(Debug, Clone, Copy)]
 pub struct Standing {
     end_s: f64,
 }
 
 impl Standing {
-    /// Stands for this time, s; `None` for 5 s.
+    /// Rests for this time, s; `None` for 5 s.
     #[must_use]
     pub fn new(seconds: Option<f64>) -> Self {
         Self { end_s: seconds.unwrap_or(STANDING_S) }
@@ -58,7 +58,7 @@ impl SimDriver for Standing {
     }
 }
 
-/// Sends the commands of a file by the clock.
+/// A driver with the timed commands of a file.
 #[derive(Debug)]
 pub struct ScriptDriver(CommandScript);
 
@@ -82,7 +82,7 @@ impl SimDriver for ScriptDriver {
     }
 }
 
-/// Drives to the way-points of a file by the true pose.
+/// A driver to the way-points of a file, by the true pose.
 #[derive(Debug)]
 pub struct WaypointDriver {
     follower: WaypointFollower,

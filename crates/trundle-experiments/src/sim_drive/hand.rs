@@ -1,4 +1,4 @@
-//! Driving by the commands of those who watch.
+//! Driving by the commands of viewers.
 
 use trundle_core::{Stamp, Twist2};
 use trundle_runtime::{OperatorCommand, TELEOP_SILENCE_S};

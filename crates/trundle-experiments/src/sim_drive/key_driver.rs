@@ -26,10 +26,10 @@ impl KeyDriver {
         terminal::require()
     }
 
-    /// Starts to read keys. Dropping gives the terminal back.
+    /// Starts to read keys. A drop restores the terminal.
     ///
     /// # Errors
-    /// When the terminal gives no keys.
+    /// When the terminal refuses raw mode.
     pub fn start() -> Result<Self, AppError> {
         Ok(Self { steering: Steering::default(), terminal: RawTerminal::new()? })
     }

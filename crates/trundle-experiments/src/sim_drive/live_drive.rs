@@ -1,4 +1,4 @@
-//! A drive displayed to viewers, in real time, which they steer if no other driver is given.
+//! A drive displayed to viewers in real time. The viewers steer if no other driver is given.
 
 use super::driver::SimDriver;
 use super::hand::Hand;
@@ -21,7 +21,7 @@ pub struct LiveDrive<'d> {
 }
 
 impl<'d> LiveDrive<'d> {
-    /// Shows what `driver` does on `map`; without a driver those who watch drive. All is in the world frame.
+    /// Displays the drive of `driver` on `map`; without a driver the viewers drive. All poses are in the world frame.
     #[must_use]
     pub fn start(driver: Option<Box<dyn SimDriver + 'd>>, link: OperatorLink, map: OccupancyGrid) -> Self {
         let map = Arc::new(MapView { number: 0, revision: 1, grid: map });
@@ -55,7 +55,7 @@ impl<'d> LiveDrive<'d> {
 }
 
 impl SimDriver for LiveDrive<'_> {
-    /// The twist of the driver or of those who watch; waits until real time has come to `stamp`.
+    /// The twist of the driver or of the viewers; waits until real time reaches `stamp`.
     fn twist(&mut self, stamp: Stamp, pose: Pose2) -> Result<Twist2, AppError> {
         self.pacer.wait_for(stamp.as_secs());
         while let Some(request) = self.link.next_request() {
@@ -84,7 +84,7 @@ impl SimDriver for LiveDrive<'_> {
 
     fn show_scan(&mut self, scan: &Scan, robot: &Simulator) {
         if self.link.is_watched() {
-            // A sweep has the stamp of its end. The sweep of a turning base is distorted, as received by the robot.
+            // A sweep has the stamp of its end. The robot receives the distorted sweep of a turning base.
             self.scan = Some((robot.true_pose(), Arc::new(scan.clone())));
         }
     }

@@ -29,7 +29,7 @@ pub fn recording_hint(robot: &Simulator, folder: &Path) -> String {
     format!("Wrote {folder}; try: trundle slam {folder} --height {height:.2} --tilt {tilt:.0}")
 }
 
-/// The table, the wall clock's rows last.
+/// The table, with wall-clock rows at its end.
 #[must_use]
 pub fn drive_rows(drive: &SimDrive) -> Vec<Vec<String>> {
     let row = |name: &str, value: String| vec![name.to_owned(), value];

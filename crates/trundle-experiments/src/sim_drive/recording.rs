@@ -8,13 +8,13 @@ use trundle_io::{CarmenLog, IoError, OutputFolder, Summary, TumFrame, TumWriter,
 use trundle_sim::Simulator;
 use trundle_viz::{Color, LineStyle, MapPicture, PoseStyle};
 
-/// Images that are encoded together, on all cores. Source: ours.
+/// Number of images encoded in parallel. Source: ours.
 const ENCODED_BATCH: usize = 8;
 
 /// Size of a pixel of colour and depth as PNG \[bytes\]. Source: recordings of the built-in scenes.
 const BYTES_PER_PIXEL: f64 = 3.2;
 
-/// Size of the recording of a drive, in a sentence; `duration` in s, if it is known.
+/// Size of the recording of a drive in a sentence; `duration` in s, if known.
 #[must_use]
 pub fn recording_announcement(robot: &Simulator, duration: Option<f64>) -> String {
     let (camera, config) = (robot.camera(), robot.config());
@@ -94,7 +94,7 @@ impl<'f> DriveRecording<'f> {
         Ok(())
     }
 
-    /// Whether the disk has refused a file: the drive ends.
+    /// Whether the disk has refused a file, which ends the drive.
     pub fn is_refused(&self) -> bool {
         self.folder.is_incomplete()
     }
@@ -128,7 +128,7 @@ impl<'f> DriveRecording<'f> {
         Ok(())
     }
 
-    /// The drive on the map.
+    /// A picture of the drive on the map.
     fn overview(&self, grid: &OccupancyGrid, start: Pose2) -> Vec<u8> {
         let truth: Vec<Vector2> = self.truth.iter().map(|(_, pose)| pose.position()).collect();
         let odometry: Vec<Vector2> =

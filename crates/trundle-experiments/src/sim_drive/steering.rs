@@ -1,4 +1,4 @@
-//! Presses of keys to twists.
+//! Converts key presses to twists.
 
 use trundle_core::Twist2;
 
@@ -33,9 +33,9 @@ pub enum SteeringKey {
     Left,
     /// A step to the right.
     Right,
-    /// No motion.
+    /// Stop.
     Stop,
-    /// No motion, and the drive is over.
+    /// Stop, and end the drive.
     Quit,
 }
 

@@ -3,7 +3,7 @@
 use super::steering::SteeringKey;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-/// The effect of a key; `None` of any other key.
+/// The effect of a key; `None` for any other key.
 pub fn steering_key(key: KeyEvent) -> Option<SteeringKey> {
     let is_control = key.modifiers.contains(KeyModifiers::CONTROL);
     Some(match key.code {

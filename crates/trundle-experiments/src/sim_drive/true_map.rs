@@ -4,7 +4,7 @@ use trundle_app::AppError;
 use trundle_core::OccupancyGrid;
 use trundle_sim::{HeightBand, Scene};
 
-/// Cells of a map: the number that readers of maps take, 819 m a side at 5 cm. A larger map is refused. Source: ours.
+/// Largest number of cells that readers of maps accept: 819 m x 819 m at 5 cm. A larger map is refused. Source: ours.
 const MAX_MAP_CELLS: f64 = (1u64 << 28) as f64;
 
 /// The true occupancy grid of a scene, cells of `resolution` m.

@@ -6,8 +6,7 @@ use trundle_core::{Invalid, Pose2};
 use trundle_runtime::{Mission, RobotConfig, Task};
 use trundle_sim::{FaultSchedule, HeightBand, Scene, SimConfig};
 
-/// Time limit of a task, simulated time \[s\]. A search for another path through seven rooms takes 300 s, and then the robot waits. Source:
-/// ours.
+/// Time limit of a task, simulated time \[s\]. A search for another path through seven rooms takes 300 s, before a wait. Source: ours.
 const TASK_LIMIT_S: f64 = 600.0;
 /// Time limit of an exploration, simulated time \[s\]. Source: ours.
 const EXPLORE_LIMIT_S: f64 = 1800.0;
@@ -19,7 +18,7 @@ pub fn time_limit(mission: &Mission) -> f64 {
     mission.tasks().iter().map(limit).sum()
 }
 
-/// Refuses a pose (`name`d, world frame) outside the scene or in an obstacle.
+/// Refuses a pose (world frame, called `name` in messages) outside the scene or in an obstacle.
 ///
 /// # Errors
 /// Names the pose, the scene and the distance.

@@ -15,7 +15,7 @@ use trundle_drivers::camera::pipe::StreamWriter;
 use trundle_drivers::camera::{CameraError, CameraFrame, CameraInfo, PixelFormat, RawImage, StreamInfo};
 use trundle_sim::{CameraAside, Shot, SimConfig};
 
-/// Length of a unit of depth \[m\]: a millimetre, as cameras have it.
+/// Length of a unit of depth \[m\]: a millimetre, as in depth cameras.
 const DEPTH_UNIT_M: f64 = 0.001;
 /// Time between two attempts to find a reader of the FIFO. Source: ours.
 const READER_POLL: Duration = Duration::from_millis(20);
@@ -85,7 +85,7 @@ impl CameraServer {
         }
     }
 
-    /// Images sent, and images that were not.
+    /// Numbers of sent and of dropped images.
     pub fn counts(&self) -> (u64, u64) {
         (self.shared.images.load(Ordering::Relaxed), self.shared.not_taken.load(Ordering::Relaxed))
     }
@@ -95,7 +95,7 @@ impl Drop for CameraServer {
     fn drop(&mut self) {
         self.shared.is_over.store(true, Ordering::Relaxed);
         self.shots = None;
-        // The thread may wait in a write; the departure of the reader ends the wait.
+        // The thread may wait in a write, which ends when the reader closes the FIFO.
         if let Some(thread) = self.thread.take().filter(JoinHandle::is_finished) {
             let _ = thread.join();
         }

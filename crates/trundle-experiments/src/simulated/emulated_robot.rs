@@ -1,6 +1,6 @@
 //! The simulator behind the wires of a real robot: a Kobuki at a pseudo terminal, a camera at a stream of frames.
 //!
-//! Any program for a Kobuki can drive it. It runs in wall-clock time: a packet every 20 ms.
+//! Any program for a Kobuki can drive the robot, which runs in real time with a packet every 20 ms.
 
 use super::camera_server::CameraServer;
 use std::path::Path;
@@ -26,21 +26,21 @@ pub struct EmulatedRobot {
     state: KobukiState,
     terminal: PseudoTerminal,
     camera: Option<CameraServer>,
-    /// The newest command, sent to the simulator again and again: a Kobuki keeps its speed until the next command.
+    /// The newest command, repeated to the simulator: a Kobuki keeps its speed until the next command.
     command: Twist2,
     counts: EmulationCounts,
 }
 
-/// Bytes over the wires.
+/// Numbers of packets, commands and images over the wires.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EmulationCounts {
-    /// Packets of the base.
+    /// Number of packets of the base.
     pub packets: u64,
-    /// Speed commands.
+    /// Number of speed commands.
     pub commands: u64,
-    /// Images sent.
+    /// Number of images sent.
     pub images: u64,
-    /// Images that no program took in time.
+    /// Number of images that no program read in time.
     pub images_not_taken: u64,
 }
 
@@ -82,7 +82,7 @@ impl EmulatedRobot {
         Self::new(simulator, terminal, camera_stream)
     }
 
-    /// Truth, and bytes over the wires: one row each.
+    /// Rows of the true pose and of the counts over the wires.
     #[must_use]
     pub fn rows(&self) -> Vec<Vec<String>> {
         let row = |name: &str, value: String| vec![name.to_owned(), value];
@@ -107,13 +107,13 @@ impl EmulatedRobot {
         &self.simulator
     }
 
-    /// Bytes over the wires so far.
+    /// The counts so far.
     pub fn counts(&self) -> EmulationCounts {
         let (images, images_not_taken) = self.camera.as_ref().map_or((0, 0), CameraServer::counts);
         EmulationCounts { images, images_not_taken, ..self.counts }
     }
 
-    /// Runs in real time until `is_over`, evaluated every millisecond, is true.
+    /// Runs in real time until `is_over` is true, which is evaluated every millisecond.
     ///
     /// # Errors
     /// When the pseudo terminal breaks.
@@ -127,7 +127,7 @@ impl EmulatedRobot {
         Ok(())
     }
 
-    /// A millisecond: commands in, sensors out.
+    /// A step of one millisecond: commands in, sensors out.
     fn step(&mut self) -> Result<(), AppError> {
         let mut bytes = [0; READ_BYTES];
         let length = self.terminal.read(&mut bytes, Duration::ZERO).map_err(broken)?;
@@ -147,7 +147,7 @@ impl EmulatedRobot {
         if is_due {
             let packet = self.kobuki.feedback(&self.state);
             self.counts.packets += 1;
-            // A full line loses bytes, as a real one does.
+            // A full line loses bytes, like a real one.
             self.terminal.write(&packet).map_err(broken)?;
         }
         Ok(())
@@ -158,7 +158,7 @@ fn broken(error: std::io::Error) -> AppError {
     AppError::Environment(format!("the pseudo terminal of the emulated Kobuki is broken: {error}"))
 }
 
-/// Notes a reading in the state that the next packet holds.
+/// Records a reading in the state of the next packet.
 fn note(state: &mut KobukiState, event: &SensorEvent) {
     match event {
         SensorEvent::Wheels(wheels) => state.ticks = (wheels.left, wheels.right),

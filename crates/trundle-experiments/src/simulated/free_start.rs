@@ -4,16 +4,16 @@ use trundle_app::AppError;
 use trundle_core::{Footprint, Pose2, Vector2};
 use trundle_sim::{HeightBand, SimConfig, World};
 
-/// Clearance of a robot's start \[m\]. A start with less is not taken. Source: ours.
+/// Smallest clearance of a robot's start \[m\]. Source: ours.
 const START_CLEARANCE: f64 = 0.3;
 
 /// Step of the search \[m\]. Source: ours.
 const SEARCH_STEP: f64 = 0.25;
 
-/// Largest number of positions that are tried. Source: ours.
+/// Maximum number of tried positions. Source: ours.
 const MAX_POSITIONS: usize = 100_000;
 
-/// The free pose nearest to the world's middle; `None` if none is near enough.
+/// The free pose nearest to the world's centre; `None` if none is near enough.
 pub fn free_start(world: &World) -> Result<Option<Pose2>, AppError> {
     let body = SimConfig::default().kobuki;
     let footprint = Footprint::disc(body.footprint_radius)?;

@@ -30,7 +30,7 @@ struct Shared {
     not_taken: Arc<AtomicU64>,
     /// Number of contacts so far.
     contacts: Arc<AtomicU32>,
-    /// The moment of simulated time 0.
+    /// Wall-clock time of simulated time 0.
     origin: Instant,
 }
 
@@ -44,7 +44,7 @@ impl SimulatedRealTimeBody {
         events: InboxSender<TimedEvent>,
         place: ThreadPlacement,
     ) -> Result<Self, AppError> {
-        // The base acts like hardware: its timing is independent of the camera.
+        // Like hardware, the base has a timing independent of the camera.
         let pools = [pool("camera", place)?, pool("base", ThreadPlacement { is_first: true, ..place })?];
         let stop = Arc::<AtomicBool>::default();
         let contacts = Arc::<AtomicU32>::default();
@@ -65,7 +65,7 @@ impl SimulatedRealTimeBody {
         let (end, ended) = channel();
         pools[1].spawn(move || {
             let base = live(body, &orders, shots, &shared);
-            // Without a camera, no ages exist.
+            // Without a camera the histogram is empty.
             let ages = aged.recv().unwrap_or_else(|_| Ok(Histogram::default()));
             let report = base.and_then(|report| with_ages(report, &ages?));
             let _ = end.send(report);

@@ -18,11 +18,11 @@ const HERE: SceneFiles = SceneFiles { folder: PathBuf::new() };
 pub struct SceneOptions {
     /// Seed of all random numbers.
     pub seed: u64,
-    /// The axis, scale and floor of a mesh.
+    /// Axis, scale and floor of a mesh.
     pub mesh: MeshOptions,
     /// Start of the robot, world frame, in place of the scene's.
     pub start: Option<Pose2>,
-    /// A charging station, world frame: the middle of its front, x out of the front.
+    /// A charging station, world frame: the middle of its front, x axis out of the front.
     pub station: Option<Pose2>,
 }
 
@@ -33,7 +33,7 @@ pub struct MeshOptions {
     pub up: UpAxis,
     /// Metres per unit of the file; `None` is 1.
     pub scale: Option<f64>,
-    /// Height of the floor, m; `None` if it is found.
+    /// Height of the floor, m; `None` to detect it.
     pub floor: Option<f64>,
 }
 
@@ -90,7 +90,7 @@ fn file_kind(name: &str) -> Result<Option<FileKind>, AppError> {
     Ok(if is_file { Some(Expected::Scene.check(Path::new(name))?) } else { None })
 }
 
-/// The built-in scenes, a row each: name and size.
+/// The built-in scenes, one row each: name and size.
 ///
 /// # Errors
 /// When a built-in scene cannot be created.
@@ -110,7 +110,7 @@ fn described(file: &Path, seed: u64) -> Result<Scene, AppError> {
     description.build(&files, seed).map_err(|error| AppError::Input(format!("{}: {error}", file.display())))
 }
 
-/// A scene that is higher than wide has probably been imported with the wrong up axis.
+/// Warns of a scene that is higher than wide, probably imported with the wrong up axis.
 fn warn_of_tall_scene(file: &Path, world: &World) {
     let (low, high) = world.bounds();
     let size = high - low;
@@ -120,7 +120,7 @@ fn warn_of_tall_scene(file: &Path, world: &World) {
     }
 }
 
-/// The scene of a file without a start: without a start in the arguments, the robot starts at a free pose.
+/// The scene of a file without a start pose. The robot starts at the pose of the arguments, else at a free pose.
 fn bare(args: SceneOptions, file: &Path, world: World) -> Result<Scene, AppError> {
     let start = match args.start {
         Some(start) => start,

@@ -15,11 +15,11 @@ pub struct ImageSources {
     pub scenes: Vec<String>,
     /// Seeds of the scenes and of the camera placements.
     pub seeds: IndexRange,
-    /// Views of each scene and seed.
+    /// Number of views per scene and seed.
     pub views: usize,
     /// Whether glTF files have z up.
     pub z_up: bool,
-    /// ORB features of an image, at most.
+    /// Maximum number of ORB features per image.
     pub features_per_image: usize,
 }
 
@@ -35,7 +35,7 @@ impl ImageSources {
         Ok(())
     }
 
-    /// Each scene with each seed: a glTF file differs by seed in its camera placements only.
+    /// Each scene with each seed. For a glTF file only the camera placements depend on the seed.
     pub(super) fn seeded_scenes(&self) -> impl Iterator<Item = (&str, u64)> {
         let seeds = self.seeds.first..=self.seeds.last;
         self.scenes.iter().flat_map(move |name| seeds.clone().map(move |seed| (name.as_str(), seed)))

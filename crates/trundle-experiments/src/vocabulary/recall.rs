@@ -8,29 +8,29 @@ use trundle_app::{AppError, StepProgress};
 use trundle_core::Pose3;
 use trundle_vision::{PlaceIndex, Vocabulary};
 
-/// Largest distance between two views of the same place \[m\]. Farther apart they count as different places. Source: ours.
+/// Largest distance between two views of one place \[m\]. Source: ours.
 const MAX_SAME_PLACE_M: f64 = 0.75;
-/// Largest angle between two views of the same place \[rad\]. Views with a larger angle count as different places. Source: ours.
+/// Largest angle between two views of one place \[rad\]. Source: ours.
 const MAX_SAME_PLACE_RAD: f64 = 25.0 / 180.0 * std::f64::consts::PI;
 
-/// Frames of a sequence from one place to the next; the frame halfway between is the second view. Source: ours.
+/// Number of frames from one place to the next; the frame halfway between is the second view. Source: ours.
 const PLACE_STRIDE_FRAMES: usize = 10;
 
-/// Views of places, and a second view of each.
+/// First and second views of places.
 struct ViewPairs {
     name: String,
     places: Vec<DescribedView>,
     second_views: Vec<DescribedView>,
 }
 
-/// The share of places that each vocabulary recognises in one source of images.
+/// Recall of each vocabulary in one source of images.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlaceRecall {
     /// The source: a folder, or a scene with its seed.
     pub name: String,
     /// Number of places.
     pub places: usize,
-    /// For each vocabulary, the share of second views whose most similar view shows the same place, 0 to 1.
+    /// For each vocabulary, the fraction of second views whose most similar view shows the same place, 0 to 1.
     pub recall: Vec<f64>,
 }
 

@@ -8,7 +8,7 @@ use super::{
 };
 use trundle_core::{Beam, FreeSpan, ObstacleKind, ScanParts};
 
-/// Findings along each bearing of one image.
+/// Obstacles and free space along each bearing of one image.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Bearings {
     /// Nearest certain obstacle, m.
@@ -62,7 +62,7 @@ impl Bearings {
         self.points.clear();
     }
 
-    /// Room for every pixel of an image.
+    /// Reserves memory for all pixels of an image.
     pub(super) fn reserve(&mut self, pixels: usize) {
         self.points.reserve(pixels);
     }

@@ -3,40 +3,44 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
-/// Rules by which pixels of a depth image become obstacles or free space.
+/// Rules that classify pixels of a depth image as obstacles or free space.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DepthScanConfig {
-    /// Lower edge of the height band, m above the floor, 0 to 1. What is lower can be driven over. Default 0.05.
+    /// Lower edge of the height band, m above the floor, 0 to 1. Lower objects are no obstacles: the robot drives over them. Default 0.05.
     pub band_low: f64,
-    /// Upper edge of the height band, m above the floor, above `band_low`, to 5. What is higher can be driven under.
-    /// Default 0.65: a Kobuki with its camera is 0.6 m high.
+    /// Upper edge of the height band, m above the floor, above `band_low`, to 5. Higher objects are no obstacles: the robot drives under
+    /// them. Default 0.65: a Kobuki with its camera is 0.6 m high.
     pub band_high: f64,
-    /// Least depth used, m, 0.05 to 5. Default 0.3; the Kinect V2 itself measures nothing below 0.5.
+    /// Smallest depth used, m, 0.05 to 5. Pixels below it are ignored. Default 0.3; the Kinect V2 measures from 0.5 on.
     pub min_depth: f64,
-    /// Greatest depth used, m, above `min_depth`, to 100. Default 8: the Kinect V2's \[Li18\].
+    /// Largest depth used, m, above `min_depth`, to 100. Pixels beyond it are ignored. Default 8: the Kinect V2's range \[Li18\].
     pub max_depth: f64,
-    /// Greatest range of a beam over the floor, m, 0.5 to 100. Default 6: beyond it a pixel is wider than a chair leg.
+    /// Largest range of a beam over the floor, m, 0.5 to 100. A larger value maps farther with more noise. Default 6: beyond it a pixel is
+    /// wider than a chair leg.
     pub max_range: f64,
     /// Depth noise (one sigma) at the camera, m, 0 to 0.1. Default 0.003.
     pub noise_base: f64,
     /// Growth of the depth noise with depth squared, m / m^2, 0 to 0.1. Default 0.0015: about the Kinects' (0.0019
     /// for the first, Khoshelham and Elberink 2012; less for the second).
     pub noise_growth: f64,
-    /// How many sigmas of noise are kept between the floor and the lowest obstacle, 0 to 10. Default 3.
+    /// Height of the lowest obstacle above the floor, in sigmas of the depth noise, 0 to 10. A smaller value sees lower obstacles and gives
+    /// false ones. Default 3.
     pub floor_sigmas: f64,
-    /// How wrong the camera's tilt may be before the floor becomes an obstacle, deg, 0 to 10. Default 1: a soft tyre,
-    /// a hard stop. Where the floor is fitted, what the fit leaves open counts instead, when that is less.
+    /// Largest error of the camera's tilt at which the floor is no obstacle, deg, 0 to 10. A larger value hides low obstacles far away. If
+    /// a floor is fitted, the error bound of the fit applies when smaller. Default 1: a soft tyre, a hard stop.
     pub tilt_error_deg: f64,
-    /// The floor is fitted, and heights are taken from it, when it lies by no more than this from where the mount says, deg,
-    /// 0 (off) to 10. Default 3.
+    /// Largest tilt of a fitted floor against the mount's floor, deg, 0 (no fit) to 10. Heights are measured from the fitted floor. Default
+    /// 3.
     pub floor_fit_deg: f64,
-    /// Depth below the floor from which on there is a hole, m, 0.02 to 1. Default 0.1: a Kobuki's wheel drops 0.04.
+    /// Depth below the floor from which a point is a hole, m, 0.02 to 1. The robot stops before a hole as before an obstacle. Default 0.1:
+    /// a Kobuki's wheel drops 0.04.
     pub drop_depth: f64,
-    /// Of a pixel's 8 neighbours, how many must be about as deep for it to be an obstacle, 0 to 8. Default 3: a line of
-    /// flying pixels along an edge, one pixel wide, has two.
+    /// Smallest number of a pixel's 8 neighbours with similar depth for an obstacle, 0 to 8. A larger value drops noise and thin objects.
+    /// Default 3: a line of flying pixels along an edge, one pixel wide, has two.
     pub hit_support_px: u8,
-    /// Of a pixel's 8 neighbours, how many must be similarly deep for it to prove free space, 0 to 8. Default 2: of a grazing floor only the pixels of one row agree.
+    /// Smallest number of a pixel's 8 neighbours with similar depth for free space, 0 to 8. Default 2: of a floor at a grazing angle only
+    /// the pixels of one row agree.
     pub free_support_px: u8,
 }
 
@@ -61,10 +65,10 @@ impl Default for DepthScanConfig {
 }
 
 impl DepthScanConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("band_low", self.band_low, "m", 0.0, 1.0)?;
         require_in("band_high", self.band_high, "m", self.band_low + 0.01, 5.0)?;

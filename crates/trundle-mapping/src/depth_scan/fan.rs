@@ -1,4 +1,4 @@
-//! The fan of beams that the pixels fall into.
+//! The fan of beams, and the beam of each pixel.
 
 use super::pixel_rays::{LensRays, ray_through};
 use nalgebra::Matrix3;
@@ -13,7 +13,7 @@ pub(super) struct Fan {
     pub(super) beams: usize,
     /// Bearing of the middle of beam 0, base frame, rad.
     pub(super) angle_min: f64,
-    /// Between neighbouring beams, rad.
+    /// Angle between neighbouring beams, rad.
     pub(super) angle_increment: f64,
 }
 
@@ -34,7 +34,8 @@ const ATAN_COEFFICIENTS: [f64; 9] = [
     -0.016_165_736_7,
     0.002_866_225_7,
 ];
-/// Error of [`nearly_atan2`] at the worst \[rad\], with a margin: the source has 2e-8. A pixel nearer to the edge of a beam is computed exactly.
+/// Largest error of [`nearly_atan2`] \[rad\], with a margin: the source has 2e-8. The bearing of a pixel nearer to the edge of a beam is
+/// computed exactly.
 const MAX_NEAR_ERROR_RAD: f64 = 1e-7;
 
 impl Fan {
@@ -88,7 +89,7 @@ impl PixelBearings<'_> {
     fn nearly(&self, i: usize) -> f64 {
         let d = self.base_from_lens * self.lens.ray(i);
         let near = wrap_angle(nearly_atan2(d.y, d.x) - self.forward);
-        // At the half turn the error may change the sign.
+        // At half a turn the error may change the sign.
         if near.abs() < PI - MAX_NEAR_ERROR_RAD { near } else { self.exactly(i) }
     }
 

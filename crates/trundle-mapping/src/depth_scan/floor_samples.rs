@@ -57,7 +57,7 @@ const MIN_INLIER_FRACTION: f64 = 0.5;
 const MAX_RESIDUAL_SIGMAS: f64 = 4.0;
 /// Standard deviation of a height in addition to the depth noise \[m\]: unevenness of the floor. Source: ours.
 const HEIGHT_SIGMA_M: f64 = 0.002;
-/// Unevenness of floors and lens distortion that the fit does not see \[m/m\]; added to the bound of the rise. Source: ours.
+/// Unmodelled unevenness of floors and lens distortion \[m/m\], added to the bound of the rise. Source: ours.
 const FLOOR_UNEVENNESS: f64 = 0.007;
 
 impl FloorSamples {

@@ -1,4 +1,4 @@
-//! Geometry that follows from the mount of the camera.
+//! Geometry of the camera's mount.
 
 use super::{
     DepthScanConfig,
@@ -10,7 +10,7 @@ use super::{
 };
 use trundle_core::{Invalid, Pose3, Vector2, Vector3};
 
-/// Tables that follow from the mount of the camera.
+/// Tables computed from the mount of the camera.
 #[derive(Debug, Clone)]
 pub(super) struct Mount {
     pub(super) origin: Vector2,
@@ -127,7 +127,7 @@ impl Survey {
         gaps.count() * 50 > self.beams.len()
     }
 
-    /// Smallest range above which every bearing that shows the band's lower edge at all shows it.
+    /// Smallest range beyond which the band's lower edge is visible in every bearing that shows it at some range.
     fn blind_range(&self, max_range: f64) -> f64 {
         let seen = self.beams.iter().map(|beam| beam.first).filter(|range| range.is_finite());
         seen.reduce(f64::max).unwrap_or(max_range).min(max_range)

@@ -44,9 +44,9 @@ pub(super) struct DepthNoise {
 /// Minimum number of the eight neighbours on one surface with a pixel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct NeighbourSupport {
-    /// For an obstacle.
+    /// Number for an obstacle.
     pub(super) hit: u32,
-    /// For free space.
+    /// Number for free space.
     pub(super) free: u32,
 }
 

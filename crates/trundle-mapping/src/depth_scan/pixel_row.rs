@@ -29,7 +29,7 @@ pub(super) mod kind {
     pub const DROP: u32 = 5;
 }
 
-/// Three rows of an image and the rays of the middle one's pixels, each as wide as the image.
+/// Three rows of an image and the rays of the middle row's pixels, each as wide as the image.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RowInput<'a> {
     pub(super) depths: [&'a [f32]; 3],
@@ -44,7 +44,7 @@ impl ClassifiedRow {
         self.heights.resize(width, 0.0);
     }
 
-    /// Classifies the pixels of a row except the first and the last. `PASSES`: whether rays that pass through the band are a class.
+    /// Classifies the pixels of a row except the first and the last. `PASSES`: whether rays that pass through the band get a class.
     pub(super) fn classify<const PASSES: bool>(&mut self, model: &PixelModel, input: &RowInput<'_>) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
@@ -101,7 +101,7 @@ impl ClassifiedRow {
             // Range at which the ray crosses the floor.
             let fall = m.camera_height - height;
             let crossing = range * m.camera_height / fall;
-            // Flying pixels are between two surfaces, therefore none is below the floor.
+            // Flying pixels are between two surfaces, therefore never below the floor.
             let drop = valid & (height < -greater(edge, m.drop_depth)) & (crossing <= m.max_range) & seen;
 
             let mut mark = pick(in_band, pick(hit, kind::OBSTACLE, kind::DOUBTFUL), kind::NOTHING);
@@ -119,7 +119,7 @@ impl ClassifiedRow {
     }
 }
 
-/// Whether a ray that ended above or behind the band passed through the band; and the ranges of entry and exit.
+/// Whether a ray that ended above or behind the band passed through the band, with the ranges of entry and exit.
 #[inline(always)]
 fn passage(m: &PixelModel, rise: f32, (range, height): (f32, f32), run: f32) -> (bool, f32, f32) {
     let headroom = m.high - m.camera_height;
@@ -137,10 +137,10 @@ fn passage(m: &PixelModel, rise: f32, (range, height): (f32, f32), run: f32) -> 
     }
 }
 
-/// The bin of a range: the last bin but one is 127; larger ranges are in 128.
+/// The bin of a range, at most 127; bin 128 is for larger ranges.
 #[inline(always)]
 fn bin(range: f32, m: &PixelModel) -> u32 {
-    // Rounding down by the rounding of floating-point addition, as no instruction does it for whole vectors.
+    // Rounds down by floating-point addition, since no instruction rounds whole vectors.
     const MAGIC: f32 = 8_388_608.0;
     let scaled = range * m.bins_per_metre - 0.5;
     let within = if scaled < 128.0 { scaled } else { 128.0 };

@@ -11,11 +11,11 @@ use trundle_core::{
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ScanFusionConfig {
-    /// Beams of the full circle, 16 to 7200. Default 720: half a degree, some columns of a Kinect.
+    /// Number of beams of the full circle, 16 to 7200. Default 720: half a degree, some columns of a Kinect.
     pub beams: usize,
-    /// Greatest range, m, 0.5 to 100. Default 6, as of [`crate::DepthScanConfig`].
+    /// Largest range, m, 0.5 to 100. Default 6, as in [`crate::DepthScanConfig`].
     pub max_range: f64,
-    /// Hits of one beam so near behind the nearest are one surface, m, 0 to 1. Default 0.1.
+    /// Largest distance of hits of one surface behind the nearest hit of a beam, m, 0 to 1. Default 0.1.
     pub surface: f64,
 }
 
@@ -26,7 +26,7 @@ impl Default for ScanFusionConfig {
 }
 
 impl ScanFusionConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside the range of its field.
@@ -40,7 +40,7 @@ impl ScanFusionConfig {
 
 /// Fuses the scans of several sensors into one of the full circle around the base's origin.
 ///
-/// For each bearing the nearest obstacle of any sensor. A range is free if a sensor observed it free and no sensor has a nearer obstacle.
+/// Each bearing gets the nearest obstacle of any sensor. A range is free if a sensor observed it free and no sensor has a nearer obstacle.
 /// Beams of sensors at other positions cross the fused beams, so their free spans are converted point by point. Cost: the number of beams
 /// times bins of range.
 #[derive(Debug, Clone)]
@@ -71,8 +71,8 @@ impl ScanFusion {
         Ok(Self { config: config.validated()?, nearest: Vec::new(), free: Vec::new() })
     }
 
-    /// One scan made of several, with the stamp of the newest one. Each scan comes with the pose of the base at the scan's stamp, relative
-    /// to the base at the newest stamp: the identity for simultaneous scans. A scan whose pose is not finite is left out.
+    /// The fusion of several scans, with the stamp of the newest one. Each scan comes with the pose of the base at the scan's stamp,
+    /// relative to the base at the newest stamp: the identity for simultaneous scans. A scan whose pose is not finite is left out.
     pub fn fuse<'a>(&mut self, scans: impl IntoIterator<Item = (Pose2, &'a Scan)>) -> Scan {
         let beams = self.config.beams;
         self.nearest.clear();

@@ -75,7 +75,7 @@ impl DepthScanner {
         scan
     }
 
-    /// [`DepthScanner::scan`] into the memory of an old scan.
+    /// [`DepthScanner::scan`] with reuse of an old scan's memory.
     pub fn scan_into(&mut self, image: &RgbdImage, scan: &mut Scan) {
         let mut parts = std::mem::replace(scan, nothing(image.stamp())).into_parts();
         self.bearings.reset(self.mount.fan.beams);
@@ -98,8 +98,8 @@ impl DepthScanner {
             .expect("invariant: ranges come from finite depths and rays, spans from rising bins");
     }
 
-    /// Distance over the floor from the camera below which a beam proves nothing, m: an obstacle may be too near for the depth camera, or
-    /// below its field of view. For `MapperConfig::blind_range`.
+    /// Distance over the floor from the camera, m, below which a beam does not prove free space: an obstacle may be too near for the depth
+    /// camera, or below its field of view. Use it for `MapperConfig::blind_range`.
     pub fn blind_range(&self) -> f64 {
         self.mount.blind_range
     }
@@ -120,7 +120,7 @@ impl DepthScanner {
     }
 }
 
-/// A scan without a beam.
+/// A scan without beams.
 fn nothing(stamp: Stamp) -> Scan {
     Scan::from_parts(stamp, Vector2::zeros(), (0.0, 1.0), ScanParts::default())
         .expect("invariant: no beam can be wrong")

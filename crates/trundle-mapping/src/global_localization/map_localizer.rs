@@ -21,11 +21,11 @@ use nalgebra::{Matrix3, Vector3};
 use trundle_core::{Invalid, OccupancyGrid, Pose2, Scan, Stamp, wrap_angle};
 use trundle_grid::tiles::TileMap;
 
-/// Where the robot is in a map that never changes: found anywhere in it by search, then followed by a particle filter with the
-/// mapper's own proposal.
+/// Localizes the robot in a fixed map: finds its pose by a search of the whole map, then tracks it by a particle filter with the mapper's
+/// proposal.
 ///
-/// Found means proved: the best place in the whole map (branch and bound, no place of the lattice is missed) must be better than the
-/// second best and than none. Cost: a search is linear in the map's area, following a scan is not.
+/// A pose is found if it is proved: the best place in the whole map (branch and bound over the complete lattice) must be clearly better
+/// than the second-best place and than unknown ground. Cost: a search is linear in the map's area; tracking does not depend on the area.
 #[derive(Debug)]
 pub struct MapLocalizer {
     config: ParticleConfig,
@@ -44,7 +44,7 @@ pub struct MapLocalizer {
 #[derive(Debug)]
 enum State {
     Lost(GlobalSearch),
-    /// Poses (cells) with the logarithms of their weights; scans in a row that the map does not explain.
+    /// Poses (cells) with the logarithms of their weights, and the number of successive scans that the map does not explain.
     Known {
         particles: Vec<(Pose2, f64)>,
         strange: usize,
@@ -60,15 +60,15 @@ pub enum Localized {
     Refused(Refusal),
     /// The pose is unknown.
     Lost(Lost),
-    /// The robot is here.
+    /// The pose is known.
     Known {
         /// Mean of the particles.
         map_from_base: Pose2,
-        /// Their covariance with that of the last match: m, m, rad, map frame.
+        /// Covariance of the particles and of the last match: m, m, rad, map frame.
         covariance: Matrix3<f64>,
         /// Part of the hits that the map explains, 0 to 1.
         explained: f64,
-        /// Directions left to the odometry, 0 to 3.
+        /// Number of directions determined by the odometry alone, 0 to 3.
         degenerate: usize,
     },
 }
@@ -77,7 +77,7 @@ pub enum Localized {
 const MAX_MISMATCHED_SCANS: usize = 5;
 
 impl MapLocalizer {
-    /// In the map of a saved filter ([`ParticleMapper::save`]).
+    /// A localizer in the map of a saved filter ([`ParticleMapper::save`]).
     ///
     /// # Errors
     /// As [`ParticleMapper::load`].
@@ -91,7 +91,7 @@ impl MapLocalizer {
         Self::new(mapper.models.config.clone(), mapper.best_map().clone(), seed)
     }
 
-    /// In a three-valued map, as from a PGM and YAML.
+    /// A localizer in a three-valued map, as from a PGM and YAML.
     ///
     /// # Errors
     /// When the configuration is out of range, or the grid's cells are not its `map.resolution`.
@@ -133,7 +133,7 @@ impl MapLocalizer {
         publisher.grid().clone()
     }
 
-    /// Sets the pose of the base: no search.
+    /// Sets the pose of the base, without a search.
     pub fn start_at(&mut self, map_from_base: Pose2) {
         let pose = in_cells(&self.config, map_from_base);
         self.state = State::Known { particles: vec![(pose, 0.0); self.config.particles], strange: 0 };
@@ -144,7 +144,7 @@ impl MapLocalizer {
         self.state = State::Lost(GlobalSearch::default());
     }
 
-    /// Takes in a scan taken with the base at `odom_from_base` by the odometry.
+    /// Processes a scan, taken with the base at `odom_from_base` by the odometry.
     pub fn update(&mut self, odom_from_base: Pose2, scan: &Scan) -> Localized {
         let step = match self.gate.pass(&self.config, false, odom_from_base, scan) {
             Ok(Some(step)) => step,

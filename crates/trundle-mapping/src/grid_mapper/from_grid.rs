@@ -7,8 +7,8 @@ use trundle_grid::{GridCell, MapperConfig};
 impl GridMapper {
     /// Map that continues from a three-valued grid. Each known cell gets the log-odds of its clamp.
     ///
-    /// Scans match against the walls of the grid from the first scan on. The hits are taken at the centres of the surface cells,
-    /// since a saved grid does not store them. The error of a wall is up to half a cell, alike for all scans, until new hits arrive.
+    /// Scans match against the walls of the grid from the first scan on. Hits are assumed at the centres of the surface cells, since a
+    /// saved grid does not store them. The error of a wall is up to half a cell, alike for all scans, until new hits arrive.
     ///
     /// # Errors
     /// When the configuration is out of range. Also when the grid has another resolution, an origin off the multiples of the resolution, or

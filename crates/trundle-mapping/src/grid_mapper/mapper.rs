@@ -7,10 +7,10 @@ use trundle_grid::{
 
 /// Occupancy grid from scans at known poses.
 ///
-/// Problem: which cells of the floor are occupied, given noisy scans and known poses? Each cell is an independent binary variable, and
-/// every scan adds its log-odds (Moravec and Elfes 1985; Thrun, Probabilistic Robotics, ch. 9). A hit raises the log-odds of its cell; a
-/// free ray lowers those of the cells that it passes. Each cell changes at most once per scan. Cost: one step per cell along each ray. The
-/// cost of a scan does not grow with the run, except that a larger bounding box needs a new layout of the published grid.
+/// Problem: the occupied cells of the floor, given noisy scans and known poses. Each cell is an independent binary variable, and every scan
+/// adds its log-odds (Moravec and Elfes 1985; Thrun, Probabilistic Robotics, ch. 9). A hit raises the log-odds of its cell; a free ray
+/// lowers those of the cells that it passes. Each cell changes at most once per scan. Cost: one step per cell along each ray. The cost of a
+/// scan does not grow with the run, except that a larger bounding box needs a new layout of the published grid.
 ///
 /// | symbol | here | unit |
 /// |---|---|---|
@@ -151,7 +151,7 @@ impl GridMapper {
         Self::over(self.config.clone(), evidence, false)
     }
 
-    /// Takes over the evidence of another map as one revision of the published grid.
+    /// Replaces the evidence by that of another map, as one revision of the published grid.
     pub(crate) fn replace_with(&mut self, mut other: Self) {
         let (low, high) = self.corners();
         other.grow(low, high);
@@ -182,7 +182,7 @@ impl GridMapper {
         probability(self.log_odds_at(point))
     }
 
-    /// Probabilities of the cells of [`GridMapper::grid`], in its order: for pictures.
+    /// Probabilities of the cells of [`GridMapper::grid`], in the grid's order, for pictures.
     pub fn probabilities(&self) -> Vec<f32> {
         let (corner, (cols, rows)) = self.evidence.bounds();
         let cell = |i: usize| GridCell { x: corner.x + (i % cols) as i32, y: corner.y + (i / cols) as i32 };

@@ -10,7 +10,7 @@ use trundle_core::Pose2;
 pub(crate) struct Candidate {
     /// Poses of the stretch.
     pub(crate) range: Range<usize>,
-    /// The one that is most likely near.
+    /// The pose that is most likely near.
     pub(crate) nearest: usize,
     /// Distance of the candidate, in standard deviations.
     pub(crate) distance: f64,
@@ -25,7 +25,7 @@ const VIEW_RADIUS_M: f64 = 4.0;
 /// Maximum radius of a loop search \[m\]: the drift of one minute of failing odometry. Source: ours.
 pub(crate) const MAX_SEARCH_RADIUS_M: f64 = 40.0;
 
-/// The parts of the trajectory that may be near the last pose, the likeliest first. `ways` is the distance travelled at each pose, m.
+/// The parts of the trajectory that may be near the last pose, the likeliest first. `ways` are the distances travelled up to each pose, m.
 pub(crate) fn candidates(
     poses: &[Pose2],
     ways: &[f64],

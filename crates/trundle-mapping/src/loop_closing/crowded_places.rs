@@ -1,4 +1,4 @@
-//! Choice of the stored scans that are not needed: those of places that many newer scans show.
+//! Choice of redundant stored scans: those of places with many newer scans.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -6,14 +6,14 @@ use trundle_core::Pose2;
 
 /// Side of a place \[m\]. Source: ours, three gates of the filter.
 const PLACE_SIDE_M: f64 = 1.0;
-/// Directions that a place is seen in. Source: ours, those of a camera's or a half-turn laser's view that differ.
+/// Number of viewing directions of a place. Source: ours, the different views of a camera or of a laser with 180 deg.
 const HEADING_COUNT: f64 = 8.0;
-/// Scans of a place in one direction that are kept, the newest. Source: ours; a cell is drawn by several of them.
+/// Number of newest scans of a place in one direction that are kept. Source: ours; several of them draw each cell.
 const MAX_SCANS_PER_PLACE: usize = 4;
-/// Newest scans that are all kept: those of the last submap and more. Source: ours.
+/// Number of newest scans that are always kept: those of the last submap and more. Source: ours.
 const RECENT_SCANS: usize = 100;
 
-/// For each pose (m) whether its scan goes. The first, that at `first_of_run` and the newest ones stay.
+/// For each pose (m), whether its scan is redundant. The first, that at `first_of_run` and the newest ones are kept.
 pub(crate) fn crowded(poses: &[Pose2], first_of_run: usize) -> Vec<bool> {
     let mut goes = vec![false; poses.len()];
     let mut counts: BTreeMap<(i64, i64, i64), usize> = BTreeMap::new();

@@ -113,7 +113,7 @@ impl LoopCloser {
         let rival = found.get(1).map_or(f64::NEG_INFINITY, |rival| rival.log_likelihood);
         let back = CloudMatcher { config, likelihood: &models.likelihood, cloud: &cloud };
         let (back_explained, back_contradicted) = back.fit(own_map, best.pose.inverse());
-        // The score of an unknown place, at which every hit is on unknown ground.
+        // The score of a place with all hits on unknown ground.
         let unseen = 0.5 * config.outliers.ln() * own_cloud.points.len() as f64 / config.correlation;
         let proved = best.log_likelihood - rival.max(unseen) > MIN_PROOF_NATS
             && back_contradicted < 0.5 * back_explained
@@ -121,7 +121,7 @@ impl LoopCloser {
         proved.then(|| constraint(config, poses, &which, &best))
     }
 
-    /// Accepts a constraint confirmed by an earlier one at some distance; corrects the trajectory if necessary.
+    /// Accepts a constraint that an earlier one at some distance confirms; corrects the trajectory if necessary.
     fn accept(
         &mut self,
         history: &mut ScanHistory,
@@ -173,7 +173,7 @@ impl LoopCloser {
     }
 }
 
-/// The constraint from the pose nearest to the position found for the last pose.
+/// The constraint between the pose nearest to the found position and the last pose.
 fn constraint(config: &ParticleConfig, poses: &[Pose2], which: &[usize], found: &CloudMatch) -> Constraint {
     let metre = config.map.resolution;
     let pose = in_metres(config, found.pose);

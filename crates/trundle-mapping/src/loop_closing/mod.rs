@@ -1,4 +1,4 @@
-//! Loop closing: candidates along the trajectory, their verification by scan matching, and the scans to do it with.
+//! Loop closing: candidates along the trajectory, their verification by scan matching, and the stored scans.
 
 mod candidates;
 pub(crate) mod crowded_places;

@@ -12,14 +12,14 @@ pub(crate) struct ScanHistory {
     pub(crate) scans: Vec<StoredScan>,
     /// Covariance of the step to each pose, in that pose's frame: m, m, rad.
     pub(crate) steps: Vec<Matrix3<f64>>,
-    /// The steps as they were measured, up to the last correction: a correction must not count as measured.
+    /// The measured steps, up to the last correction, since a correction is no measurement.
     pub(crate) measured: Vec<Pose2>,
     pub(crate) loops: Vec<Constraint>,
-    /// Where the base was at scans that are not stored any more.
+    /// Poses of the base at dropped scans.
     left_out: Vec<LeftOutPose>,
 }
 
-/// Where the base was at a scan that is not stored any more, relative to a stored one.
+/// Pose of the base at a dropped scan, relative to a stored one.
 #[derive(Debug, Clone, Copy)]
 struct LeftOutPose {
     stamp: Stamp,
@@ -28,22 +28,22 @@ struct LeftOutPose {
     scan_from_base: Pose2,
 }
 
-/// The stored scan that stands for a scan after others were dropped.
+/// The stored scan that represents a scan after others were dropped.
 #[derive(Debug, Clone, Copy)]
-struct Heir {
-    /// Its number afterwards.
+struct Successor {
+    /// Number of the stored scan after dropping.
     number: usize,
-    /// Its number before.
+    /// Number of the stored scan before dropping.
     old: usize,
 }
 
-/// For each scan itself, or the kept one before it.
-fn heirs(goes: &[bool]) -> Vec<Heir> {
-    let mut heir = Heir { number: 0, old: 0 };
+/// For each scan, the scan itself or the previous kept one.
+fn successors(goes: &[bool]) -> Vec<Successor> {
+    let mut heir = Successor { number: 0, old: 0 };
     let mut kept = 0;
     let mut next = |k: usize| {
         if !goes[k] {
-            heir = Heir { number: kept, old: k };
+            heir = Successor { number: kept, old: k };
             kept += 1;
         }
         heir
@@ -51,14 +51,14 @@ fn heirs(goes: &[bool]) -> Vec<Heir> {
     (0..goes.len()).map(&mut next).collect()
 }
 
-/// Every second of the first `count` of `all` scans, not the first.
+/// Marks every second one of the first `count` of `all` scans, except the first.
 pub(crate) fn every_second(all: usize, count: usize) -> Vec<bool> {
     (0..all).map(|k| k % 2 == 1 && k + 1 < count).collect()
 }
 
-/// The number of scan `k` after others went, or of the kept one before it.
+/// The number of scan `k` after dropping, or that of the previous kept scan.
 pub(crate) fn number_after(goes: &[bool], k: usize) -> usize {
-    if k < goes.len() { heirs(goes)[k].number } else { goes.iter().filter(|goes| !**goes).count() }
+    if k < goes.len() { successors(goes)[k].number } else { goes.iter().filter(|goes| !**goes).count() }
 }
 
 impl ScanHistory {
@@ -67,7 +67,7 @@ impl ScanHistory {
         self.steps.push(step);
     }
 
-    /// Notes the steps of a trajectory that were not noted before.
+    /// Records the steps of a trajectory that are not recorded yet.
     pub(crate) fn measure(&mut self, poses: &[Pose2]) {
         for k in self.measured.len().max(1)..poses.len() {
             if self.measured.is_empty() {
@@ -77,7 +77,7 @@ impl ScanHistory {
         }
     }
 
-    /// The steps and the loops as ties between the poses of a trajectory.
+    /// The steps and the loops as constraints between the poses of a trajectory.
     pub(crate) fn constraints(&self, poses: &[Pose2]) -> Vec<Constraint> {
         let step = |k: usize| Constraint {
             from: k as u32 - 1,
@@ -88,15 +88,15 @@ impl ScanHistory {
         (1..poses.len()).map(step).chain(self.loops.iter().copied()).collect()
     }
 
-    /// Drops the scans for which `goes` is true, with the poses of the trajectory that belong to them; not the first and not the last. Their
-    /// steps are composed. A loop that ends at a dropped scan then ends at the kept one before, moved by the trajectory's step. Of loops
-    /// between the same two scans the newest is kept.
+    /// Drops the scans for which `goes` is true, with their poses of the trajectory, except the first and the last scan. Their steps are
+    /// composed. A loop that ends at a dropped scan is moved to the previous kept scan by the trajectory's step. Of loops between the same
+    /// two scans the newest is kept.
     pub(crate) fn thin(&mut self, trajectory: &mut Vec<(Stamp, Pose2)>, goes: &[bool]) {
         let poses: Vec<Pose2> = trajectory.iter().map(|(_, pose)| *pose).collect();
         self.measure(&poses);
-        let heirs = heirs(goes);
+        let successors = successors(goes);
         let renamed = |k: usize| {
-            let Heir { number, old } = heirs[k];
+            let Successor { number, old } = successors[k];
             (number as u32, if old == k { Pose2::IDENTITY } else { poses[old].inverse() * poses[k] })
         };
         for left in &mut self.left_out {
@@ -137,7 +137,7 @@ impl ScanHistory {
         self.loops = newest;
     }
 
-    /// A trajectory of the stored scans with the poses of the dropped ones, from the stored scan `first` on, by rising stamps.
+    /// A trajectory with the poses of stored and dropped scans, from the stored scan `first` on, by rising stamps.
     pub(crate) fn with_left_out(&self, trajectory: &[(Stamp, Pose2)], first: usize) -> Vec<(Stamp, Pose2)> {
         let left = self.left_out.iter().filter(|left| left.scan as usize >= first);
         let poses = left.map(|left| (left.stamp, trajectory[left.scan as usize].1 * left.scan_from_base));
@@ -155,7 +155,7 @@ impl ScanHistory {
         self.loops.retain(|constraint| constraint.poses().0.max(constraint.poses().1) < count);
     }
 
-    /// Bytes that it holds.
+    /// Bytes in use.
     pub(crate) fn bytes(&self) -> usize {
         self.scans.iter().map(StoredScan::bytes).sum::<usize>()
             + self.steps.capacity() * size_of::<Matrix3<f64>>()
@@ -165,7 +165,7 @@ impl ScanHistory {
     }
 }
 
-/// Keeps the elements that do not go.
+/// Drops the elements marked in `goes`.
 pub(crate) fn keep<T>(all: &mut Vec<T>, goes: &[bool]) {
     let mut k = 0;
     all.retain(|_| {

@@ -1,14 +1,13 @@
-//! Packed scan, for redrawing a map after a loop closure.
+//! Packed scan for redrawing a map after a loop closure.
 
 use crate::particle_config::ParticleConfig;
 use crate::scan_match::scan_points::ScanPoints;
 use trundle_grid::tiles::{RaySpan, ScanRay};
 
-/// A processed scan, packed: 5 bytes per beam, 6 with the sigma of its range, and 8 for each free span of a beam that is not free
-/// throughout.
+/// A processed scan, packed: 5 bytes per beam, 6 with the sigma of its range, and 8 for each free span of a beam with gaps.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct StoredScan {
-    /// Where the beams begin, base frame, cells.
+    /// Origin of the beams, base frame, cells.
     pub(crate) origin: (f32, f32),
     pub(crate) rays: Box<[PackedRay]>,
     /// One sigma of each ray's range, mm; empty if the sensor gives none.
@@ -16,13 +15,14 @@ pub(crate) struct StoredScan {
     pub(crate) spans: Box<[PackedSpan]>,
 }
 
-/// The end of a beam in units of at most 1/16 cell at 5 cm, and how it relates to the ray before.
+/// The end of a beam in units of at most 1/16 cell at 5 cm, and its relation to the previous ray.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(C, packed)]
 pub(crate) struct PackedRay {
     pub(crate) x: i16,
     pub(crate) y: i16,
-    /// 1: a hit; 2: on one surface with the ray before; 4: seen whole; 8 and up: beams since the ray before.
+    /// Bits: 1 for a hit; 2 if on one surface with the previous ray; 4 if free over its whole length; 8 and up hold the number of beams
+    /// since the previous ray.
     pub(crate) what: u8,
 }
 
@@ -42,15 +42,15 @@ pub(crate) struct StoredRay {
     pub(crate) sigma: f32,
 }
 
-/// Units of a stored coordinate per cell, at most.
+/// Maximum number of units of a stored coordinate per cell.
 const MAX_UNITS_PER_CELL: f64 = 16.0;
 /// Smallest unit of a stored coordinate \[m\]. With it 16 bits reach 102 m, the range of the longest indoor lasers. Source: ours.
 const MIN_UNIT_M: f64 = 0.05 / 16.0;
 /// Bit of a ray that ends at an obstacle.
 const HIT_BIT: u8 = 1;
-/// Bit of a ray whose end lies on one surface with the ray before.
+/// Bit of a ray whose end is on one surface with the previous ray's.
 const JOINED_BIT: u8 = 2;
-/// Bit of a ray that was seen free over its whole length.
+/// Bit of a ray that is free over its whole length.
 const WHOLE_BIT: u8 = 4;
 /// Bits below the number of skipped beams.
 const SKIPPED_SHIFT: u32 = 3;
@@ -128,7 +128,7 @@ impl StoredScan {
         self.spans.iter().map(move |span| RaySpan { ray: span.ray, from: part(span.from), to: part(span.to) })
     }
 
-    /// Bytes that it holds.
+    /// Bytes in use.
     pub(crate) fn bytes(&self) -> usize {
         size_of::<Self>() + size_of_val(&*self.rays) + self.sigmas.len() + size_of_val(&*self.spans)
     }

@@ -1,4 +1,4 @@
-//! Loop candidates along trajectories whose loops are known.
+//! Loop candidates along trajectories with known loops.
 
 use crate::loop_closing::candidates::candidates;
 use crate::pose_graph::{Constraint, RelativeUncertainty, reach};
@@ -31,7 +31,7 @@ fn odometry(poses: &[Pose2], variance: f64) -> Vec<Constraint> {
 }
 
 fn certain(count: usize) -> Vec<Option<RelativeUncertainty>> {
-    let none = RelativeUncertainty { covariance: Matrix3::identity() * 1e-4, way: 0.0 };
+    let none = RelativeUncertainty { covariance: Matrix3::identity() * 1e-4, path_length: 0.0 };
     vec![Some(none); count]
 }
 
@@ -59,7 +59,7 @@ proptest! {
     #[test]
     fn a_less_certain_robot_has_at_least_the_same_candidates(circumference in 25.0..90.0_f64, variance in 0.0..2.0_f64) {
         let (poses, lengths) = laps(circumference, 1.4 * circumference);
-        let uncertain = RelativeUncertainty { covariance: Matrix3::identity() * (1e-4 + variance), way: 0.0 };
+        let uncertain = RelativeUncertainty { covariance: Matrix3::identity() * (1e-4 + variance), path_length: 0.0 };
         let count = |reached: &[Option<RelativeUncertainty>]| -> usize {
             candidates(&poses, &lengths, reached).iter().map(|c| c.range.len()).sum()
         };
@@ -78,7 +78,7 @@ proptest! {
         prop_assert!((end.covariance[(0, 0)] - n * variance).abs() < 1e-9);
         prop_assert!((end.covariance[(1, 1)] - variance * (n + 0.01 * levers)).abs() < 1e-9);
         prop_assert!((end.covariance[(2, 2)] - 0.01 * n * variance).abs() < 1e-9);
-        prop_assert!((end.way - n).abs() < 1e-9);
+        prop_assert!((end.path_length - n).abs() < 1e-9);
     }
 
     /// Every covariance is symmetric and positive, and grows along the chain.

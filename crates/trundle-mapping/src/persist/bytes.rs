@@ -6,7 +6,7 @@ use trundle_core::Pose2;
 
 type Read<T> = Result<T, FilterFileError>;
 
-/// Bytes in the making.
+/// Writer of bytes.
 #[derive(Debug, Default)]
 pub(crate) struct Writer(pub(crate) Vec<u8>);
 
@@ -97,7 +97,7 @@ impl<'a> Reader<'a> {
         Ok(count)
     }
 
-    /// The number of one of `bound` things.
+    /// An index below `bound`.
     pub(crate) fn index(&mut self, bound: usize, what: &'static str) -> Read<usize> {
         let index = self.u32()? as usize;
         self.require(index < bound, what)?;

@@ -8,7 +8,7 @@ pub enum FilterFileError {
     /// The file is not a filter of this program.
     #[error("this is not a filter map of trundle (filter.map)")]
     Foreign,
-    /// Made by a version that this one does not read.
+    /// The format version is not supported.
     #[error("map of version {found}, expected {expected}")]
     Version {
         /// Version of the bytes.

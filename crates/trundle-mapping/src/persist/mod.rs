@@ -1,4 +1,4 @@
-//! Filters that last: saved as bytes, loaded with every number checked.
+//! Saved filters: written as bytes, loaded with a check of every number.
 //!
 //! | bytes | |
 //! |---|---|
@@ -8,7 +8,7 @@
 //! | 5 x 8 | cell size and sensor model, f64 |
 //! | | filter, particles, tiles (each once, runs packed), ancestry, history |
 //!
-//! All little endian.
+//! All numbers are little endian.
 
 mod bytes;
 mod error;
@@ -90,8 +90,8 @@ impl ParticleMapper {
         bytes
     }
 
-    /// Restores a saved filter, which continues with the next scan. For another run, whose odometry has another origin, call
-    /// [`ParticleMapper::kidnapped`] after it.
+    /// Restores a saved filter, which continues with the next scan. For a new run, with another origin of the odometry, call
+    /// [`ParticleMapper::kidnapped`] after loading.
     ///
     /// # Errors
     /// When the configuration is out of range, or the bytes are not a filter, of another version, damaged, cut off, made with other cells
@@ -163,7 +163,8 @@ impl ParticleMapper {
     }
 }
 
-/// Indices of the saved particles to load. If fewer are wanted, the heaviest in their order; if more, all of them cyclically.
+/// Indices of the saved particles to load. For a smaller number, the ones with the largest weights in their order; for a larger one, all of
+/// them cyclically.
 fn chosen(log_weights: &[f64], wanted: usize) -> Vec<usize> {
     let count = log_weights.len();
     let mut order: Vec<usize> = (0..count).collect();

@@ -74,7 +74,7 @@ fn every_truncation_is_an_error() {
     assert!(matches!(error, FilterFileError::Content { .. }), "{error}");
 }
 
-/// A wrong number with the right checksum is refused or read, without a panic; a filter that was read can be saved and used.
+/// A wrong number with a correct checksum is refused or read, without a panic. A filter that was read can be saved and used.
 #[test]
 fn no_changed_byte_makes_loading_panic() {
     let bytes = filter().save();

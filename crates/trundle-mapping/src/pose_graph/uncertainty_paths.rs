@@ -11,8 +11,8 @@ use trundle_core::Pose2;
 pub(crate) struct RelativeUncertainty {
     /// Covariance (m, m, rad) in the map's axes.
     pub(crate) covariance: Matrix3<f64>,
-    /// Length of the path along the ties, m.
-    pub(crate) way: f64,
+    /// Length of the path along the constraints, m.
+    pub(crate) path_length: f64,
 }
 
 /// Covariance of every pose relative to pose `from`, composed along the path of constraints with the smallest covariance (\[Olson09b\]): an
@@ -22,7 +22,7 @@ pub(crate) fn reach(
     constraints: &[Constraint],
     from: usize,
 ) -> Vec<Option<RelativeUncertainty>> {
-    let starts = first_ties(poses.len(), constraints);
+    let starts = first_constraints(poses.len(), constraints);
     let mut best: Vec<Option<RelativeUncertainty>> = vec![None; poses.len()];
     let mut heap =
         BinaryHeap::from([Entry { cost: 0.0, pose: from as u32, reached: RelativeUncertainty::HERE }]);
@@ -47,7 +47,7 @@ pub(crate) fn reach(
 
 impl RelativeUncertainty {
     const HERE: Self =
-        Self { covariance: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), way: 0.0 };
+        Self { covariance: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), path_length: 0.0 };
 
     /// Position and heading in one number: one radian counts as one metre.
     fn cost(&self) -> f64 {
@@ -72,17 +72,20 @@ impl RelativeUncertainty {
         if !forward {
             noise = lever * noise * lever.transpose();
         }
-        Self { covariance: lever * self.covariance * lever.transpose() + noise, way: self.way + way.norm() }
+        Self {
+            covariance: lever * self.covariance * lever.transpose() + noise,
+            path_length: self.path_length + way.norm(),
+        }
     }
 }
 
-struct FirstTies {
+struct FirstConstraints {
     first: Vec<usize>,
     constraints: Vec<u32>,
 }
 
 /// The constraints at each pose.
-fn first_ties(count: usize, constraints: &[Constraint]) -> FirstTies {
+fn first_constraints(count: usize, constraints: &[Constraint]) -> FirstConstraints {
     let mut first = vec![0; count + 1];
     for constraint in constraints {
         first[constraint.from as usize + 1] += 1;
@@ -99,7 +102,7 @@ fn first_ties(count: usize, constraints: &[Constraint]) -> FirstTies {
             next[end] += 1;
         }
     }
-    FirstTies { first, constraints: of }
+    FirstConstraints { first, constraints: of }
 }
 
 struct Entry {
@@ -123,7 +126,7 @@ impl PartialOrd for Entry {
 }
 
 impl Ord for Entry {
-    /// The least cost first; of equals the lower number.
+    /// The smallest cost first; of equal costs the lower number.
     fn cmp(&self, other: &Self) -> Ordering {
         other.cost.total_cmp(&self.cost).then(other.pose.cmp(&self.pose))
     }

@@ -10,12 +10,12 @@ use trundle_core::Pose2;
 pub(crate) struct AbsolutePose {
     /// map_from_base, cells and rad.
     pub(crate) pose: Pose2,
-    /// Cells, cells, rad; map frame.
+    /// Covariance: cells, cells, rad; map frame.
     pub(crate) covariance: Matrix3<f64>,
 }
 
 impl AbsolutePose {
-    /// With the base at `map_from_base` by the odometry, m and rad. `None` if the configuration has no `pose_prior`.
+    /// The prior of a base at `map_from_base` by the odometry, m and rad. `None` if the configuration has no `pose_prior`.
     pub(crate) fn new(config: &ParticleConfig, map_from_base: Pose2) -> Option<Self> {
         let prior = config.pose_prior.as_ref()?;
         let sigma = Vector3::new(prior.shift, prior.shift, prior.turn);

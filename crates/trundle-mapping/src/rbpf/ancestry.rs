@@ -2,12 +2,12 @@
 
 use trundle_core::{Pose2, Stamp};
 
-/// The poses of all particles through time, with who descends from whom.
+/// The poses of all particles over time, with the parent of each.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Ancestry {
-    /// Poses that all particles share: up to their last common ancestor.
+    /// Poses up to the last common ancestor of all particles.
     pub(crate) shared: Vec<(Stamp, Pose2)>,
-    /// Those since.
+    /// Poses since the last common ancestor.
     pub(crate) columns: Vec<Column>,
 }
 
@@ -16,15 +16,15 @@ pub(crate) struct Ancestry {
 pub(crate) struct Column {
     pub(crate) stamp: Stamp,
     pub(crate) poses: Vec<Pose2>,
-    /// Which particle of the column before each descends from.
+    /// Parent of each particle in the previous column.
     pub(crate) parents: Vec<u16>,
 }
 
-/// Columns between two searches for a common ancestor. Source: ours.
+/// Number of columns between two searches for a common ancestor. Source: ours.
 const FOLD_INTERVAL_COLUMNS: usize = 64;
 
 impl Ancestry {
-    /// Notes the poses of all particles; `parents` as of the resampling before.
+    /// Appends the poses of all particles; `parents` are those of the last resampling.
     pub(crate) fn push(&mut self, stamp: Stamp, poses: impl Iterator<Item = Pose2>, parents: &[u16]) {
         self.columns.push(Column { stamp, poses: poses.collect(), parents: parents.to_vec() });
         if self.columns.len().is_multiple_of(FOLD_INTERVAL_COLUMNS) {
@@ -43,13 +43,13 @@ impl Ancestry {
         self.shared.iter().copied().chain(own.into_iter().rev()).collect()
     }
 
-    /// One trajectory for all particles from here on.
+    /// Replaces all trajectories by one.
     pub(crate) fn replace(&mut self, trajectory: Vec<(Stamp, Pose2)>) {
         self.shared = trajectory;
         self.columns.clear();
     }
 
-    /// Lets the poses go for whose number `goes` is true (not the last), of all particles.
+    /// Drops the poses of all particles at the times marked in `goes`, except the last.
     pub(crate) fn thin(&mut self, goes: &[bool]) {
         let first = self.shared.len();
         let mut k = 0;
@@ -60,7 +60,7 @@ impl Ancestry {
         let mut gone: Option<Vec<u16>> = None;
         let columns = std::mem::take(&mut self.columns).into_iter().enumerate();
         for (k, mut column) in columns {
-            // Whose parent went descends from its parent.
+            // A particle with a dropped parent descends from that parent's parent.
             if let Some(parents) = gone.take() {
                 column.parents.iter_mut().for_each(|parent| *parent = parents[usize::from(*parent)]);
             }
@@ -72,12 +72,12 @@ impl Ancestry {
         }
     }
 
-    /// Poses through time.
+    /// Number of poses over time.
     pub(crate) fn len(&self) -> usize {
         self.shared.len() + self.columns.len()
     }
 
-    /// Adds a column as it was.
+    /// Appends a saved column.
     pub(crate) fn push_column(&mut self, stamp: Stamp, poses: Vec<Pose2>, parents: Vec<u16>) {
         self.columns.push(Column { stamp, poses, parents });
     }
@@ -88,7 +88,7 @@ impl Ancestry {
         self.shared.capacity() * size_of::<(Stamp, Pose2)>() + self.columns.iter().map(column).sum::<usize>()
     }
 
-    /// Keeps one pose a column up to the last common ancestor.
+    /// Keeps one pose per column up to the last common ancestor.
     fn settle(&mut self) {
         let Some(last) = self.columns.last() else { return };
         let mut alive: Vec<usize> = (0..last.poses.len()).collect();

@@ -26,11 +26,11 @@ pub(crate) struct LoopCorrector {
     pub(crate) loop_closer: LoopCloser,
     /// Map along a corrected trajectory, in progress.
     pub(crate) redraw: Option<MapRedraw>,
-    /// Number of stored scans above which those of crowded places are dropped.
+    /// Number of stored scans above which redundant ones are dropped.
     crowded_at: usize,
 }
 
-/// Number of stored scans up to which all are kept: a drive of a kilometre. Source: ours.
+/// Smallest number of stored scans from which redundant ones are dropped: a drive of a kilometre. Source: ours.
 const MIN_CROWDED_SCANS: usize = 4000;
 
 impl Default for LoopCorrector {
@@ -45,9 +45,9 @@ impl Default for LoopCorrector {
 }
 
 impl LoopCorrector {
-    /// Searches for a loop every 2 m of path, `driven` m of which are new. A closed loop corrects trajectory and map of the best
-    /// particle: some scans are redrawn with each call, then all particles continue from there. Returns the largest displacement of
-    /// a pose, m, when a correction is complete.
+    /// Searches for a loop every 2 m of path; `driven` m are new. A closed loop corrects trajectory and map of the best particle. Some
+    /// scans are redrawn with each call; then all particles continue from the corrected state. Returns the largest displacement of a pose,
+    /// m, when a correction is complete.
     pub(crate) fn close_loops(
         &mut self,
         models: &FilterModels,
@@ -97,7 +97,7 @@ impl LoopCorrector {
         (cells, Some(self.apply_redraw(models, set, redraw)))
     }
 
-    /// Bounds the number of stored scans: by the area that they show, and at last by `max_scans`.
+    /// Bounds the number of stored scans by the area that they cover, and finally by `max_scans`.
     pub(crate) fn thin_history(&mut self, models: &FilterModels, set: &mut ParticleSet) {
         let (max_scans, stored) = (models.config.max_scans, self.history.scans.len());
         if stored > self.crowded_at {

@@ -6,8 +6,8 @@ use trundle_grid::{MapperConfig, PublishedGrid, Thresholds, log_odds};
 
 /// Three-valued grid of a map of tiles.
 ///
-/// The publisher keeps the last published map. Tiles that this map shares with the next one have not changed, so only written
-/// tiles are updated, also when another particle has become the best.
+/// The publisher keeps the last published map. Tiles that this map shares with the next one have not changed, so only written tiles are
+/// updated, even after a change of the best particle.
 #[derive(Debug, Clone)]
 pub(crate) struct MapPublisher {
     shown: TileMap,

@@ -26,14 +26,14 @@ use trundle_grid::tiles::{RayUpdateScratch, TileMap, tile_bytes};
 
 /// Grid maps from laser scans and odometry by a Rao-Blackwellised particle filter \[Grisetti07\].
 ///
-/// Problem: estimate trajectory and map together. Each particle is a trajectory with the map that follows from it. A scan moves
-/// each particle by the improved proposal (odometry and scan match), updates its map, and weights it by the likelihood of the scan
-/// in that map. Particles are resampled when few of them hold the weight. Copies share the tiles of their maps until one writes.
-/// Loops longer than the particles can span are searched for, verified, and corrected in trajectory and map.
+/// Problem: estimate trajectory and map together. Each particle is a trajectory with its map. A scan moves each particle by the improved
+/// proposal (odometry and scan match), updates its map, and weights it by the likelihood of the scan in that map. Particles are resampled
+/// when few of them have almost all the weight. Copies share the tiles of their maps until one writes. Loops too long for the particles are
+/// searched, verified, and corrected in trajectory and map.
 ///
-/// Cost: for each scan and particle one match (linear in the beams) and one ray update (linear in the cells that the beams cross);
-/// for each 2 m of path one loop search, n log n in the stored scans (at most `max_scans`). After a loop closure the map is redrawn,
-/// four million cells with each scan. Nothing else grows with the length of the run.
+/// Cost: for each scan and particle one match (linear in the beams) and one ray update (linear in the cells that the beams cross); for each
+/// 2 m of path one loop search, n log n in the stored scans (at most `max_scans`). After a loop closure the map is redrawn, four million
+/// cells with each scan. No other cost grows with the length of the run.
 #[derive(Debug)]
 pub struct ParticleMapper {
     pub(crate) models: FilterModels,
@@ -47,11 +47,11 @@ pub struct ParticleMapper {
     pub(crate) loops: LoopCorrector,
     pub(crate) gate: UpdateGate,
     pub(crate) odometry: OdometryModel,
-    /// Search for the robot in a loaded map, until it is found.
+    /// Search for the robot in a loaded map; `None` after the robot is found.
     pub(super) global_search: Option<GlobalSearch>,
-    /// The pyramid of the map that is searched, which does not change meanwhile.
+    /// The pyramid of the searched map, which does not change during the search.
     pub(super) search_pyramid: Option<Pyramid>,
-    /// The loaded map, once the robot is found in it.
+    /// The loaded map; `None` until the robot is found in it.
     pub(crate) given: Option<GivenMap>,
     /// Running mean of ln p(z | m, x) of a point over the last scans, nats.
     pub(crate) expected_log_likelihood: f64,
@@ -141,7 +141,7 @@ impl ParticleMapper {
         let covariance = step_covariance(proposal.as_ref(), resolution);
         self.loops.history.push(StoredScan::new(&self.models.config, &self.points), covariance);
         if resampled {
-            // One past the particles' own streams.
+            // The stream after those of the particles.
             let mut rng = ParticleRng::new(self.seed, self.updates, self.set.len());
             self.set.resample(rng.uniform());
         }
@@ -221,7 +221,7 @@ impl ParticleMapper {
         self.set.trajectory().split_off(self.set.first_pose_of_run)
     }
 
-    /// The best particle's poses at all scans of this run that were processed, also at those that are not stored any more.
+    /// The best particle's poses at all processed scans of this run, including dropped ones.
     pub fn whole_trajectory(&self) -> Vec<(Stamp, Pose2)> {
         self.loops.history.with_left_out(&self.set.trajectory(), self.set.first_pose_of_run)
     }
@@ -254,8 +254,8 @@ impl ParticleMapper {
         &self.set.best().map
     }
 
-    /// Declares the pose in the map unknown, as after loading the map for another run. The robot is searched for, and the map does
-    /// not change until it is found. The trajectory of a new run begins.
+    /// Declares the pose in the map unknown, as after loading the map for another run. A search for the robot begins, and the map does not
+    /// change until the robot is found. The trajectory of a new run begins.
     pub fn kidnapped(&mut self) {
         self.finish();
         self.search_anew();
@@ -263,14 +263,14 @@ impl ParticleMapper {
         self.set.first_pose_of_run = self.loops.history.scans.len();
     }
 
-    /// The next scans are searched for in the map. A wrong place would contradict the given map, and mapping pause again.
+    /// Starts a search of the next scans in the map. A wrong place would contradict the given map and pause mapping again.
     fn search_anew(&mut self) {
         (self.global_search, self.search_pyramid) = (Some(GlobalSearch::default()), None);
         self.gate = UpdateGate::default();
         self.odometry.map_from_odom = None;
     }
 
-    /// Searches the best particle's map for the robot; all particles continue from where it is found.
+    /// Searches the best particle's map for the robot; all particles continue from the found pose.
     fn relocalize(&mut self, stamp: Stamp) -> ScanUpdate {
         let map = self.set.best().map.clone();
         if self.search_pyramid.is_none() {
@@ -284,7 +284,7 @@ impl ParticleMapper {
         }
     }
 
-    /// Puts all particles to the place that was found in `map`, the best one's.
+    /// Moves all particles to the place found in `map`, the best particle's map.
     fn continue_at(&mut self, stamp: Stamp, found: &CloudMatch, map: TileMap) -> ScanUpdate {
         (self.global_search, self.search_pyramid) = (None, None);
         let mut trajectory = self.set.trajectory();
@@ -292,7 +292,7 @@ impl ParticleMapper {
         let history = &mut self.loops.history;
         self.given.get_or_insert_with(|| GivenMap::new(map.clone(), history.scans.len()));
         history.measure(&trajectory.iter().map(|(_, pose)| *pose).collect::<Vec<_>>());
-        // The map constrains the two runs to each other.
+        // The common map constrains the two runs relative to each other.
         let variances = Vector3::new(NEXT_RUN_VARIANCE_M2, NEXT_RUN_VARIANCE_M2, NEXT_RUN_VARIANCE_RAD2);
         let covariance = Matrix3::from_diagonal(&variances);
         history.push(StoredScan::new(&self.models.config, &self.points), covariance);
@@ -303,13 +303,13 @@ impl ParticleMapper {
         ScanUpdate::Found(pose)
     }
 
-    /// Contradiction of the last scans to the given map, if it has lasted long enough. The last scan is not stored yet.
+    /// Contradiction of the last scans with the given map, if long enough. The last scan is not stored yet.
     fn contradiction(&mut self, stamp: Stamp) -> Option<Streak> {
         let (pose, scans) = (self.set.best().pose, self.loops.history.scans.len());
         self.given.as_mut()?.check(&self.models, &self.points, pose, (stamp, scans))
     }
 
-    /// Takes the scans of a streak out of trajectory and map, and searches for the robot in the map without them.
+    /// Removes the scans of a streak from trajectory and map, and starts a search for the robot in the remaining map.
     fn pause(&mut self, streak: Streak) -> ScanUpdate {
         let stored = self.loops.history.scans.len();
         let removed_scans = stored - streak.scans_before;
@@ -323,7 +323,7 @@ impl ParticleMapper {
         ScanUpdate::Paused(MappingPause { since: streak.since, removed_scans })
     }
 
-    /// Compares further scans with the present map, as after a correction that moved the given one.
+    /// Replaces the given map by the present one, after a correction that moved the map.
     fn renew_given(&mut self) {
         if self.given.is_some() {
             self.given = Some(GivenMap::new(self.set.best().map.clone(), self.loops.history.scans.len()));

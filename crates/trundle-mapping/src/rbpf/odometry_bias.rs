@@ -4,17 +4,17 @@ use crate::rbpf::odometry_noise::Innovation;
 use nalgebra::{Matrix2, Vector2, Vector3};
 use trundle_core::Pose2;
 
-/// Systematic error of the odometry for each metre and each turn, estimated from the matches.
+/// Systematic error of the odometry per distance and per turn, estimated from the matches.
 ///
-/// Wheels of unequal size, a wrong wheelbase, a gyro's drift: such errors are the same at every step. They add up with the distance,
-/// where noise adds up with its root, and are the larger part on smooth floors \[Borenstein96\]. The model of the heading's error
-/// is a |distance| + b turn, that of the distance's error c distance. The least squares of the last steps give a, b and c, under a prior
-/// that they are 0, as for the means of \[Eliazar04\]'s motion model.
+/// Unequal wheels, a wrong wheelbase and a gyro's drift give the same error at every step. Systematic errors grow with the distance, noise
+/// with its root; the former dominate on smooth floors \[Borenstein96\]. The model of the heading's error is a |distance| + b turn, that of
+/// the distance's error c distance. The least squares of the last steps give a, b and c, under a prior that they are 0, as for the means of
+/// \[Eliazar04\]'s motion model.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct OdometryBias {
     /// Normal equations of (a, b): upper triangle, right side.
     turn: [f64; 5],
-    /// Of c.
+    /// Normal equation of c.
     way: [f64; 2],
 }
 
@@ -28,7 +28,7 @@ const DISTANCE_BIAS_SIGMA_PER_M: f64 = 0.03;
 const MEMORY_STEPS: f64 = 300.0;
 
 impl OdometryBias {
-    /// A motion by the odometry (m, rad) as it will have been.
+    /// A motion by the odometry (m, rad), corrected by the estimated bias.
     pub(crate) fn corrected(&self, motion: Pose2) -> Pose2 {
         let [_, _, turn] = self.error(motion).into();
         let stretch = 1.0 + self.stretch();
@@ -78,13 +78,13 @@ impl OdometryBias {
         self.way[1] / (self.way[0] + DISTANCE_BIAS_SIGMA_PER_M.powi(-2))
     }
 
-    /// The numbers it consists of, for saving.
+    /// The state as numbers, for saving.
     pub(crate) fn numbers(&self) -> [f64; 7] {
         let ([a, b, c, d, e], [f, g]) = (self.turn, self.way);
         [a, b, c, d, e, f, g]
     }
 
-    /// From its numbers; impossible ones restart the estimate.
+    /// Restores the state from its numbers; impossible numbers restart the estimate.
     pub(crate) fn from_numbers([a, b, c, d, e, f, g]: [f64; 7]) -> Self {
         let fair = [a, b, c, d, e, f, g].iter().all(|v| v.is_finite()) && a >= 0.0 && c >= 0.0 && f >= 0.0;
         if fair { Self { turn: [a, b, c, d, e], way: [f, g] } } else { Self::default() }

@@ -2,20 +2,19 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// How good the odometry is, learnt from what the matches make of it.
+/// Scale of the odometry's random errors, learnt from the scan matches.
 ///
-/// The configuration holds the errors of the worst usable odometry; a robot with a gyro may be ten times better. With errors that are
-/// too large, particles spread where a scan determines little. For each step that a match determines in
-/// all directions, e = (match - odometry)^2 / (configured variance) estimates the squared scale of the errors plus the variance
-/// of the match. The ratio of the two sums, each with exponential forgetting, is the scale (a moment estimate of the motion model's
-/// parameters, after \[Eliazar04\]).
+/// The configuration holds the errors of the worst usable odometry; a robot with a gyro may be ten times better. Too large errors spread
+/// the particles where a scan determines little. For each step that a match determines in all directions, e = (match - odometry)^2 /
+/// (configured variance) estimates the squared scale of the errors plus the variance of the match. The ratio of the two sums, each with
+/// exponential forgetting, is the scale (a moment estimate of the motion model's parameters, after \[Eliazar04\]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct OdometryNoise {
     shift: Moments,
     turn: Moments,
 }
 
-/// Sums of errors and of their weights; how many steps are in them.
+/// Sums of errors and of their weights, and the number of steps in them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Moments {
     errors: f64,
@@ -26,7 +25,7 @@ struct Moments {
 /// Difference between match and odometry in a step, base frame: cells, cells, rad.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Innovation {
-    /// From where the odometry led to where the hits alone would have it.
+    /// Displacement from the odometry's pose to the optimum of the hits alone.
     pub(crate) off: Vector3<f64>,
     /// Variances that remain after the match.
     pub(crate) open: Vector3<f64>,
@@ -52,7 +51,7 @@ impl Default for OdometryNoise {
 }
 
 impl OdometryNoise {
-    /// Takes a step in; `covariance`: the configured one of its motion.
+    /// Records a step; `covariance` is the configured one of the step's motion.
     pub(crate) fn learn(&mut self, step: &Innovation, covariance: &Matrix3<f64>) {
         for k in 0..3 {
             let variance = covariance[(k, k)];
@@ -72,20 +71,20 @@ impl OdometryNoise {
         self.turn.add(MAX_ERROR_SIGMAS * MAX_ERROR_SIGMAS, 1.0);
     }
 
-    /// A configured covariance of a motion made what it is by now.
+    /// The configured covariance of a motion, scaled by the learnt errors.
     pub(crate) fn scaled(&self, covariance: &Matrix3<f64>) -> Matrix3<f64> {
         let (shift, turn) = (self.shift.scale(), self.turn.scale());
         let scale = Matrix3::from_diagonal(&Vector3::new(shift, shift, turn));
         scale * covariance * scale
     }
 
-    /// The numbers it consists of, for saving.
+    /// The state as numbers, for saving.
     pub(crate) fn numbers(&self) -> [f64; 6] {
         let Self { shift, turn } = self;
         [shift.errors, shift.weights, shift.steps, turn.errors, turn.weights, turn.steps]
     }
 
-    /// From its numbers; impossible ones restart the estimate.
+    /// Restores the state from its numbers; impossible numbers restart the estimate.
     pub(crate) fn from_numbers([a, b, c, d, e, f]: [f64; 6]) -> Self {
         let new = Self {
             shift: Moments { errors: a, weights: b, steps: c },

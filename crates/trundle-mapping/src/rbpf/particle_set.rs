@@ -48,7 +48,7 @@ impl ParticleSet {
         self.particles.len()
     }
 
-    /// Particle of the greatest weight, the first of equals.
+    /// Particle with the largest weight; the first of equal ones.
     pub(crate) fn best(&self) -> &Particle {
         &self.particles[self.best_index()]
     }
@@ -61,7 +61,7 @@ impl ParticleSet {
         (1..particles.len()).fold(0, better)
     }
 
-    /// Shifts the log-weights so that the greatest is 0. Returns the effective number of particles.
+    /// Shifts the log-weights so that the largest is 0. Returns the effective number of particles.
     pub(crate) fn normalize(&mut self) -> f64 {
         let greatest = self.particles.iter().map(|p| p.log_weight).fold(f64::NEG_INFINITY, f64::max);
         for particle in &mut self.particles {

@@ -2,7 +2,7 @@
 
 use trundle_core::{Pose2, Stamp};
 
-/// The poses at all stamps of `odometry` (odom_from_base, by rising stamps), from those of some of them.
+/// The poses at all stamps of `odometry` (odom_from_base, by rising stamps), from the poses at some of these stamps.
 ///
 /// Between two processed scans the trajectory follows the odometry, and its error at the second scan is distributed over the time in
 /// between. After the last scan the odometry continues the trajectory. Stamps before the first processed scan are left out.

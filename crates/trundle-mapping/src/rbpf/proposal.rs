@@ -27,32 +27,32 @@ pub(crate) struct Proposer<'a> {
     pub(crate) points: &'a ScanPoints,
     /// Covariance of the motion, base frame before it: cells, rad.
     pub(crate) motion_covariance: Matrix3<f64>,
-    /// Where the robot is by odometry that does not drift.
+    /// Pose of the robot by odometry without drift.
     pub(crate) anchor: Option<AbsolutePose>,
     /// Mean ln p(z | m, x) of a point in the last scans.
     pub(crate) expected_log_likelihood: f64,
 }
 
-/// Where a particle goes.
+/// Proposed pose of a particle.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Proposal {
-    /// Cells, rad.
+    /// Drawn pose: cells, rad.
     pub(crate) pose: Pose2,
     /// ln of the sum of the samples' weights.
     pub(crate) log_weight: f64,
     /// Part of the points that the map explains, 0 to 1.
     pub(crate) explained: f64,
-    /// Part of the points on free ground with no obstacle near, 0 to 1.
+    /// Fraction of the points on free ground without a near obstacle, 0 to 1.
     pub(crate) contradicted: f64,
     /// Mean ln p(z | m, x) of the points at the optimum.
     pub(crate) per_point: f64,
     /// Whether the step's odometry counted as wrong.
     pub(crate) slipped: bool,
-    /// Directions left to the odometry, 0 to 3.
+    /// Number of directions determined by the odometry alone, 0 to 3.
     pub(crate) degenerate: usize,
     /// Covariance of the drawn Gaussian (cells, cells, rad), map frame.
     pub(crate) covariance: Matrix3<f64>,
-    /// Difference between match and odometry, where the match determines all directions.
+    /// Difference between match and odometry, if the match determines all directions.
     pub(crate) innovation: Option<Innovation>,
 }
 
@@ -87,9 +87,9 @@ impl Proposer<'_> {
 
     /// Draws the pose of a particle that moved from `before` to `guess` by the odometry (cells, rad, of the map).
     ///
-    /// There are two hypotheses: the odometry erred within its covariance; or its wheels slipped or its messages were lost (`slip_rate`),
-    /// and the robot is near the odometry's path. The second is tested where it would be the likelier one if the scan fitted there as
-    /// scans usually do: at `far`, the result of [`Proposer::far`] for one particle of those that share most of their past.
+    /// There are two hypotheses. First: the odometry's error is within its covariance. Second: wheels slipped or messages were lost
+    /// (`slip_rate`), and the robot is near the odometry's path. The second is tested at the poses `far`, where it would be likelier with a
+    /// usual fit of the scan. `far` is the result of [`Proposer::far`] for one of the particles with almost the same past.
     pub(crate) fn propose(
         &self,
         (map, far): (&TileMap, &[Pose2]),
@@ -109,8 +109,8 @@ impl Proposer<'_> {
         self.sample(&near, 0.0, rng)
     }
 
-    /// Poses of a particle from `before` that lie far from the odometry's pose and fit the scan, in the frame of `before`; none
-    /// where the scan fits near the odometry, or nowhere.
+    /// Poses of a particle from `before` that are far from the odometry's pose and fit the scan, in the frame of `before`. Empty if the
+    /// scan fits near the odometry, or nowhere.
     pub(crate) fn far(
         &self,
         map: &TileMap,
@@ -141,8 +141,8 @@ impl Proposer<'_> {
         MotionPrior::slipped(before, guess, config.slip_shift / config.map.resolution, config.slip_turn)
     }
 
-    /// The log-posterior (but for the normalisation of the slip's prior) above which a place far away is the likelier one; `None`
-    /// where no scan as expected_log_likelihood reaches it.
+    /// The log-posterior (without the normalisation of the slip's prior) above which a far place is likelier; `None` if a scan with
+    /// expected_log_likelihood cannot reach it.
     fn needed(&self, near: &Attempt<'_>, slip: &MotionPrior) -> Option<f64> {
         let expected_log_likelihood =
             self.expected_log_likelihood * self.points.points.len() as f64 / self.config.correlation;
@@ -150,8 +150,8 @@ impl Proposer<'_> {
         (expected_log_likelihood > needed).then_some(needed)
     }
 
-    /// The best poses under a wide prior, by branch and bound: those that can have the log-posterior `needed` (but for the
-    /// prior's normalisation), at most two.
+    /// The best poses under a wide prior, by branch and bound: at most two that can have the log-posterior `needed` (without the prior's
+    /// normalisation).
     fn search_far(&self, map: &TileMap, prior: &MotionPrior, needed: f64) -> Vec<Pose2> {
         let window = self.window(map, prior);
         let (cols, rows) = window.size();
@@ -170,7 +170,7 @@ impl Proposer<'_> {
             sigma: (sigma(0), sigma(1), sigma(2)),
             gain: -self.config.outliers.ln() / self.config.correlation * every as f64,
         };
-        // A point that fits nothing is no better than one on unknown ground.
+        // An outlier point scores as a point on unknown ground.
         let unseen =
             0.5 * self.config.outliers.ln() * self.points.points.len() as f64 / self.config.correlation;
         let least = (needed - unseen).max(0.0);
@@ -183,7 +183,7 @@ impl Proposer<'_> {
         places.into_iter().map(|place| place.pose).collect()
     }
 
-    /// The best top near one of these places, of which there is one.
+    /// The best local optimum near these places.
     fn climb_far<'m>(
         &self,
         map: &'m TileMap,
@@ -316,7 +316,7 @@ impl Proposer<'_> {
             let off = y - mean;
             covariance += off * off.transpose() * ((log - greatest).exp() / sum);
         }
-        // Directions without information keep the odometry, whatever the samples give.
+        // Directions without information keep the odometry, independent of the samples.
         let free = Matrix3::identity() - held;
         let mean = held * mean;
         let odometry_covariance =

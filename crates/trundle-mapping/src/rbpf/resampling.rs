@@ -1,9 +1,9 @@
 //! Low-variance resampling and the effective number of particles.
 
-/// Which particles live on: `parents[i]` is whose copy particle i becomes. `uniform` in [0, 1).
+/// Parents of the resampled particles: particle i becomes a copy of `parents[i]`. `uniform` in [0, 1).
 ///
-/// Low-variance resampling (\[Thrun05\], table 4.4): one random number, equal strides through the weights. Survivors
-/// keep their places, so that only the dying are overwritten.
+/// Low-variance resampling (\[Thrun05\], table 4.4): one random number, equal strides through the weights. Survivors keep their indices, so
+/// that only dropped particles are overwritten.
 pub(crate) fn low_variance(weights: &[f64], uniform: f64) -> Vec<u16> {
     let count = weights.len();
     let total: f64 = weights.iter().sum();

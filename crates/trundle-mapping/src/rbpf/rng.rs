@@ -1,10 +1,10 @@
-//! Random numbers that do not depend on the order of the work.
+//! Random numbers independent of the order of the work.
 
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Random numbers that depend on seed, update and particle alone, so not on the order of the work.
+/// Random numbers that depend only on seed, update and particle, not on the order of the work.
 #[derive(Debug)]
 pub(crate) struct ParticleRng(ChaCha8Rng);
 
@@ -16,7 +16,7 @@ impl ParticleRng {
         Self(rng)
     }
 
-    /// In [0, 1).
+    /// Uniform in [0, 1).
     pub(crate) fn uniform(&mut self) -> f64 {
         self.0.random()
     }

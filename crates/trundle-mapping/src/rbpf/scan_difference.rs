@@ -1,16 +1,16 @@
-//! Difference of two scans beam by beam: motion that the odometry does not tell.
+//! Difference of two scans beam by beam, to detect motion that the odometry missed.
 
 use crate::particle_config::ParticleConfig;
 use trundle_core::{Beam, Scan};
 
-/// Share of the compared beams that differ from which on a robot has moved \[1\]. A person in view changes fewer. Source: ours.
+/// Smallest fraction of differing beams that shows a motion of the robot \[1\]. A person in view changes fewer beams. Source: ours.
 const MIN_CHANGED_SHARE: f64 = 0.3;
-/// Difference of two ranges of one beam that is no noise \[sigmas of a range\]. Source: ours, three sigmas of a difference.
+/// Smallest difference of two ranges of one beam beyond noise \[sigmas of a range\]. Source: ours, three sigmas of a difference.
 const MIN_CHANGE_SIGMAS: f64 = 4.3;
-/// Number of beams with a return in both scans below which they are not compared. Source: ours.
+/// Fewest beams with a return in both scans for a comparison. Source: ours.
 const MIN_COMPARED_BEAMS: usize = 20;
 
-/// The ranges of a scan, m; not a number without a return.
+/// The ranges of a scan, m; NaN without a return.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ScanRanges(Vec<f32>);
 
@@ -19,7 +19,7 @@ impl ScanRanges {
         Self(scan.beams().iter().map(range).collect())
     }
 
-    /// Whether so many beams of `scan` differ that the laser has moved since.
+    /// Whether enough beams of `scan` differ to show a motion of the laser.
     pub(crate) fn differ_from(&self, config: &ParticleConfig, scan: &Scan) -> bool {
         let pairs = self.0.iter().zip(scan.beams()).map(|(before, beam)| (*before, range(beam)));
         let (mut compared, mut changed) = (0, 0);

@@ -9,24 +9,24 @@ use trundle_core::{Pose2, Stamp};
 pub enum ScanUpdate {
     /// The robot has hardly moved: the scan was not used.
     Still,
-    /// Refused: what is wrong with it.
+    /// The scan was refused.
     Refused(Refusal),
     /// The scan moved the particles and is in their maps.
     Processed(Processed),
-    /// Where the robot is in the map is not known, after [`crate::ParticleMapper::kidnapped`] or a pause: the map does not change.
+    /// The robot's pose in the map is unknown, after [`crate::ParticleMapper::kidnapped`] or a pause: the map does not change.
     Lost(Lost),
-    /// The last scans contradict the map that the run began with. They are taken out of the map again, and the robot is searched for.
+    /// The last scans contradict the loaded map. They are removed from the map, and a search for the robot begins.
     Paused(MappingPause),
-    /// It is known from now on.
+    /// The search found this pose.
     Found(Pose2),
 }
 
-/// Scans that contradict the map that the run began with: the robot was carried away, or the map is another one.
+/// Scans that contradict the loaded map: the robot was carried away, or the map is of another place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MappingPause {
-    /// Stamp of the first of them.
+    /// Stamp of the first contradicting scan.
     pub since: Stamp,
-    /// Number of scans that were processed before and are taken out of the map again.
+    /// Number of processed scans that are removed from the map.
     pub removed_scans: usize,
 }
 
@@ -47,11 +47,11 @@ pub enum Refusal {
 pub struct Processed {
     /// Part of the hits that the best particle's map explains, 0 to 1.
     pub explained: f64,
-    /// Part of them that lies on free ground of it with no obstacle near, 0 to 1.
+    /// Fraction of the hits on free ground of that map without a near obstacle, 0 to 1.
     pub contradicted: f64,
-    /// Directions that the best particle left to the odometry, 0 to 3: 3 is no overlap with the map.
+    /// Number of directions that the odometry alone determined, 0 to 3: 3 means no overlap with the map.
     pub degenerate: usize,
-    /// Covariance of the Gaussian that the best particle's pose was drawn from: m, m, rad, map frame.
+    /// Covariance of the Gaussian of the best particle's pose: m, m, rad, map frame.
     pub covariance: Matrix3<f64>,
     /// Effective number of particles before resampling.
     pub effective: f64,
@@ -61,6 +61,6 @@ pub struct Processed {
     pub jumped: bool,
     /// Whether the scan showed that the odometry was wrong: slipping wheels, lost messages.
     pub slipped: bool,
-    /// Largest shift of a pose, m, where a loop that was closed some scans before corrected trajectory and map.
+    /// Largest displacement of a pose, m, if this scan completed the correction by a loop.
     pub loop_correction_m: Option<f64>,
 }

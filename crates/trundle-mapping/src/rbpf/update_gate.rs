@@ -10,14 +10,14 @@ use trundle_core::{Pose2, Scan, Stamp};
 /// Maximum distance of the odometry from its origin \[m\]. A farther pose is refused. Source: ours.
 const MAX_ODOMETRY_DISTANCE_M: f64 = 1e6;
 
-/// Selects the scans to process: those after some motion or time, and, where the odometry stands still, those that differ.
+/// Selects the scans to process: after some motion or time, or, without odometry motion, if the scan differs.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct UpdateGate {
     /// The last scan that was processed.
     pub(crate) last: Option<LastScan>,
     /// The ranges of that scan.
     ranges: ScanRanges,
-    /// A refused pose that was too far off, and the number of poses in a row that agree with it.
+    /// A refused far pose, and the number of successive poses that agree with it.
     doubted: Option<(LastScan, usize)>,
 }
 
@@ -25,7 +25,7 @@ pub(crate) struct UpdateGate {
 /// Source: ours.
 const MIN_AGREEING_POSES: usize = 5;
 
-/// When and where by the odometry.
+/// Stamp and pose of a scan by the odometry.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct LastScan {
     pub(crate) stamp: Stamp,
@@ -33,7 +33,7 @@ pub(crate) struct LastScan {
 }
 
 impl LastScan {
-    /// Whether the robot cannot have got from here to there at `jump` m per second.
+    /// Whether `there` is too far for a robot of `jump` m/s.
     fn is_out_of_reach(&self, there: &Self, jump: f64) -> bool {
         let way = self.odom_from_base.distance(&there.odom_from_base);
         way > jump * (there.stamp - self.stamp).max(1.0)
@@ -45,17 +45,17 @@ impl LastScan {
 pub(crate) struct OdometryStep {
     pub(crate) first: bool,
     pub(crate) motion: Pose2,
-    /// m, m, rad, in the base's frame.
+    /// Covariance: m, m, rad, in the base's frame.
     pub(crate) covariance: Matrix3<f64>,
-    /// Whether the odometry jumped: its step is then unknown.
+    /// Whether the odometry jumped; the step is then unknown.
     pub(crate) jumped: bool,
-    /// Whether the odometry stood still while the scans differ: the robot has none, or is pushed.
+    /// Whether the odometry did not move while the scans differ: no odometry, or a pushed robot.
     pub(crate) silent: bool,
 }
 
 impl UpdateGate {
-    /// The step to a scan that is to be processed; `None` if the robot has hardly moved. Where each pose counts, not the steps
-    /// alone, poses that are too far off are refused.
+    /// The step to a scan to be processed; `None` if the robot has hardly moved. With absolute poses, a pose that is too far away is
+    /// refused.
     pub(crate) fn pass(
         &mut self,
         config: &ParticleConfig,
@@ -113,7 +113,7 @@ impl UpdateGate {
         self.ranges = ScanRanges::of(scan);
     }
 
-    /// Whether a pose is farther off than the robot can have moved, and too few others in a row agree with it.
+    /// Whether a pose is too far for the robot's speed, and too few successive poses agree with it.
     fn is_wild(&mut self, last: &LastScan, now: LastScan, jump: f64) -> bool {
         let doubted = self.doubted.take();
         if !last.is_out_of_reach(&now, jump) {

@@ -51,13 +51,13 @@ const SCAN_SQUARE_M: f64 = 0.5;
 const SMALL_SQUARE_M: f64 = 0.1;
 /// Width of the sectors of heading by which entries are thinned \[rad\]. Source: ours.
 const HEADING_SECTOR_RAD: f64 = std::f64::consts::FRAC_PI_6;
-/// Maximum number of scans of one square and sector: as many as one pass through it takes. Older scans are dropped. Source: ours.
+/// Maximum number of scans of one square and sector, that of one pass. Older scans are dropped. Source: ours.
 const MAX_SCANS_PER_SQUARE: u32 = 5;
 /// Minimum cost of redrawing an entry \[cells\]. Source: ours.
 const MIN_ENTRY_COST_CELLS: usize = 200;
 
 impl LogEntry {
-    /// The stored entry that makes a new one of `kind` at `map_from_base` unnecessary: the last of its kind, if near enough. A touch is
+    /// The stored entry that makes a new one of `kind` at `map_from_base` redundant: the last of its kind, if near enough. A touch is
     /// always stored.
     pub(crate) fn repeated(kept: &[Self], map_from_base: Pose2, kind: EntryKind) -> Option<usize> {
         let last = kept.iter().rposition(|kept| kept.data.kind() == kind)?;
@@ -83,7 +83,7 @@ impl LogEntry {
         MIN_ENTRY_COST_CELLS
     }
 
-    /// Kind, place and direction of the entry, and the sufficient number of such entries.
+    /// Kind, place and direction of the entry, and the maximum number of such entries.
     fn place(&self) -> (Place, u32) {
         let (kind, side, enough) = match self.data {
             EntryData::Scan(_) => (0, SCAN_SQUARE_M, MAX_SCANS_PER_SQUARE),
@@ -99,7 +99,7 @@ impl LogEntry {
 /// Kind, column, row and direction.
 type Place = (u8, i64, i64, i64);
 
-/// Drops entries with enough newer ones at the same place and in the same direction. The log then grows with the area, not with time.
+/// Drops entries with enough newer ones of the same place and direction. The log therefore grows with the area, not with time.
 pub(crate) fn thin(kept: &mut Vec<LogEntry>) {
     let mut newer: HashMap<Place, u32> = HashMap::new();
     let mut stays: Vec<bool> = kept

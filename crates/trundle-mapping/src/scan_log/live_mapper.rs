@@ -20,7 +20,7 @@ pub struct LiveMapper {
     known: LogOddsGrid,
     kept: Vec<LogEntry>,
     snapshots: Vec<Snapshot>,
-    /// Kept things between snapshots.
+    /// Number of log entries between snapshots.
     every: usize,
     /// Number of stored entries at which the log is thinned.
     thin_at: usize,
@@ -45,11 +45,11 @@ struct Redrawing {
 pub struct Redrawn {
     /// Cells drawn.
     pub cells: usize,
-    /// Number of scans left to draw; 0: the map is that of the corrected poses.
+    /// Number of scans left to draw; at 0 the map is that of the corrected poses.
     pub left: usize,
 }
 
-/// Number of log entries at which the log is thinned first, and then each time it has doubled. Source: ours.
+/// Number of log entries at which the log is first thinned, and again after each doubling. Source: ours.
 const MIN_THINNING_SIZE: usize = 1024;
 /// Maximum number of log entries. Beyond it, every second entry of the older half is dropped. Source: ours.
 const MAX_LOG_ENTRIES: usize = 30_000;
@@ -67,7 +67,7 @@ impl LiveMapper {
         Ok(Self::over(GridMapper::new(config)?))
     }
 
-    /// A map that continues from a saved one, which corrections do not move.
+    /// A map that continues from a saved one. Corrections do not move the saved part.
     ///
     /// # Errors
     /// As [`GridMapper::from_grid`].
@@ -193,7 +193,7 @@ impl LiveMapper {
         self.kept.len()
     }
 
-    /// Adds the entry just drawn to the log. An entry near the last of its kind replaces it, unless a snapshot contains that one.
+    /// Adds the entry just drawn to the log. An entry near the last of its kind replaces that one, unless a snapshot contains it.
     fn keep(
         &mut self,
         stamp: Stamp,
@@ -215,7 +215,7 @@ impl LiveMapper {
         if self.redrawing.is_none() {
             self.note(self.kept.len(), &self.front.evidence().clone());
         }
-        // A redrawing would have to begin again.
+        // Thinning would restart a redraw.
         if self.kept.len() >= self.thin_at && self.redrawing.is_none() {
             self.thin();
         }
@@ -244,7 +244,7 @@ impl LiveMapper {
     }
 
     fn redraw_from(&mut self, first: usize) {
-        // A redrawing that has not come as far as the correction continues.
+        // A redraw that has not reached the first moved entry continues.
         if let Some(redrawing) = self.redrawing.as_mut().filter(|redrawing| redrawing.drawn <= first) {
             debug_assert!(redrawing.drawn <= self.kept.len(), "what was drawn was kept");
             return;

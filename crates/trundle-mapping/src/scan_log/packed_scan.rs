@@ -1,20 +1,20 @@
-//! Scan in single precision, for the scan log.
+//! Scan in single precision for the scan log.
 
 use trundle_core::{Beam, FreeSpan, Scan, ScanParts, Stamp, Vector2};
 
-/// A scan packed for redrawing, in a third of its size: ranges to seven digits, neither sigmas nor kinds.
+/// A scan packed to a third of its size for redrawing: ranges to seven digits, without sigmas and kinds.
 ///
-/// The scan of a depth camera takes 20 KB, and a robot that drives for an hour keeps thousands.
+/// An unpacked scan of a depth camera has 20 KB, and an hour of driving keeps thousands of scans.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PackedScan {
     stamp: Stamp,
     origin: Vector2,
-    /// Of the first beam, and between neighbouring beams, rad.
+    /// Angle of the first beam, and between neighbouring beams, rad.
     angles: (f64, f64),
-    /// Of each beam, m: a free one's has the sign bit, an unseen one's is not a number.
+    /// Range of each beam, m: with the sign bit for a free beam, NaN for an unseen one.
     ranges: Box<[f32]>,
     free: Option<Box<[PackedSpan]>>,
-    /// Of each beam, rad; empty if they are evenly spaced.
+    /// Bearing of each beam, rad; empty for evenly spaced beams.
     bearings: Box<[f32]>,
 }
 
@@ -40,7 +40,7 @@ impl From<&Scan> for PackedScan {
 }
 
 impl PackedScan {
-    /// The scan.
+    /// Unpacks the scan.
     pub(crate) fn unpack(&self) -> Scan {
         let beams = self.ranges.iter().map(|range| unpacked(*range)).collect();
         let free = self.free.as_ref().map(|spans| spans.iter().map(|span| span.unpack()).collect());
@@ -78,7 +78,7 @@ fn unpacked(range: f32) -> Beam {
     }
 }
 
-/// The next one below that is none itself: what is within a map's range stays within.
+/// The nearest f32 that is not larger: a range within the map's limit stays within.
 fn rounded(range: f64) -> f32 {
     let nearest = range as f32;
     if f64::from(nearest) > range { nearest.next_down() } else { nearest }
@@ -106,7 +106,7 @@ mod tests {
         }
     }
 
-    /// The greatest range within `max_range` must not leave it: its wall would be erased.
+    /// The largest range within `max_range` stays within: otherwise its wall would be erased.
     #[test]
     fn no_range_grows() {
         for range in [4.3, 12.1, 0.1, 1e300, f64::MAX] {

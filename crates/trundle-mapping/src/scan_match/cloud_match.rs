@@ -13,9 +13,9 @@ use trundle_grid::tiles::{TileMap, TileWindow};
 /// A place where a cloud of hits fits a map.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CloudMatch {
-    /// Cells, rad.
+    /// Pose: cells, rad.
     pub(crate) pose: Pose2,
-    /// Inverse covariance from the hits (cells, rad), map frame; directions that they do not hold are zero.
+    /// Inverse covariance from the hits (cells, rad), map frame; zero in degenerate directions.
     pub(crate) information: Matrix3<f64>,
     /// Part of the hits at obstacles.
     pub(crate) explained: f64,
@@ -44,7 +44,7 @@ pub(crate) struct CloudMatcher<'a> {
 }
 
 impl CloudMatcher<'_> {
-    /// The best places within `reach` (cells) and `turn_reach` of a guess, the best first, climbed to their tops.
+    /// The best places within `reach` (cells) and `turn_reach` of a guess, the best first, each refined to its local optimum.
     pub(crate) fn find(
         &self,
         map: &TileMap,
@@ -58,7 +58,7 @@ impl CloudMatcher<'_> {
         self.find_in((&pyramid, map), guess, covariance, (reach, turn_reach), (most, &all))
     }
 
-    /// At most `most` matches of the cloud in a map with its pyramid, within a budget.
+    /// At most `most` matches of the cloud in a map with a pyramid, within a budget.
     pub(crate) fn find_in(
         &self,
         (pyramid, map): (&Pyramid, &TileMap),
@@ -83,7 +83,7 @@ impl CloudMatcher<'_> {
         };
         let mut places: Vec<Place> = Vec::new();
         while places.len() < most {
-            // A place with half of the best one's score is not a competitor.
+            // A place below half of the best score is no competitor.
             let least = places.first().map_or(0.0, |best| 0.5 * best.score);
             let apart = (MIN_PLACE_DISTANCE_CELLS, MIN_PLACE_TURN_RAD);
             let Some(place) = pyramid.search(&query, &places, (apart, least), budget) else {
@@ -97,7 +97,7 @@ impl CloudMatcher<'_> {
         found
     }
 
-    /// The top near a pose.
+    /// The local optimum near a pose.
     pub(crate) fn climb(&self, map: &TileMap, start: Pose2, covariance: &Matrix3<f64>) -> CloudMatch {
         let optimizer =
             PoseOptimizer { config: self.config, likelihood: self.likelihood, points: self.cloud };
@@ -120,7 +120,7 @@ impl CloudMatcher<'_> {
         }
     }
 
-    /// How the cloud fits at a pose: parts explained and contradicted.
+    /// Fit of the cloud at a pose: fractions explained and contradicted.
     pub(crate) fn fit(&self, map: &TileMap, pose: Pose2) -> (f64, f64) {
         let window = self.window(map, pose);
         let corner = (f64::from(window.corner.0), f64::from(window.corner.1));

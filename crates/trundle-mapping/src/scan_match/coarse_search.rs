@@ -6,7 +6,7 @@ use nalgebra::Matrix3;
 use trundle_core::Pose2;
 use trundle_grid::tiles::{Tile, TileWindow};
 
-/// Side of the coarse field of a tile [cells of two].
+/// Side of the coarse field of a tile [samples of two cells].
 const SAMPLES_PER_TILE_SIDE: usize = Tile::COARSE_SIDE;
 
 /// Distance of the samples of the coarse likelihood \[cells\]. Source: ours.
@@ -218,7 +218,7 @@ fn best_shift(sums: &Sums, reach: usize, gain: f64, turned: &Turned<'_>) -> (f64
     let shift = |k: usize| (k as f64 - reach as f64) * SAMPLE_STEP_CELLS;
     let mut best = (f64::NEG_INFINITY, 0.0, 0.0);
     for (j, row) in sums.iter().enumerate().take(2 * reach + 1) {
-        // The quadratic form as one of x alone.
+        // The quadratic form as a function of x alone.
         let y = shift(j);
         let alone = 0.5 * (prior[(1, 1)] * y * y + prior[(2, 2)] * theta * theta) + prior[(1, 2)] * y * theta;
         let linear = prior[(0, 1)] * y + prior[(0, 2)] * theta;

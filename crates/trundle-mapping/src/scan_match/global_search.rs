@@ -13,11 +13,11 @@ use trundle_grid::tiles::TileMap;
 /// Why the pose is unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lost {
-    /// The map is empty, or the scans hold next to nothing.
+    /// The map is empty, or the scans have too few points.
     NothingToSee,
-    /// No place fits better than one that was never seen.
+    /// No place fits better than unknown ground.
     NothingFits,
-    /// Several places fit alike: the robot must see more.
+    /// Several places fit equally well: the robot must see more.
     SeveralPlaces,
     /// The search ended at its budget before all places were compared.
     Unfinished,
@@ -25,15 +25,15 @@ pub enum Lost {
 
 /// Search of the combined last scans in the whole map.
 ///
-/// Searches have a budget of lookups by the scans' stamps, not by the clock: what is found is the same on every machine. A robot in a
-/// map of another place then costs a bounded share of a core.
+/// Searches have a budget of lookups by the scans' stamps, not by the clock: the result is the same on every machine. A robot in a map of
+/// another place takes a bounded fraction of a core.
 #[derive(Debug, Clone)]
 pub(crate) struct GlobalSearch {
     /// Scans with their poses by the odometry (cells).
     scans: Vec<(ScanPoints, Pose2)>,
     /// Stamp of the last scan.
     now: Stamp,
-    /// Lookups that may be made; negative after a search.
+    /// Available lookups; negative after a search.
     credit: i64,
     /// Result of the last search.
     last: Lost,
@@ -41,9 +41,9 @@ pub(crate) struct GlobalSearch {
 
 /// Lookups that accrue in a second of the scans' time [1/s]: about a tenth of a core. Source: ours.
 const LOOKUPS_PER_SECOND: f64 = 1e8;
-/// Largest credit, and that of the first scan: about forty seconds of a core. Source: ours.
+/// Largest credit, also the initial one: about forty seconds of a core. Source: ours.
 const MAX_CREDIT_LOOKUPS: i64 = 40_000_000_000;
-/// Lookups of one search at most. Source: ours.
+/// Largest number of lookups of one search. Source: ours.
 const MAX_SEARCH_LOOKUPS: u64 = 20_000_000_000;
 
 impl Default for GlobalSearch {
@@ -63,12 +63,12 @@ const MAX_SCANS: usize = 20;
 const POINT_SPACING_CELLS: f64 = 2.0;
 /// Minimum number of points of the cloud. Fewer points are not matched. Source: ours.
 const MIN_POINTS: usize = 30;
-/// Minimum fraction of points that the map explains \[1\]. A lower fraction is another or a changed building: some place of
-/// a large map always explains half of the points. Source: ours.
+/// Minimum fraction of points that the map explains \[1\]. A lower fraction means another or a changed building: some place of a large map
+/// always explains half of the points. Source: ours.
 const MIN_EXPLAINED: f64 = 0.75;
-/// Sigma of the position of a robot that may be anywhere \[cells\]. Source: ours.
+/// Sigma of an unknown position \[cells\]. Source: ours.
 const UNKNOWN_POSITION_SIGMA_CELLS: f64 = 1e5;
-/// Sigma of the heading of a robot that may be anywhere \[rad\]. Source: ours.
+/// Sigma of an unknown heading \[rad\]. Source: ours.
 const UNKNOWN_HEADING_SIGMA_RAD: f64 = 100.0;
 
 impl GlobalSearch {
@@ -83,7 +83,7 @@ impl GlobalSearch {
         self.scans.push((shape.clone(), odom_from_base));
     }
 
-    /// Where in the map the base was at the last scan. Without credit: the last result.
+    /// Pose of the base in the map at the last scan. Without credit, the last result.
     pub(crate) fn search(
         &mut self,
         models: (&ParticleConfig, &Likelihood),
@@ -141,7 +141,7 @@ impl GlobalSearch {
     }
 }
 
-/// Number of places that are compared. Source: ours.
+/// Maximum number of places that are compared. Source: ours.
 const MAX_PLACES: usize = 3;
 /// Minimum log-likelihood ratio of the best to the second-best place [nats], 1 in 3000. Below it the places are
 /// ambiguous. Source: ours.

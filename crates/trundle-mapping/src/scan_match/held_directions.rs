@@ -19,7 +19,7 @@ pub(crate) struct HeldDirections {
 }
 
 impl HeldDirections {
-    /// The directions at `pose`: degenerate is what less than `least` (a part) of the hits' information holds.
+    /// The directions at `pose`. A direction with less than the fraction `least` of the hits' information is degenerate.
     pub(crate) fn new(shape: &ScanPoints, pose: Pose2, equations: &ScanEquations, least: f64) -> Self {
         let (s, c) = pose.theta.sin_cos();
         let at = shape.spread.centroid;
@@ -39,18 +39,18 @@ impl HeldDirections {
         Self { pose_from_y, held, degenerate }
     }
 
-    /// The information that the hits give, in y, without its degenerate part.
+    /// Information of the hits, in y, without the degenerate part.
     pub(crate) fn information(&self, equations: &ScanEquations) -> Matrix3<f64> {
         let in_y = self.pose_from_y.transpose() * equations.normal.information * self.pose_from_y;
         self.held * in_y * self.held
     }
 
-    /// The pull of the hits, in y, without its degenerate part.
+    /// Gradient of the hits, in y, without the degenerate part.
     pub(crate) fn rhs(&self, equations: &ScanEquations) -> Vector3<f64> {
         self.held * (self.pose_from_y.transpose() * equations.normal.rhs)
     }
 
-    /// An information about poses, in y.
+    /// Information about the pose, transformed to y.
     pub(crate) fn in_y(&self, information: &Matrix3<f64>) -> Matrix3<f64> {
         self.pose_from_y.transpose() * information * self.pose_from_y
     }

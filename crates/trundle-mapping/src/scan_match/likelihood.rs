@@ -10,7 +10,7 @@ use trundle_grid::tiles::{NearestObstacle, TileWindow};
 /// Likelihood of a hit by its distance to the nearest obstacle in sigmas: a Gaussian and outliers.
 ///
 /// p(e) = outliers + (1 - outliers) exp(-e / 2), with e the squared distance in sigmas. In unknown space the minimum is the square root of
-/// that of the outliers: a hit in free space contradicts the map, a hit in unknown space does not.
+/// the outliers' likelihood. A hit in free space contradicts the map; a hit in unknown space does not.
 #[derive(Debug, Clone)]
 pub(crate) struct Likelihood {
     /// ln p on free and on unknown ground, in steps of 1/16.
@@ -36,13 +36,13 @@ pub(crate) struct ScanEquations {
 
 /// The nearest obstacles of eight hits.
 struct Residuals {
-    /// From the base to the hits, map frame, cells.
+    /// Vectors from the base to the hits, map frame, cells.
     rx: [f32; LANES],
     ry: [f32; LANES],
     /// Normals, map frame.
     nx: [f32; LANES],
     ny: [f32; LANES],
-    /// To the obstacles, cells.
+    /// Vectors to the obstacles, cells.
     dx: [f32; LANES],
     dy: [f32; LANES],
     /// Table entry of the squared distance.
@@ -70,7 +70,7 @@ impl Likelihood {
     /// ln p(z | m, x) of all points at a pose (cells of the window, rad).
     pub(crate) fn log_likelihood(&self, window: &TileWindow<'_>, shape: &ScanPoints, pose: Pose2) -> f64 {
         let mut sum = 0.0_f32;
-        self.tell(&mut sum, window, shape, pose);
+        self.evaluate_all(&mut sum, window, shape, pose);
         f64::from(sum)
     }
 
@@ -82,24 +82,30 @@ impl Likelihood {
         pose: Pose2,
     ) -> ScanEquations {
         let mut sums = Sums::default();
-        self.tell(&mut sums, window, shape, pose);
+        self.evaluate_all(&mut sums, window, shape, pose);
         sums.equations()
     }
 
     /// Passes all points to a sink, eight at a time.
-    fn tell<L: PointSink>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanPoints, pose: Pose2) {
+    fn evaluate_all<L: PointSink>(
+        &self,
+        to: &mut L,
+        window: &TileWindow<'_>,
+        shape: &ScanPoints,
+        pose: Pose2,
+    ) {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
             // SAFETY: the processor has the only feature that the function is compiled for.
-            return unsafe { self.tell_by_avx2(to, window, shape, pose) };
+            return unsafe { self.evaluate_by_avx2(to, window, shape, pose) };
         }
         self.tell_plainly(to, window, shape, pose);
     }
 
-    /// The same arithmetic in vectors of eight, no sum reordered: the same bits.
+    /// The same arithmetic in vectors of eight, with the order of all sums: the same bits.
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn tell_by_avx2<L: PointSink>(
+    fn evaluate_by_avx2<L: PointSink>(
         &self,
         to: &mut L,
         window: &TileWindow<'_>,
@@ -231,7 +237,7 @@ struct Sums {
 }
 
 impl Sums {
-    /// A hit `arm` away from the base that should go along `normal` as far as `to` does.
+    /// Adds a hit `arm` away from the base with the residual `to` along `normal`.
     #[inline(always)]
     fn add(&mut self, w: f32, normal: (f32, f32), arm: (f32, f32), to: (f32, f32)) {
         let (nx, ny) = normal;
@@ -260,7 +266,7 @@ impl Sums {
     }
 }
 
-/// Rounding down of numbers below 2^22, by the rounding of floating-point addition: of a whole number it may be one less.
+/// Rounds down numbers below 2^22 by floating-point addition; the result for a whole number may be one less.
 #[inline(always)]
 pub(crate) fn floor(v: f32) -> i32 {
     const MAGIC: f32 = 12_582_912.0;

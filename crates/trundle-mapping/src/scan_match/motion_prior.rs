@@ -14,7 +14,7 @@ pub(crate) struct MotionPrior {
 }
 
 impl MotionPrior {
-    /// The prior of a motion with this covariance in the base's frame, begun at `heading`.
+    /// The prior of a motion that began at `heading`, with this covariance in the base's frame.
     pub(crate) fn new(guess: Pose2, heading: f64, covariance: &Matrix3<f64>) -> Self {
         let (s, c) = heading.sin_cos();
         let turn = Matrix3::new(c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0);
@@ -28,7 +28,7 @@ impl MotionPrior {
         Self { guess, covariance, information, log_determinant: -covariance.determinant().ln() }
     }
 
-    /// The product with another Gaussian (cells, rad, map frame), whose error is its own.
+    /// The product with another Gaussian (cells, rad, map frame) with an independent error.
     pub(crate) fn fused(self, pose: Pose2, covariance: &Matrix3<f64>) -> Self {
         let other = covariance.try_inverse().expect("invariant: a positive covariance");
         let both = (self.information + other).try_inverse().expect("invariant: a sum of positive matrices");
@@ -37,7 +37,7 @@ impl MotionPrior {
         Self::with(Pose2::new(guess.x + step.x, guess.y + step.y, guess.theta + step.z), both)
     }
 
-    /// For a robot whose odometry failed: it is near the line from `before` to `guess`, one sigma `shift` (cells) and `turn` (rad) off it.
+    /// The prior of a robot with failed odometry: near the line from `before` to `guess`, with sigmas `shift` (cells) and `turn` (rad).
     pub(crate) fn slipped(before: Pose2, guess: Pose2, shift: f64, turn: f64) -> Self {
         let way = (guess.position() - before.position()).norm();
         let turned = wrap_angle(guess.theta - before.theta).abs();

@@ -9,6 +9,6 @@ pub(crate) struct NormalEquations {
     pub(crate) information: Matrix3<f64>,
     /// Right-hand side.
     pub(crate) rhs: Vector3<f64>,
-    /// Number of hits that the map explains, each hit weighted by its share, 0 to 1.
+    /// Number of hits that the map explains, each hit weighted by its probability, 0 to 1.
     pub(crate) explained: f64,
 }

@@ -18,8 +18,7 @@ pub(crate) fn thinned(points: impl Iterator<Item = Vector2>, spacing: f64) -> im
 
 /// Centroid of points and their root mean square distance from the centroid.
 ///
-/// A turn by a / `lever` rad moves the points by a on average. In these units directions of shift and turn can be compared
-/// (\[Zhang16\]).
+/// A turn by a / `lever` rad moves the points by a on average. In these units shifts and turns are comparable (\[Zhang16\]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct PointSpread {
     pub(crate) centroid: Vector2,

@@ -22,7 +22,7 @@ pub(crate) struct PoseOptimizer<'a> {
 
 /// Optimum of the posterior.
 pub(crate) struct Optimum {
-    /// Cells of the window, rad.
+    /// Pose: cells of the window, rad.
     pub(crate) pose: Pose2,
     pub(crate) equations: ScanEquations,
     pub(crate) directions: HeldDirections,

@@ -6,18 +6,18 @@ use std::collections::BTreeSet;
 use trundle_core::{Beam, Pose2, Scan, Vector2};
 use trundle_grid::tiles::{RaySpan, ScanRay, ScanRays};
 
-/// A scan made ready for many particles: in cells, in the base frame, with surfaces and their normals.
+/// A scan prepared for many particles: in cells, base frame, with surfaces and their normals.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ScanPoints {
     /// Origin, rays and free spans of the scan, for the update of a map.
     pub(crate) rays: ScanRays,
     /// The hits, thinned, for matching.
     pub(crate) points: Vec<ScanPoint>,
-    /// The thinned hits in groups for vector code; the last is filled up.
+    /// The thinned hits in groups for vector code; the last group is padded.
     pub(crate) groups: Vec<PointGroup>,
     /// Spread of the points, cells.
     pub(crate) spread: PointSpread,
-    /// Number of the beam, end, and one sigma of the range, 0 if the sensor gives none.
+    /// Beam number, end point, and one sigma of the range (0 if unknown) of each hit.
     hits: Vec<(usize, Vector2, f64)>,
     /// The numbers of the rays' beams.
     pub(crate) beams: Vec<usize>,
@@ -36,7 +36,7 @@ pub(crate) struct ScanPoint {
     pub(crate) information: f32,
 }
 
-/// Points whose arithmetic is done together.
+/// Number of points of a vector group.
 pub(crate) const LANES: usize = 8;
 
 /// Eight points of a scan.
@@ -81,7 +81,7 @@ const MIN_LEVER_CELLS: f64 = 2.0;
 const MAX_LINE_RESIDUAL_SIGMAS: f64 = 3.0;
 
 impl ScanPoints {
-    /// Takes over a scan.
+    /// Sets the scan.
     pub(crate) fn set(&mut self, config: &ParticleConfig, scan: &Scan) {
         let cells = 1.0 / config.map.resolution;
         self.clear();
@@ -152,8 +152,7 @@ impl ScanPoints {
         whole
     }
 
-    /// Takes over the hits of several scans, each moved by its pose (cells), of which at most one counts in each square of
-    /// `spacing` cells.
+    /// Gathers the hits of several scans, each moved by its pose (cells); at most one per square of `spacing` cells.
     pub(crate) fn gather<'a>(
         &mut self,
         parts: impl Iterator<Item = (&'a Self, Pose2)>,
@@ -185,7 +184,7 @@ impl ScanPoints {
         self.hits.clear();
     }
 
-    /// Makes gathered points ready for matching.
+    /// Prepares gathered points for matching.
     pub(crate) fn finish(&mut self) {
         let points = self.points.iter().map(|p| Vector2::new(f64::from(p.x), f64::from(p.y)));
         self.spread = PointSpread::new(points, MIN_LEVER_CELLS);
@@ -235,7 +234,7 @@ impl ScanPoints {
                 }
             }
         };
-        // At the end of a surface its one side determines the direction.
+        // At the end of a surface, its remaining side determines the direction.
         let (first, last) = match (reach(-1), reach(1)) {
             (None, None) => return None,
             (first, last) => (first.unwrap_or(k), last.unwrap_or(k)),
@@ -258,8 +257,8 @@ impl ScanPoints {
     }
 }
 
-/// The part of a Gaussian of `sigma` cells within half a cell of its middle, relative to that of a sigma of half a cell. A hit that may
-/// also belong to a neighbouring cell has less weight.
+/// Fraction of a Gaussian of `sigma` cells within half a cell of its mean, relative to that for a sigma of half a cell. A hit that may
+/// belong to a neighbouring cell gets less weight.
 fn hit_weight(sigma: f32) -> f32 {
     // Within h sigmas: tanh(0.8 h) to 0.02.
     let within = |sigma: f32| (0.4 / sigma).tanh();

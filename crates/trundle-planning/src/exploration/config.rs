@@ -7,16 +7,16 @@ use trundle_core::{Invalid, require_in};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ExploreConfig {
-    /// Smallest length of a frontier, m, 0.05 to 5. Shorter ones are ignored. Default 0.4: the Kobuki fits through wider gaps only.
+    /// Smallest length of a frontier, m, 0.05 to 5. Shorter frontiers are ignored. Default 0.4: the Kobuki does not fit through narrower
+    /// gaps.
     pub min_frontier: f64,
-    /// Largest distance from which a frontier is viewed, m, 0.5 to 10. Default 2 (ours): near enough to see behind it.
+    /// Largest distance of a viewpoint from its frontier, m, 0.5 to 10. Default 2 (ours): near enough for a view behind the frontier.
     pub view_distance: f64,
-    /// Number of views after which a frontier that remains is ignored, 1 to 10. Default 2.
+    /// Number of views after which a remaining frontier is ignored, 1 to 10. Default 2.
     pub looks: u32,
-    /// Value of a metre of frontier in metres of path, 0 to 10. Default 0.5 (ours): near frontiers first, of two equally near
-    /// the longer one.
+    /// Gain of a metre of frontier, in metres of path, 0 to 10. A larger value prefers long frontiers to near ones. Default 0.5 (ours).
     pub gain: f64,
-    /// Largest distance of a frontier from the start, m, 1 to 1000. Default 50.
+    /// Largest distance of a frontier from the start, m, 1 to 1000. Farther frontiers are ignored. Default 50.
     pub reach: f64,
 }
 

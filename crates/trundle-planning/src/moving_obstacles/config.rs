@@ -7,19 +7,19 @@ use trundle_core::{Invalid, require_in};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ObstacleTrackerConfig {
-    /// Radius of detection around the sensor, m, 1 to 20. Default 6 (ours): at 1.5 m/s a person needs 4 s from there.
+    /// Radius around the sensor within which moving obstacles are detected, m, 1 to 20. Default 6 (ours): a person at 1.5 m/s needs 4 s
+    /// from there.
     pub reach: f64,
-    /// Time for which a cell counts as newly occupied, and largest age of the free observation before, s, 0.1 to 60. Default 3
-    /// (ours): at 0.2 m/s the whole of a person (0.6 m) is new. An object at rest for longer is not moving; a person who walked
-    /// there may walk on for 10 s.
+    /// Time for which a cell counts as newly occupied, and largest age of the preceding free observation, s, 0.1 to 60. A larger value
+    /// detects slower objects. Default 3 (ours): a person of 0.6 m at 0.2 m/s is completely new.
     pub memory: f64,
     /// Smallest number of hits of a cluster, 1 to 10000. Fewer are noise. Default 3 (ours).
     pub min_hits: usize,
     /// Largest gap between hits of one object, m, 0.01 to 2. Default 0.2 (ours): the legs of a person.
     pub gap: f64,
-    /// Smallest radius of an obstacle, m, 0 to 5: only a leg may be visible. Default 0.2 (ours).
+    /// Smallest radius of an obstacle, m, 0 to 5, since only a leg may be visible. Default 0.2 (ours).
     pub smallest: f64,
-    /// Radius of a cluster above which it is a change of the map, not a moving obstacle, m, 0.05 to 10. Default 1 (ours).
+    /// Largest radius of a moving obstacle's cluster, m, 0.05 to 10. A larger cluster is a change of the map. Default 1 (ours).
     pub largest: f64,
     /// Largest distance of a cluster from a track's expected position, m, 0.05 to 10. Default 0.5 (ours).
     pub gate: f64,

@@ -5,28 +5,28 @@ use trundle_core::{Invalid, require_in};
 
 /// Wanted clearance around the footprint, and its costs.
 ///
-/// A metre of path costs 1, more near obstacles and in unknown space. A path exists whenever the footprint itself fits: these are
-/// costs, not obstacles. A path is at most 1 + `comfort_weight` times longer than the shortest one that keeps `margin`.
+/// A metre of path costs 1, more near obstacles and in unknown space. A path exists whenever the footprint itself fits: these are costs,
+/// not obstacles. A path is at most 1 + `comfort_weight` times longer than the shortest path with clearance `margin`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ClearanceCostConfig {
-    /// Clearance that is given up only if there is no other path, m, 0 to 1. Default 0.05: a cell and the tracking error of a
-    /// Kobuki (ours).
+    /// Clearance around the footprint that paths keep unless no other path exists, m, 0 to 1. Default 0.05 (ours): a cell and the tracking
+    /// error of a Kobuki.
     pub margin: f64,
-    /// Additional cost of a metre without any clearance; falls to 0 at `margin`. 0 to 100, default 4 (ours).
+    /// Additional cost of a metre without clearance, 0 to 100. It falls to 0 at `margin`. Default 4 (ours).
     pub margin_weight: f64,
-    /// Clearance above which no more is wanted, m, 0 to 5. Default 0.25 (ours).
+    /// Clearance above which a path has no additional cost, m, 0 to 5. A larger value leads paths farther from obstacles. Default 0.25
+    /// (ours).
     pub comfort: f64,
-    /// Additional cost of a metre without any clearance; falls to 0 at `comfort`, squared. 0 to 10, default 0.1 (ours).
+    /// Additional cost of a metre without clearance, 0 to 10. It falls to 0 at `comfort`, as a square. Default 0.1 (ours).
     pub comfort_weight: f64,
-    /// Additional cost of a metre in unknown space. 0 to 100, default 0.5 (ours): a known path up to half as long again is
-    /// preferred.
+    /// Additional cost of a metre in unknown space, 0 to 100. Default 0.5 (ours): a known path up to 1.5 times as long is preferred.
     pub unknown_weight: f64,
-    /// Additional cost of a metre where a [`CostMask`](crate::CostMask) holds 100, in proportion below; 0 to 20. Default 4: the
-    /// cost in Nav2's NavFn (50 per free cell, 0.8 per unit of cost, 2.54 units per value).
+    /// Additional cost of a metre with the value 100 of a [`CostMask`](crate::CostMask), 0 to 20, in proportion to the value. Default 4:
+    /// the cost in Nav2's NavFn (50 per free cell, 0.8 per unit of cost, 2.54 units per value).
     pub mask_weight: f64,
-    /// Largest overlap of a start that is still planned out of, m, 0 to 1. Default 0.06 (ours): one cell of map noise and a
-    /// centimetre of pose.
+    /// Largest overlap of the start with an obstacle from which a path may lead out, m, 0 to 1. Default 0.06 (ours): one cell of map noise
+    /// and a centimetre of pose error.
     pub escape: f64,
 }
 

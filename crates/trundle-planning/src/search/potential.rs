@@ -30,15 +30,16 @@ pub enum PotentialKind {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct PotentialConfig {
-    /// Method. Default geodesic: it is complete, and its paths are shorter.
+    /// Search method for waypoints. Default geodesic: complete, with shorter paths.
     pub kind: PotentialKind,
-    /// epsilon, above 0. Default 1 (ours).
+    /// Gain epsilon of the attraction by the goal, above 0, for `printed`. Default 1 (ours).
     pub attraction: f64,
-    /// eta, above 0. Default 0.001 (ours): 5 m from the goal the forces balance 0.15 m from a wall.
+    /// Gain eta of the repulsion by obstacles, above 0, for `printed`. Default 0.001 (ours): 5 m from the goal the forces balance 0.15 m
+    /// from a wall.
     pub repulsion: f64,
-    /// rho_0, m, above 0. Default 0.5 (ours).
+    /// Distance rho_0 within which obstacles repel, m, above 0, for `printed`. Default 0.5 (ours).
     pub reach: f64,
-    /// Number of steps without progress after which the descent counts as trapped, 1 to 100000. Default 100 (ours).
+    /// Number of steps without progress after which the descent counts as trapped, 1 to 100000, for `printed`. Default 100 (ours).
     pub patience: usize,
 }
 

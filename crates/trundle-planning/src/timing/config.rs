@@ -9,14 +9,13 @@ use trundle_core::{Invalid, require_in};
 pub struct TimingConfig {
     /// Time between samples of the trajectory, s, 0.001 to 1. Default 0.02: the control period.
     pub period: f64,
-    /// Largest speed without any clearance, m/s, 0.01 to 10. Default 0.15 (ours).
+    /// Largest speed without clearance, m/s, 0.01 to 10. Default 0.15 (ours).
     pub slow_speed: f64,
-    /// Clearance above which the full speed is allowed, m, 0 to 10; linear below. Default 0.3 (ours).
+    /// Clearance above which full speed is allowed, m, 0 to 10. Below it the limit falls linearly to `slow_speed`. Default 0.3 (ours).
     pub full_speed_clearance: f64,
-    /// Largest speed where the space at the robot's front is unknown, m/s, 0.01 to 10. Default 0.35 (ours): a Kobuki stops from it
-    /// within 0.13 m.
+    /// Largest speed into unknown space, m/s, 0.01 to 10. Default 0.35 (ours): a Kobuki stops from it within 0.13 m.
     pub unknown_speed: f64,
-    /// Largest jerk, m/s^3, 0.01 to 1000. Default none.
+    /// Largest jerk, m/s^3, 0.01 to 1000. Default none: unlimited.
     pub jerk: Option<f64>,
 }
 

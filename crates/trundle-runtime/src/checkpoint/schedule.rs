@@ -2,13 +2,13 @@
 
 use trundle_core::Stamp;
 
-/// Schedule of the checkpoints, by the data's time: the smaller the maps, the more often.
+/// Schedule of the checkpoints, by the data's time. Small maps are saved more often.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct CheckpointSchedule {
     due: Option<Stamp>,
 }
 
-/// Mean rate of writing \[bytes/s\]: small maps are not a load; a large map (20 MB after an hour) is saved seldom. Source: ours.
+/// Mean rate of writing \[bytes/s\]: a large map (20 MB after an hour) is saved seldom. Source: ours.
 const WRITE_RATE_BYTES_PER_S: f64 = 3e5;
 /// Shortest time between two checkpoints \[s\]. Source: ours.
 const MIN_PERIOD_S: f64 = 3.0;

@@ -13,7 +13,7 @@ pub struct GoalApproachReport {
     pub plans: u32,
     /// Number of begun motions.
     pub motions: u32,
-    /// Motions broken off: by an obstacle, or by the safety monitor.
+    /// Number of motions interrupted by an obstacle or by the safety monitor.
     pub restarts: u32,
     /// Number of waits without a manoeuvre, or with a pose that is not finite.
     pub waits: u32,
@@ -35,24 +35,24 @@ enum Doing {
     Waiting,
 }
 
-/// The report of a goal in the making.
+/// The unfinished report of a goal.
 #[derive(Debug, Default)]
 pub(super) struct Notes {
     pub report: GoalApproachReport,
-    /// Stops in a row without a completed motion.
+    /// Number of successive stops without a completed motion.
     pub stops: u32,
     last: Doing,
 }
 
 impl Notes {
-    /// Turns and straight moves take over: the plan made before counts for the report.
+    /// Restarts the report when turns and straight moves begin; the plan of the comparison counts.
     pub fn restart(&mut self) {
         let plans = self.report.plans;
         *self =
             Self { report: GoalApproachReport { plans, ..GoalApproachReport::default() }, ..Self::default() };
     }
 
-    /// The safety monitor stopped the robot.
+    /// Counts a stop by the safety monitor.
     pub fn interrupted(&mut self) {
         self.stops += 1;
         self.report.restarts += 1;
@@ -73,7 +73,7 @@ impl Notes {
         };
         let began = |what| doing == what && self.last != what;
         let (plans, moves, waits) = (began(Doing::Planning), began(Doing::Moving), began(Doing::Waiting));
-        // A plan that was ready in the first step is recognised by the result of the plan.
+        // The result reveals a plan that was ready in the first step.
         let at_once =
             (moves || (waits && step.reason != PositionerReason::BadPose)) && self.last != Doing::Planning;
         self.report.plans += u32::from(plans || at_once);

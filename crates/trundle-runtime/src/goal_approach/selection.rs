@@ -1,11 +1,11 @@
-//! The choice between an arc and a manoeuvre, a part in each control step, while the robot follows the arc.
+//! The choice between an arc and a manoeuvre, computed in slices while the robot follows the arc.
 
 use crate::world_state::WorldState;
 use trundle_control::StabilizerPreview;
 use trundle_core::{Footprint, Pose2};
 use trundle_docking::{DockingJob, DockingPlan, DockingPlanner, ObstacleScene};
 
-/// Number of poses of an arc that are checked in one step. Source: ours.
+/// Number of poses of an arc checked per control step. Source: ours.
 const POSES_PER_STEP: usize = 100;
 
 /// State of the comparison of the two approaches.
@@ -13,7 +13,7 @@ const POSES_PER_STEP: usize = 100;
 pub(super) struct ApproachSelection {
     goal: Pose2,
     from: Pose2,
-    /// The arc, and the number of its poses that are checked. `None` if the arc cannot be continued.
+    /// The arc, and the number of its checked poses. `None` without a usable arc.
     arc: Option<(StabilizerPreview, usize)>,
     /// Obstacles around the arc.
     scene: Option<ObstacleScene>,
@@ -37,9 +37,9 @@ pub(super) struct ApproachContext<'a> {
     pub footprint: &'a Footprint,
     /// Clearance of an arc from obstacles, m.
     pub arc_margin: f64,
-    /// Standing before the first motion and after the last, s.
+    /// Time at rest before the first motion and after the last, s.
     pub standing: f64,
-    /// For planning, in a step.
+    /// Work of planning per step, in counted steps.
     pub work: u64,
 }
 
@@ -55,12 +55,12 @@ impl ApproachSelection {
         self.goal == *goal && self.from.distance(pose) < HERE
     }
 
-    /// Whether the arc is in contact, or does not end.
+    /// Whether the arc is in contact, or does not reach the goal.
     pub(super) fn is_arc_lost(&self) -> bool {
         self.arc.as_ref().is_none_or(|(arc, _)| arc.time.is_none())
     }
 
-    /// A part of the comparison. `drawn` gives the obstacles around the manoeuvre and is called once.
+    /// Computes a part of the comparison. `drawn` gives the obstacles around the manoeuvre and is called once.
     pub(super) fn step(
         &mut self,
         s: &WorldState<'_>,
@@ -90,7 +90,7 @@ impl ApproachSelection {
         if arc_wins(arc, manoeuvre) { Verdict::Arc } else { Verdict::Manoeuvre }
     }
 
-    /// Checks a part of the arc; returns whether the check is complete. An arc that is not free has no time.
+    /// Checks a part of the arc; returns whether the check is complete. An arc in contact has no duration.
     fn is_arc_looked_at(&mut self, s: &WorldState<'_>, means: &ApproachContext<'_>) -> bool {
         let Some((arc, looked)) = &mut self.arc else { return true };
         if arc.time.is_none() || *looked == arc.poses.len() {
@@ -115,11 +115,12 @@ fn about(s: &WorldState<'_>, arc: &StabilizerPreview, means: &ApproachContext<'_
     ObstacleScene::from_grid(s.permitted_grid(), here.position(), half, false)
 }
 
-/// The rule: an arc that is free (its time, s), when no manoeuvre was found or none that is faster.
+/// The rule: the arc wins if it is free and no manoeuvre is faster. `arc` and `manoeuvre` are durations, s; `None` if not free or not
+/// found.
 pub(super) fn arc_wins(arc: Option<f64>, manoeuvre: Option<f64>) -> bool {
     match (arc, manoeuvre) {
         (Some(arc), Some(manoeuvre)) => arc <= manoeuvre,
-        // Without arc and manoeuvre the arc is tried: the safety monitor watches it.
+        // Without a free arc and a manoeuvre, the arc is tried under the safety monitor.
         (_, None) => true,
         (None, Some(_)) => false,
     }

@@ -33,7 +33,7 @@ fn world(grid: &OccupancyGrid, pose: Pose2, time: f64) -> WorldState<'_> {
     }
 }
 
-/// Whether turns and straight moves take over, when that is known.
+/// Runs the comparison to its end; returns whether turns and straight moves are chosen.
 fn chosen(stage: &mut GoalApproach, s: &WorldState<'_>, goal: Pose2, preview: StabilizerPreview) -> bool {
     stage.consider(s, goal, preview);
     (0..1000).any(|_| stage.takes_over(s))
@@ -154,7 +154,7 @@ fn settles_in(stage: &mut GoalApproach, grid: &OccupancyGrid, mut pose: Pose2, g
     f64::INFINITY
 }
 
-/// The selected approach is faster than the other if both are driven to the end. An arc is selected if and only if it is faster.
+/// The selected approach is faster than the other if both are driven to the end.
 #[test]
 fn the_way_that_is_chosen_is_the_faster_one_when_both_are_driven() {
     let (robot, goal) = (crate::RobotConfig::default(), Pose2::new(1.5, 0.35, 0.0));
@@ -175,7 +175,7 @@ fn the_way_that_is_chosen_is_the_faster_one_when_both_are_driven() {
         let arc = arc.time.filter(|_| !arc.poses.iter().any(touches));
         let driven = settles_in(&mut stage, &grid, start, goal);
         match (manoeuvre_wins, arc) {
-            // Within what standing and creeping add to a plan.
+            // Within the time that rests and slow motion add to a plan.
             (false, Some(arc)) => assert!(arc <= driven + 0.5, "{start:?}: arc {arc}, driven {driven}"),
             (false, None) => assert!(driven.is_infinite(), "{start:?}: the arc touches, driven {driven}"),
             (true, Some(arc)) => assert!(driven <= arc + 0.5, "{start:?}: arc {arc}, driven {driven}"),
@@ -213,7 +213,7 @@ fn times_of_steps(
     times
 }
 
-/// No step costs more than 2 ms of a core, even in a hard place, by either method. The result is the minimum of several equal runs.
+/// No step takes more than 2 ms of a core, even in a hard place, by either method. The result is the minimum of several equal runs.
 #[test]
 fn no_step_takes_longer_than_two_milliseconds() {
     let corners = [(0.3, 0.2), (-0.3, 0.2), (-0.3, -0.2), (0.3, -0.2)];

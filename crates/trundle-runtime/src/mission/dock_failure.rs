@@ -8,19 +8,19 @@ use std::fmt;
 pub enum DockFailure {
     /// No receiver detected the light of a station at any reachable place.
     NoLight,
-    /// The light was seen, and lost again and again.
+    /// The light was detected, and lost repeatedly.
     LightLost,
     /// The axis of the station stays too uncertain.
     AxisUncertain {
         /// Standard deviation of the lateral position at the contacts \[m\].
         sigma: f64,
     },
-    /// The robot drove to the estimated distance of the station, or into it, and does not charge.
+    /// The robot drove to the estimated contacts of the station, but does not charge.
     NoCharging {
         /// Attempts made.
         attempts: u32,
     },
-    /// An obstacle or fault stops the robot on its last straight move, or behind it.
+    /// An obstacle or a fault stops the robot during or after its last straight move.
     Held,
 }
 

@@ -28,15 +28,15 @@ const MAX_HEADING_SIGMA_RAD: f64 = 0.03;
 const DOCKED_DISTANCE_M: f64 = 0.18;
 /// Rounds of the survey after which the axis is too uncertain. Source: ours.
 const MAX_SURVEYS: u32 = 3;
-/// Number of last straight moves without charging after which the task fails. Source: ours.
+/// Number of straight moves onto the contacts without charging after which the task fails. Source: ours.
 const MAX_ATTEMPTS: u32 = 3;
-/// Times that the light may be lost. Source: ours.
+/// Number of losses of the light after which the task fails. Source: ours.
 const MAX_LOSSES: u32 = 3;
 /// Distance of backing off after an attempt \[m\]. Source: ours.
 const BACK_OFF_M: f64 = 0.5;
 /// Change of the estimate after which the present goal is sent again \[m\]. Source: ours.
 const MOVED_GOAL_M: f64 = 0.25;
-/// Rate at which that is checked \[1/s\]. Source: ours.
+/// Rate at which the change of the estimate is checked \[1/s\]. Source: ours.
 const CHECK_RATE_HZ: f64 = 1.0;
 
 /// Result of a step of the task.
@@ -233,14 +233,14 @@ impl DockTask {
             Phase::Searching(frontier) => {
                 frontier.iter().for_each(|frontier| self.explorer.mark_viewed(frontier));
                 self.search.end_place(has_failed);
-                // Behind the robot no receiver sees.
+                // No receiver covers the area behind the robot.
                 if has_failed { self.search_on(s) } else { self.spin() }
             }
             _ => self.lost(),
         }
     }
 
-    /// The next place of known floor without a search so far; else the next viewpoint of unknown floor.
+    /// The next unsearched place of known floor; else the next viewpoint of unknown floor.
     fn search_on(&mut self, s: &WorldState<'_>) -> DockStep {
         if let Some(place) = self.search.next_place(s.permitted_grid(), s.estimate.pose) {
             self.phase = Phase::Searching(None);
@@ -255,7 +255,7 @@ impl DockTask {
         }
     }
 
-    /// The readings contradict the estimate of the station: the search starts again.
+    /// Restarts the search, after readings that contradict the estimate of the station.
     fn lost(&mut self) -> DockStep {
         self.losses += 1;
         if self.losses > MAX_LOSSES {

@@ -18,7 +18,7 @@ use trundle_planning::{Exploration, Explorer, Frontier};
 
 /// Executes a mission: gives the navigator its goals, and records the results.
 ///
-/// | task | what it gives the navigator | ends when |
+/// | task | goals for the navigator | ends when |
 /// |---|---|---|
 /// | go, return | the goal | it has arrived, or given up |
 /// | turn, straight | the motion | it is done, or safety stops it for 5 s |
@@ -37,7 +37,7 @@ pub(crate) struct MissionExecutor {
     frontier_check_due: Ticker,
 }
 
-/// A task that waits.
+/// A waiting task.
 #[derive(Debug, Clone, Copy)]
 struct Entry {
     index: usize,
@@ -186,7 +186,7 @@ impl MissionExecutor {
         self.begin_current_task(s)
     }
 
-    /// Defers the present task until the robot is off its charging station: the base may report the station after the start of the task.
+    /// Defers the present task until the robot is off its charging station. The base may report the station after the start of the task.
     fn undock_first(&mut self, s: &WorldState<'_>) -> Option<Goal> {
         let current = self.current.as_mut().filter(|_| s.station.is_docked)?;
         let is_on_its_way = matches!(current.work, Work::Going | Work::Exploring { .. });
@@ -272,7 +272,7 @@ impl MissionExecutor {
         }
     }
 
-    /// The navigator has arrived.
+    /// Handles the arrival at a goal.
     fn on_arrived(&mut self, s: &WorldState<'_>) {
         match &mut self.current {
             Some(Current { work: Work::Exploring { explorer, frontier, views, .. }, .. }) => {
@@ -474,7 +474,7 @@ mod tests {
         letters.chars().enumerate().map(task).collect()
     }
 
-    /// Runs `executor` until no task is left; `fails` holds the outcome of each goal. The goals.
+    /// Runs `executor` until no task is left, with the outcome of each goal in `fails`. Returns the goals.
     fn work_off(executor: &mut MissionExecutor, fails: &[bool]) -> Vec<Goal> {
         let (grid, mut fails) = (room(), fails.iter().copied().cycle());
         let (s, mut goals, mut state) = (world(&grid), Vec::new(), DriveState::Idle);

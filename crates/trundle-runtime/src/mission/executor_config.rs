@@ -7,18 +7,17 @@ use trundle_planning::ExploreConfig;
 /// Range of the patience \[s\]. Source: ours.
 pub(crate) const PATIENCE_RANGE_S: (f64, f64) = (1.0, 3600.0);
 
-/// How missions are carried out, and when the robot loses patience.
+/// Settings of missions, and time limits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[non_exhaustive]
 pub struct MissionExecutorConfig {
-    /// Time at rest before the first plan, s, 0 to 60: the gyro's bias is measured and the first map drawn.
-    /// Default 1.5 (ours).
+    /// Time at rest before the first plan, s, 0 to 60, to measure the gyro's bias and draw the first map. Default 1.5 (ours).
     pub opening: f64,
-    /// Time without progress after which a goal is given up, s, 1 to 3600. Default 75: longer than a person stands in a door.
-    /// Progress is 15 cm of travel, or turns while the robot drives or approaches, up to one revolution at one place.
+    /// Time without progress after which a goal is given up, s, 1 to 3600. Progress is 15 cm of travel, or turns while the robot drives or
+    /// approaches, up to one revolution at one place. Default 75: longer than a person stands in a door.
     pub patience: f64,
-    /// Standard deviation of the position above which the robot counts as lost, m, 0.1 to 10. Default 0.7 (ours).
+    /// Standard deviation of the position above which the robot counts as lost and stops, m, 0.1 to 10. Default 0.7 (ours).
     pub lost_sigma: f64,
     /// Exploration.
     pub explore: ExploreConfig,
@@ -31,7 +30,7 @@ impl Default for MissionExecutorConfig {
 }
 
 impl MissionExecutorConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

@@ -1,6 +1,6 @@
-//! Places of the known floor from which the light of a station is looked for.
+//! Places of the known floor for the search of a station's light.
 //!
-//! A station shines into a sector of +-60 deg and 3 m. A disc of 1.3 m fits into that sector. Light is therefore found if every free place
+//! A station shines into a sector of +-60 deg and 3 m, which contains a disc of 1.3 m radius. Light is therefore found if every free place
 //! has a searched place within 1.3 m and in sight.
 
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Vector2};
@@ -20,7 +20,7 @@ pub(crate) struct LightSearch {
 }
 
 impl LightSearch {
-    /// The robot turned at a place and saw no light.
+    /// Marks a place where the robot turned without detecting light.
     pub(crate) fn mark_searched(&mut self, at: Vector2) {
         self.searched.push(at);
     }
@@ -31,7 +31,7 @@ impl LightSearch {
         self.searched.extend(place.filter(|_| has_failed));
     }
 
-    /// The nearest free place without a search so far, with the heading of the drive to this place. `None` if all places are searched.
+    /// The nearest free unsearched place, with the heading of the drive to this place. `None` if all places are searched.
     pub(crate) fn next_place(&mut self, grid: &OccupancyGrid, from: Pose2) -> Option<Pose2> {
         let here = from.position();
         let distance = |at: &Vector2| (at - here).norm();
@@ -80,7 +80,7 @@ fn is_clear(grid: &OccupancyGrid, at: Vector2) -> bool {
 mod tests {
     use super::*;
 
-    /// Two rooms of 3 x 3 m side by side; a door, or none.
+    /// Two rooms of 3 x 3 m side by side, with or without a door.
     fn rooms(has_door: bool) -> OccupancyGrid {
         let row =
             |door: bool| format!("#{}{}{}#\n", ".".repeat(30), if door { "." } else { "#" }, ".".repeat(30));

@@ -12,7 +12,7 @@ use trundle_core::{Invalid, MAX_COORDINATE_M, Pose2, require_finite, require_in}
 pub enum Task {
     /// Drive to a pose in the map frame and stop there.
     Go(Pose2),
-    /// Observe each frontier that can be reached, until the map is complete.
+    /// Observe each reachable frontier, until the map is complete.
     Explore,
     /// Drive back to the pose at power-on and stop there.
     Return,
@@ -21,7 +21,7 @@ pub enum Task {
         /// \[rad\]
         angle: f64,
     },
-    /// Drive straight by a distance; a positive distance is ahead.
+    /// Drive straight by a distance, positive ahead.
     Straight {
         /// \[m\]
         distance: f64,

@@ -2,7 +2,7 @@
 
 use trundle_core::{Beam, Pose2, RgbdImage, Scan, Stamp};
 
-/// Separates images with content from those of a camera that is covered, frozen or without depth.
+/// Distinguishes images with content from those of a covered or frozen camera, or without depth.
 #[derive(Debug, Default)]
 pub(crate) struct CameraHealth {
     last: Option<Look>,
@@ -10,7 +10,7 @@ pub(crate) struct CameraHealth {
     seen: Option<Stamp>,
 }
 
-/// The first of the images that are the same.
+/// The first of a series of identical images.
 #[derive(Debug, Clone, Copy)]
 struct Look {
     print: u64,
@@ -18,7 +18,7 @@ struct Look {
     odom_from_base: Pose2,
 }
 
-/// Time for which a resting robot may get identical images \[s\]: the noise of a working camera prevents it. Source: ours.
+/// Longest time of identical images at rest \[s\]: the noise of a working camera makes images differ. Source: ours.
 const MAX_IDENTICAL_IMAGES_S: f64 = 1.0;
 /// Motion above which the robot has moved \[m, rad\]. Source: ours.
 const MOTION_THRESHOLD: f64 = 0.01;
@@ -26,8 +26,8 @@ const MOTION_THRESHOLD: f64 = 0.01;
 const MIN_SEEN_SHARE: f64 = 0.05;
 
 impl CameraHealth {
-    /// Whether this image, taken at `odom_from_base`, equals the last one bit for bit although the robot has moved or several equal images
-    /// came. The noise of a real camera makes any two images differ.
+    /// Whether this image, taken at `odom_from_base`, is bit-identical to the last ones although the robot has moved or a long time has
+    /// passed. The noise of a real camera makes any two images differ.
     pub(crate) fn is_frozen(&mut self, image: &RgbdImage, odom_from_base: Pose2) -> bool {
         let now = Look { print: fingerprint(image), stamp: image.stamp(), odom_from_base };
         let Some(first) = self.last.filter(|first| first.print == now.print) else {

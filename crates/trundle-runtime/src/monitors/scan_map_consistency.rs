@@ -2,7 +2,7 @@
 
 use trundle_core::{Beam, Cell, CellIndex, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
 
-/// Watches scans that contradict the map.
+/// Detects scans that contradict the map.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ScanMapConsistency {
     /// Stamp since which all scans contradict the map.
@@ -14,25 +14,25 @@ pub(crate) struct ScanMapConsistency {
 /// Result of the comparison of a scan with the map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Fit {
-    /// The scan may show this place.
+    /// The scan agrees with the estimated pose.
     Fits,
-    /// The scan shows another place or a large change: it is not drawn on the map.
+    /// The scan shows another place or a large change, and is not drawn into the map.
     Contradicts,
-    /// All scans contradicted the map until the limit of time: the robot is elsewhere.
+    /// All scans contradicted the map for [`CONTRADICTION_DURATION_S`]: the robot is displaced.
     Elsewhere,
 }
 
 /// Largest distance between a hit and an occupied cell that counts as agreement \[m\]: the error of pose and map. Source: ours.
 const HIT_TOLERANCE_M: f64 = 0.25;
-/// Share of a scan's known hits that contradict the map, above which the scan contradicts it. A person nearby hides less. Source: ours.
+/// Fraction of contradicting hits on known cells above which a scan contradicts the map. A person nearby hides less. Source: ours.
 const CONTRADICTING_SHARE: f64 = 0.45;
-/// The share that contradicts if the scan before agreed with the map: new things come into view gradually. Source: ours.
+/// This fraction if the previous scan agreed with the map, since new objects come into view gradually. Source: ours.
 const SUDDEN_CONTRADICTING_SHARE: f64 = 0.15;
-/// Share of contradicting hits up to which a scan agrees with the map. Source: ours.
+/// Fraction of contradicting hits up to which a scan agrees with the map. Source: ours.
 const AGREEING_SHARE: f64 = 0.03;
-/// Largest age of the scan before \[s\]: two periods of the map. Source: ours.
+/// Largest age of the previous scan \[s\]: two periods of the map. Source: ours.
 const MAX_PREVIOUS_SCAN_AGE_S: f64 = 0.5;
-/// Smallest share of hits in known cells for a verdict. Source: ours.
+/// Smallest fraction of hits in known cells for a verdict. Source: ours.
 const MIN_KNOWN_SHARE: f64 = 0.15;
 /// Time of contradiction \[s\] after which the scans show another place. Source: ours.
 const CONTRADICTION_DURATION_S: f64 = 1.5;
@@ -44,7 +44,7 @@ impl ScanMapConsistency {
         let before = self.last.replace((scan.stamp(), part));
         let before = before.filter(|(at, _)| scan.stamp() - *at <= MAX_PREVIOUS_SCAN_AGE_S);
         if before.is_none() {
-            // Evidence from before a gap of time does not count.
+            // Evidence from before a time gap is dropped.
             self.since = None;
         }
         let fitted = before.is_some_and(|(_, part)| part <= AGREEING_SHARE);
@@ -62,7 +62,7 @@ impl ScanMapConsistency {
         Fit::Elsewhere
     }
 
-    /// Another source measures the pose.
+    /// Drops the evidence, when another source measures the pose.
     pub(crate) fn forget(&mut self) {
         *self = Self::default();
     }

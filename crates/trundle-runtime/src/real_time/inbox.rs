@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::time::{Duration, Instant};
 
-/// The input of the control thread, in one queue of bounded length. Urgent events overtake images and results. Images and results are only
-/// delivered while time is left before the next wheel reading.
+/// The input of the control thread in one bounded queue. Urgent events overtake images and results. Images and results are delivered only
+/// if time is left before the next wheel reading.
 #[derive(Debug)]
 pub struct Inbox<E> {
     receiver: Receiver<InboxItem<E>>,
@@ -32,9 +32,9 @@ pub struct InboxSender<E> {
 /// An item for the inbox.
 #[derive(Debug)]
 pub enum InboxItem<E> {
-    /// An event that control waits for: wheels, gyro, bumper.
+    /// An urgent event: wheels, gyro, bumper.
     Urgent(E),
-    /// An event that has time: an image.
+    /// An event without urgency: an image.
     Deferred(E),
     /// The result of a job.
     Answer(Answer),
@@ -56,8 +56,8 @@ impl<E> Clone for InboxSender<E> {
 }
 
 impl<E> InboxSender<E> {
-    /// Puts an item in without waiting. A full queue, which was not emptied for seconds, refuses and counts it: false. False also when the
-    /// inbox is dropped.
+    /// Adds an item without waiting. Returns false if the queue is full, after seconds without a reader, and counts the refusal. Returns
+    /// false also after the inbox was dropped.
     pub fn put(&self, item: InboxItem<E>) -> bool {
         match self.sender.try_send(item) {
             Ok(()) => true,
@@ -77,7 +77,7 @@ impl<E> InboxSender<E> {
 }
 
 impl<E> Inbox<E> {
-    /// An empty one for at most `capacity` items.
+    /// An empty inbox for at most `capacity` items.
     pub fn new(capacity: usize) -> Self {
         let (sender, receiver) = sync_channel(capacity);
         let sender = InboxSender { sender, refused: Arc::default() };
@@ -95,7 +95,7 @@ impl<E> Inbox<E> {
         self.sender.clone()
     }
 
-    /// The next item. `None` if no item arrives within `patience`. Items of a kind are delivered in the order of their arrival.
+    /// The next item; `None` if none arrives within `patience`. Items of one kind keep the order of their arrival.
     pub fn next(&mut self, loop_timer: &LoopTimer, patience: Duration) -> Option<Input<E>> {
         let start = Instant::now();
         loop {
@@ -116,7 +116,7 @@ impl<E> Inbox<E> {
         }
     }
 
-    /// The next result of a worker, ahead of all other items; urgent events are dropped. `None` if no result arrives within `patience`.
+    /// The next result of a worker, before all other items; urgent events are dropped. `None` if no result arrives within `patience`.
     pub fn next_answer(&mut self, worker: Worker, patience: Duration) -> Option<Answer> {
         let start = Instant::now();
         loop {
@@ -133,12 +133,12 @@ impl<E> Inbox<E> {
         }
     }
 
-    /// Items refused because the queue was full.
+    /// Number of items refused because the queue was full.
     pub fn refused(&self) -> u64 {
         self.sender.refused.load(Ordering::Relaxed)
     }
 
-    /// Length of the queue at each item taken.
+    /// Length of the queue at the delivery of each item.
     pub fn lengths(&self) -> &Histogram {
         &self.lengths
     }
@@ -196,7 +196,7 @@ mod tests {
 
     #[test]
     fn in_any_mix_nothing_is_lost_and_each_kind_keeps_its_order() {
-        // A linear congruential generator: another mix in each round.
+        // A linear congruential generator gives a new mix in each round.
         let mut state = 7_u32;
         for _ in 0..50 {
             let mut inbox = Inbox::new(64);

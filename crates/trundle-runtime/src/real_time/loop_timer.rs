@@ -5,17 +5,16 @@ use serde::Serialize;
 use std::time::{Duration, Instant};
 use trundle_core::{Invalid, require_in};
 
-/// When control is due.
+/// Period and deadlines of the control loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct LoopTimerConfig {
-    /// Between two readings of the wheels, s, 0.001 to 1. Default 0.02: the Kobuki's 50 Hz.
+    /// Time between two readings of the wheels, s, 0.001 to 1. Default 0.02: the Kobuki's 50 Hz.
     pub period: f64,
-    /// So long before the next reading is due nothing else is begun, s, 0 to `period`. Default 0.006: taking up an image takes
-    /// 1 to 5 ms.
+    /// Time before the next expected reading in which no other work begins, s, 0 to `period`. Default 0.006: an image's result takes 1 to 5
+    /// ms.
     pub reserve: f64,
-    /// Delay of a command above which it is a missed deadline, s, above 0 to 10. Default 0.1: at 0.7 m/s the robot moves 7 cm in this
-    /// time.
+    /// Delay of a command beyond which a deadline is missed, s, above 0 to 10. Default 0.1: at 0.7 m/s the robot moves 7 cm in this time.
     pub deadline: f64,
 }
 
@@ -26,7 +25,7 @@ impl Default for LoopTimerConfig {
 }
 
 impl LoopTimerConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.
@@ -52,12 +51,12 @@ pub struct LoopTimer {
     missed: u64,
 }
 
-/// Timing of control. Milliseconds; quantiles to 1 %.
+/// Timing of control, ms; quantiles have an error of at most 1 %.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LoopTimerReport {
-    /// Control steps.
+    /// Number of control steps.
     pub steps: u64,
-    /// Between two commands, median.
+    /// Time between two commands, median.
     pub interval_median_ms: f64,
     /// Deviation of the time between two commands from the period, median.
     pub jitter_median_ms: f64,
@@ -73,7 +72,7 @@ pub struct LoopTimerReport {
     pub response_p999_ms: f64,
     /// Time from a wheel reading to its command, maximum.
     pub response_most_ms: f64,
-    /// Number of times between two commands that exceeded period and deadline: a base with a time-out stops automatically.
+    /// Number of intervals between two commands longer than period plus deadline. A base with a time-out stops by itself.
     pub missed_deadlines: u64,
 }
 
@@ -91,12 +90,12 @@ impl LoopTimer {
         }
     }
 
-    /// Processing of a wheel reading, which has just arrived, begins.
+    /// Marks the beginning of the processing of a new wheel reading.
     pub fn begin(&mut self) {
         self.beat = Some(Instant::now());
     }
 
-    /// The command for a reading that arrived at `arrival` has left.
+    /// Marks the command for a reading that arrived at `arrival`.
     pub fn end(&mut self, arrival: Instant) {
         let now = Instant::now();
         self.responses.note((now - arrival).as_secs_f64() * 1e3);
@@ -108,7 +107,7 @@ impl LoopTimer {
         }
     }
 
-    /// `None` if time is left for other work; else the time until then, unless a reading arrives first.
+    /// `None` if time is left for other work; else the time until other work may begin, unless a reading arrives first.
     pub fn time_for_others(&self) -> Option<Duration> {
         let LoopTimerConfig { period, reserve, .. } = self.config;
         let since = self.beat?.elapsed().as_secs_f64();

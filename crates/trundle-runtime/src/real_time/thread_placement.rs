@@ -5,12 +5,12 @@ use std::time::Duration;
 /// Cores and priority of a thread.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ThreadPlacement {
-    /// The processor core, from 0; none: any.
+    /// The processor core, from 0; `None` for any core.
     pub core: Option<usize>,
     /// Niceness above that of the starting thread, 0 to 39. Default 0.
     pub nice: i32,
     /// Whether the thread has a real-time priority (Linux: `SCHED_FIFO`), above all other threads of any niceness, if the system allows it.
-    /// Meant for threads that compute little. Default false.
+    /// Only for threads with little computation. Default false.
     pub is_first: bool,
 }
 
@@ -36,7 +36,7 @@ fn pin(core: usize) -> bool {
     sched_setaffinity(None, &set).is_ok()
 }
 
-/// Linux counts niceness by thread; none is the calling one.
+/// Linux has niceness per thread; id 0 is the calling thread.
 #[cfg(target_os = "linux")]
 fn rank(nicer: i32) -> bool {
     use rustix::process::{getpriority_process, setpriority_process};

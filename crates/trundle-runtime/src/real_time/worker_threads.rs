@@ -43,14 +43,14 @@ impl WorkerThreads {
         Ok(Self { handles: Worker::ALL.into_iter().map(start).collect::<Result<_, _>>()? })
     }
 
-    /// Gives a job to its worker. The robot gives a worker its next job after the result of the previous one.
+    /// Sends a job to its worker. The robot sends a worker its next job after the result of the previous one.
     pub fn give(&self, job: Job) {
         let handle = self.handles.iter().find(|handle| handle.worker == job.worker());
-        // A worker whose thread has ended gives no result. The robot continues without, and the safety monitor stops it on old data.
+        // A worker with an ended thread gives no result. The robot continues, and the safety monitor stops it because of old data.
         let _ = handle.map(|handle| handle.jobs.try_send(job));
     }
 
-    /// Waits for the jobs in progress and ends the threads; the processor time of each.
+    /// Waits for the running jobs and ends the threads; returns the processor time of each.
     pub fn finish(self) -> Vec<WorkerCost> {
         let end = |handle: WorkerHandle| {
             let WorkerHandle { worker, jobs, spent, _pool } = handle;

@@ -1,4 +1,4 @@
-//! The kinds of reasons: the part by which a program decides, without the numbers.
+//! The kinds of reasons, for decisions by programs.
 
 use super::no_path::NoPath;
 use crate::mission::dock_failure::DockFailure;
@@ -18,13 +18,13 @@ pub enum ReasonKind {
     Cliff,
     /// No image or scan with content is recent enough.
     ImageMissing,
-    /// Neither wheels nor images show how the robot moves.
+    /// Neither wheels nor images measure the robot's motion.
     MotionUnknown,
     /// No wheel reading is recent enough.
     WheelsMissing,
     /// A command is not a number.
     CommandInvalid,
-    /// A wheel hangs.
+    /// A wheel has dropped.
     WheelDrop,
     /// A wheel motor draws too much current.
     OverCurrent,
@@ -68,7 +68,7 @@ pub enum ReasonKind {
     NoProgress,
     /// The final approach fails.
     FinalApproach,
-    /// No light of a charging station was seen.
+    /// No light of a charging station was detected.
     NoStationLight,
     /// The light of the charging station was lost.
     StationLightLost,
@@ -78,11 +78,11 @@ pub enum ReasonKind {
     NoCharging,
     /// An obstacle stops the straight move at the charging station.
     StationBlocked,
-    /// Tasks of the mission are undone.
+    /// Tasks of the mission failed.
     TasksFailed,
     /// The user ended the run.
     Interrupted,
-    /// A file without a kind, or with a kind that this version does not have.
+    /// A kind from a file that is missing or unknown to this version.
     #[serde(other)]
     Unknown,
 }

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub(super) struct RecordedReason {
     /// The text.
     pub(super) reason: String,
-    /// The kinds, outermost first. Files of earlier versions hold none.
+    /// The kinds, outermost first; empty in files without kinds.
     #[serde(default)]
     pub(super) kinds: Vec<ReasonKind>,
 }

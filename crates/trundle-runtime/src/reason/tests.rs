@@ -92,7 +92,7 @@ fn samples() -> Vec<(Reason, ReasonKind, &'static str)> {
     ]
 }
 
-/// A mission with two undone tasks: nested reasons.
+/// A mission with two failed tasks: nested reasons.
 fn nested() -> Reason {
     let stale = Reason::Safety(StopReason::StaleImage { age: 2.0 });
     let stalled = Reason::NoProgress { time: 60.0, state: "waiting", cause: Some(Box::new(stale)) };

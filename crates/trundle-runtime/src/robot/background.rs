@@ -1,4 +1,4 @@
-//! A decision that runs beside the control loop, and what arrives while it runs.
+//! A decision in parallel with the control loop, and the inputs that arrive during it.
 
 use crate::world_state::{OwnedWorldState, WorldState};
 use crate::{
@@ -10,23 +10,23 @@ use crate::{
 };
 use trundle_core::Twist2;
 
-/// A decision that runs beside the control loop.
+/// State of decisions in parallel with the control loop.
 #[derive(Debug, Default)]
 pub(super) struct Background {
     pub(super) is_used: bool,
-    /// The job of the decision worker, until it is fetched.
+    /// The job of the decision worker, before it is fetched.
     pub(super) decision: Option<Job>,
-    /// Steers while the decision worker is away.
+    /// The controller during a decision job.
     pub(super) fallback: Option<FallbackController>,
-    /// The mission that was given while the decision worker is away.
+    /// The mission given during a decision job.
     pub(super) orders: Option<MissionState>,
-    /// Settings that were changed while the decision worker is away.
+    /// Settings changed during a decision job.
     pub(super) changes: Vec<RunSetting>,
-    /// Readings of bumper and cliff sensors while the decision worker is away.
+    /// Readings of bumper and cliff sensors during a decision job.
     pub(super) felt: Vec<Felt>,
 }
 
-/// A reading of a sensor of contact or floor.
+/// A reading of a bumper or cliff sensor.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Felt {
     Touched(bool),
@@ -34,17 +34,17 @@ pub(super) enum Felt {
 }
 
 impl Background {
-    /// Whether jobs run beside the control loop.
+    /// Whether jobs run in parallel with the control loop.
     pub(super) fn is_used(&self) -> bool {
         self.is_used
     }
 
-    /// Whether the next decision runs beside the control loop.
+    /// Whether the next decision runs in parallel with the control loop.
     pub(super) fn is_for(&self, decision_worker: &DecisionWorker, s: &WorldState<'_>) -> bool {
         self.is_used && decision_worker.may_take_long(s)
     }
 
-    /// A control step while the decision worker is away. A given worker leaves with this step.
+    /// A control step during a decision job. A given worker starts a job with this step.
     pub(super) fn steer(
         &mut self,
         decision_worker: Option<Box<DecisionWorker>>,
@@ -58,7 +58,7 @@ impl Background {
         self.fallback.as_mut().map(|fallback| fallback.step(s))
     }
 
-    /// Keeps a mission for the decision worker until it is back. From an empty mission on the robot brakes to rest.
+    /// Keeps a mission until the end of the decision job. With an empty mission the robot brakes to rest.
     pub(super) fn set_mission(&mut self, mission: &MissionState) {
         if let (true, Some(fallback)) = (mission.left.tasks().is_empty(), &mut self.fallback) {
             fallback.halt();
@@ -66,7 +66,7 @@ impl Background {
         self.orders = Some(mission.clone());
     }
 
-    /// Whether wheel readings or a mission came that a running decision job does not include.
+    /// Whether readings or a mission arrived that a running decision job does not include.
     pub(super) fn knows_more(&self) -> bool {
         !self.felt.is_empty() || self.orders.is_some()
     }

@@ -1,12 +1,12 @@
-//! State of the body besides its motion: what holds the robot, and the battery.
+//! State of the body besides its motion: holding conditions and the battery.
 
 use crate::range_source::RangeSource;
 use trundle_control::MotionHold;
 use trundle_core::{Battery, BodyEventKind, Button, Device, DockInfrared, Link, PerWheel, PowerSource};
 
-/// Charge at which the robot stops for an empty battery, 0 to 1: the motors of a Kobuki fail soon below it. Source: ours.
+/// Charge below which the battery counts as empty and the robot stops, 0 to 1. The motors of a Kobuki fail soon below it. Source: ours.
 const EMPTY_CHARGE: f64 = 0.02;
-/// Number of the button that pauses the robot and lets it go on. Source: button B0 of a Kobuki.
+/// Number of the button that pauses and continues the robot. Source: button B0 of a Kobuki.
 const PAUSE_BUTTON: u8 = 0;
 
 /// State of the body besides its motion.
@@ -21,7 +21,7 @@ pub(super) struct BodyState {
 }
 
 impl BodyState {
-    /// Takes an event over.
+    /// Updates the state by an event.
     pub(super) fn update(&mut self, event: BodyEventKind) {
         match event {
             BodyEventKind::WheelDrop(wheels) => self.wheel_drop = wheels,
@@ -36,39 +36,39 @@ impl BodyState {
         }
     }
 
-    /// A person pauses the robot, or lets it go on.
+    /// Sets whether a person has paused the robot.
     pub(super) fn set_paused(&mut self, is_paused: bool) {
         self.is_paused = is_paused;
     }
 
-    /// The battery, where the body has reported it.
+    /// The battery; `None` before the body's first report.
     pub(super) fn battery(&self) -> Option<Battery> {
         self.battery
     }
 
-    /// The light of a charging station, as last reported.
+    /// The last reported light of a charging station.
     pub(super) fn station_light(&self) -> DockInfrared {
         self.station_light
     }
 
-    /// Whether the robot stands on the contacts of a charging station.
+    /// Whether the robot is on the contacts of a charging station.
     pub(super) fn is_docked(&self) -> bool {
         self.battery.is_some_and(|battery| battery.source == PowerSource::ChargingStation)
     }
 
-    /// Whether a wheel hangs: where the robot is then set down, no odometry knows.
+    /// Whether a wheel has dropped. The odometry does not measure a lifted robot's motion.
     pub(super) fn is_lifted(&self) -> bool {
         self.wheel_drop.any()
     }
 
-    /// The first condition under which no wheel may turn; `None` where the robot may drive. The visual map needs the camera whatever
-    /// measures the ranges.
+    /// The first condition under which no wheel may turn; `None` if the robot may drive. The camera counts for every range source, since
+    /// the visual map needs it.
     pub(super) fn hold(&self, range_source: RangeSource) -> Option<MotionHold> {
         let paused = self.is_paused.then_some(MotionHold::Paused);
         self.hold_besides_pause(range_source).or(paused)
     }
 
-    /// The same of a robot that a person drives by hand, whose mission is paused.
+    /// The first condition besides a pause, for a robot that a person drives by hand.
     pub(super) fn hold_besides_pause(&self, range_source: RangeSource) -> Option<MotionHold> {
         let needed = |device: &Device| *device != Device::Laser || range_source == RangeSource::Laser;
         let lost = self.lost.iter().copied().find(needed).map(MotionHold::DeviceLost);

@@ -1,4 +1,4 @@
-//! Jobs of the robot: given out, run anywhere, and their results applied between two events.
+//! Jobs of the robot: fetched, run on any thread, and applied between two events.
 
 use super::{Robot, event_log::DroppedImage};
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
 use trundle_core::Stamp;
 
 impl Robot {
-    /// The robot with its long work as jobs: fetch each with [`Robot::next_job`], run it anywhere, give the result to
+    /// The robot with long work as jobs. Fetch each with [`Robot::next_job`], run it on any thread, and pass the result to
     /// [`Robot::apply_answer`].
     #[must_use]
     pub fn with_background_jobs(mut self) -> Self {
@@ -18,8 +18,8 @@ impl Robot {
         self
     }
 
-    /// Queues an image for a perception job. Of those that arrive while a job runs only the newest is kept; the others are dropped, see
-    /// [`Robot::dropped_images`]. A robot without background jobs processes the image at once.
+    /// Queues an image for a perception job. Of the images that arrive during a job only the newest is kept; [`Robot::dropped_images`]
+    /// lists the others. A robot without background jobs processes the image at once.
     pub fn queue_image(&mut self, image: LazyImage) -> StepReport {
         let mut report = StepReport::default();
         if self.steering.background.is_used() {
@@ -34,8 +34,7 @@ impl Robot {
         report
     }
 
-    /// The next work that shall be done in the background, after every event and every answer; none where there is none, or
-    /// the robot does not defer.
+    /// The next background job; call this after every event and every answer. `None` without a job, or without background jobs.
     pub fn next_job(&mut self) -> Option<Job> {
         if let Some(job) = self.steering.next_job() {
             return Some(job);
@@ -53,8 +52,8 @@ impl Robot {
 
     /// Applies the result of a job, between two events.
     ///
-    /// The report has a twist where the decision is for the newest reading of the wheels, and neither bumper, cliff sensors nor a
-    /// mission came after it. Any other decision has been overtaken, and the next control step acts by it.
+    /// The report has a twist if the decision is for the newest wheel reading and no bumper, cliff or mission input came after it. An older
+    /// decision takes effect in the next control step.
     pub fn apply_answer(&mut self, answer: Answer) -> StepReport {
         let mut report = StepReport::default();
         self.times.add(&answer.times);
@@ -84,7 +83,7 @@ impl Robot {
         report
     }
 
-    /// Ends the search of a perception job that began before the map was replaced, whatever became of its image. Whether it did.
+    /// Ends the search of a perception job that began before the map was replaced. Returns whether a search was ended.
     fn end_void_search(&mut self, report: &mut StepReport) -> bool {
         let is_void = std::mem::take(&mut self.mapping.voids_search);
         if is_void {
@@ -93,12 +92,12 @@ impl Robot {
         is_void
     }
 
-    /// Stamps of the images that a newer one replaced before they were processed.
+    /// Stamps of the images replaced by a newer one before processing.
     pub fn dropped_images(&self) -> &[Stamp] {
         self.images.dropped()
     }
 
-    /// Drops the queued image, if there is one: the run is over.
+    /// Drops a queued image at the end of the run.
     pub fn drop_queued_image(&mut self) {
         if let Some(image) = self.images.take() {
             self.images.drop_image(image.stamp(), DroppedImage::RunOver);

@@ -8,15 +8,15 @@ use trundle_control::MotionHold;
 use trundle_core::{GridGeometry, Invalid, MapAnnotations, Pose2, Stamp, difference_of_angles};
 use trundle_estimation::{VisualVerdict, WheelCounts, WheelReport};
 
-/// Correction of the pose estimate \[m\] above which the correction is logged. Source: ours, the size of a grid cell.
+/// Smallest correction of the pose estimate that is logged \[m\]. Source: ours, the size of a grid cell.
 const LOGGED_CORRECTION_M: f64 = 0.05;
 
-/// Why an image was dropped.
+/// Reason for a dropped image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum DroppedImage {
-    /// A newer image came before a worker was free.
+    /// A newer image arrived before a worker was free.
     Replaced,
-    /// No wheel reading came before the image.
+    /// No wheel reading arrived before the image.
     NoOdometry,
     /// The camera repeats its last image.
     Frozen,
@@ -40,7 +40,7 @@ pub(super) fn sensor_change(at: Stamp, change: SensorChange) {
     tracing::warn!("{:.3} s: {}", at.as_secs(), change.text());
 }
 
-/// Logs readings of the wheels that no wheel can make: the first, the second, the fourth and so on.
+/// Logs impossible readings of the wheels: the first, the second, the fourth and so on.
 pub(super) fn encoder_jump(at: Stamp, report: WheelReport, counts: WheelCounts) {
     let at = at.as_secs();
     match report {
@@ -57,7 +57,7 @@ pub(super) fn encoder_jump(at: Stamp, report: WheelReport, counts: WheelCounts) 
     }
 }
 
-/// Logs a pose that an operator gives.
+/// Logs a pose given by an operator.
 pub(super) fn pose_given(at: Stamp, guess: &PoseGuess) {
     let (at, pose, sigma) = (at.as_secs(), guess.pose, guess.position_sigma);
     let heading = pose.theta.to_degrees();
@@ -68,7 +68,7 @@ pub(super) fn pose_given(at: Stamp, guess: &PoseGuess) {
     );
 }
 
-/// Logs a map that an operator gives, and why it is refused where it is.
+/// Logs a map given by an operator, with the reason of a refusal.
 pub(super) fn map_given(at: Stamp, geometry: &GridGeometry, refused: Option<&Invalid>) {
     let (at, GridGeometry { width, height, .. }) = (at.as_secs(), geometry);
     match refused {
@@ -81,12 +81,12 @@ pub(super) fn map_given(at: Stamp, geometry: &GridGeometry, refused: Option<&Inv
     }
 }
 
-/// Logs a setting that an operator changes.
+/// Logs a setting changed by an operator.
 pub(super) fn setting_changed(at: Stamp, setting: RunSetting) {
     tracing::info!("{:.3} s: the operator changes a setting: {setting:?}", at.as_secs());
 }
 
-/// Logs the zones and places that an operator gives.
+/// Logs the zones and places given by an operator.
 pub(super) fn annotated(at: Stamp, annotations: &MapAnnotations) {
     let (zones, places) = (annotations.zones.len(), annotations.places.len());
     tracing::info!(
@@ -95,7 +95,7 @@ pub(super) fn annotated(at: Stamp, annotations: &MapAnnotations) {
     );
 }
 
-/// Logs a state that differs from the last one, or has a reason of another kind.
+/// Logs a change of the state, or of the kind of its reason.
 pub(super) fn state(at: Stamp, last: &DriveState, new: &DriveState) {
     let kind = |state: &DriveState| state.reason().map(Reason::kind);
     if last.name() != new.name() {
@@ -105,7 +105,7 @@ pub(super) fn state(at: Stamp, last: &DriveState, new: &DriveState) {
     }
 }
 
-/// Logs a correction of the pose estimate by `source`, from `old` to `new`, where it is large.
+/// Logs a large correction of the pose estimate by `source`, from `old` to `new`.
 pub(super) fn correction(at: Stamp, source: &str, old: Pose2, new: Pose2) {
     let distance = old.distance(&new);
     if distance > LOGGED_CORRECTION_M {
@@ -114,7 +114,7 @@ pub(super) fn correction(at: Stamp, source: &str, old: Pose2, new: Pose2) {
     }
 }
 
-/// Logs a visual pose that does not correct the estimate.
+/// Logs a visual pose that was not used.
 pub(super) fn visual_verdict(at: Stamp, verdict: VisualVerdict) {
     let at = at.as_secs();
     match verdict {
@@ -135,7 +135,7 @@ pub(super) fn visual_verdict(at: Stamp, verdict: VisualVerdict) {
     }
 }
 
-/// Logs a condition of the body that holds the robot, or its end.
+/// Logs a holding condition of the body, or its end.
 pub(super) fn hold(at: Stamp, hold: Option<MotionHold>) {
     match hold {
         Some(hold) => tracing::warn!("{:.3} s: no motion: {hold}", at.as_secs()),
@@ -143,7 +143,7 @@ pub(super) fn hold(at: Stamp, hold: Option<MotionHold>) {
     }
 }
 
-/// Logs an image that is dropped.
+/// Logs a dropped image.
 pub(super) fn dropped_image(stamp: Stamp, why: DroppedImage) {
     tracing::debug!("image of {:.3} s dropped: {}", stamp.as_secs(), why.text());
 }

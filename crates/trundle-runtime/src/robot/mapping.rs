@@ -1,4 +1,4 @@
-//! The grid of the robot: scans that are matched and drawn, and the redraw after a correction.
+//! The grid of the robot: scan matching, drawing of scans, and the redraw after a correction.
 
 use crate::bumper;
 use crate::scan_pose_log::ScanPoseLog;
@@ -12,27 +12,27 @@ const MIN_REDRAWN_CELLS: usize = 60_000;
 /// Number of commands over which the rest of a corrected grid is redrawn: 1.8 s. Source: ours.
 const REDRAW_COMMANDS: usize = 90;
 
-/// The grid, and what is needed to keep it.
+/// The grid with its mapper, scan matcher and logs.
 #[derive(Debug)]
 pub(super) struct GridMapping {
     pub(super) mapper: LiveMapper,
     matcher: ScanMatcher,
     pub(super) scan_poses: ScanPoseLog,
-    /// Commands within which a corrected grid is redrawn.
+    /// Number of commands within which a corrected grid is redrawn.
     redrawn_within: usize,
     due: Ticker,
     /// Radius of the largest disc inside the footprint \[m\].
     inscribed_radius: f64,
     /// Points at which an obstacle presses the bumper, base frame \[m\].
     bumper: Vec<Vector2>,
-    /// Number of revisions of the maps that stood here before the present one.
+    /// Number of revisions of earlier, replaced maps.
     earlier_revisions: u64,
-    /// Whether a perception job that runs may search the pose in a map that was replaced.
+    /// Whether a running perception job may search the pose in a replaced map.
     pub(super) voids_search: bool,
 }
 
 impl GridMapping {
-    /// An empty grid, drawn `map_hz` times a second by a robot of this footprint.
+    /// An empty grid, drawn `map_hz` times per second by a robot of this footprint.
     ///
     /// # Errors
     /// When a number of a configuration is outside its range.
@@ -60,15 +60,15 @@ impl GridMapping {
         self.mapper.grid()
     }
 
-    /// Number of the grid's present revision; it only grows.
+    /// Number of the grid's present revision; never decreases.
     pub(super) fn revision(&self) -> u64 {
         self.earlier_revisions + self.mapper.revision()
     }
 
-    /// Another grid in place of the present one.
+    /// Replaces the grid.
     ///
     /// # Errors
-    /// When its cells are not those of the mapper; then nothing changes.
+    /// When its cells differ from the mapper's; the present grid then stays.
     pub(super) fn replace(&mut self, grid: &OccupancyGrid) -> Result<(), Invalid> {
         let mapper = LiveMapper::from_grid(self.mapper.mapper().config().clone(), grid)?;
         self.earlier_revisions = self.revision() + 1;
@@ -77,33 +77,33 @@ impl GridMapping {
         Ok(())
     }
 
-    /// Whether a scan of `now` is to be drawn, by the rate of the map.
+    /// Whether a scan at `now` is due for drawing, by the rate of the map.
     pub(super) fn is_due(&mut self, now: Stamp) -> bool {
         self.due.due(now)
     }
 
-    /// Where the scan fits the grid, near `guess`.
+    /// The pose at which the scan fits the grid, near `guess`.
     pub(super) fn matched(&self, scan: &Scan, guess: Pose2) -> Option<ScanMatch> {
         self.matcher.refine(self.mapper.mapper(), scan, guess)
     }
 
-    /// Draws a scan that was taken at `pose`, and the floor that the robot stands on.
+    /// Draws a scan taken at `pose`, and the floor under the robot.
     pub(super) fn draw(&mut self, pose: Pose2, scan: &Scan) {
         self.mapper.insert(pose, scan);
         self.mapper.mark_free_disc(pose, self.inscribed_radius);
     }
 
-    /// The bumper is pressed: an obstacle ahead, which the camera may be blind for.
+    /// Marks the obstacle of a pressed bumper, since the camera may not see it.
     pub(super) fn mark_touch(&mut self, pose: Pose2) {
         self.mapper.mark_occupied(pose, &self.bumper);
     }
 
-    /// Notes the pose of a drawn scan in the visual map. Whether the log was thinned.
+    /// Records the pose of a drawn scan in the visual map. Returns whether the log was thinned.
     pub(super) fn note_scan_pose(&mut self, stamp: Stamp, visual_from_camera: Pose3) -> bool {
         self.scan_poses.note(stamp, visual_from_camera, || self.mapper.logged_stamps())
     }
 
-    /// Applies a corrected visual trajectory: whether the grid is redrawn from the corrected poses of its scans.
+    /// Applies a corrected visual trajectory. Returns whether the grid is redrawn from the corrected poses of its scans.
     pub(super) fn correct(
         &mut self,
         trajectory: &[(Stamp, Pose3)],
@@ -125,7 +125,7 @@ impl GridMapping {
     }
 }
 
-/// Of the largest disc about the base's origin that is inside the footprint, m; 0 where the origin is outside.
+/// Radius of the largest disc around the base's origin inside the footprint, m; 0 if the origin is outside.
 pub(super) fn inscribed_radius(footprint: &Footprint) -> f64 {
     match footprint {
         Footprint::Disc { radius } => *radius,

@@ -13,10 +13,10 @@ use trundle_core::{Invalid, MapAnnotations, OccupancyGrid, Stamp, Vector3};
 use trundle_estimation::PoseMonitor;
 
 impl Robot {
-    /// Obeys an operator, between two events.
+    /// Executes an operator's command between two events.
     ///
     /// # Errors
-    /// Names the number of the command that is not finite or outside its range; the robot then goes on as before.
+    /// Names the number of the command that is not finite or outside its range. The command is then ignored.
     pub fn obey(&mut self, command: OperatorCommand) -> Result<StepReport, Invalid> {
         let now = self.localizer.estimate().stamp;
         let mut report = StepReport::default();
@@ -43,13 +43,12 @@ impl Robot {
         Ok(report)
     }
 
-    /// Gives the robot the zones and named places of its map, in place of the present ones.
+    /// Replaces the zones and named places of the map.
     pub fn annotate(&mut self, annotations: MapAnnotations) {
         self.zones.set(annotations);
     }
 
-    /// Another map in place of the present one: the mission ends and the robot brakes to rest. A map that the robot cannot use is refused,
-    /// and the robot goes on with its own.
+    /// Replaces the map: the mission ends and the robot brakes to rest. An unusable map is refused, and the robot continues with its own.
     fn replace_map(&mut self, grid: &OccupancyGrid, now: Stamp, report: &mut StepReport) {
         let replaced = self.times.measure(Stage::Mapping, || self.mapping.replace(grid));
         event_log::map_given(now, grid.geometry(), replaced.as_ref().err());
@@ -71,8 +70,8 @@ impl Robot {
         self.decide(now, report);
     }
 
-    /// Once no perception job of the replaced map runs: ends its search, and reports a checkpoint in place of the last one, which holds
-    /// the replaced map. The pose is unknown, as that of every robot that resumes.
+    /// Ends the search in the replaced map and reports a new checkpoint, since the last one contains the replaced map. No perception job of
+    /// that map may run. The pose is unknown, as after a resume.
     pub(super) fn on_map_replaced(&mut self, report: &mut StepReport) {
         let Some(perception) = &mut self.perception else { return };
         perception.global_localization.end();
@@ -96,7 +95,7 @@ impl Robot {
         self.on_hold(before, now, report);
     }
 
-    /// The operator's pose in place of the estimate. Before the first odometry there is no estimate to replace.
+    /// Replaces the estimate by the operator's pose. Without odometry the pose is ignored.
     fn take_pose(&mut self, guess: &PoseGuess, now: Stamp) {
         let variances =
             Vector3::new(guess.position_sigma, guess.position_sigma, guess.heading_sigma).map(|s| s * s);

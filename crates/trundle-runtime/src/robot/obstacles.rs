@@ -1,28 +1,28 @@
-//! Dynamic obstacles near by, from scan to scan.
+//! Dynamic obstacles nearby, tracked from scan to scan.
 
 use crate::world_state::DynamicObstacles;
 use trundle_core::{Invalid, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
 use trundle_planning::{MovingObstacle, MovingObstacleTracker, ObstacleTrackerConfig};
 
-/// Distance \[m\] within which a new obstacle is kept until a scan shows it gone: more than the braking distance. Source: ours.
+/// Distance within which a new obstacle is kept until a scan shows free space there \[m\]: more than the braking distance. Source: ours.
 const NEARBY_OBSTACLE_M: f64 = 1.5;
 /// Age of the last scan \[s\] beyond which the position of a moving obstacle is unknown. Source: ours.
 pub(super) const MAX_TRACK_AGE_S: f64 = 1.0;
 
-/// Dynamic obstacles: tracked at each scan, forecast between scans.
+/// Dynamic obstacles: tracked at each scan, predicted between scans.
 #[derive(Debug)]
 pub(super) struct ObstacleTracks {
     tracker: MovingObstacleTracker,
-    /// Those that move, forecast to the newest decision.
+    /// Moving obstacles, predicted to the newest decision.
     pub(super) movers: Vec<MovingObstacle>,
-    /// The grid without them; none where nothing moves.
+    /// The grid without moving obstacles; `None` without moving obstacles.
     pub(super) static_grid: Option<OccupancyGrid>,
     /// Hits of unconfirmed obstacles, map frame \[m\].
     unconfirmed: Vec<Vector2>,
 }
 
 impl ObstacleTracks {
-    /// No obstacle is known.
+    /// A tracker without obstacles.
     ///
     /// # Errors
     /// When a number of the configuration is outside its range.
@@ -31,7 +31,7 @@ impl ObstacleTracks {
         Ok(Self { tracker, movers: Vec::new(), static_grid: None, unconfirmed: Vec::new() })
     }
 
-    /// What a decision reads.
+    /// The dynamic obstacles for a decision.
     pub(super) fn view(&self) -> DynamicObstacles<'_> {
         DynamicObstacles {
             movers: &self.movers,
@@ -40,7 +40,7 @@ impl ObstacleTracks {
         }
     }
 
-    /// Tracks with a scan that was taken at `pose`, map frame.
+    /// Updates the tracks by a scan taken at `pose`, map frame.
     pub(super) fn add_scan(&mut self, pose: Pose2, scan: &Scan, grid: &OccupancyGrid) {
         let now = scan.stamp();
         self.tracker.add_scan(pose, scan);
@@ -49,13 +49,13 @@ impl ObstacleTracks {
         self.static_grid = (!self.movers.is_empty()).then(|| self.tracker.static_grid(grid));
     }
 
-    /// A scan at an unknown pose: hits of unconfirmed obstacles are in the map frame, and expire.
+    /// Skips a scan at an unknown pose. Hits of unconfirmed obstacles are in the map frame and expire.
     pub(super) fn skip_scan(&mut self, now: Stamp, position: Vector2) {
         self.unconfirmed = self.tracker.unconfirmed_hits(now, position, NEARBY_OBSTACLE_M);
         self.clear_movers();
     }
 
-    /// Forecasts to `now`; without recent scans the moving obstacles are dropped.
+    /// Predicts the obstacles to `now`; without recent scans moving obstacles are dropped.
     pub(super) fn forecast(&mut self, scanned: Option<Stamp>, now: Stamp) {
         if self.movers.is_empty() {
             return;
@@ -66,7 +66,7 @@ impl ObstacleTracks {
         }
     }
 
-    /// Drops all: after a jump of the pose static things seem to move.
+    /// Drops all obstacles, since static objects seem to move after a jump of the pose.
     pub(super) fn clear(&mut self) {
         self.tracker.clear();
         self.unconfirmed.clear();
@@ -78,7 +78,7 @@ impl ObstacleTracks {
         self.static_grid = None;
     }
 
-    /// A state in the midst of tracking, for tests.
+    /// A state during tracking, for tests.
     #[cfg(test)]
     pub(super) fn tracking(
         tracker: MovingObstacleTracker,

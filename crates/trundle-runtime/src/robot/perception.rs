@@ -1,4 +1,4 @@
-//! Images: the visual pose corrects the estimate, the scan of the depth image enters the grid.
+//! Processing of images: the visual pose corrects the estimate, and the scan of the depth image enters the grid.
 
 use super::{Robot, event_log, event_log::DroppedImage};
 use crate::{
@@ -12,11 +12,11 @@ use trundle_slam::{TrackReport, Tracking};
 
 /// Correction of the pose \[m\] above which obstacle tracks restart: motion is not measured from scans on both sides of a jump. Source: ours.
 const JUMP_M: f64 = 0.1;
-/// The same for the heading \[rad\]. Source: ours.
+/// Correction of the heading above which obstacle tracks restart \[rad\]. Source: ours.
 const JUMP_RAD: f64 = 0.1;
 
 impl Robot {
-    /// An image: processed here or queued for a job.
+    /// Processes an image, or queues it for a job.
     pub(super) fn on_image(&mut self, image: &RgbdImage, report: &mut StepReport) {
         if self.steering.background.is_used() {
             return self.images.push(image.clone().into());
@@ -30,7 +30,8 @@ impl Robot {
         }
     }
 
-    /// Applies the result of an image: the visual pose corrects the estimate; at the grid's rate the scan does too, and enters the grid.
+    /// Applies the result of an image: the visual pose corrects the estimate. At the grid's rate the scan corrects it too and enters the
+    /// grid.
     pub(super) fn apply_perception(&mut self, result: PerceptionResult, report: &mut StepReport) {
         let PerceptionResult { odom_from_base, track, scan, place, corrected_trajectory, visual_snapshot } =
             result;
@@ -48,7 +49,7 @@ impl Robot {
         report.measurements.visual = visual;
         event_log::correction(track.stamp, "the visual pose", before, self.localizer.estimate().pose);
         if correction == Some(Correction::Reanchored) {
-            // Scans drawn so far stay where they are: their visual poses are in a frame that has moved.
+            // The scans already drawn are not moved: their visual poses are in a frame that has moved.
             self.mapping.scan_poses = ScanPoseLog::default();
         }
         let goes_on = track.tracking == Tracking::Ok && !is_corrected && !track.relocalised;
@@ -80,7 +81,7 @@ impl Robot {
                     .for_each(|perception| perception.forget_frames(&self.mapping.scan_poses));
             }
         }
-        // A grid that has not yet followed the visual map does not fit it.
+        // During a redraw the grid does not agree with the corrected visual map.
         let fits = self.is_pose_known(track.stamp) && !self.mapping.mapper.is_redrawing();
         let visual_snapshot = visual_snapshot.filter(|_| fits);
         let checkpoint = visual_snapshot.map(|visual| Arc::new(self.checkpoint_with(visual)));
@@ -102,7 +103,7 @@ impl Robot {
             Some((localizer.map_from_visual()? * *visual_from_camera * camera_from_base).to_pose2())
         };
         if times.measure(Stage::Mapping, || mapping.correct(trajectory, visual_base)) {
-            // A search in the old grid is void; it begins again in the new one.
+            // A search in the old grid is void and restarts in the new one.
             self.perception.iter_mut().for_each(|perception| perception.global_localization.end());
         }
     }

@@ -9,7 +9,7 @@ use trundle_core::Scan;
 use trundle_estimation::{Correction, Localizer};
 
 impl Robot {
-    /// A scan of a laser that is the range source.
+    /// Processes a laser scan, if the laser is the range source.
     pub(super) fn on_laser(&mut self, scan: &Scan, report: &mut StepReport) {
         let scan = self.deskewed(scan);
         let odometer = self.odometry_at(scan.stamp());
@@ -23,7 +23,7 @@ impl Robot {
         self.on_scan(scan, report);
     }
 
-    /// The scan with each beam where the base was by the odometry when it was measured.
+    /// The scan with its beams corrected by the odometry for the motion during the sweep.
     fn deskewed(&self, scan: &Scan) -> Scan {
         let odom_from_base = |stamp| self.localizer.odometry_at(stamp).ok().map(|odometer| odometer.pose);
         if self.range_sensor.deskews {
@@ -33,7 +33,7 @@ impl Robot {
         }
     }
 
-    /// While the pose is unknown, applies the pose that global localization found, or begins the search.
+    /// While the pose is unknown, applies the result of global localization, or begins the search.
     pub(super) fn apply_global_localization(&mut self, place: Option<LocalizedPose>) {
         let is_lost = |localizer: &Localizer| position_sigma(&localizer.estimate()) >= self.lost_sigma;
         if let Some(LocalizedPose { stamp, map_from_base, covariance }) = place
@@ -46,9 +46,9 @@ impl Robot {
                 Correction::Applied { .. } => {
                     self.latest.pose_monitor.localized_by_scans();
                 }
-                // The found pose contradicts the estimate, whatever its uncertainty.
+                // After a displacement the found pose replaces the estimate, independent of its uncertainty.
                 _ if self.latest.pose_monitor.is_displaced() => self.localizer.set_pose_unknown(),
-                // It is the look-alike of the place where the robot is: the search begins again.
+                // The found place is a look-alike: the search restarts.
                 _ => self.perception.iter_mut().for_each(|perception| perception.global_localization.end()),
             }
         }
@@ -81,13 +81,13 @@ impl Robot {
         fit == Fit::Fits
     }
 
-    /// It was carried away: the pose is unknown, and the visual maps are searched too.
+    /// Handles a displacement: the pose is unknown, and the search includes the visual maps.
     pub(super) fn carried_away(&mut self) {
         self.lose_pose();
         self.perception.iter_mut().for_each(|perception| perception.kidnapped());
     }
 
-    /// The pose is unknown from now on.
+    /// Sets the pose unknown.
     pub(super) fn lose_pose(&mut self) {
         self.localizer.set_pose_unknown();
         self.latest.scan_map_consistency.forget();

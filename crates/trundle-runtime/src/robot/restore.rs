@@ -1,4 +1,4 @@
-//! Checkpoints of the robot, and a robot that starts from a checkpoint or a map.
+//! Checkpoints of the robot, and starts from a checkpoint or a map.
 
 use super::Robot;
 use crate::{
@@ -12,8 +12,8 @@ use trundle_estimation::Localizer;
 use trundle_vision::Vocabulary;
 
 impl Robot {
-    /// A robot that resumes from a checkpoint: it has the maps, and its pose is unknown. It turns on the spot until an image or
-    /// its scans give one pose, and continues the mission. The map frame is that of the checkpoint.
+    /// A robot resumed from a checkpoint, with its maps and an unknown pose. The robot turns on the spot until an image or its scans give a
+    /// unique pose, and continues the mission. The map frame is that of the checkpoint.
     ///
     /// # Errors
     /// When a number of the configuration is outside its range, or the checkpoint does not fit it: other cells, another camera.
@@ -31,7 +31,7 @@ impl Robot {
         Ok(robot)
     }
 
-    /// A robot that starts on a given map: the map frame is the pose of the robot at the start.
+    /// A robot on a given map. Its start pose is the origin of the map frame.
     ///
     /// # Errors
     /// When a number of the configuration is outside its range, or the map has other cells.
@@ -41,7 +41,7 @@ impl Robot {
         Ok(robot)
     }
 
-    /// The same robot, which recognises places by this vocabulary instead of the built-in one; call it before the first event.
+    /// The same robot with this visual vocabulary instead of the built-in one; call it before the first event.
     #[must_use]
     pub fn with_vocabulary(mut self, vocabulary: &Arc<Vocabulary>) -> Self {
         if let Some(perception) = &mut self.perception {
@@ -50,8 +50,7 @@ impl Robot {
         self
     }
 
-    /// The robot with a checkpoint in its report every 3 to 10 s, seldom where the map is large:
-    /// [`crate::StepReport::checkpoint`].
+    /// The robot with a checkpoint in its report every 3 to 10 s, less often for large maps: [`crate::StepReport::checkpoint`].
     #[must_use]
     pub fn with_checkpoints(mut self) -> Self {
         if let Some(perception) = &mut self.perception {
@@ -60,10 +59,10 @@ impl Robot {
         self
     }
 
-    /// A checkpoint of the robot now; none while a perception job runs or the pose is unknown.
+    /// A checkpoint of the present state; `None` while a perception job runs or the pose is unknown.
     pub fn checkpoint(&mut self) -> Option<Checkpoint> {
         let visual = self.perception.as_ref()?.slam().save();
-        // The grid that fits it.
+        // Completes the redraw, so that the grid agrees with the visual map.
         self.mapping.mapper.work_within(usize::MAX, 1);
         let now = self.localizer.estimate().stamp;
         self.is_pose_known(now).then(|| self.checkpoint_with(visual))

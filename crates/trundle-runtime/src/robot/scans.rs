@@ -1,4 +1,4 @@
-//! Scans: correction of the estimate, map, dynamic obstacles.
+//! Use of scans: correction of the estimate, map, dynamic obstacles.
 
 use super::{Robot, event_log};
 use crate::report::StepReport;
@@ -7,7 +7,7 @@ use trundle_core::Scan;
 use trundle_estimation::PlanarMeasurement;
 
 impl Robot {
-    /// A scan: at the map's rate it corrects the estimate and enters the map; safety watches each. Whether it was drawn.
+    /// Processes a scan for safety and, at the map's rate, for estimate and map. Returns whether the scan was drawn.
     pub(super) fn on_scan(&mut self, scan: Scan, report: &mut StepReport) -> bool {
         let is_due = self.mapping.is_due(scan.stamp()) && self.is_pose_known(scan.stamp());
         let is_due = is_due && self.is_consistent_with_map(&scan);
@@ -16,7 +16,7 @@ impl Robot {
             self.integrate_scan(&scan);
         }
         self.track_dynamic_obstacles(&scan);
-        // A scan without content does not replace the last one for the safety monitor.
+        // The safety monitor keeps the last scan with content.
         if self.latest.camera_health.note(&scan) || self.latest.camera_health.seen().is_none() {
             self.latest.scan_odometry = self.odometry_at(scan.stamp()).map(|odometer| odometer.pose);
             self.latest.scan = Some(scan);
@@ -35,7 +35,7 @@ impl Robot {
         self.times.measure(Stage::DynamicObstacles, || obstacles.add_scan(pose, scan, grid));
     }
 
-    /// Corrects the estimate by where the scan fits the map; returns this measurement.
+    /// Corrects the estimate by a scan match; returns the measurement.
     fn correct_by_scan(&mut self, scan: &Scan) -> Option<PlanarMeasurement> {
         let stamp = scan.stamp();
         let guess = self.localizer.pose_at(stamp).ok()?;
@@ -46,7 +46,7 @@ impl Robot {
         Some(PlanarMeasurement { stamp, pose: found.pose, covariance: found.covariance })
     }
 
-    /// Draws the scan, and the floor that the robot stands on, into the map; not when no pose is known for its time.
+    /// Draws the scan and the floor under the robot into the map, if a pose is known for its stamp.
     fn integrate_scan(&mut self, scan: &Scan) {
         let Ok(pose) = self.localizer.pose_at(scan.stamp()) else { return };
         self.times.measure(Stage::Mapping, || self.mapping.draw(pose, scan));

@@ -1,20 +1,20 @@
-//! Silent faults of wheels and gyro, for the log: the odometry copes with them, a person should know of them.
+//! Silent faults of wheels and gyro, for the log. The odometry tolerates these faults, but a person should know.
 
 use trundle_core::Stamp;
 
-/// Age of the newest gyro reading from which the gyro counts as missing \[s\]: 25 readings. Source: ours.
+/// Age of the newest gyro reading at which the gyro counts as missing \[s\]: 25 readings. Source: ours.
 const GYRO_MISSING_S: f64 = 0.5;
 
-/// A change that the log names.
+/// A logged change.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum SensorChange {
-    /// No readings of the gyro come: the heading comes from the wheels.
+    /// Gyro readings are missing: the heading comes from the wheels.
     GyroMissing,
-    /// Readings of the gyro come again.
+    /// Gyro readings have returned.
     GyroBack,
-    /// Commanded wheels do not count: the motion comes from the images.
+    /// Encoders do not count on command: the motion comes from the images.
     WheelsUnresponsive,
-    /// The wheels count again.
+    /// The encoders count again.
     WheelsBack,
 }
 
@@ -33,34 +33,34 @@ impl SensorChange {
     }
 }
 
-/// Watches wheels and gyro for silent faults.
+/// Detects silent faults of wheels and gyro.
 #[derive(Debug, Default)]
 pub(super) struct SensorWatch {
     /// The newest stamp of any event.
     newest: Stamp,
-    /// The newest reading of the gyro; the first one of the wheels before any.
+    /// Stamp of the newest gyro reading; before any, of the first wheel reading.
     gyro: Option<Stamp>,
     is_gyro_missing: bool,
     are_wheels_unresponsive: bool,
 }
 
 impl SensorWatch {
-    /// Notes the stamp of an event of any kind.
+    /// Records the stamp of an event.
     pub(super) fn on_event(&mut self, stamp: Stamp) {
         self.newest = self.newest.max(stamp);
     }
 
-    /// The newest stamp of any event: the time of log lines never runs backwards.
+    /// The newest stamp of any event, so that the time of log lines never decreases.
     pub(super) fn newest(&self) -> Stamp {
         self.newest
     }
 
-    /// Notes a reading of the gyro.
+    /// Records a gyro reading.
     pub(super) fn on_gyro(&mut self, stamp: Stamp) {
         self.gyro = Some(stamp);
     }
 
-    /// The changes at a reading of the wheels.
+    /// The changes at a wheel reading.
     pub(super) fn on_wheels(
         &mut self,
         now: Stamp,

@@ -1,4 +1,4 @@
-//! Who steers: the decision worker, a fallback while it is away, or an operator by hand.
+//! Steering by the decision worker, by the fallback controller during a decision job, or by an operator.
 
 use super::background::{Background, Felt};
 use super::event_log;
@@ -17,17 +17,17 @@ use crate::{
 };
 use trundle_core::{Footprint, Invalid, Stamp, Twist2};
 
-/// What turns the state of the world into twists.
+/// The controllers that compute twists from the world state.
 #[derive(Debug)]
 pub(super) struct Steering {
-    /// None while a decision job runs.
+    /// `None` while a decision job runs.
     pub(super) decision_worker: Option<Box<DecisionWorker>>,
     pub(super) background: Background,
-    /// Drives by the twists of an operator.
+    /// Controller for an operator's twists.
     pub(super) teleop: TeleopController,
     /// The newest state of the mission.
     mission: MissionState,
-    /// The newest state, and whether the mission is over.
+    /// The newest drive state, and whether the mission is over.
     state: (DriveState, bool),
 }
 
@@ -55,14 +55,14 @@ impl Steering {
         self.mission = mission;
     }
 
-    /// An operator gives a mission in place of driving by hand.
+    /// Begins an operator's mission and ends driving by hand.
     pub(super) fn begin_for_operator(&mut self, mission: MissionState) {
         self.teleop.release();
         self.state.1 = false;
         self.begin(mission.of_operator());
     }
 
-    /// A control step: a twist leaves.
+    /// A control step; commands a twist.
     pub(super) fn step(&mut self, world: &WorldState<'_>, times: &mut StageTimes, report: &mut StepReport) {
         match self.decision_worker.take() {
             Some(mut decision_worker) if !self.background.is_for(&decision_worker, world) => {
@@ -88,7 +88,7 @@ impl Steering {
         (report.state, report.finished) = self.state.clone();
     }
 
-    /// The mission, with what the decision worker has done of it.
+    /// The mission with the progress of the decision worker.
     pub(super) fn mission(&mut self) -> &MissionState {
         if let Some(decision_worker) = &self.decision_worker {
             self.mission = decision_worker.executor.mission();
@@ -101,7 +101,7 @@ impl Steering {
         self.background.decision.take()
     }
 
-    /// The decision worker is back with a decision: its twist, where nothing came meanwhile that it does not include.
+    /// Takes the decision worker back with its decision. Commands its twist if no newer input arrived.
     pub(super) fn on_decided(
         &mut self,
         decision_worker: Box<DecisionWorker>,
@@ -113,7 +113,7 @@ impl Steering {
         twist
     }
 
-    /// The decision worker receives the readings and the mission that came while it was away, and the last command.
+    /// Passes the inputs that arrived during the job, and the last command, to the decision worker.
     fn return_decision_worker(&mut self, mut decision_worker: Box<DecisionWorker>, sent: Option<Twist2>) {
         let fallback = self.background.fallback.take();
         if let Some(sent) = sent.or(fallback.map(|fallback| fallback.sent)) {
@@ -134,7 +134,7 @@ impl Steering {
         self.decision_worker = Some(decision_worker);
     }
 
-    /// A setting that may change while the robot runs.
+    /// Changes a setting during the run.
     pub(super) fn change(&mut self, setting: RunSetting) {
         match &mut self.decision_worker {
             Some(decision_worker) => decision_worker.navigator.change(setting),
@@ -142,7 +142,7 @@ impl Steering {
         }
     }
 
-    /// A reading of the bumper.
+    /// Processes a bumper reading.
     pub(super) fn on_touch(&mut self, pressed: bool) {
         self.teleop.touched = pressed;
         match &mut self.decision_worker {
@@ -154,7 +154,7 @@ impl Steering {
         }
     }
 
-    /// A reading of the cliff sensors.
+    /// Processes a reading of the cliff sensors.
     pub(super) fn on_cliff(&mut self, over_edge: bool) {
         self.teleop.over_edge = over_edge;
         match &mut self.decision_worker {

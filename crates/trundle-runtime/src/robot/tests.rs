@@ -1,4 +1,4 @@
-//! Laws of what the robot keeps from step to step.
+//! Laws of the robot's state between steps.
 
 use super::*;
 use proptest::prelude::*;
@@ -9,7 +9,7 @@ fn scan(stamp: Stamp) -> Scan {
     Scan::new(stamp, Vector2::zeros(), 0.0, 0.1, vec![Beam::Free { range: 3.0 }; 20]).unwrap()
 }
 
-/// Sweeps of a disc of 0.2 m, 2 m ahead, that walks to the left at 0.8 m/s for `seconds`.
+/// Sweeps over a disc of 0.2 m, 2 m ahead, that moves to the left at 0.8 m/s for `seconds`.
 fn walker(seconds: f64) -> (MovingObstacleTracker, Stamp) {
     let mut tracker = MovingObstacleTracker::new(ObstacleTrackerConfig::default()).unwrap();
     let step = 1_f64.to_radians();

@@ -1,11 +1,11 @@
-//! Validation of a robot's configuration: a configuration is valid when a robot can be made of it.
+//! Validation of a robot's configuration, by building a robot from it.
 
 use super::Robot;
 use crate::config::RobotConfig;
 use trundle_core::Invalid;
 
 impl RobotConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// Names the first number that is outside its range.

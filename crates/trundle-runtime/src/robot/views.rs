@@ -14,7 +14,7 @@ use trundle_estimation::StationEstimate;
 use trundle_planning::{MovingObstacle, PlanResult};
 use trundle_slam::RgbdSlam;
 
-/// How far a mission has come.
+/// Progress of a mission.
 #[derive(Debug, Clone, Copy)]
 pub struct MissionProgress<'r> {
     /// The present task.
@@ -34,7 +34,7 @@ impl Robot {
         self.mapping.grid()
     }
 
-    /// The visual tracker with its landmark map; none while a perception job runs.
+    /// The visual tracker with its landmark map; `None` while a perception job runs.
     pub fn slam(&self) -> Option<&RgbdSlam> {
         self.perception.as_ref().map(|perception| perception.slam())
     }
@@ -49,29 +49,28 @@ impl Robot {
         self.mission_progress().map_or(&[], |progress| progress.ended)
     }
 
-    /// How far the mission has come; none while a decision job runs.
+    /// Progress of the mission; `None` while a decision job runs.
     pub fn mission_progress(&self) -> Option<MissionProgress<'_>> {
         let executor = &self.steering.decision_worker.as_ref()?.executor;
         Some(MissionProgress { task: executor.task(), ended: executor.records() })
     }
 
-    /// The tasks of the mission that have not ended, the present one first; none while a decision job runs.
+    /// The tasks of the mission that have not ended, the present one first; `None` while a decision job runs.
     pub fn tasks_left(&self) -> Option<Vec<Task>> {
         Some(self.steering.decision_worker.as_ref()?.executor.tasks_left().collect())
     }
 
-    /// Report of turns and straight moves for the present goal, or for the last goal with such a request; none while a decision job
-    /// runs.
+    /// Report of turns and straight moves for the present goal, or for the last goal with such a request; `None` while a decision job runs.
     pub fn docking(&self) -> Option<&GoalApproachReport> {
         Some(self.steering.decision_worker.as_ref()?.navigator.docking())
     }
 
-    /// The present task; none while a decision job runs.
+    /// The present task; `None` while a decision job runs.
     pub fn task(&self) -> Option<Task> {
         self.mission_progress()?.task
     }
 
-    /// The newest plan; none while a decision is made in the background.
+    /// The newest plan; `None` while a decision job runs.
     pub fn plan(&self) -> Option<&PlanResult> {
         self.steering.decision_worker.as_ref()?.navigator.plan()
     }
@@ -81,28 +80,28 @@ impl Robot {
         self.latest.scan.as_ref()
     }
 
-    /// `map_from_base` at the newest scan, by the newest estimate; none where no odometry carries the scan.
+    /// `map_from_base` at the newest scan, by the newest estimate; `None` without odometry since the scan.
     pub fn scan_pose(&self) -> Option<Pose2> {
         let carried = self.latest.scan_with_odometry()?;
         Some(self.localizer.estimate().pose * carried.odom_now.inverse() * carried.odom_at_scan)
     }
 
-    /// Images that were left out because they were the last one again though the robot had moved.
+    /// Number of images skipped because the camera was frozen.
     pub fn frozen_images(&self) -> usize {
         self.latest.frozen
     }
 
-    /// The battery; none where the body has not reported it.
+    /// The battery; `None` before the body's first report.
     pub fn battery(&self) -> Option<Battery> {
         self.latest.body.battery()
     }
 
-    /// Dynamic obstacles near by, forecast to the newest decision.
+    /// Moving obstacles nearby, predicted to the newest decision.
     pub fn moving_obstacles(&self) -> &[MovingObstacle] {
         &self.obstacles.movers
     }
 
-    /// The charging station; none before its light was seen.
+    /// The charging station; `None` before the first light.
     pub fn station(&self) -> Option<StationEstimate> {
         self.station.estimate()
     }
@@ -122,12 +121,12 @@ impl Robot {
         &self.times
     }
 
-    /// The newest odometry; none before the first reading.
+    /// The newest odometry; `None` before the first reading.
     pub fn odometry(&self) -> Option<Odometry> {
         self.latest.odometry
     }
 
-    /// The condition under which no wheel may turn; none where the robot may drive.
+    /// The condition under which no wheel may turn; `None` if the robot may drive.
     pub fn hold(&self) -> Option<MotionHold> {
         self.latest.body.hold(self.range_sensor.source)
     }

@@ -1,4 +1,4 @@
-//! Visual poses that the scans refuse: of a look-alike place, or of something that moves.
+//! Check of visual poses by scans, against look-alike places and moving objects.
 
 use super::{Robot, event_log};
 use crate::{
@@ -59,7 +59,7 @@ impl Robot {
         }
     }
 
-    /// What an image shows of the place. Without evidence that the robot was carried away the pose goes on by odometry and scans.
+    /// Passes the evidence of an image to the pose monitor. Without evidence of a displacement, odometry and scans continue the pose.
     pub(super) fn add_image_evidence(
         &mut self,
         track: &TrackReport,

@@ -1,4 +1,4 @@
-//! Former names of settings, which robot files and recordings may contain.
+//! Former names of settings, for old robot files and recordings.
 
 use serde_json::Value;
 

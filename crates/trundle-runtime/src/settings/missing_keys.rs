@@ -4,7 +4,7 @@ use super::reference::{Setting, reference};
 use super::value_kind::wanted;
 use toml::de::{DeTable, DeValue};
 
-/// Place of a field that serde misses: the table's offset in the text, and the keys absent from the table.
+/// Place of a missing field: the table's offset in the text, and the keys absent from the table.
 pub(super) fn missing_keys(given: &DeTable<'_>, error: &toml::de::Error) -> Option<(usize, String)> {
     let field = error.message().strip_prefix("missing field `")?.strip_suffix('`')?;
     let lacks = |setting: &&Setting| setting.field() == field && table_of(given, setting.path).is_some();
@@ -19,7 +19,7 @@ pub(super) fn missing_keys(given: &DeTable<'_>, error: &toml::de::Error) -> Opti
     Some((at, format!("[{table}] lacks {}; it goes whole or not at all", missing.join(", "))))
 }
 
-/// The table of the file that should hold the field at `path` and does not, with its place in the text.
+/// The table of the file without the field at `path`, with its place in the text.
 fn table_of<'a, 'i>(given: &'a DeTable<'i>, path: &str) -> Option<(usize, &'a DeTable<'i>)> {
     let (head, rest) = path.split_once('.')?;
     let value = given.get(head)?;

@@ -1,4 +1,4 @@
-//! Settings of a robot given as `key=value` on top of a robot file.
+//! Settings given as `key=value`, which replace those of a robot file.
 
 use super::settings_error::SettingsError;
 use super::translation::{Found, find, unknown};
@@ -7,7 +7,7 @@ use crate::RobotConfig;
 use serde::Deserialize;
 use trundle_core::toml_problem;
 
-/// The same robot with `key=value` pairs on top.
+/// The same robot with the values of `key=value` pairs.
 pub(super) fn overridden(
     config: &RobotConfig,
     overrides: &[String],
@@ -41,7 +41,7 @@ pub(super) fn overridden(
     Ok(RobotConfig::deserialize(toml::Value::Table(table)).expect("invariant: read after every override"))
 }
 
-/// A whole number for a number with a point.
+/// Converts a whole number to a number with a point.
 fn as_kind(value: toml::Value, kind: &str) -> toml::Value {
     match value {
         toml::Value::Integer(i) if kind == "number" => toml::Value::Float(i as f64),

@@ -1,4 +1,4 @@
-//! Numbers that are possible but no robot has: millimetres for metres, degrees for radians.
+//! Implausible numbers, such as millimetres for metres, or degrees for radians.
 
 use crate::RobotConfig;
 use trundle_core::Invalid;
@@ -15,7 +15,7 @@ struct Plausible {
 
 /// Largest wheel radius of an indoor robot \[m\]; ours: three times a wheelchair's.
 const MAX_WHEEL_RADIUS_M: f64 = 0.5;
-/// Largest wheelbase of an indoor robot \[m\]; ours: wider than a double door.
+/// Largest wheelbase of an indoor robot \[m\]; ours: the width of a double door.
 const MAX_WHEELBASE_M: f64 = 2.0;
 /// Largest footprint radius \[m\]; ours.
 const MAX_FOOTPRINT_RADIUS_M: f64 = 3.0;
@@ -48,7 +48,7 @@ pub fn require_plausible(config: &RobotConfig) -> Result<(), Invalid> {
 }
 
 fn lengths_and_speeds(config: &RobotConfig) -> [Plausible; 9] {
-    // Numbers below 0 are left to the ranges of `Robot::new`: a wrong unit does not change the sign.
+    // `Robot::new` refuses numbers below 0; a wrong unit does not change the sign.
     let low = f64::NEG_INFINITY;
     let below = |path, value, unit, high, meant| Plausible { path, value, unit, low, high, meant };
     let (drive, limits) = (&config.drive, &config.limits);

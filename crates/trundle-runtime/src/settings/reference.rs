@@ -11,7 +11,7 @@ pub struct Setting {
     pub key: &'static str,
     /// Unit, as `m/s`; empty without a unit.
     pub unit: &'static str,
-    /// `number`, `integer`, `flag`, `list`, or the words of a choice parted by `|`.
+    /// `number`, `integer`, `flag`, `list`, or the words of a choice separated by `|`.
     pub kind: &'static str,
     /// Meaning, range, default and source of the default.
     pub doc: &'static str,

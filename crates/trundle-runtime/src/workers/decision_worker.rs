@@ -19,7 +19,7 @@ pub(crate) struct DecisionWorker {
     pub(crate) executor: MissionExecutor,
 }
 
-/// Additional clearance of paths to viewpoints while exploring \[m\]. Source: ours.
+/// Additional clearance of paths to viewpoints in exploration \[m\]. Source: ours.
 const EXPLORATION_CLEARANCE_M: f64 = 0.03;
 
 impl DecisionWorker {
@@ -51,7 +51,7 @@ impl DecisionWorker {
     }
 
     /// Whether the next decision may take longer than a control step: a plan, a search for frontiers, a search for turns and straight
-    /// moves. A short decision counted as long costs little.
+    /// moves. A wrong true costs little.
     pub(crate) fn may_take_long(&self, s: &WorldState<'_>) -> bool {
         self.executor.may_take_long(s, self.navigator.state()) || self.navigator.may_take_long(s)
     }
@@ -85,7 +85,7 @@ mod tests {
         DecisionWorker::new(&config, &config.footprint().unwrap()).unwrap()
     }
 
-    /// A mission that is over, its one task ended so.
+    /// A finished mission with one task of this end.
     fn over(end: TaskEnd) -> MissionState {
         let (from, to) = (Stamp::default(), Stamp::default());
         let (task, pose) = (Task::Return, Pose2::IDENTITY);

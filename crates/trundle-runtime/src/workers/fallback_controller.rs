@@ -5,22 +5,21 @@ use crate::world_state::WorldState;
 use trundle_control::{Follower, SafetyMonitor};
 use trundle_core::Twist2;
 
-/// Continues the last decision in each control step while a decision job runs: along the trajectory, or with the last twist. The safety
-/// monitor checks each twist.
+/// Continues the last decision during a decision job: along the trajectory, or with the last twist. The safety monitor checks each twist.
 #[derive(Debug)]
 pub(crate) struct FallbackController {
     pub(crate) follower: Follower,
     pub(crate) safety: SafetyMonitor,
-    /// Twist of the last decision; `None`: the path follower's twist.
+    /// Twist of the last decision; `None` for the path follower's twist.
     pub(crate) wanted: Option<Twist2>,
     pub(crate) touched: bool,
     pub(crate) over_edge: bool,
-    /// The last twist that left.
+    /// The last commanded twist.
     pub(crate) sent: Twist2,
 }
 
 impl FallbackController {
-    /// Takes the trajectory or the last twist away: the robot brakes to rest within its limits.
+    /// Drops the trajectory or the last twist: the robot brakes to rest within its limits.
     pub(crate) fn halt(&mut self) {
         self.follower.halt();
         self.wanted = None;

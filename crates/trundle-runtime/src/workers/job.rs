@@ -19,7 +19,7 @@ pub enum Worker {
     /// Processes an image: camera pose and scan.
     #[serde(alias = "lookout")]
     Perception,
-    /// Decides what may take long: plans, frontiers, turns and straight moves.
+    /// Makes long decisions: plans, frontiers, turns and straight moves.
     #[serde(alias = "captain")]
     Decision,
 }
@@ -29,7 +29,7 @@ impl Worker {
     pub const ALL: [Self; 2] = [Worker::Perception, Worker::Decision];
 }
 
-/// Work that may take longer than a control step. The job contains all its inputs: run it on any thread, then give the answer to
+/// Work that may take longer than a control step. The job contains all its inputs. Run it on any thread, and pass the answer to
 /// [`crate::Robot::apply_answer`].
 #[derive(Debug)]
 pub struct Job(pub(crate) Work);
@@ -72,7 +72,7 @@ impl Job {
         }
     }
 
-    /// Does the work.
+    /// Runs the job.
     pub fn run(self) -> Answer {
         let mut times = Box::<StageTimes>::default();
         let result = match self.0 {

@@ -16,9 +16,9 @@ use trundle_mapping::DepthScanner;
 use trundle_slam::{MapFileError, RgbdSlam, TrackReport};
 use trundle_vision::Vocabulary;
 
-/// All processing of an image alone: the camera's pose by SLAM, and the scan.
+/// Processing of images: the camera's pose by SLAM, and the scan.
 ///
-/// Its results depend only on its images and odometry, in their order. Therefore it may run in parallel with the control loop.
+/// The results depend only on the sequence of images and odometry, so the worker may run in parallel with the control loop.
 #[derive(Debug)]
 pub(crate) struct PerceptionWorker {
     range_source: RangeSource,
@@ -26,11 +26,11 @@ pub(crate) struct PerceptionWorker {
     slam: RgbdSlam,
     scanner: DepthScanner,
     camera_health: CameraHealth,
-    /// The place by scans, while it is not known.
+    /// Search for the pose by scans, while it is unknown.
     pub(crate) global_localization: GlobalLocalization,
     /// Odometry at the last image.
     last: Option<OdometryState>,
-    /// Schedule of the checkpoints; none: never.
+    /// Schedule of the checkpoints; `None` for no checkpoints.
     pub(crate) saving: Option<CheckpointSchedule>,
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct PerceptionResult {
     pub(crate) place: Option<LocalizedPose>,
     /// All poses of the visual map, after a correction that tracking does not follow.
     pub(crate) corrected_trajectory: Option<Vec<(Stamp, Pose3)>>,
-    /// The visual maps, when it was time to save them.
+    /// The visual maps as bytes, if a checkpoint was due.
     pub(crate) visual_snapshot: Option<Vec<u8>>,
 }
 
@@ -71,13 +71,13 @@ impl PerceptionWorker {
         })
     }
 
-    /// Continues with saved visual maps; the pose of the camera in them is unknown until a place is recognised.
+    /// Loads saved visual maps. The camera's pose in them is unknown until a place is recognised.
     pub(crate) fn load_maps(&mut self, config: &RobotConfig, visual: &[u8]) -> Result<(), MapFileError> {
         self.slam = RgbdSlam::load(visual, config.camera, config.slam.clone())?;
         Ok(())
     }
 
-    /// Recognises places by this vocabulary.
+    /// Sets the vocabulary of place recognition.
     pub(crate) fn set_vocabulary(&mut self, vocabulary: &Arc<Vocabulary>) {
         self.slam.set_vocabulary(vocabulary);
     }
@@ -91,7 +91,7 @@ impl PerceptionWorker {
         blind_range(self.range_source, &self.scanner)
     }
 
-    /// Processes an image that was taken at this odometry; none for an image of a frozen camera.
+    /// Processes an image taken at this odometry; `None` for an image of a frozen camera.
     pub(crate) fn process(
         &mut self,
         image: &RgbdImage,
@@ -120,7 +120,7 @@ impl PerceptionWorker {
         self.slam.forget_frames(|stamp| scan_poses.has(stamp));
     }
 
-    /// The visual maps, when it is time to save them.
+    /// The visual maps as bytes, if a checkpoint is due.
     fn save(&mut self, now: Stamp, times: &mut StageTimes) -> Option<Vec<u8>> {
         let saving = self.saving.as_mut().filter(|saving| saving.is_due(now))?;
         let visual_snapshot = times.measure(Stage::Checkpoint, || self.slam.save());
@@ -128,7 +128,7 @@ impl PerceptionWorker {
         Some(visual_snapshot)
     }
 
-    /// Searches the pose by a scan, while it is unknown.
+    /// Continues the search for an unknown pose with a scan.
     pub(crate) fn search_pose(
         &mut self,
         odom_from_base: Pose2,
@@ -142,7 +142,7 @@ impl PerceptionWorker {
         is_sought.then(|| times.measure(Stage::Search, look)).flatten()
     }
 
-    /// Resets the tracker after another part has detected a displacement: a recognised place may then be at any pose.
+    /// Resets the tracker after a displacement was detected, so that a recognised place may be at any pose.
     pub(crate) fn kidnapped(&mut self) {
         self.slam.kidnapped();
     }

@@ -1,4 +1,4 @@
-//! The teleop controller: drives by the twists of an operator, below the safety monitor.
+//! The teleop controller: drives by the twists of an operator, under the safety monitor.
 
 use crate::behaviour::navigator::safety_input;
 use crate::config::RobotConfig;
@@ -15,7 +15,7 @@ pub(crate) struct TeleopController {
     safety: SafetyMonitor,
     pub(crate) touched: bool,
     pub(crate) over_edge: bool,
-    /// The operator's last twist, and when it came.
+    /// The operator's last twist, with its stamp.
     wanted: Option<(Twist2, Stamp)>,
     /// Stamp of the last sent twist.
     sent: Option<Stamp>,
@@ -33,17 +33,17 @@ impl TeleopController {
         })
     }
 
-    /// The operator's twist from `now` on.
+    /// Sets the operator's twist at `now`.
     pub(crate) fn drive(&mut self, twist: Twist2, now: Stamp) {
         self.wanted = Some((twist, now));
     }
 
-    /// The operator drives no longer.
+    /// Ends driving by the operator.
     pub(crate) fn release(&mut self) {
         self.wanted = None;
     }
 
-    /// The twist of a control step; `None` if no operator drives. `s.hold` holds the robot, a pause of its mission does not count.
+    /// The twist of a control step; `None` if no operator drives. `s.hold` stops the robot, except for a pause of the mission.
     pub(crate) fn step(&mut self, s: &WorldState<'_>) -> Option<Twist2> {
         let wanted = self.wanted.filter(|(_, since)| s.now - *since <= TELEOP_SILENCE_S);
         let Some((wanted, _)) = wanted else {
@@ -112,7 +112,7 @@ mod tests {
             speeds[..15].windows(2).all(|v| v[1] > v[0] && v[1] - v[0] <= 0.5 * STEP_S + 1e-9),
             "{speeds:?}"
         );
-        // The step at the very limit may count to either side.
+        // A step exactly at the limit may count to either side.
         assert!(matches!(sent.iter().position(Option::is_none), Some(15 | 16)), "{speeds:?}");
         teleop.drive(Twist2::new(0.3, 0.0), at(2.0));
         assert_eq!(twists(&mut teleop, 2.0, 1, false), [Some(Twist2::ZERO)], "it starts from rest again");

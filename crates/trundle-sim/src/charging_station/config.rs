@@ -65,7 +65,7 @@ impl StationConfig {
         Self { edge_noise_deg: 0.0, miss_probability: 0.0, ..self }
     }
 
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range or not finite.

@@ -26,7 +26,7 @@ impl Default for WaypointFollowerConfig {
 }
 
 impl WaypointFollowerConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

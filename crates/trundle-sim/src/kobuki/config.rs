@@ -101,7 +101,7 @@ impl KobukiConfig {
         }
     }
 
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

@@ -9,22 +9,22 @@ use crate::place_recognition::consistency_check::ConsistencyCheck;
 use std::sync::Arc;
 use trundle_vision::Vocabulary;
 
-/// Fewest keyframes of a map that is kept when the camera gets lost in it: 4. A smaller one is dropped, since it would hardly be
-/// recognized again. Source: ours.
+/// Fewest keyframes of a map that is kept when the camera gets lost in it: 4. A smaller map is dropped, since it would hardly be recognized
+/// again. Source: ours.
 const MIN_KEPT_KEYFRAMES: usize = 4;
 
 /// All maps \[Campos21, sec. VI\].
 #[derive(Debug)]
 pub(crate) struct Atlas {
-    /// The map that the camera is in, or was last.
+    /// The map that new frames are located in and extend.
     pub active: SubMap,
     /// The other maps, by rising id.
     pub inactive: Vec<SubMap>,
     /// The highest id that a map ever had.
     newest_map_id: u32,
-    /// Where the newest map began in the one before it, if odometry measured that.
+    /// Pose of the newest map's origin in the map before it, if odometry measured it.
     pub submap_link: Option<SubmapLink>,
-    /// Another map that the last keyframe showed, and that is not merged yet.
+    /// Another map that the last keyframe showed, before the merge is confirmed.
     pub pending_merge: Option<ConsistencyCheck<MapId>>,
 }
 
@@ -40,7 +40,7 @@ impl Atlas {
         }
     }
 
-    /// Replaces all maps, the first of which becomes the active one. Returns whether there was any.
+    /// Replaces all maps; the first one becomes the active map. Returns false for an empty list.
     pub fn replace(&mut self, maps: Vec<(MapId, LandmarkMap)>) -> bool {
         let vocabulary = Arc::clone(self.active.place_index.vocabulary());
         let mut maps = maps.into_iter().map(|(id, map)| SubMap::new(id, map, &vocabulary));
@@ -50,7 +50,7 @@ impl Atlas {
         true
     }
 
-    /// Finds places by another vocabulary from now on.
+    /// Sets the vocabulary that describes places.
     pub fn set_vocabulary(&mut self, vocabulary: &Arc<Vocabulary>) {
         self.inactive.iter_mut().chain([&mut self.active]).for_each(|map| map.set_vocabulary(vocabulary));
     }
@@ -62,7 +62,7 @@ impl Atlas {
         maps
     }
 
-    /// Makes another map the active one. Returns whether it was another one.
+    /// Makes a map the active one. Returns whether the active map changed.
     pub fn enter(&mut self, map: MapId) -> bool {
         let Some(entered) = self.inactive.iter_mut().find(|inactive| inactive.id == map) else {
             return false;
@@ -88,13 +88,13 @@ impl Atlas {
         }
         self.pending_merge = None;
         let link = before_from_map.map(|before_from_map| SubmapLink { map: id, before, before_from_map });
-        // Where the map before is dropped, the link leads on from the one before that.
+        // Without a dropped map, the link starts at the map before the dropped one.
         let joined = || self.submap_link.zip(link).and_then(|(first, second)| first.then(second));
         self.submap_link = if is_kept { link } else { joined() };
         dropped
     }
 
-    /// An id that no map had: a caller identifies a map's poses by its id.
+    /// An id that no map has had, since callers identify poses by the map's id.
     fn next_id(&mut self) -> MapId {
         let newest = self.inactive.iter().map(|map| map.id.0).fold(self.active.id.0, u32::max);
         self.newest_map_id = self.newest_map_id.max(newest).saturating_add(1);

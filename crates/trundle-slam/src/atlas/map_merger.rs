@@ -12,11 +12,11 @@ use crate::report::MapMerge;
 use crate::tracking::config::TrackingConfig;
 use trundle_core::Pose3;
 
-/// Keyframes that the bundle adjustment around the common keyframe moves, and as many that hold them: 40. More take longer than an image.
-/// Source: ours.
+/// Number of keyframes that the bundle adjustment around the common keyframe moves, and of those that it fixes: 40. More take longer than
+/// an image. Source: ours.
 const MERGE_BUNDLE_KEYFRAMES: usize = 40;
 
-/// Merges maps as keyframes come \[Campos21, sec. VI-B\].
+/// Merges maps when keyframes show them \[Campos21, sec. VI-B\].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MapMerger<'a> {
     pub mapper: LocalMapper<'a>,
@@ -25,7 +25,7 @@ pub(crate) struct MapMerger<'a> {
     pub seed: u64,
 }
 
-/// A merge, and what is needed to move the past frames along.
+/// A merge, and the data that moves the past frames with it.
 #[derive(Debug)]
 pub(crate) struct Merged {
     pub report: MapMerge,
@@ -67,7 +67,7 @@ impl MapMerger<'_> {
         Some(merged)
     }
 
-    /// The first of the inactive maps that the keyframe shows.
+    /// The first inactive map that the keyframe shows.
     fn recognize(&self, atlas: &Atlas, keyframe: KeyframeId) -> Option<RecognizedMap> {
         let Atlas { active, inactive, .. } = atlas;
         let own = active.place_index.frame_bow(&active.map, keyframe)?;
@@ -84,7 +84,7 @@ impl MapMerger<'_> {
         Some(RecognizedMap { index, id, place, other_from_active })
     }
 
-    /// Takes the newer of the two maps over into the older one, which is then the active map.
+    /// Moves the content of the newer map into the older one, which becomes the active map.
     fn join(&self, atlas: &mut Atlas, keyframe: KeyframeId, recognized: RecognizedMap) -> Merged {
         let RecognizedMap { index, mut place, other_from_active, .. } = recognized;
         let other = atlas.inactive.remove(index);
@@ -109,7 +109,7 @@ impl MapMerger<'_> {
         Merged { report, absorbed, ids, into_from_absorbed }
     }
 
-    /// Fuses the landmarks that are there twice after the merge, and adjusts what is around.
+    /// Fuses duplicate landmarks after the merge, and adjusts the keyframes around.
     fn fuse(&self, active: &mut SubMap, keyframe: KeyframeId, place: &RecognizedPlace) {
         let LocalMapper { model, config, .. } = self.mapper;
         self.mapper.fuse_around(&mut active.map, keyframe, &place.landmarks);

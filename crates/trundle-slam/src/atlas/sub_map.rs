@@ -38,18 +38,18 @@ impl SubMap {
         sub_map
     }
 
-    /// Describes the keyframes by another vocabulary from now on.
+    /// Sets the vocabulary that describes the keyframes.
     pub fn set_vocabulary(&mut self, vocabulary: &Arc<Vocabulary>) {
         self.place_index = KeyframeIndex::new(Arc::clone(vocabulary));
         self.update_index();
     }
 
-    /// Brings the index of places up to date with the map.
+    /// Updates the place index to the map.
     pub fn update_index(&mut self) {
         self.place_index.update(&self.map);
     }
 
-    /// Takes over another map that stands at `own_from_other`; `covariance` is that of the common keyframe's pose.
+    /// Moves the content of a map at `own_from_other` into this one; `covariance` is that of the common keyframe's pose.
     pub fn absorb(&mut self, other: &LandmarkMap, own_from_other: Pose3, covariance: Matrix6<f64>) -> IdMap {
         let mut ids = IdMap::default();
         for (old, keyframe) in other.keyframes() {

@@ -6,7 +6,7 @@ use crate::motion::uncertain_pose::UncertainPose;
 use nalgebra::Matrix6;
 use trundle_core::Pose3;
 
-/// The odometry between two maps: the camera left one of them without being located, and the other began where it was then.
+/// The odometry between two maps: from the last pose in one map to the start of the next.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SubmapLink {
     pub map: MapId,
@@ -21,8 +21,8 @@ impl SubmapLink {
         (self.map == next.before).then_some(Self { before: self.before, before_from_map, ..next })
     }
 
-    /// Whether a merge may put `other` at this pose in `active`: within the uncertainty of the link, or within the largest correction
-    /// of an unexpected loop. Pairs of maps without a link are allowed.
+    /// Whether a merge may put `other` at this pose in `active`: within the uncertainty of the link, or within the largest correction of an
+    /// unexpected loop. A pair of maps without a link may always merge.
     pub fn allows(
         &self,
         (other, active): (MapId, MapId),

@@ -1,4 +1,4 @@
-//! The poses of past frames, which move along with the map.
+//! The poses of past frames, which follow corrections of the map.
 
 use crate::atlas::map_collection::Atlas;
 use crate::atlas::sub_map::{IdMap, SubMap};
@@ -21,9 +21,9 @@ pub(crate) struct FrameRecord {
 #[derive(Debug)]
 pub(crate) struct Trajectory {
     records: VecDeque<FrameRecord>,
-    /// Most records that are kept.
+    /// Maximum number of records.
     capacity: usize,
-    /// Frames ever recorded.
+    /// Number of all frames recorded, including dropped ones.
     frame_count: u64,
 }
 
@@ -53,7 +53,7 @@ impl Trajectory {
         seed.wrapping_add(self.frame_count)
     }
 
-    /// `visual_from_camera` of every frame of the active map that was not lost, by the present map.
+    /// `visual_from_camera` of every located or dead-reckoned frame of the active map, by the present map.
     pub fn poses(&self, active: &SubMap) -> Vec<(Stamp, Pose3)> {
         let is_in_map = |record: &&FrameRecord| record.map == active.id && record.tracking != Tracking::Lost;
         let pose =
@@ -74,7 +74,7 @@ impl Trajectory {
         self.records.iter().map(pose).collect()
     }
 
-    /// Keeps the poses of a map that is dropped, as they are.
+    /// Fixes the poses of a dropped map's frames.
     pub fn fix_poses(&mut self, dropped: &SubMap) {
         for record in self.records.iter_mut().filter(|record| record.map == dropped.id) {
             let reference_from_camera = record.anchored.visual_from_camera(&dropped.map);
@@ -88,7 +88,7 @@ impl Trajectory {
         self.records.retain(|record| Some(record.anchored.stamp) == last || wanted(record.anchored.stamp));
     }
 
-    /// Moves the frames of a map that was merged into `into`, where its ids and its pose are these.
+    /// Moves the frames of an absorbed map into map `into`: `ids` are the new ids, and the pose is that of the absorbed map.
     pub fn move_into(&mut self, into: MapId, absorbed: &SubMap, ids: &IdMap, into_from_absorbed: Pose3) {
         for record in self.records.iter_mut().filter(|record| record.map == absorbed.id) {
             let AnchoredPose { stamp, reference, reference_from_camera } = record.anchored;

@@ -14,9 +14,9 @@ use trundle_vision::{RansacConfig, estimate_rigid_motion, match_mutual};
 
 /// Number of frames between two checks: 5. Source: ours.
 const FRAME_STRIDE: usize = 5;
-/// Rotation between two frames from which they are compared: 0.08 rad. Source: ours.
+/// Smallest rotation between two frames that are compared: 0.08 rad. Source: ours.
 const MIN_PAIR_TURN_RAD: f64 = 0.08;
-/// Translation between two frames from which they are compared: 0.1 m. Source: ours.
+/// Smallest translation between two frames that are compared: 0.1 m. Source: ours.
 const MIN_PAIR_DISTANCE_M: f64 = 0.1;
 /// Fewest frame pairs for a decision about the camera: 6. Source: ours.
 const MIN_PAIRS: usize = 6;
@@ -24,7 +24,7 @@ const MIN_PAIRS: usize = 6;
 const MAX_PAIRS: usize = 18;
 /// Standard deviation of a match in the first motion of a pair: 10 px, since wrong settings distort the image. Source: ours.
 const LOOSE_PIXEL_SIGMA_PX: f64 = 10.0;
-/// Standard deviation of a depth in it: 0.03 m. Source: ours.
+/// Standard deviation of a depth in the first motion of a pair: 0.03 m. Source: ours.
 const LOOSE_DEPTH_SIGMA_M: f64 = 0.03;
 /// Fewest matches that the motion of a pair must explain: 40. Source: ours.
 const MIN_MATCHES: usize = 40;
@@ -34,14 +34,14 @@ const MIN_MATCHES: usize = 40;
 pub(crate) struct CalibrationCheck {
     frames: usize,
     anchor: Option<Frame>,
-    /// Camera motion since the anchor by the prior, as long as there is one.
+    /// Camera motion since the anchor frame by the priors; `None` after a frame without a prior.
     moved: Option<Pose3>,
     pairs: Vec<Pair>,
-    /// The camera by the first of these pairs, during its computation.
-    judgement: Option<ModelSelection>,
-    /// How many pairs the last evaluation had.
-    judged: usize,
-    camera_judged: bool,
+    /// The running fit of the camera settings to the first pairs.
+    camera_fit: Option<ModelSelection>,
+    /// Number of pairs in the last evaluation.
+    evaluated_pairs: usize,
+    is_camera_evaluated: bool,
     range: DepthRange,
     travel: TravelledDistance,
     registration: Registration,
@@ -54,7 +54,7 @@ impl CalibrationCheck {
         &self.calibration_issues
     }
 
-    /// Adds the evidence of picture and depth.
+    /// Records the edges of a grey image and its depth image.
     pub fn record_image(&mut self, gray: &GrayImage, depth: &DepthImage) {
         if self.frames.is_multiple_of(FRAME_STRIDE) {
             self.calibration_issues.extend(self.registration.record(gray, depth));
@@ -73,15 +73,15 @@ impl CalibrationCheck {
         self.moved = self.moved.zip(prior).map(|(moved, prior)| moved * prior);
         if self.frames.is_multiple_of(FRAME_STRIDE) {
             self.calibration_issues.extend(self.range.record(depth, config));
-            if !self.camera_judged && self.pairs.len() < MAX_PAIRS {
+            if !self.is_camera_evaluated && self.pairs.len() < MAX_PAIRS {
                 self.compare(frame, model);
             }
         }
-        self.judge(&model.camera);
+        self.evaluate(&model.camera);
         self.frames += 1;
     }
 
-    /// Matches a frame with the anchor; where the camera moved enough between, the pair is kept.
+    /// Matches a frame with the anchor frame, and keeps the pair if the camera moved enough.
     fn compare(&mut self, frame: &Frame, model: &ObservationModel) {
         let pair = self.anchor.as_ref().and_then(|anchor| pair_of(anchor, frame, model));
         if let Some(pair) = pair {
@@ -97,25 +97,25 @@ impl CalibrationCheck {
         self.moved = Some(Pose3::identity());
     }
 
-    /// Goes on evaluating the camera, some rounds a frame, again whenever there are three more pairs.
-    fn judge(&mut self, camera: &PinholeCamera) {
+    /// Evaluates the camera settings in some rounds per frame, and again after every three new pairs.
+    fn evaluate(&mut self, camera: &PinholeCamera) {
         let count = self.pairs.len() / 3 * 3;
-        if self.judgement.is_none() && count >= MIN_PAIRS && count > self.judged {
-            self.judgement = Some(ModelSelection::of(&self.pairs[..count]));
-            self.judged = count;
+        if self.camera_fit.is_none() && count >= MIN_PAIRS && count > self.evaluated_pairs {
+            self.camera_fit = Some(ModelSelection::of(&self.pairs[..count]));
+            self.evaluated_pairs = count;
         }
-        let pairs = &self.pairs[..self.judged];
-        let Some(suspicion) = self.judgement.as_mut().and_then(|j| j.advance(pairs, camera)) else { return };
-        self.judgement = None;
-        self.camera_judged = suspicion.is_some() || self.judged >= MAX_PAIRS;
+        let pairs = &self.pairs[..self.evaluated_pairs];
+        let Some(suspicion) = self.camera_fit.as_mut().and_then(|j| j.advance(pairs, camera)) else { return };
+        self.camera_fit = None;
+        self.is_camera_evaluated = suspicion.is_some() || self.evaluated_pairs >= MAX_PAIRS;
         self.calibration_issues.extend(suspicion);
-        if self.camera_judged {
-            (self.pairs, self.anchor, self.judged) = (Vec::new(), None, 0);
+        if self.is_camera_evaluated {
+            (self.pairs, self.anchor, self.evaluated_pairs) = (Vec::new(), None, 0);
         }
     }
 }
 
-/// The matches of two frames that a motion explains, loosely.
+/// The matches of two frames that one motion explains with loose tolerances.
 fn pair_of(a: &Frame, b: &Frame, model: &ObservationModel) -> Option<Pair> {
     let camera = &model.camera;
     let normal =

@@ -24,7 +24,7 @@ pub(crate) struct DepthRange {
 }
 
 impl DepthRange {
-    /// Takes an image; evaluates after some.
+    /// Records an image; evaluates after [`CHECKED_IMAGES`].
     pub fn record(&mut self, image: &DepthImage, config: &DepthConfig) -> Option<CalibrationIssue> {
         if self.images == CHECKED_IMAGES {
             return None;

@@ -5,34 +5,34 @@ use std::fmt;
 /// A setting that is probably wrong, and the evidence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum CalibrationIssue {
-    /// Many depths are where no depth camera measures.
+    /// Many depths are outside the range of any depth camera.
     DepthRange {
         /// Part of the depths, 0 to 1.
         part: f64,
-        /// Whether they are beyond the far end of the range; else they are before its near end.
+        /// Whether the depths are beyond the far end of the range; else they are before the near end.
         beyond: bool,
-        /// The middle one of all depths, m.
+        /// Median of all depths, m.
         median: f64,
     },
     /// No image had any depth.
     NoDepth,
-    /// The camera does not travel as far as the wheels.
+    /// The camera's distance travelled differs from the wheels'.
     TravelledDistance {
-        /// How many times as long.
+        /// Ratio of the camera's distance to the wheels'.
         ratio: f64,
     },
-    /// Matched points ask for other focal lengths, in x and y, px.
+    /// Matched points fit other focal lengths, in x and y, px.
     FocalLengths {
-        /// Those that are set.
+        /// The configured focal lengths.
         given: (f64, f64),
-        /// Those that fit best.
+        /// The best fit.
         found: (f64, f64),
-        /// Whether exchanging them explains it.
+        /// Whether fx and fy are swapped.
         swapped: bool,
     },
-    /// Matched points ask for another principal point.
+    /// Matched points fit another principal point.
     PrincipalPoint {
-        /// How far from the one that is set, px.
+        /// Offset from the configured principal point, px.
         offset: (f64, f64),
     },
     /// Matched points are displaced towards the image border.
@@ -42,7 +42,7 @@ pub enum CalibrationIssue {
     },
     /// The edges of the depth image lie beside those of the picture.
     Registration {
-        /// How far it would have to be shifted, px.
+        /// Shift of the depth image that would align the edges, px.
         offset: (f64, f64),
     },
 }

@@ -6,7 +6,7 @@ use crate::calibration_check::self_calibration::{
 };
 use trundle_core::{PinholeCamera, Vector2};
 
-/// Parameters that may be free together: none, focal lengths, principal point, lens.
+/// Sets of parameters that are fitted together: none, focal lengths, principal point, lens.
 const MODELS: [[bool; 6]; 4] = [
     [false; 6],
     [true, true, false, false, false, false],
@@ -19,7 +19,7 @@ const FOCAL_MODEL: usize = 1;
 const CENTRE_MODEL: usize = 2;
 /// Matches that are evaluated between two frames: 10,000, of 100 ns each. Source: ours.
 const MATCHES_PER_FRAME: usize = 10_000;
-/// Standard deviations that an offset must be from zero to be wrong: 4. Source: ours.
+/// Smallest offset that counts as wrong, in standard deviations: 4. Source: ours.
 const MIN_OFFSET_SIGMAS: f64 = 4.0;
 /// Largest difference of the best focal lengths from the swapped ones: 3 standard deviations. Source: ours.
 const MAX_SWAP_SIGMAS: f64 = 3.0;
@@ -32,7 +32,7 @@ const MIN_ERROR_PX: f64 = 4.0;
 #[derive(Debug, Clone)]
 pub(crate) struct ModelSelection {
     fit: CalibrationFit,
-    /// Results of the models before.
+    /// Results of the models fitted so far.
     fitted: Vec<Option<FittedOffset>>,
 }
 
@@ -41,7 +41,7 @@ impl ModelSelection {
         Self { fit: CalibrationFit::new(pairs, CalibrationOffset::zeros(), MODELS[0]), fitted: Vec::new() }
     }
 
-    /// Goes on over the same pairs; what is suspected, once it is through.
+    /// Continues with the same pairs; at the end, returns the suspected issue.
     pub fn advance(&mut self, pairs: &[Pair], camera: &PinholeCamera) -> Option<Option<CalibrationIssue>> {
         let matches: usize = pairs.iter().map(|pair| pair.matches.len()).sum();
         for _ in 0..(MATCHES_PER_FRAME / matches.max(1)).max(1) {
@@ -57,7 +57,7 @@ impl ModelSelection {
         None
     }
 
-    /// The next fit: every model, then the exchanged focal lengths with no free parameter, if those are suspected.
+    /// The next fit: each model in turn, then swapped focal lengths without a free parameter, if suspected.
     fn next(&self, camera: &PinholeCamera) -> Option<(CalibrationOffset, [bool; 6])> {
         let done = self.fitted.len();
         if let Some(model) = MODELS.get(done) {
@@ -94,8 +94,7 @@ impl ModelSelection {
         })
     }
 
-    /// Whether exchanging the focal lengths explains most of what the best ones explain, and neither of the best contradicts
-    /// it.
+    /// Whether swapped focal lengths explain almost as much as the best ones, and agree with both of them.
     fn is_swapped(&self, best: &FittedOffset, camera: &PinholeCamera) -> bool {
         let exchange = exchange(camera);
         let fits = |i: usize| (best.offset[i] - exchange[i]).abs() <= MAX_SWAP_SIGMAS * best.sigmas[i];
@@ -105,7 +104,7 @@ impl ModelSelection {
     }
 }
 
-/// The offset of exchanged focal lengths.
+/// The offset of swapped focal lengths.
 fn exchange(camera: &PinholeCamera) -> CalibrationOffset {
     let ratio = camera.fx() / camera.fy();
     CalibrationOffset::new(ratio - 1.0, ratio.recip() - 1.0, 0.0, 0.0, 0.0, 0.0)

@@ -34,8 +34,8 @@ const MIN_EDGE_BLOCKS: usize = 50;
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Registration {
     images: usize,
-    /// By shift: how strong the picture's edges are under the shifted edges of depth, each image's mean being 1; of every
-    /// second image, and of the others.
+    /// For each shift: mean strength of the image's edges at the shifted depth edges, relative to each image's mean. The first list is of
+    /// every second image, the second of the others.
     scores: [Vec<f64>; 2],
 }
 
@@ -45,7 +45,7 @@ impl Registration {
         self.images < CHECKED_IMAGES
     }
 
-    /// Takes an image; evaluates after some.
+    /// Records an image; evaluates after [`CHECKED_IMAGES`].
     pub fn record(&mut self, gray: &GrayImage, depth: &DepthImage) -> Option<CalibrationIssue> {
         if !self.is_open() || !gray.same_size(depth) {
             return None;
@@ -65,12 +65,12 @@ impl Registration {
             let (sum, count) = under.fold((0.0, 0), |(sum, count), value| (sum + value, count + 1));
             *score += sum / f64::from(count.max(1)) / mean;
         }
-        if self.is_open() { None } else { self.judge() }
+        if self.is_open() { None } else { self.evaluate() }
     }
 
-    /// Both halves of the images must ask for about the same shift, and not for one out of all reason: if there is nothing
-    /// to find, they do not.
-    fn judge(&self) -> Option<CalibrationIssue> {
+    /// Reports a shift if both halves of the images agree on it and its size is plausible. Without a registration error the halves
+    /// disagree.
+    fn evaluate(&self) -> Option<CalibrationIssue> {
         let [a, b] = [shift_of(&self.scores[0])?, shift_of(&self.scores[1])?];
         let same = (a.0 - b.0).abs() <= MAX_SHIFT_DIFFERENCE_BLOCKS
             && (a.1 - b.1).abs() <= MAX_SHIFT_DIFFERENCE_BLOCKS;
@@ -81,7 +81,7 @@ impl Registration {
     }
 }
 
-/// The shift, in blocks, that puts the edges of depth clearly better onto those of the picture than none does.
+/// The shift, in blocks, that aligns depth edges with image edges clearly better than no shift.
 fn shift_of(scores: &[f64]) -> Option<(i64, i64)> {
     let near = |(dx, dy): (i64, i64)| dx.abs() <= 1 && dy.abs() <= 1;
     let of = |wanted: bool| {
@@ -107,7 +107,7 @@ struct Blocks {
 }
 
 impl Blocks {
-    /// The strongest contrast between neighbouring pixels in each block.
+    /// Strongest contrast between neighbouring pixels in each block.
     fn contrast(gray: &GrayImage) -> Self {
         let (width, height) = (gray.width() / BLOCK_PX, gray.height() / BLOCK_PX);
         let mut values = vec![0.0; width * height];
@@ -132,7 +132,7 @@ impl Blocks {
     }
 }
 
-/// The blocks with a depth edge, on the near side, which has no shadow.
+/// The blocks with a depth edge, on the edge's near side, which has no shadow.
 fn edges_of(depth: &DepthImage, like: &Blocks) -> Vec<(i64, i64)> {
     let mut marked = vec![false; like.values.len()];
     for y in 0..depth.height() / BLOCK_PX * BLOCK_PX {

@@ -3,8 +3,8 @@
 use nalgebra::{Matrix2, Matrix2x3, Matrix6, RowVector6, SMatrix, SVector, Vector6};
 use trundle_core::{Pose3, Vector2, Vector3};
 
-/// Errors of the settings to first order: true normalised coordinates from the assumed ones n are
-/// n (1 + scale) + shift + n (k1 |n|^2 + k2 |n|^4), the numbers in the order scale x, y, shift x, y, k1, k2.
+/// Errors of the settings to first order, in the order scale x, y, shift x, y, k1, k2. True normalised coordinates from the assumed ones n
+/// are n (1 + scale) + shift + n (k1 |n|^2 + k2 |n|^4).
 pub(crate) type CalibrationOffset = Vector6<f64>;
 
 /// A match of two frames in normalised coordinates of the rectified image.
@@ -31,7 +31,7 @@ pub(crate) struct Pair {
 #[derive(Debug, Clone)]
 pub(crate) struct FittedOffset {
     pub offset: CalibrationOffset,
-    /// Robust cost that is left.
+    /// Remaining robust cost.
     pub cost: f64,
     /// Standard deviations of the offset.
     pub sigmas: CalibrationOffset,
@@ -43,12 +43,12 @@ const MAX_ITERATIONS: usize = 10;
 const MIN_COST_DECREASE: f64 = 1e-6;
 /// Scale of Cauchy's loss: 2.5 standard deviations. Larger residuals, of wrong matches, weigh little. Source: ours.
 const CAUCHY_SIGMAS: f64 = 2.5;
-/// Standard deviations of the offsets before any match: wide, so that they only hold unobservable offsets at zero. Source: ours.
+/// Prior standard deviations of the offsets: wide, so that they only keep unobservable offsets at zero. Source: ours.
 const PRIOR_SIGMAS: [f64; 6] = [0.3, 0.3, 0.1, 0.1, 0.5, 0.5];
 
-/// The search for the offsets that make matches agree best, the motions being free. Only those marked in `free` are estimated;
-/// the others stay as at the start. Least squares with Cauchy's loss on column, row and inverse depth, the motions eliminated
-/// (Schur complement). One iteration at a time, always over the same pairs.
+/// The search for the offsets that make matches agree best, with free motions. Only the offsets marked in `free` are estimated; the others
+/// keep their initial values. Method: least squares with Cauchy's loss on column, row and inverse depth, with motions eliminated (Schur
+/// complement). Each call does one iteration over the same pairs.
 #[derive(Debug, Clone)]
 pub(crate) struct CalibrationFit {
     free: [bool; 6],
@@ -94,7 +94,7 @@ impl CalibrationFit {
         offset.iter().all(|v| v.is_finite()).then_some(FittedOffset { offset, cost: self.cost, sigmas })
     }
 
-    /// The step of the offsets by all pairs but one.
+    /// The step of the offsets by all pairs, or by all but the pair `without`.
     fn step(&self, parts: &[PairEquations], without: Option<usize>) -> Option<CalibrationOffset> {
         let prior = Vector6::from(PRIOR_SIGMAS).map(|sigma| sigma.powi(-2));
         let mut matrix = Matrix6::from_diagonal(&prior);
@@ -112,8 +112,8 @@ impl CalibrationFit {
         Some(matrix.cholesky()?.solve(&gradient))
     }
 
-    /// Standard deviations of the offsets by leaving out each pair in turn (jackknife, the step without it from where all of
-    /// them lead): what is wrong with a whole pair, as by a rolling shutter, is in them.
+    /// Standard deviations of the offsets by leaving out each pair in turn (jackknife: one step from the solution of all pairs). They
+    /// include errors of a whole pair, such as a rolling shutter.
     fn spread(&self) -> Option<CalibrationOffset> {
         let all = self.step(&self.parts, None)?;
         let without = |i: usize| Some(self.step(&self.parts, Some(i))? - all);
@@ -130,7 +130,7 @@ pub(crate) fn corrected(n: Vector2, offset: &CalibrationOffset) -> Vector2 {
     n.component_mul(&stretch(n, offset)) + Vector2::new(offset[2], offset[3])
 }
 
-/// The inverse of [`corrected`], to well below a pixel for offsets that a fit may find.
+/// The inverse of [`corrected`], with an error well below a pixel for plausible offsets.
 fn uncorrected(m: Vector2, offset: &CalibrationOffset) -> Vector2 {
     let shifted = m - Vector2::new(offset[2], offset[3]);
     (0..5).fold(m, |n, _| shifted.component_div(&stretch(n, offset)))
@@ -143,7 +143,7 @@ fn stretch(n: Vector2, offset: &CalibrationOffset) -> Vector2 {
     Vector2::new(1.0 + offset[0] + radial, 1.0 + offset[1] + radial).map(|s| s.max(0.2))
 }
 
-/// How [`corrected`] depends on the offsets.
+/// Derivative of [`corrected`] with respect to the offsets.
 pub(crate) fn by_offset(n: Vector2) -> SMatrix<f64, 2, 6> {
     let r2 = n.norm_squared();
     let row = |v: f64, x: f64, y: f64| [v * x, v * y, x, y, v * r2, v * r2 * r2];
@@ -151,7 +151,7 @@ pub(crate) fn by_offset(n: Vector2) -> SMatrix<f64, 2, 6> {
     SMatrix::from_rows(&rows.map(RowVector6::from))
 }
 
-/// The normal equations of one pair: of its motion, and of the offsets once that is eliminated.
+/// The normal equations of one pair: of its motion, and of the offsets after elimination of the motion.
 #[derive(Debug, Clone)]
 struct PairEquations {
     own: Matrix6<f64>,
@@ -191,7 +191,7 @@ impl PairEquations {
         part
     }
 
-    /// How the pair's motion changes with the offsets' step.
+    /// The change of the pair's motion with a step of the offsets.
     fn motion(&self, step: &CalibrationOffset) -> Option<Vector6<f64>> {
         Some(self.own.cholesky()?.solve(&(self.gradient - self.mixed * step)))
     }
@@ -203,7 +203,7 @@ fn cauchy(squared: f64) -> (f64, f64) {
     (1.0 / bent, CAUCHY_SIGMAS * CAUCHY_SIGMAS * bent.ln())
 }
 
-/// The residual of one match over its standard deviations, and how it depends on offsets and motion.
+/// The residual of one match over its standard deviations, and its derivatives by offsets and motion.
 #[derive(Debug)]
 struct ResidualRows {
     residual: Vector3,
@@ -219,7 +219,7 @@ impl ResidualRows {
         if p.z <= 0.05 {
             return None;
         }
-        // Compared if it was measured, in the assumed coordinates: else a fit could shrink the picture to shrink the errors.
+        // Residuals are in the assumed coordinates: in the true ones, a fit could shrink the image to reduce the errors.
         let expected = uncorrected(Vector2::new(p.x, p.y) / p.z, offset);
         let unstretched = Matrix2::from_diagonal(&stretch(expected, offset).map(f64::recip));
         let projection =

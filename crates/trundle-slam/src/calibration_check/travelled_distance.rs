@@ -19,7 +19,7 @@ pub(crate) struct TravelledDistance {
 }
 
 impl TravelledDistance {
-    /// Takes the length of a step by the camera and by the wheels, m; decides once.
+    /// Records the length of a step by the camera and by the wheels, m; reports at most once.
     pub fn record(&mut self, seen: f64, said: f64) -> Option<CalibrationIssue> {
         self.seen += seen;
         self.said += said;

@@ -1,4 +1,4 @@
-//! Where a feature is after its surroundings were compared with a reference patch.
+//! Position of a feature after alignment with a reference patch.
 
 use trundle_core::Vector2;
 use trundle_vision::Keypoint;
@@ -12,7 +12,7 @@ pub(crate) struct Aligned {
     pub pixel: Vector2,
     /// Standard deviation of either coordinate, px.
     pub sigma: f64,
-    /// Whether a reference patch fits there; else the feature is where it was found.
+    /// Whether a reference patch fits there; else the position is the extractor's.
     pub is_aligned: bool,
 }
 

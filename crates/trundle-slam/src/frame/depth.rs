@@ -8,13 +8,13 @@ use trundle_optim::InverseDepth;
 /// Offsets of the pixels by which the slope of the depth is fitted, px of the octave; each with its mirror image. Source: ours.
 const SLOPE_OFFSETS_PX: [(f64, f64); 6] =
     [(5.0, 0.0), (0.0, 5.0), (4.0, 4.0), (4.0, -4.0), (2.5, 0.0), (0.0, 2.5)];
-/// Fewest pixel pairs with depth for a fit of the slope: 4. With fewer the slope is taken for 0. Source: ours.
+/// Fewest pixel pairs with depth for a fit of the slope: 4. With fewer pairs the slope is 0. Source: ours.
 const MIN_SLOPE_PAIRS: usize = 4;
 /// Largest relative difference of a depth from the middle one in the fit of the slope: 0.1. Beyond it the pixel is of another
 /// surface. Source: ours.
 const MAX_SLOPE_DEPTH_RATIO: f64 = 0.1;
 
-/// A depth whose standard deviation is a larger part of it than this does not make a point.
+/// Largest standard deviation of a depth that makes a point, as a fraction of the depth: 0.1. Source: ours.
 pub(crate) const MAX_RELATIVE_SIGMA: f64 = 0.1;
 
 /// Range and noise of the depth camera.
@@ -40,10 +40,10 @@ impl Default for DepthConfig {
 }
 
 impl DepthConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_positive("depth.nearest", self.nearest, "m")?;
         require_in("depth.farthest", self.farthest, "m", self.nearest, f64::MAX)?;
@@ -76,8 +76,8 @@ impl DepthConfig {
         Some(InverseDepth { value: 1.0 / depth, sigma: sigma / (depth * depth) })
     }
 
-    /// How the inverse depth rises around a raw `pixel`, 1/(m px), right and down: on a plane the same everywhere. By pixels up to
-    /// five times `px` off, as far as they are of the same thing; zero if these are too few.
+    /// Gradient of the inverse depth at a raw `pixel`, 1/(m px), right and down; constant on a plane. Fitted to pixels of the same surface
+    /// up to five times `px` away; zero if these are too few.
     pub fn slope(&self, image: &DepthImage, pixel: Vector2, px: f64) -> Vector2 {
         let Some(middle) = self.at(image, pixel) else { return Vector2::zeros() };
         let (mut normal, mut products) = (Matrix2::zeros(), Vector2::zeros());

@@ -17,10 +17,10 @@ const MAX_OCTAVE_SCALE: f64 = 2.0;
 const MIN_STEP_RATIO: f64 = 0.1;
 /// Second difference of the inverse depth that is a step, in standard deviations of its noise, besides the ratio: 3. See [`MIN_STEP_RATIO`].
 const MIN_STEP_SIGMAS: f64 = 3.0;
-/// Fewest features that must be left: 100. Otherwise none is dropped, as on railings, leaves and noisy depths. Source: ours.
+/// Fewest features that must remain: 100. With fewer, no feature is dropped, as on railings, leaves and noisy depths. Source: ours.
 const MIN_KEPT_FEATURES: usize = 100;
 
-/// Drops the features on depth edges, where enough others are left. `scale` is the size of an octave's pixel, px.
+/// Drops the features on depth edges if enough others remain. `scale` is the size of an octave's pixel, px.
 pub(crate) fn drop_depth_edges(
     features: &mut Features,
     image: &DepthImage,
@@ -37,15 +37,14 @@ pub(crate) fn drop_depth_edges(
 
 /// Whether the depth has a step near the corner at a raw `pixel`, whose octave has pixels of `scale`.
 ///
-/// Where the edge of a near surface crosses the background, FAST finds a corner that belongs to neither, and that slides along
-/// as the camera moves. The inverse depth of a plane is affine in the pixel, so that its second difference vanishes on every
-/// plane, is small where a floor meets a wall, and large across a depth edge. Directions without depth on both sides are
-/// skipped. Cost: 17 pixel reads.
+/// Where the edge of a near surface crosses the background, FAST finds a corner that belongs to neither surface and slides as the camera
+/// moves. The inverse depth of a plane is affine in the pixel. Its second difference is zero on a plane, small where a floor meets a wall,
+/// and large across a depth edge. Directions without depth on both sides are skipped. Cost: 17 pixel reads.
 fn is_on_depth_edge(image: &DepthImage, pixel: Vector2, scale: f64, config: &DepthConfig) -> bool {
     let inverse = |at: Vector2| config.at(image, at).map(|depth| 1.0 / depth);
     let middle = pixel.map(f64::round);
     let Some(here) = inverse(middle) else { return false };
-    // Of a sum of two and twice a third.
+    // Standard deviation of a sum of two depths and twice a third.
     let noise = 6_f64.sqrt() * config.sigma_at(1.0 / here) * here * here;
     let step = |offset: Vector2| {
         let (after, before) = (inverse(middle + offset)?, inverse(middle - offset)?);

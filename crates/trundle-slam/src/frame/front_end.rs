@@ -11,7 +11,7 @@ use trundle_vision::{Features, OrbConfig, OrbExtractor};
 pub(crate) struct FrontEnd {
     pub model: ObservationModel,
     extractor: OrbExtractor,
-    /// Buffers for the features of the next image, half a megabyte that is not allocated thirty times per second.
+    /// Reused buffers for the features of the next image: half a megabyte.
     spare: Features,
 }
 
@@ -24,7 +24,7 @@ impl FrontEnd {
         Ok(Self { model, extractor, spare: Features::default() })
     }
 
-    /// The features of an image; none of an image of another size than the camera's.
+    /// The features of an image; empty if the image size differs from the camera's.
     pub fn extract(&mut self, gray: &GrayImage) -> Features {
         let camera = &self.model.camera;
         if gray.width() != camera.width() || gray.height() != camera.height() {
@@ -48,7 +48,7 @@ impl FrontEnd {
         Frame::new(stamp, features, depth, turn, (&self.model, config))
     }
 
-    /// Takes the buffers of a frame that is not needed any more.
+    /// Keeps the buffers of a frame for reuse.
     pub fn reuse(&mut self, frame: Frame) {
         self.spare = frame.features;
     }

@@ -1,4 +1,4 @@
-//! One RGB-D image: features, depths, and how certain they are.
+//! One RGB-D image: features, depths and their standard deviations.
 
 pub(crate) mod aligned_feature;
 pub(crate) mod depth;

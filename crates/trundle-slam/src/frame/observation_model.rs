@@ -16,8 +16,7 @@ pub(crate) struct ObservationModel {
     high: Vector2,
 }
 
-/// Distance of a keypoint from its landmark that hardly any exceeds: 2 standard deviations. Source: ours, 95 % of a normal
-/// distribution.
+/// Largest distance of a keypoint from its landmark: 2 standard deviations. Source: ours, 95 % of a normal distribution.
 const KEYPOINT_SIGMAS: f64 = 2.0;
 
 impl ObservationModel {
@@ -46,10 +45,10 @@ impl ObservationModel {
         self.camera.contains(raw).then_some((pixel, raw))
     }
 
-    /// Whether a feature of an octave can be found at a raw `pixel`, and about it as far as a keypoint is off.
+    /// Whether a feature of an octave can be found at a raw `pixel` and within a keypoint's error of it.
     ///
-    /// In the margin a landmark can only be matched, wrongly, with a feature farther inward. While the camera turns, such matches at the
-    /// border would bias its motion.
+    /// A landmark in the margin of the image could only be matched with a wrong feature farther inward. Such matches would bias the motion
+    /// of a turning camera.
     pub fn can_find_at(&self, pixel: Vector2, octave: u8) -> bool {
         let margin = (OrbConfig::MARGIN as f64 + KEYPOINT_SIGMAS * self.pixel_sigma) * self.scale(octave);
         let [right, bottom] =
@@ -67,7 +66,7 @@ impl ObservationModel {
         self.scale_factors[usize::from(octave).min(self.scale_factors.len() - 1)]
     }
 
-    /// The octave whose pixel comes nearest to `scale`, in ratio.
+    /// The octave whose pixel size is nearest to `scale`, by ratio.
     pub fn octave_of(&self, scale: f64) -> u8 {
         // Nearer to the coarser one when above their geometric mean.
         self.scale_factors.windows(2).take_while(|pair| scale * scale > pair[0] * pair[1]).count() as u8

@@ -10,7 +10,7 @@ use trundle_core::{DepthImage, Stamp, Vector2, Vector3};
 use trundle_optim::{InverseDepth, PointObservation};
 use trundle_vision::{Descriptor, FeatureGrid, Features, Keypoint};
 
-/// Standard deviation of a feature, as a fraction of that of a plain one, below which it counts as aligned: 0.99. Source: ours.
+/// Standard deviation below which a feature counts as aligned, as a fraction of that of an unaligned feature: 0.99. Source: ours.
 const ALIGNED_SIGMA_RATIO: f64 = 0.99;
 
 /// The stored part of one image: features, their positions in the rectified image, and their depths.
@@ -30,8 +30,8 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// A frame of an image during which the camera turned by `turn` (rad, camera frame) from the first row to the last.
-    /// Features are kept where they would be had all rows been taken with the middle one; those on depth edges are dropped.
+    /// A frame of an image during which the camera turned by `turn` (rad, camera frame) from the first row to the last. Features get the
+    /// positions that they would have if all rows were taken at the time of the middle row. Features on depth edges are dropped.
     pub fn new(
         stamp: Stamp,
         mut features: Features,
@@ -52,7 +52,7 @@ impl Frame {
         Self { slopes, ..Self::of(stamp, features, depths, model) }
     }
 
-    /// Of features with their inverse depths.
+    /// A frame of features with these inverse depths.
     pub fn of(
         stamp: Stamp,
         features: Features,
@@ -64,7 +64,7 @@ impl Frame {
         Self { stamp, features, pixels, depths, pixel_sigmas: vec![], slopes: vec![], grid }.unaligned(model)
     }
 
-    /// This frame with features at the positions of their alignment.
+    /// This frame with the features at their aligned positions.
     #[must_use]
     pub fn with_aligned(
         mut self,
@@ -81,7 +81,7 @@ impl Frame {
         self
     }
 
-    /// This frame with all features as uncertain as plain ones.
+    /// This frame with the standard deviation of an unaligned feature for all features.
     #[must_use]
     pub fn unaligned(mut self, model: &ObservationModel) -> Self {
         let sigmas = self.features.keypoints.iter().map(|k| model.sigma_of(k.octave) as f32);
@@ -89,7 +89,7 @@ impl Frame {
         self
     }
 
-    /// Median standard deviation of the aligned features, px of their octaves; that of a plain one if there are none.
+    /// Median standard deviation of the aligned features, px of their octaves; that of an unaligned feature if none is aligned.
     pub fn median_aligned_sigma_px(&self, model: &ObservationModel) -> f64 {
         let in_octave = |(k, sigma): (&Keypoint, &f32)| f64::from(*sigma) / model.scale(k.octave);
         let sigmas = self.features.keypoints.iter().zip(&self.pixel_sigmas).map(in_octave);
@@ -97,12 +97,12 @@ impl Frame {
             .unwrap_or(model.pixel_sigma)
     }
 
-    /// Frees what only the current frame needs.
+    /// Frees the data that only the current frame needs.
     pub fn drop_image(&mut self) {
         (self.features.patches, self.slopes) = (vec![], vec![]);
     }
 
-    /// How many features it has.
+    /// Number of features.
     pub fn len(&self) -> usize {
         self.pixels.len()
     }
@@ -116,8 +116,8 @@ impl Frame {
         }
     }
 
-    /// Observation of a feature with the standard deviation of one that was not aligned: to test whether the feature may be of another landmark
-    /// than the one it was aligned to.
+    /// Observation of a feature with the standard deviation of an unaligned one, to test matches with landmarks other than the one of its
+    /// alignment.
     pub fn unaligned_observation(&self, i: usize, model: &ObservationModel) -> PointObservation {
         PointObservation { pixel_sigma: model.sigma_of(self.octave(i)), ..self.observation(i) }
     }
@@ -141,8 +141,8 @@ impl Frame {
     }
 }
 
-/// Moves a feature to where the camera would have seen it at the time of the middle row. Only rotation is corrected:
-/// translation during the readout is small.
+/// Moves a feature to its position in an image taken at the time of the middle row. Only rotation is corrected: translation during the
+/// readout is small.
 fn correct_rolling_shutter(keypoint: &mut Keypoint, turn: Vector3, model: &ObservationModel) {
     let camera = &model.camera;
     let late = f64::from(keypoint.y) / (camera.height() as f64 - 1.0) - 0.5;
@@ -165,7 +165,7 @@ fn grid(features: &Features, pixels: &[Vector2], model: &ObservationModel) -> Fe
     FeatureGrid::new(&keypoints, model.camera.width(), model.camera.height())
 }
 
-/// The features that have a depth good enough to become landmarks.
+/// The features whose depth is certain enough for a landmark.
 pub(crate) fn with_depth(frame: &Frame) -> impl Iterator<Item = usize> + '_ {
     let good = |i: &usize| frame.depths[*i].is_some_and(|d| d.sigma <= MAX_RELATIVE_SIGMA * d.value);
     (0..frame.len()).filter(good)
@@ -185,7 +185,7 @@ mod tests {
         for (x, y) in [(-0.4, -0.3), (0.0, 0.0), (0.3, 0.25), (0.1, -0.28)] {
             let ray = Vector3::new(x, y, 1.0);
             let mut row = 120.0;
-            // Where the row is read at which the point appears.
+            // The point moves while its row is read: iterate to the row of its appearance.
             let mut pixel = Vector2::zeros();
             for _ in 0..9 {
                 let turned = UnitQuaternion::from_scaled_axis(turn * (row / 239.0 - 0.5)).inverse() * ray;

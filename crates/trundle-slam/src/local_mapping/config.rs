@@ -4,28 +4,33 @@ use serde::{Deserialize, Serialize};
 use trundle_core::Invalid;
 use trundle_optim::BundleConfig;
 
-/// How the landmark map grows and is refined.
+/// Growth and refinement of the landmark map.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LocalMappingConfig {
-    /// Features with depth that a first keyframe needs, 10 or more. Default 50: fewer do not make a map.
+    /// Smallest number of features with depth in the first keyframe of a map, 10 or more. A larger number delays the start of a map.
+    /// Default 50 (ours).
     pub min_points: usize,
-    /// Keyframes that a local bundle adjustment moves, 1 or more. Default 10: enough to see a landmark age.
+    /// Number of keyframes that a local bundle adjustment moves, 1 or more. More take longer. Default 10 (ours): a landmark is in view for
+    /// about as many.
     pub local_keyframes: usize,
-    /// Keyframes that hold them in place. Default 10.
+    /// Number of keyframes that a local bundle adjustment keeps fixed around the moved ones. More hold them more firmly and take longer.
+    /// Default 10.
     pub fixed_keyframes: usize,
-    /// Keyframes in which new landmarks are searched at once. Default 10 \[MurArtal17\].
+    /// Number of neighbouring keyframes in which the landmarks of a new keyframe are searched. More find more observations and take longer.
+    /// Default 10 \[MurArtal17\].
     pub fused_keyframes: usize,
     /// Number of further keyframes after which a landmark seen by only one keyframe is removed. Default 3 \[MurArtal17\].
     pub trial_keyframes: usize,
-    /// Frames in which a landmark should have been seen before it is evaluated. Default 10.
+    /// Number of frames in which a landmark is expected before `found_ratio` is applied. Default 10.
     pub trial_frames: u32,
-    /// Part of these in which it must have been found, 0 to 1. Default 0.25 \[MurArtal17\].
+    /// Smallest fraction of the frames where a landmark is expected in which it is found, 0 to 1. Below it the landmark is removed. Default
+    /// 0.25 \[MurArtal17\].
     pub found_ratio: f64,
     /// The solver. Default 5 steps.
     pub bundle: BundleConfig,
-    /// How much of the refining of the map is done between one frame and the next, in operations of some 20 ns, 1 or more.
-    /// Default 100,000: 2 ms. Never more than a tenth of a ms beyond it, but for taking a result over.
+    /// Work on bundle adjustment per frame, in counted operations of some 20 ns, 1 or more. A larger number refines the map sooner and
+    /// makes each frame slower. Default 100,000: 2 ms.
     pub work_per_frame: usize,
 }
 
@@ -46,10 +51,10 @@ impl Default for LocalMappingConfig {
 }
 
 impl LocalMappingConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(mut self) -> Result<Self, Invalid> {
         if self.min_points < 10 {
             return Err(Invalid::new("mapping.min_points", self.min_points, "", "10 or more"));

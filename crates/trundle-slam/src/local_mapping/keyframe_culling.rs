@@ -5,18 +5,19 @@ use crate::local_mapping::keyframe_policy::KeyframeConfig;
 use crate::map::landmark::Landmark;
 use crate::map::landmark_map::LandmarkMap;
 
-/// Other keyframes that must see a landmark, so that a keyframe is not needed for it: 3. Source: \[MurArtal17\].
+/// Number of other keyframes with a landmark from which a keyframe is not needed for it: 3. Source: \[MurArtal17\].
 const MIN_OTHER_OBSERVERS: usize = 3;
-/// Fraction of a keyframe's landmarks for which it must not be needed to be removed: 0.9. Source: \[MurArtal17\].
+/// Fraction of redundant landmarks from which a keyframe is removed: 0.9. Source: \[MurArtal17\].
 const MIN_REDUNDANT_RATIO: f64 = 0.9;
-/// Newest keyframes that are never removed: 5. Tracking depends on them, and their landmarks are not yet confirmed. Source: ours.
+/// Number of newest keyframes that are never removed: 5. Tracking depends on these keyframes, and their landmarks are not yet confirmed.
+/// Source: ours.
 const KEPT_NEWEST_KEYFRAMES: usize = 5;
-/// Most keyframes that are checked for one that is new: 20. Source: ours.
+/// Maximum number of keyframes that are checked for each new one: 20. Source: ours.
 const MAX_CHECKED_KEYFRAMES: usize = 20;
 
-/// Removes keyframes around a new one that are redundant: those 90 % of whose landmarks are seen by three others at the same or
-/// a finer scale \[MurArtal17\]. The first keyframe stays, the newest, those that close a loop, and those without which a
-/// keyframe would be made again. How many were removed.
+/// Removes keyframes around a new one that are redundant: those 90 % of whose landmarks are seen by three others at the same or a finer
+/// scale \[MurArtal17\]. The first keyframe stays, as do the newest, those that close a loop, and those whose removal would cause a new
+/// keyframe. Returns the number removed.
 pub(crate) fn cull_keyframes(map: &mut LandmarkMap, new: KeyframeId, config: &KeyframeConfig) -> usize {
     let around = map.covisible(new, 1).into_iter().map(|(id, _)| id).take(MAX_CHECKED_KEYFRAMES);
     let Some(newest) = map.keyframe_ids().rev().nth(KEPT_NEWEST_KEYFRAMES) else { return 0 };
@@ -39,7 +40,7 @@ fn is_redundant(map: &LandmarkMap, id: KeyframeId) -> bool {
     needed.take(max_needed + 1).count() <= max_needed
 }
 
-/// Whether fewer than three others see a landmark as finely.
+/// Whether fewer than three other keyframes see a landmark at the same or a finer scale.
 fn is_needed(map: &LandmarkMap, id: KeyframeId, octave: u8, landmark: &Landmark) -> bool {
     let as_fine = |(other, feature): &&(KeyframeId, usize)| {
         *other != id && map.keyframe(*other).frame.octave(*feature) <= octave
@@ -89,7 +90,7 @@ mod tests {
         map.add_loop_edge(ids[2], ids[11]);
         let gone = cull_keyframes(&mut map, ids[11], &config);
         let left: Vec<usize> = map.keyframe_ids().map(KeyframeId::index).collect();
-        // First, tied, needed, and the newest five before the last.
+        // Left: the first, the one in a loop, the needed one, and the five newest before the last.
         assert_eq!((gone, left), (4, vec![0, 2, 3, 7, 8, 9, 10, 11]));
         assert_consistent(&map);
         assert_eq!(cull_keyframes(&mut map, ids[11], &config), 0);

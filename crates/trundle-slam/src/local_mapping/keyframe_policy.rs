@@ -7,25 +7,27 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use trundle_core::{Invalid, Pose3, Vector2, require_in, require_positive};
 
-/// When a frame becomes a keyframe. Time has no part in it: a camera that stands still adds nothing, however long.
+/// When a frame becomes a keyframe. Time does not matter: a camera at rest adds no keyframe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct KeyframeConfig {
-    /// Never nearer to every keyframe than this, m, above 0. Default 0.03: well over the tracking noise.
+    /// Distance from a keyframe up to which no frame becomes a keyframe, unless turned by more than `min_rotation`, m, above 0. A larger
+    /// value makes fewer keyframes. Default 0.03: well over the tracking noise.
     pub min_translation: f64,
-    /// Nor turned less than this against it, rad, above 0. Default 0.05 (3 deg): a tenth of the picture at most.
+    /// Rotation against a keyframe up to which no frame becomes a keyframe, unless farther than `min_translation`, rad, above 0. Default
+    /// 0.05 (3 deg): a tenth of the image at most.
     pub min_rotation: f64,
-    /// When farther than this from every keyframe, m, and half of `new_ratio` is new; always when twice as far. Default 0.3:
-    /// smaller detail then appears different.
+    /// Distance from every keyframe beyond which a frame with half of `new_ratio` new features becomes a keyframe, m; beyond twice the
+    /// distance any frame does. A smaller value makes more keyframes. Default 0.3: small detail then looks different.
     pub max_translation: f64,
-    /// When turned more than this against every keyframe, rad, and half of `new_ratio` is new; always when turned twice as far. Default 0.35 (20 deg): a third of the picture is new.
+    /// Rotation against every keyframe beyond which a frame with half of `new_ratio` new features becomes a keyframe, rad; beyond twice the
+    /// rotation any frame does. Default 0.35 (20 deg): a third of the image is new.
     pub max_rotation: f64,
-    /// When more than this part of the features with depth is where the map has no landmark to show, 0 to 1. Default 0.25.
-    /// Evaluated by where landmarks should be, not by which were found: a blurred frame finds few, and is the worst
-    /// keyframe there is.
+    /// Fraction of the features with depth in areas without an expected landmark, 0 to 1, above which a frame becomes a keyframe. Expected
+    /// landmarks count, not found ones: a blurred frame finds few landmarks and would be a bad keyframe. Default 0.25.
     pub new_ratio: f64,
-    /// When fewer landmarks than this are seen, though as many more features have a depth. Default 50: tracking is about
-    /// to fail.
+    /// Number of tracked landmarks below which a frame becomes a keyframe, if twice as many features have a depth. Default 50: tracking is
+    /// about to fail.
     pub min_tracked: usize,
 }
 
@@ -43,10 +45,10 @@ impl Default for KeyframeConfig {
 }
 
 impl KeyframeConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names, or a `min` is above its `max`.
+    /// When a number is outside the range in its field's documentation, or a `min` is above its `max`.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_positive("keyframes.min_translation", self.min_translation, "m")?;
         require_positive("keyframes.min_rotation", self.min_rotation, "rad")?;
@@ -56,8 +58,8 @@ impl KeyframeConfig {
         Ok(self)
     }
 
-    /// Whether a frame at `pose` that found `tracked` landmarks should become a keyframe. `shown` is where in the
-    /// rectified image the map has landmarks, px.
+    /// Whether a frame at `pose` that found `tracked` landmarks should become a keyframe. `shown` are the expected pixels of the map's
+    /// landmarks, rectified px.
     pub(crate) fn wants(
         &self,
         frame: &Frame,
@@ -103,7 +105,7 @@ fn is_near_one(
     })
 }
 
-/// How many features with depth are in a part of the image where no landmark is shown.
+/// Number of features with depth in image cells without an expected landmark.
 fn count_new_features(frame: &Frame, shown: impl Iterator<Item = Vector2>) -> usize {
     let cell = |pixel: Vector2| ((pixel.x / CELL_PX).floor() as i32, (pixel.y / CELL_PX).floor() as i32);
     let known: BTreeSet<(i32, i32)> = shown.map(cell).collect();

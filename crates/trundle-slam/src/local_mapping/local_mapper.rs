@@ -15,14 +15,14 @@ use crate::matching::projection_search::{MatchThresholds, Projection, search};
 use crate::tracking::config::TrackingConfig;
 use trundle_core::Pose3;
 
-/// Adds keyframes to the map and keeps it in order.
+/// Adds keyframes to the map, and removes redundant keyframes and bad landmarks.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LocalMapper<'a> {
     pub model: &'a ObservationModel,
     pub config: &'a LocalMappingConfig,
-    /// For the search of new landmarks in other keyframes.
+    /// Thresholds for the search of new landmarks in other keyframes.
     pub thresholds: MatchThresholds,
-    /// Half size of its window at octave 0, px.
+    /// Half size of the search window at octave 0, px.
     pub window_px: f64,
 }
 
@@ -36,9 +36,8 @@ impl<'a> LocalMapper<'a> {
         Self { model, config, thresholds, window_px }
     }
 
-    /// Makes `frame` a keyframe that observes the landmarks it was tracked by. Its other features with a good depth, or seen from
-    /// two sides, become new landmarks. The new landmarks are then searched in the neighbouring keyframes. `odometry` is the motion from the
-    /// keyframe before.
+    /// Makes `frame` a keyframe that observes the landmarks it was tracked by. Other features with a good depth, or with two views, become
+    /// new landmarks. The new landmarks are then searched in the neighbouring keyframes. `odometry` is the motion from the keyframe before.
     pub fn insert(
         &self,
         map: &mut LandmarkMap,
@@ -85,7 +84,7 @@ impl<'a> LocalMapper<'a> {
         new
     }
 
-    /// Searches landmarks in the keyframes around the new one: one that is there already is merged with the older landmark.
+    /// Searches landmarks in the keyframes around the new one. A duplicate is merged with the older landmark.
     fn fuse(&self, map: &mut LandmarkMap, keyframe: KeyframeId, landmarks: &[LandmarkId]) {
         for (other, _) in
             map.covisible(keyframe, MIN_SHARED_LANDMARKS).into_iter().take(self.config.fused_keyframes)
@@ -104,7 +103,7 @@ impl<'a> LocalMapper<'a> {
         }
     }
 
-    /// Searches landmarks in a keyframe. Where the keyframe has one already, the older of the two stays.
+    /// Searches landmarks in a keyframe. If the feature has a landmark already, the older of the two stays.
     fn fuse_into(&self, map: &mut LandmarkMap, keyframe: KeyframeId, landmarks: &[LandmarkId]) {
         for (feature, landmark) in self.find(map, keyframe, landmarks) {
             match map.keyframe(keyframe).landmarks[feature] {
@@ -114,7 +113,7 @@ impl<'a> LocalMapper<'a> {
         }
     }
 
-    /// Features of a keyframe that are of these landmarks, by descriptor, window and reprojection at 95 %.
+    /// Features of a keyframe that show these landmarks, by descriptor, window and reprojection at 95 %.
     fn find(
         &self,
         map: &LandmarkMap,
@@ -139,8 +138,8 @@ impl<'a> LocalMapper<'a> {
         search(&other.frame, &all, &projections, self.thresholds).into_iter().filter_map(agrees).collect()
     }
 
-    /// Removes landmarks that no second keyframe saw in time, or that were seldom found where they should have been seen.
-    /// Checks the landmarks of the keyframes around the new one, and of the keyframe whose trial ends.
+    /// Removes landmarks without a second observation at the end of their trial, and those that frames seldom find. Checks the landmarks of
+    /// the keyframes around the new one, and of the keyframe whose trial ends.
     fn cull(&self, map: &mut LandmarkMap, new: KeyframeId) {
         let LocalMappingConfig { trial_keyframes, trial_frames, found_ratio, .. } = *self.config;
         let Some(oldest_on_trial) = map.keyframe_ids().rev().nth(trial_keyframes) else { return };

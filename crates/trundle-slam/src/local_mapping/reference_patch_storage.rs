@@ -5,13 +5,13 @@ use crate::ids::{KeyframeId, LandmarkId};
 use crate::map::landmark_map::LandmarkMap;
 use crate::map::reference_patch::{MAX_REFERENCE_PATCHES, ReferencePatch};
 
-/// Stores reference patches of a new keyframe's landmarks, if they are new, and frees the image. The feature of a landmark's
-/// first patch becomes as certain as the features that will be aligned to it.
+/// Stores new reference patches of a keyframe's landmarks, and frees the image. The feature of a landmark's first patch gets the standard
+/// deviation of an aligned feature.
 pub(crate) fn store_reference_patches(map: &mut LandmarkMap, id: KeyframeId, model: &ObservationModel) {
     let median_aligned_sigma_px = map.keyframe(id).frame.median_aligned_sigma_px(model);
     for (feature, seen, look) in new_reference_patches(map, id, model) {
         let Some(landmark) = map.landmark_mut(seen) else { continue };
-        // Most landmarks have one, and room for four is 2 kB.
+        // Most landmarks have one patch; reserving four would cost 2 kB.
         landmark.reference_patches.reserve_exact(1);
         landmark.reference_patches.push(look);
         if landmark.reference_patches.len() == 1 {

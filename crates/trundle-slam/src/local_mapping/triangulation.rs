@@ -9,17 +9,17 @@ use crate::matching::projection_search::MatchThresholds;
 use trundle_core::{Pose3, Vector3};
 use trundle_optim::{CHI2_95_2, PointObservation};
 
-/// Largest cosine of the angle between the two rays to a point: 0.9998 (1.15 deg). With a smaller angle the distance is too
-/// uncertain: a pixel noise of 0.5 mrad over 20 mrad leaves a twentieth of it. Source: \[MurArtal17\].
+/// Largest cosine of the angle between the two rays to a point: 0.9998 (1.15 deg). With a smaller angle the distance is too uncertain: at
+/// 20 mrad, a pixel noise of 0.5 mrad gives a relative error of a twentieth. Source: \[MurArtal17\].
 const MAX_RAY_COSINE: f64 = 0.9998;
-/// Keyframes in which a second view of a feature is searched: 5. Source: ours.
+/// Number of keyframes in which a second view of a feature is searched: 5. Source: ours.
 const MAX_PARTNERS: usize = 5;
 /// Factor by which the ratio of distances may differ from that of the octaves: 1.5. Beyond it the features are not of one point.
 /// Source: \[MurArtal17\].
 const SCALE_TOLERANCE: f64 = 1.5;
 
-/// Makes landmarks of features whose depth the camera could not measure, beyond its range or in a hole, from two keyframes
-/// that see them from far enough apart \[MurArtal17, sec. III-A\]. The new landmarks.
+/// Triangulates landmarks from features without depth, beyond the camera's range or in a hole, in two keyframes with a large enough
+/// baseline \[MurArtal17, sec. III-A\]. Returns the new landmarks.
 pub(crate) fn triangulate_new(
     map: &mut LandmarkMap,
     id: KeyframeId,
@@ -41,7 +41,7 @@ pub(crate) fn triangulate_new(
     made
 }
 
-/// Similar features of two keyframes that see one point, with that point; each feature at most once.
+/// Similar features of two keyframes with the point that both see; each feature at most once.
 fn pairs(
     map: &LandmarkMap,
     id: KeyframeId,
@@ -65,7 +65,7 @@ fn pairs(
     found
 }
 
-/// The features that are not landmarks and have no depth to become one.
+/// The features without a landmark and without a usable depth.
 fn without_depth(keyframe: &Keyframe) -> impl Iterator<Item = usize> + '_ {
     let has_none = |i: usize| {
         keyframe.frame.depths[i].is_none_or(|depth| depth.sigma > MAX_RELATIVE_SIGMA * depth.value)
@@ -73,14 +73,14 @@ fn without_depth(keyframe: &Keyframe) -> impl Iterator<Item = usize> + '_ {
     (0..keyframe.frame.len()).filter(move |i| keyframe.landmarks[*i].is_none() && has_none(*i))
 }
 
-/// Where a feature is seen.
+/// Ray of a feature.
 #[derive(Debug, Clone, Copy)]
 struct Ray {
     feature: usize,
     /// At 1 m along the optical axis.
     x: f64,
     y: f64,
-    /// How far it may be off a line, px.
+    /// Largest distance from the epipolar line, px.
     reach: f64,
 }
 
@@ -93,13 +93,13 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// A feature of `b`, which may be off its line by 95 %.
+    /// The ray of a feature of `b`, with its distance bound at 95 %.
     fn in_b(&self, feature: usize) -> Ray {
         let (ray, reach) = (self.ray(self.b, feature), 1.96 * self.seen(self.b, feature).pixel_sigma);
         Ray { feature, x: ray.x, y: ray.y, reach }
     }
 
-    /// The feature of `b` among `theirs` that is most similar to feature `own` of `a`, near its epipolar line, and clearly so.
+    /// The feature of `b` near the epipolar line of feature `own` of `a` that is clearly the most similar one among `theirs`.
     fn best_match(&self, own: usize, theirs: &[Ray], thresholds: MatchThresholds) -> Option<usize> {
         // The plane through both cameras and the point cuts the image along this line.
         let normal = self.b_from_a.translation.cross(&self.b_from_a.rotate(self.ray(self.a, own)));
@@ -108,7 +108,7 @@ impl Pair<'_> {
         let (mut best, mut next) = ((u32::MAX, usize::MAX), u32::MAX);
         for other in theirs {
             let off = line.x * other.x + line.y * other.y + line.z;
-            // Without a baseline there is no epipolar line: `off` is not finite, and not near.
+            // Without a baseline `off` is not finite and therefore not near.
             let is_near = off.abs() <= other.reach;
             if !is_near {
                 continue;
@@ -138,7 +138,7 @@ impl Pair<'_> {
         };
         let in_b = self.b_from_a.transform(point);
         let scale = |keyframe: &Keyframe, feature| self.model.scale(keyframe.frame.octave(feature));
-        // Seen at the octave of scale s from d, it is seen at that of s' from d s / s'.
+        // A point at distance d in the octave of scale s appears in the octave of scale s' at distance d s / s'.
         let ratio = point.norm() * scale(self.a, own) / (in_b.norm() * scale(self.b, other));
         let fits = (1.0 / SCALE_TOLERANCE..=SCALE_TOLERANCE).contains(&ratio);
         (fits && agrees(self.a, own, point) && agrees(self.b, other, in_b)).then_some(point)
@@ -148,13 +148,13 @@ impl Pair<'_> {
         self.model.camera.unproject(keyframe.frame.pixels[feature], 1.0)
     }
 
-    /// The image position alone: a depth there belongs to another surface.
+    /// The observation without depth: a depth there belongs to another surface.
     fn seen(&self, keyframe: &Keyframe, feature: usize) -> PointObservation {
         PointObservation { depth: None, ..keyframe.frame.unaligned_observation(feature, self.model) }
     }
 }
 
-/// The point nearest to a ray from the origin and one from `from`, before both.
+/// The point nearest to a ray from the origin and a ray from `from`, in front of both.
 fn midpoint(a: Vector3, from: Vector3, b: Vector3) -> Option<Vector3> {
     let (aa, ab, bb) = (a.dot(&a), a.dot(&b), b.dot(&b));
     let determinant = aa * bb - ab * ab;

@@ -11,8 +11,8 @@ use nalgebra::{Matrix6, Vector6};
 use std::collections::BTreeSet;
 use trundle_core::Pose3;
 
-/// The old keyframes that are similar to `keyframe`, the most similar first: without common landmarks, and near enough for the
-/// drift or an unexpected correction.
+/// The old keyframes that are similar to `keyframe`, the most similar first. They share no landmark with it, and are within the drift or
+/// the largest unexpected correction.
 pub(crate) fn loop_candidates(
     map: &LandmarkMap,
     place_index: &KeyframeIndex,
@@ -38,7 +38,7 @@ fn connected(map: &LandmarkMap, keyframe: KeyframeId) -> BTreeSet<KeyframeId> {
     near.iter().copied().flat_map(around).chain(near.iter().copied()).chain([keyframe]).collect()
 }
 
-/// How far two keyframes may have drifted against each other.
+/// Bound of the drift between two keyframes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DriftBound<'a> {
     covariance: Matrix6<f64>,
@@ -46,8 +46,8 @@ pub(crate) struct DriftBound<'a> {
 }
 
 impl<'a> DriftBound<'a> {
-    /// The drift between an old keyframe and a new one: the covariance that grew in between, and the drift along the least
-    /// uncertain path; the covariance alone if no path leads.
+    /// The drift between an old keyframe and a new one: the covariance that grew in between, and the drift along the least uncertain path,
+    /// if one exists.
     pub fn along(
         paths: &UncertaintyPaths,
         map: &LandmarkMap,
@@ -61,7 +61,7 @@ impl<'a> DriftBound<'a> {
         Self { covariance: grown + Matrix6::from_diagonal(&least), config }
     }
 
-    /// Whether a keyframe at this offset may see the same as the other one.
+    /// Whether keyframes at this offset may see the same place.
     fn reaches(&self, offset: Pose3) -> bool {
         let Self { covariance, config } = self;
         let off = |from: usize| config.max_sigmas * covariance.fixed_view::<3, 3>(from, from).trace().sqrt();
@@ -69,8 +69,8 @@ impl<'a> DriftBound<'a> {
             && offset.angle() <= config.turn + off(3).max(config.max_correction_turn)
     }
 
-    /// Whether the drift may have been this correction (a right perturbation), itself as uncertain as `seen`, by its chi-square
-    /// of six.
+    /// Whether the drift explains this correction (a right perturbation) with covariance `seen`, by the chi-square of six degrees of
+    /// freedom.
     pub fn allows(&self, correction: Pose3, seen: &Matrix6<f64>) -> bool {
         let tangent = correction.log();
         let Some(information) = (self.covariance + seen).try_inverse() else { return false };
@@ -84,6 +84,5 @@ impl<'a> DriftBound<'a> {
     }
 }
 
-/// Difference between the quantile of a chi-square of six and that of a chi-square of one, at the probability of five standard
-/// deviations: 12.
+/// Difference between the chi-square quantiles of six and of one degree of freedom, at the probability of five standard deviations: 12.
 const CHI2_MARGIN: f64 = 12.0;

@@ -4,32 +4,36 @@ use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in, require_positive};
 use trundle_optim::PoseGraphConfig;
 
-/// When a place counts as seen again, and how the map is then corrected.
+/// Detection of loops, and correction of the map.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct LoopConfig {
-    /// Old keyframes that a new one is compared with, 0 (no loop is closed) or more. Default 3 \[MurArtal17\].
+    /// Number of old keyframes that a new one is compared with, 0 (no loop closing) or more. More find more loops and take longer. Default
+    /// 3 \[MurArtal17\].
     pub candidates: usize,
-    /// Keyframes newer than this many before are not a loop, 1 or more. Default 10: as many as a local bundle moves.
+    /// Number of newest keyframes that are no loop candidates, 1 or more. Default 10: as many as a local bundle moves.
     pub min_age: usize,
-    /// Largest distance between two keyframes that see the same, m, above 0. Default 1.5: half a room.
+    /// Largest distance between two keyframes of one place, m, above 0, besides the drift. A larger value compares more keyframes. Default
+    /// 1.5: half a room.
     pub reach: f64,
-    /// How much they may be turned, rad, above 0. Default 0.9 (50 deg): a quarter of a Kinect's picture is then common.
+    /// Largest rotation between two keyframes of one place, rad, above 0, besides the drift. Default 0.9 (50 deg): a quarter of a Kinect's
+    /// image is then common.
     pub turn: f64,
-    /// Points of the old place that must be found under one pose, 10 or more. Default 40 \[MurArtal17\].
+    /// Smallest number of points of the old place that agree on one pose, 10 or more. A larger number misses loops; a smaller one accepts
+    /// false ones. Default 40 \[MurArtal17\].
     pub min_points: usize,
-    /// Keyframes in a row that must give the same correction before one is accepted that the drift does not explain, or before
-    /// another map is taken for this place, 1 or more. Default 3 \[MurArtal17\].
+    /// Number of keyframes in a row that must give the same correction before the merge of a map, or a correction that the drift does not
+    /// explain, is accepted, 1 or more. Default 3 \[MurArtal17\].
     pub consistency: usize,
     /// Largest correction that the drift does not explain, m, above 0. Default 1: wheels may slip by as much, and look-alike
     /// rooms are farther apart.
     pub max_correction: f64,
-    /// Largest such rotation, rad, above 0. Default 0.5.
+    /// Largest rotation of a correction that the drift does not explain, rad, above 0. Default 0.5.
     pub max_correction_turn: f64,
-    /// Part of the matches that must agree, 0 to 1. Default 0.5: chance does not reach it.
+    /// Smallest fraction of the matches that agree on the pose, 0 to 1. Default 0.5: chance matches stay below it.
     pub min_agreement: f64,
-    /// Largest correction in standard deviations of the drift, above 0. Default 5: covariances along a chain are somewhat
-    /// small. A larger correction is a look-alike.
+    /// Largest correction in standard deviations of the drift, above 0. A larger correction counts as a look-alike place. Default 5:
+    /// covariances along a chain are somewhat small.
     pub max_sigmas: f64,
     /// Standard deviation of the drift, besides the covariance, as a fraction of the length of each constraint by common
     /// landmarks or a loop, along the least uncertain path, 0 to 1. Default 0.01, the drift of RGB-D odometry.
@@ -37,7 +41,8 @@ pub struct LoopConfig {
     /// Standard deviation of the drift of an odometry constraint, as a fraction of its length, 0 to 1. Default 0.003: twice the drift of the second worst of 25 drives at its first
     /// loop. With 0.01 a look-alike room 4.3 m away closed a false loop after 80 m.
     pub drift_part_on_wheels: f64,
-    /// Landmarks that two keyframes share to be constrained in the pose graph, 1 or more. Default 100 \[MurArtal17\].
+    /// Number of common landmarks from which two keyframes get a constraint in the pose graph, 1 or more. A smaller number gives a denser,
+    /// slower graph. Default 100 \[MurArtal17\].
     pub tied_by: usize,
     /// The pose graph.
     pub graph: PoseGraphConfig,
@@ -65,10 +70,10 @@ impl Default for LoopConfig {
 }
 
 impl LoopConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(mut self) -> Result<Self, Invalid> {
         let counts = [
             ("loops.min_age", self.min_age, 1),

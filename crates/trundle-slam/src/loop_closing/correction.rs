@@ -10,7 +10,7 @@ use crate::motion::uncertain_pose::carried;
 use crate::optimisation::map_optimisation::MapOptimisation;
 use trundle_core::Pose3;
 
-/// A recognized place, and what the correction of the map needs.
+/// A recognized place, and the inputs of the map's correction.
 #[derive(Debug, Clone)]
 pub(crate) struct LoopCorrection<'a> {
     pub mapper: LocalMapper<'a>,
@@ -19,8 +19,8 @@ pub(crate) struct LoopCorrection<'a> {
 }
 
 impl LoopCorrection<'_> {
-    /// Distributes the drift over the keyframes by a pose graph, moves each landmark with the keyframe that saw it first, fuses
-    /// landmarks that are there twice, and begins the bundle adjustment of the whole map.
+    /// Distributes the drift over the keyframes by a pose graph, moves each landmark with the keyframe that saw it first, fuses duplicate
+    /// landmarks, and begins the bundle adjustment of the whole map.
     pub fn apply(&self, map: &mut LandmarkMap, optimisation: &mut MapOptimisation, keyframe: KeyframeId) {
         let ids: Vec<KeyframeId> = map.keyframe_ids().collect();
         let graph = essential_graph(map, self.mapper.model, (keyframe, &self.place), self.config.tied_by);
@@ -35,7 +35,7 @@ impl LoopCorrection<'_> {
         optimisation.begin_all(map);
     }
 
-    /// The keyframe is as certain as the recognized place and its pose there.
+    /// Sets the keyframe's covariance to that of the recognized place and of the pose relative to it.
     fn set_covariance(&self, map: &mut LandmarkMap, keyframe: KeyframeId) {
         let (candidate, own) = (map.keyframe(self.place.candidate), map.keyframe(keyframe));
         let offset = candidate.visual_from_camera.inverse() * own.visual_from_camera;
@@ -44,7 +44,7 @@ impl LoopCorrection<'_> {
     }
 }
 
-/// Moves each landmark with the keyframe that saw it first; `after` is where the keyframes `ids` go.
+/// Moves each landmark with the keyframe that saw it first; `after` are the new poses of the keyframes `ids`.
 fn move_landmarks(map: &mut LandmarkMap, ids: &[KeyframeId], after: &[Pose3]) {
     let correction =
         |(id, after): (&KeyframeId, &Pose3)| *after * map.keyframe(*id).visual_from_camera.inverse();

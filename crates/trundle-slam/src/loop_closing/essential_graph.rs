@@ -11,10 +11,9 @@ use std::collections::BTreeSet;
 use trundle_core::Pose3;
 use trundle_optim::{CHI2_95_6, Huber, PoseConstraint, PoseGraph};
 
-/// The pose graph of a loop closure. Keyframes are constrained by common landmarks, odometry and the floor, at their present
-/// relative poses; each constraint has the information of what it comes from, so that the correction goes where the drift
-/// arose. A last constraint puts `keyframe` at the recognized place. Poses are the keyframes by rising id, and then the
-/// identity, to which floors are constrained.
+/// The pose graph of a loop closure. Keyframes are constrained by common landmarks, odometry and the floor, at their present relative
+/// poses. Each constraint has the information of its source, so that the correction goes where the drift arose. The last constraint puts
+/// `keyframe` at the recognized place. Poses are the keyframes by rising id, and then the identity, to which floors are constrained.
 pub(crate) fn essential_graph(
     map: &LandmarkMap,
     model: &ObservationModel,
@@ -36,7 +35,11 @@ pub(crate) fn essential_graph(
         seen.into_iter().map(|(pair, by)| as_now(pair, by + Matrix6::identity() * MIN_INFORMATION)).collect();
     for tie in odometry_and_floor_constraints(map, &ids, |i| i == 0) {
         let is_floor = tie.from == ids.len();
-        constraints.push(if is_floor { tie } else { as_now((tie.from, tie.to), believed(&tie, &poses)) });
+        constraints.push(if is_floor {
+            tie
+        } else {
+            as_now((tie.from, tie.to), robust_information(&tie, &poses))
+        });
     }
     let (from, to) = (place(found.candidate), place(keyframe));
     let from_to = poses[from].inverse() * found.visual_from_camera;
@@ -46,11 +49,11 @@ pub(crate) fn essential_graph(
     PoseGraph::new(poses, &fixed, constraints).expect("invariant: every index was counted here")
 }
 
-/// Information of a constraint besides that of its landmarks: 1 (1/m^2 and 1/rad^2). Keyframes that share nothing with the rest
-/// move along by it. Source: ours.
+/// Information of a constraint besides that of its landmarks: 1 (1/m^2 and 1/rad^2). Without common landmarks, it moves a keyframe along
+/// with its neighbours. Source: ours.
 const MIN_INFORMATION: f64 = 1.0;
 
-/// Pairs of keyframes that the graph constrains, by index: the spanning tree, those that share `tied_by` landmarks, earlier
+/// Pairs of keyframes that the graph constrains, by index: edges of the spanning tree, keyframes that share `tied_by` landmarks, earlier
 /// loops \[MurArtal17\], and neighbours in time.
 fn pairs(map: &LandmarkMap, ids: &[KeyframeId], tied_by: usize) -> BTreeSet<(usize, usize)> {
     let mut pairs: BTreeSet<(usize, usize)> = (1..ids.len()).map(|i| (i - 1, i)).collect();
@@ -65,7 +68,7 @@ fn pairs(map: &LandmarkMap, ids: &[KeyframeId], tied_by: usize) -> BTreeSet<(usi
 }
 
 /// Information of an odometry constraint at these poses, reduced by the Huber loss where the wheels slipped.
-fn believed(tie: &PoseConstraint, poses: &[Pose3]) -> Matrix6<f64> {
+fn robust_information(tie: &PoseConstraint, poses: &[Pose3]) -> Matrix6<f64> {
     let off = (tie.from_to.inverse() * poses[tie.from].inverse() * poses[tie.to]).log();
     tie.information * Huber::beyond(CHI2_95_6).weight(off.dot(&(tie.information * off)))
 }
@@ -77,8 +80,8 @@ mod tests {
     use nalgebra::Vector6;
     use trundle_optim::PoseGraphConfig;
 
-    /// Keyframes in a row before a wall, a column of features apart. Each shares 56 landmarks with the next, by every other
-    /// column, but the third and the fourth only 6.
+    /// Keyframes in a row in front of a wall, one column of features apart. Each shares 56 landmarks with the next one; the third and the
+    /// fourth share only 6.
     fn chain() -> (LandmarkMap, Vec<KeyframeId>) {
         let (mut map, model) = (LandmarkMap::default(), model());
         let step = 20.0 / model.camera.fx() * 2.0;

@@ -17,7 +17,7 @@ use crate::place_recognition::keyframe_index::KeyframeIndex;
 use crate::place_recognition::place_hypothesis::without_rival;
 use crate::tracking::config::TrackingConfig;
 
-/// Closes loops as keyframes come.
+/// Closes loops for new keyframes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LoopCloser<'a> {
     pub place_index: &'a KeyframeIndex,
@@ -28,11 +28,11 @@ pub(crate) struct LoopCloser<'a> {
     pub seed: u64,
 }
 
-/// The search for one keyframe's place among the old keyframes, in steps: first the candidates, then one candidate a step.
+/// The search for one keyframe's place among the old keyframes, in steps: first the list of candidates, then one candidate per step.
 #[derive(Debug, Clone)]
 pub(crate) struct LoopSearch {
     keyframe: KeyframeId,
-    /// Candidates still to be verified, the most similar last; `None` before they are known.
+    /// Candidates to verify, the most similar last; `None` before the first step.
     candidates: Option<Vec<KeyframeId>>,
     found: Vec<RecognizedPlace>,
 }
@@ -44,7 +44,7 @@ impl LoopSearch {
 }
 
 impl LoopCloser<'_> {
-    /// Does the next step of a search. Returns whether that was the last.
+    /// Does the next step of a search. Returns whether the search is complete.
     pub fn advance(&self, map: &LandmarkMap, search: &mut LoopSearch) -> bool {
         let Self { place_index, model, config, tracking, seed, .. } = *self;
         let Some(own) = place_index.frame_bow(map, search.keyframe) else { return true };
@@ -60,8 +60,8 @@ impl LoopCloser<'_> {
         is_last
     }
 
-    /// Corrects the map by the place that a finished search found, if the correction is accepted. `pending` is the unexpected correction
-    /// that earlier searches found.
+    /// Corrects the map by the place of a finished search, if the correction is accepted. `pending` is an unexpected correction found by
+    /// earlier searches.
     pub fn close(
         &self,
         (map, optimisation): (&mut LandmarkMap, &mut MapOptimisation),
@@ -69,7 +69,7 @@ impl LoopCloser<'_> {
         pending: &mut Option<ConsistencyCheck<()>>,
     ) -> Option<LoopClosure> {
         let keyframe = search.keyframe;
-        let place = self.believable_place(map, search, pending)?;
+        let place = self.accepted_place(map, search, pending)?;
         let before = map.keyframe(keyframe).visual_from_camera;
         let (seen_before, points) = (place.candidate, place.points);
         let mapper = LocalMapper::new(self.model, self.mapping, self.tracking);
@@ -80,7 +80,7 @@ impl LoopCloser<'_> {
     }
 
     /// The place that the keyframe shows: at once where the drift explains the correction, else after several keyframes in a row.
-    fn believable_place(
+    fn accepted_place(
         &self,
         map: &LandmarkMap,
         search: LoopSearch,

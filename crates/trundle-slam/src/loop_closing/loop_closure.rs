@@ -6,12 +6,12 @@ use trundle_core::Pose3;
 /// A place seen again.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoopClosure {
-    /// The keyframe that saw it again.
+    /// The new keyframe at the place.
     pub keyframe: KeyframeId,
-    /// The keyframe that had seen it.
+    /// The old keyframe at the place.
     pub seen_before: KeyframeId,
-    /// Points of the old place found again.
+    /// Number of points of the old place found again.
     pub points: usize,
-    /// How the camera's pose changed: `new_from_old` in the visual frame.
+    /// Correction of the camera's pose: `new_from_old` in the visual frame.
     pub correction: Pose3,
 }

@@ -1,4 +1,4 @@
-//! The queue of keyframes whose places are still to be searched among the old ones.
+//! The queue of keyframes whose loops are to be searched.
 
 use crate::ids::KeyframeId;
 use crate::loop_closing::loop_closer::{LoopCloser, LoopSearch};
@@ -8,7 +8,7 @@ use crate::optimisation::map_optimisation::MapOptimisation;
 use crate::place_recognition::consistency_check::ConsistencyCheck;
 use std::collections::VecDeque;
 
-/// Searches loops, a step a frame.
+/// Searches loops, one step per frame.
 #[derive(Debug, Default)]
 pub(crate) struct LoopDetector {
     searches: VecDeque<LoopSearch>,
@@ -19,7 +19,7 @@ pub(crate) struct LoopDetector {
 /// Result of a step of the detector.
 #[derive(Debug)]
 pub(crate) enum LoopStep {
-    /// Nothing: no keyframe waits.
+    /// No keyframe was in the queue.
     Idle,
     /// A step of a search that closed no loop.
     Searched,
@@ -35,17 +35,17 @@ impl LoopDetector {
         self.searches.is_empty()
     }
 
-    /// Drops the searches: their keyframes are of another map, or far away.
+    /// Drops the queue, when its keyframes are of another map or far away.
     pub fn drop_searches(&mut self) {
         self.searches.clear();
     }
 
-    /// Drops the correction that waits: it is of another map.
+    /// Drops the pending correction, when it is of another map.
     pub fn drop_pending(&mut self) {
         self.pending_loop = None;
     }
 
-    /// Goes on with the oldest search.
+    /// Continues the oldest search.
     pub fn advance(
         &mut self,
         loop_closer: &LoopCloser,

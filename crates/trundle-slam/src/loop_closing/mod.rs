@@ -1,11 +1,10 @@
-//! Loop closing: a place seen again removes the drift of everything since.
+//! Loop closing: a place in view again removes the drift of the loop.
 //!
-//! Problem: along a corridor the map drifts, and a place reached again stands beside its first image. Idea: a new keyframe is compared
-//! with old ones that have similar bags of words, share no landmarks with it, and are within its drift. Where enough of the old points
-//! are found in it under one pose, and under no other pose nearly as many, a pose graph moves the keyframes in between. Landmarks
-//! that are there twice are fused \[MurArtal17\]. A correction larger than the drift explains must be found by several
-//! keyframes in a row, and be smaller than the distance of look-alike rooms. Cost: a query of the index, and for each of at most three
-//! candidates a matching under the vocabulary, about 1 ms each.
+//! Problem: the map drifts along a corridor, and a place reached again appears twice. Idea: a new keyframe is compared with old ones that
+//! have similar bags of words, share no landmarks with it, and are within its drift. If enough old points agree on one pose, and no other
+//! pose has nearly as many, a pose graph moves the keyframes in between. Duplicate landmarks are fused \[MurArtal17\]. A correction larger
+//! than the drift explains must be found by several keyframes in a row, and be smaller than the distance of look-alike rooms. Cost: one
+//! query of the index, and about 1 ms of matching for each of at most three candidates.
 
 pub(crate) mod candidates;
 pub(crate) mod config;

@@ -17,10 +17,10 @@ use nalgebra::Matrix6;
 use std::collections::BTreeSet;
 use trundle_core::Pose3;
 
-/// Keyframes covisible with a candidate whose landmarks are searched: 10. Source: \[MurArtal17\].
+/// Number of keyframes covisible with a candidate whose landmarks are searched: 10. Source: \[MurArtal17\].
 const COVISIBLE_KEYFRAMES: usize = 10;
 
-/// Verifies whether a frame shows what a keyframe of `map` saw.
+/// Verifies whether a frame shows the place of a keyframe of `map`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PlaceVerifier<'a> {
     pub map: &'a LandmarkMap,
@@ -35,11 +35,11 @@ pub(crate) struct PlaceVerifier<'a> {
 #[derive(Debug, Clone)]
 pub(crate) struct RecognizedPlace {
     pub candidate: KeyframeId,
-    /// Where the frame's camera is by the old landmarks.
+    /// The frame's camera pose by the old landmarks.
     pub visual_from_camera: Pose3,
-    /// Of that, as far as the old landmarks are right.
+    /// Covariance of that pose relative to the old landmarks.
     pub covariance: Matrix6<f64>,
-    /// Points of the old place found in it, landmarks or depths.
+    /// Number of points of the old place found in the frame, landmarks or depths.
     pub points: usize,
     /// The landmarks among them.
     pub landmarks: Vec<LandmarkId>,
@@ -64,14 +64,14 @@ impl PlaceHypothesis for RecognizedPlace {
 }
 
 impl PlaceVerifier<'_> {
-    /// The one of these candidates that the frame shows; `None` if two that are apart do.
+    /// The place of the candidates that the frame shows; `None` if two distant candidates fit.
     pub fn recognize(&self, own: FrameBow, candidates: &[KeyframeId]) -> Option<RecognizedPlace> {
         without_rival(candidates.iter().filter_map(|id| self.verify(own, *id)).collect())
     }
 
     /// The place of one keyframe, if the frame shows it.
     pub fn verify(&self, own: FrameBow, candidate: KeyframeId) -> Option<RecognizedPlace> {
-        // The frame was aligned to the landmarks of its own track; these matches are not evidence for the old ones.
+        // The frame was aligned to the landmarks of its own track: the alignment is no evidence for the old landmarks.
         let frame = own.frame.clone().unaligned(self.model);
         let own = FrameBow { frame: &frame, ..own };
         let rough = self.by_bow(own, candidate)?;
@@ -85,7 +85,7 @@ impl PlaceVerifier<'_> {
         Some(RecognizedPlace { candidate, visual_from_camera, covariance, points, landmarks })
     }
 
-    /// The pose by similar features of both.
+    /// The pose by similar features of frame and candidate.
     fn by_bow(&self, own: FrameBow, candidate: KeyframeId) -> Option<MatchedPose> {
         let pairs = self
             .place_index
@@ -103,7 +103,7 @@ impl PlaceVerifier<'_> {
         fix.is_sound(self.tracking.min_inliers).then_some(fix)
     }
 
-    /// The pose by these and all other landmarks of the old place.
+    /// The pose by these and all other landmarks of the old place, from the pose of `rough`.
     fn by_old_landmarks(&self, own: FrameBow, candidate: KeyframeId, rough: &MatchedPose) -> MatchedPose {
         let frame = own.frame;
         let pose = rough.visual_from_camera();

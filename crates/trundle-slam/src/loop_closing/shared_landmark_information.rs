@@ -41,7 +41,7 @@ pub(crate) fn shared_landmark_information(
     known
 }
 
-/// Which keyframes see a landmark, by rising place, and how well.
+/// The observers of a landmark, by rising index, with their information.
 fn views(
     map: &LandmarkMap,
     model: &ObservationModel,
@@ -100,7 +100,7 @@ mod tests {
                 (linear.by_point * weight, p_camera)
             };
             let ((by_a, _), (by_b, p_camera)) = (by_point(a), by_point(b));
-            // Of b's frame: its point moves by -rho + p x phi, and A is turned into it.
+            // In b's frame the point moves by -rho + p x phi, and A is rotated into that frame.
             let mut by_pose = Matrix3x6::zeros();
             by_pose.fixed_view_mut::<3, 3>(0, 0).copy_from(&-Matrix3::identity());
             by_pose.fixed_view_mut::<3, 3>(0, 3).copy_from(&p_camera.cross_matrix());

@@ -9,8 +9,8 @@ use std::collections::BinaryHeap;
 /// Drift between one keyframe and all others, along the least uncertain path of constraints; each constraint drifts by a
 /// fraction of its length and rotation.
 ///
-/// Constraints are the spanning tree where it comes from common landmarks, loops, and odometry. A keyframe that a loop put at
-/// an old place is as certain as that place, however far the camera went in between.
+/// Constraints are the edges of the spanning tree with common landmarks, loops, and odometry. A loop makes a keyframe as certain as the old
+/// place, whatever the distance in between.
 #[derive(Debug, Clone)]
 pub(crate) struct UncertaintyPaths {
     ids: Vec<KeyframeId>,
@@ -32,14 +32,14 @@ impl PathUncertainty {
         }
     }
 
-    /// The order of paths, a metre like a radian: the bits of a number that is not negative have its order.
+    /// The order of paths; a metre counts as a radian. The bits of a non-negative number have the same order as the number.
     fn rank(self) -> u64 {
         (self.translation_sigma + self.rotation_sigma).to_bits()
     }
 }
 
 impl UncertaintyPaths {
-    /// The paths from one keyframe to all that constraints reach, by Dijkstra's algorithm. Time: n log n in the keyframes.
+    /// The paths from one keyframe to all connected ones, by Dijkstra's algorithm. Time: n log n in the keyframes.
     pub fn from(map: &LandmarkMap, start: KeyframeId, config: &LoopConfig) -> Self {
         let ids: Vec<KeyframeId> = map.keyframe_ids().collect();
         let edges = edges(map, &ids, config);
@@ -62,7 +62,7 @@ impl UncertaintyPaths {
         Self { ids, paths }
     }
 
-    /// The path to a keyframe; `None` if no constraint leads.
+    /// The path to a keyframe; `None` if constraints do not connect it.
     pub fn to(&self, id: KeyframeId) -> Option<PathUncertainty> {
         self.paths[self.ids.binary_search(&id).ok()?]
     }
@@ -72,7 +72,7 @@ impl UncertaintyPaths {
 fn edges(map: &LandmarkMap, ids: &[KeyframeId], config: &LoopConfig) -> Vec<Vec<(usize, PathUncertainty)>> {
     let mut edges = vec![Vec::new(); ids.len()];
     for (at, (_, keyframe)) in map.keyframes().enumerate() {
-        let parent = keyframe.tree.parent.iter().filter(|_| !keyframe.tree.is_astray);
+        let parent = keyframe.tree.parent.iter().filter(|_| !keyframe.tree.shares_no_landmark);
         let seen = parent.chain(&keyframe.tree.loops).map(|id| (*id, config.drift_part));
         let odometry = keyframe.odometry.iter().map(|odometry| (odometry.from, config.drift_part_on_wheels));
         for (other, part) in seen.chain(odometry) {
@@ -96,7 +96,7 @@ mod tests {
     use crate::testing::blank_frame;
     use trundle_core::{Pose3, Vector3};
 
-    /// Keyframes along a line, each of which observes the landmarks of the one before.
+    /// Keyframes along a line; each observes the landmarks of the keyframe before.
     fn line(xs: &[f64]) -> (LandmarkMap, Vec<KeyframeId>) {
         let mut map = LandmarkMap::default();
         let along = |x: f64| Pose3::new(nalgebra::UnitQuaternion::identity(), Vector3::x() * x);
@@ -105,7 +105,7 @@ mod tests {
         (map, ids)
     }
 
-    /// How far off two keyframes may be, 1 % of what they see and 0.3 % on wheels.
+    /// Drift between two keyframes: 1 % along common landmarks and 0.3 % along odometry.
     fn off(map: &LandmarkMap, a: KeyframeId, b: KeyframeId) -> f64 {
         let config = LoopConfig { drift_part: 0.01, drift_part_on_wheels: 0.003, ..Default::default() };
         let path = |from, to| UncertaintyPaths::from(map, from, &config).to(to).unwrap();
@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn a_parent_without_common_landmarks_is_not_a_constraint() {
         let (mut map, ids) = line(&[0.0, 1.0, 2.0]);
-        map.keyframe_mut(ids[1]).tree.is_astray = true;
+        map.keyframe_mut(ids[1]).tree.shares_no_landmark = true;
         let config = LoopConfig::default();
         assert_eq!(UncertaintyPaths::from(&map, ids[0], &config).to(ids[2]), None);
         map.keyframe_mut(ids[1]).odometry = Some(OdometryFactor::at(ids[0]));

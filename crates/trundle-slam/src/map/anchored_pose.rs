@@ -4,13 +4,13 @@ use crate::ids::KeyframeId;
 use crate::map::landmark_map::LandmarkMap;
 use trundle_core::{Pose3, Stamp};
 
-/// A frame's pose: relative to a keyframe, so that it moves along when the map is refined.
+/// A frame's pose relative to a keyframe, so that the pose follows refinements of the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct AnchoredPose {
     pub stamp: Stamp,
-    /// `None` before the first keyframe.
+    /// The reference keyframe; `None` before the first keyframe.
     pub reference: Option<KeyframeId>,
-    /// `visual_from_camera` if there is no reference.
+    /// Pose in the reference keyframe; `visual_from_camera` without a reference.
     pub reference_from_camera: Pose3,
 }
 
@@ -26,7 +26,7 @@ impl AnchoredPose {
         Self { stamp, reference, reference_from_camera }
     }
 
-    /// `visual_from_camera` where it depends on no keyframe.
+    /// `visual_from_camera` of a pose without a reference.
     pub fn fixed_pose(&self) -> Option<Pose3> {
         self.reference.is_none().then_some(self.reference_from_camera)
     }

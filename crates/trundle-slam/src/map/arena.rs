@@ -1,12 +1,12 @@
-//! Items found by a number that is never used twice.
+//! Items by an id that is never reused.
 
-/// Items found by a number that rises with each one made and is never used twice.
+/// Items by an id that rises with each item and is never reused.
 ///
-/// The slot of a removed item is used again: memory is that of the largest number of items alive at once, and four bytes for
-/// each one ever made.
+/// The slot of a removed item is reused. Memory is that of the largest number of items alive at once, and four bytes for each item ever
+/// created.
 #[derive(Debug, Clone)]
 pub(crate) struct Arena<T> {
-    /// Where each thing ever made stands, [`REMOVED_SLOT`] once it is removed.
+    /// The slot of each id, [`REMOVED_SLOT`] of a removed item.
     places: Vec<u32>,
     things: Vec<Option<T>>,
     free: Vec<u32>,
@@ -22,7 +22,7 @@ impl<T> Default for Arena<T> {
 }
 
 impl<T> Arena<T> {
-    /// Takes a thing in; its number.
+    /// Adds an item; returns its id.
     pub fn insert(&mut self, thing: T) -> usize {
         let place = self.free.pop().unwrap_or_else(|| {
             self.things.push(None);
@@ -33,7 +33,7 @@ impl<T> Arena<T> {
         self.places.len() - 1
     }
 
-    /// Takes a thing out; `None` if it is gone already.
+    /// Removes an item and returns it; `None` if it was removed before.
     pub fn remove(&mut self, number: usize) -> Option<T> {
         let place = std::mem::replace(self.places.get_mut(number)?, REMOVED_SLOT);
         let thing = self.things.get_mut(place as usize)?.take();
@@ -51,18 +51,18 @@ impl<T> Arena<T> {
         self.things.get_mut(*self.places.get(number)? as usize)?.as_mut()
     }
 
-    /// All entries, by rising number.
+    /// All items, by rising id.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = (usize, &T)> {
         let thing = |place: u32| self.things.get(place as usize)?.as_ref();
         self.places.iter().enumerate().filter_map(move |(number, place)| Some((number, thing(*place)?)))
     }
 
-    /// How many there are.
+    /// Number of items.
     pub fn len(&self) -> usize {
         self.things.len() - self.free.len()
     }
 
-    /// The number that the next thing will have: higher than that of every thing ever made.
+    /// The id of the next item: higher than all earlier ids.
     pub fn bound(&self) -> usize {
         self.places.len()
     }

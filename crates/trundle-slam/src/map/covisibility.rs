@@ -7,8 +7,8 @@ use trundle_core::Pose3;
 /// Fewest landmarks that two keyframes share to count as neighbours: 15. Source: \[MurArtal17\].
 pub(crate) const MIN_SHARED_LANDMARKS: usize = 15;
 
-/// The keyframes that a camera at a pose may share landmarks with: those near by with a similar direction, the nearest
-/// first, and the keyframes covisible with the first of them.
+/// The keyframes that a camera at a pose may share landmarks with: near keyframes with a similar direction, the nearest first, and the
+/// keyframes covisible with the nearest ones.
 pub(crate) fn keyframes_around(map: &LandmarkMap, visual_from_camera: Pose3) -> Vec<KeyframeId> {
     let nearest = nearest_keyframes(map, visual_from_camera, MAX_NEAR_KEYFRAMES);
     let mut around = nearest.clone();
@@ -21,7 +21,7 @@ pub(crate) fn keyframes_around(map: &LandmarkMap, visual_from_camera: Pose3) -> 
     around
 }
 
-/// The keyframes near by a camera at a pose with a similar direction, the nearest first.
+/// The keyframes near a camera pose with a similar direction, the nearest first.
 pub(crate) fn nearest_keyframes(
     map: &LandmarkMap,
     visual_from_camera: Pose3,
@@ -38,17 +38,17 @@ pub(crate) fn nearest_keyframes(
     ranked.into_iter().take(max_count).map(|(_, id)| id).collect()
 }
 
-/// Largest distance of a keyframe that may show the same landmarks: 3 m, most of a room. The nearer a keyframe, the larger may be its
-/// turn. Source: ours.
+/// Largest distance of a keyframe that may show the same landmarks: 3 m, most of a room. The allowed rotation grows with proximity. Source:
+/// ours.
 const NEAR_KEYFRAME_M: f64 = 3.0;
 /// Largest rotation of a keyframe that may show the same landmarks: 1.2 rad, the field of view of a Kinect. See
 /// [`NEAR_KEYFRAME_M`].
 const NEAR_KEYFRAME_RAD: f64 = 1.2;
-/// Most keyframes that are used because they are near: 20. Source: ours.
+/// Maximum number of near keyframes: 20. Source: ours.
 const MAX_NEAR_KEYFRAMES: usize = 20;
-/// Nearest keyframes whose covisible keyframes are used as well: 3. Source: ours.
+/// Number of nearest keyframes whose covisible keyframes are added: 3. Source: ours.
 const EXPANDED_KEYFRAMES: usize = 3;
-/// Most covisible keyframes of each of them: 15. Source: ours.
+/// Maximum number of covisible keyframes of each nearest one: 15. Source: ours.
 const MAX_NEIGHBOURS: usize = 15;
 
 #[cfg(test)]

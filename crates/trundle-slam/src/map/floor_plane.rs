@@ -17,17 +17,17 @@ const TILT_SIGMA_RAD: f64 = 0.004;
 const MAX_OFF_PLANE_M: f64 = 0.1;
 /// Largest tilt of a keyframe against the plane: 0.1 rad. See [`MAX_OFF_PLANE_M`].
 const MAX_TILT_RAD: f64 = 0.1;
-/// Fraction of the keyframes that must be on the plane: 0.8. With fewer there is no plane. Source: ours.
+/// Fraction of the keyframes that must be on the plane: 0.8. With fewer the map has no plane. Source: ours.
 const MIN_ON_PLANE_RATIO: f64 = 0.8;
 
 /// The plane in which the camera moves, visual frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FloorPlane {
-    /// Across the plane, camera frame.
+    /// Normal of the plane, camera frame.
     axis: Vector3,
-    /// Across the plane, visual frame.
+    /// Normal of the plane, visual frame.
     normal: Vector3,
-    /// Along it, m.
+    /// Coordinate of the plane along its normal, m.
     height: f64,
 }
 
@@ -43,8 +43,8 @@ impl FloorPlane {
         (on_it as f64 >= MIN_ON_PLANE_RATIO * normals.len() as f64).then_some(plane)
     }
 
-    /// Constrains a keyframe, pose `to`, to its projection onto the plane; pose `world` is the identity. `None` of a keyframe
-    /// off the plane.
+    /// Constraint of a keyframe (pose index `to`) to its projection onto the plane; pose index `world` is the identity. `None` for a
+    /// keyframe off the plane.
     pub fn constraint(
         &self,
         map: &LandmarkMap,

@@ -12,14 +12,15 @@ use trundle_core::Pose3;
 pub(crate) struct Keyframe {
     pub frame: Frame,
     pub visual_from_camera: Pose3,
-    /// Of that pose as a right perturbation, against the first keyframe.
+    /// Covariance of the pose relative to the first keyframe, as a right perturbation.
     pub covariance: Matrix6<f64>,
-    /// The part of the covariance that its points share, as of one rigid body: a frame located by these points inherits it.
+    /// The part of the covariance that all points of the keyframe share, as of one rigid body. A frame located by these points inherits
+    /// this part.
     pub map_covariance: Matrix6<f64>,
-    /// Which landmark each feature is of.
+    /// The landmark of each feature.
     pub landmarks: Vec<Option<LandmarkId>>,
-    /// Where it stands in the spanning tree.
+    /// Node of the spanning tree.
     pub(crate) tree: TreeNode,
-    /// Odometry to it from the keyframe before, if it was measured.
+    /// Odometry from the previous keyframe, if measured.
     pub odometry: Option<OdometryFactor>,
 }

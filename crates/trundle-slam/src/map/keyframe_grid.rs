@@ -7,19 +7,19 @@ use trundle_core::Vector3;
 /// Side of a cell: 1 m, the extent of the keyframes of one place. Source: ours.
 const CELL_M: f64 = 1.0;
 
-/// Keyframes by position: those near a point are found without checking all others.
+/// Keyframes by position: finds those near a point without checking all others.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct KeyframeGrid {
     cells: BTreeMap<[i32; 3], Vec<KeyframeId>>,
 }
 
 impl KeyframeGrid {
-    /// Takes a keyframe in.
+    /// Adds a keyframe.
     pub fn insert(&mut self, id: KeyframeId, position: Vector3) {
         self.cells.entry(cell(position)).or_default().push(id);
     }
 
-    /// Takes out a keyframe that was put in at `position`.
+    /// Removes a keyframe that was added at `position`.
     pub fn remove(&mut self, id: KeyframeId, position: Vector3) {
         let key = cell(position);
         let Some(ids) = self.cells.get_mut(&key) else { return };

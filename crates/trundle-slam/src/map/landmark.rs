@@ -20,15 +20,15 @@ pub(crate) struct Landmark {
     pub descriptor: Descriptor,
     /// Mean direction from the landmark to the cameras that saw it, unit length.
     pub toward_camera: Vector3,
-    /// At which distance it would be seen at octave 0, m.
+    /// Distance at which the landmark appears in octave 0, m.
     pub distance_at_octave_0: f64,
     /// Keyframe and feature, in the order of observing.
     pub observations: Vec<(KeyframeId, usize)>,
-    /// Its image patches from several directions, the oldest first.
+    /// Image patches from several directions, the oldest first.
     pub reference_patches: Vec<ReferencePatch>,
-    /// In how many frames it should have been seen.
+    /// Number of frames in which the landmark was expected.
     pub visible: u32,
-    /// In how many it was.
+    /// Number of frames in which the landmark was found.
     pub found: u32,
 }
 
@@ -46,25 +46,24 @@ impl Landmark {
         }
     }
 
-    /// Which feature of `keyframe` it is.
+    /// The feature of `keyframe` that shows the landmark.
     pub fn observation_in(&self, keyframe: KeyframeId) -> Option<usize> {
         self.observations.iter().find(|(k, _)| *k == keyframe).map(|(_, feature)| *feature)
     }
 
-    /// Moves it with its direction and its reference patches.
+    /// Moves position, direction and reference patches.
     pub fn transform(&mut self, new_from_old: &Pose3) {
         self.position = new_from_old.transform(self.position);
         self.toward_camera = new_from_old.rotate(self.toward_camera);
         self.reference_patches.iter_mut().for_each(|look| look.turn(new_from_old.rotation));
     }
 
-    /// How much larger a standard deviation is when the point itself is known from these observations only: a mean of
-    /// n equals has 1/n of their variance.
+    /// Factor on a standard deviation for the landmark's own uncertainty: a mean of n equal observations has 1/n of their variance.
     pub fn sigma_factor(&self) -> f64 {
         (1.0 + 1.0 / self.observations.len().max(1) as f64).sqrt()
     }
 
-    /// Brings descriptor, direction and scale up to date with the observations.
+    /// Updates descriptor, direction and scale from the observations.
     pub fn refresh(&mut self, keyframes: &Arena<Keyframe>, model: &ObservationModel) {
         let keyframe = |id: &KeyframeId| {
             keyframes.get(id.index()).expect("invariant: keyframes that see a landmark are alive")

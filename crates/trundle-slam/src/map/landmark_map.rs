@@ -11,23 +11,23 @@ use crate::map::tree_node::TreeNode;
 use nalgebra::Matrix6;
 use trundle_core::{Pose3, Vector3};
 
-/// Keyframes and landmarks in two arenas, and who saw what.
+/// Keyframes and landmarks in two arenas, and the observations between them.
 ///
 /// Invariant: feature `f` of keyframe `k` has landmark `l` exactly if both are alive and `l` has the observation `(k, f)`.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LandmarkMap {
     pub(crate) keyframes: Arena<Keyframe>,
     landmarks: Arena<Landmark>,
-    /// Where the keyframes are.
+    /// The keyframes by position.
     pub(crate) grid: KeyframeGrid,
     /// The axis around which a camera on a floor turns, camera frame.
     pub(crate) floor: Option<Vector3>,
-    /// Removed keyframes: the one that took each over, and the pose in it, by id.
+    /// Removed keyframes by id: the successor of each, and the pose relative to the successor.
     pub(crate) removed: std::collections::BTreeMap<KeyframeId, (KeyframeId, Pose3)>,
 }
 
 impl LandmarkMap {
-    /// The keyframe, which must not have been removed.
+    /// The keyframe. Panics if it was removed.
     pub fn keyframe(&self, id: KeyframeId) -> &Keyframe {
         self.keyframes.get(id.index()).expect("invariant: the keyframe is alive")
     }
@@ -42,17 +42,17 @@ impl LandmarkMap {
         self.keyframes.iter().map(|(i, k)| (KeyframeId::from_index(i), k))
     }
 
-    /// Their ids.
+    /// Ids of the live keyframes, by rising id.
     pub fn keyframe_ids(&self) -> impl DoubleEndedIterator<Item = KeyframeId> + '_ {
         self.keyframes().map(|(id, _)| id)
     }
 
-    /// How many there are.
+    /// Number of live keyframes.
     pub fn keyframe_count(&self) -> usize {
         self.keyframes.len()
     }
 
-    /// Higher than the index of every keyframe ever made.
+    /// Upper bound of all keyframe indices, exclusive.
     pub fn keyframe_bound(&self) -> usize {
         self.keyframes.bound()
     }
@@ -84,7 +84,7 @@ impl LandmarkMap {
         self.landmarks.len()
     }
 
-    /// Higher than the index of every landmark ever made.
+    /// Upper bound of all landmark indices, exclusive.
     pub fn landmark_bound(&self) -> usize {
         self.landmarks.bound()
     }
@@ -114,7 +114,7 @@ impl LandmarkMap {
         self.keyframe_mut(id).visual_from_camera = visual_from_camera;
     }
 
-    /// Sets the covariance of a keyframe's pose, and the same for its landmarks.
+    /// Sets the same covariance for a keyframe's pose and for its landmarks.
     pub fn set_covariance(&mut self, id: KeyframeId, covariance: Matrix6<f64>) {
         self.set_covariances(id, covariance, covariance);
     }
@@ -139,8 +139,8 @@ impl LandmarkMap {
         LandmarkId::from_index(self.landmarks.insert(Landmark::new(position)))
     }
 
-    /// Records that feature `feature` of `keyframe` is of `landmark`. A feature or a landmark that is already taken in
-    /// this keyframe stays as it is. Returns whether the observation was recorded.
+    /// Records that feature `feature` of `keyframe` is of `landmark`. An existing match of the feature or of the landmark in this keyframe
+    /// stays. Returns whether the observation was recorded.
     pub fn observe(&mut self, landmark: LandmarkId, keyframe: KeyframeId, feature: usize) -> bool {
         let Some(observer) = self.keyframes.get_mut(keyframe.index()) else { return false };
         let Some(seen) = self.landmarks.get_mut(landmark.index()) else { return false };
@@ -181,7 +181,7 @@ impl LandmarkMap {
         }
     }
 
-    /// Makes one landmark of two: `kept` takes over the observations of `gone` in keyframes if it has none.
+    /// Merges two landmarks: `kept` gets the observations of `gone` in keyframes where it has none.
     pub fn merge(&mut self, kept: LandmarkId, gone: LandmarkId) {
         if kept == gone || self.landmark(kept).is_none() {
             return;
@@ -200,7 +200,7 @@ impl LandmarkMap {
         }
     }
 
-    /// Counts which landmarks should have been found in a frame, and which were.
+    /// Counts the landmarks that were expected in a frame, and those found.
     pub fn count_observations(
         &mut self,
         expected: impl Iterator<Item = LandmarkId>,
@@ -218,7 +218,7 @@ impl LandmarkMap {
         }
     }
 
-    /// The keyframes that see any of these landmarks, and how many each; the largest number first, then the newest.
+    /// The keyframes that see any of these landmarks, each with its number of them; the largest number first, then the newest.
     pub fn keyframes_seeing(&self, landmarks: impl Iterator<Item = LandmarkId>) -> Vec<(KeyframeId, usize)> {
         let mut counts = vec![0; self.keyframe_bound()];
         for landmark in landmarks.filter_map(|id| self.landmark(id)) {
@@ -244,7 +244,7 @@ impl LandmarkMap {
         others
     }
 
-    /// Brings descriptor, direction and scale of a landmark up to date with its observations.
+    /// Updates descriptor, direction and scale of a landmark from its observations.
     pub fn refresh(&mut self, id: LandmarkId, model: &ObservationModel) {
         if let Some(landmark) = self.landmarks.get_mut(id.index()) {
             landmark.refresh(&self.keyframes, model);

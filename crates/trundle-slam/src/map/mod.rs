@@ -1,4 +1,4 @@
-//! Keyframes and landmarks, and how they hang together.
+//! Keyframes, landmarks, and the graphs between them.
 
 pub(crate) mod anchored_pose;
 pub(crate) mod arena;

@@ -13,7 +13,8 @@ const MAST_SWAY_SIGMA_M: f64 = 1e-4;
 /// Standard deviation of the camera's rotation against the base besides the odometry's own error: 5e-4 rad. See
 /// [`MAST_SWAY_SIGMA_M`].
 const MAST_SWAY_SIGMA_RAD: f64 = 5e-4;
-/// Largest motion, 100 m, and largest standard deviation, 100 m or 100 rad, of a factor. Beyond it the factor is dropped. Source: ours.
+/// Largest translation (100 m) and largest standard deviation (100 m or 100 rad) of a factor. Beyond either the factor is dropped. Source:
+/// ours.
 const MAX_FACTOR_EXTENT: f64 = 100.0;
 
 /// The motion from a keyframe to the camera, as wheels and gyro measured it.
@@ -30,7 +31,7 @@ impl OdometryFactor {
         Self { from, from_to: UncertainPose::identity() }
     }
 
-    /// After another step and its duration, s; `None` once the factor is too long or too uncertain to be of use.
+    /// The factor after another step of `seconds` s; `None` if it is then too long or too uncertain.
     pub fn extended_by(&self, step: CameraMotion, seconds: f64, config: &MotionModelConfig) -> Option<Self> {
         let step = UncertainPose { pose: step.motion, covariance: config.covariance_of(&step, seconds) };
         let from_to = self.from_to.then(&step);
@@ -39,13 +40,13 @@ impl OdometryFactor {
         is_useful.then_some(Self { from_to, ..*self })
     }
 
-    /// This motion followed by that of `next`, which begins at the keyframe where this one ends.
+    /// This motion followed by that of `next`, which begins at this factor's last keyframe.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         Self { from: self.from, from_to: self.from_to.then(&next.from_to) }
     }
 
-    /// The factor as a constraint between the poses of these indices; `None` if it has no information.
+    /// The factor as a constraint between two pose indices; `None` without information.
     pub fn constraint(&self, from: usize, to: usize) -> Option<PoseConstraint> {
         Some(PoseConstraint { from, to, from_to: self.from_to.pose, information: self.information()? })
     }

@@ -7,20 +7,20 @@ use crate::motion::floor_axis::FloorAxis;
 use crate::motion::motion_model::MotionModelConfig;
 use trundle_core::CameraMotion;
 
-/// Odometry that is summed up between keyframes.
+/// Odometry accumulated between keyframes.
 #[derive(Debug, Default)]
 pub(crate) struct OdometryTrack {
-    /// The motion since the newest keyframe, while all of it was measured.
+    /// The motion since the newest keyframe; `None` if part of it was not measured.
     pub since_keyframe: Option<OdometryFactor>,
-    /// Whether the newest frame contradicts that motion: a keyframe does not take it over.
+    /// Whether the newest frame contradicts that motion. A keyframe then gets no odometry factor.
     is_doubted: bool,
-    /// Number of frames since the newest keyframe that contradict it.
+    /// Number of contradicting frames since the newest keyframe.
     contradictions: usize,
     floor: FloorAxis,
 }
 
-/// Number of frames since a keyframe that may contradict the odometry. With more the odometry is wrong: a thing that moves before the
-/// camera contradicts it in single frames, wheels that are stuck in one after the other. Source: ours.
+/// Largest number of frames since a keyframe that contradict a usable odometry: 2. With more the odometry is wrong. A moving object
+/// contradicts it in single frames, stuck wheels in every frame. Source: ours.
 const MAX_CONTRADICTIONS: usize = 2;
 
 impl OdometryTrack {
@@ -34,7 +34,7 @@ impl OdometryTrack {
         }
     }
 
-    /// The odometry is not of the camera's motion since the newest keyframe any more.
+    /// Marks the odometry since the newest keyframe as unusable.
     pub fn interrupt(&mut self) {
         self.since_keyframe = None;
     }
@@ -48,12 +48,12 @@ impl OdometryTrack {
         }
     }
 
-    /// The factor for a new keyframe, if the keyframe before is still in the map.
+    /// The factor for a new keyframe, if the previous keyframe is still in the map.
     pub fn factor_in(&self, map: &LandmarkMap) -> Option<OdometryFactor> {
         self.since_keyframe.filter(|factor| !self.is_doubted && map.live_keyframe(factor.from).is_some())
     }
 
-    /// Brings the map's axis of the floor up to date.
+    /// Updates the map's axis of the floor.
     pub fn update_floor(&self, map: &mut LandmarkMap) {
         map.floor = self.floor.axis_after(map.floor);
     }

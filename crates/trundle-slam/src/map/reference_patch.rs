@@ -7,20 +7,20 @@ use nalgebra::{Matrix2, UnitQuaternion};
 use trundle_core::{Pose3, Vector2, Vector3};
 use trundle_vision::{ImagePatch, Template};
 
-/// Smallest cosine of the angle between the directions from which a patch was seen and is searched: 0.8 (37 deg). Beyond it the
-/// surroundings of a point are not a plane. Source: ours.
+/// Smallest cosine of the angle between the patch's viewing direction and the present one: 0.8 (37 deg). At larger angles the surroundings
+/// of a point are not a plane. Source: ours.
 const MIN_DIRECTION_COSINE: f64 = 0.8;
 /// Largest magnification of a patch, as root mean square of its sides: 1.8. Beyond it the patch is too coarse. Source: ours.
 const MAX_MAGNIFICATION: f64 = 1.8;
 
-/// Most reference patches of a landmark: 4, each from another direction or distance. Source: ours.
+/// Maximum number of reference patches of a landmark: 4, each from another direction or distance. Source: ours.
 pub(crate) const MAX_REFERENCE_PATCHES: usize = 4;
 
-/// The image around a landmark, on the plane that the depth camera measured there.
+/// The image around a landmark, on the plane measured by the depth camera.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ReferencePatch {
     pub image: ImagePatch,
-    /// One px of the patch to the right and down, on that plane, visual frame, m.
+    /// Vectors of one px of the patch to the right and down, on that plane, visual frame, m.
     pub right: Vector3,
     pub down: Vector3,
     /// Direction from the landmark to the camera, unit length.
@@ -28,8 +28,8 @@ pub(crate) struct ReferencePatch {
 }
 
 impl ReferencePatch {
-    /// Of the landmark at `position` (visual frame, m), which is feature `i` of a frame of a camera at `visual_from_camera`.
-    /// `None` if the frame has kept no image of it.
+    /// The patch of the landmark at `position` (visual frame, m), seen as feature `i` of a frame at `visual_from_camera`. `None` if the
+    /// frame has no image.
     pub fn of(
         frame: &Frame,
         i: usize,
@@ -56,8 +56,7 @@ impl ReferencePatch {
         })
     }
 
-    /// The patch warped to a camera on an octave, for the landmark at `position`; `None` from too different a direction or
-    /// distance.
+    /// The patch warped to a camera on an octave, for the landmark at `position`; `None` if direction or distance differ too much.
     pub fn seen_from(
         &self,
         camera_from_visual: &Pose3,
@@ -79,7 +78,7 @@ impl ReferencePatch {
         Template::new(&self.image, is_near.then_some(warp)?.cast())
     }
 
-    /// Turns it with the map.
+    /// Rotates the patch with the map.
     pub fn turn(&mut self, rotation: UnitQuaternion<f64>) {
         for direction in [&mut self.right, &mut self.down, &mut self.toward_camera] {
             *direction = rotation * *direction;
@@ -98,7 +97,7 @@ struct Plane {
 }
 
 impl Plane {
-    /// Where it is `offset` px from the feature, camera frame, m; `None` behind the camera.
+    /// Point of the plane `offset` px from the feature, camera frame, m; `None` behind the camera.
     fn at(&self, offset: Vector2, model: &ObservationModel) -> Option<Vector3> {
         let inverse = self.inverse + self.slope.dot(&offset);
         let pixel = model.camera.undistort(self.middle + offset);
@@ -118,7 +117,7 @@ mod tests {
         ReferencePatch::of(&frame, 0, (Pose3::identity(), points[0]), &model()).unwrap()
     }
 
-    /// Error of the first point as found from a camera there, px; `None` if the patch is not usable.
+    /// Alignment error of the first point from this camera pose, px; `None` if the patch is not usable.
     fn off_from(look: &ReferencePatch, visual_from_camera: Pose3) -> Option<f32> {
         let point = painted_points()[0];
         let template = look.seen_from(&visual_from_camera.inverse(), point, 0, &model())?;

@@ -7,18 +7,18 @@ use crate::map::odometry_factor::OdometryFactor;
 use trundle_core::Pose3;
 
 impl LandmarkMap {
-    /// Adds a new keyframe to the tree, once its observations are known: under the keyframe that shares most landmarks, or the
-    /// one before it.
+    /// Adds a new keyframe with observations to the tree. Its parent is the keyframe with the largest number of common landmarks, or the
+    /// previous keyframe.
     pub fn add_to_spanning_tree(&mut self, id: KeyframeId) {
         let before = || self.keyframe_ids().take_while(|other| *other < id).last();
         let nearest = self.covisible(id, 1).into_iter().map(|(other, _)| other).find(|other| *other < id);
         if let Some(parent) = nearest.or_else(before) {
             self.set_parent(id, parent);
-            self.keyframe_mut(id).tree.is_astray = nearest.is_none();
+            self.keyframe_mut(id).tree.shares_no_landmark = nearest.is_none();
         }
     }
 
-    /// Records that two keyframes close a loop: neither is removed from then on.
+    /// Records that two keyframes close a loop, which protects both from removal.
     pub fn add_loop_edge(&mut self, a: KeyframeId, b: KeyframeId) {
         self.keyframe_mut(a).tree.loops.push(b);
         self.keyframe_mut(b).tree.loops.push(a);
@@ -33,8 +33,8 @@ impl LandmarkMap {
         self.keyframes().flat_map(older)
     }
 
-    /// Removes a keyframe and all its observations. Its children, and the frames that were kept relative to it, go to its
-    /// parent. The root stays: whether it was removed.
+    /// Removes a keyframe and all its observations. Its children and the frames relative to it go to its parent. The root is never removed.
+    /// Returns whether the keyframe was removed.
     pub fn remove_keyframe(&mut self, id: KeyframeId) -> bool {
         let Some(parent) = self.live_keyframe(id).and_then(|k| k.tree.parent) else { return false };
         let seen: Vec<_> = self.keyframe(id).landmarks.iter().flatten().copied().collect();
@@ -56,7 +56,7 @@ impl LandmarkMap {
         tree.successor_of.extend(gone.tree.successor_of);
         for child in gone.tree.children {
             self.set_parent(child, parent);
-            self.keyframe_mut(child).tree.is_astray |= gone.tree.is_astray;
+            self.keyframe_mut(child).tree.shares_no_landmark |= gone.tree.shares_no_landmark;
         }
         true
     }
@@ -72,13 +72,13 @@ impl LandmarkMap {
         }
     }
 
-    /// Pose of a keyframe, or the pose it would have now if it had not been removed.
+    /// Present pose of a keyframe, also of a removed one.
     pub fn visual_from_keyframe(&self, id: KeyframeId) -> Pose3 {
         let (successor, successor_from_keyframe) = self.resolve(id);
         self.keyframe(successor).visual_from_camera * successor_from_keyframe
     }
 
-    /// The keyframe itself, or the one that took a removed one over; and its pose in that.
+    /// The keyframe, or the successor of a removed one, with the keyframe's pose relative to it.
     pub fn resolve(&self, id: KeyframeId) -> (KeyframeId, Pose3) {
         self.removed.get(&id).copied().unwrap_or((id, Pose3::identity()))
     }
@@ -102,7 +102,7 @@ mod tests {
         Pose3::exp(Vector6::new(x, 0.0, 0.1 * x, 0.0, 0.2 * x, 0.0))
     }
 
-    /// Four keyframes in a row, each of which shares a landmark with the one before.
+    /// Four keyframes in a row; each shares a landmark with the previous one.
     fn chain() -> (LandmarkMap, Vec<KeyframeId>) {
         let mut map = LandmarkMap::default();
         let mut ids: Vec<KeyframeId> = Vec::new();

@@ -2,17 +2,17 @@
 
 use crate::ids::KeyframeId;
 
-/// Position of a keyframe in the spanning tree: its parent is the keyframe it shared most landmarks with when it was made
+/// Node of a keyframe in the spanning tree. Its parent is the keyframe with the largest number of common landmarks at its creation
 /// \[MurArtal17\]. The first keyframe is the root.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TreeNode {
     pub parent: Option<KeyframeId>,
-    /// Whether it shared no landmark with its parent, which merely is the keyframe before: the first of a merged map, or one
-    /// made by odometry alone.
-    pub is_astray: bool,
+    /// Whether the keyframe shared no landmark with its parent, the previous keyframe: the first keyframe of a merged map, or one placed by
+    /// odometry alone.
+    pub shares_no_landmark: bool,
     pub children: Vec<KeyframeId>,
-    /// Keyframes with which it closes a loop.
+    /// Keyframes that close a loop with this one.
     pub loops: Vec<KeyframeId>,
-    /// Removed keyframes that it took over.
+    /// Removed keyframes whose successor this one is.
     pub successor_of: Vec<KeyframeId>,
 }

@@ -1,4 +1,4 @@
-//! Moves matched features to where the image around them fits the reference patches of their landmarks \[Forster14, sec. IV-B\].
+//! Aligns matched features with the reference patches of their landmarks \[Forster14, sec. IV-B\].
 
 use crate::frame::aligned_feature::{Aligned, raw};
 use crate::frame::observation_model::ObservationModel;
@@ -13,17 +13,17 @@ use trundle_vision::Template;
 
 /// Largest displacement of a feature by alignment: 2 px of its octave. Beyond it the patch is a different point. Source: ours.
 const MAX_DISPLACEMENT_PX: f32 = 2.0;
-/// Largest distance from a feature to the projection of its landmark at which the alignment starts from the projection: 4 px of the
-/// octave. Beyond it the pose is wrong, and the alignment starts from the feature. Source: ours.
+/// Largest distance of a feature from its landmark's projection for an alignment that starts at the projection: 4 px of the octave. Beyond
+/// it the pose is wrong, and the alignment starts at the feature. Source: ours.
 const MAX_START_OFFSET_PX: f64 = 4.0;
-/// Standard deviation of an alignment besides its own: 0.3 px of the octave. The sum is at most that of a feature by itself.
-/// Source: docs/algorithms/alignment.md.
+/// Standard deviation added to that of an alignment: 0.3 px of the octave. The sum is at most that of an unaligned feature. Source:
+/// docs/algorithms/alignment.md.
 const MIN_ALIGNED_SIGMA_PX: f64 = 0.3;
 /// Fewest aligned features of a frame: 20. With fewer, no feature is aligned, since they do not determine the pose alone.
 /// Source: ours.
 const MIN_ALIGNED_FEATURES: usize = 20;
-/// Factor of the standard deviation of a feature without a reference patch among aligned ones: 6. Aligned features have an error of
-/// 0.1 px, and the feature one of 0.5 px with the same sign in every frame. Source: docs/algorithms/alignment.md.
+/// Factor of the standard deviation of a feature without a reference patch among aligned ones: 6. Aligned features have errors of 0.1 px.
+/// An unaligned feature has an error of 0.5 px with the same sign in every frame. Source: docs/algorithms/alignment.md.
 const UNALIGNED_SIGMA_FACTOR: f64 = 6.0;
 
 /// The image around a feature, compared with the reference patches of its landmark.
@@ -34,8 +34,8 @@ enum PatchComparison {
     NoReference,
 }
 
-/// The matches with their features aligned, for a camera near `visual_from_camera`, without those whose patch differs from their
-/// landmark's. `None` if too few can be aligned.
+/// The matches with aligned features, for a camera near `visual_from_camera`. Matches whose image differs from the patch are dropped.
+/// `None` if too few features can be aligned.
 pub(crate) fn aligned(
     matches: &[PointMatch],
     visual_from_camera: Pose3,
@@ -61,8 +61,8 @@ pub(crate) fn aligned(
     Some(matches.iter().zip(seen).filter_map(keep).collect())
 }
 
-/// Multiplies the standard deviations of all alignments by `spread`, the scale of their residuals, if that is above 1: the lens and the
-/// shutter are not exactly as calibrated. The result is at most that of a feature by itself. Whether anything changed.
+/// Multiplies the standard deviations of all alignments by `spread`, the scale of their residuals, if that is above 1: lens and shutter
+/// differ from the calibration. The result is at most that of an unaligned feature. Returns whether a standard deviation changed.
 pub(crate) fn inflate_sigmas(
     matches: &mut [PointMatch],
     spread: f64,
@@ -81,8 +81,8 @@ pub(crate) fn inflate_sigmas(
     true
 }
 
-/// Matches that agreed before or after features were aligned. Those that agreed before only keep their position, with a small weight:
-/// without them, their features would become second landmarks in the next keyframe.
+/// Matches that agree before or after alignment. Those that agree only before keep their position with a small weight. Without a match,
+/// their features would become duplicate landmarks in the next keyframe.
 pub(crate) fn agreeing_matches(before: &MatchedPose, since: &MatchedPose, frame: &Frame) -> Vec<PointMatch> {
     let fits: BTreeSet<usize> = since.inliers().map(|m| m.feature).collect();
     let rest = before.inliers().filter(|m| !fits.contains(&m.feature));
@@ -151,7 +151,7 @@ mod tests {
     use nalgebra::Vector6;
     use trundle_optim::PoseConfig;
 
-    /// A map of a wall with reference patches, and matches of a frame with features 1 px off, from nearer and aside.
+    /// A map of a wall with reference patches, and a frame from a nearer position to the side, with features 1 px off.
     fn tracked() -> (LandmarkMap, Frame, Pose3, Vec<PointMatch>) {
         let (mut map, keyframe) = painted_map();
         store_reference_patches(&mut map, keyframe, &model());

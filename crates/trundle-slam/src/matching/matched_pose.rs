@@ -10,16 +10,16 @@ use trundle_optim::{InverseDepth, PointObservation, PoseConfig, PosePrior, PoseP
 /// Prior of a camera's pose besides the image.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum PosePriorKind<'a> {
-    /// The camera was tracked to here, with the pose by odometry, if there is one.
+    /// The camera was tracked; the pose by odometry is given if known.
     Tracked(Option<&'a PosePrior>),
-    /// The camera can be anywhere.
+    /// The pose is unknown.
     Unknown,
 }
 
 /// Ratio of the standard deviation of a normal distribution to the median of its absolute values: 1.4826.
 const SIGMA_OVER_MEDIAN: f64 = 1.4826;
 
-/// The pose of a frame, and the matches that gave it.
+/// The pose of a frame, and the matches that determine it.
 #[derive(Debug, Clone)]
 pub(crate) struct MatchedPose {
     pub matches: Vec<PointMatch>,
@@ -46,7 +46,7 @@ impl MatchedPose {
         Self { matches, solution }
     }
 
-    /// Scale of the errors of aligned features in their standard deviations, by the median; 0 if there are none.
+    /// Scale of the errors of aligned features in their standard deviations, by the median; 0 without aligned features.
     pub fn spread(&self, model: &ObservationModel) -> f64 {
         let camera_from_visual = self.visual_from_camera().inverse();
         let errors = |m: &PointMatch| {
@@ -72,8 +72,8 @@ impl MatchedPose {
         self.solution.inlier_count >= min_inliers && self.solution.covariance.is_some()
     }
 
-    /// Whether a majority of the matches agrees, without those of a thing that moves. With a wrong prediction, windows are full of wrong
-    /// matches that agree by chance.
+    /// Whether a majority of the matches agrees, without matches of a moving object. With a wrong prediction, some wrong matches agree by
+    /// chance.
     pub fn has_majority(&self) -> bool {
         2 * self.solution.inlier_count + self.solution.moving >= self.matches.len()
     }

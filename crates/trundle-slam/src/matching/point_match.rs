@@ -13,23 +13,23 @@ pub(crate) struct PointMatch {
     pub feature: usize,
     /// Visual frame, m.
     pub point: Vector3,
-    /// The landmark; `None` of a point that is only a depth of an earlier frame.
+    /// The landmark; `None` for a point that is a depth of an earlier frame.
     pub landmark: Option<LandmarkId>,
-    /// Factor of the standard deviations, because the point is not known exactly.
+    /// Factor of the standard deviations for the point's own uncertainty.
     pub sigma_factor: f64,
     /// Position of the feature after alignment to a reference patch, if that fits.
     pub aligned: Option<Aligned>,
 }
 
 impl PointMatch {
-    /// A feature matched with a landmark, as certain as the landmark is; `None` if the landmark was removed.
+    /// A feature matched with a landmark, with the landmark's uncertainty; `None` if the landmark was removed.
     pub fn of_landmark(feature: usize, id: LandmarkId, map: &LandmarkMap) -> Option<Self> {
         let landmark = map.landmark(id)?;
         let (point, sigma_factor) = (landmark.position, landmark.sigma_factor());
         Some(Self { feature, point, landmark: Some(id), sigma_factor, aligned: None })
     }
 
-    /// The observation of the feature, aligned if it is.
+    /// The observation of the feature, at its aligned position if it has one.
     pub fn observation(&self, frame: &Frame) -> PointObservation {
         let found = frame.observation(self.feature);
         let aligned = |Aligned { pixel, sigma, .. }| PointObservation { pixel, pixel_sigma: sigma, ..found };

@@ -6,12 +6,12 @@ use crate::map::landmark::Landmark;
 use trundle_core::{Pose3, Vector2, Vector3};
 use trundle_vision::Descriptor;
 
-/// A point that should be seen, and where to search it.
+/// A point expected in the image, and its search window.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Projection {
-    /// Where it should be, rectified px.
+    /// Expected position, rectified px.
     pub pixel: Vector2,
-    /// Its depth along the optical axis, m.
+    /// Expected depth along the optical axis, m.
     pub depth: f64,
     /// Radius of the search window, px.
     pub radius: f64,
@@ -19,7 +19,7 @@ pub(crate) struct Projection {
     pub octaves: (u8, u8),
     /// Descriptor of the point.
     pub descriptor: Descriptor,
-    /// Whether a feature can be found there at all.
+    /// Whether the extractor can find a feature there.
     pub is_findable: bool,
 }
 
@@ -43,7 +43,7 @@ impl Projection {
     }
 }
 
-/// How similar two descriptors must be to match.
+/// Thresholds of similarity for a match of descriptors.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MatchThresholds {
     /// Highest distance, bits.
@@ -52,12 +52,12 @@ pub(crate) struct MatchThresholds {
     pub ratio: f32,
 }
 
-/// Largest relative difference of a feature's depth from its prediction, beyond three standard deviations: 0.2. Beyond it the
-/// feature is not matched. Source: ours.
+/// Largest relative difference of a feature's depth from its prediction, besides three standard deviations: 0.2. Beyond the sum the feature
+/// is not matched. Source: ours.
 const DEPTH_TOLERANCE_RATIO: f64 = 0.2;
 
-/// Finds each projection's feature among the `free` ones of `frame`: (feature, projection), by rising feature. Each feature is
-/// matched with the most similar projection, of equal ones the earlier.
+/// Finds each projection's feature among the `free` ones of `frame`: (feature, projection), by rising feature. Each feature is matched with
+/// the most similar projection, or the first of equally similar ones.
 pub(crate) fn search(
     frame: &Frame,
     free: &[bool],
@@ -100,7 +100,7 @@ fn best(
     clear.then_some((feature, distance))
 }
 
-/// Whether the feature's own depth, if it has one, can be that of the projection.
+/// Whether the feature's own depth agrees with the projection's; true without a depth.
 fn depth_agrees(frame: &Frame, feature: usize, depth: f64) -> bool {
     frame.depths[feature].is_none_or(|seen| {
         (seen.value - 1.0 / depth).abs()

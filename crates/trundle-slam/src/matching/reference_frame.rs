@@ -15,7 +15,7 @@ use trundle_vision::{Match, RansacConfig, estimate_pose_pnp, estimate_rigid_moti
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ReferenceFrame<'a> {
     pub frame: &'a Frame,
-    /// Which landmark each feature is of.
+    /// The landmark of each feature.
     pub landmarks: &'a [Option<LandmarkId>],
     pub visual_from_camera: Pose3,
 }
@@ -28,7 +28,7 @@ impl<'a> From<&'a Keyframe> for ReferenceFrame<'a> {
 }
 
 impl ReferenceFrame<'_> {
-    /// The point of feature `i`: its landmark, else its own depth. `feature` of the match is still that of the reference frame.
+    /// The point of feature `i`: its landmark, else its own depth. `feature` of the match is the index in the reference frame.
     fn point(&self, i: usize, map: &LandmarkMap, model: &ObservationModel) -> Option<PointMatch> {
         let landmark = self.landmarks[i].and_then(|id| PointMatch::of_landmark(i, id, map));
         if landmark.is_some() {
@@ -41,7 +41,7 @@ impl ReferenceFrame<'_> {
         Some(PointMatch { feature: i, point, landmark, sigma_factor: 2.0_f64.sqrt(), aligned: None })
     }
 
-    /// Searches the points of the reference frame in `frame`, within `window_px` (of octave 0) of where `predicted` puts them.
+    /// Searches the points of the reference frame in `frame`, within `window_px` (of octave 0) of their projection by `predicted`.
     pub fn match_by_motion(
         &self,
         frame: &Frame,
@@ -71,7 +71,7 @@ impl ReferenceFrame<'_> {
     }
 
     /// Locates `frame` without a prediction, by pairs of similar features (`a` of the reference frame, `b` of the frame): RANSAC over the
-    /// pairs with depth in both frames, else over the pixels of all. The pose, and every match of a known point.
+    /// pairs with depth in both frames, else over the pixels of all pairs. Returns the pose and every match of a known point.
     pub fn locate(
         &self,
         frame: &Frame,

@@ -8,7 +8,7 @@ const MIN_TURN_RAD: f64 = 1e-3;
 /// floor. Source: ours, the rounding of planar odometry.
 const MAX_OFF_PLANE: f64 = 1e-6;
 
-/// Axis of rotation that all motion priors share: wheels on a floor turn around one axis and translate across it.
+/// Axis of rotation that all motion priors share: wheels on a floor turn around one axis and translate perpendicular to it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct FloorAxis {
     /// The axis, camera frame, unit length, up or down.
@@ -18,7 +18,7 @@ pub(crate) struct FloorAxis {
 }
 
 impl FloorAxis {
-    /// Takes a motion prior.
+    /// Records a motion prior.
     pub fn record(&mut self, prior: Pose3) {
         let turn = prior.rotation.scaled_axis();
         let own = turn.try_normalize(MIN_TURN_RAD);
@@ -28,8 +28,8 @@ impl FloorAxis {
         self.axis = self.axis.filter(|axis| *axis != Vector3::zeros());
     }
 
-    /// The axis around which the camera turns, camera frame; `before`, the axis known earlier, while no prior has turned. `None` where
-    /// the camera is not on a floor.
+    /// The axis around which the camera turns, camera frame; the earlier axis `before` until a prior turns. `None` if the camera is not on
+    /// a floor.
     pub fn axis_after(&self, before: Option<Vector3>) -> Option<Vector3> {
         self.axis.or(before).filter(|_| !self.is_off_plane)
     }

@@ -1,4 +1,4 @@
-//! Where the camera is between images: priors, velocity and their uncertainty.
+//! Motion of the camera between images: priors, velocity and their uncertainty.
 
 pub(crate) mod floor_axis;
 pub(crate) mod motion_limits;

@@ -1,4 +1,4 @@
-//! How fast a camera and a robot can move.
+//! Largest speeds of a camera and of a robot.
 
 use trundle_core::Pose3;
 
@@ -23,7 +23,7 @@ pub(crate) struct MotionLimits {
 impl MotionLimits {
     /// For a camera without a measured motion.
     pub const CAMERA: Self = Self { speed: MAX_CAMERA_SPEED_M_S, turn_rate: MAX_CAMERA_TURN_RATE_RAD_S };
-    /// Of a motion prior by wheels and gyro.
+    /// For a motion prior by wheels and gyro.
     pub const PRIOR: Self = Self { speed: MAX_PRIOR_SPEED_M_S, turn_rate: MAX_PRIOR_TURN_RATE_RAD_S };
 
     /// Whether a motion is possible within a time (s), with a tolerance (m and rad).

@@ -1,19 +1,19 @@
-//! How uncertain the camera's motion is while images do not show it.
+//! Uncertainty of the camera's motion between located images.
 
 use crate::motion::uncertain_pose::of_sigmas;
 use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
 use trundle_core::{CameraMotion, Invalid, PinholeCamera, Pose3, require_in};
 
-/// How uncertain a pose becomes while the image does not give it.
+/// Growth of a pose's uncertainty without located images.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MotionModelConfig {
-    /// Standard deviation of a motion prior after a motion of 1 m, m, and after a rotation of 1 rad, rad, 0 to 1. Errors of steps are
-    /// independent \[Chong97\], so that it grows with the root of the length, however that is cut into steps. Default 0.05: wheels that
-    /// slip now and then.
+    /// Standard deviation of a motion prior after a motion of 1 m, m, and after a rotation of 1 rad, rad, 0 to 1. It grows with the root of
+    /// the length, since errors of steps are independent \[Chong97\]. A larger value trusts images more than wheels. Default 0.05: wheels
+    /// that slip occasionally.
     pub prior_part: f64,
-    /// Standard deviation added after 1 s: m, and rad, 0 or more; grows with the root of the time. Default 0.01.
+    /// Standard deviation that a motion prior gains in 1 s: m, and rad, 0 or more. It grows with the root of the time. Default 0.01.
     pub prior_drift: f64,
     /// Standard deviation of the speed of a camera without a prior, m/s, and of its turn rate, rad/s, 0 or more. Default 1.
     pub unseen: f64,
@@ -54,10 +54,10 @@ impl MotionModelConfig {
         if camera.readout() == 0.0 { camera.with_readout(self.readout) } else { Ok(camera) }
     }
 
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("motion.prior_part", self.prior_part, "", 0.0, 1.0)?;
         require_in("motion.prior_drift", self.prior_drift, "", 0.0, 1e3)?;
@@ -67,7 +67,7 @@ impl MotionModelConfig {
     }
 }
 
-/// Whether a matrix is symmetric and has no negative variance, but for rounding.
+/// Whether a matrix is symmetric without negative variances, up to rounding.
 fn is_covariance(matrix: &Matrix6<f64>) -> bool {
     let size = matrix.amax();
     let lifted = matrix + Matrix6::identity() * (1e-9 * size + f64::MIN_POSITIVE);

@@ -17,23 +17,23 @@ pub(crate) struct PoseBelief {
 }
 
 impl PoseBelief {
-    /// At a pose taken as known, standing still.
+    /// A camera at rest at a known pose.
     pub fn at(visual_from_camera: Pose3) -> Self {
         Self { stamp: None, visual_from_camera, covariance: Matrix6::zeros(), velocity: None }
     }
 
-    /// At an unknown pose: with a covariance larger than any map.
+    /// A camera at an unknown pose: the covariance is larger than any map.
     pub fn anywhere() -> Self {
         let covariance = Matrix6::from_diagonal(&Vector6::new(1e6, 1e6, 1e6, 10.0, 10.0, 10.0));
         Self { covariance, ..Self::at(Pose3::identity()) }
     }
 
-    /// Where the camera should be at `stamp`: moved by the prior, else at constant velocity, else where it was.
+    /// Predicted pose at `stamp`: moved by the prior, else at constant velocity, else at rest.
     pub fn predict(&self, stamp: Stamp, prior: Option<Pose3>) -> Pose3 {
         (self.visual_from_camera * self.motion(stamp, prior)).renormalized()
     }
 
-    /// How fast the camera should be turning at `stamp`, rad/s, camera frame.
+    /// Predicted turn rate at `stamp`, rad/s, camera frame.
     pub fn turn_rate(&self, stamp: Stamp, prior: Option<Pose3>) -> Vector3 {
         let elapsed = self.seconds_until(stamp);
         if elapsed > 0.0 {
@@ -50,14 +50,14 @@ impl PoseBelief {
         self.since_last(prior).or_else(at_constant_velocity).unwrap_or_default()
     }
 
-    /// The frame at `stamp` was located. `before` is where the last frame was, as the map has it now, if it was located.
+    /// Sets the pose of the located frame at `stamp`. `before` is the last frame's pose by the present map, if that frame was located.
     pub fn located(&mut self, stamp: Stamp, pose: Pose3, covariance: Matrix6<f64>, before: Option<Pose3>) {
         let elapsed = self.seconds_until(stamp);
         self.velocity = before.filter(|_| elapsed > 0.0).map(|b| (b.inverse() * pose).log() / elapsed);
         (self.stamp, self.visual_from_camera, self.covariance) = (Some(stamp), pose, covariance);
     }
 
-    /// The frame at `stamp` was not located: moves by the prior, or holds the pose, and grows uncertain.
+    /// Predicts over a frame at `stamp` that was not located: moves by the prior, else holds the pose, and grows the covariance.
     pub fn missed(&mut self, stamp: Stamp, prior: Option<CameraMotion>, config: &MotionModelConfig) {
         let elapsed = self.seconds_until(stamp);
         let motion = self.since_last(prior.map(|prior| prior.motion)).unwrap_or_default();
@@ -71,7 +71,7 @@ impl PoseBelief {
         (self.stamp, self.velocity) = (Some(stamp), None);
     }
 
-    /// The prior, unless this is the first frame, before which there was nothing to move from.
+    /// The prior; `None` for the first frame.
     fn since_last(&self, prior: Option<Pose3>) -> Option<Pose3> {
         prior.filter(|_| self.stamp.is_some())
     }

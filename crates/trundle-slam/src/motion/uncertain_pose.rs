@@ -1,9 +1,9 @@
-//! A relative pose with its covariance, and how two of them compose.
+//! A relative pose with its covariance, and the composition of two.
 
 use nalgebra::{Matrix6, Vector6};
 use trundle_core::Pose3;
 
-/// A relative pose `a_from_b` that is known with some uncertainty.
+/// A relative pose `a_from_b` with its covariance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct UncertainPose {
     /// `a_from_b`.

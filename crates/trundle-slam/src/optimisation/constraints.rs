@@ -1,4 +1,4 @@
-//! Constraints between keyframes that do not come from landmarks: odometry and the floor.
+//! Constraints between keyframes besides landmarks: odometry and the floor.
 
 use crate::ids::KeyframeId;
 use crate::map::floor_plane::FloorPlane;

@@ -9,23 +9,22 @@ use std::collections::BTreeMap;
 use trundle_core::Pose3;
 use trundle_optim::{BundleConfig, BundlePose, BundleSolver};
 
-/// Fewest landmarks that two keyframes must share to hold each other in place: 15. With fewer, they are of separate parts of the
-/// map. Source: \[MurArtal17\].
+/// Fewest common landmarks of two keyframes in one part of the map: 15. With fewer, they belong to separate parts. Source: \[MurArtal17\].
 const MIN_SHARED_LANDMARKS: u16 = 15;
-/// Units of work to add one observation to the bundle: 5, measured against the solver's. Source: ours.
+/// Units of work to add one observation to the bundle: 5, measured relative to the solver's units. Source: ours.
 const WORK_PER_OBSERVATION: usize = 5;
 
 /// Bundle adjustment of the whole map, in slices between frames \[MurArtal17, sec. III-D\].
 ///
-/// Landmarks are added in slices, then the solver runs in slices, then all poses and landmarks are moved at once. A keyframe that came
-/// meanwhile moves with its parent in the spanning tree, a landmark with the first keyframe that observes it. At the end the
+/// Landmarks are added in slices, then the solver runs in slices, then all poses and landmarks are moved at once. A keyframe added during
+/// the adjustment moves with its parent in the spanning tree, a landmark with the first keyframe that observes it. At the end the
 /// covariances of all keyframes are computed from all constraints, each landmark counted once.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct GlobalBundle {
     bundle: MapBundle,
-    /// The next landmark to take up, by index; `None` once the solver runs.
+    /// Index of the next landmark to add; `None` while the solver runs.
     next: Option<usize>,
-    /// Landmarks that each two keyframes share: of places a < b at b (b - 1) / 2 + a.
+    /// Number of common landmarks of each two keyframes: indices a < b at b (b - 1) / 2 + a.
     shared: Vec<u16>,
     /// The index of the fixed keyframe of each keyframe's part of the map.
     anchors: Vec<usize>,
@@ -43,7 +42,7 @@ impl GlobalBundle {
         }
     }
 
-    /// Goes on for about `work` units. Returns whether it is done. `solver` lends its buffers.
+    /// Continues for about `work` units. Returns whether the adjustment is complete. `solver` lends its buffers.
     pub fn advance(
         &mut self,
         map: &LandmarkMap,
@@ -102,8 +101,7 @@ impl GlobalBundle {
         self.bundle.set_parts(parts);
     }
 
-    /// Joins the parts that share enough landmarks in all, if not from keyframe to keyframe: chance matches do not reach that
-    /// number.
+    /// Joins two parts that share enough landmarks over all their keyframes: chance matches stay below that number.
     fn join_by_total(&self, parts: Vec<usize>) -> Vec<usize> {
         let mut between: BTreeMap<(usize, usize), usize> = BTreeMap::new();
         let pairs = (0..parts.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
@@ -115,7 +113,7 @@ impl GlobalBundle {
         join_sets(parts, enough.map(|(pair, _)| pair))
     }
 
-    /// Takes the result over.
+    /// Applies the result to the map.
     pub fn apply(&self, map: &mut LandmarkMap) {
         let moved = self.corrections(map);
         let others = self.other_landmarks(map, &moved);
@@ -129,16 +127,16 @@ impl GlobalBundle {
         self.set_covariances(map);
     }
 
-    /// The solver that was lent, for its buffers; `None` before it was.
+    /// The lent solver, for its buffers; `None` before the solver started.
     pub fn into_solver(self) -> Option<BundleSolver> {
         self.next.is_none().then(|| self.bundle.into_solver())
     }
 
-    /// How each keyframe of the map moves; a newer one as its parent does.
+    /// Motion of each keyframe of the map; a newer keyframe moves as its parent.
     fn corrections(&self, map: &LandmarkMap) -> BTreeMap<KeyframeId, Pose3> {
         let mut moved: BTreeMap<KeyframeId, Pose3> = BTreeMap::new();
         for (id, keyframe) in map.keyframes() {
-            // Parents are older than their children, except where a removed one was between.
+            // Parents are older than their children, except after the removal of a keyframe in between.
             let by_parent = || {
                 let mut parent = keyframe.tree.parent;
                 while let Some(id) = parent {
@@ -177,7 +175,7 @@ impl GlobalBundle {
             let Some(holding) = map.live_keyframe(keyframes[self.anchors[place]]) else { continue };
             let Some(keyframe) = map.live_keyframe(*id) else { continue };
             let Some((whole, map_covariance)) = self.bundle.covariances(place) else { continue };
-            // With few shared landmarks all landmarks of the keyframe have its whole uncertainty.
+            // With few common landmarks, all landmarks of the keyframe have its whole uncertainty.
             let map_covariance =
                 if seen[place] < usize::from(MIN_SHARED_LANDMARKS) { whole } else { map_covariance };
             let offset = holding.visual_from_camera.inverse() * keyframe.visual_from_camera;
@@ -187,7 +185,7 @@ impl GlobalBundle {
     }
 }
 
-/// Index of the lowest member of each one's set, after these pairs have joined their sets.
+/// Lowest member of each element's set, after the pairs have joined their sets.
 fn join_sets(mut sets: Vec<usize>, pairs: impl Iterator<Item = (usize, usize)>) -> Vec<usize> {
     let find = |sets: &[usize], mut i: usize| {
         while sets[i] != i {
@@ -238,7 +236,7 @@ mod tests {
         Frame::of(Stamp::default(), features, depths, &model)
     }
 
-    /// Five keyframes in a row, the third off, and two that hang together with nothing else.
+    /// Five keyframes in a row, the third with an error, and two that share landmarks only with each other.
     fn bent() -> (LandmarkMap, Vec<KeyframeId>, Pose3) {
         let (mut map, off) =
             (LandmarkMap::default(), Pose3::exp(Vector6::new(0.03, -0.02, 0.01, 0.0, 0.02, 0.01)));
@@ -295,7 +293,7 @@ mod tests {
         }
     }
 
-    /// Behind a stretch without landmarks, where only odometry connects the map.
+    /// Two parts of a map that only odometry connects.
     #[test]
     fn points_that_one_keyframe_sees_alone_are_as_uncertain_as_the_keyframe() {
         let (mut map, ids, _) = bent();

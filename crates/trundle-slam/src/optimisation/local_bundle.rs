@@ -7,17 +7,17 @@ use crate::optimisation::map_bundle::MapBundle;
 use trundle_core::Pose3;
 use trundle_optim::{BundleConfig, BundleSolver};
 
-/// How many keyframes are adjusted at once.
+/// Numbers of keyframes of a local bundle adjustment.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BundleSize {
     /// Keyframes that move.
     pub local: usize,
-    /// Keyframes that hold them in place.
+    /// Keyframes that stay fixed.
     pub fixed: usize,
 }
 
-/// Refines the keyframes covisible with `centre` and the landmarks that two or more keyframes observe. The other keyframes
-/// that observe those are fixed, or the oldest one if there is none. Observations that then disagree at 95 % are removed.
+/// Refines the keyframes covisible with `centre` and the landmarks that two or more keyframes observe. The other keyframes that observe
+/// these landmarks are fixed; without any, the oldest keyframe is. Observations that disagree with the result at 95 % are removed.
 pub(crate) fn refine_around(
     map: &mut LandmarkMap,
     centre: KeyframeId,
@@ -31,7 +31,7 @@ pub(crate) fn refine_around(
     apply(map, &bundle, model);
 }
 
-/// The bundle adjustment of what is around a keyframe, ready to begin.
+/// The bundle adjustment around a keyframe, ready to begin.
 pub(crate) fn bundle_around(map: &LandmarkMap, centre: KeyframeId, size: BundleSize) -> MapBundle {
     let (keyframes, landmarks) = window_around(map, centre, size);
     let first = map.first_keyframe();
@@ -43,9 +43,9 @@ pub(crate) fn bundle_around(map: &LandmarkMap, centre: KeyframeId, size: BundleS
     bundle
 }
 
-/// Applies a bundle's present result. A landmark that only one keyframe observes moves along with it.
+/// Applies a bundle's present result. A landmark with one observer moves with that keyframe.
 pub(crate) fn apply(map: &mut LandmarkMap, bundle: &MapBundle, model: &ObservationModel) {
-    // One that others saw when the bundle began is in it, too, and goes where that puts it.
+    // Landmarks with several observers at the bundle's start are part of it, and get their poses from the bundle.
     map.transform_landmarks(single_view_landmark_moves(map, bundle));
     bundle.move_keyframes(map);
     bundle.move_landmarks(map);
@@ -68,8 +68,8 @@ fn single_view_landmark_moves(map: &LandmarkMap, bundle: &MapBundle) -> Vec<(Lan
     carried
 }
 
-/// First keyframes of these keyframes' odometry. Odometry holds a group that shares few landmarks with others: without it, a
-/// dozen points turned four keyframes by 2 deg and 0.15 m.
+/// First keyframes of these keyframes' odometry. Odometry holds a group that shares few landmarks with others. Without odometry, a dozen
+/// points moved four keyframes by 2 deg and 0.15 m.
 fn odometry_sources<'a>(
     map: &'a LandmarkMap,
     keyframes: &'a [KeyframeId],
@@ -78,7 +78,7 @@ fn odometry_sources<'a>(
     keyframes.iter().filter_map(from).filter(|from| map.live_keyframe(*from).is_some())
 }
 
-/// The keyframes around one, each with whether it holds still, and the landmarks that the moved ones share.
+/// The keyframes around one, each with whether it is fixed, and the common landmarks of the moved ones.
 fn window_around(
     map: &LandmarkMap,
     centre: KeyframeId,

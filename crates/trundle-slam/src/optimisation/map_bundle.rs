@@ -1,4 +1,4 @@
-//! A bundle adjustment that runs while the map goes on changing.
+//! A bundle adjustment that runs while the map changes.
 
 use crate::frame::observation_model::ObservationModel;
 use crate::ids::{KeyframeId, LandmarkId};
@@ -10,18 +10,18 @@ use trundle_optim::{BundleConfig, BundleObservation, BundlePose, BundleProblem, 
 
 /// A bundle adjustment of some keyframes and landmarks.
 ///
-/// Its result replaces changes made meanwhile, since poses and points of one bundle fit each other. What the bundle does not
-/// have is moved by corrections, from where a keyframe is now to where the bundle puts it.
+/// Its result replaces changes made during the adjustment, since poses and points of one bundle fit each other. Keyframes and landmarks
+/// outside the bundle move by corrections: from a keyframe's present pose to its pose in the bundle.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct MapBundle {
-    /// By rising id: the pose at the time of adding, and whether it is fixed.
+    /// Keyframes by rising id: the pose at the time of adding, and whether it is fixed.
     keyframes: Vec<(KeyframeId, BundlePose)>,
-    /// By rising id, and where they were.
+    /// Landmarks by rising id, with their positions at the time of adding.
     landmarks: Vec<(LandmarkId, Vector3)>,
     observations: Vec<BundleObservation>,
     /// Landmark, keyframe and bound of each observation.
     sources: Vec<(LandmarkId, KeyframeId, f64)>,
-    /// Part of the map of each keyframe, by index; empty if there is only one.
+    /// Part of the map of each keyframe, by index; empty for a single part.
     parts: Vec<usize>,
     solver: BundleSolver,
     is_done: bool,
@@ -39,8 +39,8 @@ impl MapBundle {
         Self { keyframes, ..Self::default() }
     }
 
-    /// Adds a landmark, which must be newer than all before it, with its observations in these keyframes if there are two or more; the
-    /// number of observations.
+    /// Adds a landmark with its observations in these keyframes, if two or more; returns their number. Landmarks must be added by rising
+    /// id.
     pub fn add(&mut self, map: &LandmarkMap, id: LandmarkId) -> usize {
         let Some(landmark) = map.landmark(id) else { return 0 };
         let start = self.observations.len();
@@ -60,7 +60,7 @@ impl MapBundle {
         count
     }
 
-    /// The places of the keyframes that see the landmark added last.
+    /// Indices of the keyframes that observe the landmark added last.
     pub fn newest_observers(&self) -> impl Iterator<Item = usize> + '_ {
         let newest = self.landmarks.len().wrapping_sub(1);
         self.observations.iter().rev().take_while(move |o| o.point == newest).map(|o| o.pose)
@@ -111,25 +111,25 @@ impl MapBundle {
         self.solver.begin(&problem.expect("invariant: every index was counted here"), config);
     }
 
-    /// The solver, for its buffers, once the result is taken over.
+    /// The solver, for its buffers, after the result was applied.
     pub fn into_solver(self) -> BundleSolver {
         self.solver
     }
 
-    /// Goes on for about `work` units of the solver. Returns whether it is done.
+    /// Continues for about `work` units of the solver. Returns whether the adjustment is complete.
     pub fn advance(&mut self, work: usize) -> bool {
         self.is_done = self.solver.advance(work);
         self.is_done
     }
 
-    /// How the bundle moves a keyframe from where it is now, `new_from_old` in the visual frame; `None` of a keyframe that the
-    /// bundle does not have, or that was removed.
+    /// Correction of a keyframe's present pose, `new_from_old` in the visual frame; `None` for a keyframe outside the bundle, or a removed
+    /// one.
     pub fn correction(&self, map: &LandmarkMap, id: KeyframeId) -> Option<Pose3> {
         let now = map.live_keyframe(id)?.visual_from_camera;
         Some(self.solver.poses()[self.place_of(id)?] * now.inverse())
     }
 
-    /// Moves the keyframes that were free and are still there.
+    /// Moves the free keyframes that still exist.
     pub fn move_keyframes(&self, map: &mut LandmarkMap) {
         for ((id, _), pose) in self.keyframes.iter().zip(self.solver.poses()).filter(|((_, k), _)| !k.fixed) {
             if map.live_keyframe(*id).is_some() {
@@ -138,7 +138,7 @@ impl MapBundle {
         }
     }
 
-    /// Moves the landmarks that are still there.
+    /// Moves the landmarks that still exist.
     pub fn move_landmarks(&self, map: &mut LandmarkMap) {
         for ((id, _), position) in self.landmarks.iter().zip(self.solver.points()) {
             if let Some(landmark) = map.landmark_mut(*id) {
@@ -147,12 +147,12 @@ impl MapBundle {
         }
     }
 
-    /// Whether it has the landmark.
+    /// Whether the bundle contains the landmark.
     pub fn has(&self, id: LandmarkId) -> bool {
         self.landmarks.binary_search_by_key(&id, |(own, _)| *own).is_ok()
     }
 
-    /// Takes observations back that disagree with the result at 95 %, once it is done.
+    /// Removes observations that disagree with the final result at 95 %.
     pub fn remove_outliers(&self, map: &mut LandmarkMap) {
         if !self.is_done {
             return;
@@ -169,8 +169,7 @@ impl MapBundle {
         self.landmarks.iter().map(|(id, _)| *id)
     }
 
-    /// The mean square of what is left of the residuals, in their variances, over the observations that agree: 1 if every
-    /// sigma is true (the variance of unit weight).
+    /// Mean square of the agreeing observations' residuals in their variances (the variance of unit weight). 1 if every sigma is correct.
     pub fn variance_factor(&self) -> f64 {
         let free = self.keyframes.iter().filter(|(_, pose)| !pose.fixed).count();
         let mut freedoms = -(6.0 * free as f64 + 3.0 * self.landmarks.len() as f64);

@@ -9,19 +9,19 @@ use crate::optimisation::local_bundle::{BundleSize, apply, bundle_around};
 use crate::optimisation::map_bundle::MapBundle;
 use trundle_optim::{BundleConfig, BundleSolver};
 
-/// Largest number of steps of a bundle adjustment of the whole map: 10. It then ends as far as it has come. Source: \[MurArtal17\].
+/// Largest number of steps of a bundle adjustment of the whole map: 10. It then ends with the present result. Source: \[MurArtal17\].
 const MAX_GLOBAL_STEPS: usize = 10;
 
 /// The running bundle adjustments of a map: the one around the newest keyframe first, that of the whole map in the remaining time.
 ///
-/// The work is measured in operations, not in time: the same images give the same bits on any computer, however busy.
+/// The work is measured in operations, not in time: the same images give the same bits on any computer.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct MapOptimisation {
     local: Option<MapBundle>,
     global: Option<GlobalBundle>,
     /// Whether the map has changed since the last bundle adjustment of the whole map began.
     is_global_due: bool,
-    /// Solvers that are not at work, kept for their buffers.
+    /// Idle solvers, kept for their buffers.
     spare: SpareSolvers,
 }
 
@@ -32,7 +32,7 @@ struct SpareSolvers {
 }
 
 impl MapOptimisation {
-    /// Begins the local bundle adjustment around a new keyframe. The present result of the running one is applied.
+    /// Begins the local bundle adjustment around a new keyframe. The present result of a running local adjustment is applied.
     pub fn begin_around(
         &mut self,
         map: &mut LandmarkMap,
@@ -61,7 +61,7 @@ impl MapOptimisation {
         self.global = Some(GlobalBundle::of(map));
     }
 
-    /// Goes on for about `work` units of the solver. Returns whether the map moved.
+    /// Continues for about `work` units of the solver. Returns whether the map moved.
     pub fn advance(
         &mut self,
         map: &mut LandmarkMap,
@@ -115,7 +115,7 @@ impl MapOptimisation {
         is_done
     }
 
-    /// Whether anything is left to optimise.
+    /// Whether an adjustment runs or is due.
     pub fn is_pending(&self, map: &LandmarkMap) -> bool {
         self.local.is_some() || self.global.is_some() || (self.is_global_due && map.keyframe_count() > 1)
     }

@@ -7,7 +7,7 @@ use trundle_vision::Descriptor;
 /// Largest coordinate (m) or covariance entry (m^2, rad^2) of a map: 1e9. A larger one is refused as damage. Source: ours.
 const MAX_COORDINATE: f64 = 1e9;
 
-/// Bytes in the making.
+/// Writer of bytes.
 #[derive(Debug, Default)]
 pub(crate) struct Writer(pub Vec<u8>);
 
@@ -32,7 +32,7 @@ impl Writer {
         self.u64(value.to_bits());
     }
 
-    /// A number of things, or the number of a thing.
+    /// Writes a count or an index.
     pub fn count(&mut self, value: usize) {
         self.u32(u32::try_from(value).expect("invariant: an arena holds less than 2^32 things"));
     }
@@ -51,7 +51,7 @@ impl Writer {
     }
 }
 
-/// Bytes to be read: checks all that it hands out.
+/// Reader of untrusted bytes: every length and value is checked.
 #[derive(Debug)]
 pub(crate) struct Reader<'a> {
     rest: &'a [u8],
@@ -85,17 +85,17 @@ impl<'a> Reader<'a> {
         self.take().map(u64::from_le_bytes)
     }
 
-    /// An f32 as it is.
+    /// An f32 without a check of its range.
     pub fn f32(&mut self) -> Read<f32> {
         self.u32().map(f32::from_bits)
     }
 
-    /// An f64 as it is.
+    /// An f64 without a check of its range.
     pub fn f64(&mut self) -> Read<f64> {
         self.u64().map(f64::from_bits)
     }
 
-    /// A number of things of `least` bytes or more each, which the rest of the bytes must be able to hold.
+    /// A count of elements of at least `least` bytes each; the rest of the bytes must be able to hold them.
     pub fn count(&mut self, least: usize) -> Read<usize> {
         let count = self.u32()? as usize;
         if count.saturating_mul(least) > self.rest.len() {
@@ -104,7 +104,7 @@ impl<'a> Reader<'a> {
         Ok(count)
     }
 
-    /// The number of one of `bound` things.
+    /// An index below `bound`.
     pub fn index(&mut self, name: &str, bound: usize) -> Read<usize> {
         let index = self.u32()? as usize;
         self.require(index < bound, name, index, || format!("less than {bound}"))?;
@@ -161,12 +161,12 @@ impl<'a> Reader<'a> {
         Ok(Pose3::new(nalgebra::UnitQuaternion::new_unchecked(rotation), self.vector(name)?))
     }
 
-    /// That nothing is left.
+    /// Requires the end of the bytes.
     pub fn end(&self) -> Read<()> {
         self.require(self.rest.is_empty(), "bytes behind the map", self.rest.len(), || "0".to_owned())
     }
 
-    /// Refuses a value that cannot be.
+    /// Refuses an impossible value.
     pub fn require(
         &self,
         anchors: bool,
@@ -179,7 +179,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// FNV-1a over 8 bytes at a time, the last ones filled with zeros, and the length: any change of one word changes it.
+/// FNV-1a over 8 bytes at a time, the last ones filled with zeros, and the length: any change of one word changes the checksum.
 pub(crate) fn checksum(bytes: &[u8]) -> u64 {
     bytes.chunks(8).fold(0xCBF2_9CE4_8422_2325 ^ bytes.len() as u64, |sum, chunk| {
         let word = chunk.iter().rev().fold(0, |word, byte| word << 8 | u64::from(*byte));

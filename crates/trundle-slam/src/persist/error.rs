@@ -8,15 +8,15 @@ pub enum MapFileError {
     /// The file is not a visual map of this program.
     #[error("this is not a visual map of trundle (visual.map)")]
     Foreign,
-    /// Made by a version that this one does not read.
+    /// The format version is not supported.
     #[error("map of version {found}, expected {expected}")]
     Version {
-        /// Of the bytes.
+        /// Version in the file.
         found: u8,
-        /// Of this program.
+        /// Version of this program.
         expected: u8,
     },
-    /// A bit was lost or changed.
+    /// The checksum does not match: the file is damaged.
     #[error("the map is damaged: its checksum is wrong")]
     Checksum,
     /// The bytes end too early.
@@ -25,17 +25,17 @@ pub enum MapFileError {
         /// The part that was being read.
         within: &'static str,
     },
-    /// Features of another camera, or of other settings, are not those of this map.
+    /// The map was made with another camera or other feature settings.
     #[error("the map was made with {name} {saved}, not {given}")]
     Mismatch {
-        /// Which setting.
+        /// Name of the setting.
         name: &'static str,
         /// Value in the file.
         saved: String,
         /// Value in the configuration.
         given: String,
     },
-    /// The checksum is right, and yet a number cannot be.
+    /// The checksum is right, but a number is impossible.
     #[error("the map contradicts itself: {0}")]
     Content(#[source] Invalid),
     /// The configuration given is out of range.

@@ -16,7 +16,7 @@ const FORMAT_VERSION: u8 = 3;
 /// Bytes before those that the checksum covers.
 const HEAD_BYTES: usize = 16;
 
-/// Maps with their numbers, by rising number, and what they were made with.
+/// Maps with their ids, by rising id, and the settings of their features, as bytes.
 pub(crate) fn save<'a>(
     camera: &PinholeCamera,
     config: &SlamConfig,

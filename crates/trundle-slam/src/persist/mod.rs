@@ -8,8 +8,8 @@
 //! | 18 x 8 | camera and ORB settings, f64 |
 //! | 4, then each | number of maps; a map: its number, keyframes with the odometry between them, the axis of the floor, landmarks with their observations and reference patches, loops |
 //!
-//! All little endian. What follows from the rest is not saved: rectified pixels, bags of words, spanning tree. The trajectory is
-//! not part of a map.
+//! All numbers are little endian. Derived data is not saved: rectified pixels, bags of words, spanning tree. The trajectory is not part of
+//! a map.
 
 pub(crate) mod bytes;
 pub(crate) mod error;

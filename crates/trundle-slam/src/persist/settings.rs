@@ -1,4 +1,4 @@
-//! Settings on which a map's features depend: camera and extractor. They are saved with it, and must be the same to use it.
+//! Settings of a map's features: camera and extractor. A map is loaded only with the settings it was saved with.
 
 use crate::persist::bytes::{Reader, Writer};
 use crate::persist::error::MapFileError;
@@ -34,7 +34,7 @@ pub(crate) fn write(out: &mut Writer, camera: &PinholeCamera, orb: &OrbConfig) {
     out.f64s(settings(camera, orb).map(|(_, value)| value));
 }
 
-/// Passes over the settings of a map that was made with these.
+/// Reads the settings of a map and compares them with these.
 pub(crate) fn check(bytes: &mut Reader, camera: &PinholeCamera, orb: &OrbConfig) -> Result<(), MapFileError> {
     for (name, given) in settings(camera, orb) {
         let saved = bytes.f64()?;

@@ -4,8 +4,8 @@ use crate::frame::rgbd_frame::Frame;
 use crate::matching::projection_search::MatchThresholds;
 use trundle_vision::{BagOfWords, Match, NodeId, Vocabulary, match_mutual};
 
-/// Level of the vocabulary at whose nodes features of two images are compared: 1. With ten children a node, a tenth of all pairs is
-/// compared, and few right ones are missed. \[MurArtal17\] compares a hundredth. Source: ours.
+/// Level of the vocabulary at whose nodes features of two images are compared: 1. With ten children per node, a tenth of all pairs is
+/// compared, and few correct pairs are missed. \[MurArtal17\] compares a hundredth. Source: ours.
 const MATCHING_LEVEL: usize = 1;
 
 /// The bag of words of a frame.

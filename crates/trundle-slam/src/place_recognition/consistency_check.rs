@@ -1,4 +1,4 @@
-//! Counts how many times in a row the same correction of a pose was found.
+//! Counts successive findings of the same correction of a pose.
 
 use crate::motion::motion_limits::MotionLimits;
 use trundle_core::Pose3;
@@ -12,16 +12,16 @@ const MAX_DIFFERENCE: f64 = 0.3;
 pub(crate) struct ConsistencyCheck<T> {
     /// Subject of the correction.
     subject: T,
-    /// Motion that takes predicted poses to found ones, multiplied on the left.
+    /// Motion from predicted to found poses, multiplied on the left.
     found_from_believed: Pose3,
-    /// How many times in a row it was found.
+    /// Number of successive findings.
     count: usize,
 }
 
 impl<T: PartialEq> ConsistencyCheck<T> {
-    /// Records a camera that was found at one pose and predicted at another; how many times in a row the same correction was found.
-    /// `unobserved_s` is the time since the last record without a measurement of the motion, s: for that time the camera may have
-    /// moved at its top speed.
+    /// Records the found and the predicted pose of a camera; returns the number of successive findings of the same correction.
+    /// `unobserved_s` is the time since the last record without a measurement of the motion, s: for that time the camera may have moved at
+    /// its top speed.
     pub fn record(
         pending: &mut Option<Self>,
         subject: T,

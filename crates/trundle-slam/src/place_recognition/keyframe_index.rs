@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use trundle_vision::{PlaceIndex, Vocabulary};
 
-/// Results of the index that are grouped, for each requested group: 4. More are less similar than the groups found. Source: ours.
+/// Number of index results per requested group: 4. Further results are less similar than the groups found. Source: ours.
 const RESULTS_PER_GROUP: usize = 4;
 
 /// The bags of words of all keyframes of a map, and an index over them.
@@ -48,13 +48,13 @@ impl KeyframeIndex {
         }
     }
 
-    /// A keyframe with its bag of words; `None` of a keyframe that was not in the map at the last update.
+    /// A keyframe with its bag of words; `None` for a keyframe added after the last update.
     pub fn frame_bow<'a>(&'a self, map: &'a LandmarkMap, id: KeyframeId) -> Option<FrameBow<'a>> {
         Some(FrameBow { frame: &map.live_keyframe(id)?.frame, bow: self.bows.get(&id)? })
     }
 
     /// The `wanted` keyframes that are most similar to `bow`, at most `max_count`: the best of each group before the second best of any
-    /// group, and groups by the similarity of all their keyframes together \[GalvezLopez12, sec. V-C\].
+    /// group. Groups are sorted by the sum of their keyframes' similarities \[GalvezLopez12, sec. V-C\].
     pub fn similar_keyframes(
         &self,
         map: &LandmarkMap,
@@ -91,7 +91,7 @@ impl KeyframeIndex {
     }
 }
 
-/// Similar keyframes that see the same place.
+/// Similar keyframes of one place.
 #[derive(Debug, Clone)]
 pub(crate) struct KeyframeGroup {
     /// Keyframes that share landmarks with the first member.
@@ -123,7 +123,7 @@ mod tests {
     use trundle_core::{Pose3, Stamp};
     use trundle_vision::{Descriptor, Features, Keypoint};
 
-    /// A frame of a place: features of its own, each with up to `noise` bits flipped.
+    /// A frame of a place: the place's features, each with up to `noise` bits flipped.
     fn seen(place: u64, noise: u64, view: u64) -> Frame {
         let mut state = place.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
         let mut flips = view.wrapping_mul(0xBF58_476D_1CE4_E5B9) | 1;

@@ -5,22 +5,22 @@ use crate::place_recognition::consistency_check::ConsistencyCheck;
 use std::collections::BTreeMap;
 use trundle_core::{Pose3, Stamp};
 
-/// Longest time without odometry after which a relocalisation still counts: 2 s. Beyond it the count restarts, since the camera may
-/// be anywhere. Source: ours; other maps take turns, so that two frames of one map are some frames apart.
+/// Longest time without odometry after which a relocalisation still counts: 2 s. Beyond it the count restarts, since the camera may be
+/// anywhere. Inactive maps take turns, so that two tries in one map are some frames apart. Source: ours.
 const MAX_UNOBSERVED_S: f64 = 2.0;
 
-/// Relocalisations that are not confirmed, the last one of each map. Maps that show one place do not contradict each other.
+/// Unconfirmed relocalisations, the last one of each map. Two maps of one place do not contradict each other.
 #[derive(Debug, Default)]
 pub(crate) struct PendingRelocalisations {
-    /// Time without odometry when it was found, s, and the relocalisation.
+    /// The last relocalisation in each map, and `unobserved_s` at its time.
     of_map: BTreeMap<MapId, (f64, Option<ConsistencyCheck<()>>)>,
     last_frame: Option<Stamp>,
-    /// Time without odometry in all, s.
+    /// Total time without odometry, s.
     unobserved_s: f64,
 }
 
 impl PendingRelocalisations {
-    /// Records a frame, and whether odometry measured the motion since the frame before.
+    /// Records a frame, and whether odometry measured the motion since the previous frame.
     pub fn record_frame(&mut self, now: Stamp, has_odometry: bool) {
         let since = self.last_frame.replace(now).map_or(0.0, |before| now - before);
         if !has_odometry {
@@ -28,7 +28,7 @@ impl PendingRelocalisations {
         }
     }
 
-    /// Records that a camera was found in a map at the first pose and predicted at the second; how many frames in a row agree.
+    /// Records the found and the predicted pose of a camera in a map; returns the number of successive frames that agree.
     pub fn record(&mut self, map: MapId, poses: (Pose3, Pose3)) -> usize {
         let (at, check) = self.of_map.entry(map).or_insert((self.unobserved_s, None));
         let unobserved_s = self.unobserved_s - *at;

@@ -6,27 +6,27 @@ use trundle_core::Pose3;
 const SAME_PLACE_M: f64 = 0.3;
 /// Largest rotation between two poses of the same place: 0.3 rad. See [`SAME_PLACE_M`].
 const SAME_PLACE_RAD: f64 = 0.3;
-/// Fraction of the best hypothesis' points above which a second one elsewhere makes both doubtful: 0.7. Source: \[Lowe04\], the ratio
-/// test of a second match that is nearly as near.
+/// Fraction of the best hypothesis' points above which a second hypothesis elsewhere makes both ambiguous: 0.7. Source: \[Lowe04\], the
+/// ratio test of the second-nearest match.
 const RIVAL_POINTS_RATIO: f64 = 0.7;
 
-/// A pose where the camera may be, and how many points support it.
+/// A possible pose of the camera, and the number of points that support it.
 pub(crate) trait PlaceHypothesis {
     fn pose(&self) -> Pose3;
     fn points(&self) -> usize;
-    /// Whether enough of what should be seen there is seen.
+    /// Whether enough of the expected landmarks are found.
     fn is_plausible(&self) -> bool;
-    /// Whether the hypothesis is accepted, if it has no competitor.
+    /// Whether the hypothesis is accepted without a competitor.
     fn is_certain(&self) -> bool;
 }
 
-/// Index of the certain hypothesis with the most points, of equal ones the first.
+/// Index of the certain hypothesis with the largest number of points; the first of equal ones.
 pub(crate) fn best_hypothesis<T: PlaceHypothesis>(found: &[T]) -> Option<usize> {
     (0..found.len()).rev().filter(|i| found[*i].is_certain()).max_by_key(|i| found[*i].points())
 }
 
-/// The certain hypothesis with the most points. `None` without one, when a plausible one elsewhere has nearly as many, as in look-alike
-/// rooms, or when an implausible one elsewhere has more.
+/// The certain hypothesis with the largest number of points. `None` if a plausible one elsewhere has nearly as many, as in look-alike
+/// rooms, or an implausible one elsewhere has more.
 pub(crate) fn without_rival<T: PlaceHypothesis>(mut found: Vec<T>) -> Option<T> {
     let i = best_hypothesis(&found)?;
     let best = &found[i];

@@ -28,7 +28,7 @@ struct InsertedKeyframe {
 }
 
 impl RgbdSlam {
-    /// Takes a found pose over: counts landmarks, makes a keyframe if one is wanted.
+    /// Applies a found pose: counts landmarks, and makes a keyframe if wanted.
     pub(super) fn on_located(&mut self, frame: Frame, found: Localization) -> TrackReport {
         let Localization { map, localized } = found;
         let is_continuous = self.tracking.lost_frames == 0 && map == self.atlas.active.id;
@@ -75,7 +75,7 @@ impl RgbdSlam {
         report
     }
 
-    /// Continues without a located frame; begins a map at the predicted pose where no map exists for a relocalisation.
+    /// Continues without a located frame; begins a map at the predicted pose if no known landmark will be seen again.
     pub(super) fn on_lost(
         &mut self,
         frame: Frame,
@@ -111,7 +111,7 @@ impl RgbdSlam {
         report
     }
 
-    /// Decides whether a frame that was not located begins a map, and whether the view changed at once.
+    /// Decides whether a frame that was not located begins a map, and whether the view changed abruptly.
     fn map_start(&mut self, frame: &Frame, depth: &DepthImage, has_prior: bool) -> MapStart {
         let Self { config, front_end, atlas, tracking, mode, .. } = self;
         let query = LocalMapQuery::new(&front_end.model, (depth, &config.depth), &config.tracking);
@@ -128,15 +128,16 @@ impl RgbdSlam {
         MapStartQuery { visibility, config, map, tracking, has_prior }.decide()
     }
 
-    /// Drops what belongs to the newest keyframes: they are of another map, or far away.
+    /// Drops the data of the newest keyframes, when they are of another map or far away.
     pub(super) fn leave_keyframe(&mut self) {
         self.loops.drop_searches();
         self.odometry.interrupt();
         self.tracking.odometry_conflict = Default::default();
     }
 
-    /// Covariance of a found pose: of the pose against the points, and of the points. The points of the map have that of the
-    /// reference keyframe. Where the last frame alone gives the pose, its points have that of the last pose, which thus grows from frame to frame.
+    /// Covariance of a found pose: that of the pose relative to the points, plus that of the points. Points of the map have the covariance
+    /// of the reference keyframe. If the last frame alone gives the pose, its points have the covariance of the last pose, which then grows
+    /// from frame to frame.
     fn pose_covariance(&self, localized: &LocalizedFrame, reference: KeyframeId) -> Matrix6<f64> {
         let pose = localized.pose.visual_from_camera();
         let local = localized.pose.solution.covariance.unwrap_or_else(Matrix6::identity);
@@ -224,7 +225,7 @@ impl RgbdSlam {
         self.leave_keyframe();
     }
 
-    /// The first keyframe of the active map, or one that goes on from it by odometry.
+    /// Adds the first keyframe of the active map, or a keyframe that continues the map by odometry.
     fn start_map(&mut self, frame: &Frame, start: MapStart) -> KeyframeId {
         if start != MapStart::Continue {
             self.tracking.belief.covariance = Matrix6::zeros();
@@ -235,7 +236,7 @@ impl RgbdSlam {
         id
     }
 
-    /// Goes on from a located frame; the one before leaves its buffers to the next image's features.
+    /// Sets the last located frame; the previous one leaves its buffers for the next features.
     fn set_last(&mut self, located: LastFrame) {
         if let Some(before) = self.tracking.last.replace(located) {
             self.front_end.reuse(before.frame);
@@ -277,7 +278,7 @@ impl RgbdSlam {
     }
 }
 
-/// The keyframe that shares most landmarks with the frame; the last frame's reference where no keyframe does.
+/// The keyframe with the largest number of common landmarks with the frame; without any, the last frame's reference.
 fn reference_keyframe(
     map: &LandmarkMap,
     tracking: &TrackingState,

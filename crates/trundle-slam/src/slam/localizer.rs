@@ -21,8 +21,8 @@ use crate::tracking::tracking_status::Tracking;
 use std::cell::OnceCell;
 use trundle_core::{DepthImage, Pose3};
 
-/// Frames in a row that must give the same relocalisation where odometry does not confirm it: 2. One frame showed a look-alike room in
-/// 0.7 of its view. Source: docs/experiments/slam-relocalisation.md.
+/// Number of successive frames that must give the same relocalisation without confirmation by odometry: 2. A single frame matched a
+/// look-alike room in 0.7 of its view. Source: docs/experiments/slam-relocalisation.md.
 const MIN_CONFIRMING_FRAMES: usize = 2;
 
 /// A frame located in a map.
@@ -32,7 +32,7 @@ pub(super) struct Localization {
     pub localized: LocalizedFrame,
 }
 
-/// All that the pose of a frame depends on, besides the state of tracking.
+/// Inputs of a frame's pose, besides the state of tracking.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Localizer<'a> {
     pub atlas: &'a Atlas,
@@ -43,11 +43,11 @@ pub(super) struct Localizer<'a> {
     pub frame: &'a Frame,
     pub depth: &'a DepthImage,
     pub frame_number: u64,
-    /// Whether the maps stay as they are, so that nothing but they can correct a pose.
+    /// Whether the maps are fixed, so that only a match with the map corrects a pose.
     pub are_maps_fixed: bool,
 }
 
-/// Where the camera should be, and how far off it can be.
+/// Predicted pose, and the gate around it.
 #[derive(Debug, Clone, Copy)]
 struct Expectation {
     predicted: Pose3,
@@ -55,8 +55,8 @@ struct Expectation {
 }
 
 impl Localizer<'_> {
-    /// The pose of the frame: by the last frame and the map; else by similar keyframes of that map; else by those of one of the other
-    /// maps, which take turns.
+    /// The pose of the frame by the last frame and the map; else by similar keyframes of that map; else by those of an inactive map, which
+    /// take turns.
     pub fn localize(&self, state: &mut TrackingState, prior: Option<Pose3>) -> Option<Localization> {
         let stamp = self.frame.stamp;
         state.pending_relocalisations.record_frame(stamp, prior.is_some());
@@ -66,7 +66,7 @@ impl Localizer<'_> {
         let tracker = self.tracker(active, &bow);
         if let Some(tracked) = track(&tracker, state, expected) {
             let localized = self.checked_by_map(state, &tracker, tracked, expected);
-            let is_believed = state.odometry_conflict.believes(stamp, localized.points_against_odometry());
+            let is_believed = state.odometry_conflict.accepts(stamp, localized.points_against_odometry());
             return is_believed.then_some(Localization { map: active.id, localized });
         }
         let found = relocalize(&tracker);
@@ -78,8 +78,8 @@ impl Localizer<'_> {
         self.relocalize_elsewhere(state, &bow, expected)
     }
 
-    /// A tracked frame; or its relocalisation, where a fixed map hardly shows in the tracked one. Frames tracked from the last frame
-    /// alone drift, and a map that is not extended never meets them again. Relocalisations are counted on while frames are weak.
+    /// The tracked frame, or a relocalisation if the tracked frame hardly agrees with a fixed map. Frames tracked from the last frame alone
+    /// drift, and a fixed map is not extended to them. The count of relocalisations continues over weak frames.
     fn checked_by_map(
         &self,
         state: &mut TrackingState,
@@ -136,9 +136,9 @@ impl Localizer<'_> {
         }
     }
 
-    /// The confirmed relocalisation: one within the gate, if a second frame gives it too where odometry does not confirm it; or one
-    /// that as many frames give as it takes to be lost. Odometry outweighs a look-alike room, but not a robot that was carried. Frames
-    /// without a relocalisation do not count.
+    /// The confirmed relocalisation. Within the covariance gate one frame is enough; within the gate of a camera without odometry, two.
+    /// Outside the gate, `patience` successive frames must agree: odometry outweighs a look-alike room, but not a robot that was carried.
+    /// Frames without a relocalisation do not reset the count.
     fn confirmed(
         &self,
         state: &mut TrackingState,
@@ -152,7 +152,7 @@ impl Localizer<'_> {
             found.retain(is_near);
             if gate == PoseGate::Covariance { 1 } else { MIN_CONFIRMING_FRAMES }
         } else {
-            // An uncertain place that is near makes a certain one that is far doubtful.
+            // An uncertain near place makes a certain far one ambiguous.
             self.config.tracking.patience
         };
         let found = without_rival(found)?;
@@ -163,7 +163,7 @@ impl Localizer<'_> {
     }
 }
 
-/// The pose by the last frame, if it is possible.
+/// The pose by the last frame, if within the gate.
 fn track(
     tracker: &Tracker,
     state: &TrackingState,

@@ -8,17 +8,17 @@ use crate::tracking::last_frame::LastFrame;
 use crate::tracking::tracking_state::TrackingState;
 use trundle_vision::match_mutual;
 
-/// Features of a frame, and landmarks expected in it, from which a frame that shows none of them is a discontinuity of the view: 200.
-/// Fewer can go missing by blur. Source: ours.
+/// Fewest features of a frame, and fewest expected landmarks, for a discontinuity of the view when no landmark is found: 200. Fewer can be
+/// missing by blur. Source: ours.
 const MIN_DISCONTINUITY_FEATURES: usize = 200;
-/// Longest time from the last located frame to one that can be a discontinuity of the view: 0.5 s. After a longer gap the view may have
-/// changed by motion. Source: ours.
+/// Longest time since the last located frame for a discontinuity of the view: 0.5 s. After a longer gap the view may have changed by
+/// motion. Source: ours.
 const MAX_DISCONTINUITY_GAP_S: f64 = 0.5;
 
 /// Action for a frame that was not located.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum MapStart {
-    /// Nothing: a known landmark may be seen again.
+    /// No map begins: a known landmark may be seen again.
     Wait,
     /// The first keyframe of the map.
     FirstMap,
@@ -28,7 +28,7 @@ pub(super) enum MapStart {
     NewMap,
 }
 
-/// Features of a frame, and the number of landmarks that are expected in it.
+/// Number of a frame's features, and of the landmarks expected in it.
 #[derive(Clone, Copy)]
 pub(super) struct Visibility<'a> {
     pub frame: &'a Frame,
@@ -36,8 +36,8 @@ pub(super) struct Visibility<'a> {
 }
 
 impl Visibility<'_> {
-    /// Whether a frame shows many features, and none of the many landmarks expected, right after one that was located: the camera
-    /// made a motion that the wheels did not measure.
+    /// Whether a frame right after a located one has many features but none of many expected landmarks: the camera made a motion that the
+    /// wheels did not measure.
     pub fn is_discontinuous(&self, state: &TrackingState) -> bool {
         let is_next = |last: &LastFrame| self.frame.stamp - last.frame.stamp < MAX_DISCONTINUITY_GAP_S;
         state.lost_frames == 1
@@ -47,7 +47,7 @@ impl Visibility<'_> {
     }
 }
 
-/// All that the decision depends on.
+/// Inputs of the decision.
 #[derive(Clone, Copy)]
 pub(super) struct MapStartQuery<'a> {
     pub visibility: Visibility<'a>,
@@ -79,14 +79,14 @@ impl MapStartQuery<'_> {
         }
     }
 
-    /// Whether no known landmark will be seen again: none should be in view, or none was found for too long.
+    /// Whether no known landmark will be seen again: none is expected in view, or none was found for too long.
     fn is_outside_map(&self) -> bool {
         let config = &self.config.tracking;
         (self.visibility.expected)() < config.min_inliers || self.tracking.lost_frames >= config.patience
     }
 
-    /// Whether the frame shows what the frame before showed, which was not located either. Corners that noise makes on a bare wall are
-    /// not in the next frame, and nothing can be tracked from a keyframe of them.
+    /// Whether the frame matches the previous frame, which was not located either. Corners of noise on a bare wall are not in the next
+    /// frame, and a keyframe of such corners is useless.
     fn repeats_last_frame(&self) -> bool {
         let config = &self.config.tracking;
         let MatchThresholds { max_distance, ratio } = config.unwindowed_thresholds();

@@ -5,45 +5,48 @@ use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in, require_positive};
 use trundle_optim::PoseConfig;
 
-/// How the pose of a frame is found.
+/// Search for the pose of a frame.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TrackingConfig {
-    /// Standard deviation of a keypoint of the finest octave, px, 0.01 to 100. Default 1 \[MurArtal17\].
+    /// Standard deviation of a keypoint of the finest octave, px, 0.01 to 100. A larger value trusts depth and odometry more than pixels.
+    /// Default 1 \[MurArtal17\].
     pub pixel_sigma: f64,
-    /// Radius of the search for a point of the last frame around its prediction, px of its octave, above 0; twice as large at
-    /// the second try. Default 15 \[MurArtal17\].
+    /// Radius of the search for a point of the last frame around its prediction, px of its octave, above 0. The second try doubles it. A
+    /// larger window tolerates faster motion and takes longer. Default 15 \[MurArtal17\].
     pub motion_window_px: f64,
-    /// Radius of the search for a landmark of the map, px of its octave, once the pose is known from the last frame. Default 6: three standard
+    /// Radius of the search for a landmark of the map after tracking from the last frame, px of its octave. Default 6: three standard
     /// deviations of a keypoint and as much for the map.
     pub map_window_px: f64,
-    /// Highest distance of descriptors within a window, bits of 256. Default 80: unlike points differ by 128 on average.
+    /// Largest distance of descriptors in a match within a window, bits of 256. A larger value gives more, and more wrong, matches. Default
+    /// 80: unlike points differ by 128 on average.
     pub window_distance: u32,
-    /// Highest quotient of the best and the next best distance within a window, above 0 to 1. Default 0.9.
+    /// Largest quotient of the best and the second-best distance within a window, above 0 to 1. A smaller value drops ambiguous matches.
+    /// Default 0.9.
     pub window_ratio: f32,
-    /// Highest distance of descriptors without a window, bits. Default 64.
+    /// Largest distance of descriptors in a match without a window, bits. Default 64.
     pub free_distance: u32,
-    /// Highest quotient of the best and the next best distance without a window, above 0 to 1. Default 0.8.
+    /// Largest quotient of the best and the second-best distance without a window, above 0 to 1. Default 0.8.
     pub free_ratio: f32,
-    /// Landmarks of the map that are searched in one frame. Default 4000.
+    /// Maximum number of landmarks that are searched in one frame. Default 4000.
     pub max_landmarks: usize,
-    /// Fewer inliers than this and the frame is not located, 6 or more. Default 20.
+    /// Number of inliers below which a frame is not located, 6 or more. A smaller number locates frames of bare walls, less reliably.
+    /// Default 20.
     pub min_inliers: usize,
-    /// Fewer inliers than this and it is located weakly; a relocalisation needs as many. Default 40.
+    /// Number of inliers below which a frame is located weakly, and below which a relocalisation is refused. Default 40.
     pub weak_inliers: usize,
-    /// Keyframes that a lost camera is compared with in one frame, 1 or more, and as many of those similar to the one found.
-    /// Default 5: some 20 ms, 40 when another map is tried as well.
+    /// Number of keyframes that a lost camera is compared with per frame, 1 or more, and of keyframes similar to the one found. More find a
+    /// place sooner and take longer. Default 5: some 20 ms, 40 ms with a try in an inactive map.
     pub relocalisation_keyframes: usize,
-    /// Fraction of the view, of its cells with expected landmarks, in which a relocalisation must find some, 0 to 1. Default
-    /// 0.6: of 400 views of a simulated office with look-alike rooms, wrong ones without a competitor reached 0.56; pictures that
-    /// hang in two rooms reach 0.45.
+    /// Smallest fraction of the image cells with expected landmarks in which a relocalisation finds some, 0 to 1. A smaller value accepts
+    /// look-alike rooms. Default 0.6: in 400 views of a simulated office with look-alike rooms, wrong relocalisations without a competitor
+    /// reached 0.56, and pictures that hang in two rooms 0.45.
     pub recognised_part: f64,
-    /// Largest standard deviation of a relocalisation's position, m, above 0, with the errors counted that points of one image
-    /// share. Default 0.05: two of them are 0.1 m. Views of little but points beyond 6 m exceed it, and had errors up to 0.3 m;
-    /// 97 of 100 other views do not (docs/results.md).
+    /// Largest standard deviation of a relocalisation's position, m, above 0, including the common errors of one image's points. Default
+    /// 0.05. Views with almost all points beyond 6 m exceed it, with errors up to 0.3 m; 97 of 100 other views do not (docs/results.md).
     pub recognised_sigma: f64,
-    /// Frames without success after which a map is begun: at the dead-reckoned pose, or without a prior as another map. Default
-    /// 30: a second.
+    /// Number of frames in a row without a pose after which mapping restarts: at the dead-reckoned pose, or without odometry in a new map.
+    /// Default 30: a second.
     pub patience: usize,
     /// The solver.
     pub pose: PoseConfig,
@@ -72,10 +75,10 @@ impl Default for TrackingConfig {
 }
 
 impl TrackingConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(mut self) -> Result<Self, Invalid> {
         require_in("tracking.pixel_sigma", self.pixel_sigma, "px", 0.01, 100.0)?;
         require_positive("tracking.motion_window_px", self.motion_window_px, "px")?;

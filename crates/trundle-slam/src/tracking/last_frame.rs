@@ -10,7 +10,7 @@ use crate::matching::reference_frame::ReferenceFrame;
 #[derive(Debug)]
 pub(crate) struct LastFrame {
     pub frame: Frame,
-    /// Which landmark each feature is of.
+    /// The landmark of each feature.
     pub landmarks: Vec<Option<LandmarkId>>,
     pub anchored: AnchoredPose,
 }

@@ -1,4 +1,4 @@
-//! Which landmarks a camera should see.
+//! Landmarks expected in a camera's view.
 
 use crate::frame::depth::DepthConfig;
 use crate::frame::observation_model::ObservationModel;
@@ -10,11 +10,11 @@ use crate::matching::projection_search::Projection;
 use crate::tracking::config::TrackingConfig;
 use trundle_core::{DepthImage, Pose3, Vector2};
 
-/// Smallest cosine of the angle between the directions from which a landmark was seen and is searched: 0.5 (60 deg). Beyond it the
+/// Smallest cosine of the angle between a landmark's mean viewing direction and the present one: 0.5 (60 deg). At larger angles the
 /// landmark is not expected. Source: \[MurArtal17\].
 const MIN_DIRECTION_COSINE: f64 = 0.5;
-/// Distance of a landmark behind the measured surface beyond which the surface hides it: 0.1 m, and [`OCCLUSION_MARGIN_RATIO`] of the
-/// depth. Source: ours.
+/// Distance behind the measured surface beyond which a landmark is hidden: 0.1 m, plus [`OCCLUSION_MARGIN_RATIO`] of the depth. Source:
+/// ours.
 const OCCLUSION_MARGIN_M: f64 = 0.1;
 /// See [`OCCLUSION_MARGIN_M`].
 const OCCLUSION_MARGIN_RATIO: f64 = 0.1;
@@ -22,11 +22,11 @@ const OCCLUSION_MARGIN_RATIO: f64 = 0.1;
 /// expected. Source: \[MurArtal17\].
 const OCTAVE_MARGIN: f64 = 1.5;
 
-/// Decides which landmarks a camera should see.
+/// Selects the landmarks expected in a camera's view.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LocalMapQuery<'a> {
     pub model: &'a ObservationModel,
-    /// The depth image, to find out which landmarks are hidden.
+    /// The depth image, for hidden landmarks.
     pub depth: (&'a DepthImage, &'a DepthConfig),
     /// Half size of the search window at octave 0, px.
     pub window_px: f64,
@@ -43,8 +43,8 @@ impl<'a> LocalMapQuery<'a> {
         Self { model, depth, window_px, max_landmarks }
     }
 
-    /// The landmarks of the keyframes around that a camera at `visual_from_camera` should see, by rising id. When there are
-    /// more than `max_landmarks`, those with the most observations.
+    /// The landmarks of the keyframes around that are expected in the view of a camera at `visual_from_camera`, by rising id. Of more than
+    /// `max_landmarks`, those with the largest number of observations.
     pub fn landmarks(&self, map: &LandmarkMap, visual_from_camera: Pose3) -> Vec<(LandmarkId, Projection)> {
         let camera_from_visual = visual_from_camera.inverse();
         let project = |id: LandmarkId| {
@@ -69,7 +69,7 @@ impl<'a> LocalMapQuery<'a> {
         if landmark.toward_camera.dot(&ray) < MIN_DIRECTION_COSINE * distance || self.hides(raw, p_camera.z) {
             return None;
         }
-        // A landmark seen at octave 0 from d is seen at the octave of scale s from d / s. \[MurArtal17\]
+        // A landmark in octave 0 at distance d is in the octave of scale s at distance d / s. \[MurArtal17\]
         let scale = landmark.distance_at_octave_0 / distance;
         let finest = self.model.scale(0) / OCTAVE_MARGIN;
         let coarsest = self.model.scale(u8::MAX) * OCTAVE_MARGIN;
@@ -84,7 +84,7 @@ impl<'a> LocalMapQuery<'a> {
         Some(Projection { pixel, depth: p_camera.z, radius, octaves, descriptor, is_findable })
     }
 
-    /// Whether a surface stands before a point at `depth` m behind the raw pixel.
+    /// Whether a surface hides a point at `depth` m behind the raw pixel.
     fn hides(&self, raw: Vector2, depth: f64) -> bool {
         let (image, config) = self.depth;
         config

@@ -1,4 +1,4 @@
-//! How a frame was located: its pose, and what speaks for it.
+//! The pose of a frame, and the evidence for it.
 
 use crate::frame::aligned_feature::Aligned;
 use crate::ids::{KeyframeId, LandmarkId};
@@ -17,37 +17,37 @@ use trundle_optim::CORRELATED_POINTS;
 
 /// Side of the image cells in which landmarks are counted: 40 px. Source: ours, a few times the distance between features.
 const CELL_PX: f64 = 40.0;
-/// Landmarks expected in a cell before it counts as missed when none of them is found: 3. Source: ours.
+/// Fewest expected landmarks of a counted cell: 3. Source: ours.
 const MIN_EXPECTED_IN_CELL: usize = 3;
 
 /// The pose of a frame and the matches that support it.
 #[derive(Debug)]
 pub(crate) struct LocalizedFrame {
     pub pose: MatchedPose,
-    /// The matches that agree with the pose, with aligned features where those fit.
+    /// The matches that agree with the pose, with aligned features if the patches fit.
     pub seen: Vec<PointMatch>,
-    /// Matches before features were aligned. Whether this is the place is evaluated by all of them, since fewer can be aligned.
+    /// Number of matches before alignment. The place is evaluated by all of them, since fewer can be aligned.
     pub matches: usize,
-    /// Matches that agreed before features were aligned.
+    /// Number of matches that agreed before alignment.
     pub points: usize,
-    /// Whether these points contradicted the odometry.
+    /// Whether the agreeing points contradict the odometry.
     points_contradict: bool,
-    /// The landmarks that should have been seen, and where.
+    /// The expected landmarks with their projections.
     pub visible: Vec<(LandmarkId, Projection)>,
-    /// Whether the landmark map itself agrees, not only the last frame.
+    /// Whether the pose agrees with the landmark map, not only with the last frame.
     pub by_map: bool,
-    /// The similar keyframe, of a relocalisation.
+    /// The similar keyframe of a relocalisation.
     pub recognized: Option<KeyframeId>,
-    /// Whether enough of the view shows that place, if no other place is similar.
+    /// Whether enough of the view matches the place.
     pub is_plausible: bool,
-    /// Whether the pose there is certain, too.
+    /// Whether the pose is also certain.
     pub is_certain: bool,
 }
 
 impl LocalizedFrame {
-    /// Tracks from the last frame, whose reference keyframe is `reference`, to the map. If the map has too few landmarks, in a
-    /// blurred or quite new view, the points of a fixed map's keyframes help. Where these do not suffice, the last frame alone gives the
-    /// pose: drift is better than a lost camera.
+    /// Tracks from the last frame, whose reference keyframe is `reference`, to the map. With too few landmarks, in a blurred or new view,
+    /// points of a fixed map's keyframes are used as well. If these do not suffice, the last frame alone gives the pose: drift is better
+    /// than a lost camera.
     pub fn from_last(
         tracker: &Tracker,
         last: ReferenceFrame,
@@ -69,9 +69,9 @@ impl LocalizedFrame {
         })
     }
 
-    /// The pose by points of keyframes as well, where a fixed map shows few landmarks. `candidates` are poses by the landmarks and by the
-    /// last frame: the search starts at the first one that is sound. The features stay as they are, since these points have no
-    /// reference patches.
+    /// The pose by landmarks and points of keyframes, for a fixed map with few landmarks in view. `candidates` are poses by the landmarks
+    /// and by the last frame; the search starts at the first sound one. Features are not aligned, since these points have no reference
+    /// patches.
     fn by_keyframe_points(tracker: &Tracker, candidates: [&MatchedPose; 2]) -> Option<MatchedPose> {
         let TrackingConfig { min_inliers, weak_inliers, .. } = *tracker.config;
         let is_due = tracker.is_map_fixed && !candidates[0].is_sound(weak_inliers);
@@ -81,9 +81,9 @@ impl LocalizedFrame {
         pose.is_sound(weak_inliers).then_some(pose)
     }
 
-    /// Relocalizes from a keyframe to the map. A certain relocalisation needs more landmarks that agree, and some in a good part of the
-    /// view: a picture that hangs in two rooms is not the room. The landmarks must also determine the pose, with the errors counted
-    /// that points of one image share.
+    /// Relocalizes from a keyframe to the map. A certain relocalisation needs more agreeing landmarks, and some in a large part of the
+    /// view: a picture may hang in two rooms. The landmarks must also determine the pose, including the common errors of one image's
+    /// points.
     pub fn from_keyframe(tracker: &Tracker, keyframe: KeyframeId) -> Option<Self> {
         let rough = tracker.by_bow(keyframe, PosePriorKind::Unknown)?;
         let (nearly, _) = tracker.searching_wider().by_map(&rough, PosePriorKind::Unknown);
@@ -116,7 +116,7 @@ impl LocalizedFrame {
         }
     }
 
-    /// This frame with its features aligned, if enough of them can be and the pose stays at its place.
+    /// This frame with aligned features, if enough can be aligned and the pose stays at its place.
     pub fn aligned(self, tracker: &Tracker, prior: PosePriorKind) -> Self {
         let Some(pose) = tracker.aligned(&self.pose, prior) else { return self };
         let pose = if self.recognized.is_some() { with_correlated_errors(pose) } else { pose };
@@ -126,7 +126,7 @@ impl LocalizedFrame {
         Self { seen: agreeing_matches(&self.pose, &pose, tracker.frame), pose, ..self }
     }
 
-    /// How many points contradict the odometry; `None` if the pose agrees with it.
+    /// Number of points that contradict the odometry; `None` if the pose agrees with it.
     pub fn points_against_odometry(&self) -> Option<usize> {
         let solution = &self.pose.solution;
         let points = if self.points_contradict { self.points } else { solution.inlier_count };
@@ -147,7 +147,7 @@ impl LocalizedFrame {
         landmarks
     }
 
-    /// Features that were aligned, and where they are then.
+    /// Aligned features with their positions.
     pub fn aligned_features(&self) -> impl Iterator<Item = (usize, Aligned)> + '_ {
         self.seen.iter().filter_map(|m| Some((m.feature, m.aligned?)))
     }
@@ -157,7 +157,7 @@ impl LocalizedFrame {
         self.visible.iter().filter(|(_, seen)| seen.is_findable).map(|(id, _)| *id)
     }
 
-    /// How well the frame was located.
+    /// Status of the localization.
     pub fn tracking(&self, config: &TrackingConfig) -> Tracking {
         if self.by_map && self.points >= config.weak_inliers { Tracking::Ok } else { Tracking::Weak }
     }
@@ -181,14 +181,14 @@ impl PlaceHypothesis for LocalizedFrame {
     }
 }
 
-/// The pose with the errors counted that points of one image share.
+/// The pose with a covariance that includes the common errors of one image's points.
 fn with_correlated_errors(mut pose: MatchedPose) -> MatchedPose {
     pose.solution.covariance = pose.solution.covariance.map(|covariance| covariance * CORRELATED_POINTS);
     pose
 }
 
-/// Fraction of the image's cells with landmarks expected in which one is found, 0 to 1. How many landmarks are found depends on how
-/// many features an image has; where they are found does not.
+/// Fraction of the image's cells with landmarks expected in which one is found, 0 to 1. Unlike the number of found landmarks, this fraction
+/// does not depend on the number of features.
 fn seen_fraction(expected: impl Iterator<Item = Vector2>, found: impl Iterator<Item = Vector2>) -> f64 {
     let cell = |pixel: Vector2| ((pixel.x / CELL_PX).floor() as i32, (pixel.y / CELL_PX).floor() as i32);
     let mut counts: BTreeMap<(i32, i32), usize> = BTreeMap::new();
@@ -280,7 +280,7 @@ mod tests {
         });
     }
 
-    /// Landmarks that one keyframe alone saw are gone, and the last frame has drifted.
+    /// Landmarks with a single observer are removed, and the last frame has drifted.
     #[test]
     fn points_of_keyframes_locate_a_frame_in_a_fixed_map_without_landmarks() {
         let (mut map, _) = painted_map();

@@ -1,16 +1,15 @@
-//! Tracked poses that contradict the wheels, one after the other.
+//! Successive tracked poses that contradict the wheels.
 
 use trundle_core::Stamp;
 
-/// Points that agree on one pose and outweigh the wheels at once: 100. Fewer have to persist for
-/// [`MIN_CONFLICT_S`]. Source: ours.
+/// Number of agreeing points that outweigh the wheels at once: 100. Fewer points must persist for [`MIN_CONFLICT_S`]. Source: ours.
 const MIN_CONVINCING_POINTS: usize = 100;
 /// Time for which fewer points must contradict the wheels before they outweigh them: 0.3 s. Source: ours.
 const MIN_CONFLICT_S: f64 = 0.3;
 
-/// Since when tracked poses have contradicted the wheels.
+/// Start of the contradiction between tracked poses and wheels.
 ///
-/// Few points, all in one corner of a bare wall, can agree by chance, but only for a short time.
+/// A few points in one corner of a bare wall can agree by chance, but only for a short time.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct OdometryConflict {
     since: Option<Stamp>,
@@ -19,7 +18,7 @@ pub(crate) struct OdometryConflict {
 impl OdometryConflict {
     /// Whether to accept the tracked pose of a frame at `now`; `points_against_odometry` is the number of points that contradict the wheels,
     /// `None` if they agree.
-    pub fn believes(&mut self, now: Stamp, points_against_odometry: Option<usize>) -> bool {
+    pub fn accepts(&mut self, now: Stamp, points_against_odometry: Option<usize>) -> bool {
         let Some(points) = points_against_odometry else {
             self.since = None;
             return true;
@@ -47,14 +46,14 @@ mod tests {
     fn few_points_are_believed_against_the_wheels_when_they_persist() {
         let at = |seconds: f64| Stamp::default().after(seconds);
         let mut conflict = OdometryConflict::default();
-        assert!(conflict.believes(at(0.0), None) && !conflict.is_active());
-        assert!(!conflict.believes(at(1.0), Some(99)) && conflict.is_active());
-        assert!(conflict.believes(at(1.1), Some(100)), "many are accepted at once");
+        assert!(conflict.accepts(at(0.0), None) && !conflict.is_active());
+        assert!(!conflict.accepts(at(1.0), Some(99)) && conflict.is_active());
+        assert!(conflict.accepts(at(1.1), Some(100)), "many are accepted at once");
         assert!(!conflict.persists(at(1.2)) && conflict.persists(at(1.3)));
-        assert!(!conflict.believes(at(1.2), Some(30)));
-        assert!(conflict.believes(at(1.3), Some(30)), "after 0.3 s");
-        assert!(conflict.believes(at(1.4), None), "points and wheels agree again");
-        assert!(!conflict.believes(at(9.0), Some(30)), "a new conflict");
-        assert!(conflict.believes(at(9.1), None) && !conflict.persists(at(9.9)));
+        assert!(!conflict.accepts(at(1.2), Some(30)));
+        assert!(conflict.accepts(at(1.3), Some(30)), "after 0.3 s");
+        assert!(conflict.accepts(at(1.4), None), "points and wheels agree again");
+        assert!(!conflict.accepts(at(9.0), Some(30)), "a new conflict");
+        assert!(conflict.accepts(at(9.1), None) && !conflict.persists(at(9.9)));
     }
 }

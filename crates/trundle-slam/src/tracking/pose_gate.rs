@@ -1,21 +1,21 @@
-//! How far a camera can be from where it is predicted.
+//! Gate of a camera's pose around its prediction.
 
 use crate::motion::motion_limits::MotionLimits;
 use nalgebra::Matrix6;
 use trundle_core::Pose3;
 
-/// Largest chi-square of six of a pose against the prediction: 37, the probability of five standard deviations of one variable. A
-/// pose beyond it is refused. Source: ours.
+/// Largest chi-square (six degrees of freedom) of a pose against the prediction: 37, the probability of five standard deviations of one
+/// variable. A pose beyond it is refused. Source: ours.
 const MAX_CHI2: f64 = 37.0;
 /// Standard deviation of a prediction besides its covariance: 0.1 m and 0.1 rad. Source: ours.
 const MIN_PREDICTION_SIGMA: f64 = 0.1;
 /// Error of a prediction without odometry besides the camera's largest motion: 0.3 m and 0.3 rad. Source: ours.
 const PREDICTION_TOLERANCE: f64 = 0.3;
 
-/// Which poses are possible for a camera that was last located some time ago.
+/// Possible poses of a camera since it was last located.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum PoseGate {
-    /// All poses: nothing is known of where the camera is.
+    /// All poses: the camera's pose is unknown.
     Open,
     /// Poses within the covariance of the prediction: odometry measured the motion.
     Covariance,
@@ -24,7 +24,7 @@ pub(crate) enum PoseGate {
 }
 
 impl PoseGate {
-    /// Whether a camera that is predicted at `predicted`, with this covariance, can be at `pose`.
+    /// Whether a camera predicted at `predicted` with this covariance can be at `pose`.
     pub fn allows(self, pose: Pose3, predicted: Pose3, covariance: &Matrix6<f64>) -> bool {
         let error = predicted.inverse() * pose;
         match self {

@@ -1,4 +1,4 @@
-//! Pose of a camera that was not tracked: similar keyframes, each tried in full.
+//! Pose of a camera that was not tracked, by complete localization against each similar keyframe.
 
 use crate::ids::KeyframeId;
 use crate::place_recognition::keyframe_index::KeyframeGroup;
@@ -7,7 +7,7 @@ use crate::tracking::localized_frame::LocalizedFrame;
 use crate::tracking::tracker::Tracker;
 use std::collections::BTreeSet;
 
-/// The poses by similar keyframes, not yet aligned. Some are not certain by themselves, and yet make others doubtful.
+/// The poses by similar keyframes, before alignment. Uncertain poses are included, since they make others ambiguous.
 pub(crate) fn relocalize(tracker: &Tracker) -> Vec<LocalizedFrame> {
     let max_tries = tracker.config.relocalisation_keyframes;
     let mut tried = BTreeSet::new();
@@ -24,8 +24,8 @@ pub(crate) fn relocalize(tracker: &Tracker) -> Vec<LocalizedFrame> {
     found
 }
 
-/// Groups similar to a keyframe, elsewhere. An image can be more similar to the wrong one of two look-alike rooms, but the rooms are
-/// similar to each other.
+/// Groups elsewhere that are similar to a keyframe. An image can be more similar to the wrong one of two look-alike rooms, but the rooms
+/// are similar to each other.
 fn look_alikes(tracker: &Tracker, keyframe: KeyframeId, max_groups: usize) -> Vec<KeyframeGroup> {
     let Some(own) = tracker.place_index.frame_bow(tracker.map, keyframe) else { return vec![] };
     let here: BTreeSet<KeyframeId> =
@@ -33,9 +33,9 @@ fn look_alikes(tracker: &Tracker, keyframe: KeyframeId, max_groups: usize) -> Ve
     tracker.place_index.similar_groups(tracker.map, own.bow, |id| !here.contains(&id), max_groups)
 }
 
-/// The hypotheses of a number of tries. A group without a certain result is tried again by its next keyframe, before others that are
-/// as much less similar: at the edge of the map few of its keyframes show enough, and a look-alike would have no competitor. Tries are
-/// distributed as seats are by D'Hondt's method.
+/// The hypotheses of a number of tries, distributed over the groups as seats by D'Hondt's method. A group without a certain result is tried
+/// again with its next keyframe, before much less similar groups. At the edge of the map few keyframes of a group match, and a look-alike
+/// would have no competitor.
 fn try_groups<T: PlaceHypothesis>(
     groups: Vec<KeyframeGroup>,
     max_tries: usize,
@@ -47,7 +47,7 @@ fn try_groups<T: PlaceHypothesis>(
         let priority = |(group, tries): &(KeyframeGroup, usize)| group.similarity / (tries + 1) as f32;
         let is_open = |i: &usize| open[*i].0.members.get(open[*i].1).is_some();
         let by_priority = |a: &usize, b: &usize| priority(&open[*a]).total_cmp(&priority(&open[*b]));
-        // Of equal ones, the first.
+        // The first of equal priorities.
         let Some(next) = (0..open.len()).rev().filter(is_open).max_by(by_priority) else { break };
         let (group, tries) = &mut open[next];
         let hypothesis = find(group.members[*tries]);

@@ -19,7 +19,7 @@ use trundle_core::Pose3;
 use trundle_optim::PosePrior;
 use trundle_vision::{Match, RansacConfig, match_mutual};
 
-/// Nearest keyframes whose points are matched where landmarks are few: 2. Others show less of the view. Source:
+/// Number of nearest keyframes whose points are matched when landmarks are few: 2. Others show less of the view. Source:
 /// docs/experiments/localise-only.md.
 const POINT_KEYFRAMES: usize = 2;
 
@@ -34,17 +34,17 @@ pub(crate) struct Tracker<'a> {
     pub frame: &'a Frame,
     /// The camera's pose by odometry since the newest keyframe.
     pub odometry_prior: Option<PosePrior>,
-    /// The frame's bag of words, once it was needed.
+    /// The frame's bag of words, computed on demand.
     pub bow: &'a OnceCell<Bow>,
     pub seed: u64,
-    /// Whether the map is fixed, so that a view with few landmarks gets no new ones.
+    /// Whether the map is fixed and gets no new landmarks.
     pub is_map_fixed: bool,
 }
 
 impl Tracker<'_> {
-    /// The pose from the last frame: its points searched around where `predicted` puts them, then wider; then by features similar to
-    /// those of its reference keyframe, and to its own, anywhere in the image. The first of these poses with which a majority of the
-    /// matches agrees, else the one with the most inliers.
+    /// The pose from the last frame, by several searches: its points around their projections by `predicted`, then in wider windows; then
+    /// similar features of its reference keyframe, and its own, anywhere in the image. Returns the first pose that a majority of the
+    /// matches agrees with, else the pose with the largest number of inliers.
     pub fn by_last(
         &self,
         last: ReferenceFrame,
@@ -108,8 +108,8 @@ impl Tracker<'_> {
         self.refined(matches, pose, prior)
     }
 
-    /// The final pose: against all landmarks of the map that a camera at the pose of `rough` should see, and these landmarks. Features
-    /// that `rough` matched with a landmark stay matched.
+    /// The final pose by all landmarks expected in the view at the pose of `rough`, with these landmarks. Features that `rough` matched
+    /// with a landmark stay matched.
     pub fn by_map(
         &self,
         rough: &MatchedPose,
@@ -134,8 +134,8 @@ impl Tracker<'_> {
         (pose, visible)
     }
 
-    /// The pose by the landmarks that agree with `found`, and by points that the nearest keyframes measured and that are not landmarks.
-    /// Landmarks that one keyframe alone saw are removed from the map, but that keyframe still holds their features and depths.
+    /// The pose by the landmarks that agree with `found`, and by measured points of the nearest keyframes that are not landmarks. Landmarks
+    /// with a single observer are removed from the map, but the keyframe still has their features and depths.
     pub fn by_keyframe_points(&self, found: &MatchedPose, prior: PosePriorKind) -> MatchedPose {
         let pose = found.visual_from_camera();
         let mut matches: Vec<PointMatch> =
@@ -157,7 +157,7 @@ impl Tracker<'_> {
         keyframe.match_by_motion(self.frame, pose, window, thresholds, (self.map, self.model))
     }
 
-    /// The pose of `found` refined with its features aligned to reference patches; `None` if too few can be.
+    /// The pose of `found` refined with aligned features; `None` if too few can be aligned.
     pub fn aligned(&self, found: &MatchedPose, prior: PosePriorKind) -> Option<MatchedPose> {
         let solve = |matches, start| {
             MatchedPose::by(matches, (start, prior), self.frame, self.model, &self.config.pose)
@@ -173,7 +173,7 @@ impl Tracker<'_> {
         pose.is_sound(self.config.min_inliers).then_some(pose)
     }
 
-    /// This tracker for a camera whose pose is known roughly.
+    /// This tracker with a wider search window, for a roughly known pose.
     pub fn searching_wider(&self) -> Self {
         Self {
             local_map: LocalMapQuery { window_px: self.config.motion_window_px, ..self.local_map },

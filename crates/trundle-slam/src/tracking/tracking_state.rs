@@ -8,10 +8,10 @@ use crate::tracking::odometry_conflict::OdometryConflict;
 use crate::tracking::pose_gate::PoseGate;
 use trundle_core::{Pose3, Stamp};
 
-/// Standard deviation of a dead-reckoned position, 0.2 m, above which another map begins: in this one, all that comes after would have
-/// the same error. Source: ours.
+/// Standard deviation of a dead-reckoned position above which a new map begins: 0.2 m. Continuing the map would give all later poses the
+/// same error. Source: ours.
 const MAX_CONTINUATION_SIGMA_M: f64 = 0.2;
-/// Standard deviation of a dead-reckoned rotation, 0.2 rad. See [`MAX_CONTINUATION_SIGMA_M`].
+/// Standard deviation of a dead-reckoned rotation above which a new map begins: 0.2 rad. See [`MAX_CONTINUATION_SIGMA_M`].
 const MAX_CONTINUATION_SIGMA_RAD: f64 = 0.2;
 
 /// Predicted pose of the camera in the active map, and results of the last frames.
@@ -22,11 +22,11 @@ pub(crate) struct TrackingState {
     pub pose_known: bool,
     /// Whether part of the motion since the last located frame was not measured.
     pub motion_unknown: bool,
-    /// Whether the view changed at once: the camera was carried, or the lens is covered.
+    /// Whether the view changed abruptly: the camera was carried, or the lens is covered.
     pub view_discontinuity: bool,
     /// The last frame that was located.
     pub last: Option<LastFrame>,
-    /// Frames since then.
+    /// Number of frames since the last located one.
     pub lost_frames: usize,
     /// The last frame, if it was not located.
     pub lost_frame: Option<Frame>,
@@ -50,13 +50,13 @@ impl TrackingState {
         }
     }
 
-    /// Puts the camera at a pose before the first frame.
+    /// Sets the camera's pose before the first frame.
     pub fn start_at(&mut self, visual_from_camera: Pose3) {
         self.belief = PoseBelief::at(visual_from_camera);
         self.pose_known = true;
     }
 
-    /// Puts the camera at a pose of the active map, at the time of the last frame.
+    /// Sets the camera's pose in the active map at the time of the last frame.
     pub fn restart_at(&mut self, visual_from_camera: Pose3) {
         self.belief = PoseBelief { stamp: self.belief.stamp, ..PoseBelief::at(visual_from_camera) };
         (self.pose_known, self.last) = (true, None);
@@ -74,14 +74,14 @@ impl TrackingState {
         self.motion_unknown || !self.pose_known || self.view_discontinuity
     }
 
-    /// Whether dead reckoning is too uncertain to go on in the same map.
+    /// Whether dead reckoning is too uncertain to continue the map.
     pub fn is_too_uncertain(&self) -> bool {
         let sigma = |i: usize| self.belief.covariance[(i, i)].sqrt();
         (0..3).any(|i| sigma(i) > MAX_CONTINUATION_SIGMA_M)
             || (3..6).any(|i| sigma(i) > MAX_CONTINUATION_SIGMA_RAD)
     }
 
-    /// Which poses are possible at `now`, with or without a motion prior of the last step.
+    /// The gate of poses at `now`, with or without a motion prior of the last step.
     pub fn gate(&self, now: Stamp, has_prior: bool) -> PoseGate {
         let is_first = self.belief.stamp.is_none();
         let elapsed = self.last.as_ref().map_or(f64::INFINITY, |last| (now - last.anchored.stamp).max(0.0));

@@ -1,8 +1,8 @@
-//! How well a frame was located.
+//! Tracking status of a frame.
 
 use serde::{Deserialize, Serialize};
 
-/// How well the last frame was located.
+/// Tracking status of the last frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Tracking {

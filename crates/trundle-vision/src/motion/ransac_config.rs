@@ -37,10 +37,10 @@ impl Default for RansacConfig {
 }
 
 impl RansacConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is outside the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
         if !(self.confidence > 0.0 && self.confidence < 1.0) {
             return Err(Invalid::new("ransac.confidence", self.confidence, "", "above 0, below 1"));

@@ -28,7 +28,7 @@ impl Default for RefineConfig {
 }
 
 impl RefineConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When `steps` is zero or another number is not positive.

@@ -3,26 +3,25 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
-/// How [`OrbExtractor`](crate::OrbExtractor) finds features.
+/// Settings of [`OrbExtractor`](crate::OrbExtractor).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct OrbConfig {
-    /// Features an image at most, 1 to 100000. Default 1000 \[MurArtal17\].
+    /// Maximum number of features per image, 1 to 100000. More track better and take longer. Default 1000 \[MurArtal17\].
     pub features: usize,
-    /// Levels of the image pyramid, 1 to 32. Default 8 \[Rublee11\].
+    /// Number of levels of the image pyramid, 1 to 32. More levels match over larger changes of distance. Default 8 \[Rublee11\].
     pub levels: usize,
     /// Ratio of the sizes of neighbouring levels, above 1, at most 2. Default 1.2 \[Rublee11\].
     pub scale_factor: f64,
-    /// A corner's nine neighbours differ from it by more than this, grey values, 1 to 254. Default 20 \[Rublee11\].
+    /// Smallest difference between a corner and nine adjacent pixels of its circle, grey values, 1 to 254. A smaller threshold finds weaker
+    /// corners. Default 20 \[Rublee11\].
     pub fast_threshold: u8,
-    /// Threshold for a corner if a cell would stay empty, grey values, 1 to `fast_threshold`. Default 7 \[MurArtal17\].
+    /// Threshold in cells without a corner at `fast_threshold`, grey values, 1 to `fast_threshold`. Default 7 \[MurArtal17\].
     pub fast_min_threshold: u8,
-    /// Side of the cells in which the lower threshold is resorted to, px of the level, 8 to 65535. Default 32: about the size
-    /// of a descriptor's patch.
+    /// Side of the cells for the lower threshold, px of the level, 8 to 65535. Default 32: about the size of a descriptor's patch.
     pub cell_px: usize,
-    /// Smallest gradient in every direction of the smoothed image around a corner (15 x 15 px of its level), root mean square, in
-    /// standard deviations of the image's own noise per px, 0 to 100. 0 accepts corners of noise and steps along edges too.
-    /// Default 0.5. Source: ours, swept on simulated drives.
+    /// Smallest root mean square gradient around a corner (15 x 15 px of its level) in any direction, in standard deviations of the image's
+    /// noise per px, 0 to 100. With 0, corners of noise and points along edges are accepted. Default 0.5 (ours, swept on simulated drives).
     pub min_texture: f64,
 }
 
@@ -41,13 +40,13 @@ impl Default for OrbConfig {
 }
 
 impl OrbConfig {
-    /// Nearer than this to the border, px of its octave, no feature is found: there is nothing to describe it by.
+    /// Distance from the border without features, px of the octave: descriptors need the surroundings.
     pub const MARGIN: usize = super::patch::BORDER_PX;
 
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is outside the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("orb.features", self.features as f64, "", 1.0, 100_000.0)?;
         require_in("orb.levels", self.levels as f64, "", 1.0, 32.0)?;

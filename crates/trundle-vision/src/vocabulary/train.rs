@@ -31,7 +31,7 @@ impl Default for VocabularyConfig {
 }
 
 impl VocabularyConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
     /// When a number is outside its range.

@@ -12,6 +12,8 @@ use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid};
 const CASE_COUNT: u64 = 1_000_000;
 /// Poses along a swept path at which the checker measures.
 const SAMPLES_PER_PATH: usize = 24;
+/// Lower left corner of the map, m.
+const MAP_ORIGIN_M: Vector2 = Vector2::new(-0.7, 0.4);
 /// Rounding of the checker, m.
 const TOLERANCE_M: f64 = 1e-6;
 
@@ -111,15 +113,17 @@ fn case(index: u64) -> Case {
     let ranges: Vec<f64> = (0..beams).map(|_| draw.within(0.05, 1.6)).collect();
     let odom_at_scan = draw.pose(3.0);
     let moved = Pose2::new(draw.within(-0.1, 0.1), draw.within(-0.02, 0.02), draw.within(-0.2, 0.2));
-    let map_from_base = Pose2::new(draw.within(0.5, 1.5), draw.within(0.5, 1.5), draw.within(-3.2, 3.2));
-    let geometry = GridGeometry::new(0.1, Vector2::zeros(), 20, 20).unwrap();
+    let in_map = Vector2::new(draw.within(0.5, 1.5), draw.within(0.5, 1.5)) + MAP_ORIGIN_M;
+    let map_from_base = Pose2::new(in_map.x, in_map.y, draw.within(-3.2, 3.2));
+    let geometry = GridGeometry::new(0.1, MAP_ORIGIN_M, 20, 20).unwrap();
     let mut grid = OccupancyGrid::filled(geometry, Cell::Free);
     for _ in 0..draw.below(4) {
         let (col, row) = (draw.below(20) as usize, draw.below(20) as usize);
         grid.set(CellIndex { col, row }, Cell::Occupied);
     }
-    let unconfirmed =
-        (0..draw.below(3)).map(|_| Vector2::new(draw.within(0.0, 2.0), draw.within(0.0, 2.0))).collect();
+    let unconfirmed = (0..draw.below(3))
+        .map(|_| Vector2::new(draw.within(0.0, 2.0), draw.within(0.0, 2.0)) + MAP_ORIGIN_M)
+        .collect();
     Case {
         config: config(draw),
         footprint: footprint(draw),
@@ -167,7 +171,7 @@ impl Case {
         for (row, col) in (0..20).flat_map(|row| (0..20).map(move |col| (row, col))) {
             if self.grid.get(CellIndex { col, row }) == Cell::Occupied {
                 let centre = Vector2::new((col as f64 + 0.5) * 0.1, (row as f64 + 0.5) * 0.1);
-                memory.push((to_base(centre), 0.05));
+                memory.push((to_base(MAP_ORIGIN_M + centre), 0.05));
             }
         }
         let reach = self.config.memory_reach + self.footprint.circumscribed_radius();

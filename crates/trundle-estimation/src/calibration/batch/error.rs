@@ -18,10 +18,10 @@ pub enum CalibrationError {
         /// The remedy.
         advice: &'static str,
     },
-    /// The motion does not show a value.
+    /// A value cannot be observed from the motion.
     #[error("{what} cannot be observed: {quantity} is {found:.3} {unit}, expected {expected}; {advice}")]
     NotObservable {
-        /// The value.
+        /// Name of the value.
         what: &'static str,
         /// The quantity that decides.
         quantity: &'static str,

@@ -1,9 +1,9 @@
 //! Height, pitch and roll of a camera from the floor in its depth images.
 //!
 //! Problem: the floor's plane in the camera frame from depth images with walls and objects in them. Idea: a plane `q * p = 1` gives an
-//! inverse depth `1/z = q * ray`, linear in q. Consensus of three pixels proposes a floor for each image \[Fischler81\]; the median over
-//! the images is right if most proposals are. From the median, each image's floor is refined by least squares on the inverse depth. Cost:
-//! 500 planes over some 1,000 samples per image.
+//! inverse depth `1/z = q * ray`, linear in q. RANSAC with planes through three pixels proposes a floor for each image \[Fischler81\]. The
+//! median over the images is correct if more than half of the proposals are. Starting there, each image's floor is refined by least squares
+//! on the inverse depth. Cost: 500 planes over some 1,000 samples per image.
 
 use super::estimate::Estimate;
 use super::planar_track::tilt_of;
@@ -30,15 +30,15 @@ pub struct FloorMount {
     pub pitch: Estimate,
     /// Roll around the optical axis, rad.
     pub roll: Estimate,
-    /// Images that show the floor.
+    /// Number of images with a visible floor.
     pub images: usize,
 }
 
-/// Pixels from one sample to the next, across and down. Source: ours; about 2,000 samples of a Kinect V2.
+/// Distance of neighbouring samples along rows and columns, px. Source: ours; about 2,000 samples of a Kinect V2.
 const SAMPLE_STEP_PX: usize = 10;
 /// Largest depth of a sample: 4 m. Source: ours; the noise of depth grows with its square.
 const MAX_DEPTH_M: f64 = 4.0;
-/// Planes tried in an image. Source: \[Fischler81\]: three of 20 % floor pixels are found with 98 % probability.
+/// Maximum number of planes tried per image. Source: \[Fischler81\]: three of 20 % floor pixels are found with 98 % probability.
 const MAX_PLANE_TRIALS: usize = 500;
 /// Largest distance of a supporting point from the plane: 0.03 m. Source: ours.
 const SUPPORT_DISTANCE_M: f64 = 0.03;
@@ -53,11 +53,11 @@ const MAX_TILT_ERROR_RAD: f64 = 0.35;
 const MIN_HEIGHT_M: f64 = 0.05;
 /// Highest camera: 3 m. Source: the range of `mount.z_m`.
 const MAX_HEIGHT_M: f64 = 3.0;
-/// Bias of the height that all images share (one sigma): 1 mm. Source: recordings round depth to 1 mm.
+/// Common bias of the height in all images (one sigma): 1 mm. Source: recordings round depth to 1 mm.
 const HEIGHT_BIAS_M: f64 = 0.001;
-/// Bias of pitch and roll that all images share (one sigma): 0.1 deg. Source: the simulated Kinect V2.
+/// Common bias of pitch and roll in all images (one sigma): 0.1 deg. Source: the simulated Kinect V2.
 const TILT_BIAS_RAD: f64 = 0.0017;
-/// Rounds of the refinement. Source: ours.
+/// Number of rounds of the refinement. Source: ours.
 const REFINEMENT_ROUNDS: usize = 5;
 /// Largest angle of an image's floor to the median: 2 deg. Source: ours; the noise of a depth image is below 0.5 deg.
 const MAX_ANGLE_TO_MEDIAN_RAD: f64 = 0.035;
@@ -93,7 +93,7 @@ impl FloorSearch {
         (self.images.len(), with_depth.count())
     }
 
-    /// The floor in each image that shows the floor.
+    /// The floor of each image with a visible floor.
     #[must_use]
     pub fn views(&self) -> Vec<FloorView> {
         let Some(median) = self.median() else { return Vec::new() };
@@ -118,7 +118,7 @@ impl FloorSearch {
 }
 
 impl FloorView {
-    /// The plane with the most support and a tilt near the expected one; `None` without visible floor.
+    /// The plane with the largest support and a tilt near the expected one; `None` without visible floor.
     fn propose(samples: &[Vector3], expected_up: Vector3) -> Option<Self> {
         if samples.len() < MIN_SAMPLES {
             return None;

@@ -5,7 +5,7 @@ use trundle_core::{GyroRate, Stamp};
 /// Integral of the gyro's rate over a recording.
 ///
 /// A reading is the mean rate since the previous one: the integral is exact at the readings and linear between them. A gap splits the
-/// integral: no turn is known across it.
+/// integral, since the turn across it is unknown.
 #[derive(Debug, Clone, Default)]
 pub struct GyroAngle {
     readings: Vec<Reading>,
@@ -16,9 +16,9 @@ struct Reading {
     stamp: Stamp,
     /// Integral up to the stamp, rad.
     angle: f64,
-    /// Mean rate since the reading before, rad/s.
+    /// Mean rate since the previous reading, rad/s.
     rate: f64,
-    /// Gaps before the reading.
+    /// Number of gaps before the reading.
     gaps: usize,
 }
 

@@ -1,7 +1,7 @@
 //! Delay of the image stamps against the gyro.
 //!
 //! Problem: the difference between the stamp of an image and its exposure. Idea: camera and gyro measure the same turns. The delay is the
-//! shift of the gyro at which both agree. A search over shifts finds the start; each shift is scored by the correlation of the turns.
+//! time shift of the gyro at which both agree. A search over shifts finds the start; each shift is scored by the correlation of the turns.
 //! Gauss-Newton refines delay, gyro scale and gyro bias together \[Furgale13\] (the same model, without splines). Cost: one pass over the
 //! images for each of 200 shifts.
 //!
@@ -52,7 +52,7 @@ const MIN_CORRELATION: f64 = 0.8;
 const MAX_SIGMA_S: f64 = 0.005;
 /// Smallest noise of a camera's turn from image to image: 0.05 mrad. Source: ours.
 const MIN_TURN_SIGMA_RAD: f64 = 5e-5;
-/// Rounds of Gauss-Newton. Source: ours; the delay changes by less than 0.01 ms after four.
+/// Number of Gauss-Newton rounds. Source: ours; the delay changes by less than 0.01 ms after four.
 const NEWTON_ROUNDS: usize = 6;
 
 /// The delay by the camera's poses (`visual_from_camera`, by rising stamp), the vertical `axis` in the camera's frame
@@ -108,7 +108,7 @@ fn not_observable(delay: &ImageDelay) -> CalibrationError {
     }
 }
 
-/// Turn of the gyro over the time of a camera's turn, the images `delay` s earlier than their stamps.
+/// Turn by the gyro over the time of a camera's turn, with exposures `delay` s before the images' stamps.
 fn gyro_turn(turn: &Turn, gyro: &GyroAngle, delay: f64) -> Option<f64> {
     gyro.turn(turn.from.after(-delay), turn.to.after(-delay))
 }

@@ -5,7 +5,7 @@ use nalgebra::{SMatrix, SVector};
 /// Residual, in standard deviations, above which an equation loses weight: 1.345, which keeps 95 % efficiency on Gaussian
 /// noise. Source: \[Huber64\].
 const HUBER_SIGMAS: f64 = 1.345;
-/// Rounds of reweighting. Source: ours; the weights change by less than 1 % after five.
+/// Number of reweighting rounds. Source: ours; the weights change by less than 1 % after five.
 const REWEIGHTING_ROUNDS: usize = 8;
 
 /// Linear equations `row * x = right` with one noise level, and priors with known noise.

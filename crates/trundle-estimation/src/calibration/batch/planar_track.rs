@@ -7,7 +7,7 @@ use trundle_core::{Pose3, Stamp, Vector2, Vector3, wrap_angle};
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PlanarPose {
     pub(super) stamp: Stamp,
-    /// In a level frame at rest, m.
+    /// Position in a fixed level frame, m.
     pub(super) position: Vector2,
     /// Heading of the levelled camera, rad, not wrapped.
     pub(super) heading: f64,

@@ -5,9 +5,9 @@ use super::wheel_angles::{WheelAngles, WheelTurn};
 use nalgebra::Rotation2;
 use trundle_core::Vector2;
 
-/// Turn that completes a segment: 1 rad. Source: ours; shorter segments determine the camera's offset poorly.
+/// Turn at which a segment ends: 1 rad. Source: ours; shorter segments determine the camera's offset poorly.
 const MAX_TURN_RAD: f64 = 1.0;
-/// Distance of the camera that completes a segment: 0.4 m. Source: ours.
+/// Distance of the camera at which a segment ends: 0.4 m. Source: ours.
 const MAX_DISTANCE_M: f64 = 0.4;
 /// Longest segment: 4 s. Source: ours.
 const MAX_DURATION_S: f64 = 4.0;
@@ -30,7 +30,7 @@ pub(super) struct Segment {
 #[derive(Debug, Clone, Copy)]
 struct Step {
     wheels: WheelTurn,
-    /// Heading in the middle of the step less the heading of the segment's start, rad.
+    /// Heading in the middle of the step minus that at the segment's start, rad.
     heading: f64,
     /// Turn of the step, rad.
     turn: f64,
@@ -49,7 +49,7 @@ impl Segment {
     }
 }
 
-/// The segments of a trajectory, one after the other; without those in which the robot rests.
+/// The successive segments of a trajectory, without those of a robot at rest.
 pub(super) fn segments(track: &[PlanarPose], wheels: &WheelAngles) -> Vec<Segment> {
     let mut found = Vec::new();
     let mut open: Vec<(PlanarPose, WheelTurn)> = Vec::new();

@@ -1,4 +1,4 @@
-//! The fits on drives whose wheels, gyro, mount and delay are known.
+//! The fits on drives with known wheels, gyro, mount and delay.
 
 use super::error::CalibrationError;
 use super::estimate::Estimate;
@@ -159,7 +159,7 @@ fn a_drive_without_turns_shows_no_delay_and_says_so() {
 #[test]
 fn a_constant_turn_rate_shows_no_delay() {
     let Drive { poses, gyro, .. } = drive(&Truth::default(), &[(20.0, 0.0, 0.6)]);
-    // The start of the turn is cut off.
+    // Poses and gyro without the start of the turn.
     let (poses, gyro) = (&poses[40..], GyroAngle::new(&gyro[100..]));
     let axis = turn_axis(poses, Vector3::new(0.0, -1.0, 0.0)).unwrap();
     assert!(estimate_image_delay(poses, axis, &gyro).is_err());

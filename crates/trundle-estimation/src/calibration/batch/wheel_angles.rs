@@ -15,7 +15,7 @@ struct Reading {
     left: f64,
     /// rad.
     right: f64,
-    /// Gaps before the reading.
+    /// Number of gaps before the reading.
     gaps: usize,
 }
 
@@ -28,7 +28,7 @@ pub(super) struct WheelTurn {
     pub(super) right: f64,
 }
 
-/// Longest time between two readings: 0.5 s. Across a longer one counters may wrap. Source: default of `odometry.max_gap_s`.
+/// Longest time between two readings: 0.5 s. Counters may wrap in a longer time. Source: default of `odometry.max_gap_s`.
 const MAX_GAP_S: f64 = 0.5;
 
 impl WheelAngles {

@@ -2,8 +2,8 @@
 //!
 //! Problem: the wheels' radii r_L and r_R, the wheelbase b, and the camera's offset m and yaw a on the base. The data are the turns of the
 //! wheels and the camera's trajectory. Idea \[Censi13\]: the turn of a segment is linear in J_L = -r_L / b and J_R = r_R / b. Given these,
-//! the camera's displacement is linear in (b cos a, -b sin a, R(-a) m). Two linear least-squares problems, no start values. Cost:
-//! O(segments).
+//! the camera's displacement is linear in (b cos a, -b sin a, R(-a) m). Both are linear least-squares problems without initial values.
+//! Cost: O(segments).
 //!
 //! | \[Censi13\] | here | unit |
 //! |---|---|---|
@@ -49,12 +49,12 @@ pub struct WheelCameraFit {
 
 /// Smallest number of segments: 8, about 3 m or a full turn. Source: ours.
 const MIN_SEGMENTS: usize = 8;
-/// Standard deviation of the wheels and the wheelbase in use, ratio. Source: ours; a value is off by a third at most.
+/// Prior standard deviation of radii and wheelbase, ratio. Source: ours; the error of a value is at most a third.
 const DRIVE_PRIOR_RATIO: f64 = 0.3;
 /// Standard deviation of the difference of both radii, ratio: 0.01. It determines the result if the robot only turns on the spot. Source:
 /// ours, three times the unequal diameters of \[Borenstein96\].
 const RADIUS_DIFFERENCE_RATIO: f64 = 0.01;
-/// Standard deviation of the camera's offset in use: 1 m. Source: ours, half of the range of a mount.
+/// Prior standard deviation of the camera's offset: 1 m. Source: ours, half of the range of a mount.
 const OFFSET_PRIOR_M: f64 = 1.0;
 /// Smallest noise of a segment's turn: 0.5 mrad. Source: ours.
 const MIN_TURN_SIGMA_RAD: f64 = 5e-4;

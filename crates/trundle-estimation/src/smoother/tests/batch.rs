@@ -1,4 +1,4 @@
-//! A window against a dense batch solution: residuals written again, numeric derivatives, dense matrices.
+//! A window against a dense batch solution: independent residuals, numeric derivatives, dense matrices.
 
 use super::super::error_process::ErrorStart;
 use super::super::fixed_lag::Smoother;
@@ -72,7 +72,7 @@ fn link(smoother: &Smoother, values: &Values, k: usize) -> Vec<f64> {
     let (keyframe, odometry) = (&window.keyframes[k], smoother.motions.config());
     let (from, to, border) = (&values.chain[k - 1], &values.chain[k], &values.border);
     let at = [from.bias, border.scale, border.wheels.x, border.wheels.y, border.wheels.z].into();
-    // Integrated at the values themselves: no derivative by the calibration is in use.
+    // Integrated at the values themselves, without derivatives by the calibration.
     let motion = smoother.motions.between(window.keyframes[k - 1].stamp, keyframe.stamp, at);
     let off = (motion.motion.inverse() * from.pose.inverse() * to.pose).log();
     let mut all = whitened(off, &keyframe.motion.noise());
@@ -93,7 +93,7 @@ fn link(smoother: &Smoother, values: &Values, k: usize) -> Vec<f64> {
         }
     };
     let correlated = (-keyframe.motion.distance / distance - keyframe.motion.turned / turn).exp();
-    // The part of the map that is turned shifts a displaced pose.
+    // A rotated part of the map shifts a displaced pose.
     let shift = step.displacement - Pose2::new(0.0, 0.0, -from.error.z).rotate(step.displacement);
     let expected = (from.error + Vector3::new(shift.x, shift.y, 0.0)) * keep;
     let noise = match step.start {

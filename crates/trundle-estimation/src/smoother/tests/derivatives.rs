@@ -8,7 +8,7 @@ use crate::odometry_config::OdometryConfig;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use trundle_core::Pose2;
 
-/// Step of the differences, and the largest error of a derivative, relative.
+/// Step of the differences, and largest relative error of a derivative.
 const DIFFERENCE_STEP: f64 = 1e-6;
 const SLOPE_TOLERANCE: f64 = 2e-5;
 

@@ -9,7 +9,7 @@ use crate::odometry_config::OdometryConfig;
 use nalgebra::{Matrix3, Matrix6, Vector3};
 use trundle_core::{DifferentialDrive, Pose2, Pose3, Stamp};
 
-/// A disturbance that repeats after a long time, -1 to 1.
+/// A disturbance with a long period, -1 to 1.
 pub(super) fn wave(i: i64, phase: f64) -> f64 {
     (i as f64 * 0.77 + phase * 11.0).sin()
 }
@@ -29,7 +29,7 @@ pub(super) fn increment(i: i64) -> MotionIncrement {
     }
 }
 
-/// Drives for `steps` readings of the wheels, with images and scan matches that err.
+/// Drives for `steps` readings of the wheels, with errors of images and scan matches.
 pub(super) fn driven(steps: i64) -> Smoother {
     let window = WindowConfig { length: 60.0, keyframe_distance: 0.03, ..WindowConfig::default() };
     let config = SmootherConfig { window, ..SmootherConfig::default() };

@@ -30,7 +30,7 @@ proptest! {
         prop_assert!(covariance(motion).min() > 0.0 && unknown_motion_covariance().diagonal().min() > 0.0);
     }
 
-    /// Whatever the matches say, the learnt errors lie between the minimum and the configured ones.
+    /// For any matches, the learnt errors are between the minimum and the configured ones.
     #[test]
     fn learnt_errors_stay_within_the_configured_ones(
         innovations in prop::collection::vec(any_innovation(), 0..80), doubt_count in 0..5_usize,
@@ -47,7 +47,7 @@ proptest! {
         prop_assert_eq!(OdometryNoise::from_numbers(noise.numbers()), noise);
     }
 
-    /// The prior bounds the bias: no sequence of matches turns the odometry upside down.
+    /// The prior bounds the bias for any sequence of matches.
     #[test]
     fn a_learnt_bias_is_a_small_part_of_the_motion(
         steps in prop::collection::vec((any_motion(), any_innovation()), 1..60), motion in any_motion(),

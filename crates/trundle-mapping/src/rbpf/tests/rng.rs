@@ -54,7 +54,7 @@ fn the_numbers_of_a_particle_depend_on_seed_update_and_particle_alone() {
     assert!(all.windows(2).all(|pair| pair[0] != pair[1]), "streams of different particles differ");
 }
 
-/// The same numbers of 1000 particles whoever draws first: the order of the work does not matter.
+/// The numbers of 1000 particles do not depend on the order of drawing.
 #[test]
 fn the_order_of_the_particles_does_not_matter() {
     let draw = |particle: usize| ParticleRng::new(7, 9, particle).normal3();

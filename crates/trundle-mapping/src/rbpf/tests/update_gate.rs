@@ -1,4 +1,4 @@
-//! The gate that chooses scans: distance, turn, time, and what the odometry cannot be.
+//! The gate that selects scans: distance, turn, time, and impossible odometry.
 
 use crate::particle_config::ParticleConfig;
 use crate::rbpf::scan_update::Refusal;

@@ -1,8 +1,8 @@
-//! Budget of a search in lookups of the pyramid: the same on every machine, unlike time.
+//! Budget of a search in lookups of the pyramid, which does not depend on the machine's speed.
 
 use std::cell::Cell;
 
-/// Lookups that a search may still make.
+/// Remaining number of lookups of a search.
 #[derive(Debug)]
 pub(crate) struct LookupBudget {
     given: u64,
@@ -15,22 +15,22 @@ impl LookupBudget {
         Self { given: lookups, left: Cell::new(lookups) }
     }
 
-    /// Budget that no search spends.
+    /// Unlimited budget.
     pub(crate) fn unlimited() -> Self {
         Self::new(u64::MAX)
     }
 
-    /// Takes `lookups` out, or all that is left.
+    /// Subtracts `lookups`, down to zero.
     pub(crate) fn take(&self, lookups: usize) {
         self.left.set(self.left.get().saturating_sub(lookups as u64));
     }
 
-    /// Whether nothing is left. A search that spent it may have missed the best place.
+    /// Whether the budget is spent. The search may then have missed the best place.
     pub(crate) fn is_spent(&self) -> bool {
         self.left.get() == 0
     }
 
-    /// Lookups taken out.
+    /// Number of lookups used.
     pub(crate) fn used(&self) -> u64 {
         self.given - self.left.get()
     }

@@ -1,4 +1,4 @@
-//! Where in a map, or in a part of it, a scan fits best: correlative search by branch and bound (\[Hess16\], \[Olson09\]).
+//! Best pose of a scan in a map or a part of it: correlative search by branch and bound (\[Hess16\], \[Olson09\]).
 
 mod lookup_budget;
 mod pyramid;

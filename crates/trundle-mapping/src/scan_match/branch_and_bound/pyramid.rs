@@ -4,14 +4,14 @@ use trundle_grid::tiles::{Tile, TileMap};
 
 /// Levels above the finest: squares of 2, 4, 8 and 16 samples. Source: ours.
 pub(crate) const PYRAMID_LEVELS: usize = 4;
-/// Samples of a tile's side.
+/// Number of samples along a tile's side.
 const SAMPLES_PER_TILE_SIDE: usize = Tile::SIDE / 2;
 /// Margin about the map [samples]: side of the largest square.
 const MARGIN_SAMPLES: usize = 1 << PYRAMID_LEVELS;
 /// Maximum number of samples. A larger map (2 km x 2 km at 5 cm) has no pyramid. Source: ours.
 const MAX_SAMPLES: usize = 64_000_000;
 
-/// The coarse likelihood of a map, and for each power of two the greatest within the square that begins at a sample.
+/// The coarse likelihood of a map, and for each power of two the maximum within the square that begins at a sample.
 #[derive(Debug, Clone)]
 pub(crate) struct Pyramid {
     /// The sample at the lower left.
@@ -70,7 +70,7 @@ impl Pyramid {
     }
 }
 
-/// The greatest of four samples `step` apart.
+/// Maximum of four samples `step` apart.
 fn coarser(finer_cells: &[u8], width: usize, height: usize, step: usize) -> Vec<u8> {
     let mut rows = finer_cells.to_vec();
     for row in rows.chunks_exact_mut(width) {

@@ -9,11 +9,11 @@ use trundle_core::{Pose2, wrap_angle};
 pub(crate) struct Query<'a> {
     /// Hits, base frame, cells.
     pub(crate) points: &'a [(f32, f32)],
-    /// The middle of the search: cells of the map, rad.
+    /// Centre of the search: cells of the map, rad.
     pub(crate) guess: Pose2,
-    /// How far to each side, cells.
+    /// Reach of the search along x and y, cells.
     pub(crate) reach: (f64, f64),
-    /// How far to turn, rad.
+    /// Reach of the search in heading, rad.
     pub(crate) turn_reach: f64,
     pub(crate) turn_step: f64,
     /// One sigma of the guess: cells, cells, rad; infinite if nothing is known.
@@ -33,7 +33,7 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// Whether a pose is another one: more than `apart` cells or `turned` rad away.
+    /// Whether a pose is more than `apart` cells or `turned` rad away.
     pub(crate) fn is_apart(&self, pose: Pose2, apart: f64, turned: f64) -> bool {
         (self.pose.position() - pose.position()).norm() > apart
             || wrap_angle(self.pose.theta - pose.theta).abs() > turned
@@ -57,8 +57,8 @@ struct Turned {
 }
 
 impl Pyramid {
-    /// The best pose for a query that is apart (cells, rad) from all of `known`, by branch and bound: no pose of the lattice
-    /// is better. `None` if all score less than `least`. A search that spends `budget` ends with the best pose so far.
+    /// The best pose of the lattice for a query, apart (cells, rad) from all of `known`, by branch and bound. `None` if all poses score
+    /// less than `least`. A search that spends `budget` ends with the best pose so far.
     pub(crate) fn search(
         &self,
         query: &Query<'_>,

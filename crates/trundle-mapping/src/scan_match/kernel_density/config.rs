@@ -3,35 +3,38 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 
-/// How a scan is laid onto the map.
+/// Alignment of a scan with the map.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ScanMatchConfig {
-    /// The guess may be off by this much along x and y each, m, 0 to 1. Default 0.15.
+    /// Largest error of the guess along x and along y, m, 0 to 1. A larger window corrects larger errors, takes longer, and is less safe
+    /// among similar walls. Default 0.15.
     pub window: f64,
-    /// The guess may be turned by this much, deg, 0 to 45. Default 6.
+    /// Largest error of the guess's heading, deg, 0 to 45. Default 6.
     pub window_deg: f64,
-    /// Step of the first search, m, 0.005 to 0.5. Default 0.05: the map's resolution.
+    /// Step of the coarse search in position, m, 0.005 to 0.5. A smaller step takes longer. Default 0.05: the map's resolution.
     pub step: f64,
-    /// Step of the first search, deg, 0.05 to 10. Default 2: 0.1 m at 3 m.
+    /// Step of the coarse search in heading, deg, 0.05 to 10. Default 2: 0.1 m at 3 m.
     pub step_deg: f64,
     /// Sigma of the likelihood field of the search, m, 0.01 to 1. Default 0.1: two steps.
     pub search_sigma: f64,
     /// Sigma of the kernels of the refinement, m, 0.01 to 1. Default 0.06: a little more than a cell, so that a row of
     /// cells makes a smooth wall.
     pub kernel_sigma: f64,
-    /// Hits nearer to each other than this count once, m, 0.001 to 1. Default 0.05.
+    /// Smallest distance of two hits that both count, m, 0.001 to 1. Default 0.05.
     pub spacing: f64,
-    /// Fewest hits on known ground, 3 to 10000. Default 30.
+    /// Smallest number of hits on known ground, 3 to 10000. With fewer the scan is not matched. Default 30.
     pub min_points: usize,
-    /// Least part of those hits that the map explains, 0 to 1. Default 0.6; a perfect fit has 0.9.
+    /// Smallest fraction of the hits on known ground that the map explains, 0 to 1. Below it the match is refused. Default 0.6; a perfect
+    /// fit has 0.9.
     pub min_score: f64,
-    /// A direction is degenerate when it is held by less than this part of the hits, 0 to 1. Default 0.05.
+    /// Fraction of the hits' information below which a direction is degenerate, 0 to 1. A degenerate direction keeps the guess. Default
+    /// 0.05.
     pub degenerate_below: f64,
-    /// The covariance is that of independent hits with the kernel's sigma, times this squared, 1 to 100. Default 3: the
-    /// hits of one wall err alike.
+    /// Factor on the sigmas of a match, relative to independent hits with the kernel's sigma, 1 to 100. A larger factor gives matches less
+    /// weight in localization. Default 3: errors of one wall's hits are correlated.
     pub inflation: f64,
-    /// Sigma of a degenerate direction, m, 0.1 to 100. Default 1: nothing is known of it.
+    /// Sigma of a degenerate direction, m, 0.1 to 100. Default 1: the scan does not determine it.
     pub unknown_sigma: f64,
 }
 
@@ -55,10 +58,10 @@ impl Default for ScanMatchConfig {
 }
 
 impl ScanMatchConfig {
-    /// Passes a valid configuration through.
+    /// Returns a valid configuration unchanged.
     ///
     /// # Errors
-    /// When a number is out of the range that its field names.
+    /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
         require_in("window", self.window, "m", 0.0, 1.0)?;
         require_in("window_deg", self.window_deg, "deg", 0.0, 45.0)?;

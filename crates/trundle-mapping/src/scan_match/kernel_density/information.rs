@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, SymmetricEigen, U3, Vector3};
 /// directions.
 #[derive(Debug, Clone)]
 pub(crate) struct Information {
-    /// B of displacement of the base = B * displacement of the centroid, turns in metres.
+    /// Matrix B in: displacement of the base = B * displacement of the centroid, turns in metres.
     base_from_centroid: Matrix3<f64>,
     /// Inverse of `base_from_centroid`.
     centroid_from_base: Matrix3<f64>,
@@ -66,7 +66,7 @@ impl Information {
         (covariance + covariance.transpose()) * 0.5
     }
 
-    /// The matrix with the same directions whose eigenvalues are a function of the information's, in m and rad.
+    /// The matrix with the information's eigenvectors and a function of its eigenvalues, in m and rad.
     fn by_direction(&self, function: impl Fn(f64) -> f64) -> Matrix3<f64> {
         let directions = self.base_from_centroid * self.eigen.eigenvectors;
         let values = Matrix3::from_diagonal(&self.eigen.eigenvalues.map(function));

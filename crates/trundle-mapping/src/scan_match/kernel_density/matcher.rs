@@ -12,7 +12,7 @@ use nalgebra::Matrix3;
 use trundle_core::{Invalid, Pose2, Scan, Vector2};
 use trundle_grid::{LikelihoodField, SurfacePoints};
 
-/// Lays scans onto the map.
+/// Matches scans with the map.
 ///
 /// Problem: the pose near a guess at which a scan agrees best with the map, and its covariance. First, all poses of a small window are
 /// scored on a likelihood field, coarse to fine. Then Gauss-Newton on the kernel density of the map's obstacles refines the pose to less

@@ -21,8 +21,8 @@ const MIN_STEP: f64 = 1e-5;
 /// Minimum lever of the hits \[m\]. Hits nearer to each other do not determine the heading. Source: ours.
 pub(crate) const MIN_LEVER_M: f64 = 0.1;
 
-/// Gauss-Newton on the kernel density of the sites: each hit is pulled to the kernel-weighted mean of the sites about it
-/// (mean shift). The spread of those sites limits the pull to the normal of a wall. Directions without information do not change.
+/// Gauss-Newton on the kernel density of the sites: each hit moves to the kernel-weighted mean of the sites around it (mean shift). The
+/// spread of those sites limits the pull to the normal of a wall. Directions without information do not change.
 pub(crate) fn refine(
     config: &ScanMatchConfig,
     sites: &SurfacePoints,
@@ -70,7 +70,7 @@ fn equations(
 }
 
 struct PointResidual {
-    /// To the mean of the sites, m.
+    /// Vector to the mean of the sites, m.
     shift: Vector2,
     /// Weight of the residual by direction: 1 across a wall, 0 along it.
     stiffness: Matrix2<f64>,

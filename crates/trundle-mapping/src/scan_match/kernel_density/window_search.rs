@@ -29,7 +29,7 @@ pub(crate) fn search(
     fine.best(config, field, points, best, guess)
 }
 
-/// Poses around a middle, in equal steps of the map's x and y and of the heading.
+/// Poses around a centre, in equal steps of the map's x and y and of the heading.
 struct Lattice {
     step: f64,
     step_turn: f64,
@@ -69,7 +69,7 @@ impl Lattice {
     }
 }
 
-/// 0, 1, -1, 2, -2 and so on: of equal scores the pose nearest to the middle wins.
+/// 0, 1, -1, 2, -2 and so on: of equal scores the pose nearest to the centre wins.
 fn outward(reach: i32) -> impl Iterator<Item = i32> {
     std::iter::once(0).chain((1..=reach).flat_map(|i| [i, -i]))
 }

@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 use trundle_core::{Pose2, wrap_angle};
 use trundle_grid::tiles::TileWindow;
 
-/// A prior too wide to matter within the area: 10 cells and 0.3 rad.
+/// A prior so wide that it has no effect in the area: 10 cells and 0.3 rad.
 fn wide() -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector3::new(100.0, 100.0, 0.09))
 }

@@ -1,4 +1,4 @@
-//! A room without symmetry, its scans and its map, for the matcher's tests.
+//! A room without symmetry, with its scans and its map, for the matcher's tests.
 
 use crate::filter_models::FilterModels;
 use crate::particle_config::ParticleConfig;

@@ -7,27 +7,28 @@ use trundle_core::{Invalid, require_in, require_positive};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct CurveConfig {
-    /// Degree of each piece, 5 to 12. Default 5: the lowest that meets position, heading and curvature at both ends.
+    /// Degree of each polynomial piece, 5 to 12. Default 5: the lowest that meets position, heading and curvature at both ends.
     pub degree: usize,
-    /// Length below which the curve smooths the path instead of following it, m, above 0, at most 10. Default 0.5 (ours).
+    /// Length below which the curve smooths the path instead of following it, m, above 0, at most 10. A larger value cuts corners more.
+    /// Default 0.5 (ours).
     pub smoothing: f64,
     /// Longest part of the path for one piece, m, 0.1 to 100. Default 1 (ours).
     pub piece: f64,
-    /// Largest distance of a corridor's side from its segment, m, 0.1 to 10. Default 0.8 (ours).
+    /// Largest distance of a free corridor's side from its path segment, m, 0.1 to 10. Default 0.8 (ours).
     pub reach: f64,
-    /// Smallest tangent at the ends, as a share of unit speed (eps of \[Li18\]), 0.01 to 1. Default 0.7 (ours): a slower
-    /// parameter bends sharply.
+    /// Smallest tangent at the ends, as a fraction of unit speed (eps of \[Li18\]), 0.01 to 1. A smaller tangent allows sharp bends.
+    /// Default 0.7 (ours).
     pub min_tangent: f64,
-    /// Largest curvature, 1/m, 0.1 to 1000: a bound of the program. Where no curve keeps it, the robot turns in place or the path
-    /// is split. Default 8 (ours): a Kobuki still drives 0.36 m/s there.
+    /// Largest curvature, 1/m, 0.1 to 1000. Without a curve within this bound, the robot turns in place or the path is split. Default 8
+    /// (ours): a Kobuki still drives 0.36 m/s there.
     pub max_curvature: f64,
-    /// Largest ratio of the lengths of a curve into the end headings and of the path, 1 to 10; beyond it the robot turns in
-    /// place. Default 1.03 (ours): with the path itself within 2 % of the shortest, 5 % in all.
+    /// Largest ratio of the length of a curve with the end headings to that of the path, 1 to 10. Beyond it the robot turns in place.
+    /// Default 1.03 (ours): with the path within 2 % of the shortest, 5 % in total.
     pub detour: f64,
-    /// Angle between heading and path at the start above which the robot turns in place first, rad, 0 to pi. Default 60 deg (ours).
+    /// Angle between heading and path at the start above which the robot turns in place first, rad, 0 to pi. Default 1.047 (60 deg, ours).
     pub turn_first: f64,
-    /// Angle between path and goal heading above which the robot turns in place at the end, rad, 0 to pi. Default 100 deg (ours):
-    /// up to it the curve bends into the heading where it has the clearance.
+    /// Angle between path and goal heading above which the robot turns in place at the end, rad, 0 to pi. Below it the curve bends into the
+    /// heading if clearance permits. Default 1.745 (100 deg, ours).
     pub turn_last: f64,
 }
 

@@ -1,0 +1,18 @@
+//! The book: docs as HTML by mdbook, its links, and the commands that its pages show.
+
+mod build;
+mod commands;
+mod html_links;
+mod page_run;
+pub mod repository_links;
+
+use crate::program;
+use crate::workspace::Verdict;
+use std::path::Path;
+
+/// Runs the tested commands of the pages, then builds the book and checks its links.
+pub fn run(root: &Path) -> Verdict {
+    let trundle = program::release_trundle(root)?;
+    let do_commands_pass = commands::run(root, &trundle)?;
+    Ok(build::run(root)? && do_commands_pass)
+}

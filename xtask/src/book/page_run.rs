@@ -1,0 +1,64 @@
+//! One page's commands in an empty folder.
+
+use crate::program;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+/// Stands for any number of lines in an expected output.
+const ELLIPSIS: &str = "...";
+
+/// The state of a page: its folder, and what the last script printed.
+pub struct PageRun {
+    page: String,
+    folder: PathBuf,
+    path: OsString,
+    output: String,
+}
+
+impl PageRun {
+    /// A page that begins in an empty folder, with the program `trundle` first in the path.
+    pub fn new(root: &Path, trundle: &Path, page: &str) -> Result<Self, String> {
+        let folder = program::scratch(root, &format!("book-commands/{}", page.replace(['/', ':'], "-")))?;
+        let own = trundle.parent().map(Path::to_path_buf).unwrap_or_default();
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        let path = std::env::join_paths([own].into_iter().chain(std::env::split_paths(&path)))
+            .map_err(|e| format!("{}: {e}", trundle.display()))?;
+        Ok(Self { page: page.to_owned(), folder, path, output: String::new() })
+    }
+
+    /// Runs a script up to its first failing command. The inner error is the exit code with the output.
+    pub fn script(&mut self, text: &str) -> Result<Result<(), String>, String> {
+        let start = Instant::now();
+        let mut shell = Command::new("sh");
+        shell.args(["-e", "-u", "-c", text]).current_dir(&self.folder).env("PATH", &self.path);
+        let result = shell.stdin(Stdio::null()).output().map_err(|e| format!("cannot start sh: {e}"))?;
+        let (out, err) = (String::from_utf8_lossy(&result.stdout), String::from_utf8_lossy(&result.stderr));
+        self.output = format!("{out}{err}");
+        let seconds = start.elapsed().as_secs_f64();
+        println!("{seconds:8.1} s  {}: {}", self.page, text.lines().next().unwrap_or(""));
+        if result.status.success() {
+            return Ok(Ok(()));
+        }
+        let code = result.status.code().map_or("none (killed)".into(), |code| code.to_string());
+        Ok(Err(format!("exit code {code}, expected 0; the output:\n{}", self.output)))
+    }
+
+    /// Compares expected lines with the last output: the output has them in this order. Widths of blanks do not count.
+    pub fn compare(&self, expected: &str) -> Result<(), String> {
+        let mut lines = self.output.lines().map(single_blanks);
+        let expected =
+            expected.lines().map(single_blanks).filter(|line| !line.is_empty() && line != ELLIPSIS);
+        for line in expected {
+            if !lines.any(|found| found == line) {
+                return Err(format!("the output has no line {line:?} there:\n{}", self.output));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn single_blanks(line: &str) -> String {
+    line.split_whitespace().collect::<Vec<_>>().join(" ")
+}
