@@ -209,5 +209,10 @@ mod tests {
         let slow =
             SafetyAction::Slow(SlowReason::ObstacleAhead { distance: 0.5, at: Vector2::new(1.0, 0.0) });
         assert_eq!(slow.to_string(), "slow: an obstacle 0.50 m ahead");
+        let at = Vector2::new(0.31, -0.2);
+        let beside = SafetyAction::Stop(StopReason::ObstacleBeside { angle: 0.1, at });
+        assert_eq!(beside.to_string(), "stop: no room to turn, an obstacle at (0.31, -0.20) m from the base");
+        let now = SafetyAction::Stop(StopReason::StaleWheels { age: 0.0 });
+        assert_eq!(now.to_string(), "stop: the newest wheel reading is 0.00 s old");
     }
 }
