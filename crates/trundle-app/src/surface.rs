@@ -20,8 +20,8 @@ const MIN_DISTANCE_M: f64 = 0.1;
 const MIN_TURN_RAD: f64 = 0.087;
 /// Time since the last image that was used, above which an image is used \[s\]: what moves before a camera at rest disappears. Source: ours.
 const MAX_PAUSE_S: f64 = 1.0;
-/// Smallest connected part of the mesh, vertices: smaller ones are noise. Source: ours, 0.02 m^2 at voxels of 2 cm.
-const MIN_PART_VERTICES: usize = 50;
+/// Smallest connected part of the mesh \[m^2\]: smaller ones are noise. Source: ours, 50 vertices at voxels of 2 cm.
+const MIN_PART_AREA_M2: f64 = 0.02;
 /// Height up to which surfaces count in the height map \[m\]: tables do, ceilings do not. Source: ours.
 const HEIGHT_MAP_CEILING_M: f64 = 1.8;
 
@@ -52,6 +52,7 @@ pub fn surface_files(
     }
     let mut surface = Surface::new(request)?;
     let camera = input.camera.model.camera;
+    let is_stopped = stop::stopped().is_some();
     progress.begin(Some(input.len()));
     for (i, frame) in input.frames()?.enumerate() {
         let frame = frame?;
@@ -62,11 +63,13 @@ pub fn surface_files(
             surface.integrate(&image, &camera, pose)?;
         }
         progress.advance();
-        if stop::is_requested(|| format!("surface of {} of {} images", i + 1, input.len())) {
+        // A signal that ended the tracking does not end the surface of what was tracked; a second one ends the program.
+        if !is_stopped && stop::is_requested(|| format!("surface of {} of {} images", i + 1, input.len())) {
             break;
         }
     }
     progress.end();
+    surface.warn_if_full();
     surface.files(request, &input.path)
 }
 
@@ -118,7 +121,8 @@ impl Surface {
     }
 
     fn files(&self, request: &SurfaceRequest, input: &Path) -> Result<SurfaceFiles, AppError> {
-        let mesh = surface_mesh(&self.map).without_specks(MIN_PART_VERTICES);
+        let smallest = MIN_PART_AREA_M2 / self.map.config().voxel.powi(2);
+        let mesh = surface_mesh(&self.map).without_specks(smallest.ceil() as usize);
         if mesh.vertices.is_empty() {
             return Ok(SurfaceFiles {
                 files: Vec::new(),
@@ -157,6 +161,16 @@ impl Surface {
         )
     }
 
+    /// A warning if the map has no room for more.
+    fn warn_if_full(&self) {
+        if self.map.is_full() || self.voxels.as_ref().is_some_and(OccupiedVoxels::is_full) {
+            tracing::warn!(
+                "the surface is full: what later images show is missing; give larger voxels than {} m (--voxel)",
+                self.map.config().voxel
+            );
+        }
+    }
+
     fn rows(&self, mesh: &SurfaceMesh) -> Vec<Vec<String>> {
         let row = |name: &str, value: String| vec![name.to_owned(), value];
         vec![
@@ -187,10 +201,14 @@ fn heights_of(mesh: &SurfaceMesh, path: &Path, resolution: f64) -> Result<Vec<(P
         heights: &map.heights,
     };
     let written = height_files(path, &grid)?;
-    Ok(vec![
-        (path.to_owned(), written.picture),
-        (path.with_extension("yaml"), written.description.into_bytes()),
-    ])
+    Ok(vec![(path.to_owned(), written.picture), (description_of(path), written.description.into_bytes())])
+}
+
+/// The description beside a picture: `FILE.png.yaml`, which is no map's file.
+fn description_of(picture: &Path) -> PathBuf {
+    let mut name = picture.as_os_str().to_owned();
+    name.push(".yaml");
+    name.into()
 }
 
 fn data_of(mesh: &SurfaceMesh) -> SurfaceData<'_> {

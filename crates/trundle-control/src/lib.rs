@@ -38,7 +38,7 @@ pub use safety::hold::MotionHold;
 pub use safety::obstacles::{SafetyMemory, SafetyScan};
 pub use safety::safety_action::{SafetyAction, SafetyReport, SlowReason, StopReason};
 pub use safety::safety_config::SafetyConfig;
-pub use safety::safety_input::{MotionSense, SafetyInput};
+pub use safety::safety_input::{MotionSense, SafetyInput, is_stale};
 pub use safety::safety_monitor::SafetyMonitor;
 pub use safety::station_motion::StationMotion;
 pub use stabilization::stabilizer::{Stabilizer, StabilizerPhase, StabilizerReport};

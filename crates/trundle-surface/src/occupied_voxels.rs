@@ -49,6 +49,12 @@ impl OccupiedVoxels {
         self.resolution
     }
 
+    /// Whether no further voxel is taken.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.sums.len() >= MAX_VOXELS
+    }
+
     /// Known voxels by rising x, y, z, in units of their side. Voxel (0, 0, 0) has its lowest corner at the origin of the map.
     pub fn iter(&self) -> impl Iterator<Item = ([i32; 3], VoxelState)> {
         let state = |sum: i16| if sum > 0 { VoxelState::Occupied } else { VoxelState::Free };
@@ -81,7 +87,7 @@ impl OccupiedVoxels {
     }
 
     fn add(&mut self, voxel: [i32; 3], steps: i16) {
-        if self.sums.len() < MAX_VOXELS || self.sums.contains_key(&voxel) {
+        if !self.is_full() || self.sums.contains_key(&voxel) {
             let sum = self.sums.entry(voxel).or_default();
             *sum = (*sum + steps).clamp(SUM_RANGE_STEPS.0, SUM_RANGE_STEPS.1);
         }

@@ -9,7 +9,7 @@ use trundle_core::{Invalid, require_in};
 pub struct SurfaceConfig {
     /// Side of a voxel, m, 0.004 to 0.5. Default 0.02. Half of it needs four times the memory.
     pub voxel: f64,
-    /// Distance from a surface up to which voxels are updated, in voxels, 2 to 16. Default 4. Larger: thin walls lose one side.
+    /// Distance from a surface up to which voxels are updated, in voxels, 2 to 16; 0.06 m at least. Default 4. Larger: thin walls lose one side.
     pub truncation_voxels: f64,
     /// Smallest depth that counts, m, 0.05 to 5. Default 0.4 (ours): nearer, depth cameras err.
     pub min_depth: f64,
@@ -18,6 +18,9 @@ pub struct SurfaceConfig {
     /// Smallest weight of a surface point, 1 to 100. An image at 2 m or farther weighs 1, one at 0.5 m 16. Default 2 (ours).
     pub min_weight: u16,
 }
+
+/// Smallest distance from a surface up to which voxels are updated \[m\]: three sigmas of a Kinect's depth at 5 m [Khoshelham12].
+const MIN_TRUNCATION_M: f64 = 0.06;
 
 impl Default for SurfaceConfig {
     fn default() -> Self {
@@ -41,6 +44,6 @@ impl SurfaceConfig {
 
     /// Distance from a surface up to which voxels are updated, m.
     pub(crate) fn truncation(&self) -> f64 {
-        self.voxel * self.truncation_voxels
+        (self.voxel * self.truncation_voxels).max(MIN_TRUNCATION_M)
     }
 }

@@ -7,8 +7,8 @@ use nalgebra::Vector3;
 use std::collections::HashMap;
 use trundle_core::{Invalid, PinholeCamera, Pose3, RgbdImage};
 
-/// Pixels between two rays that create blocks. Source: ours; two rays at 5 m are then 5 cm apart, less than half a block.
-const RAY_STRIDE_PX: usize = 4;
+/// Largest number of pixels between two rays that create blocks. Source: ours.
+const MAX_RAY_STRIDE_PX: f64 = 4.0;
 /// Largest number of blocks. The map then takes no new ones. Source: ours, 4 GB.
 const MAX_BLOCKS: usize = 800_000;
 /// Largest coordinate of the map, m: farther points are errors. Source: ours.
@@ -38,6 +38,12 @@ impl SurfaceMap {
         &self.config
     }
 
+    /// Whether no further block is taken.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.blocks.len() >= MAX_BLOCKS
+    }
+
     /// Memory of the voxels, bytes.
     #[must_use]
     pub fn memory(&self) -> usize {
@@ -58,7 +64,7 @@ impl SurfaceMap {
         map_from_camera: &Pose3,
     ) -> Result<(), Invalid> {
         let view = DepthView::new(image, camera, map_from_camera, &self.config)?;
-        self.create_blocks(&view);
+        self.create_blocks(&view, camera.fx());
         let truncation = self.config.truncation() as f32;
         let voxel = self.config.voxel as f32;
         let (half, radius) = (BLOCK_SIDE as f32 * voxel / 2.0, BLOCK_SIDE as f32 * voxel * 0.87);
@@ -77,14 +83,18 @@ impl SurfaceMap {
         self.index.get(&key).map(|&index| &self.blocks[index])
     }
 
-    /// Creates the blocks within the truncation of the surface that the view shows.
-    fn create_blocks(&mut self, view: &DepthView<'_>) {
-        let truncation = self.config.truncation() as f32;
+    /// Creates the blocks within the truncation of the surface that the view shows. Two rays, and two points of a ray, are at most half a
+    /// block apart.
+    fn create_blocks(&mut self, view: &DepthView<'_>, focal_px: f64) {
+        let truncation = self.config.truncation();
         let side = self.config.voxel * BLOCK_SIDE as f64;
-        let around = |depth: f32| [depth - truncation, depth, depth + truncation];
-        for points in view.points(RAY_STRIDE_PX, around) {
-            for point in points {
-                if point.amax() > MAX_COORDINATE_M || self.blocks.len() >= MAX_BLOCKS {
+        let stride = (side / 2.0 * focal_px / self.config.max_depth).clamp(1.0, MAX_RAY_STRIDE_PX) as usize;
+        let steps = (2.0 * truncation / side).ceil().max(1.0);
+        for [near, far] in view.points(stride, |depth| [depth - truncation as f32, depth + truncation as f32])
+        {
+            for step in 0..=(2.0 * steps) as usize {
+                let point = near + (far - near) * (step as f64 / (2.0 * steps));
+                if point.amax() > MAX_COORDINATE_M || self.is_full() {
                     continue;
                 }
                 let key = point.map(|at| (at / side).floor() as i32).into();

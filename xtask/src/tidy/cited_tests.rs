@@ -1,20 +1,24 @@
-//! The threat model names tests that exist.
+//! The threat model and the safety case name tests that exist.
 
 use super::finding::Finding;
 use super::tree::Tree;
 
-/// The document whose code spans in the form of a test's name are checked.
-const DOCUMENT: &str = "docs/explanation/threat-model.md";
+/// The documents whose code spans in the form of a test's name are checked.
+const DOCUMENTS: [&str; 2] = ["docs/explanation/threat-model.md", "docs/explanation/safety-case.md"];
 /// Underscores from which a span is the name of a test; names of options and files have fewer.
 const MIN_UNDERSCORES: usize = 3;
 
-/// Checks the document.
+/// Checks the documents.
 pub fn check(tree: &Tree) -> Vec<Finding> {
-    let Some(file) = tree.file(DOCUMENT) else { return Vec::new() };
+    DOCUMENTS.iter().flat_map(|document| check_document(tree, document)).collect()
+}
+
+fn check_document(tree: &Tree, document: &str) -> Vec<Finding> {
+    let Some(file) = tree.file(document) else { return Vec::new() };
     let lines = file.text.lines().enumerate();
     let cited = lines.flat_map(|(i, line)| line.split('`').skip(1).step_by(2).map(move |span| (i + 1, span)));
     let gone = cited.filter(|(_, span)| is_test_name(span) && !is_test(tree, span));
-    gone.map(|(line, span)| Finding::error(DOCUMENT, line, format!("there is no test {span}"))).collect()
+    gone.map(|(line, span)| Finding::error(document, line, format!("there is no test {span}"))).collect()
 }
 
 fn is_test_name(span: &str) -> bool {
@@ -46,7 +50,7 @@ mod tests {
         let source =
             "#[test]\n#[cfg(unix)]\nfn a_wrong_token_is_refused() {}\nfn a_helper_of_the_tests() {}\n";
         let text = "`a_wrong_token_is_refused`, `bench/x_y_z_w.sh`, `--ros2`\n`a_test_that_is_gone` `a_helper_of_the_tests`\n";
-        let found = check(&tree(&[("x/src/lib.rs", source), (DOCUMENT, text)]));
+        let found = check(&tree(&[("x/src/lib.rs", source), (DOCUMENTS[1], text)]));
         let mut messages: Vec<&str> = found.iter().map(|finding| finding.message.as_str()).collect();
         messages.sort_unstable();
         assert_eq!(

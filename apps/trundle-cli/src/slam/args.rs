@@ -90,11 +90,11 @@ pub struct SurfaceArgs {
     /// Write free and occupied voxels in OctoMap's binary form, .bt
     #[arg(long, value_name = "FILE")]
     pub octomap: Option<OutputFileArg>,
-    /// Write heights over the floor as a 16-bit .png, with a .yaml beside it
+    /// Write heights over the floor as a 16-bit .png, with a FILE.yaml beside it
     #[arg(long, value_name = "FILE")]
     pub heights: Option<OutputFileArg>,
     /// Side of a voxel of the surface, m, 0.004 to 0.5 [default: 0.02]
-    #[arg(long, value_name = "M", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", hide_short_help = true, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub voxel: Option<f64>,
 }
 
@@ -104,10 +104,10 @@ pub struct FirstCameraArgs {
     /// Height of the first camera above the floor, m, for the map [default: the recorded robot's, else by the floor in the images, else 1]
     #[arg(long, value_name = "M", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub height: Option<f64>,
-    /// Downward tilt of the first camera, deg, for the map [default: as the height, else 0]
+    /// Downward tilt of the first camera, deg, for the map [default: as the height; 0 if a height or roll is given]
     #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
     pub tilt: Option<f64>,
-    /// Roll of the first camera to its right, deg, for the map [default: as the height, else 0]
+    /// Roll of the first camera to its right, deg, for the map [default: as the height; 0 if a height or tilt is given]
     #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
     pub roll: Option<f64>,
 }

@@ -14,8 +14,9 @@ const IMAGE_STEP: usize = 20;
 const HAND_HELD_IMAGES: usize = 3;
 /// Smallest share of the searched images that must show the same floor \[1\]. Source: ours.
 const MIN_IMAGE_SHARE: f64 = 0.5;
-/// Tilts from which the search starts, each good for 20 deg around it \[deg\]. Source: ours, cameras of robots first.
-const START_TILTS_DEG: [f64; 3] = [0.0, 30.0, 60.0];
+/// Tilts from which the search starts, each good for 20 deg around it \[deg\]. A plane seen at a steeper tilt may be the wall before a camera
+/// that looks up. Source: ours, cameras of robots first.
+const START_TILTS_DEG: [f64; 2] = [0.0, 30.0];
 /// Pixels between two samples below the floor.
 const SAMPLE_STEP_PX: usize = 8;
 /// Distance below a plane from which a point shows that the plane is a table and not the floor \[m\]. Source: ours.
@@ -32,14 +33,15 @@ pub(super) struct FoundFloor {
     pub(super) images: (usize, usize),
 }
 
-/// The floor in the first images; `None` if less than half of them show one.
+/// The floor in the first images, `None` if less than half of them show one, and the number of images that were searched.
 ///
 /// # Errors
 /// When the images cannot be read.
-pub(super) fn found_floor(input: &SequenceInput) -> Result<Option<FoundFloor>, AppError> {
+pub(super) fn found_floor(input: &SequenceInput) -> Result<(Option<FoundFloor>, usize), AppError> {
     let depths = first_depths(input)?;
     let camera = &input.camera.model.camera;
-    Ok(START_TILTS_DEG.into_iter().find_map(|tilt| floor_near(&depths, camera, (tilt, 0.0))))
+    let found = START_TILTS_DEG.into_iter().find_map(|tilt| floor_near(&depths, camera, (tilt, 0.0)));
+    Ok((found, depths.len()))
 }
 
 /// The depth of some of the first images.
@@ -134,8 +136,16 @@ mod tests {
     #[test]
     fn a_wall_is_no_floor_and_neither_is_a_table_with_floor_below() {
         let camera = PinholeCamera::kinect_v2();
-        let wall = DepthImage::filled(camera.width(), camera.height(), 2.0);
-        assert_eq!(floor_near(&[wall], &camera, (0.0, 0.0)), None);
+        for up_deg in [0.0, 9.0, 13.0, 20.0] {
+            let looks_up = mount(2.5, -up_deg, 0.0).base_from_camera();
+            let wall = DepthImage::from_fn(camera.width(), camera.height(), |x, y| {
+                let way = looks_up.rotate(camera.unproject(Vector2::new(x as f64, y as f64), 1.0));
+                (2.0 / way.x) as f32
+            });
+            for tilt in START_TILTS_DEG {
+                assert_eq!(floor_near(&[wall.clone()], &camera, (tilt, 0.0)), None, "{up_deg} {tilt}");
+            }
+        }
         let above_table = scene(&mount(1.3, 30.0, 0.0), Some(0.7));
         if let Some(found) = floor_near(&[above_table], &camera, (30.0, 0.0)) {
             assert!((found.mount.z - 1.3).abs() < 0.01, "the table is not the floor: {found:?}");

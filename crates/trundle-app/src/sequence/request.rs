@@ -7,7 +7,7 @@ use crate::{AppError, RecordingContent};
 use std::path::PathBuf;
 use trundle_core::{Invalid, Pose3};
 use trundle_io::{Expected, MapImage, RosSequenceOptions};
-use trundle_runtime::{RobotConfig, level_from_first_camera};
+use trundle_runtime::{CameraMount, RobotConfig, level_from_first_camera};
 use trundle_slam::{Mode, RgbdSlam, SlamConfig};
 
 /// A recorded sequence and how to track it.
@@ -92,7 +92,10 @@ impl SequenceRequest {
         if self.first_camera.is_asked() {
             let mount = &mut input.robot.mount;
             (mount.z, mount.pitch_deg, mount.roll_deg) = self.first_camera.asked();
-        } else if self.map.is_none() && self.robot.is_none() && input.level_from_first_camera().is_none() {
+        } else if self.map.is_none()
+            && self.given_mount().is_none()
+            && input.level_from_first_camera().is_none()
+        {
             self.find_floor(&mut input)?;
         }
         Ok(input)
@@ -101,29 +104,44 @@ impl SequenceRequest {
     /// Takes the first camera's height, tilt and roll from the floor in the images.
     fn find_floor(&self, input: &mut SequenceInput) -> Result<(), AppError> {
         let path = self.path.display();
-        let Some(FoundFloor { mount: found, images: (seen, searched) }) = found_floor(input)? else {
+        let (found, searched) = found_floor(input)?;
+        let Some(FoundFloor { mount: found, images: (seen, _) }) = found else {
+            if searched == 0 {
+                return Ok(());
+            }
             tracing::warn!(
                 "{path}: the first images show no floor, so the height of the first camera is taken as {DEFAULT_CAMERA_HEIGHT_M} m and its \
                  tilt as 0 deg: give --height (m), --tilt and --roll (deg) for a level map"
             );
             return Ok(());
         };
-        tracing::info!(
-            "{path}: first camera at {:.3} m, tilt {:.2} deg, roll {:.2} deg, by the floor in {seen} of {searched} images",
-            found.z,
-            found.pitch_deg,
-            found.roll_deg
-        );
+        let pose =
+            format!("{:.3} m, tilt {:.2} deg, roll {:.2} deg", found.z, found.pitch_deg, found.roll_deg);
+        if input.odometry().is_some() {
+            tracing::info!("{path}: first camera at {pose}, by the floor in {seen} of {searched} images");
+        } else {
+            tracing::warn!(
+                "{path}: first camera at {pose}, by the lowest plane in the first {searched} images: give --height (m), --tilt and --roll \
+                 (deg) if this plane is a table"
+            );
+        }
         let mount = &mut input.robot.mount;
         (mount.z, mount.pitch_deg, mount.roll_deg) = (found.z, found.pitch_deg, found.roll_deg);
         input.floor_mount = Some(found);
         Ok(())
     }
 
-    /// The pose of the first camera above the floor: by the request, else by the robot file or the robot of a recording.
+    /// The mount of the robot file, if it has one that is not the default robot's.
+    fn given_mount(&self) -> Option<CameraMount> {
+        self.robot.as_ref().map(|robot| robot.mount).filter(|mount| *mount != CameraMount::default())
+    }
+
+    /// The pose of the first camera above the floor: by the request, else by the robot file, the robot of a recording, the floor in the
+    /// images, or the default robot's mount if there is a robot file.
     pub(super) fn level_from_first_camera(&self, input: &SequenceInput) -> Result<Pose3, Invalid> {
-        let by_file = self.robot.as_ref().map(|robot| robot.mount.base_from_camera());
-        let known = by_file.or_else(|| input.level_from_first_camera());
+        let by_file = self.given_mount().map(|mount| mount.base_from_camera());
+        let by_default = self.robot.as_ref().map(|robot| robot.mount.base_from_camera());
+        let known = by_file.or_else(|| input.level_from_first_camera()).or(by_default);
         match known.filter(|_| !self.first_camera.is_asked()) {
             Some(mount) => Ok(mount),
             None => {

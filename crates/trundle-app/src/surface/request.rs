@@ -9,6 +9,9 @@ const OCTREE_RATIO: f64 = 2.5;
 /// Smallest side of an octree's voxel and of a cell of the height map \[m\]. Source: ours.
 const MIN_CELL_M: f64 = 0.05;
 
+/// Largest side of an octree's voxel \[m\]. Source: the range of the octree.
+const MAX_CELL_M: f64 = 1.0;
+
 /// Format of a mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MeshFormat {
@@ -54,6 +57,14 @@ impl SurfaceRequest {
             heights: named(heights, "png")?,
             voxel,
         };
+        if let (Some((mesh, _)), Some(cloud)) = (&request.mesh, &request.cloud)
+            && mesh.components().eq(cloud.components())
+        {
+            return Err(AppError::Input(format!(
+                "{}: --mesh and --cloud name one file, expected two",
+                mesh.display()
+            )));
+        }
         request.config().validated()?;
         Ok(request)
     }
@@ -71,7 +82,7 @@ impl SurfaceRequest {
 
     /// Side of an octree's voxel, m.
     pub(super) fn octomap_resolution(&self) -> f64 {
-        (self.config().voxel * OCTREE_RATIO).max(MIN_CELL_M)
+        (self.config().voxel * OCTREE_RATIO).clamp(MIN_CELL_M, MAX_CELL_M)
     }
 
     /// Side of a cell of the height map, m.

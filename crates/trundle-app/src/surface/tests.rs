@@ -40,7 +40,7 @@ fn four_files_of_a_floor_are_made() {
     }
     let made = surface.files(&request, Path::new("in")).unwrap();
     let names: Vec<_> = made.files.iter().map(|(path, _)| path.to_str().unwrap()).collect();
-    assert_eq!(names, ["m.glb", "c.PLY", "o.bt", "out/height.png", "out/height.yaml"]);
+    assert_eq!(names, ["m.glb", "c.PLY", "o.bt", "out/height.png", "out/height.png.yaml"]);
     let starts = ["glTF", "ply\n", "# Octomap", "\u{89}PNG", "# Heights"];
     for ((name, bytes), start) in made.files.iter().zip(starts) {
         let head: String = bytes.iter().take(start.chars().count()).map(|byte| char::from(*byte)).collect();
@@ -57,6 +57,9 @@ fn wrong_names_and_an_empty_surface_are_refused_in_words() {
     let cloud = SurfaceRequest::new(None, Some(Path::new("c.pcd")), None, None, None).unwrap_err();
     assert!(cloud.to_string().contains("ends in .ply"), "{cloud}");
     assert!(SurfaceRequest::new(None, None, None, None, Some(0.0)).is_err());
+    let twice = Some(Path::new("m.ply"));
+    let error = SurfaceRequest::new(twice, twice, None, None, None).unwrap_err().to_string();
+    assert!(error.contains("m.ply: --mesh and --cloud"), "{error}");
     let nothing = SurfaceRequest::new(None, None, None, None, None).unwrap();
     assert!(nothing.is_empty());
     let failure = Surface::new(&nothing).unwrap().files(&nothing, Path::new("in")).unwrap().failure.unwrap();

@@ -86,8 +86,12 @@ impl SafetyInput<'_> {
     }
 }
 
-/// Whether a reading of `age` s is useless. A stamp ahead of the clock by more than the time-out is as useless as an old one: two clocks
-/// differ, and the reading would never become old.
-fn is_stale(age: f64, timeout: f64) -> bool {
-    age.abs() > timeout
+/// Largest time of a stamp ahead of the clock \[s\]: beyond it two clocks differ, and the reading would become old too late. Source: ours,
+/// the default time-out of the wheels.
+const MAX_CLOCK_AHEAD_S: f64 = 0.2;
+
+/// Whether a reading of `age` s is useless: older than `timeout` s, or stamped more than 0.2 s ahead of the clock.
+#[must_use]
+pub fn is_stale(age: f64, timeout: f64) -> bool {
+    age > timeout || age < -MAX_CLOCK_AHEAD_S
 }

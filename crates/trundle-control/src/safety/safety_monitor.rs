@@ -4,7 +4,7 @@ use super::free_motion::FreeMotion;
 use super::safety_action::{SafetyAction, SafetyReport, SlowReason, StopReason};
 use super::safety_config::SafetyConfig;
 use super::safety_input::{MotionSense, SafetyInput};
-use trundle_core::{Footprint, Invalid};
+use trundle_core::{Footprint, Invalid, Twist2};
 
 /// Age of an image that was just taken, s.
 const FRESH_IMAGE_AGE_S: f64 = 0.0;
@@ -89,6 +89,11 @@ impl SafetyMonitor {
         }
         self.motion.observe(input, FRESH_IMAGE_AGE_S, &self.config);
         let slowed = SafetyReport::slowed(input.twist, self.config.back_out_speed, SlowReason::BackingOut);
-        slowed.slower(self.motion.limited_path(slowed.twist, 0.0, &self.config))
+        let free = self.motion.limited_path(slowed.twist, 0.0, &self.config);
+        // Before an obstacle behind, the turn of the command is no way out: over an edge a wheel may lose the floor.
+        if matches!(free.action, SafetyAction::Stop(_)) {
+            return SafetyReport { twist: Twist2::ZERO, ..free };
+        }
+        slowed.slower(free)
     }
 }

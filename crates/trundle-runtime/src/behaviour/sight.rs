@@ -2,7 +2,7 @@
 
 use super::sight_recovery::SightRecovery;
 use crate::world_state::WorldState;
-use trundle_control::MotionSense;
+use trundle_control::{MotionSense, is_stale};
 use trundle_core::{Stamp, Twist2};
 
 /// The robot's view, and the turns that restore it.
@@ -29,7 +29,8 @@ impl Sight {
 
     /// Whether no image has had content within the safety monitor's timeout, or neither wheels nor images measure the motion.
     pub(crate) fn is_blind(&self, s: &WorldState<'_>) -> bool {
-        s.motion == MotionSense::Nothing || s.seen.is_none_or(|seen| s.now - seen > self.image_timeout)
+        s.motion == MotionSense::Nothing
+            || s.seen.is_none_or(|seen| is_stale(s.now - seen, self.image_timeout))
     }
 
     /// Records the twist that the robot would make, before the view may be lost.

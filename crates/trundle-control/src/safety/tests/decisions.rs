@@ -222,3 +222,15 @@ fn without_a_view_a_polygon_turns_only_where_its_corners_are_free() {
     assert_eq!(turn(0.21).twist.omega, 0.0);
     assert_eq!(turn(0.5).action, SafetyAction::Stop(StopReason::StaleImage { age: 10.0 }));
 }
+
+#[test]
+fn over_an_edge_no_turn_takes_the_place_of_a_blocked_way_back() {
+    let behind = scan(std::f64::consts::PI, 0.1, &[0.1755 + 0.002]);
+    for omega in [0.5, -0.5] {
+        for (touched, over_edge) in [(false, true), (true, false)] {
+            let back =
+                SafetyInput { touched, over_edge, scan: seen(&behind), ..fresh(Twist2::new(-0.05, omega)) };
+            assert_eq!(monitor().check(&back).twist, Twist2::ZERO, "{omega} {touched}");
+        }
+    }
+}

@@ -6,6 +6,7 @@
 use super::*;
 use crate::safety::hold::MotionHold;
 use crate::safety::obstacles::SafetyMemory;
+use crate::safety::safety_input::is_stale;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid};
 
 /// Number of generated cases.
@@ -133,8 +134,8 @@ fn case(index: u64) -> Case {
         grid,
         unconfirmed,
         map_from_base,
-        image_age: draw.within(-0.1, 1.0),
-        wheels_age: draw.within(0.0, 0.22),
+        image_age: draw.within(-0.3, 1.0),
+        wheels_age: draw.within(-0.3, 0.22),
         flags: draw.next(),
     }
 }
@@ -146,7 +147,11 @@ impl Case {
         SafetyInput {
             now,
             twist: self.twist,
-            scan: Some(SafetyScan { scan: &self.scan, odom_at_scan: self.odom.0, odom_now: self.odom.1 }),
+            scan: self.has_scan().then_some(SafetyScan {
+                scan: &self.scan,
+                odom_at_scan: self.odom.0,
+                odom_now: self.odom.1,
+            }),
             memory: Some(SafetyMemory {
                 grid: &self.grid,
                 unconfirmed: &self.unconfirmed,
@@ -157,15 +162,27 @@ impl Case {
             hold: flag(16, 64).then_some(MotionHold::WheelDrop),
             image: (!flag(24, 32)).then(|| now.after(-self.image_age)),
             wheels: Some(now.after(-self.wheels_age)),
-            motion: if flag(32, 16) { MotionSense::Sight } else { MotionSense::Wheels },
+            motion: match (self.flags >> 32) % 16 {
+                0 => MotionSense::Sight,
+                1 => MotionSense::Nothing,
+                _ => MotionSense::Wheels,
+            },
             station: None,
         }
+    }
+
+    fn has_scan(&self) -> bool {
+        !(self.flags >> 40).is_multiple_of(16)
     }
 
     /// Every known obstacle within the range that the configuration names: centre in the base frame, radius, m.
     fn obstacles(&self) -> Vec<(Vector2, f64)> {
         let (at_scan, now) = self.odom;
-        let hits = self.scan.hits().map(|hit| (now.inverse().transform(at_scan.transform(hit)), 0.0));
+        let hits = self
+            .scan
+            .hits()
+            .filter(|_| self.has_scan())
+            .map(|hit| (now.inverse().transform(at_scan.transform(hit)), 0.0));
         let to_base = |at: Vector2| self.map_from_base.inverse().transform(at);
         let mut memory: Vec<_> = self.unconfirmed.iter().map(|at| (to_base(*at), 0.0)).collect();
         for (row, col) in (0..20).flat_map(|row| (0..20).map(move |col| (row, col))) {
@@ -182,8 +199,11 @@ impl Case {
     /// Time at the twist that sweeps the path until the robot is at rest, s.
     fn sweep(&self, twist: Twist2) -> f64 {
         // Without a view and out of a contact the age of the image does not count: docs/explanation/safety-case.md.
-        let is_blind = self.image_age > self.config.image_timeout || self.input().image.is_none();
-        let backs_out = self.input().touched || self.input().over_edge;
+        let input = self.input();
+        let is_blind = is_stale(self.image_age, self.config.image_timeout)
+            || input.image.is_none()
+            || input.motion == MotionSense::Nothing;
+        let backs_out = input.touched || input.over_edge;
         let age = if is_blind || backs_out { 0.0 } else { self.image_age };
         let reaction = self.config.latency.max(age + 0.12);
         let braking = (twist.v.abs() / self.config.deceleration)
