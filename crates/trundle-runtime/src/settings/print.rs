@@ -80,7 +80,9 @@ mod tests {
     fn every_value_stands_under_its_meaning() {
         let text = to_commented_toml(&RobotConfig::default());
         let at = text.find("wheel_radius_m = 0.035").unwrap();
-        assert!(text[..at].ends_with("# Radius of the driven wheels, m.\n"));
+        let comment = text[..at].rsplit("[drive]\n").next().unwrap();
+        assert!(comment.starts_with("# Radius of the driven wheels, m."), "{comment}");
+        assert!(comment.lines().all(|line| line.starts_with('#')), "{comment}");
         let values = text.lines().filter(|line| !line.starts_with('#') && line.contains(" = ")).count();
         let unset = text.lines().filter(|line| line.ends_with(" is not set")).count();
         assert_eq!(values + unset, reference().len());
