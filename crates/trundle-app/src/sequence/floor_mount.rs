@@ -143,7 +143,11 @@ mod tests {
                 (2.0 / way.x) as f32
             });
             for tilt in START_TILTS_DEG {
-                assert_eq!(floor_near(&[wall.clone()], &camera, (tilt, 0.0)), None, "{up_deg} {tilt}");
+                assert_eq!(
+                    floor_near(std::slice::from_ref(&wall), &camera, (tilt, 0.0)),
+                    None,
+                    "{up_deg} {tilt}"
+                );
             }
         }
         let above_table = scene(&mount(1.3, 30.0, 0.0), Some(0.7));
