@@ -7,7 +7,7 @@ use trundle_core::{Distortion, Invalid, PinholeCamera, Pose3, RgbdImage, Vector2
 /// Side of a tile of the image, px: the largest depth of each tile is stored.
 const TILE_PX: usize = 16;
 /// Depth of a voxel at which an observation has weight 1, m. Nearer ones weigh more by the square of the depth, as the noise of a structured-light or
-/// time-of-flight camera. Source: [Khoshelham12].
+/// time-of-flight camera. Source: \[Khoshelham12\].
 const UNIT_WEIGHT_DEPTH_M: f32 = 2.0;
 /// Largest weight of an observation.
 const MAX_OBSERVATION_WEIGHT: f32 = 16.0;

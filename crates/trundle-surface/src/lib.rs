@@ -1,8 +1,8 @@
 //! The surface of what a depth camera saw, as triangles with colours.
 //!
 //! Problem: a floor map shows where the robot can drive, and not what the rooms look like. Idea: each voxel near a surface averages the
-//! signed distances that the depth images show ([Curless96]); voxels are stored in blocks near surfaces only ([Niessner13]). The surface is
-//! where the average is zero; one vertex a cell is placed at the mean of the crossings on its edges ([Gibson98]).
+//! signed distances that the depth images show (\[Curless96\]); voxels are stored in blocks near surfaces only (\[Niessner13\]). The surface is
+//! where the average is zero; one vertex a cell is placed at the mean of the crossings on its edges (\[Gibson98\]).
 //!
 //! - [`SurfaceMap`]: integrates RGB-D images with known poses.
 //! - [`surface_mesh`]: a [`SurfaceMesh`] with a colour and a normal at each vertex.

@@ -98,7 +98,7 @@ fn voxel_of(at: Vector3<f64>) -> [i32; 3] {
     at.map(|coordinate| coordinate.floor() as i32).into()
 }
 
-/// The voxels from `start` to before the one of `end`, in units of voxels: each step crosses the nearest face ([Amanatides87]).
+/// The voxels from `start` to before the one of `end`, in units of voxels: each step crosses the nearest face (\[Amanatides87\]).
 fn voxels_between(start: Vector3<f64>, end: Vector3<f64>) -> impl Iterator<Item = [i32; 3]> {
     let (mut voxel, last) = (voxel_of(start), voxel_of(end));
     let way = end - start;

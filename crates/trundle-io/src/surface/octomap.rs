@@ -1,4 +1,4 @@
-//! OctoMap's binary form (`.bt`): an octree of 16 levels, two bits a child. Source: the format's description in [Hornung13].
+//! OctoMap's binary form (`.bt`): an octree of 16 levels, two bits a child. Source: the format's description in \[Hornung13\].
 
 use std::ops::Range;
 
