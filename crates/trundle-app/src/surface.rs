@@ -53,9 +53,14 @@ pub fn surface_files(
     let mut surface = Surface::new(request)?;
     let camera = input.camera.model.camera;
     let is_stopped = stop::stopped().is_some();
-    progress.begin(Some(input.len()));
+    let last = poses.last().map(|(stamp, _)| *stamp);
+    progress.begin(Some(poses.len()));
     for (i, frame) in input.frames()?.enumerate() {
         let frame = frame?;
+        // Images after the last pose need not be read.
+        if last.is_none_or(|last| frame.stamp() > last) {
+            break;
+        }
         if let Some(pose) = pose_at(poses, frame.stamp())
             && surface.is_due(frame.stamp(), pose)
             && let Ok(image) = frame.decode()
@@ -64,7 +69,7 @@ pub fn surface_files(
         }
         progress.advance();
         // A signal that ended the tracking does not end the surface of what was tracked; a second one ends the program.
-        if !is_stopped && stop::is_requested(|| format!("surface of {} of {} images", i + 1, input.len())) {
+        if !is_stopped && stop::is_requested(|| format!("surface of {} of {} images", i + 1, poses.len())) {
             break;
         }
     }

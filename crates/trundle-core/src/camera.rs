@@ -1,6 +1,6 @@
 //! The pinhole camera model: intrinsics, Brown-Conrady distortion, rolling-shutter readout, and presets.
 
-use crate::{Invalid, Vector2, Vector3, require_finite, require_in, require_positive};
+use crate::{DepthImage, Invalid, Vector2, Vector3, require_finite, require_in, require_positive};
 use serde::{Deserialize, Serialize};
 
 /// Lens distortion of Brown and Conrady, in the order of OpenCV.
@@ -199,6 +199,17 @@ impl PinholeCamera {
     /// The point (camera frame, m) seen at a rectified pixel with `depth` m along the optical axis.
     pub fn unproject(&self, pixel: Vector2, depth: f64) -> Vector3 {
         Vector3::new((pixel.x - self.cx) / self.fx * depth, (pixel.y - self.cy) / self.fy * depth, depth)
+    }
+
+    /// Points (camera frame, m) of a raw depth image of this camera, at every `step`-th pixel of every `step`-th row that has depth.
+    pub fn points<'a>(&'a self, depth: &'a DepthImage, step: usize) -> impl Iterator<Item = Vector3> + 'a {
+        let pixels = (0..depth.height())
+            .step_by(step)
+            .flat_map(move |y| (0..depth.width()).step_by(step).map(move |x| (x, y)));
+        pixels.filter(|&pixel| depth[pixel] > 0.0).map(|(x, y)| {
+            let rectified = self.undistort(Vector2::new(x as f64, y as f64));
+            self.unproject(rectified, f64::from(depth[(x, y)]))
+        })
     }
 
     /// Whether a pixel position is inside the image (pixel centres at whole numbers).

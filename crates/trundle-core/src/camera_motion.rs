@@ -9,6 +9,12 @@ const FLOOR_HEIGHT_NOISE: f64 = 0.005;
 const FLOOR_TILT_NOISE: f64 = 0.004;
 /// Path of a wheel while the base turns by 1 rad, m: half of the Kobuki's wheelbase.
 const HALF_WHEELBASE_M: f64 = 0.115;
+/// Standard deviation of the camera's position against the base besides the odometry's own error \[m\]: the sway of a camera on a short
+/// mast. Without it the covariance of a robot at rest is singular; a larger value lets a robot that turns on the spot drift by
+/// centimetres. Source: docs/experiments/slam-odometry.md.
+const MAST_SWAY_SIGMA_M: f64 = 1e-4;
+/// Standard deviation of the camera's rotation against the base besides the odometry's own error \[rad\]. See [`MAST_SWAY_SIGMA_M`].
+const MAST_SWAY_SIGMA_RAD: f64 = 5e-4;
 /// Rows of x, y and yaw.
 const IN_PLANE: [usize; 3] = [0, 1, 5];
 
@@ -31,6 +37,12 @@ impl CameraMotion {
         let to_camera = camera_from_base.adjoint();
         let covariance = to_camera * in_space(&base_motion, &planar) * to_camera.transpose();
         Self { motion, covariance: Some((covariance + covariance.transpose()) * 0.5) }
+    }
+
+    /// Covariance of the camera's sway on its mast as a right perturbation (m, m, m, rad, rad, rad), for a motion of any length.
+    pub fn mast_sway() -> Matrix6<f64> {
+        let (shift, turn) = (MAST_SWAY_SIGMA_M.powi(2), MAST_SWAY_SIGMA_RAD.powi(2));
+        Matrix6::from_diagonal(&Vector6::new(shift, shift, shift, turn, turn, turn))
     }
 
     /// Whether every number is finite.

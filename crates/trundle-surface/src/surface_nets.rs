@@ -51,6 +51,15 @@ impl Samples {
         self.distance[Self::index(at)]
     }
 
+    /// The axis, and whether the edge from a voxel along it leads out of the surface; `None` if the edge crosses no surface.
+    fn crossing(&self, voxel: [usize; 3], axis: usize) -> Option<(usize, bool)> {
+        let mut end = voxel;
+        end[axis] += 1;
+        let (from, to) = (self.at(voxel), self.at(end));
+        let is_crossed = from.is_finite() && to.is_finite() && (from < 0.0) != (to < 0.0);
+        is_crossed.then_some((axis, from < 0.0))
+    }
+
     /// Distances at the corners of a cell; `None` if one is unknown, or no edge crosses the surface.
     fn crossed_cell(&self, cell: [usize; 3]) -> Option<[f32; 8]> {
         let corners = CORNERS.map(|step| self.at(std::array::from_fn(|i| cell[i] + step[i])));
@@ -59,11 +68,20 @@ impl Samples {
     }
 }
 
+/// An edge between two voxels that crosses the surface.
+struct Crossing {
+    from: CellKey,
+    axis: usize,
+    /// Whether the edge leads out of the surface.
+    is_outward: bool,
+}
+
 /// The surface of a map as triangles with colours, in the order of its blocks. Points with less weight than `min_weight` are left out.
 #[must_use]
 pub fn surface_mesh(map: &SurfaceMap) -> SurfaceMesh {
     let mut mesh = SurfaceMesh::default();
     let mut vertex_of: HashMap<CellKey, u32> = HashMap::new();
+    let mut crossings = Vec::new();
     for (&key, block) in map.keys.iter().zip(&map.blocks) {
         let samples = Samples::of(map, key);
         for cell in cells() {
@@ -71,16 +89,16 @@ pub fn surface_mesh(map: &SurfaceMap) -> SurfaceMesh {
                 vertex_of.insert(global(key, cell), mesh.vertices.len() as u32);
                 push_vertex(&mut mesh, map.config().voxel, global(key, cell), &corners, block, cell);
             }
+            let crossed = (0..3).filter_map(|axis| samples.crossing(cell, axis));
+            crossings.extend(crossed.map(|(axis, is_outward)| Crossing {
+                from: global(key, cell),
+                axis,
+                is_outward,
+            }));
         }
     }
-    for &key in &map.keys {
-        let samples = Samples::of(map, key);
-        for cell in cells() {
-            for axis in 0..3 {
-                push_faces(&mut mesh, &vertex_of, key, cell, axis, &samples);
-            }
-        }
-    }
+    // A face needs the vertices of four cells, which may be in other blocks.
+    crossings.iter().for_each(|crossing| push_faces(&mut mesh, &vertex_of, crossing));
     mesh
 }
 
@@ -129,30 +147,17 @@ fn gradient(corners: &[f32; 8]) -> [f32; 3] {
     direction.try_normalize(1e-9).unwrap_or_else(nalgebra::Vector3::z).into()
 }
 
-/// The two triangles on the edge from a voxel along `axis`, if it crosses the surface between four known cells.
-fn push_faces(
-    mesh: &mut SurfaceMesh,
-    vertex_of: &HashMap<CellKey, u32>,
-    key: BlockKey,
-    cell: [usize; 3],
-    axis: usize,
-    samples: &Samples,
-) {
-    let mut end = cell;
-    end[axis] += 1;
-    let (from, to) = (samples.at(cell), samples.at(end));
-    if !(from.is_finite() && to.is_finite()) || (from < 0.0) == (to < 0.0) {
-        return;
-    }
-    let (b, c) = ((axis + 1) % 3, (axis + 2) % 3);
+/// The two triangles on an edge that crosses the surface, if the four cells around it are known.
+fn push_faces(mesh: &mut SurfaceMesh, vertex_of: &HashMap<CellKey, u32>, crossing: &Crossing) {
+    let (b, c) = ((crossing.axis + 1) % 3, (crossing.axis + 2) % 3);
     let around = [(-1, -1), (0, -1), (0, 0), (-1, 0)].map(|(along_b, along_c)| {
-        let mut at = global(key, cell);
+        let mut at = crossing.from;
         at[b] += along_b;
         at[c] += along_c;
         vertex_of.get(&at).copied()
     });
     let [Some(p), Some(q), Some(r), Some(s)] = around else { return };
-    let [p, q, r, s] = if from < 0.0 { [p, q, r, s] } else { [p, s, r, q] };
+    let [p, q, r, s] = if crossing.is_outward { [p, q, r, s] } else { [p, s, r, q] };
     let length = |a: u32, b: u32| {
         let (a, b) = (mesh.vertices[a as usize], mesh.vertices[b as usize]);
         (0..3).map(|i| (a[i] - b[i]) * (a[i] - b[i])).sum::<f32>()

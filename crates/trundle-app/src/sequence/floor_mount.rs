@@ -2,7 +2,7 @@
 
 use crate::AppError;
 use crate::sequence_input::SequenceInput;
-use trundle_core::{DepthImage, PinholeCamera, Pose3, Vector2, Vector3};
+use trundle_core::{DepthImage, PinholeCamera, Pose3, Vector3};
 use trundle_estimation::{FloorMount, FloorSearch, FloorView};
 use trundle_runtime::CameraMount;
 
@@ -29,8 +29,8 @@ const MAX_BELOW_SHARE: f64 = 0.05;
 pub(super) struct FoundFloor {
     /// Height, tilt and roll; the camera is above the origin.
     pub(super) mount: CameraMount,
-    /// Images that show this floor, of those that were searched.
-    pub(super) images: (usize, usize),
+    /// Images that show this floor.
+    pub(super) images: usize,
 }
 
 /// The floor in the first images, `None` if less than half of them show one, and the number of images that were searched.
@@ -77,7 +77,7 @@ fn floor_near(
     let plane = FloorView { up: up_of(&mount.base_from_camera()), height: mount.z };
     let is_lowest = depths.iter().all(|depth| share_below(&plane, depth, camera) <= MAX_BELOW_SHARE);
     let is_common = views.len() as f64 >= MIN_IMAGE_SHARE * depths.len() as f64;
-    (is_lowest && is_common).then_some(FoundFloor { mount, images: (views.len(), depths.len()) })
+    (is_lowest && is_common).then_some(FoundFloor { mount, images: views.len() })
 }
 
 /// Upward axis in the camera frame.
@@ -87,12 +87,8 @@ fn up_of(base_from_camera: &Pose3) -> Vector3 {
 
 /// Share of the points of an image below a plane.
 fn share_below(plane: &FloorView, depth: &DepthImage, camera: &PinholeCamera) -> f64 {
-    let rows = (0..depth.height()).step_by(SAMPLE_STEP_PX);
-    let pixels = rows.flat_map(|y| (0..depth.width()).step_by(SAMPLE_STEP_PX).map(move |x| (x, y)));
     let (mut below, mut all) = (0_usize, 0_usize);
-    for (x, y) in pixels.filter(|&pixel| depth[pixel] > 0.0) {
-        let rectified = camera.undistort(Vector2::new(x as f64, y as f64));
-        let point = camera.unproject(rectified, f64::from(depth[(x, y)]));
+    for point in camera.points(depth, SAMPLE_STEP_PX) {
         all += 1;
         below += usize::from(plane.up.dot(&point) + plane.height < -BELOW_FLOOR_M);
     }
@@ -102,6 +98,7 @@ fn share_below(plane: &FloorView, depth: &DepthImage, camera: &PinholeCamera) ->
 #[cfg(test)]
 mod tests {
     use super::*;
+    use trundle_core::Vector2;
 
     /// Depth of a floor under a camera, up to a wall 3 m ahead, with a table of `table` m height over a part of the view.
     fn scene(mount: &CameraMount, table: Option<f64>) -> DepthImage {
@@ -129,7 +126,7 @@ mod tests {
             assert!((found.mount.z - truth.z).abs() < 2e-3, "{found:?}");
             assert!((found.mount.pitch_deg - truth.pitch_deg).abs() < 0.1, "{found:?}");
             assert!((found.mount.roll_deg - truth.roll_deg).abs() < 0.1, "{found:?}");
-            assert_eq!(found.images, (3, 3));
+            assert_eq!(found.images, 3);
         }
     }
 

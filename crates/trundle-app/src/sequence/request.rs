@@ -92,10 +92,7 @@ impl SequenceRequest {
         if self.first_camera.is_asked() {
             let mount = &mut input.robot.mount;
             (mount.z, mount.pitch_deg, mount.roll_deg) = self.first_camera.asked();
-        } else if self.map.is_none()
-            && self.given_mount().is_none()
-            && input.level_from_first_camera().is_none()
-        {
+        } else if self.map.is_none() && self.known_first_camera(&input)?.is_none() {
             self.find_floor(&mut input)?;
         }
         Ok(input)
@@ -105,7 +102,7 @@ impl SequenceRequest {
     fn find_floor(&self, input: &mut SequenceInput) -> Result<(), AppError> {
         let path = self.path.display();
         let (found, searched) = found_floor(input)?;
-        let Some(FoundFloor { mount: found, images: (seen, _) }) = found else {
+        let Some(FoundFloor { mount: found, images: seen }) = found else {
             if searched == 0 {
                 return Ok(());
             }
@@ -136,18 +133,23 @@ impl SequenceRequest {
         self.robot.as_ref().map(|robot| robot.mount).filter(|mount| *mount != CameraMount::default())
     }
 
-    /// The pose of the first camera above the floor: by the request, else by the robot file, the robot of a recording, the floor in the
-    /// images, or the default robot's mount if there is a robot file.
-    pub(super) fn level_from_first_camera(&self, input: &SequenceInput) -> Result<Pose3, Invalid> {
+    /// The pose of the first camera above the floor by the request, the robot file, or the input; `None` if none of them has it.
+    fn known_first_camera(&self, input: &SequenceInput) -> Result<Option<Pose3>, Invalid> {
+        if self.first_camera.is_asked() {
+            let (height, tilt_deg, roll_deg) = self.first_camera.asked();
+            return level_from_first_camera(height, tilt_deg, roll_deg).map(Some);
+        }
         let by_file = self.given_mount().map(|mount| mount.base_from_camera());
-        let by_default = self.robot.as_ref().map(|robot| robot.mount.base_from_camera());
-        let known = by_file.or_else(|| input.level_from_first_camera()).or(by_default);
-        match known.filter(|_| !self.first_camera.is_asked()) {
-            Some(mount) => Ok(mount),
-            None => {
-                let (height, tilt_deg, roll_deg) = self.first_camera.asked();
-                level_from_first_camera(height, tilt_deg, roll_deg)
-            }
+        Ok(by_file.or_else(|| input.level_from_first_camera()))
+    }
+
+    /// The pose of the first camera above the floor: the known one, else the default robot's if there is a robot file, else a level
+    /// camera's.
+    pub(super) fn level_from_first_camera(&self, input: &SequenceInput) -> Result<Pose3, Invalid> {
+        match (self.known_first_camera(input)?, &self.robot) {
+            (Some(known), _) => Ok(known),
+            (None, Some(robot)) => Ok(robot.mount.base_from_camera()),
+            (None, None) => level_from_first_camera(DEFAULT_CAMERA_HEIGHT_M, 0.0, 0.0),
         }
     }
 

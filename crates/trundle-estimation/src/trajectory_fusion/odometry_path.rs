@@ -1,13 +1,7 @@
 //! The motion over several frames by odometry, with its covariance.
 
-use nalgebra::{Matrix6, Vector6};
+use nalgebra::Matrix6;
 use trundle_core::{CameraMotion, Pose3};
-
-/// Standard deviation of the camera's position on its mast \[m\]. Without it the covariance of a robot at rest is singular.
-/// Source: docs/experiments/slam-odometry.md.
-const MAST_SWAY_SIGMA_M: f64 = 1e-4;
-/// Standard deviation of the camera's rotation on its mast \[rad\]. See [`MAST_SWAY_SIGMA_M`].
-const MAST_SWAY_SIGMA_RAD: f64 = 5e-4;
 
 /// Motion of the camera over some frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,13 +34,8 @@ impl OdometryPath {
     /// Inverse covariance of `first_camera_from_there`, with `there` at `last_camera_from_there` exactly.
     pub(super) fn information_at(&self, last_camera_from_there: Pose3) -> Option<Matrix6<f64>> {
         let backward = last_camera_from_there.inverse().adjoint();
-        let moved = backward * (self.covariance + sway()) * backward.transpose();
+        let moved = backward * (self.covariance + CameraMotion::mast_sway()) * backward.transpose();
         let information = ((moved + moved.transpose()) * 0.5).cholesky()?.inverse();
         information.iter().all(|value| value.is_finite()).then_some(information)
     }
-}
-
-fn sway() -> Matrix6<f64> {
-    let (shift, turn) = (MAST_SWAY_SIGMA_M.powi(2), MAST_SWAY_SIGMA_RAD.powi(2));
-    Matrix6::from_diagonal(&Vector6::new(shift, shift, shift, turn, turn, turn))
 }

@@ -2,17 +2,11 @@
 
 use crate::ids::KeyframeId;
 use crate::motion::motion_model::MotionModelConfig;
-use crate::motion::uncertain_pose::{UncertainPose, of_sigmas};
+use crate::motion::uncertain_pose::UncertainPose;
 use nalgebra::Matrix6;
 use trundle_core::{CameraMotion, Pose3};
 use trundle_optim::{PoseConstraint, PosePrior};
 
-/// Standard deviation of the camera's position against the base besides the odometry's own error: 1e-4 m, the sway of a camera on a
-/// short mast. A larger value lets a robot that turns on the spot drift by centimetres. Source: docs/experiments/slam-odometry.md.
-const MAST_SWAY_SIGMA_M: f64 = 1e-4;
-/// Standard deviation of the camera's rotation against the base besides the odometry's own error: 5e-4 rad. See
-/// [`MAST_SWAY_SIGMA_M`].
-const MAST_SWAY_SIGMA_RAD: f64 = 5e-4;
 /// Largest translation (100 m) and largest standard deviation (100 m or 100 rad) of a factor. Beyond either the factor is dropped. Source:
 /// ours.
 const MAX_FACTOR_EXTENT: f64 = 100.0;
@@ -65,7 +59,7 @@ impl OdometryFactor {
 
     /// Covariance of the factor and of the camera's mast together.
     fn covariance_with_sway(&self) -> Matrix6<f64> {
-        let sum = self.from_to.covariance + of_sigmas(MAST_SWAY_SIGMA_M, MAST_SWAY_SIGMA_RAD);
+        let sum = self.from_to.covariance + CameraMotion::mast_sway();
         (sum + sum.transpose()) * 0.5
     }
 }

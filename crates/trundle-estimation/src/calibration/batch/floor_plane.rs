@@ -10,7 +10,7 @@ use super::planar_track::tilt_of;
 use nalgebra::Matrix3;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use trundle_core::{DepthImage, PinholeCamera, Vector2, Vector3};
+use trundle_core::{DepthImage, PinholeCamera, Vector3};
 
 /// The floor in the camera's frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -204,12 +204,5 @@ impl FloorMount {
 
 /// Points with depth on a grid of pixels, camera frame, m.
 fn samples(depth: &DepthImage, camera: &PinholeCamera) -> Vec<Vector3> {
-    let rows = (0..depth.height()).step_by(SAMPLE_STEP_PX);
-    let pixels = rows.flat_map(|y| (0..depth.width()).step_by(SAMPLE_STEP_PX).map(move |x| (x, y)));
-    let point = |(x, y): (usize, usize)| {
-        let z = f64::from(*depth.get(x, y)?);
-        let pixel = camera.undistort(Vector2::new(x as f64, y as f64));
-        (z > 0.0 && z <= MAX_DEPTH_M).then(|| camera.unproject(pixel, z))
-    };
-    pixels.filter_map(point).collect()
+    camera.points(depth, SAMPLE_STEP_PX).filter(|point| point.z <= MAX_DEPTH_M).collect()
 }
