@@ -14,7 +14,7 @@
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! # let place = tempfile::tempdir()?;
 //! let mut body = Simulator::new(Scene::by_name("demo", 1)?, SimConfig::default(), 1)?; // or a driver of yours
-//! let mission = Mission::new(vec![Task::Go(Pose2::new(0.5, 0.0, 0.0))])?;
+//! let mission = Mission::new(vec![Task::go(Pose2::new(0.5, 0.0, 0.0))])?;
 //! let setup = RunSetup::new("demo", mission, RobotConfig::default()).with_time_limit(1.0);
 //! let folder = OutputFolder::create(&place.path().join("run"))?;
 //! let recorder = RunRecorder::to_folder(&folder)?;

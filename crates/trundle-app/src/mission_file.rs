@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use trundle_core::{Pose2, number_list};
 use trundle_io::read_places;
-use trundle_runtime::{Mission, Task};
+use trundle_runtime::{GoalOptions, Mission, Task, TaskGoal, WhenBlocked};
 
 /// The form of a mission file.
 #[derive(Deserialize)]
@@ -17,7 +17,7 @@ struct MissionFile {
     task: Vec<TaskEntry>,
 }
 
-/// A task: exactly one key is given.
+/// A task: exactly one key names its kind; the others are settings of a goal.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct TaskEntry {
@@ -36,6 +36,14 @@ struct TaskEntry {
     back: bool,
     #[serde(default)]
     dock: bool,
+    /// Time without progress after which a goal is given up \[s\].
+    patience_s: Option<f64>,
+    /// Distance from a goal that counts as an arrival \[m\].
+    tolerance_m: Option<f64>,
+    /// Difference of heading that counts as an arrival \[deg\].
+    heading_tolerance_deg: Option<f64>,
+    /// What the robot does if an obstacle blocks its path to a goal.
+    when_blocked: Option<WhenBlocked>,
 }
 
 /// Reads a mission.
@@ -48,6 +56,9 @@ struct TaskEntry {
 /// go = [3.0, 1.0, 90.0]    # m, m, deg, map frame
 /// [[task]]
 /// place = "desk"
+/// tolerance_m = 0.3        # near enough; without it the robot settles exactly
+/// when_blocked = "wait"    # or "detour"
+/// patience_s = 600
 /// [[task]]
 /// return = true
 /// [[task]]
@@ -80,8 +91,11 @@ const STRAIGHT_SPEED_M_S: f64 = 0.2;
 /// Kinds of a task.
 const TASK_FORMS: &str = "expected one of go = [X, Y, DEG], place = NAME, explore = true, turn_deg = DEG, straight_m = M, return = true, dock = true";
 
+/// Keys of a goal's settings.
+const GOAL_KEYS: &str = "patience_s, tolerance_m, heading_tolerance_deg and when_blocked";
+
 fn task(entry: &TaskEntry, places: &BTreeMap<String, Pose2>) -> Result<Task, String> {
-    let go = entry.go.map(|[x, y, heading_deg]| Ok(Task::Go(Pose2::new(x, y, heading_deg.to_radians()))));
+    let go = entry.go.map(|[x, y, heading_deg]| Ok(Task::go(Pose2::new(x, y, heading_deg.to_radians()))));
     let turn = entry.turn_deg.map(|angle| Ok(Task::Turn { angle: angle.to_radians() }));
     let straight =
         entry.straight_m.map(|distance| Ok(Task::Straight { distance, speed: STRAIGHT_SPEED_M_S }));
@@ -90,13 +104,36 @@ fn task(entry: &TaskEntry, places: &BTreeMap<String, Pose2>) -> Result<Task, Str
     let words = words.into_iter().filter_map(|(stands, task)| stands.then_some(Ok(task)));
     let mut forms = [go, turn, straight, place].into_iter().flatten().chain(words);
     match (forms.next(), forms.next()) {
-        (Some(task), None) => task,
+        (Some(task), None) => with_options(task?, entry.goal_options()),
         _ => Err(TASK_FORMS.to_owned()),
     }
 }
 
+/// A task with the settings of its goal.
+fn with_options(task: Task, options: GoalOptions) -> Result<Task, String> {
+    match task {
+        Task::Go(goal) => Ok(Task::Go(TaskGoal::new(goal.pose, options))),
+        other if options == GoalOptions::default() => Ok(other),
+        _ => Err(format!(
+            "{GOAL_KEYS} are settings of a goal: expected go = [X, Y, DEG] or place = NAME beside them"
+        )),
+    }
+}
+
+impl TaskEntry {
+    /// The settings of a goal.
+    fn goal_options(&self) -> GoalOptions {
+        GoalOptions {
+            patience: self.patience_s,
+            tolerance: self.tolerance_m,
+            heading_tolerance: self.heading_tolerance_deg.map(f64::to_radians),
+            when_blocked: self.when_blocked,
+        }
+    }
+}
+
 fn place(name: &str, places: &BTreeMap<String, Pose2>) -> Result<Task, String> {
-    places.get(name).map(|pose| Task::Go(*pose)).ok_or_else(|| {
+    places.get(name).map(|pose| Task::go(*pose)).ok_or_else(|| {
         let known: Vec<&str> = places.keys().map(String::as_str).collect();
         match known.as_slice() {
             [] => format!("no place '{name}': the mission names no file of places (places = FILE)"),
@@ -130,14 +167,30 @@ mod tests {
             read(text).unwrap().tasks(),
             [
                 Task::Explore,
-                Task::Go(goal),
-                Task::Go(desk),
+                Task::go(goal),
+                Task::go(desk),
                 Task::Return,
                 Task::Dock,
                 Task::Turn { angle: -90_f64.to_radians() },
                 Task::Straight { distance: -0.5, speed: STRAIGHT_SPEED_M_S },
             ]
         );
+    }
+
+    #[test]
+    fn a_goal_has_settings_of_its_own() {
+        let text = "places = \"places.toml\"\n[[task]]\ngo = [3, 1, 180]\npatience_s = 600\nwhen_blocked = \"wait\"\n\
+                    [[task]]\nplace = \"desk\"\ntolerance_m = 0.3\nheading_tolerance_deg = 90\n";
+        let mission = read(text).unwrap();
+        let options = |i: usize| match mission.tasks()[i] {
+            Task::Go(goal) => goal.options,
+            other => panic!("{other}"),
+        };
+        let plain = GoalOptions::default();
+        let waits = GoalOptions { patience: Some(600.0), when_blocked: Some(WhenBlocked::Wait), ..plain };
+        assert_eq!(options(0), waits);
+        let (tolerance, heading_tolerance) = (Some(0.3), Some(90_f64.to_radians()));
+        assert_eq!(options(1), GoalOptions { tolerance, heading_tolerance, ..plain });
     }
 
     #[test]
@@ -160,6 +213,18 @@ mod tests {
             (
                 "[[task]]\ngoal = 1\n",
                 "mission.toml, line 2: unknown key goal, expected one of go, turn_deg, straight_m, place, explore, return, dock",
+            ),
+            (
+                "[[task]]\ngo = [1, 2, 3]\npatience_s = 0\n",
+                "mission.toml: patience of the goal of task 1 is 0 s, expected 1 to 3600",
+            ),
+            (
+                "[[task]]\nexplore = true\ntolerance_m = 0.3\n",
+                "mission.toml: task 1: patience_s, tolerance_m, heading_tolerance_deg and when_blocked are settings of a goal: ",
+            ),
+            (
+                "[[task]]\ngo = [1, 2, 3]\nwhen_blocked = \"push\"\n",
+                "mission.toml, line 3: unknown value push, expected detour or wait",
             ),
             ("[[task]]\ngo = [1, nan, 3]\n", "mission.toml: y of the goal of task 1 is NaN m, expected "),
             (

@@ -38,7 +38,7 @@ impl MissionRequest {
 
     fn tasks(&self) -> Vec<Task> {
         let explore = self.explore.then_some(Task::Explore);
-        let goals = self.goals.iter().map(|goal| Task::Go(*goal));
+        let goals = self.goals.iter().map(|goal| Task::go(*goal));
         // The station is the better place to end at than the start.
         let end = if self.dock { Some(Task::Dock) } else { self.explore.then_some(Task::Return) };
         explore.into_iter().chain(goals).chain(end).collect()
@@ -56,9 +56,9 @@ mod tests {
         };
         let goal = Pose2::new(1.0, 2.0, 0.5);
         assert_eq!(asked(true, false, &[]), [Task::Explore, Task::Return]);
-        assert_eq!(asked(true, false, &[goal]), [Task::Explore, Task::Go(goal), Task::Return]);
-        assert_eq!(asked(true, true, &[goal]), [Task::Explore, Task::Go(goal), Task::Dock]);
-        assert_eq!(asked(false, false, &[goal]), [Task::Go(goal)]);
+        assert_eq!(asked(true, false, &[goal]), [Task::Explore, Task::go(goal), Task::Return]);
+        assert_eq!(asked(true, true, &[goal]), [Task::Explore, Task::go(goal), Task::Dock]);
+        assert_eq!(asked(false, false, &[goal]), [Task::go(goal)]);
         assert_eq!(asked(false, true, &[]), [Task::Dock]);
     }
 

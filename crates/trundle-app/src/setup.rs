@@ -187,7 +187,7 @@ impl RunSetup {
     #[must_use]
     pub fn goal_of(task: &Task) -> Option<Pose2> {
         match task {
-            Task::Go(goal) => Some(*goal),
+            Task::Go(goal) => Some(goal.pose),
             Task::Return => Some(Pose2::IDENTITY),
             _ => None,
         }
@@ -239,7 +239,7 @@ mod tests {
     #[test]
     fn a_mission_to_the_start_alone_is_without_motion() {
         let direct = |goals: &[Pose2]| {
-            let mission = Mission::new(goals.iter().map(|goal| Task::Go(*goal)).collect()).unwrap();
+            let mission = Mission::new(goals.iter().map(|goal| Task::go(*goal)).collect()).unwrap();
             RunSetup::new("demo", mission, RobotConfig::default()).is_without_motion()
         };
         assert!(direct(&[Pose2::IDENTITY]));

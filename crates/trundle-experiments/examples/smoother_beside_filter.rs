@@ -96,7 +96,7 @@ fn drive(name: &str, seed: u64) -> Result<(), Box<dyn Error>> {
     let mut shadow = Shadow { smoother, used: 0, gated: 0, places: 0 };
     let mut body = Simulator::new(scene, SimConfig::default(), seed)?;
     let mut robot = Robot::new(config)?;
-    robot.begin(&Mission::new(vec![Task::Go(goal), Task::Go(Pose2::IDENTITY)])?);
+    robot.begin(&Mission::new(vec![Task::go(goal), Task::go(Pose2::IDENTITY)])?);
     let (mut filter, mut smoothed) = (Errors::default(), Errors::default());
     let (mut truth, mut sampled) = (None, Stamp::default());
     while let Some(event) = body.next_event()? {

@@ -105,7 +105,7 @@ fn one(
         body: jackal::body(&robot)?,
         robot,
         scene: world.scene()?,
-        mission: Mission::new(vec![Task::Go(BarnWorld::start().inverse() * BarnWorld::goal())])?,
+        mission: Mission::new(vec![Task::go(BarnWorld::start().inverse() * BarnWorld::goal())])?,
         known: None,
         seed,
         time_limit: TIME_LIMIT_S,

@@ -63,7 +63,7 @@ fn plan(seed: u64, variant: Variant, robot: &RobotConfig) -> Result<TrialPlan, A
     let scene = plain_room(seed, variant.people)?;
     let goal = scene.start_from_goal();
     let mission =
-        Mission::new(vec![Task::Explore, Task::Go(goal), Task::Go(Pose2::IDENTITY), Task::Go(goal)])?;
+        Mission::new(vec![Task::Explore, Task::go(goal), Task::go(Pose2::IDENTITY), Task::go(goal)])?;
     let to = scene.goal;
     let kind = FaultKind::Kidnapped { x: to.x, y: to.y, heading_deg: -to.theta.to_degrees() };
     let carried = Fault { from_s: CARRIED_AT_S, to_s: CARRIED_AT_S + CARRIED_FOR_S, kind };

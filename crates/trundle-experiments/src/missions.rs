@@ -55,7 +55,7 @@ pub fn run_obstacles(
 ) -> Result<MissionsOutcome, AppError> {
     run_story(&OBSTACLES, request, context, |seed| {
         let scene = Scene::by_name("obstacles", seed)?;
-        let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
+        let mission = Mission::new(vec![Task::go(scene.start_from_goal())])?;
         Ok((scene, mission))
     })
 }
@@ -102,7 +102,7 @@ pub fn run_house(
         for goal in HOUSE_GOALS {
             require_free("goal", &scene, pose(goal), &request.robot)?;
         }
-        let goals = HOUSE_GOALS.map(|goal| Task::Go(start.inverse() * pose(goal)));
+        let goals = HOUSE_GOALS.map(|goal| Task::go(start.inverse() * pose(goal)));
         Ok((scene, Mission::new(goals.to_vec())?))
     })
 }

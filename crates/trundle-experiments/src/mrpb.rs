@@ -162,7 +162,7 @@ fn one(
         robot: robot.clone(),
         body: body(robot)?,
         scene: course.scene(data)?,
-        mission: Mission::new(vec![Task::Go(course.start.inverse() * course.goal)])?,
+        mission: Mission::new(vec![Task::go(course.start.inverse() * course.goal)])?,
         known: course.known(data, robot.mapping.resolution)?,
         seed,
         time_limit: TIME_LIMIT_S,

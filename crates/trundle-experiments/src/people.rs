@@ -127,7 +127,7 @@ fn plan(name: &str, seed: u64, robot: &RobotConfig) -> Result<TrialPlan, AppErro
     let mut scene = Scene::by_name("room", seed)?;
     scene.start = Pose2::new(START_XY_M.0, START_XY_M.1, 0.0);
     scene.goal = Pose2::new(GOAL_XY_M.0, GOAL_XY_M.1, 0.0);
-    let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
+    let mission = Mission::new(vec![Task::go(scene.start_from_goal())])?;
     Ok(TrialPlan::new(name, seed, scene, mission, robot))
 }
 

@@ -41,7 +41,7 @@ fn plans(request: &RunsRequest) -> Result<Vec<TrialPlan>, AppError> {
         for seed in 1..=u64::from(request.seeds) {
             let mut scene = Scene::by_name("room", seed)?;
             scene.start = Pose2::new(x, y, 0.0);
-            let mission = Mission::new(vec![Task::Go(scene.start_from_goal())])?;
+            let mission = Mission::new(vec![Task::go(scene.start_from_goal())])?;
             plans.push(TrialPlan::new(&(i + 1).to_string(), seed, scene, mission, &request.robot));
         }
     }

@@ -91,7 +91,7 @@ pub fn run(
     let scene = Scene::by_name("demo", request.seed)?;
     let seconds = 60.0 * f64::from(request.minutes);
     let before = if seconds >= MIN_JUDGED_RUN_S { vec![Task::Explore] } else { vec![] };
-    let pair = [Task::Go(scene.start_from_goal()), Task::Return];
+    let pair = [Task::go(scene.start_from_goal()), Task::Return];
     let mission = Mission::new([before, pair.repeat((seconds / SHORTEST_TASK) as usize)].concat())?;
     let mut setup = RunSetup::new(&scene.name, mission, robot).with_time_limit(seconds);
     setup.seed = request.seed;

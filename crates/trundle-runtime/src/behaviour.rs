@@ -8,7 +8,7 @@ pub(crate) mod navigator;
 pub(crate) mod opening;
 pub(crate) mod path_planner;
 pub(crate) mod path_search;
-pub(crate) mod progress_checker;
+pub(crate) mod progress;
 pub(crate) mod relative_motion;
 pub(crate) mod sight;
 pub(crate) mod sight_recovery;

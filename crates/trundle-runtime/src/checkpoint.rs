@@ -179,13 +179,13 @@ mod tests {
     }
 
     fn memory() -> Checkpoint {
-        let mission = Mission::new(vec![Task::Explore, Task::Go(Pose2::new(1.5, -2.0, 0.25)), Task::Return]);
+        let mission = Mission::new(vec![Task::Explore, Task::go(Pose2::new(1.5, -2.0, 0.25)), Task::Return]);
         let mission = MissionState::new(mission.unwrap());
         let outline = vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
         let stairs = Zone { id: 1, name: "stairs".to_owned(), kind: ZoneKind::NoGo, outline };
         let ended = TaskRecord {
             index: 1,
-            task: Task::Go(Pose2::new(0.1, 0.2, 0.3)),
+            task: Task::go(Pose2::new(0.1, 0.2, 0.3)),
             end: TaskEnd::Done,
             from: Stamp::from_nanos(5),
             to: Stamp::from_nanos(7),

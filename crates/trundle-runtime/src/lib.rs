@@ -39,7 +39,9 @@ pub use histogram::Histogram;
 pub use lazy_image::LazyImage;
 pub use level_map::{LevelMap, base_below, level_from_first_camera};
 pub use mission::executor_config::MissionExecutorConfig;
-pub use mission::{DockFailure, Mission, MissionState, Task, TaskEnd, TaskRecord};
+pub use mission::{
+    DockFailure, GoalOptions, Mission, MissionState, Task, TaskEnd, TaskGoal, TaskRecord, WhenBlocked,
+};
 pub use operator::{OperatorCommand, PoseGuess, RunSetting, TELEOP_SILENCE_S, require_loadable};
 pub use range_source::RangeSource;
 pub use reason::{NoPath, Reason, ReasonKind, TaskFailure, TransitionReason};

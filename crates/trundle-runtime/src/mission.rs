@@ -4,11 +4,13 @@ pub(crate) mod dock_failure;
 pub(crate) mod dock_task;
 pub(crate) mod executor;
 pub(crate) mod executor_config;
+pub(crate) mod goal_options;
 pub(crate) mod light_search;
 pub(crate) mod task;
 
 use crate::reason::Reason;
 pub use dock_failure::DockFailure;
+pub use goal_options::{GoalOptions, TaskGoal, WhenBlocked};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 pub use task::Task;
@@ -144,13 +146,13 @@ mod tests {
 
     #[test]
     fn a_goal_that_is_not_a_number_is_refused_by_its_place() {
-        let error = Mission::new(vec![Task::Explore, Task::Go(Pose2::new(f64::NAN, 0.0, 0.0))]).unwrap_err();
+        let error = Mission::new(vec![Task::Explore, Task::go(Pose2::new(f64::NAN, 0.0, 0.0))]).unwrap_err();
         assert_eq!(error.field, "x of the goal of task 2");
     }
 
     #[test]
     fn each_task_has_a_text_and_a_name_in_files() {
-        let go = Task::Go(Pose2::new(1.0, -2.0, std::f64::consts::FRAC_PI_2));
+        let go = Task::go(Pose2::new(1.0, -2.0, std::f64::consts::FRAC_PI_2));
         let tasks = [
             (go, "go to (1.00 m, -2.00 m, 90 deg)", "go"),
             (Task::Explore, "explore", "explore"),
@@ -180,7 +182,7 @@ mod tests {
         assert!(new(vec![Task::Explore]).validated().is_ok());
         let missing = MissionState { places: Vec::new(), ..new(vec![Task::Explore]) };
         assert_eq!(missing.validated().unwrap_err().field, "places of tasks");
-        let infinite = new(vec![Task::Go(Pose2::new(f64::INFINITY, 0.0, 0.0))]);
+        let infinite = new(vec![Task::go(Pose2::new(f64::INFINITY, 0.0, 0.0))]);
         assert_eq!(infinite.validated().unwrap_err().field, "x of the goal of task 1");
     }
 

@@ -37,6 +37,11 @@ pub enum Reason {
         /// The floor, map frame \[m\].
         at: Vector2,
     },
+    /// An obstacle blocks the path that the robot followed.
+    PathBlocked {
+        /// The robot's position at the obstacle, map frame \[m\].
+        at: Vector2,
+    },
     /// The planner finds no path.
     NoPath {
         /// The planner's result.
@@ -131,6 +136,7 @@ impl Reason {
             Self::MovingObstacle => ReasonKind::MovingObstacle,
             Self::PathOutOfView => ReasonKind::PathOutOfView,
             Self::UnseenFloor { .. } => ReasonKind::UnseenFloor,
+            Self::PathBlocked { .. } => ReasonKind::PathBlocked,
             Self::NoPath { cause, .. } => ReasonKind::of_no_path(cause),
             Self::PoseUnknown => ReasonKind::PoseUnknown,
             Self::PoseUncertain { .. } => ReasonKind::PoseUncertain,
@@ -156,6 +162,9 @@ impl fmt::Display for Reason {
             Self::PathOutOfView => f.write_str("the path leaves the camera's view; searching another path"),
             Self::UnseenFloor { at } => {
                 write!(f, "the path crosses unseen floor at ({:.2}, {:.2}) m; observing it first", at.x, at.y)
+            }
+            Self::PathBlocked { at } => {
+                write!(f, "an obstacle at ({:.2}, {:.2}) m blocks the path", at.x, at.y)
             }
             Self::NoPath { cause, unseen: None } => cause.fmt(f),
             Self::NoPath { cause, unseen: Some(at) } => {

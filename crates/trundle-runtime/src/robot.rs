@@ -160,7 +160,7 @@ impl Robot {
     /// # Errors
     /// When the goal is not finite.
     pub fn drive_to(&mut self, goal: Pose2) -> Result<(), Invalid> {
-        self.begin(&Mission::new(vec![Task::Go(goal)])?);
+        self.begin(&Mission::new(vec![Task::go(goal)])?);
         Ok(())
     }
 

@@ -114,7 +114,7 @@ impl EncodedBody for InterruptedBody {
 
 /// A run to [`GOAL`] by the default robot.
 pub fn setup() -> RunSetup {
-    RunSetup::new("nowhere", Mission::new(vec![Task::Go(GOAL)]).unwrap(), RobotConfig::default())
+    RunSetup::new("nowhere", Mission::new(vec![Task::go(GOAL)]).unwrap(), RobotConfig::default())
 }
 
 /// Runs `setup` on `body`, recorded into a temporary folder.

@@ -29,7 +29,7 @@ fn run_with(commands: &[OperatorCommand], folder: &Path) -> (FinishedRun, Operat
 }
 
 fn go(x: f64) -> OperatorCommand {
-    OperatorCommand::Begin(Mission::new(vec![Task::Go(Pose2 { x, ..GOAL })]).unwrap())
+    OperatorCommand::Begin(Mission::new(vec![Task::go(Pose2 { x, ..GOAL })]).unwrap())
 }
 
 #[test]
@@ -39,7 +39,7 @@ fn the_newest_mission_replaces_the_last_one_and_is_shown_by_its_number() {
     let view = operator.view().unwrap();
     let MissionView { id, task, is_over, .. } = view.mission.clone();
     assert_eq!((id, is_over), (3, false));
-    assert!(matches!(task, Some(Task::Go(Pose2 { x: 2.0, .. }))), "{task:?}");
+    assert!(matches!(task, Some(Task::Go(goal)) if goal.pose.x == 2.0), "{task:?}");
     assert_eq!(view.hold, Some(MotionHold::Paused));
     assert!(view.odometry.is_some() && view.map.is_some());
 }

@@ -155,7 +155,7 @@ fn the_table_has_a_row_for_each_figure() {
 
 #[test]
 fn the_sentences_of_a_mission_are_in_order() {
-    let mission = Mission::new(vec![Task::Explore, Task::Go(GOAL), Task::Return]).unwrap();
+    let mission = Mission::new(vec![Task::Explore, Task::go(GOAL), Task::Return]).unwrap();
     assert_eq!(mission_text(&mission), "explore, go to (1.00 m, 0.00 m, 0 deg), return to the start");
     assert_eq!(mission_text(&Mission::default()), "");
 }

@@ -61,11 +61,11 @@ fn contacts_in_truth_count_before_the_bumper() {
 #[test]
 fn a_goal_that_failed_comes_again_at_the_end_of_the_mission() {
     let mut setup = setup();
-    setup.mission = Mission::new(vec![Task::Go(GOAL), Task::Return]).unwrap();
+    setup.mission = Mission::new(vec![Task::go(GOAL), Task::Return]).unwrap();
     let run = run(&setup, &mut StillBody::touched()).unwrap();
     let [record] = run.robot.tasks_ended() else { panic!("{:?}", run.robot.tasks_ended()) };
     assert!(
         matches!(&record.end, TaskEnd::PutOff { reason } if reason.kind() == ReasonKind::RepeatedContact)
     );
-    assert_eq!(run.robot.task(), Some(Task::Go(GOAL)), "before the return");
+    assert_eq!(run.robot.task(), Some(Task::go(GOAL)), "before the return");
 }

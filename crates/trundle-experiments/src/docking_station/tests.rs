@@ -82,7 +82,7 @@ fn the_same_seed_gives_the_same_dock() {
 fn a_robot_that_starts_on_its_station_backs_off_first_and_knows_the_way_back() {
     let start = station() * Pose2::new(0.18, 0.0, PI);
     let scene = room(start).with_station(station()).unwrap();
-    let tasks = vec![Task::Go(Pose2::new(-1.5, 0.5, 0.0)), Task::Dock];
+    let tasks = vec![Task::go(Pose2::new(-1.5, 0.5, 0.0)), Task::Dock];
     let trial = dock(DockPlan { mission: Mission::new(tasks).unwrap(), ..plan(scene, 5) }).unwrap();
     assert_docked(&trial);
     let ends: Vec<_> = trial.run.robot.tasks_ended().iter().map(|record| record.end.to_string()).collect();

@@ -43,10 +43,10 @@ fn task_of(command: &HomeCommand, view: &RobotGlance, places: &dyn Places) -> Re
         HomeCommand::Dock => Task::Dock,
         HomeCommand::GoHome if view.station.is_some() => Task::Dock,
         HomeCommand::GoHome => Task::Return,
-        HomeCommand::GoTo(pose) => Task::Go(*pose),
+        HomeCommand::GoTo(pose) => Task::go(*pose),
         HomeCommand::GoToPlace(name) => {
             let known = || places.names().join(", ");
-            Task::Go(places.pose(name).ok_or_else(|| format!("no place '{name}'; places: {}", known()))?)
+            Task::go(places.pose(name).ok_or_else(|| format!("no place '{name}'; places: {}", known()))?)
         }
         _ => Task::Explore,
     })

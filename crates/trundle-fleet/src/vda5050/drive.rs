@@ -37,7 +37,7 @@ impl Drive {
     /// When the robot takes no command.
     pub fn begin(node: &OrderNode, pose: Pose2, robot: &mut dyn RobotCommands) -> Result<Self, String> {
         let goal = goal_of(node, pose).ok_or_else(|| format!("node {} has no position", node.node_id))?;
-        let mission = Mission::new(vec![Task::Go(goal)]).map_err(|error| error.to_string())?;
+        let mission = Mission::new(vec![Task::go(goal)]).map_err(|error| error.to_string())?;
         let mission = robot.send(OperatorCommand::Begin(mission))?;
         Ok(Self { mission, failed: None, is_due: false })
     }

@@ -101,7 +101,7 @@ impl TestRobot {
     /// The goal that the robot drives to.
     pub fn goal(&self) -> Option<Pose2> {
         match self.view.mission.task {
-            Some(Task::Go(goal)) if !self.view.mission.is_over => Some(goal),
+            Some(Task::Go(goal)) if !self.view.mission.is_over => Some(goal.pose),
             _ => None,
         }
     }

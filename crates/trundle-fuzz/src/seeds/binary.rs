@@ -68,7 +68,7 @@ pub fn recording() -> Vec<Vec<u8>> {
     let mut recorder =
         Recorder::new(Cursor::new(Vec::new()), Path::new("memory")).expect("invariant: memory is writable");
     let mission =
-        Mission::new(vec![Task::Go(Pose2::new(1.0, 2.0, 0.5))]).expect("invariant: the goal is finite");
+        Mission::new(vec![Task::go(Pose2::new(1.0, 2.0, 0.5))]).expect("invariant: the goal is finite");
     let setup = RunSetup::new("seed", mission, RobotConfig::default());
     let at = |millis: i64| Stamp::from_nanos(1_000_000 * millis);
     recorder.record_json("/config", "trundle.Config", at(0), &setup).expect("invariant: a setup is JSON");

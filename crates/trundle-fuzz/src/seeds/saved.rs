@@ -34,7 +34,7 @@ fn wall(i: i64) -> RgbdImage {
 
 /// A floor map, a mission and no visual map.
 pub fn checkpoint() -> Vec<Vec<u8>> {
-    let mission = Mission::new(vec![Task::Explore, Task::Go(Pose2::new(1.5, -2.0, 0.25)), Task::Return]);
+    let mission = Mission::new(vec![Task::Explore, Task::go(Pose2::new(1.5, -2.0, 0.25)), Task::Return]);
     let grid = OccupancyGrid::from_ascii(0.05, "###\n#.#\n#??").expect("invariant: the map is valid");
     let mission = MissionState::new(mission.expect("invariant: the goals are finite"));
     vec![

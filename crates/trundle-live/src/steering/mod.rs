@@ -122,14 +122,14 @@ impl RunSteering {
         let map = view.as_ref().and_then(|view| view.map.as_deref());
         let annotations = self.operator.annotations();
         for (number, goal) in goals.iter().enumerate() {
-            let checked = Mission::new(vec![Task::Go(goal.pose())]).map_err(CommandRefusal::from);
+            let checked = Mission::new(vec![Task::go(goal.pose())]).map_err(CommandRefusal::from);
             let checked = checked.and_then(|_| {
                 map.map_or(Ok(()), |map| require_free(&map.grid, &annotations, &self.check, goal.pose()))
             });
             checked.map_err(|refusal| CommandRefusal { goal: Some(number), ..refusal })?;
         }
         let left = view.filter(|_| append).map(|view| view.mission.left.to_vec()).unwrap_or_default();
-        self.begin(left.into_iter().chain(goals.iter().map(|goal| Task::Go(goal.pose()))).collect())
+        self.begin(left.into_iter().chain(goals.iter().map(|goal| Task::go(goal.pose()))).collect())
     }
 
     /// A zone outside the map is assumed to be a mistake.

@@ -14,7 +14,7 @@ fn goals_become_the_mission_and_more_goals_queue_behind_it() {
     let mut page = Browser::enter(&run, Access::Drive, "page");
     let goal = |x: f64| json!({"x": x, "y": 0.5, "theta": 1.0});
     assert_eq!(page.ask(json!({"type": "go", "goals": [goal(1.0)]})), None);
-    let has = |x: f64| move |task: &Task| matches!(task, Task::Go(Pose2 { x: at, .. }) if *at == x);
+    let has = |x: f64| move |task: &Task| matches!(task, Task::Go(goal) if goal.pose.x == x);
     run.wait_for("the goal", |view| view.mission.left.iter().any(has(1.0)));
     assert_eq!(page.ask(json!({"type": "go", "goals": [goal(2.0)], "append": true})), None);
     run.wait_for("both goals", |view| {

@@ -82,6 +82,12 @@ impl Planner {
         self.core.drive.limits.v = speed.min(self.full_speed);
     }
 
+    /// Sets the distance from a blocked goal that still counts, m, 0 to 100, for the next plans ([`PlannerConfig::goal_tolerance`]).
+    pub fn set_goal_tolerance(&mut self, tolerance: f64) {
+        self.core.config.goal_tolerance = tolerance;
+        self.core.on_lanes.goal_tolerance = tolerance;
+    }
+
     /// Sets a clock that counts seconds, for [`Planner::stage_times`]. Plans do not depend on it.
     pub fn set_clock(&mut self, clock: Option<fn() -> f64>) {
         self.core.clock = clock;

@@ -50,7 +50,7 @@ fn begin(active: &ActiveGoal, goal: &PoseStamped, frames: &FrameNames) -> Result
         GoalPoseError::Invalid(error) => error.to_string(),
         GoalPoseError::Frame(message) => message,
     })?;
-    active.begin_without_action(vec![Task::Go(pose)])
+    active.begin_without_action(vec![Task::go(pose)])
 }
 
 /// Sets the robot's pose.

@@ -12,7 +12,7 @@
 use super::state::{Change, Next, State};
 use super::states::{approach, drive, initialize, maneuver, plan, relocalize, spin_once};
 use super::tools::Tools;
-use super::transitions::{StateKind, is_allowed};
+use super::transitions::is_allowed;
 use crate::reason::{Reason, TransitionReason};
 use crate::stage::StageTimes;
 use crate::world_state::WorldState;
@@ -146,12 +146,6 @@ impl StateMachine {
             State::Station(station) => station.permission(s),
             _ => None,
         }
-    }
-
-    /// Whether a turn on the spot leads to the goal in this state.
-    pub(crate) fn makes_progress_by_turns(&self) -> bool {
-        use StateKind::{Approach, Drive, Face, Maneuver, Relative, Spin, Station};
-        matches!(self.state.kind(), Spin | Drive | Approach | Face | Maneuver | Relative | Station)
     }
 
     /// Ends the goal, with a reason.

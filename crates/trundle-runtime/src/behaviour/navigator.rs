@@ -12,12 +12,14 @@ use crate::{
     behaviour::drive_state::DriveState,
     behaviour::goal::Goal,
     behaviour::machine::StateMachine,
-    behaviour::progress_checker::ProgressChecker,
+    behaviour::progress::guard::Remaining,
+    behaviour::progress::rest::rest,
     behaviour::spin::Spin,
     behaviour::state::{Drive, Relative, State, Station},
     behaviour::tools::Tools,
     config::RobotConfig,
     goal_approach::GoalApproachReport,
+    mission::GoalOptions,
     mission::executor_config::MissionExecutorConfig,
     operator::RunSetting,
     reason::{Reason, TransitionReason},
@@ -42,7 +44,6 @@ pub(crate) struct Navigator {
     machine: StateMachine,
     tools: Tools,
     safety: SafetyMonitor,
-    progress: ProgressChecker,
     /// Twist of the last step before the safety monitor.
     wanted: Twist2,
 }
@@ -57,7 +58,6 @@ impl Navigator {
             machine: StateMachine::default(),
             tools: Tools::new(config, footprint)?,
             safety: SafetyMonitor::new(config.safety.clone(), footprint)?,
-            progress: ProgressChecker::default(),
             wanted: Twist2::ZERO,
         })
     }
@@ -71,15 +71,19 @@ impl Navigator {
     pub(crate) fn change(&mut self, setting: RunSetting) {
         match setting {
             RunSetting::Speed(speed) => self.tools.planner.planner.limit_speed(speed),
-            RunSetting::Patience(patience) => self.config.patience = patience,
+            RunSetting::Patience(patience) => self.tools.set_patience(patience),
         }
     }
 
-    /// Sets the goal. A robot that follows a trajectory continues to the new goal without a stop.
+    /// Sets a goal with the options of the robot file.
     pub(crate) fn set_goal(&mut self, goal: Goal) {
+        self.set_goal_with(goal, GoalOptions::default());
+    }
+
+    /// Sets the goal. A robot that follows a trajectory continues to the new goal without a stop.
+    pub(crate) fn set_goal_with(&mut self, goal: Goal, options: GoalOptions) {
         let rolls_on = matches!(self.machine.state(), State::Drive(_)) && goal.is_driven_to();
-        self.tools.restart(goal, rolls_on);
-        self.progress.restart();
+        self.tools.restart(goal, options, rolls_on);
         let state = match goal {
             Goal::Stay => State::Idle,
             Goal::Exact(_) | Goal::Viewpoint(_) if rolls_on => State::Drive(Drive::default()),
@@ -168,6 +172,7 @@ impl Navigator {
             None if is_lost && position_sigma(&s.estimate) < 0.5 * self.config.lost_sigma => {
                 // The robot may have been carried here.
                 self.tools.planner.visibility.home = None;
+                self.tools.guard.allow_detour(s.now, self.tools.planner.visibility.results());
                 let spins = self.tools.goal == Goal::Spin;
                 let state = if spins { State::Spin(Spin::default()) } else { State::Initialize };
                 self.machine.change(state.because(TransitionReason::PoseFound));
@@ -178,18 +183,35 @@ impl Navigator {
 
     /// Checks that the robot makes progress.
     fn monitor_progress(&mut self, s: &WorldState<'_>) {
-        if s.hold.is_some() {
-            // A safety stop is not a fault of the goal.
-            return self.progress.restart();
+        if let Some(reference) = self.tools.follower.reference().filter(|_| self.tools.plan.is_some()) {
+            self.tools.guard.note_time(reference.time);
         }
-        let turns_count = self.machine.makes_progress_by_turns();
-        let time = self.progress.standing_for(s.now, s.estimate.pose, turns_count);
-        if time > self.config.patience {
+        let rest = rest(self.machine.state(), &self.tools, s);
+        // A hold by the body is not a fault of the goal.
+        let rest = rest.filter(|_| s.hold.is_none() && !self.waits_by_request());
+        let Some(rest) = rest else { return self.tools.guard.pause(s.now) };
+        let is_driving = matches!(self.machine.state(), State::Drive(_));
+        let remaining = Remaining { rest, results: self.tools.planner.visibility.results(), is_driving };
+        let time = self.tools.guard.time_without_progress(s.now, &remaining);
+        if self.tools.options.patience.is_some_and(|patience| time > patience) {
             let state = self.state();
-            let (state, cause) = (state.name(), state.reason().cloned().map(Box::new));
+            let cause = self.blocked_path(s).or_else(|| state.reason().cloned());
+            let (state, cause) = (state.name(), cause.map(Box::new));
             self.tools.halt();
             self.machine.stop(Reason::NoProgress { time, state, cause }, TransitionReason::NoProgress);
         }
+    }
+
+    /// The obstacle on the path that the robot followed to its goal.
+    fn blocked_path(&self, s: &WorldState<'_>) -> Option<Reason> {
+        let (path, time) = self.tools.guard.path()?;
+        self.tools.planner.obstacle_on(path, time, s).map(|at| Reason::PathBlocked { at })
+    }
+
+    /// Whether the robot waits for a blocked path, as the goal asks.
+    fn waits_by_request(&self) -> bool {
+        let state = self.machine.state();
+        self.tools.waits_when_blocked() && state.reason().is_some_and(|reason| reason.kind().is_blockage())
     }
 
     /// If a turn restored the view twice at one place, the path to the viewpoint leads into the camera's blind range, and the navigator

@@ -9,7 +9,7 @@ use crate::config::RobotConfig;
 use crate::reason::{NoPath, Reason};
 use crate::world_state::WorldState;
 use camera_fov::CameraFov;
-pub(crate) use plan_in_view::InView;
+pub(crate) use plan_in_view::{InView, UnseenPath};
 use trundle_core::{Footprint, Invalid, Pose2, Twist2};
 use trundle_planning::{Plan, Planner};
 use visibility_constraint::VisibilityConstraint;

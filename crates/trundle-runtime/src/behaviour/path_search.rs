@@ -16,6 +16,8 @@ pub(crate) struct PathSearch {
     pub(crate) no_path_since: Option<Stamp>,
     /// Place where the path to the goal is blocked.
     pub(crate) blocked_at: Option<Vector2>,
+    /// Length of the best path over unseen floor \[m\], while this floor is observed first; `None` without such a path.
+    pub(crate) rest_over_unseen_floor: Option<f64>,
     pub(crate) viewpoint: Viewpoint,
     /// The turns on the spot that observed the surroundings.
     pub(crate) spin: Spin,

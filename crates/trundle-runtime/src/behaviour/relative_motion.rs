@@ -61,6 +61,17 @@ impl RelativeMotionDrive {
         }
     }
 
+    /// What is left of the motion \[m\], a turn as the way of a point at `radius` \[m\].
+    pub(crate) fn rest(&self, motion: RelativeMotion, pose: Pose2, radius: f64) -> f64 {
+        match (motion, self.start) {
+            (RelativeMotion::Turn { angle }, _) => radius * (angle - self.turned).abs(),
+            (RelativeMotion::Straight { distance, .. }, None) => distance.abs(),
+            (RelativeMotion::Straight { distance, .. }, Some(start)) => {
+                (distance - (start.inverse() * pose).x).abs()
+            }
+        }
+    }
+
     /// Whether the safety monitor has stopped the motion for too long.
     pub(crate) fn is_blocked(&mut self, is_stopped: bool, now: Stamp) -> bool {
         if !is_stopped {

@@ -37,6 +37,11 @@ impl Spin {
         Twist2::new(0.0, SPIN_RATE_RAD_S.copysign(side))
     }
 
+    /// The angle left of a spin of [`SPIN_TURNS`], rad.
+    pub(crate) fn rest(&self) -> f64 {
+        (SPIN_TURNS * TAU - self.turned).max(0.0)
+    }
+
     /// Whether at least `turns` revolutions are made.
     pub(crate) fn has_turned(&self, turns: f64) -> bool {
         self.turned

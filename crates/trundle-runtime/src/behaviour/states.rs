@@ -1,6 +1,7 @@
 //! What the robot does in each state: one file a state.
 
 pub(crate) mod approach;
+pub(crate) mod detour;
 pub(crate) mod drive;
 pub(crate) mod initialize;
 pub(crate) mod maneuver;

@@ -4,16 +4,23 @@ use super::contacts::Contacts;
 use super::goal::Goal;
 use super::opening::Opening;
 use super::path_planner::PathPlanner;
+use super::progress::guard::ProgressGuard;
 use super::sight::Sight;
+use crate::mission::{GoalOptions, WhenBlocked};
 use crate::{bumper, config::RobotConfig, goal_approach::GoalApproach, schedule::Ticker};
 use trundle_control::Follower;
-use trundle_core::{Footprint, Invalid};
+use trundle_core::{Footprint, Invalid, Pose2};
 use trundle_planning::PlanResult;
 
 /// The components that the states share. A component holds no state of the drive.
 #[derive(Debug)]
 pub(crate) struct Tools {
     pub(crate) goal: Goal,
+    /// How the robot drives to the goal; a setting that is `None` is that of the robot file.
+    pub(crate) options: GoalOptions,
+    /// The robot file's settings of goals.
+    pub(crate) default_options: GoalOptions,
+    pub(crate) guard: ProgressGuard,
     pub(crate) planner: PathPlanner,
     /// The newest plan to the goal; none after its rejection.
     pub(crate) plan: Option<PresentPlan>,
@@ -54,6 +61,9 @@ impl Tools {
     pub(crate) fn new(config: &RobotConfig, footprint: &Footprint) -> Result<Self, Invalid> {
         Ok(Self {
             goal: Goal::Stay,
+            options: GoalOptions::default(),
+            default_options: default_options(config),
+            guard: ProgressGuard::default(),
             planner: PathPlanner::new(config, footprint)?,
             plan: None,
             follower: Follower::new(config.control.clone(), config.drive, config.limits)?,
@@ -69,8 +79,11 @@ impl Tools {
     }
 
     /// Prepares for another goal. A robot that rolls on keeps its trajectory until the next plan.
-    pub(crate) fn restart(&mut self, goal: Goal, rolls_on: bool) {
+    pub(crate) fn restart(&mut self, goal: Goal, options: GoalOptions, rolls_on: bool) {
         self.goal = goal;
+        self.options = options.or(&self.default_options);
+        self.planner.planner.set_goal_tolerance(self.options.tolerance.unwrap_or(0.0));
+        self.guard.restart();
         self.plan = None;
         self.planner.visibility.restart();
         self.contacts.restart();
@@ -82,16 +95,42 @@ impl Tools {
         }
     }
 
+    /// Changes the patience of goals \[s\]. A goal with a patience of its own keeps it.
+    pub(crate) fn set_patience(&mut self, patience: f64) {
+        if self.options.patience == self.default_options.patience {
+            self.options.patience = Some(patience);
+        }
+        self.default_options.patience = Some(patience);
+    }
+
     /// Ends every motion: the robot brakes to rest.
     pub(crate) fn halt(&mut self) {
         self.follower.halt();
         self.goal_approach.reset();
     }
 
-    /// Takes up a plan, and follows it.
-    pub(crate) fn follow(&mut self, result: Box<PlanResult>, goal: trundle_core::Pose2) {
-        self.follower.follow(result.trajectory.clone(), goal);
+    /// Whether the goal asks to wait for a blocked path.
+    pub(crate) fn waits_when_blocked(&self) -> bool {
+        self.options.when_blocked == Some(WhenBlocked::Wait)
+    }
+
+    /// Takes up a plan, and follows it: to the goal, or near a blocked goal with a tolerance to the end of the trajectory.
+    pub(crate) fn follow(&mut self, result: Box<PlanResult>, goal: Pose2) {
+        let end = if result.instead_of.is_some() { result.trajectory.end() } else { goal };
+        self.follower.follow(result.trajectory.clone(), end);
+        self.guard.follow(result.trajectory.clone());
         self.plan = Some(PresentPlan { result, zones_version: self.planner.zones_version() });
+    }
+}
+
+/// The robot file's settings of goals.
+fn default_options(config: &RobotConfig) -> GoalOptions {
+    let tolerance = config.planning.goal_tolerance;
+    GoalOptions {
+        patience: Some(config.mission_executor.patience),
+        when_blocked: Some(config.mission_executor.when_blocked),
+        tolerance: (tolerance > 0.0).then_some(tolerance),
+        heading_tolerance: None,
     }
 }
 

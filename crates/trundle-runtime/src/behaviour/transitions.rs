@@ -81,6 +81,7 @@ pub(crate) const TRANSITIONS: &[Transition] = &[
     Transition { from: PLANS, reason: R::MovingObstacle, to: &[Wait] },
     Transition { from: Source::Of(&[Drive]), reason: R::PathOutOfView, to: &[Wait] },
     Transition { from: Source::Of(SEARCH), reason: R::UnseenFloor, to: &[Recover] },
+    Transition { from: PLANS, reason: R::DetourRefused, to: &[Wait] },
     Transition { from: PLANS, reason: R::NoPath, to: &[Recover, Stopped] },
     Transition { from: Source::Of(&[Wait, Recover]), reason: R::NoPath, to: &[Wait] },
     Transition {

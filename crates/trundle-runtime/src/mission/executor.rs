@@ -8,7 +8,7 @@ use crate::{
     behaviour::station_drive::StationGoal,
     mission::dock_task::{DockStep, DockTask},
     mission::executor_config::MissionExecutorConfig,
-    mission::{Mission, MissionState, Task, TaskEnd, TaskRecord},
+    mission::{GoalOptions, Mission, MissionState, Task, TaskEnd, TaskRecord},
     reason::{Reason, TaskFailure},
     schedule::Ticker,
 };
@@ -119,6 +119,14 @@ impl MissionExecutor {
         self.current.as_ref().map(|current| current.entry.task)
     }
 
+    /// The options of the present task's goal.
+    pub(crate) fn goal_options(&self) -> GoalOptions {
+        match self.task() {
+            Some(Task::Go(goal)) => goal.options,
+            _ => GoalOptions::default(),
+        }
+    }
+
     /// The tasks that have not ended, the present one first.
     pub(crate) fn tasks_left(&self) -> impl Iterator<Item = Task> {
         self.entries_left().map(|entry| entry.task)
@@ -201,7 +209,7 @@ impl MissionExecutor {
         let explorer = self.explorer();
         let current = self.current.as_mut()?;
         let (work, goal) = match current.entry.task {
-            Task::Go(pose) => (Work::Going, Goal::Exact(pose)),
+            Task::Go(goal) => (Work::Going, Goal::Exact(goal.pose)),
             Task::Return => (Work::Going, Goal::Exact(Pose2::IDENTITY)),
             Task::Turn { angle } => (Work::Going, Goal::Relative(RelativeMotion::Turn { angle })),
             Task::Straight { distance, speed } => {
@@ -369,7 +377,7 @@ mod tests {
     #[test]
     fn goals_come_one_after_the_other_and_what_fails_comes_again_before_the_return() {
         let (grid, [a, b]) = (room(), [1.0, 2.0].map(|x| Pose2::new(x, 0.0, 0.0)));
-        let mut executor = executor(&[Task::Go(a), Task::Go(b), Task::Return]);
+        let mut executor = executor(&[Task::go(a), Task::go(b), Task::Return]);
         let s = world(&grid);
         let stopped = DriveState::Stopped { reason: Reason::MovingObstacle };
         assert!(executor.may_take_long(&s, &DriveState::Idle), "a goal is planned for at once");
@@ -391,7 +399,7 @@ mod tests {
     #[test]
     fn after_a_restart_the_mission_continues_and_done_tasks_stay_done() {
         let (grid, [a, b]) = (room(), [1.0, 2.0].map(|x| Pose2::new(x, 0.0, 0.0)));
-        let mut first = executor(&[Task::Go(a), Task::Go(b), Task::Return]);
+        let mut first = executor(&[Task::go(a), Task::go(b), Task::Return]);
         let s = world(&grid);
         first.step(&s, &DriveState::Idle);
         assert_eq!(first.step(&s, &DriveState::Arrived), Some(Goal::Exact(b)));
@@ -442,13 +450,13 @@ mod tests {
     fn on_its_charging_station_a_robot_backs_off_before_any_task_and_a_dock_is_done() {
         let (grid, goal) = (room(), Pose2::new(1.0, 0.0, 0.0));
         let (on, off) = (docked(&grid), world(&grid));
-        let mut early = executor(&[Task::Go(goal), Task::Dock]);
+        let mut early = executor(&[Task::go(goal), Task::Dock]);
         assert_eq!(early.step(&on, &DriveState::Idle), Some(UNDOCK));
         assert_eq!(early.step(&on, &DriveState::Maneuvering), None);
         assert_eq!(early.step(&off, &DriveState::Arrived), Some(Goal::Exact(goal)));
         assert_eq!(early.step(&on, &DriveState::Arrived), Some(UNDOCK), "still on the contacts");
         // The base reports its charger after the start of the task.
-        let mut late = executor(&[Task::Go(goal)]);
+        let mut late = executor(&[Task::go(goal)]);
         assert_eq!(late.step(&off, &DriveState::Idle), Some(Goal::Exact(goal)));
         assert_eq!(late.step(&on, &DriveState::Initializing), Some(UNDOCK));
         let mut dock = executor(&[Task::Dock]);
@@ -469,7 +477,7 @@ mod tests {
     fn tasks(letters: &str) -> Vec<Task> {
         let task = |(i, letter)| match letter {
             'r' => Task::Return,
-            _ => Task::Go(Pose2::new(1.0 + i as f64, 0.0, 0.0)),
+            _ => Task::go(Pose2::new(1.0 + i as f64, 0.0, 0.0)),
         };
         letters.chars().enumerate().map(task).collect()
     }

@@ -1,5 +1,6 @@
 //! Configuration of the mission executor.
 
+use super::goal_options::WhenBlocked;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 use trundle_planning::ExploreConfig;
@@ -14,9 +15,12 @@ pub(crate) const PATIENCE_RANGE_S: (f64, f64) = (1.0, 3600.0);
 pub struct MissionExecutorConfig {
     /// Time at rest before the first plan, s, 0 to 60, to measure the gyro's bias and draw the first map. Default 1.5 (ours).
     pub opening: f64,
-    /// Time without progress after which a goal is given up, s, 1 to 3600. Progress is 15 cm of travel, or turns while the robot drives or
-    /// approaches, up to one revolution at one place. Default 75: longer than a person stands in a door.
+    /// Time without progress after which a goal is given up, s, 1 to 3600. Progress is a fall of the rest of the path by 15 cm, or an
+    /// observation of unseen floor on it. Default 75: longer than a person stands in a door.
     pub patience: f64,
+    /// What the robot does if an obstacle blocks its path: `detour`: another path of any length, and the end of the goal after the patience;
+    /// `wait`: a wait without a limit of time, in place of a much longer path. Default `detour`.
+    pub when_blocked: WhenBlocked,
     /// Standard deviation of the position above which the robot counts as lost and stops, m, 0.1 to 10. Default 0.7 (ours).
     pub lost_sigma: f64,
     /// Exploration.
@@ -25,7 +29,13 @@ pub struct MissionExecutorConfig {
 
 impl Default for MissionExecutorConfig {
     fn default() -> Self {
-        Self { opening: 1.5, patience: 75.0, lost_sigma: 0.7, explore: ExploreConfig::default() }
+        Self {
+            opening: 1.5,
+            patience: 75.0,
+            when_blocked: WhenBlocked::Detour,
+            lost_sigma: 0.7,
+            explore: ExploreConfig::default(),
+        }
     }
 }
 

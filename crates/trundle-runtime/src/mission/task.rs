@@ -1,5 +1,6 @@
 //! A task of a mission.
 
+use super::goal_options::TaskGoal;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::fmt;
@@ -10,8 +11,8 @@ use trundle_core::{Invalid, MAX_COORDINATE_M, Pose2, require_finite, require_in}
 #[serde(rename_all = "snake_case")]
 #[non_exhaustive]
 pub enum Task {
-    /// Drive to a pose in the map frame and stop there.
-    Go(Pose2),
+    /// Drive to a goal in the map frame and stop there.
+    Go(TaskGoal),
     /// Observe each reachable frontier, until the map is complete.
     Explore,
     /// Drive back to the pose at power-on and stop there.
@@ -40,12 +41,19 @@ const MAX_STRAIGHT_M: f64 = 100.0;
 const STRAIGHT_SPEED_RANGE_M_S: (f64, f64) = (0.01, 2.0);
 
 impl Task {
+    /// The task to drive to a pose, map frame, and to settle exactly on it.
+    #[must_use]
+    pub fn go(pose: Pose2) -> Self {
+        Self::Go(pose.into())
+    }
+
     /// Checks the numbers of the task at `index` of a mission, from 0; messages count from 1.
     pub(super) fn require_usable(&self, index: usize) -> Result<(), Invalid> {
         let number = index + 1;
         match *self {
-            Self::Go(pose) => {
+            Self::Go(TaskGoal { pose, options }) => {
                 let (max, of) = (MAX_COORDINATE_M, format!("of the goal of task {number}"));
+                options.validated(&of)?;
                 require_in(&format!("x {of}"), pose.x, "m", -max, max)?;
                 require_in(&format!("y {of}"), pose.y, "m", -max, max)?;
                 require_finite(&format!("heading {of}"), pose.theta, "rad").map(drop)
@@ -73,7 +81,7 @@ impl Task {
 impl fmt::Display for Task {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Go(pose) => {
+            Self::Go(TaskGoal { pose, .. }) => {
                 write!(f, "go to ({:.2} m, {:.2} m, {:.0} deg)", pose.x, pose.y, pose.theta.to_degrees())
             }
             Self::Turn { angle } => write!(f, "turn by {:.0} deg", angle.to_degrees()),

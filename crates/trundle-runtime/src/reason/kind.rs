@@ -44,7 +44,7 @@ pub enum ReasonKind {
     PathOutOfView,
     /// Unobserved floor on the path is observed first.
     UnseenFloor,
-    /// Known obstacles block all paths.
+    /// Obstacles block the path.
     PathBlocked,
     /// The footprint does not fit at the start or at the goal.
     TooLittleRoom,
@@ -102,6 +102,11 @@ impl ReasonKind {
             StopReason::Held(hold) => Self::of_hold(hold),
             StopReason::NotFinite => Self::CommandInvalid,
         }
+    }
+
+    /// Whether an obstacle blocks the path.
+    pub(crate) fn is_blockage(self) -> bool {
+        matches!(self, Self::Obstacle | Self::MovingObstacle | Self::PathBlocked)
     }
 
     /// The kind of a failure at the charging station.

@@ -98,7 +98,7 @@ fn nested() -> Reason {
     let stalled = Reason::NoProgress { time: 60.0, state: "waiting", cause: Some(Box::new(stale)) };
     let failure = |index, task, reason| TaskFailure { index, task, reason };
     Reason::TasksFailed(vec![
-        failure(0, Task::Go(Pose2::new(1.0, 0.0, 0.0)), stalled),
+        failure(0, Task::go(Pose2::new(1.0, 0.0, 0.0)), stalled),
         failure(2, Task::Return, Reason::PoseUnknown),
     ])
 }

@@ -24,6 +24,8 @@ pub enum TransitionReason {
     PathOutOfView,
     /// The path crosses floor that was never observed; a viewpoint of this floor exists.
     UnseenFloor,
+    /// An obstacle blocks the path, and the goal asks to wait in place of a detour.
+    DetourRefused,
     /// The planner finds no path.
     NoPath,
     /// The safety monitor stops the robot.
@@ -61,6 +63,7 @@ impl fmt::Display for TransitionReason {
             Self::MovingObstacle => "a moving obstacle blocks the path",
             Self::PathOutOfView => "the path leaves the camera's view",
             Self::UnseenFloor => "the path crosses unseen floor",
+            Self::DetourRefused => "a detour is refused",
             Self::NoPath => "no path is found",
             Self::SafetyStop => "the safety monitor stops the robot",
             Self::SafetyPass => "the safety monitor lets the robot move on",

@@ -47,7 +47,7 @@ impl DecisionWorker {
     pub(crate) fn step(&mut self, s: &WorldState<'_>, times: &mut StageTimes) -> Decision {
         let (executor, navigator) = (&mut self.executor, &mut self.navigator);
         if let Some(goal) = times.measure(Stage::Supervision, || executor.step(s, &navigator.state())) {
-            navigator.set_goal(goal);
+            navigator.set_goal_with(goal, executor.goal_options());
         }
         navigator.step(s, times)
     }

@@ -11,7 +11,7 @@ use trundle_runtime::{
 fn record(index: usize, end: TaskEnd) -> TaskRecord {
     TaskRecord {
         index,
-        task: Task::Go(Pose2::new(0.1, 0.2, 0.3)),
+        task: Task::go(Pose2::new(0.1, 0.2, 0.3)),
         end,
         from: Stamp::from_nanos(5),
         to: Stamp::from_nanos(7),
@@ -22,7 +22,7 @@ fn record(index: usize, end: TaskEnd) -> TaskRecord {
 
 /// A checkpoint of a small map with one task of each end.
 fn checkpoint() -> Checkpoint {
-    let left = Mission::new(vec![Task::Go(Pose2::new(1.5, -2.0, 0.25)), Task::Return]).unwrap();
+    let left = Mission::new(vec![Task::go(Pose2::new(1.5, -2.0, 0.25)), Task::Return]).unwrap();
     let cause = Some(Box::new(Reason::MovingObstacle));
     let stalled = Reason::NoProgress { time: 75.0, state: "waiting", cause };
     let ended = vec![

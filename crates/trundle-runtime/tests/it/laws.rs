@@ -103,12 +103,12 @@ fn another_goal_on_the_way_is_driven_to_without_a_stop() {
     let last = reports.last().unwrap();
     assert!(last.finished && last.state == DriveState::Arrived, "{}", last.state);
     let [record] = robot.tasks_ended() else { panic!("{:?}", robot.tasks_ended()) };
-    assert_eq!((&record.end, record.task), (&TaskEnd::Done, Task::Go(goal)));
+    assert_eq!((&record.end, record.task), (&TaskEnd::Done, Task::go(goal)));
 }
 
 #[test]
 fn a_checkpoint_made_on_the_way_keeps_the_task_at_hand_and_those_behind_it() {
-    let tasks = vec![Task::Go(Pose2::new(1.8, 0.0, 0.0)), Task::Explore, Task::Return];
+    let tasks = vec![Task::go(Pose2::new(1.8, 0.0, 0.0)), Task::Explore, Task::Return];
     let mut robot = Robot::new(RobotConfig::default()).unwrap();
     robot.begin(&Mission::new(tasks.clone()).unwrap());
     drive(&mut robot, &mut Base::default(), (0.0, 2.5), f64::INFINITY);
@@ -201,7 +201,7 @@ fn laser_robot() -> Robot {
     config.mission_executor.opening = 0.0;
     let mut robot = Robot::new(config).unwrap();
     robot.begin(
-        &Mission::new(vec![Task::Explore, Task::Go(Pose2::new(1.0, 1.0, 0.0)), Task::Return]).unwrap(),
+        &Mission::new(vec![Task::Explore, Task::go(Pose2::new(1.0, 1.0, 0.0)), Task::Return]).unwrap(),
     );
     robot
 }

@@ -125,7 +125,7 @@ fn a_robot_drops_what_belongs_to_its_old_map_and_finds_itself_in_the_new_one() {
     assert_eq!(robot.grid().at(Vector2::new(3.0, 0.0)), Cell::Occupied, "the new map");
     assert!(robot.estimate().covariance[(0, 0)] > 1.0, "the pose is unknown");
     let goal = Pose2::new(0.4, 1.0, 1.0);
-    robot.obey(OperatorCommand::Begin(Mission::new(vec![Task::Go(goal)]).unwrap())).unwrap();
+    robot.obey(OperatorCommand::Begin(Mission::new(vec![Task::go(goal)]).unwrap())).unwrap();
     run(&mut robot, &mut base, 2.0, 90.0);
     let truth = START * base.pose();
     let off = truth.inverse() * robot.estimate().pose;
@@ -165,7 +165,7 @@ fn a_broken_image_of_the_old_map_gives_no_pose_in_the_new_one() {
     let report = robot.apply_answer(job.run());
     assert_eq!(report.broken_image.as_deref(), Some("broken"));
     assert_eq!(report.checkpoint.unwrap().grid, *robot.grid());
-    let mission = Mission::new(vec![Task::Go(Pose2::new(SHIFT_M + 0.4, 1.0, 1.0))]).unwrap();
+    let mission = Mission::new(vec![Task::go(Pose2::new(SHIFT_M + 0.4, 1.0, 1.0))]).unwrap();
     robot.obey(OperatorCommand::Begin(mission)).unwrap();
     run_with_jobs(&mut robot, &mut base, 2.0, 60.0);
     let truth = Pose2::new(SHIFT_M, 0.0, 0.0) * START * base.pose();
@@ -197,7 +197,7 @@ fn a_docked_robot_knows_its_station_in_the_new_map_only_once_it_knows_its_pose()
         kind: BodyEventKind::Battery(charging_ends),
     }));
     robot
-        .obey(OperatorCommand::Begin(Mission::new(vec![Task::Go(Pose2::new(0.4, 1.0, 1.0))]).unwrap()))
+        .obey(OperatorCommand::Begin(Mission::new(vec![Task::go(Pose2::new(0.4, 1.0, 1.0))]).unwrap()))
         .unwrap();
     run(&mut robot, &mut base, 2.0, 60.0);
     robot.step(&charging(62));

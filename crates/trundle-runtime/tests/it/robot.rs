@@ -237,7 +237,7 @@ fn a_resumed_robot_knows_its_map_and_not_its_pose_and_maps_nothing_meanwhile() {
         .last()
         .unwrap();
     assert_eq!(memory.grid.at(Vector2::new(3.01, 0.0)), trundle_core::Cell::Occupied);
-    assert_eq!(memory.mission.left.tasks(), [Task::Go(Pose2::new(1.0, 0.0, 0.0))]);
+    assert_eq!(memory.mission.left.tasks(), [Task::go(Pose2::new(1.0, 0.0, 0.0))]);
     let memory = Checkpoint::from_bytes(&memory.to_bytes()).unwrap();
     let mut second = Robot::resume(RobotConfig::default(), &memory).unwrap();
     assert_eq!(second.grid().at(Vector2::new(3.01, 0.0)), trundle_core::Cell::Occupied);

@@ -105,7 +105,7 @@ fn patience_ends_with_the_reason_behind_it() {
     let mut config = RobotConfig::default();
     config.mission_executor.patience = 2.0;
     let mut robot = Robot::new(config).unwrap();
-    robot.begin(&Mission::new(vec![Task::Go(Pose2::new(1.0, 0.0, 0.0)), Task::Return]).unwrap());
+    robot.begin(&Mission::new(vec![Task::go(Pose2::new(1.0, 0.0, 0.0)), Task::Return]).unwrap());
     let reports: Vec<_> = (0..300).map(|i| robot.step(&wheels(20 * i))).collect();
     let [first, ..] = robot.tasks_ended() else { panic!("nothing ended: {:?}", names(&reports)) };
     let TaskEnd::PutOff { reason } = &first.end else { panic!("{}", first.end) };
@@ -118,7 +118,7 @@ fn a_mission_is_over_when_all_tasks_are_and_names_each_undone_one() {
     let mut config = RobotConfig::default();
     config.mission_executor.patience = 1.0;
     let mut robot = Robot::new(config).unwrap();
-    let far = |x| Task::Go(Pose2::new(x, 0.0, 0.0));
+    let far = |x| Task::go(Pose2::new(x, 0.0, 0.0));
     robot.begin(&Mission::new(vec![far(1.0), far(2.0)]).unwrap());
     let last = (0..500).map(|i| robot.step(&wheels(20 * i))).find(|report| report.finished).unwrap();
     let ends: Vec<_> =

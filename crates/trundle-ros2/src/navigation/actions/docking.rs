@@ -51,7 +51,7 @@ impl NavigationAction for DockRobot {
         }
         let dock = in_map(&goal.dock_pose, context.frames, context.view)
             .map_err(|error| pose_error(error, failed))?;
-        Ok(vec![Task::Go(dock * Pose2::new(-STAGING_M, 0.0, 0.0)), Task::Dock])
+        Ok(vec![Task::go(dock * Pose2::new(-STAGING_M, 0.0, 0.0)), Task::Dock])
     }
 
     fn time_limit(goal: &DockRobotGoal) -> Option<Duration> {

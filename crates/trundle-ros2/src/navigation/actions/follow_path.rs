@@ -29,7 +29,7 @@ impl NavigationAction for FollowPath {
             NavigationRefusal::Failed(failed(Outcome::INVALID_PATH, message))
         })?;
         let pose = end.map_err(|error| pose_error(error, |message| failed(Outcome::TF_ERROR, message)))?;
-        Ok(vec![Task::Go(pose)])
+        Ok(vec![Task::go(pose)])
     }
 
     fn feedback(goal: &Goal, view: &RunView, _progress: &GoalProgress, frames: &FrameNames) -> Feedback {
@@ -81,7 +81,7 @@ mod tests {
         let mut goal = Goal { path: path::to_ros(&own, Stamp::default(), "map"), ..Goal::default() };
         goal.path.poses[1].header.frame_id.clear();
         let tasks = FollowPath::tasks(&goal, &context).unwrap();
-        assert!(matches!(tasks[..], [Task::Go(pose)] if pose.distance(&own[1]) < 1e-12), "{tasks:?}");
+        assert!(matches!(tasks[..], [Task::Go(goal)] if goal.pose.distance(&own[1]) < 1e-12), "{tasks:?}");
         let code = |goal: Goal| match FollowPath::tasks(&goal, &context) {
             Err(NavigationRefusal::Failed(result)) => result.error_code,
             other => panic!("{other:?}"),

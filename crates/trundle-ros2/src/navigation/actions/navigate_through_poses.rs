@@ -23,7 +23,7 @@ impl NavigationAction for NavigateThroughPoses {
         }
         let task = |pose| {
             let pose = in_map(pose, context.frames, context.view);
-            pose.map(Task::Go)
+            pose.map(Task::go)
                 .map_err(|error| pose_error(error, |message| failed(Outcome::TF_ERROR, message)))
         };
         goal.poses.goals.iter().map(task).collect()

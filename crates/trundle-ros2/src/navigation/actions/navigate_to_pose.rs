@@ -27,7 +27,7 @@ impl NavigationAction for NavigateToPose {
         let failed = |error_msg| Outcome { error_code: Outcome::TF_ERROR, error_msg };
         let pose =
             in_map(&goal.pose, context.frames, context.view).map_err(|error| pose_error(error, failed))?;
-        Ok(vec![Task::Go(pose)])
+        Ok(vec![Task::go(pose)])
     }
 
     fn feedback(goal: &Goal, view: &RunView, progress: &GoalProgress, frames: &FrameNames) -> Feedback {
@@ -63,7 +63,7 @@ mod tests {
             behavior_tree: String::new(),
         };
         let tasks = NavigateToPose::tasks(&goal(1.0, "map"), &context).unwrap();
-        assert!(matches!(tasks[..], [Task::Go(pose)] if (pose.theta - 1.0).abs() < 1e-12));
+        assert!(matches!(tasks[..], [Task::Go(goal)] if (goal.pose.theta - 1.0).abs() < 1e-12));
         let Err(NavigationRefusal::Failed(result)) = NavigateToPose::tasks(&goal(1.0, "moon"), &context)
         else {
             panic!()

@@ -31,7 +31,7 @@ impl NavigationAction for FollowWaypoints {
         }
         let task = |pose| {
             in_map(pose, context.frames, context.view)
-                .map(Task::Go)
+                .map(Task::go)
                 .map_err(|error| pose_error(error, failed))
         };
         let once = goal.poses.iter().map(task).collect::<Result<Vec<_>, _>>()?;

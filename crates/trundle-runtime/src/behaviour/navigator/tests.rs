@@ -1,6 +1,7 @@
 //! Rules of the navigator: its transitions between states, and its commands in each state.
 
 mod no_path;
+mod progress;
 mod sight;
 mod transitions;
 mod unseen;
@@ -251,8 +252,7 @@ fn a_robot_that_loses_its_pose_on_the_way_brakes_and_then_turns_on_the_spot() {
 fn patience_counts_from_the_last_progress_and_names_the_state() {
     for goal in [Goal::Exact(AHEAD), Goal::Viewpoint(AHEAD)] {
         let mut base = Base::to(goal);
-        base.navigator.config.patience = 3.0;
-        base.navigator.progress.restart();
+        base.navigator.change(RunSetting::Patience(3.0));
         let steps = (0..500).take_while(|_| {
             base.step_with(|s| s.scan = None);
             !base.navigator.state().is_over()

@@ -3,6 +3,7 @@
 use super::PathPlanner;
 use super::camera_fov::unknown_about;
 use super::visibility_constraint::{MAX_VIRTUAL_OBSTACLES, VIRTUAL_OBSTACLE_RADIUS_M};
+use crate::behaviour::progress::rest::length;
 use crate::world_state::WorldState;
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Trajectory, TrajectoryPoint, Twist2, Vector2};
 use trundle_planning::{Plan, PlanResult};
@@ -12,10 +13,21 @@ use trundle_planning::{Plan, PlanResult};
 pub(crate) enum InView {
     /// A path to drive, or none.
     Plan(Plan),
-    /// Place at which the best path enters unseen floor, and a longer path without unseen floor if one was found.
-    Unseen(Vector2, Option<Box<PlanResult>>),
+    /// The best path enters unseen floor.
+    Unseen(UnseenPath),
     /// Another query is needed in the next step.
     Asking,
+}
+
+/// A path that enters unseen floor.
+#[derive(Debug)]
+pub(crate) struct UnseenPath {
+    /// Place at which the path enters unseen floor, map frame \[m\].
+    pub(crate) at: Vector2,
+    /// Length of the path, a turn as the way of a point on the robot's outline \[m\].
+    pub(crate) length: f64,
+    /// A longer path without unseen floor, if one was found.
+    pub(crate) seen: Option<Box<PlanResult>>,
 }
 
 /// Largest duration of a path over seen floor alone, as a multiple of the fastest path's. Source: ours.
@@ -49,23 +61,29 @@ impl PathPlanner {
         }
         let walls = [bars, self.visibility.virtual_obstacles.clone()].concat();
         let Some(floor) = self.with_virtual_obstacles(s.permitted_floor(), &walls, ends) else {
-            return self.found(InView::Unseen(unseen, None));
+            return self.unseen(unseen, &best, None);
         };
         let Plan::Found(plan) =
             self.planner.plan_among_moving(&floor, s.dynamic_obstacles.movers, from, twist, goal)
         else {
-            return self.found(InView::Unseen(unseen, None));
+            return self.unseen(unseen, &best, None);
         };
         match self.first_unseen(plan.trajectory.points(), s.floor()) {
             Some(next) if self.visibility.virtual_obstacles.len() < MAX_VIRTUAL_OBSTACLES => {
                 self.visibility.virtual_obstacles.push(next);
                 InView::Asking
             }
-            Some(_) => self.found(InView::Unseen(unseen, None)),
-            None if !goes_on(&plan, &best, &floor) => self.found(InView::Unseen(unseen, None)),
+            Some(_) => self.unseen(unseen, &best, None),
+            None if !goes_on(&plan, &best, &floor) => self.unseen(unseen, &best, None),
             None if is_worth(&plan, &best) => self.found(InView::Plan(Plan::Found(plan))),
-            None => self.found(InView::Unseen(unseen, Some(plan))),
+            None => self.unseen(unseen, &best, Some(plan)),
         }
+    }
+
+    /// The end of a search whose best path enters unseen floor at a place.
+    fn unseen(&mut self, at: Vector2, best: &PlanResult, seen: Option<Box<PlanResult>>) -> InView {
+        let length = length(&best.trajectory, 0.0, self.radius);
+        self.found(InView::Unseen(UnseenPath { at, length, seen }))
     }
 
     /// The end of a search.
@@ -81,9 +99,19 @@ impl PathPlanner {
 
     /// Whether the rest of a path, from `time` \[s\] on, is free on the newest map, and its floor was or will be observed.
     pub(crate) fn is_still_good(&self, way: &Trajectory, time: f64, s: &WorldState<'_>) -> bool {
+        self.obstacle_on(way, time, s).is_none() && self.unseen_on(way, time, s).is_none()
+    }
+
+    /// The robot's position at the first contact on the rest of a path, from `time` \[s\] on; `None` if the rest is free.
+    pub(crate) fn obstacle_on(&self, way: &Trajectory, time: f64, s: &WorldState<'_>) -> Option<Vector2> {
+        let checked = self.planner.validate_trajectory(s.permitted_floor(), way, time);
+        checked.err().map(|obstruction| obstruction.pose.position())
+    }
+
+    /// First place on the rest of a path at which it enters floor that the camera does not observe in time.
+    pub(crate) fn unseen_on(&self, way: &Trajectory, time: f64, s: &WorldState<'_>) -> Option<Vector2> {
         let rest = &way.points()[way.points().partition_point(|point| point.time < time)..];
-        self.planner.validate_trajectory(s.permitted_floor(), way, time).is_ok()
-            && self.first_unseen(rest, s.floor()).is_none()
+        self.first_unseen(rest, s.floor())
     }
 
     /// The floor with the unknown cells about these places blocked, except under the ends of the path; none without places.

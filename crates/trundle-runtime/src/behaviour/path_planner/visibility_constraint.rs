@@ -11,8 +11,8 @@ pub(crate) struct VisibilityConstraint {
     pub(crate) virtual_obstacles: Vec<Vector2>,
     /// Observations of the last 20 s.
     looks: Vec<Look>,
-    /// Number of observations without result since the goal was given.
-    in_vain: usize,
+    /// Number of observations with a result since the goal was given.
+    results: usize,
     /// Keep-out zones: floor that observations did not show, and when each zone began.
     keep_out: Vec<(Vector2, Stamp)>,
 }
@@ -34,9 +34,6 @@ pub(crate) const MAX_VIRTUAL_OBSTACLES: usize = 3;
 const MAX_VIEWS_PER_PLACE: usize = 2;
 /// Smallest distance between two viewpoints of one place \[m\]. Source: ours.
 const MIN_VIEWPOINT_SPACING_M: f64 = 0.4;
-/// Maximum number of observations per goal without result. Observations with a result count as exploration, which has a separate limit.
-/// Source: ours.
-pub(crate) const MAX_VAIN_VIEWS: usize = 12;
 /// Time after which an observation without result may be repeated \[s\]: a person in front of the place may have left. Source: ours.
 const VAIN_VIEW_RETRY_S: f64 = 20.0;
 
@@ -49,7 +46,6 @@ impl VisibilityConstraint {
     /// Records an observation of `at` from `from`.
     pub(crate) fn record_observation(&mut self, at: Vector2, from: Vector2, now: Stamp) {
         self.looks.push(Look { at, from, since: now, is_in_vain: true });
-        self.in_vain += 1;
     }
 
     /// Records the arrival at the last viewpoint.
@@ -62,7 +58,7 @@ impl VisibilityConstraint {
         for look in &mut self.looks {
             let is_seen = look.is_in_vain && floor.at(look.at) != Cell::Unknown;
             look.is_in_vain &= !is_seen;
-            self.in_vain -= usize::from(is_seen);
+            self.results += usize::from(is_seen);
         }
     }
 
@@ -87,12 +83,12 @@ impl VisibilityConstraint {
 
     /// Whether another observation of `at` may have a result.
     pub(crate) fn is_worth_observing(&self, at: Vector2) -> bool {
-        self.observations_of(at).count() < MAX_VIEWS_PER_PLACE && !self.is_exhausted()
+        self.observations_of(at).count() < MAX_VIEWS_PER_PLACE
     }
 
-    /// Whether the observations without result have reached their limit for this goal.
-    pub(crate) fn is_exhausted(&self) -> bool {
-        self.in_vain >= MAX_VAIN_VIEWS
+    /// Number of observations with a result since the goal was given.
+    pub(crate) fn results(&self) -> usize {
+        self.results
     }
 
     /// Whether `from` is far enough from the earlier observations of `at`.
@@ -141,29 +137,19 @@ mod tests {
         );
         unseen.forget(time(28.0));
         assert!(!unseen.was_observed(at) && unseen.keep_out().is_none() && unseen.is_worth_observing(at));
-        (1..MAX_VAIN_VIEWS)
-            .for_each(|i| unseen.record_observation(at, Vector2::zeros(), time(30.0 * i as f64)));
-        unseen.forget(time(1000.0));
-        assert!(!unseen.is_worth_observing(at) && unseen.is_exhausted(), "not for ever");
     }
 
     #[test]
-    fn looks_that_showed_what_they_were_for_may_be_as_many_as_there_is_floor() {
+    fn each_observation_counts_once_and_only_if_it_shows_its_floor() {
         let (mut unseen, time) = (VisibilityConstraint::default(), |s: f64| Stamp::default().after(s));
         let known = floor(|at| at.x > 3.0);
-        for i in 0..3 * MAX_VAIN_VIEWS {
-            let at = Vector2::new(0.1 * (1 + i % 20) as f64, 2.0);
-            assert!(unseen.is_worth_observing(at), "{i}");
-            unseen.record_observation(at, Vector2::zeros(), time(30.0 * i as f64));
+        for i in 0..20 {
+            unseen.record_observation(Vector2::new(0.1 * (1 + i) as f64, 2.0), Vector2::zeros(), time(0.0));
+            unseen.record_observation(Vector2::new(4.0, 2.0), Vector2::zeros(), time(0.0));
             (0..2).for_each(|_| unseen.note_seen(&known));
-            unseen.forget(time(30.0 * i as f64 + 25.0));
+            assert_eq!(unseen.results(), i + 1);
         }
-        for i in 0..MAX_VAIN_VIEWS {
-            assert!(unseen.is_worth_observing(Vector2::new(4.0, 2.0)), "{i}");
-            unseen.record_observation(Vector2::new(4.0, 2.0), Vector2::zeros(), time(30.0 * i as f64));
-            unseen.note_seen(&known);
-            unseen.forget(time(30.0 * i as f64 + 25.0));
-        }
-        assert!(!unseen.is_worth_observing(Vector2::new(4.0, 2.0)));
+        unseen.restart();
+        assert_eq!(unseen.results(), 0);
     }
 }

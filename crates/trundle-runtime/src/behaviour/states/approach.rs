@@ -4,8 +4,9 @@ use super::maneuver;
 use crate::behaviour::goal::Goal;
 use crate::behaviour::path_search::PathSearch;
 use crate::behaviour::spin::turn_to;
-use crate::behaviour::state::{Drive, Next, State, Wait};
+use crate::behaviour::state::{Change, Drive, Next, State, Wait};
 use crate::behaviour::tools::Tools;
+use crate::mission::GoalOptions;
 use crate::reason::{Reason, TransitionReason};
 use crate::stage::{Stage, StageTimes};
 use crate::world_state::WorldState;
@@ -14,6 +15,9 @@ use trundle_core::Twist2;
 
 /// At the end of the trajectory: an arc, or turns and straight moves; at a viewpoint a turn.
 pub(crate) fn begin(tools: &mut Tools, s: &WorldState<'_>) -> Next {
+    if let Some(next) = arrive_within_tolerance(tools, s) {
+        return Some(next);
+    }
     let goal = match tools.goal {
         Goal::Exact(goal) | Goal::Align(goal) => goal,
         other => {
@@ -25,6 +29,20 @@ pub(crate) fn begin(tools: &mut Tools, s: &WorldState<'_>) -> Next {
     let preview = tools.follower.preview_stabilization(s.estimate.pose, goal);
     tools.goal_approach.consider(s, goal, preview);
     select(tools, s).or_else(|| State::Approach.because(TransitionReason::TrajectoryEnd))
+}
+
+/// At the end of the trajectory to a goal with a tolerance: the arrival, or a turn to the goal's heading.
+fn arrive_within_tolerance(tools: &mut Tools, s: &WorldState<'_>) -> Option<Change> {
+    let (goal, pose, options) = (tools.goal.pose()?, s.estimate.pose, tools.options);
+    let position_alone = GoalOptions { heading_tolerance: None, ..options };
+    if !position_alone.is_arrival(&pose, &goal) {
+        return None;
+    }
+    tools.follower.halt();
+    if options.is_arrival(&pose, &goal) {
+        return State::Arrived.because(TransitionReason::GoalReached);
+    }
+    State::Face(goal.theta).because(TransitionReason::TrajectoryEnd)
 }
 
 /// A part of the choice between the arc, and turns and straight moves.

@@ -1,8 +1,10 @@
 //! A plan to the goal, and the reactions to a missing path. Shared by the states that plan.
 
+use super::detour::{Detour, detour};
 use super::maneuver::{STANDING_SPEED_M_S, begin_if_possible};
-use crate::behaviour::path_planner::InView;
+use crate::behaviour::path_planner::{InView, UnseenPath};
 use crate::behaviour::path_search::PathSearch;
+use crate::behaviour::progress::rest::length;
 use crate::behaviour::state::{Change, Drive, Next, Recover, State, Wait};
 use crate::behaviour::tools::Tools;
 use crate::reason::{NoPath, Reason, TransitionReason};
@@ -55,8 +57,8 @@ pub(crate) fn replan(
     let plan = match tools.planner.plan_in_view(s, query.from, query.goal) {
         InView::Plan(plan) => plan,
         InView::Asking => return Planned::to(stop_for_path_in_view(tools, search, query, s)),
-        InView::Unseen(at, long) => match observe_first(tools, search, query, (at, long), s) {
-            ControlFlow::Continue(long) => Plan::Found(long),
+        InView::Unseen(path) => match observe_first(tools, search, query, path, s) {
+            ControlFlow::Continue(seen) => Plan::Found(seen),
             ControlFlow::Break(next) => return Planned::to(next),
         },
     };
@@ -73,6 +75,13 @@ fn react(
 ) -> Planned {
     match plan {
         Plan::Found(plan) if plan.is_continuous || s.estimate.twist.v.abs() < STANDING_SPEED_M_S => {
+            let new = length(&plan.trajectory, 0.0, tools.body.radius);
+            if let Some(wait) = judge_detour(tools, search, new, s) {
+                return Planned::to(Some(wait));
+            }
+            if !query.is_driving {
+                tools.guard.start_drive(s.now);
+            }
             tools.follow(plan, query.goal);
             let next = State::Drive(Drive::default()).because(TransitionReason::PlanFound);
             Planned { next, is_new: true }
@@ -105,18 +114,22 @@ fn observe_first(
     tools: &mut Tools,
     search: &mut PathSearch,
     query: &Query,
-    (at, long): (Vector2, Option<Box<PlanResult>>),
+    UnseenPath { at, length: new, seen }: UnseenPath,
     s: &WorldState<'_>,
 ) -> ControlFlow<Next, Box<PlanResult>> {
     if query.is_driving {
         return ControlFlow::Break(stop_for_path_in_view(tools, search, query, s));
     }
+    if let Some(wait) = judge_detour(tools, search, new, s) {
+        return ControlFlow::Break(Some(wait));
+    }
+    search.rest_over_unseen_floor = Some(new);
     if search.seeks_view_of(at, &mut tools.planner, &mut tools.follower, s) {
         return ControlFlow::Break(observe(tools, search, at));
     }
     search.viewpoint = Default::default();
-    match long {
-        Some(long) => ControlFlow::Continue(long),
+    match seen {
+        Some(seen) => ControlFlow::Continue(seen),
         // The next plan avoids this floor.
         None if tools.planner.visibility.bar(at, s.now) => ControlFlow::Break(None),
         None => ControlFlow::Break(without_path(tools, search, NoPath::Blocked { nearest: at }, s)),
@@ -148,6 +161,7 @@ fn stop_for_path_in_view(
 /// Reaction to a missing path: stops, turns on the spot until the surroundings are observed, drives to a viewpoint of the blocked
 /// place, and waits with the camera on that place.
 fn without_path(tools: &mut Tools, search: &mut PathSearch, cause: NoPath, s: &WorldState<'_>) -> Next {
+    search.rest_over_unseen_floor = None;
     let is_final = is_final(tools, search, &cause, s.now);
     if search.is_going() {
         let (reason, search) = (tools.planner.no_path(cause), std::mem::take(search));
@@ -178,11 +192,27 @@ fn without_path(tools: &mut Tools, search: &mut PathSearch, cause: NoPath, s: &W
 fn is_final(tools: &Tools, search: &mut PathSearch, cause: &NoPath, now: Stamp) -> bool {
     let since = *search.no_path_since.get_or_insert(now);
     let is_at_goal = !matches!(cause, NoPath::StartInObstacle { .. } | NoPath::StartOutside);
-    let visibility = &tools.planner.visibility;
-    // Floor kept out of the search may be observed later, as long as observations are left.
-    let is_kept_out = visibility.keep_out().is_some() && !visibility.is_exhausted();
+    // Floor kept out of the search may be observed later.
+    let is_kept_out = tools.planner.visibility.keep_out().is_some();
     let is_proven = is_at_goal && !is_kept_out && now - since >= NO_PATH_CONFIRMATION_S;
-    tools.goal.is_viewpoint() || tools.ends_without_path && is_proven
+    tools.goal.is_viewpoint() || tools.ends_without_path && !tools.waits_when_blocked() && is_proven
+}
+
+/// A new path of a length \[m\] that is longer than the one before it: the guard allows the detour, or the goal asks to wait.
+fn judge_detour(tools: &mut Tools, search: &mut PathSearch, new: f64, s: &WorldState<'_>) -> Next {
+    match detour(tools, new, s) {
+        Detour::Refused(at) => return refuse_detour(tools, search, at, s.now),
+        Detour::Taken => tools.guard.allow_detour(s.now, tools.planner.visibility.results()),
+        Detour::None => {}
+    }
+    None
+}
+
+/// Waits before an obstacle on the path, with the camera on it, in place of a detour.
+fn refuse_detour(tools: &mut Tools, search: &mut PathSearch, at: Vector2, now: Stamp) -> Next {
+    tools.plan = None;
+    search.blocked_at = Some(at);
+    hold(tools, search, (Reason::PathBlocked { at }, TransitionReason::DetourRefused), now)
 }
 
 /// Stops, and waits.

@@ -87,7 +87,7 @@ proptest! {
         first in goals(), course in proptest::collection::vec(episodes(), 10..30),
     ) {
         let mut base = Base::to(first.unwrap_or(Goal::Exact(AHEAD)));
-        base.navigator.config.patience = 20.0;
+        base.navigator.change(RunSetting::Patience(20.0));
         for episode in &course {
             base.endure(episode);
         }

@@ -1,0 +1,4 @@
+//! The guard against a lack of progress: one potential, one patience.
+
+pub(crate) mod guard;
+pub(crate) mod rest;

@@ -1,0 +1,138 @@
+//! Ends an attempt whose potential does not fall.
+
+use trundle_core::{Stamp, Trajectory};
+
+/// The one guard against a lack of progress.
+///
+/// The potential of a goal is a length in metres that falls as the robot gets nearer: what is left to drive and to turn on the present map, less
+/// [`OBSERVATION_LENGTH_M`] for each observation that showed unseen floor. A fall below the lowest value so far, by [`MIN_FALL_M`], is
+/// progress. The guard sums up the time without progress.
+///
+/// A detour is longer than the lowest value. Two kinds of time therefore do not count:
+/// - the drive along a path that was found at rest, while its rest falls;
+/// - the time until an obstacle on the path made the path longer, once between two falls below the lowest value. Observations on the detour
+///   are no progress.
+///
+/// Every goal ends: the lowest value falls a finite number of times, and each drive that leads nowhere ends with a stop, which counts.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct ProgressGuard {
+    clock: Option<Clock>,
+    /// The last path to the goal, and the robot's time on it, s.
+    path: Option<(Trajectory, f64)>,
+}
+
+/// What remains until the goal.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Remaining {
+    /// What is left to drive and to turn \[m\]. Infinite: no path is known.
+    pub(crate) rest: f64,
+    /// Number of observations that showed unseen floor, since the goal was given.
+    pub(crate) results: usize,
+    /// Whether the robot drives along a path to the goal.
+    pub(crate) is_driving: bool,
+}
+
+/// Falls of the potential, and the time since.
+#[derive(Debug, Clone, Copy)]
+struct Clock {
+    /// Lowest potential so far, m.
+    lowest: f64,
+    /// Lowest rest of the present drive, m.
+    lowest_of_drive: f64,
+    /// Time without progress before `since`, s.
+    waited: f64,
+    /// Stamp of the last fall of either length.
+    since: Stamp,
+    /// Number of observations before an obstacle made the path longer; `None` if none did since the last fall of the lowest potential.
+    results_at_detour: Option<usize>,
+}
+
+/// Fall of the potential that counts as progress \[m\]. Source: ours.
+const MIN_FALL_M: f64 = 0.15;
+/// Length that an observation with a result takes off the potential \[m\]: the width of the floor that it shows. Source: ours, the diameter
+/// of a virtual obstacle.
+const OBSERVATION_LENGTH_M: f64 = 0.6;
+
+impl ProgressGuard {
+    /// Starts anew for another goal.
+    pub(crate) fn restart(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Time without progress, s. Of a drive: the time since its rest last fell.
+    pub(crate) fn time_without_progress(&mut self, now: Stamp, remaining: &Remaining) -> f64 {
+        let &Remaining { rest, results, is_driving } = remaining;
+        let clock = self.clock(now);
+        let potential = clock.potential(rest, results);
+        if potential < clock.lowest - MIN_FALL_M {
+            *clock = Clock { lowest: potential, ..Clock::new(now) };
+        }
+        if is_driving && rest < clock.lowest_of_drive - MIN_FALL_M {
+            (clock.lowest_of_drive, clock.since) = (rest, now);
+        }
+        (now - clock.since) + if is_driving { 0.0 } else { clock.waited }
+    }
+
+    /// Excludes the time until `now`: nothing is asked of the robot, or the wait is wanted.
+    pub(crate) fn pause(&mut self, now: Stamp) {
+        let clock = self.clock(now);
+        (clock.waited, clock.since) = (0.0, now);
+    }
+
+    /// A drive begins from rest: its own falls stop the clock.
+    pub(crate) fn start_drive(&mut self, now: Stamp) {
+        let clock = self.clock(now);
+        clock.waited += now - clock.since;
+        (clock.since, clock.lowest_of_drive) = (now, f64::INFINITY);
+    }
+
+    /// An obstacle made the path longer, after this number of observations with a result. The time until `now` does not count, once between
+    /// two falls of the lowest potential.
+    pub(crate) fn allow_detour(&mut self, now: Stamp, results: usize) {
+        let clock = self.clock(now);
+        if clock.results_at_detour.is_none() {
+            *clock = Clock { lowest: clock.lowest, results_at_detour: Some(results), ..Clock::new(now) };
+        }
+    }
+
+    /// Whether the potential of a path of a length \[m\] is above the lowest one: the path has become longer.
+    pub(crate) fn is_longer(&self, length: f64, results: usize) -> bool {
+        self.clock.is_some_and(|clock| clock.potential(length, results) > clock.lowest)
+    }
+
+    /// The last path to the goal, and the robot's time on it, s. The path remains after an obstacle has blocked it.
+    pub(crate) fn path(&self) -> Option<(&Trajectory, f64)> {
+        self.path.as_ref().map(|(path, time)| (path, *time))
+    }
+
+    /// Takes a new path to the goal.
+    pub(crate) fn follow(&mut self, path: Trajectory) {
+        self.path = Some((path, 0.0));
+    }
+
+    /// Records the robot's time on the path, s.
+    pub(crate) fn note_time(&mut self, time: f64) {
+        self.path.iter_mut().for_each(|path| path.1 = time);
+    }
+
+    fn clock(&mut self, now: Stamp) -> &mut Clock {
+        self.clock.get_or_insert_with(|| Clock::new(now))
+    }
+}
+
+impl Clock {
+    /// A clock that starts, before any path.
+    fn new(now: Stamp) -> Self {
+        let lowest = f64::INFINITY;
+        Self { lowest, lowest_of_drive: lowest, waited: 0.0, since: now, results_at_detour: None }
+    }
+
+    /// The potential \[m\].
+    fn potential(&self, rest: f64, results: usize) -> f64 {
+        let counted = self.results_at_detour.map_or(results, |before| before.min(results));
+        rest - OBSERVATION_LENGTH_M * counted as f64
+    }
+}
+
+#[cfg(test)]
+mod tests;

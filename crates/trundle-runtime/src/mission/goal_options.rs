@@ -1,0 +1,144 @@
+//! What counts as the arrival at a goal, and what the robot does if the path to it is blocked.
+
+use serde::{Deserialize, Serialize};
+use trundle_core::{Invalid, Pose2, require_in};
+
+use super::executor_config::PATIENCE_RANGE_S;
+
+/// A goal of a mission: a pose, and how the robot drives there.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct TaskGoal {
+    /// The pose, map frame.
+    #[serde(flatten)]
+    pub pose: Pose2,
+    /// How the robot drives there.
+    #[serde(flatten)]
+    pub options: GoalOptions,
+}
+
+/// Settings of one goal. A setting that is `None` is that of the robot file.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct GoalOptions {
+    /// Time without progress after which the goal is given up \[s\], 1 to 3600. `None`: `mission_executor.patience_s`.
+    #[serde(default, rename = "patience_s", skip_serializing_if = "Option::is_none")]
+    pub patience: Option<f64>,
+    /// Distance from the goal that counts as an arrival \[m\], 0.01 to 10. Also a blocked goal is then reached at the nearest free place
+    /// within this distance. `None`: the robot settles exactly on the goal.
+    #[serde(default, rename = "tolerance_m", skip_serializing_if = "Option::is_none")]
+    pub tolerance: Option<f64>,
+    /// Difference of heading that counts as an arrival \[rad\], 0.01 to pi. `None`: with a [`GoalOptions::tolerance`] any heading, else the
+    /// robot turns exactly to the heading.
+    #[serde(default, rename = "heading_tolerance_rad", skip_serializing_if = "Option::is_none")]
+    pub heading_tolerance: Option<f64>,
+    /// What the robot does if an obstacle blocks its path. `None`: `mission_executor.when_blocked`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub when_blocked: Option<WhenBlocked>,
+}
+
+/// What the robot does if an obstacle blocks its path.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+#[non_exhaustive]
+pub enum WhenBlocked {
+    /// Takes another path, of any length. Without a path the robot searches one until its patience ends.
+    #[default]
+    Detour,
+    /// Waits until the path is free, without a limit of time, in place of a much longer path.
+    Wait,
+}
+
+/// Range of the tolerance of a position \[m\]. Source: ours; below it the robot settles exactly.
+const TOLERANCE_RANGE_M: (f64, f64) = (0.01, 10.0);
+/// Range of the tolerance of a heading \[rad\]. Source: ours.
+const HEADING_TOLERANCE_RANGE_RAD: (f64, f64) = (0.01, std::f64::consts::PI);
+
+impl TaskGoal {
+    /// A pose with these options.
+    #[must_use]
+    pub fn new(pose: Pose2, options: GoalOptions) -> Self {
+        Self { pose, options }
+    }
+}
+
+impl From<Pose2> for TaskGoal {
+    fn from(pose: Pose2) -> Self {
+        Self { pose, options: GoalOptions::default() }
+    }
+}
+
+impl GoalOptions {
+    /// Returns valid options unchanged. `of`: the owner of the options in messages, as `of the goal of task 2`.
+    ///
+    /// # Errors
+    /// When a number is outside its range.
+    pub fn validated(self, of: &str) -> Result<Self, Invalid> {
+        let check = |name: &str, value: Option<f64>, unit: &'static str, (min, max): (f64, f64)| match value {
+            Some(value) => require_in(&format!("{name} {of}"), value, unit, min, max).map(drop),
+            None => Ok(()),
+        };
+        check("patience", self.patience, "s", PATIENCE_RANGE_S)?;
+        check("tolerance", self.tolerance, "m", TOLERANCE_RANGE_M)?;
+        check("heading tolerance", self.heading_tolerance, "rad", HEADING_TOLERANCE_RANGE_RAD)?;
+        Ok(self)
+    }
+
+    /// These options, with others for those that are `None`.
+    pub(crate) fn or(self, others: &Self) -> Self {
+        Self {
+            patience: self.patience.or(others.patience),
+            tolerance: self.tolerance.or(others.tolerance),
+            heading_tolerance: self.heading_tolerance.or(others.heading_tolerance),
+            when_blocked: self.when_blocked.or(others.when_blocked),
+        }
+    }
+
+    /// Whether a pose counts as an arrival at `goal`; false for a goal without tolerances.
+    pub(crate) fn is_arrival(&self, pose: &Pose2, goal: &Pose2) -> bool {
+        let Some(tolerance) = self.tolerance else { return false };
+        let off = trundle_core::difference_of_angles(pose.theta, goal.theta).abs();
+        pose.distance(goal) <= tolerance && self.heading_tolerance.is_none_or(|max| off <= max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_outside_their_range_are_refused_by_name() {
+        let message = |options: GoalOptions| options.validated("of task 1").unwrap_err().to_string();
+        let some = GoalOptions::default();
+        assert_eq!(some.validated(""), Ok(some));
+        assert!(message(GoalOptions { patience: Some(0.0), ..some }).contains("patience of task 1"));
+        assert!(message(GoalOptions { tolerance: Some(0.001), ..some }).contains("tolerance of task 1"));
+        assert!(message(GoalOptions { tolerance: Some(f64::NAN), ..some }).contains("tolerance of task 1"));
+        assert!(message(GoalOptions { heading_tolerance: Some(4.0), ..some }).contains("heading tolerance"));
+    }
+
+    #[test]
+    fn an_arrival_is_within_both_tolerances() {
+        let goal = Pose2::new(1.0, 2.0, 3.1);
+        let at = |x: f64, theta: f64| Pose2::new(x, 2.0, theta);
+        let exact = GoalOptions::default();
+        assert!(!exact.is_arrival(&goal, &goal), "the robot settles first");
+        let near = GoalOptions { tolerance: Some(0.2), ..exact };
+        assert!(near.is_arrival(&at(1.19, 0.0), &goal) && !near.is_arrival(&at(1.21, 3.1), &goal));
+        let turned = GoalOptions { heading_tolerance: Some(0.1), ..near };
+        assert!(turned.is_arrival(&at(1.1, -3.13), &goal) && !turned.is_arrival(&at(1.1, 2.9), &goal));
+        let heading_alone = GoalOptions { heading_tolerance: Some(3.0), ..exact };
+        assert!(!heading_alone.is_arrival(&at(1.1, 3.1), &goal));
+    }
+
+    #[test]
+    fn a_goal_without_options_is_its_pose_in_a_file() {
+        let plain = TaskGoal::from(Pose2::new(1.0, 2.0, 0.5));
+        assert_eq!(serde_json::to_string(&plain).unwrap(), r#"{"x":1.0,"y":2.0,"theta":0.5}"#);
+        let options =
+            GoalOptions { patience: Some(600.0), when_blocked: Some(WhenBlocked::Wait), ..plain.options };
+        let waits = TaskGoal { options, ..plain };
+        let text = serde_json::to_string(&waits).unwrap();
+        assert_eq!(text, r#"{"x":1.0,"y":2.0,"theta":0.5,"patience_s":600.0,"when_blocked":"wait"}"#);
+        assert_eq!(serde_json::from_str::<TaskGoal>(&text).unwrap(), waits);
+    }
+}
