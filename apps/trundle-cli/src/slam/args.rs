@@ -2,7 +2,7 @@
 
 use crate::common_args::{BagTopicsArgs, Common, NumberArg, RobotArgs, choice};
 use crate::live::ViewArgs;
-use crate::output_args::{OutputDirArg, OutputFileArg};
+use crate::output_args::{OutputDirArg, ResultFileArg};
 use clap::Args;
 use std::path::PathBuf;
 use trundle::app::RecordingContent;
@@ -83,16 +83,16 @@ pub struct SlamResultArgs {
 pub struct SurfaceArgs {
     /// Write the surface as triangles with colours, .glb or .ply
     #[arg(long, value_name = "FILE")]
-    pub mesh: Option<OutputFileArg>,
+    pub mesh: Option<ResultFileArg>,
     /// Write the surface as points with colours and normals, .ply
     #[arg(long, value_name = "FILE")]
-    pub cloud: Option<OutputFileArg>,
+    pub cloud: Option<ResultFileArg>,
     /// Write free and occupied voxels in OctoMap's binary form, .bt
     #[arg(long, value_name = "FILE")]
-    pub octomap: Option<OutputFileArg>,
+    pub octomap: Option<ResultFileArg>,
     /// Write heights over the floor as a 16-bit .png, with a FILE.yaml beside it
     #[arg(long, value_name = "FILE")]
-    pub heights: Option<OutputFileArg>,
+    pub heights: Option<ResultFileArg>,
     /// Side of a voxel of the surface, m, 0.004 to 0.5 [default: 0.02]
     #[arg(long, value_name = "M", hide_short_help = true, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub voxel: Option<f64>,
