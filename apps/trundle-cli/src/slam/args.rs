@@ -101,13 +101,14 @@ pub struct SurfaceArgs {
 /// The pose of the first camera.
 #[derive(Debug, Args)]
 pub struct FirstCameraArgs {
-    /// Height of the first camera above the floor, m, for the map [default: the recorded robot's, else by the floor in the images, else 1]
+    /// Height of the first camera above the floor, m, for the map; with odometry, a value off by over 2 cm from the floor in the images is
+    /// replaced, with a warning [default: the recorded robot's, else by the floor in the images, else 1]
     #[arg(long, value_name = "M", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub height: Option<f64>,
-    /// Downward tilt of the first camera, deg, for the map [default: as the height; 0 if a height or roll is given]
+    /// Downward tilt of the first camera, deg, for the map [default: as the height, else 0]
     #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
     pub tilt: Option<f64>,
-    /// Roll of the first camera to its right, deg, for the map [default: as the height; 0 if a height or tilt is given]
+    /// Roll of the first camera to its right, deg, for the map [default: as the height, else 0]
     #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
     pub roll: Option<f64>,
 }

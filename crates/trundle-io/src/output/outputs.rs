@@ -38,7 +38,7 @@ impl Outputs {
         let inputs = inputs.clone().and(self.edited.iter().chain(&self.continued).cloned());
         self.folders.iter().try_for_each(|folder| {
             OutputFolder::check(&inputs, folder)?;
-            let outside = |file| OutputFolder::require_outside(folder, file);
+            let outside = |file: &PathBuf| OutputFolder::require_outside(folder, file);
             self.files.iter().try_for_each(outside)?;
             let of_folder = &self.files_of_folder;
             of_folder.iter().try_for_each(|file| OutputFolder::require_outside_last_run(folder, file))
@@ -86,7 +86,7 @@ mod tests {
         ];
         for outputs in outputs {
             let words = refusal(&outputs);
-            assert!(words.contains("no file can be made in") && words.contains("not a folder"), "{words}");
+            assert!(words.contains("cannot be written: a file is in the way"), "{words}");
         }
         let folder = Outputs { files: vec![place.path().to_owned()], ..Outputs::default() };
         assert!(refusal(&folder).contains("this is a folder"));

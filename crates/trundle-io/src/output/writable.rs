@@ -10,10 +10,14 @@ use std::path::{Path, PathBuf};
 /// Names the folder and the system's reason.
 pub(super) fn require_writable(folder: &Path, target: &Path) -> Result<(), IoError> {
     let nearest = nearest_existing(folder);
+    let named = nearest.display();
+    if nearest.is_file() {
+        let problem = format!("cannot be written: a file is in the way, {named}; name another place, or move this file");
+        return Err(IoError::malformed(target, problem));
+    }
     tempfile::tempfile_in(&nearest).map(drop).map_err(|error| {
         let problem = format!(
-            "cannot be written: no file can be made in {} ({}); name another place, or change the rights of this folder",
-            nearest.display(),
+            "cannot be written: no file can be made in {named} ({}); name another place, or change the rights of this folder",
             reason(&error)
         );
         IoError::malformed(target, problem)
@@ -41,7 +45,7 @@ mod tests {
         fs::write(&file, "mine").unwrap();
         for folder in [file.clone(), file.join("deep")] {
             let error = require_writable(&folder, Path::new("x.glb")).unwrap_err().to_string();
-            assert!(error.contains("x.glb: cannot be written") && error.contains("not a folder"), "{error}");
+            assert!(error.contains("x.glb: cannot be written: a file is in the way"), "{error}");
         }
         assert_eq!(fs::read(&file).unwrap(), b"mine");
     }
