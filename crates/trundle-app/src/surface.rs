@@ -5,8 +5,8 @@ mod request;
 #[cfg(test)]
 mod tests;
 
-pub use request::{MeshFormat, SurfaceRequest};
 use request::heights_description;
+pub use request::{MeshFormat, SurfaceRequest};
 
 use crate::sequence_input::SequenceInput;
 use crate::{AppError, StepProgress, stop};
@@ -225,7 +225,10 @@ fn heights_of(mesh: &SurfaceMesh, path: &Path, resolution: f64) -> Result<Vec<(P
         heights: &map.heights,
     };
     let written = height_files(path, &grid)?;
-    Ok(vec![(path.to_owned(), written.picture), (heights_description(path), written.description.into_bytes())])
+    Ok(vec![
+        (path.to_owned(), written.picture),
+        (heights_description(path), written.description.into_bytes()),
+    ])
 }
 
 fn data_of(mesh: &SurfaceMesh) -> SurfaceData<'_> {

@@ -24,11 +24,11 @@ use file_identity::is_on_other_disk;
 use marker::{MARKER_FILE, RunMarker};
 use place::{OutputPlace, free_name, with_ending};
 use scratch::Scratch;
-use writable::require_writable;
 use std::fs::{self, File};
 use std::io::{BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
+use writable::require_writable;
 
 /// Makes the content of a file.
 type Content = fn() -> Vec<u8>;

@@ -40,6 +40,9 @@ fn a_file_in_place_of_the_folder_is_one_problem() {
     let output = trundle(&["doctor", "--out", file.to_str().unwrap()]);
     let text = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(1), "{text}");
-    assert!(text.contains("is not a folder, so runs cannot write there: choose another folder by --out"), "{text}");
+    assert!(
+        text.contains("is not a folder, so runs cannot write there: choose another folder by --out"),
+        "{text}"
+    );
     assert!(!text.contains("1 problems"), "{text}");
 }

@@ -108,7 +108,8 @@ fn a_stopped_drive_is_a_recording_and_stopped_slam_and_map_write_what_they_know(
 fn is_tracked(folder: &Path) -> bool {
     const END: &[u8] = b"\x89MCAP0\r\n";
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let recordings = entries.map(|entry| fs::read(entry.path().join("out/recording.mcap")).unwrap_or_default());
+    let recordings =
+        entries.map(|entry| fs::read(entry.path().join("out/recording.mcap")).unwrap_or_default());
     recordings.into_iter().any(|bytes| bytes.len() > END.len() && bytes.ends_with(END))
 }
 

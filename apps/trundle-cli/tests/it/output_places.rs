@@ -41,7 +41,10 @@ fn a_place_that_cannot_be_written_is_refused_before_the_work_of_every_command() 
     ];
     for args in commands {
         let said = refusal(args);
-        assert!(said.contains("cannot be written: a file is in the way") && said.contains(text(&file)), "{said}");
+        assert!(
+            said.contains("cannot be written: a file is in the way") && said.contains(text(&file)),
+            "{said}"
+        );
     }
     let folder = refusal(&[&slam[..], &["--mesh", text(&data)]].concat());
     assert!(folder.contains("this is a folder"), "{folder}");
@@ -78,7 +81,8 @@ fn a_surface_in_the_output_folder_belongs_to_it() {
 fn a_full_disk_for_the_surface_keeps_all_other_results() {
     let scratch = tempfile::tempdir().unwrap();
     let data = recorded(scratch.path());
-    let (out, full, mesh) = (scratch.path().join("out"), scratch.path().join("x.ply"), scratch.path().join("x.glb"));
+    let (out, full, mesh) =
+        (scratch.path().join("out"), scratch.path().join("x.ply"), scratch.path().join("x.glb"));
     std::os::unix::fs::symlink("/dev/full", &full).unwrap();
     let args = ["slam", text(&data), "--out", text(&out), "--cloud", text(&full), "--mesh", text(&mesh)];
     let output = trundle(&args);

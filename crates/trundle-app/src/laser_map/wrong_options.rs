@@ -35,7 +35,9 @@ impl LaserMapRequest {
             return Ok(());
         }
         let log = self.log.display();
-        Err(AppError::Input(format!("--recover has no effect on {log}, expected a recording of trundle or no --recover")))
+        Err(AppError::Input(format!(
+            "--recover has no effect on {log}, expected a recording of trundle or no --recover"
+        )))
     }
 
     /// Refuses the topic of the odometry of a log that has no topics.

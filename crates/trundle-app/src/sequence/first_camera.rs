@@ -71,7 +71,8 @@ impl FirstCamera {
         let given = FirstCameraChoice { mount: self.mount(), is_by_floor: false, contradiction: None };
         let Some(found) = evidence.found else { return given };
         let is_trusted = evidence.is_under_wheels;
-        if !is_trusted && self.height.is_some_and(|height| (height - found.mount.z).abs() > MAX_OTHER_PLANE_M) {
+        if !is_trusted && self.height.is_some_and(|height| (height - found.mount.z).abs() > MAX_OTHER_PLANE_M)
+        {
             return given;
         }
         let completed = self.filled_from(&found.mount).mount();
@@ -90,7 +91,12 @@ impl FirstCamera {
     }
 
     /// What the floor says against the given values, in words; `None` if it does not.
-    pub(super) fn contradiction(&self, found: &FoundFloor, searched: usize, is_replaced: bool) -> Option<String> {
+    pub(super) fn contradiction(
+        &self,
+        found: &FoundFloor,
+        searched: usize,
+        is_replaced: bool,
+    ) -> Option<String> {
         let (mount, seen) = (&found.mount, found.images);
         let parts = [
             ("height", "m", self.height, mount.z, MAX_HEIGHT_ERROR_M),
@@ -132,7 +138,9 @@ mod tests {
         let choice = given(0.5, 8.0).completed_by(&seen);
         assert_eq!(choice.mount, seen.found.unwrap().mount);
         let said = choice.contradiction.unwrap();
-        for part in ["height 0.5 m is given", "shows 0.449 m", "28 of 30", "floor's height, tilt and roll are used"] {
+        for part in
+            ["height 0.5 m is given", "shows 0.449 m", "28 of 30", "floor's height, tilt and roll are used"]
+        {
             assert!(said.contains(part), "{part} in {said}");
         }
         assert!(!said.contains("tilt 8"), "{said}");
@@ -155,7 +163,10 @@ mod tests {
         assert_eq!(choice.mount.z, 0.5);
         assert!(choice.contradiction.unwrap().contains("the given pose is used: leave it out"));
         let table = given(1.4, 8.0).completed_by(&evidence(false));
-        assert_eq!(table, FirstCameraChoice { mount: given(1.4, 8.0).mount(), is_by_floor: false, contradiction: None });
+        assert_eq!(
+            table,
+            FirstCameraChoice { mount: given(1.4, 8.0).mount(), is_by_floor: false, contradiction: None }
+        );
         let unseen = FloorEvidence { found: None, ..evidence(true) };
         assert_eq!(given(0.5, 8.0).completed_by(&unseen).mount.z, 0.5);
     }

@@ -43,5 +43,7 @@ fn why_none(evidence: &FloorEvidence) -> String {
     if *level_planes == 0 {
         return "the first images show no floor".to_owned();
     }
-    format!("{level_planes} of {searched} searched images show a level plane, but not the same one, or not the lowest (a ramp, stairs, a table)")
+    format!(
+        "{level_planes} of {searched} searched images show a level plane, but not the same one, or not the lowest (a ramp, stairs, a table)"
+    )
 }

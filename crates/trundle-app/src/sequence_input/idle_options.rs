@@ -16,7 +16,9 @@ impl SequenceOptions<'_> {
         }
         let refused = |option: &str, expected: &str| {
             let name = self.path.display();
-            Err(AppError::Input(format!("{option} has no effect on {name}, expected {expected} or no {option}")))
+            Err(AppError::Input(format!(
+                "{option} has no effect on {name}, expected {expected} or no {option}"
+            )))
         };
         if let Some((option, topic)) = self.first_topic() {
             return refused(&format!("{option} {topic}"), "a ROS 2 bag");
@@ -51,7 +53,8 @@ mod tests {
         let mut named = plain.clone();
         named.topics.depth_topic = Some("/depth".to_owned());
         let cut = SequenceOptions { recover: true, ..plain.clone() };
-        let said = |options: &SequenceOptions<'_>, kind| options.refuse_idle(kind).err().map(|e| e.to_string());
+        let said =
+            |options: &SequenceOptions<'_>, kind| options.refuse_idle(kind).err().map(|e| e.to_string());
         let folder = FileKind::SequenceFolder;
         let topic = said(&named, folder).unwrap();
         assert!(topic.contains("--depth-topic /depth has no effect on in, expected a ROS 2 bag"), "{topic}");

@@ -88,7 +88,9 @@ impl SurfaceRequest {
     pub(super) fn paths(&self) -> impl Iterator<Item = PathBuf> {
         let mesh = self.mesh.as_ref().map(|(path, _)| path.clone());
         let description = self.heights.as_deref().map(heights_description);
-        [mesh, self.cloud.clone(), self.octomap.clone(), self.heights.clone(), description].into_iter().flatten()
+        [mesh, self.cloud.clone(), self.octomap.clone(), self.heights.clone(), description]
+            .into_iter()
+            .flatten()
     }
 
     pub(super) fn config(&self) -> SurfaceConfig {

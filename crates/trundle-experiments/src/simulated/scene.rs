@@ -41,8 +41,12 @@ impl MeshOptions {
     /// Refuses scale and floor for a scene that is no mesh.
     fn refuse_idle(self, name: &str) -> Result<(), AppError> {
         let scale = self.scale.map(|scale| format!("--scale {scale}"));
-        let Some(option) = scale.or(self.floor.map(|floor| format!("--floor {floor}"))) else { return Ok(()) };
-        Err(AppError::Input(format!("{name}: {option} has no effect on this scene, expected a .glb or .gltf with it")))
+        let Some(option) = scale.or(self.floor.map(|floor| format!("--floor {floor}"))) else {
+            return Ok(());
+        };
+        Err(AppError::Input(format!(
+            "{name}: {option} has no effect on this scene, expected a .glb or .gltf with it"
+        )))
     }
 
     fn import(self) -> GltfOptions {

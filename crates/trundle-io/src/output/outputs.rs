@@ -60,10 +60,12 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let (out, kept) = (place.path().join("out"), place.path().join("out.1"));
         let folders = vec![out.clone()];
-        let apart = Outputs { folders: folders.clone(), files: vec![out.join("x.glb")], ..Outputs::default() };
+        let apart =
+            Outputs { folders: folders.clone(), files: vec![out.join("x.glb")], ..Outputs::default() };
         let words = refusal(&apart);
         assert!(words.contains("x.glb: this file would lie in") && !words.contains("input"), "{words}");
-        let within = |file| Outputs { folders: folders.clone(), files_of_folder: vec![file], ..Outputs::default() };
+        let within =
+            |file| Outputs { folders: folders.clone(), files_of_folder: vec![file], ..Outputs::default() };
         within(out.join("x.glb")).check(&InputFiles::default()).unwrap();
         let words = refusal(&within(kept.join("x.glb")));
         assert!(words.contains("in which the last run is kept"), "{words}");

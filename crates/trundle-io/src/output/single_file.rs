@@ -67,7 +67,9 @@ impl OutputFile {
     pub fn require_different(files: &[PathBuf]) -> Result<(), IoError> {
         let is_again = |(i, file): &(usize, &PathBuf)| files[..*i].iter().any(|other| is_same(other, file));
         match files.iter().enumerate().find(is_again) {
-            Some((_, file)) => Err(IoError::malformed(file, "two results have this name, expected a file for each")),
+            Some((_, file)) => {
+                Err(IoError::malformed(file, "two results have this name, expected a file for each"))
+            }
             None => Ok(()),
         }
     }

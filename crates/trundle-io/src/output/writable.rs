@@ -12,7 +12,9 @@ pub(super) fn require_writable(folder: &Path, target: &Path) -> Result<(), IoErr
     let nearest = nearest_existing(folder);
     let named = nearest.display();
     if nearest.is_file() {
-        let problem = format!("cannot be written: a file is in the way, {named}; name another place, or move this file");
+        let problem = format!(
+            "cannot be written: a file is in the way, {named}; name another place, or move this file"
+        );
         return Err(IoError::malformed(target, problem));
     }
     tempfile::tempfile_in(&nearest).map(drop).map_err(|error| {
