@@ -127,7 +127,7 @@ fn a_surface_that_is_stopped_is_an_interrupted_result_with_the_tracking() {
     assert_stopped(&output, &out, CTRL_C);
     assert!(String::from_utf8_lossy(&output.stderr).contains("after surface of "), "the surface was stopped");
     assert_eq!(summary(&out)["success"], false);
-    assert_eq!(summary(&out)["frames"], 120);
+    assert!(summary(&out)["frames"].as_u64().unwrap() >= 100);
     assert!(out.join("map.yaml").exists() && out.join("trajectory.txt").exists());
 }
 
