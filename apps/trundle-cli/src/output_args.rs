@@ -7,7 +7,7 @@ use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use trundle::app::AppError;
-use trundle::io::{InputFiles, OutputFile, Outputs};
+use trundle::io::{CommandOutputs, InputFiles, OutputFile};
 
 /// A path on the command line with a meaning of its own.
 macro_rules! path_arg {
@@ -68,7 +68,7 @@ pub fn check(matches: &ArgMatches) -> Result<Vec<PathBuf>, AppError> {
     let texts = values::<String>(leaf).map(PathBuf::from).filter(|path| path.is_file());
     let inputs = InputFiles::new(values::<PathBuf>(leaf).chain(texts));
     let is_given = |id: &clap::Id| leaf.value_source(id.as_str()) == Some(ValueSource::CommandLine);
-    let outputs = Outputs {
+    let outputs = CommandOutputs {
         folders: values::<OutputDirArg>(leaf).map(|folder| folder.0).collect(),
         named: values_of::<OutputDirArg>(leaf, is_given).map(|folder| folder.0).collect(),
         files: values::<OutputFileArg>(leaf).map(|file| file.0).collect(),

@@ -15,7 +15,7 @@ mod unfinished;
 mod writable;
 
 pub use inputs::InputFiles;
-pub use outputs::Outputs;
+pub use outputs::CommandOutputs;
 pub use single_file::{OutputFile, keep_aside};
 pub use unfinished::{abandon_outputs, abandon_unfinished, wait_for_abandonment};
 

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 /// All that a command writes.
 #[derive(Debug, Clone, Default)]
-pub struct Outputs {
+pub struct CommandOutputs {
     /// Folders of results, by the user or by default.
     pub folders: Vec<PathBuf>,
     /// Those of the folders that the user named.
@@ -21,7 +21,7 @@ pub struct Outputs {
     pub continued: Vec<PathBuf>,
 }
 
-impl Outputs {
+impl CommandOutputs {
     /// Refuses outputs that would replace an input, another output or a foreign file, or that cannot be written at their place. Nothing is
     /// written.
     ///
@@ -51,7 +51,7 @@ mod tests {
     use super::*;
     use std::fs;
 
-    fn refusal(outputs: &Outputs) -> String {
+    fn refusal(outputs: &CommandOutputs) -> String {
         outputs.check(&InputFiles::default()).unwrap_err().to_string()
     }
 
@@ -60,17 +60,26 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let (out, kept) = (place.path().join("out"), place.path().join("out.1"));
         let folders = vec![out.clone()];
-        let apart =
-            Outputs { folders: folders.clone(), files: vec![out.join("x.glb")], ..Outputs::default() };
+        let apart = CommandOutputs {
+            folders: folders.clone(),
+            files: vec![out.join("x.glb")],
+            ..CommandOutputs::default()
+        };
         let words = refusal(&apart);
         assert!(words.contains("x.glb: this file would lie in") && !words.contains("input"), "{words}");
-        let within =
-            |file| Outputs { folders: folders.clone(), files_of_folder: vec![file], ..Outputs::default() };
+        let within = |file| CommandOutputs {
+            folders: folders.clone(),
+            files_of_folder: vec![file],
+            ..CommandOutputs::default()
+        };
         within(out.join("x.glb")).check(&InputFiles::default()).unwrap();
         let words = refusal(&within(kept.join("x.glb")));
         assert!(words.contains("in which the last run is kept"), "{words}");
         let twice = vec![place.path().join("a.ply"), place.path().join("./a.ply")];
-        assert!(refusal(&Outputs { files_of_folder: twice, ..Outputs::default() }).contains("two results"));
+        assert!(
+            refusal(&CommandOutputs { files_of_folder: twice, ..CommandOutputs::default() })
+                .contains("two results")
+        );
         assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0, "nothing is written");
     }
 
@@ -81,16 +90,16 @@ mod tests {
         fs::write(&file, "mine").unwrap();
         let below = vec![file.join("x")];
         let outputs = [
-            Outputs { named: below.clone(), folders: below.clone(), ..Outputs::default() },
-            Outputs { files: below.clone(), ..Outputs::default() },
-            Outputs { files_of_folder: below.clone(), ..Outputs::default() },
-            Outputs { edited: below, ..Outputs::default() },
+            CommandOutputs { named: below.clone(), folders: below.clone(), ..CommandOutputs::default() },
+            CommandOutputs { files: below.clone(), ..CommandOutputs::default() },
+            CommandOutputs { files_of_folder: below.clone(), ..CommandOutputs::default() },
+            CommandOutputs { edited: below, ..CommandOutputs::default() },
         ];
         for outputs in outputs {
             let words = refusal(&outputs);
             assert!(words.contains("cannot be written: a file is in the way"), "{words}");
         }
-        let folder = Outputs { files: vec![place.path().to_owned()], ..Outputs::default() };
+        let folder = CommandOutputs { files: vec![place.path().to_owned()], ..CommandOutputs::default() };
         assert!(refusal(&folder).contains("this is a folder"));
     }
 }
