@@ -9,7 +9,7 @@ pub(super) const DEFAULT_CAMERA_HEIGHT_M: f64 = 1.0;
 /// Kinect V2 the map is right within 3 cm, and at 5 cm the floor is an obstacle.
 const MAX_HEIGHT_ERROR_M: f64 = 0.02;
 /// Difference of a given tilt or roll from that of the floor in the images, above which one of them is wrong \[deg\]. Source: ours; the floor
-/// 3 m ahead is then 5 cm off, an obstacle. The floor in 4 images of a short drive was 0.7 deg off.
+/// 3 m ahead is then 5 cm off. At 1.5 deg a map has 0.1 % wrong cells, at 2 deg 0.4 %. The floor in 4 images of a short drive was 0.7 deg off.
 const MAX_ANGLE_ERROR_DEG: f64 = 1.0;
 /// Difference of a given height from that of a plane, above which the plane is a table or another floor \[m\]. It counts only for a plane on
 /// which no wheels are known to stand. Source: ours.
