@@ -18,10 +18,11 @@ pub fn run(args: &DockArgs) -> Result<Outcome, AppError> {
     if let Some(file) = &args.write_problem {
         return write_problem(args, &task, file);
     }
+    let folder = logging::output_folder(&args.out)?;
     let clock = Instant::now();
     let result = request.plan(&task)?;
     let seconds = clock.elapsed().as_secs_f64();
-    let place = write_docking(&task, &result, seconds, logging::output_folder(&args.out)?)?;
+    let place = write_docking(&task, &result, seconds, folder)?;
     if !args.common.quiet && result.refusal().is_none() {
         print(&result, seconds);
         console::print(&format!("See {}", place.join("dock.png").display()));

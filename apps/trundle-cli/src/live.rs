@@ -67,6 +67,10 @@ impl LiveArgs {
             let problem = "a replay has the zones of its recording: leave --zones out";
             return Err(AppError::Input(format!("--zones {}: {problem}", file.display())));
         }
+        if let (Some(folder), false) = (&self.maps, is_steered) {
+            let problem = "a replay loads no other map: leave --maps out";
+            return Err(AppError::Input(format!("--maps {}: {problem}", folder.display())));
+        }
         if !self.is_operated() {
             return Ok((Beside::default(), FrontEnd { progress, operator: link }));
         }

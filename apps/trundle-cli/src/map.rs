@@ -76,8 +76,8 @@ pub fn run(args: &MapArgs) -> Result<Outcome, AppError> {
     let request = args.request();
     request.refuse_wrong_options(args.laser.first_given())?;
     let display = console::StepDisplay::new(args.common.quiet);
-    let input = read_log(&request, &display)?;
     let folder = logging::output_folder(&args.out)?;
+    let input = read_log(&request, &display)?;
     let run = map_log(&request, args.localise, &input, &folder, &display)?;
     let place = folder.commit()?;
     // Warnings: skipped entries, impossible ranges, another mount of the laser.

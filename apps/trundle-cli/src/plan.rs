@@ -24,8 +24,8 @@ pub fn run(args: &PlanArgs) -> Result<Outcome, AppError> {
     if let (Some(path), Some(warning)) = (&args.speed_mask, request.speed_mask_warning()) {
         console::warn(&format!("{}: {warning}", path.display()));
     }
-    let (plan, times) = request.timed_plan();
     let folder = logging::output_folder(&args.out)?;
+    let (plan, times) = request.timed_plan();
     match plan {
         Ok(plan) => report_plan(args, &mut request, &plan, robot.limits, times, folder),
         Err(refusal) => report_refusal(args, &mut request, &refusal, folder),

@@ -8,7 +8,7 @@ use args::{FirstCameraArgs, SurfaceArgs};
 use crate::console;
 use crate::logging;
 use crate::outcome::Outcome;
-use crate::output_args::write_file;
+use crate::output_args::inputs;
 use trundle::app::AppError;
 use trundle::app::sequence::{FirstCamera, SequenceRequest, track_sequence, write_sequence};
 use trundle::app::surface::{SurfaceRequest, surface_files};
@@ -19,21 +19,20 @@ pub fn run(args: &SlamArgs) -> Result<Outcome, AppError> {
     let (request, surface) = (args.request()?, args.surface.request()?);
     let input = request.open()?;
     let folder = logging::output_folder(&args.result.out)?;
+    surface.require_places(&folder, inputs())?;
     let display = console::StepDisplay::new(args.common.quiet);
     let (page, link) = args.live.start(|| Ok(RunFacts::of_sequence(&args.input)), false)?.unzip();
     let run = track_sequence(&request, &input, &folder, &display, link)?;
     drop(page);
-    let output = write_sequence(&request, &input, &run, folder)?;
-    let made = surface_files(&surface, &input, &run.trajectory.poses, &display)?;
-    made.files.iter().try_for_each(|(path, bytes)| write_file(path, bytes))?;
+    let made = surface_files(&surface, &input, &run.trajectory.poses, &display);
+    let output = write_sequence(&request, &input, &run, &made, (folder, inputs()))?;
     if !args.common.quiet {
         console::print_table(&output.rows);
         console::print_table(&made.rows);
         run.clock_tables().iter().for_each(|table| console::print_table(table));
         console::print(&format!("See {}", output.folder.join("report.html").display()));
     }
-    let failure = run.failure().map(|failure| format!("{}: {failure}", args.input.display()));
-    Ok(Outcome::unless(failure.or(made.failure)))
+    output.incomplete.map_or(Ok(Outcome::unless(output.failure)), Err)
 }
 
 impl SlamArgs {

@@ -50,7 +50,7 @@ impl DoctorReport {
     pub fn text(&self) -> String {
         let mut lines = aligned_table(&self.checks.iter().map(Check::row).collect::<Vec<_>>());
         let (problems, warnings) = (self.count(CheckLevel::Problem), self.count(CheckLevel::Warning));
-        lines.push(format!("{problems} problems, {warnings} warnings"));
+        lines.push(format!("{}, {}", counted(problems, "problem"), counted(warnings, "warning")));
         lines.join("\n")
     }
 
@@ -61,6 +61,12 @@ impl DoctorReport {
         let value = serde_json::json!({ "problems": problems, "warnings": warnings, "checks": self.checks });
         format!("{value:#}")
     }
+}
+
+/// A number of things in words: "1 problem", "2 problems".
+fn counted(count: usize, name: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {name}{plural}")
 }
 
 /// Checks a computer; `output` is the folder that runs write to, which need not exist.
@@ -95,6 +101,19 @@ mod tests {
         [processor::check, clock::check, rights::check, limits::check, cgroup::check]
             .map(|f| f(&system))
             .concat()
+    }
+
+    #[test]
+    fn numbers_of_findings_agree_with_their_words() {
+        let check = |level| Check { level, ..Check::ok("disk", "") };
+        let last = |levels: &[CheckLevel]| {
+            let checks = levels.iter().map(|level| check(*level)).collect();
+            DoctorReport { checks }.text().lines().last().unwrap().to_owned()
+        };
+        let (problem, warning) = (CheckLevel::Problem, CheckLevel::Warning);
+        assert_eq!(last(&[problem, warning, warning]), "1 problem, 2 warnings");
+        assert_eq!(last(&[problem, problem, warning]), "2 problems, 1 warning");
+        assert_eq!(last(&[CheckLevel::Ok]), "0 problems, 0 warnings");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! RGB-D images with odometry and truth for `slam` and `map`: a TUM RGB-D folder, a ROS bag, or the recording of a run.
 
 mod frames;
+mod idle_options;
 mod recorded_run;
 
 pub use frames::PendingFrame;
@@ -83,7 +84,9 @@ impl SequenceInput {
     /// # Errors
     /// When the path is none of these, cannot be read, contains no images, or its camera is unknown.
     pub fn open(options: &SequenceOptions<'_>) -> Result<Self, AppError> {
-        match FileKind::of(options.path)? {
+        let kind = FileKind::of(options.path)?;
+        options.refuse_idle(kind)?;
+        match kind {
             FileKind::TrundleRecording => {
                 Self::of_recording(options, RecordedRun::read(options.path, options.recover)?)
             }

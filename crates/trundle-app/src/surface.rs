@@ -1,9 +1,11 @@
 //! The surface of a tracked sequence: a mesh, a cloud of points, an octree and a height map.
 
+mod output;
 mod request;
 #[cfg(test)]
 mod tests;
 
+use request::heights_description;
 pub use request::{MeshFormat, SurfaceRequest};
 
 use crate::sequence_input::SequenceInput;
@@ -34,48 +36,36 @@ pub struct SurfaceFiles {
     pub rows: Vec<Vec<String>>,
     /// Why there is no surface; `None` if there is one.
     pub failure: Option<String>,
+    /// Whether the user ended the work before the last image.
+    pub is_interrupted: bool,
 }
 
 /// Lays the images of `input` along `poses` (map from camera, by rising stamps) and makes the files of `request`. An interrupted run makes
-/// them from the images up to there.
-///
-/// # Errors
-/// When images cannot be read or a picture cannot be encoded.
+/// them from the images up to there. Images that cannot be read, or a picture that cannot be encoded, are the failure of the surface and not
+/// of the results before it.
 pub fn surface_files(
     request: &SurfaceRequest,
     input: &SequenceInput,
     poses: &[(Stamp, Pose3)],
     progress: &dyn StepProgress,
-) -> Result<SurfaceFiles, AppError> {
+) -> SurfaceFiles {
     if request.is_empty() {
-        return Ok(SurfaceFiles::default());
+        return SurfaceFiles::default();
     }
+    made_files(request, input, poses, progress)
+        .unwrap_or_else(|error| SurfaceFiles::failed(format!("no surface: {error}")))
+}
+
+fn made_files(
+    request: &SurfaceRequest,
+    input: &SequenceInput,
+    poses: &[(Stamp, Pose3)],
+    progress: &dyn StepProgress,
+) -> Result<SurfaceFiles, AppError> {
     let mut surface = Surface::new(request)?;
-    let camera = input.camera.model.camera;
-    let is_stopped = stop::stopped().is_some();
-    let last = poses.last().map(|(stamp, _)| *stamp);
-    progress.begin(Some(poses.len()));
-    for (i, frame) in input.frames()?.enumerate() {
-        let frame = frame?;
-        // Images after the last pose need not be read.
-        if last.is_none_or(|last| frame.stamp() > last) {
-            break;
-        }
-        if let Some(pose) = pose_at(poses, frame.stamp())
-            && surface.is_due(frame.stamp(), pose)
-            && let Ok(image) = frame.decode()
-        {
-            surface.integrate(&image, &camera, pose)?;
-        }
-        progress.advance();
-        // A signal that ended the tracking does not end the surface of what was tracked; a second one ends the program.
-        if !is_stopped && stop::is_requested(|| format!("surface of {} of {} images", i + 1, poses.len())) {
-            break;
-        }
-    }
-    progress.end();
+    let is_interrupted = surface.integrate_all(input, poses, progress)?;
     surface.warn_if_full();
-    surface.files(request, &input.path)
+    Ok(SurfaceFiles { is_interrupted, ..surface.files(request, &input.path)? })
 }
 
 /// The pose at a stamp.
@@ -104,6 +94,39 @@ impl Surface {
         })
     }
 
+    /// Integrates the images that have a pose and show something new. Returns whether the user ended it before the last one.
+    fn integrate_all(
+        &mut self,
+        input: &SequenceInput,
+        poses: &[(Stamp, Pose3)],
+        progress: &dyn StepProgress,
+    ) -> Result<bool, AppError> {
+        let camera = input.camera.model.camera;
+        let is_stopped = stop::stopped().is_some();
+        // Images after the last pose need not be read.
+        let Some((last, _)) = poses.last() else { return Ok(false) };
+        progress.begin(Some(poses.len()));
+        let mut is_interrupted = false;
+        for (i, frame) in input.frames()?.enumerate() {
+            let frame = frame?;
+            // A signal that ended the tracking does not end the surface of what was tracked; a second one ends the program.
+            let done = || format!("surface of {i} of {} images", poses.len());
+            is_interrupted = frame.stamp() <= *last && !is_stopped && stop::is_requested(done);
+            if is_interrupted || frame.stamp() > *last {
+                break;
+            }
+            if let Some(pose) = pose_at(poses, frame.stamp())
+                && self.is_due(frame.stamp(), pose)
+                && let Ok(image) = frame.decode()
+            {
+                self.integrate(&image, &camera, pose)?;
+            }
+            progress.advance();
+        }
+        progress.end();
+        Ok(is_interrupted)
+    }
+
     /// Whether an image shows something new: the camera moved, or time passed.
     fn is_due(&self, stamp: Stamp, pose: Pose3) -> bool {
         self.last.is_none_or(|(at, last)| {
@@ -129,11 +152,7 @@ impl Surface {
         let smallest = MIN_PART_AREA_M2 / self.map.config().voxel.powi(2);
         let mesh = surface_mesh(&self.map).without_specks(smallest.ceil() as usize);
         if mesh.vertices.is_empty() {
-            return Ok(SurfaceFiles {
-                files: Vec::new(),
-                rows: Vec::new(),
-                failure: Some(self.failure(input)),
-            });
+            return Ok(SurfaceFiles::failed(self.failure(input)));
         }
         let mut files = Vec::new();
         if let Some((path, format)) = &request.mesh {
@@ -153,7 +172,7 @@ impl Surface {
         if let Some(path) = &request.heights {
             files.extend(heights_of(&mesh, path, request.height_resolution())?);
         }
-        Ok(SurfaceFiles { files, rows: self.rows(&mesh), failure: None })
+        Ok(SurfaceFiles { files, rows: self.rows(&mesh), ..SurfaceFiles::default() })
     }
 
     /// Why there is no surface.
@@ -206,14 +225,10 @@ fn heights_of(mesh: &SurfaceMesh, path: &Path, resolution: f64) -> Result<Vec<(P
         heights: &map.heights,
     };
     let written = height_files(path, &grid)?;
-    Ok(vec![(path.to_owned(), written.picture), (description_of(path), written.description.into_bytes())])
-}
-
-/// The description beside a picture: `FILE.png.yaml`, which is no map's file.
-fn description_of(picture: &Path) -> PathBuf {
-    let mut name = picture.as_os_str().to_owned();
-    name.push(".yaml");
-    name.into()
+    Ok(vec![
+        (path.to_owned(), written.picture),
+        (heights_description(path), written.description.into_bytes()),
+    ])
 }
 
 fn data_of(mesh: &SurfaceMesh) -> SurfaceData<'_> {

@@ -171,7 +171,7 @@ fn incomplete_text(folder: Option<&Path>, problems: &[IoError]) -> String {
 }
 
 /// The operating system's answer in a person's words.
-fn reason(error: &std::io::Error) -> String {
+pub(crate) fn reason(error: &std::io::Error) -> String {
     let plain = match error.kind() {
         ErrorKind::NotFound => "it does not exist",
         ErrorKind::PermissionDenied => "no permission",

@@ -69,7 +69,7 @@ pub use map::{
     read_map_file, read_places, read_speed_mask, write_map, write_map_as, write_speed_mask,
 };
 pub use output::{
-    InputFiles, OutputFile, OutputFolder, abandon_outputs, abandon_unfinished, keep_aside,
+    CommandOutputs, InputFiles, OutputFile, OutputFolder, abandon_outputs, abandon_unfinished, keep_aside,
     wait_for_abandonment,
 };
 pub use recording::{PoseInFrame, PosesInFrame, RecordedMessage, Recorder, RecordingCut, RecordingReader};

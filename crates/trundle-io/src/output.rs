@@ -4,6 +4,7 @@ mod file_identity;
 mod fingerprint;
 mod inputs;
 mod marker;
+mod outputs;
 mod place;
 mod scratch;
 mod single_file;
@@ -11,8 +12,10 @@ mod single_file;
 mod tests;
 mod tree;
 mod unfinished;
+mod writable;
 
 pub use inputs::InputFiles;
+pub use outputs::CommandOutputs;
 pub use single_file::{OutputFile, keep_aside};
 pub use unfinished::{abandon_outputs, abandon_unfinished, wait_for_abandonment};
 
@@ -25,6 +28,7 @@ use std::fs::{self, File};
 use std::io::{BufWriter, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
+use writable::require_writable;
 
 /// Makes the content of a file.
 type Content = fn() -> Vec<u8>;
@@ -79,6 +83,44 @@ impl OutputFolder {
     /// last run.
     pub fn check(inputs: &InputFiles, target: &Path) -> Result<(), IoError> {
         OutputPlace::check(target, inputs).map(drop)
+    }
+
+    /// Refuses a folder of results that [`OutputFolder::create`] could not make. Nothing is left there.
+    ///
+    /// # Errors
+    /// When no file can be made beside the folder, nor in it.
+    pub fn require_writable(target: &Path) -> Result<(), IoError> {
+        let real = file_identity::resolved(target);
+        if is_on_other_disk(parent(&real), &real) {
+            return require_writable(&real, target);
+        }
+        let within = |refused| if real.is_dir() { require_writable(&real, target) } else { Err(refused) };
+        require_writable(parent(&real), target).or_else(within)
+    }
+
+    /// Refuses a file that a command writes by itself, if `target` or the folder of its last run would hold it.
+    ///
+    /// # Errors
+    /// When the file would be replaced together with the results.
+    pub(crate) fn require_outside(target: &Path, file: &Path) -> Result<(), IoError> {
+        OutputPlace::check(target, &InputFiles::default())?.require_outside(file)
+    }
+
+    /// Refuses a file of results in the folder in which the last run is kept.
+    ///
+    /// # Errors
+    /// When the file would be replaced together with the last run.
+    pub(crate) fn require_outside_last_run(target: &Path, file: &Path) -> Result<(), IoError> {
+        OutputPlace::check(target, &InputFiles::default())?.require_outside_last_run(file)
+    }
+
+    /// Name of the file `path` in this folder; `None` if it lies elsewhere.
+    #[must_use]
+    pub fn name_of(&self, path: &Path) -> Option<String> {
+        let (file, place) = (file_identity::resolved(path), file_identity::resolved(&self.place.real));
+        let name = file.strip_prefix(place).ok()?;
+        name.file_name()?;
+        Some(name.to_str()?.to_owned())
     }
 
     /// This folder with a last file: the commit writes the file `name` with its content at that time.

@@ -1,6 +1,7 @@
 //! The command line of `trundle calibrate`.
 
 use crate::common_args::Common;
+use crate::output_args::{EditedFileArg, OutputFileArg};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 use trundle::vision::board::Board;
@@ -39,7 +40,7 @@ pub struct DriveArgs {
     pub recover: bool,
     /// Set the calibrated keys in this robot file; a missing file is created.
     #[arg(long, value_name = "FILE")]
-    pub write: Option<PathBuf>,
+    pub write: Option<EditedFileArg>,
     /// Options of every command.
     #[command(flatten)]
     pub common: Common,
@@ -59,10 +60,10 @@ pub struct BoardImageArgs {
     pub k3: bool,
     /// Write a camera file, for `trundle slam --camera`.
     #[arg(long, value_name = "FILE")]
-    pub write_camera: Option<PathBuf>,
+    pub write_camera: Option<OutputFileArg>,
     /// Set the camera in this robot file; a missing file is created.
     #[arg(long, value_name = "FILE")]
-    pub write: Option<PathBuf>,
+    pub write: Option<EditedFileArg>,
     /// Options of every command.
     #[command(flatten)]
     pub common: Common,
@@ -75,7 +76,7 @@ pub struct BoardSheetArgs {
     pub board: Board,
     /// The file to write, SVG.
     #[arg(long, value_name = "FILE")]
-    pub out: PathBuf,
+    pub out: OutputFileArg,
     /// Options of every command.
     #[command(flatten)]
     pub common: Common,

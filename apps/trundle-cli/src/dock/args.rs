@@ -41,7 +41,7 @@ pub struct DockArgs {
     #[arg(long, value_parser = choice(&Method::CHOICES))]
     pub method: Option<Method>,
     /// Only write the problem to a file, as text to edit, including --from, --to and --footprint; a map's outlines become walls.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["out", "method", "margin"])]
     pub write_problem: Option<OutputFileArg>,
     /// Treat unknown cells of the map, and the space outside it, as free instead of blocked. With a map only.
     #[arg(long)]

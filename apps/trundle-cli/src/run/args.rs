@@ -2,7 +2,7 @@
 
 use crate::common_args::{Common, NumberArg, PoseArg, RobotArgs, choice};
 use crate::live::LiveArgs;
-use crate::output_args::{ContinuedFileArg, OutputDirArg, OutputFileArg};
+use crate::output_args::{ContinuedFileArg, EditedFileArg, OutputDirArg, OutputFileArg};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use trundle::app::vocabulary_file::read_vocabulary;
@@ -31,7 +31,7 @@ pub struct RunArgs {
     pub mission: MissionArgs,
     /// Write the measurements of --check into this robot file; its other keys do not change.
     #[arg(long, value_name = "ROBOT.toml", requires = "check", conflicts_with_all = ["goal", "explore", "dock", "mission", "resume"])]
-    pub write: Option<PathBuf>,
+    pub write: Option<EditedFileArg>,
     /// Files, time and settings.
     #[command(flatten)]
     pub options: RunOptions,

@@ -3,7 +3,7 @@
 use crate::common_args::{Common, NumberArg, PlaceArgs, choice};
 use crate::live::ViewArgs;
 use crate::output_args::{OutputDirArg, OutputFileArg};
-use clap::Args;
+use clap::{ArgGroup, Args};
 use std::path::PathBuf;
 use trundle::app::AppError;
 use trundle::experiments::simulated::read_faults;
@@ -16,7 +16,7 @@ const LIVE_HELP: &str = "Show the drive in a browser, in real time: prints the l
 
 /// `trundle sim`
 #[derive(Debug, Args)]
-#[command(mut_arg("live", |live| live.help(LIVE_HELP)))]
+#[command(group = ArgGroup::new("map_use").multiple(true), mut_arg("live", |live| live.help(LIVE_HELP).group("map_use")))]
 #[command(after_help = "Example: trundle sim office --follow waypoints.txt --record out/office\n\n\
     Exit code: 0 done, 1 a way-point was not reached, 2 bad input.")]
 pub struct SimArgs {
@@ -36,7 +36,7 @@ pub struct SimArgs {
     #[command(flatten)]
     pub live: ViewArgs,
     /// Write a TUM RGB-D folder: images, ground truth, odometry, calibration, the true map; the previous one is renamed to DIR.1
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", group = "map_use")]
     pub record: Option<OutputDirArg>,
     /// The true map.
     #[command(flatten)]
@@ -66,7 +66,7 @@ pub struct DriverArgs {
     #[arg(long, value_name = "FILE", group = "driver")]
     pub follow: Option<PathBuf>,
     /// Drive by keys in the terminal: arrows or WASD, space to stop, q to quit. The live page shows the robot's camera image.
-    #[arg(long, group = "driver")]
+    #[arg(long, groups = ["driver", "map_use"])]
     pub keys: bool,
     /// Stop after this simulated time, s, or at the end of the drive [default: 5 without a drive]
     #[arg(long, value_name = "S", value_parser = NumberArg::up_to(1e6, "s"), allow_negative_numbers = true)]
@@ -92,16 +92,16 @@ pub struct RosRobotArgs {
 #[derive(Debug, Args)]
 pub struct TrueMapArgs {
     /// Write the true occupancy grid; without a drive, duration or recording, only this is done.
-    #[arg(long, value_name = "FILE.yaml")]
+    #[arg(long, value_name = "FILE.yaml", group = "map_use")]
     pub map: Option<OutputFileArg>,
     /// Format of the true map's picture.
-    #[arg(long, value_name = "FORMAT", default_value = "pgm", hide_short_help = true, value_parser = choice(&MapImage::CHOICES))]
+    #[arg(long, value_name = "FORMAT", default_value = "pgm", hide_short_help = true, requires = "map", value_parser = choice(&MapImage::CHOICES))]
     pub map_image: MapImage,
     /// Side of the map's cells, m.
-    #[arg(long, value_name = "M", default_value_t = 0.05, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", default_value_t = 0.05, requires = "map_use", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub resolution: f64,
     /// Height band of obstacles, m, for the map [default: the robot's]
-    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], hide_short_help = true, value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
+    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], hide_short_help = true, requires = "map_use", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub band: Option<Vec<f64>>,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::common_args::{BagTopicsArgs, Common, NumberArg, RobotArgs, choice};
 use crate::live::ViewArgs;
-use crate::output_args::{OutputDirArg, OutputFileArg};
+use crate::output_args::{OutputDirArg, ResultFileArg};
 use clap::Args;
 use std::path::PathBuf;
 use trundle::app::RecordingContent;
@@ -83,16 +83,16 @@ pub struct SlamResultArgs {
 pub struct SurfaceArgs {
     /// Write the surface as triangles with colours, .glb or .ply
     #[arg(long, value_name = "FILE")]
-    pub mesh: Option<OutputFileArg>,
+    pub mesh: Option<ResultFileArg>,
     /// Write the surface as points with colours and normals, .ply
     #[arg(long, value_name = "FILE")]
-    pub cloud: Option<OutputFileArg>,
+    pub cloud: Option<ResultFileArg>,
     /// Write free and occupied voxels in OctoMap's binary form, .bt
     #[arg(long, value_name = "FILE")]
-    pub octomap: Option<OutputFileArg>,
+    pub octomap: Option<ResultFileArg>,
     /// Write heights over the floor as a 16-bit .png, with a FILE.yaml beside it
     #[arg(long, value_name = "FILE")]
-    pub heights: Option<OutputFileArg>,
+    pub heights: Option<ResultFileArg>,
     /// Side of a voxel of the surface, m, 0.004 to 0.5 [default: 0.02]
     #[arg(long, value_name = "M", hide_short_help = true, value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
     pub voxel: Option<f64>,
@@ -101,13 +101,14 @@ pub struct SurfaceArgs {
 /// The pose of the first camera.
 #[derive(Debug, Args)]
 pub struct FirstCameraArgs {
-    /// Height of the first camera above the floor, m, for the map [default: the recorded robot's, else by the floor in the images, else 1]
+    /// Height of the first camera above the floor, m, for the map; with odometry, a value off by over 2 cm from the floor in the images is
+    /// replaced, with a warning [default: the recorded robot's, else by the floor in the images, else 1]
     #[arg(long, value_name = "M", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]
     pub height: Option<f64>,
-    /// Downward tilt of the first camera, deg, for the map [default: as the height; 0 if a height or roll is given]
+    /// Downward tilt of the first camera, deg, for the map [default: as the height, else 0]
     #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
     pub tilt: Option<f64>,
-    /// Roll of the first camera to its right, deg, for the map [default: as the height; 0 if a height or tilt is given]
+    /// Roll of the first camera to its right, deg, for the map [default: as the height, else 0]
     #[arg(long, value_name = "DEG", value_parser = NumberArg::any("deg"), allow_negative_numbers = true)]
     pub roll: Option<f64>,
 }

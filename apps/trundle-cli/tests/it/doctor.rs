@@ -31,3 +31,18 @@ fn a_wrong_domain_is_a_problem_with_exit_code_1() {
         "{line}"
     );
 }
+
+#[test]
+fn a_file_in_place_of_the_folder_is_one_problem() {
+    let place = tempfile::tempdir().unwrap();
+    let file = place.path().join("runs");
+    std::fs::write(&file, "mine").unwrap();
+    let output = trundle(&["doctor", "--out", file.to_str().unwrap()]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(
+        text.contains("is not a folder, so runs cannot write there: choose another folder by --out"),
+        "{text}"
+    );
+    assert!(!text.contains("1 problems"), "{text}");
+}

@@ -104,6 +104,33 @@ fn a_stopped_drive_is_a_recording_and_stopped_slam_and_map_write_what_they_know(
     assert!(map.join("map.yaml").exists() && map.join("trajectory.txt").exists());
 }
 
+/// Whether the tracking of `trundle slam`, whose results come into `folder`, is over: its recording has its end.
+fn is_tracked(folder: &Path) -> bool {
+    const END: &[u8] = b"\x89MCAP0\r\n";
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let recordings =
+        entries.map(|entry| fs::read(entry.path().join("out/recording.mcap")).unwrap_or_default());
+    recordings.into_iter().any(|bytes| bytes.len() > END.len() && bytes.ends_with(END))
+}
+
+#[test]
+fn a_surface_that_is_stopped_is_an_interrupted_result_with_the_tracking() {
+    let scratch = tempfile::tempdir().unwrap();
+    let [data, out, mesh] = ["data", "out", "x.glb"].map(|name| scratch.path().join(name));
+    let sim = ["sim", "room", "--quiet", "--duration", "40", "--rate", "3", "--record", text(&data)];
+    assert!(trundle(&sim).status.success());
+    let args = ["--record", "events", "--voxel", "0.005", "--mesh", text(&mesh), "--out", text(&out)];
+    let child = start(&[&["slam", text(&data), "--quiet"], &args[..]].concat());
+    wait_until("the tracking has no end", || is_tracked(scratch.path()));
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_stopped(&output, &out, CTRL_C);
+    assert!(String::from_utf8_lossy(&output.stderr).contains("after surface of "), "the surface was stopped");
+    assert_eq!(summary(&out)["success"], false);
+    assert!(summary(&out)["frames"].as_u64().unwrap() >= 100);
+    assert!(out.join("map.yaml").exists() && out.join("trajectory.txt").exists());
+}
+
 #[test]
 fn a_stopped_run_and_its_stopped_replay_have_their_results() {
     let scratch = tempfile::tempdir().unwrap();

@@ -25,6 +25,7 @@ mod missions;
 mod no_open_port;
 mod no_success;
 mod nothing_lost;
+mod output_places;
 mod plan;
 mod program;
 mod real_time;

@@ -81,7 +81,7 @@ pub fn summary(request: &LaserMapRequest, input: &LogInput, run: &LaserMapRun) -
     let mut summary = Summary::new("map");
     let counts = &run.counts;
     summary
-        .set("success", run.failure.is_none())
+        .set("success", run.failure.is_none() && !run.is_interrupted)
         .set("failure", run.failure.clone())
         .set("log", request.log.display().to_string())
         .set("cut", input.cut_report.clone())

@@ -13,6 +13,7 @@ impl LaserMapRequest {
     /// Names the option and the kind of the log.
     pub fn refuse_wrong_options(&self, laser_option: Option<&str>) -> Result<(), AppError> {
         self.refuse_topic_of_odometry()?;
+        self.refuse_idle_cut()?;
         let log = self.log.display();
         let is_sequence = SequenceInput::is_one(&self.log, &self.topics);
         match (is_sequence, &self.poses, laser_option) {
@@ -25,6 +26,18 @@ impl LaserMapRequest {
             ))),
             _ => Ok(()),
         }
+    }
+
+    /// Refuses reading up to a cut of what is neither a recording nor a bag.
+    fn refuse_idle_cut(&self) -> Result<(), AppError> {
+        use FileKind::{CarmenLog, Gzip, SequenceFolder, Text};
+        if !self.recover || !matches!(FileKind::of(&self.log)?, CarmenLog | Gzip | SequenceFolder | Text) {
+            return Ok(());
+        }
+        let log = self.log.display();
+        Err(AppError::Input(format!(
+            "--recover has no effect on {log}, expected a recording of trundle or no --recover"
+        )))
     }
 
     /// Refuses the topic of the odometry of a log that has no topics.

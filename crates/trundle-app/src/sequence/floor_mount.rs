@@ -2,7 +2,7 @@
 
 use crate::AppError;
 use crate::sequence_input::SequenceInput;
-use trundle_core::{DepthImage, PinholeCamera, Pose3, Vector3};
+use trundle_core::{DepthImage, PinholeCamera, Pose3, Stamp, Vector3};
 use trundle_estimation::{FloorMount, FloorSearch, FloorView};
 use trundle_runtime::CameraMount;
 
@@ -24,6 +24,10 @@ const BELOW_FLOOR_M: f64 = 0.1;
 /// Largest share of points below the floor \[1\]: stairs and errors of depth. Source: ours.
 const MAX_BELOW_SHARE: f64 = 0.05;
 
+/// Path of the robot along the searched images from which the floor is that on which its wheels stand \[m\]: a plane that stays at the same
+/// height below a camera that moves is no ramp ahead and no table. Source: ours.
+const MIN_PATH_M: f64 = 0.5;
+
 /// The pose of the first camera above the floor that the images show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FoundFloor {
@@ -33,46 +37,94 @@ pub(super) struct FoundFloor {
     pub(super) images: usize,
 }
 
-/// The floor in the first images, `None` if less than half of them show one, and the number of images that were searched.
+/// The search of the floor in the first images.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct FloorEvidence {
+    /// The floor; `None` if less than half of the images show one.
+    pub(super) found: Option<FoundFloor>,
+    /// Images that were searched.
+    pub(super) searched: usize,
+    /// Images that show a level plane, which need not be the same in all of them.
+    pub(super) level_planes: usize,
+    /// Whether a robot moved along the searched images, whose wheels stood on the floor.
+    pub(super) is_under_wheels: bool,
+}
+
+/// Searches the floor in the first images, from the tilt and roll of `given` (deg), else from usual tilts.
 ///
 /// # Errors
 /// When the images cannot be read.
-pub(super) fn found_floor(input: &SequenceInput) -> Result<(Option<FoundFloor>, usize), AppError> {
-    let depths = first_depths(input)?;
+pub(super) fn floor_evidence(
+    input: &SequenceInput,
+    given: Option<(f64, f64)>,
+) -> Result<FloorEvidence, AppError> {
+    let (depths, last) = first_depths(input)?;
     let camera = &input.camera.model.camera;
-    let found = START_TILTS_DEG.into_iter().find_map(|tilt| floor_near(&depths, camera, (tilt, 0.0)));
-    Ok((found, depths.len()))
+    let (mut found, mut level_planes) = (None, 0);
+    for start in given.into_iter().chain(START_TILTS_DEG.map(|tilt| (tilt, 0.0))) {
+        let tried = FloorTry::near(&depths, camera, start);
+        level_planes = level_planes.max(tried.level_planes);
+        found = tried.found;
+        if found.is_some() {
+            break;
+        }
+    }
+    Ok(FloorEvidence {
+        found,
+        searched: depths.len(),
+        level_planes,
+        is_under_wheels: last.is_some_and(|last| path_until(input, last) >= MIN_PATH_M),
+    })
 }
 
-/// The depth of some of the first images.
-fn first_depths(input: &SequenceInput) -> Result<Vec<DepthImage>, AppError> {
+/// Path of the robot up to an image by its odometry, m; 0 without odometry.
+fn path_until(input: &SequenceInput, last: Stamp) -> f64 {
+    let poses = input.odometry().unwrap_or_default();
+    let until: Vec<_> = poses.iter().take_while(|(stamp, _)| *stamp <= last).collect();
+    until.windows(2).map(|pair| (pair[1].1.position() - pair[0].1.position()).norm()).sum()
+}
+
+/// The depth of some of the first images, and the stamp of the last of them.
+fn first_depths(input: &SequenceInput) -> Result<(Vec<DepthImage>, Option<Stamp>), AppError> {
     let is_fixed = input.odometry().is_some();
     let (count, step) = if is_fixed { (FIRST_IMAGES, IMAGE_STEP) } else { (HAND_HELD_IMAGES, 1) };
-    let mut depths = Vec::new();
+    let (mut depths, mut last) = (Vec::new(), None);
     for frame in input.frames()?.take(count).step_by(step) {
         if let Ok(image) = frame?.decode() {
+            last = Some(image.stamp());
             depths.push(image.into_images().1);
         }
     }
-    Ok(depths)
+    Ok((depths, last))
 }
 
-/// The floor of a camera with about this tilt and roll, deg.
-fn floor_near(
-    depths: &[DepthImage],
-    camera: &PinholeCamera,
-    (pitch_deg, roll_deg): (f64, f64),
-) -> Option<FoundFloor> {
-    let level = CameraMount { x: 0.0, y: 0.0, z: 0.0, yaw_deg: 0.0, pitch_deg, roll_deg };
-    let mut search = FloorSearch::new(up_of(&level.base_from_camera()));
-    depths.iter().for_each(|depth| search.add(depth, camera));
+/// The floor of a camera with about one tilt and roll.
+struct FloorTry {
+    found: Option<FoundFloor>,
+    level_planes: usize,
+}
+
+impl FloorTry {
+    /// Searches from a tilt and roll, deg.
+    fn near(depths: &[DepthImage], camera: &PinholeCamera, (pitch_deg, roll_deg): (f64, f64)) -> Self {
+        let level = CameraMount { x: 0.0, y: 0.0, z: 0.0, yaw_deg: 0.0, pitch_deg, roll_deg };
+        let mut search = FloorSearch::new(up_of(&level.base_from_camera()));
+        depths.iter().for_each(|depth| search.add(depth, camera));
+        Self { found: common_floor(&search, depths, camera), level_planes: search.proposals() }
+    }
+}
+
+/// The floor that most of the images show and that has nothing below.
+fn common_floor(search: &FloorSearch, depths: &[DepthImage], camera: &PinholeCamera) -> Option<FoundFloor> {
     let views = search.views();
     let floor = FloorMount::of(&views, None)?;
     let mount = CameraMount {
+        x: 0.0,
+        y: 0.0,
         z: floor.height.value,
+        yaw_deg: 0.0,
         pitch_deg: floor.pitch.value.to_degrees(),
         roll_deg: floor.roll.value.to_degrees(),
-        ..level
     };
     let plane = FloorView { up: up_of(&mount.base_from_camera()), height: mount.z };
     let is_lowest = depths.iter().all(|depth| share_below(&plane, depth, camera) <= MAX_BELOW_SHARE);
@@ -111,6 +163,37 @@ mod tests {
             let top = table.map(down).filter(|at| (1.0..2.0).contains(&(at * way.x)) && way.y.abs() < 0.6);
             top.unwrap_or_else(|| down(0.0)).min(wall) as f32
         })
+    }
+
+    fn floor_near(depths: &[DepthImage], camera: &PinholeCamera, start: (f64, f64)) -> Option<FoundFloor> {
+        FloorTry::near(depths, camera, start).found
+    }
+
+    /// Depth of a floor under a camera with a ramp of `slope` from 1 m ahead on, in millimetres as cameras give it.
+    fn before_ramp(mount: &CameraMount, slope: f64) -> DepthImage {
+        let camera = PinholeCamera::kinect_v2();
+        let base_from_camera = mount.base_from_camera();
+        DepthImage::from_fn(camera.width(), camera.height(), |x, y| {
+            let way = base_from_camera.rotate(camera.unproject(Vector2::new(x as f64, y as f64), 1.0));
+            let floor = if way.z < 0.0 { -mount.z / way.z } else { f64::INFINITY };
+            let ramp = (mount.z + slope) / (slope * way.x - way.z);
+            let depth = if floor * way.x <= 1.0 { floor } else { ramp };
+            if (0.0..4.5).contains(&depth) { ((1e3 * depth).round() / 1e3) as f32 } else { 0.0 }
+        })
+    }
+
+    #[test]
+    fn a_ramp_1_m_ahead_is_not_taken_for_the_floor_before_it() {
+        let camera = PinholeCamera::kinect_v2();
+        let truth = mount(0.45, 8.0, 0.0);
+        for slope_deg in [3.0_f64, 4.8, 8.0, 12.0] {
+            let depths = vec![before_ramp(&truth, slope_deg.to_radians().tan()); 3];
+            let found = floor_near(&depths, &camera, (0.0, 0.0)).unwrap_or_else(|| panic!("{slope_deg}"));
+            assert!((found.mount.z - truth.z).abs() < 5e-3, "{slope_deg}: {found:?}");
+            assert!((found.mount.pitch_deg - truth.pitch_deg).abs() < 0.5, "{slope_deg}: {found:?}");
+        }
+        let down = vec![before_ramp(&truth, (-4.0_f64).to_radians().tan()); 3];
+        assert_eq!(floor_near(&down, &camera, (0.0, 0.0)), None, "what is below may be the floor");
     }
 
     fn mount(z: f64, pitch_deg: f64, roll_deg: f64) -> CameraMount {

@@ -5,6 +5,7 @@ use super::run::SequenceRun;
 use crate::evaluation::TrajectoryEvaluation;
 use crate::report::wall_clock;
 use crate::sequence_input::SequenceInput;
+use crate::surface::SurfaceFiles;
 use trundle_io::Summary;
 use trundle_runtime::CameraMount;
 
@@ -67,14 +68,16 @@ fn placed(run: &SequenceRun) -> String {
 pub fn summary(
     request: &SequenceRequest,
     input: &SequenceInput,
-    run: &SequenceRun,
+    (run, surface): (&SequenceRun, &SurfaceFiles),
     comparison: Option<&TrajectoryEvaluation>,
 ) -> Summary {
     let mut summary = Summary::new("slam");
     let c = run.counts;
+    let failure = run.failure().or_else(|| surface.failure.clone());
+    let is_interrupted = run.is_interrupted || surface.is_interrupted;
     summary
-        .set("success", run.failure().is_none())
-        .set("failure", run.failure())
+        .set("success", failure.is_none() && !is_interrupted)
+        .set("failure", failure)
         .set("input", input.path.display().to_string())
         .set("cut", input.cut_report())
         .set("camera", &input.camera.name)
@@ -102,6 +105,6 @@ pub fn summary(
         .set("rpe_translation_rmse_m", comparison.map(|c| c.relative.translation.rmse))
         .set("rpe_rotation_rmse_rad", comparison.map(|c| c.relative.rotation.rmse))
         .set("wall_clock", wall_clock(run.seconds, &run.times, None))
-        .set_interrupted(run.is_interrupted);
+        .set_interrupted(is_interrupted);
     summary
 }

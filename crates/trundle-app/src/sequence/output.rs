@@ -7,8 +7,9 @@ use super::request::SequenceRequest;
 use super::run::SequenceRun;
 use crate::AppError;
 use crate::sequence_input::SequenceInput;
+use crate::surface::SurfaceFiles;
 use std::path::PathBuf;
-use trundle_io::{OutputFolder, trajectory_text, write_map_as};
+use trundle_io::{InputFiles, IoError, OutputFolder, trajectory_text, write_map_as};
 
 /// The written folder, and the table for a front end.
 pub struct SequenceOutput {
@@ -16,9 +17,13 @@ pub struct SequenceOutput {
     pub folder: PathBuf,
     /// The table, all but the wall clock's part.
     pub rows: Vec<Vec<String>>,
+    /// Why the run missed its aim, with the likely cause; `None` if it did not.
+    pub failure: Option<String>,
+    /// Files that could not be written, as an error; `None` if all were.
+    pub incomplete: Option<AppError>,
 }
 
-/// Writes map, trajectory, visual map, ground truth, page and summary.
+/// Writes map, trajectory, visual map, ground truth, surface, page and summary. Files for which the disk has no space are left out.
 ///
 /// # Errors
 /// When the map cannot be drawn or a file cannot be written.
@@ -26,7 +31,8 @@ pub fn write_sequence(
     request: &SequenceRequest,
     input: &SequenceInput,
     run: &SequenceRun,
-    folder: OutputFolder,
+    surface: &SurfaceFiles,
+    (folder, inputs): (OutputFolder, &InputFiles),
 ) -> Result<SequenceOutput, AppError> {
     let trajectory = &run.trajectory.poses;
     let comparison = input.ground_truth().and_then(|truth| against_truth(&input.path, truth, trajectory));
@@ -41,6 +47,19 @@ pub fn write_sequence(
     let rows = sequence_rows(input, run, comparison);
     let page = page(input, run, grid, trajectory, comparison, &rows);
     folder.write("report.html", page.to_html().as_bytes())?;
-    folder.write("summary.json", summary(request, input, run, comparison).to_json().as_bytes())?;
-    Ok(SequenceOutput { folder: folder.commit()?, rows })
+    folder.write("summary.json", summary(request, input, (run, surface), comparison).to_json().as_bytes())?;
+    surface.write(&folder, inputs);
+    let failure = run.failure().map(|failure| format!("{}: {failure}", input.path.display()));
+    let failure = failure.or_else(|| surface.failure.clone());
+    let (folder, incomplete) = committed(folder)?;
+    Ok(SequenceOutput { folder, rows, failure, incomplete })
+}
+
+/// The written folder, and the files that the disk did not take, as an error.
+fn committed(folder: OutputFolder) -> Result<(PathBuf, Option<AppError>), AppError> {
+    match folder.commit() {
+        Ok(place) => Ok((place, None)),
+        Err(error @ IoError::Incomplete { .. }) => Ok((error.path().to_owned(), Some(error.into()))),
+        Err(error) => Err(error.into()),
+    }
 }

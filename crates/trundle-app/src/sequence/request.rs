@@ -1,6 +1,8 @@
 //! Request to track a sequence: camera, first pose, map, seed.
 
-use super::floor_mount::{FoundFloor, found_floor};
+use super::first_camera::{DEFAULT_CAMERA_HEIGHT_M, FirstCamera};
+use super::floor_log::log_choice;
+use super::floor_mount::floor_evidence;
 use crate::sequence_input::{SequenceInput, SequenceOptions};
 use crate::vocabulary_file::vocabulary_or_builtin;
 use crate::{AppError, RecordingContent};
@@ -45,33 +47,6 @@ pub struct SequenceRequest {
     pub visual_only: bool,
 }
 
-/// Pose of the first camera above the floor; `None` everywhere for the input's own.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct FirstCamera {
-    /// Height above the floor, m; default that of the floor in the images, else 1 m.
-    pub height: Option<f64>,
-    /// Downward tilt, deg; default as the height, else 0.
-    pub tilt_deg: Option<f64>,
-    /// Roll to its right, deg; default as the height, else 0.
-    pub roll_deg: Option<f64>,
-}
-
-impl FirstCamera {
-    /// Whether part of the pose is asked for: then all of it is.
-    fn is_asked(&self) -> bool {
-        self.height.or(self.tilt_deg).or(self.roll_deg).is_some()
-    }
-
-    /// Height (m), tilt and roll (deg) that are asked for.
-    fn asked(&self) -> (f64, f64, f64) {
-        let height = self.height.unwrap_or(DEFAULT_CAMERA_HEIGHT_M);
-        (height, self.tilt_deg.unwrap_or_default(), self.roll_deg.unwrap_or_default())
-    }
-}
-
-/// Default height of a first camera \[m\]. Source: ours, a hand-held camera.
-const DEFAULT_CAMERA_HEIGHT_M: f64 = 1.0;
-
 impl SequenceRequest {
     /// The images. Warnings are logged.
     ///
@@ -89,42 +64,30 @@ impl SequenceRequest {
             input.robot = RobotConfig::clone(robot);
             input.robot.camera = input.camera.model.camera;
         }
-        if self.first_camera.is_asked() {
-            let mount = &mut input.robot.mount;
-            (mount.z, mount.pitch_deg, mount.roll_deg) = self.first_camera.asked();
-        } else if self.map.is_none() && self.known_first_camera(&input)?.is_none() {
+        if self.map.is_some() {
+            if self.first_camera.is_asked() {
+                take_mount(&mut input, &self.first_camera.mount());
+            }
+        } else if self.first_camera.is_asked() || self.known_first_camera(&input)?.is_none() {
             self.find_floor(&mut input)?;
+        } else if let Some(mount) = self.given_mount() {
+            check_robot_file(&input, &mount)?;
         }
         Ok(input)
     }
 
-    /// Takes the first camera's height, tilt and roll from the floor in the images.
+    /// Takes the first camera's height, tilt and roll as given, and from the floor in the images where they are not given or wrong.
     fn find_floor(&self, input: &mut SequenceInput) -> Result<(), AppError> {
-        let path = self.path.display();
-        let (found, searched) = found_floor(input)?;
-        let Some(FoundFloor { mount: found, images: seen }) = found else {
-            if searched == 0 {
-                return Ok(());
-            }
-            tracing::warn!(
-                "{path}: the first images show no floor, so the height of the first camera is taken as {DEFAULT_CAMERA_HEIGHT_M} m and its \
-                 tilt as 0 deg: give --height (m), --tilt and --roll (deg) for a level map"
-            );
-            return Ok(());
-        };
-        let pose =
-            format!("{:.3} m, tilt {:.2} deg, roll {:.2} deg", found.z, found.pitch_deg, found.roll_deg);
-        if input.odometry().is_some() {
-            tracing::info!("{path}: first camera at {pose}, by the floor in {seen} of {searched} images");
-        } else {
-            tracing::warn!(
-                "{path}: first camera at {pose}, by the lowest plane in the first {searched} images: give --height (m), --tilt and --roll \
-                 (deg) if this plane is a table"
-            );
+        let given = &self.first_camera;
+        given.mount().validated()?;
+        let evidence = floor_evidence(input, given.search_start())?;
+        let choice = given.completed_by(&evidence);
+        log_choice(input, given, &choice, &evidence);
+        let is_default = !given.is_asked() && evidence.found.is_none();
+        if !is_default {
+            take_mount(input, &choice.mount);
         }
-        let mount = &mut input.robot.mount;
-        (mount.z, mount.pitch_deg, mount.roll_deg) = (found.z, found.pitch_deg, found.roll_deg);
-        input.floor_mount = Some(found);
+        input.floor_mount = choice.is_by_floor.then_some(choice.mount);
         Ok(())
     }
 
@@ -136,8 +99,8 @@ impl SequenceRequest {
     /// The pose of the first camera above the floor by the request, the robot file, or the input; `None` if none of them has it.
     fn known_first_camera(&self, input: &SequenceInput) -> Result<Option<Pose3>, Invalid> {
         if self.first_camera.is_asked() {
-            let (height, tilt_deg, roll_deg) = self.first_camera.asked();
-            return level_from_first_camera(height, tilt_deg, roll_deg).map(Some);
+            let mount = input.floor_mount.unwrap_or_else(|| self.first_camera.mount());
+            return level_from_first_camera(mount.z, mount.pitch_deg, mount.roll_deg).map(Some);
         }
         let by_file = self.given_mount().map(|mount| mount.base_from_camera());
         Ok(by_file.or_else(|| input.level_from_first_camera()))
@@ -173,4 +136,22 @@ impl SequenceRequest {
         slam.set_mode(if self.localize_only { Mode::Localisation } else { Mode::Mapping });
         Ok(slam)
     }
+}
+
+/// Takes height, tilt and roll of the camera.
+fn take_mount(input: &mut SequenceInput, found: &CameraMount) {
+    let mount = &mut input.robot.mount;
+    (mount.z, mount.pitch_deg, mount.roll_deg) = (found.z, found.pitch_deg, found.roll_deg);
+}
+
+/// Warns of a robot file whose mount contradicts the floor in the images; the robot file's is used.
+fn check_robot_file(input: &SequenceInput, mount: &CameraMount) -> Result<(), AppError> {
+    let given = FirstCamera::of_mount(mount);
+    let evidence = floor_evidence(input, given.search_start())?;
+    if let Some(found) = evidence.found.filter(|_| evidence.is_under_wheels)
+        && let Some(contradiction) = given.contradiction(&found, evidence.searched, false)
+    {
+        tracing::warn!("{}: mount of the robot file: {contradiction}", input.path.display());
+    }
+    Ok(())
 }

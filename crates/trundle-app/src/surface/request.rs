@@ -66,6 +66,7 @@ impl SurfaceRequest {
             )));
         }
         request.config().validated()?;
+        request.refuse_idle_voxel()?;
         Ok(request)
     }
 
@@ -73,6 +74,23 @@ impl SurfaceRequest {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.mesh.is_none() && self.cloud.is_none() && self.octomap.is_none() && self.heights.is_none()
+    }
+
+    /// Refuses a voxel's side without a file that has voxels.
+    fn refuse_idle_voxel(&self) -> Result<(), AppError> {
+        let Some(voxel) = self.voxel.filter(|_| self.is_empty()) else { return Ok(()) };
+        Err(AppError::Input(format!(
+            "--voxel {voxel} m has no effect without a surface, expected --mesh, --cloud, --octomap or --heights with it"
+        )))
+    }
+
+    /// Paths of the files that are asked for.
+    pub(super) fn paths(&self) -> impl Iterator<Item = PathBuf> {
+        let mesh = self.mesh.as_ref().map(|(path, _)| path.clone());
+        let description = self.heights.as_deref().map(heights_description);
+        [mesh, self.cloud.clone(), self.octomap.clone(), self.heights.clone(), description]
+            .into_iter()
+            .flatten()
     }
 
     pub(super) fn config(&self) -> SurfaceConfig {
@@ -89,6 +107,13 @@ impl SurfaceRequest {
     pub(super) fn height_resolution(&self) -> f64 {
         self.config().voxel.max(MIN_CELL_M)
     }
+}
+
+/// The description beside the picture of the heights: `FILE.png.yaml`, which is no map's file.
+pub(super) fn heights_description(picture: &Path) -> PathBuf {
+    let mut name = picture.as_os_str().to_owned();
+    name.push(".yaml");
+    name.into()
 }
 
 fn mesh_format(path: &Path) -> Result<MeshFormat, AppError> {

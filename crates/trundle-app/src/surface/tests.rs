@@ -60,6 +60,8 @@ fn wrong_names_and_an_empty_surface_are_refused_in_words() {
     let twice = Some(Path::new("m.ply"));
     let error = SurfaceRequest::new(twice, twice, None, None, None).unwrap_err().to_string();
     assert!(error.contains("m.ply: --mesh and --cloud"), "{error}");
+    let idle = SurfaceRequest::new(None, None, None, None, Some(0.05)).unwrap_err().to_string();
+    assert!(idle.contains("--voxel 0.05 m has no effect without a surface"), "{idle}");
     let nothing = SurfaceRequest::new(None, None, None, None, None).unwrap();
     assert!(nothing.is_empty());
     let failure = Surface::new(&nothing).unwrap().files(&nothing, Path::new("in")).unwrap().failure.unwrap();

@@ -38,6 +38,17 @@ pub struct MeshOptions {
 }
 
 impl MeshOptions {
+    /// Refuses scale and floor for a scene that is no mesh.
+    fn refuse_idle(self, name: &str) -> Result<(), AppError> {
+        let scale = self.scale.map(|scale| format!("--scale {scale}"));
+        let Some(option) = scale.or(self.floor.map(|floor| format!("--floor {floor}"))) else {
+            return Ok(());
+        };
+        Err(AppError::Input(format!(
+            "{name}: {option} has no effect on this scene, expected a .glb or .gltf with it"
+        )))
+    }
+
     fn import(self) -> GltfOptions {
         let Self { up, scale, floor } = self;
         GltfOptions { up, scale: scale.unwrap_or(1.0), floor, ..GltfOptions::default() }
@@ -50,7 +61,11 @@ impl MeshOptions {
 /// When no scene has this name, or a file is invalid; the error names the file and the item.
 pub fn load_scene(name: &str, args: SceneOptions) -> Result<Scene, AppError> {
     let file = Path::new(name);
-    let mut scene = match file_kind(name)? {
+    let kind = file_kind(name)?;
+    if !matches!(kind, Some(FileKind::Glb | FileKind::Gltf)) {
+        args.mesh.refuse_idle(name)?;
+    }
+    let mut scene = match kind {
         Some(FileKind::Toml) => described(file, args.seed)?,
         Some(FileKind::Glb | FileKind::Gltf) => {
             let mesh =

@@ -76,7 +76,7 @@ impl InputFiles {
 }
 
 /// Whether `path` is `place` or inside it, by its name or after following links.
-fn is_within(path: &Path, place: &Path) -> bool {
+pub(super) fn is_within(path: &Path, place: &Path) -> bool {
     let (absolute, real) = (without_parent_parts(path), resolved(path));
     absolute.ancestors().chain(real.ancestors()).any(|part| is_same(part, place))
 }

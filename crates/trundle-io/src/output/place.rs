@@ -1,6 +1,6 @@
 //! The place of a folder of results: the files that may be replaced, and the folder of the last run.
 
-use super::inputs::InputFiles;
+use super::inputs::{InputFiles, is_within};
 use super::marker::{MARKER_FILE, RunMarker};
 use super::scratch::{Scratch, is_scratch};
 use super::tree::files_below;
@@ -45,6 +45,29 @@ impl OutputPlace {
     /// Folder of the last run: the folder's name with the suffix `.1`.
     pub fn last_run(&self) -> PathBuf {
         self.real.with_file_name(with_ending(&self.real, ".1"))
+    }
+
+    /// Refuses a file that is written by itself inside the results or the last run.
+    pub fn require_outside(&self, file: &Path) -> Result<(), IoError> {
+        if is_within(file, &self.real) {
+            return Err(self.holds_file(&self.real, file));
+        }
+        self.require_outside_last_run(file)
+    }
+
+    /// Refuses a file inside the last run.
+    pub fn require_outside_last_run(&self, file: &Path) -> Result<(), IoError> {
+        let last = self.last_run();
+        if is_within(file, &last) { Err(self.holds_file(&last, file)) } else { Ok(()) }
+    }
+
+    fn holds_file(&self, folder: &Path, file: &Path) -> IoError {
+        let whose = if folder == self.real { "of the results" } else { "in which the last run is kept" };
+        let problem = format!(
+            "this file would lie in {}, the folder {whose}, which is replaced as a whole; name a file outside of it",
+            folder.display()
+        );
+        IoError::malformed(file, problem)
     }
 
     /// Whether `folder` contains only a run of trundle.

@@ -1,9 +1,11 @@
 //! A single file of results, which appears complete or not at all and replaces no other file.
 
+use super::file_identity::is_same;
 use super::inputs::InputFiles;
 use super::place::free_name;
 use super::scratch::Scratch;
 use super::unfinished;
+use super::writable::require_writable;
 use super::{missing_above, parent, remove_empty};
 use crate::IoError;
 use std::fs::{self, File};
@@ -43,7 +45,7 @@ impl OutputFile {
     /// Refuses a file that cannot be replaced.
     ///
     /// # Errors
-    /// When `path` is no file name, a folder, or one of `inputs`.
+    /// When `path` is no file name, a folder, one of `inputs`, or no file can be made in its folder.
     pub fn check(inputs: &InputFiles, path: &Path) -> Result<(), IoError> {
         if path.is_dir() {
             return Err(IoError::malformed(path, "this is a folder, expected the name of a file"));
@@ -51,7 +53,25 @@ impl OutputFile {
         if path.file_name().is_none() {
             return Err(IoError::malformed(path, "names no file to write"));
         }
-        inputs.require_other_than(path)
+        inputs.require_other_than(path)?;
+        if path.exists() && !path.is_file() {
+            return Ok(());
+        }
+        require_writable(parent(path), path)
+    }
+
+    /// Refuses files that are not all different.
+    ///
+    /// # Errors
+    /// Names a file that is there twice.
+    pub fn require_different(files: &[PathBuf]) -> Result<(), IoError> {
+        let is_again = |(i, file): &(usize, &PathBuf)| files[..*i].iter().any(|other| is_same(other, file));
+        match files.iter().enumerate().find(is_again) {
+            Some((_, file)) => {
+                Err(IoError::malformed(file, "two results have this name, expected a file for each"))
+            }
+            None => Ok(()),
+        }
     }
 
     /// Writes the file; an existing one is renamed.
