@@ -125,7 +125,7 @@ impl Surface {
         Ok(())
     }
 
-    fn files(&self, request: &SurfaceRequest, input: &Path) -> Result<SurfaceFiles, AppError> {
+    fn files(&mut self, request: &SurfaceRequest, input: &Path) -> Result<SurfaceFiles, AppError> {
         let smallest = MIN_PART_AREA_M2 / self.map.config().voxel.powi(2);
         let mesh = surface_mesh(&self.map).without_specks(smallest.ceil() as usize);
         if mesh.vertices.is_empty() {
@@ -146,7 +146,8 @@ impl Surface {
         if let Some(path) = &request.cloud {
             files.push((path.clone(), ply_bytes(&SurfaceData { triangles: &[], ..data_of(&mesh) })));
         }
-        if let (Some(path), Some(voxels)) = (&request.octomap, &self.voxels) {
+        if let (Some(path), Some(voxels)) = (&request.octomap, &mut self.voxels) {
+            voxels.mark_surface(&mesh)?;
             let states = voxels.iter().map(|(voxel, state)| (voxel, state == VoxelState::Occupied));
             files.push((path.clone(), octomap_bytes(voxels.resolution(), states)));
         }
