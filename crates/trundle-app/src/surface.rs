@@ -32,7 +32,7 @@ pub struct SurfaceFiles {
     pub files: Vec<(PathBuf, Vec<u8>)>,
     /// Table for a front end: name and value.
     pub rows: Vec<Vec<String>>,
-    /// Why there is no surface; `None` if there is one.
+    /// Reason why there is no surface; `None` if there is one.
     pub failure: Option<String>,
 }
 
@@ -83,7 +83,7 @@ fn pose_at(poses: &[(Stamp, Pose3)], stamp: Stamp) -> Option<Pose3> {
     poses.binary_search_by_key(&stamp, |(at, _)| *at).ok().map(|index| poses[index].1)
 }
 
-/// A surface in the making.
+/// The surface of the images so far.
 struct Surface {
     map: SurfaceMap,
     voxels: Option<OccupiedVoxels>,
@@ -157,7 +157,7 @@ impl Surface {
         Ok(SurfaceFiles { files, rows: self.rows(&mesh), failure: None })
     }
 
-    /// Why there is no surface.
+    /// Reason why there is no surface.
     fn failure(&self, input: &Path) -> String {
         let (config, images) = (self.map.config(), self.images);
         let (near, far) = (config.min_depth, config.max_depth);

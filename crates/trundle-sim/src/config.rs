@@ -120,7 +120,7 @@ impl SimConfig {
         })
     }
 
-    /// How long the base's poses must be remembered, s: a turn of the laser, half an exposure.
+    /// Time for which poses of the base are stored, s: one turn of the laser, or half an exposure if that is longer.
     pub(crate) fn memory(&self) -> f64 {
         let turn = self.laser.as_ref().map_or(0.0, |laser| 1.0 / laser.rate_hz);
         turn.max(self.shutter_s / 2.0)

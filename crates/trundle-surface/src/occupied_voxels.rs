@@ -63,7 +63,7 @@ impl OccupiedVoxels {
         self.sums.iter().map(move |(key, sum)| (*key, state(*sum)))
     }
 
-    /// Adds the rays of an image that `camera` took at `map_from_camera`. `config` says which depths count.
+    /// Adds the rays of an image that `camera` took at `map_from_camera`. `config` has the range of valid depths.
     ///
     /// # Errors
     /// When the image has another size than the camera, or the pose is not finite.

@@ -9,7 +9,7 @@ pub struct Check {
     pub topic: &'static str,
     /// CheckLevel of the finding.
     pub level: CheckLevel,
-    /// The finding, in words.
+    /// The finding, as a sentence.
     pub finding: String,
     /// The remedy, in words or as a command; `None` if all is well.
     pub remedy: Option<String>,

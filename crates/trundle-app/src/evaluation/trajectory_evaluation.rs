@@ -83,7 +83,7 @@ impl TrajectoryEvaluation {
         self.aligned[pose].0 - start
     }
 
-    /// The errors, a row each.
+    /// The errors, one row each.
     #[must_use]
     pub fn rows(&self) -> Vec<Vec<String>> {
         let delta = self.relative_config.delta;
@@ -115,7 +115,7 @@ impl TrajectoryEvaluation {
     }
 }
 
-/// Degrees a radian.
+/// Degrees per radian.
 const DEGREES_A_RADIAN: f64 = 180.0 / std::f64::consts::PI;
 
 fn row(name: &str, s: &ErrorStatistics, factor: f64, unit: &str) -> Vec<String> {

@@ -5,7 +5,7 @@ use trundle_core::Stamp;
 
 /// A buffer that delays each event, which allows events with earlier stamps to overtake it.
 ///
-/// It yields events in the order of their stamps; events of one stamp in the order of their arrival.
+/// The buffer yields events in the order of their stamps, and events of one stamp in the order of their arrival.
 #[derive(Debug, Clone)]
 pub struct ReorderBuffer<T> {
     hold_s: f64,

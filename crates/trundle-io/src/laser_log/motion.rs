@@ -3,7 +3,7 @@
 use super::order::insert_in_order;
 use trundle_core::{Pose2, Stamp};
 
-/// Where the base was by odometry, over time.
+/// The poses of the base by odometry, over time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Motion {
     poses: Vec<(Stamp, Pose2)>,
@@ -52,10 +52,10 @@ impl Motion {
         })
     }
 
-    /// The pose at a time, between the poses about it.
+    /// The pose at a time, interpolated between the poses before and after it.
     ///
     /// # Errors
-    /// When there is none near.
+    /// When no pose is near in time.
     pub(crate) fn at(&self, stamp: Stamp) -> Result<Pose2, String> {
         let after = self.poses.partition_point(|(at, _)| *at < stamp);
         let (before, next) = (after.checked_sub(1).and_then(|i| self.poses.get(i)), self.poses.get(after));

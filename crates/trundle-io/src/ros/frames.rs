@@ -24,7 +24,7 @@ pub(in crate::ros) enum NoTransform {
 const MAX_FRAME_CHAIN: usize = 100;
 
 impl Frames {
-    /// Adds a transform; a broken one in place of a good one is left out.
+    /// Adds a transform. A broken transform does not replace a good one.
     pub(in crate::ros) fn insert(&mut self, transform: Transform) {
         let Transform { parent, child, parent_from_child, .. } = transform;
         let is_good = |known: &(String, MessagePose)| known.1.is_ok();

@@ -55,7 +55,7 @@ pub fn read_ros_bag(path: &Path, options: &LaserLogOptions) -> Result<LaserLog, 
     finish(log, contents, &topic, &scans, motion).map_err(wrong)
 }
 
-/// Where the laser of a message sits on the base.
+/// The pose of the laser of a message, `base_from_laser`.
 fn mount(
     contents: &Contents,
     topic: &str,
@@ -74,7 +74,7 @@ fn mount(
     })
 }
 
-/// How a laser at this pose is turned.
+/// The rotation of a laser at this pose.
 fn turned(base_from_laser: &Pose3) -> LaserMount {
     let ahead = base_from_laser.rotate(Vector3::x());
     let up = base_from_laser.rotate(Vector3::z());

@@ -83,7 +83,7 @@ impl ActiveGoal {
     /// Starts a mission for a goal. The previous goal ends as aborted, as in Nav2's servers.
     ///
     /// # Errors
-    /// Why the goal is refused.
+    /// Reason why the goal is refused.
     pub fn begin(
         &self,
         tasks: Vec<Task>,

@@ -36,7 +36,7 @@ pub enum FaultKind {
     EncodersStuck,
     /// The gyro repeats its last rate.
     GyroStuck,
-    /// At `from_s` the encoders' counters jump, for good; `to_s` does not matter.
+    /// The encoders' counters jump once, at `from_s`; `to_s` has no effect.
     OdometryJumps {
         /// Ticks of the left wheel.
         left_ticks: i32,

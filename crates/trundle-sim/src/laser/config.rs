@@ -32,7 +32,7 @@ pub struct LaserConfig {
     pub noise: f64,
     /// Standard deviation of a range, part of it, 0 to 0.5; adds to `noise` as a square. Default 0.
     pub noise_part: f64,
-    /// Ranges are whole multiples of this, m, 0 to 1; 0 is none. Default 0.
+    /// Step of the ranges, m, 0 to 1; with 0 ranges have no step. Default 0.
     pub quantum: f64,
     /// Share of beams that fail, 0 to 1. Default 0.
     pub drop_out: f64,
