@@ -15,9 +15,9 @@ pub enum NumberRange {
     Any,
     /// 0 or more.
     FromZero,
-    /// Above 0.
+    /// A number above 0.
     AboveZero,
-    /// Above 0, to this.
+    /// A number above 0 and at most this.
     UpTo(f64),
 }
 

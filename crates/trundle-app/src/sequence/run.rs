@@ -63,7 +63,7 @@ struct OdometryLog {
 struct LeftOut {
     /// All that were asked for.
     asked: usize,
-    /// Without a depth image of their time.
+    /// Number of images without a depth image of their time.
     unpaired: usize,
 }
 

@@ -13,7 +13,7 @@ const LEVEL_MAP: u32 = 0;
 /// Poses of the frames of a sequence, `level_from_camera`.
 #[derive(Debug, Clone, Default)]
 pub struct SequenceTrajectory {
-    /// By rising stamps.
+    /// Poses by rising stamps.
     pub poses: Vec<(Stamp, Pose3)>,
     /// Number of frames that were tracked.
     pub frames: usize,

@@ -10,7 +10,7 @@ use trundle_core::Stamp;
 pub struct ReorderBuffer<T> {
     hold_s: f64,
     max_events: usize,
-    /// By stamp and number of arrival.
+    /// Events by stamp and number of arrival.
     events: BTreeMap<(Stamp, u64), T>,
     arrivals: u64,
     last: Option<Stamp>,

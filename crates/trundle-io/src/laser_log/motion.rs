@@ -9,7 +9,7 @@ pub(crate) struct Motion {
     poses: Vec<(Stamp, Pose2)>,
 }
 
-/// Between two poses that are farther apart in time nothing is known, s.
+/// Largest time between two poses that are interpolated, s. In a longer gap the pose is unknown.
 const LONGEST_GAP: f64 = 1.0;
 /// Time before and after a pose for which it holds, s.
 const POSE_HOLD_S: f64 = 0.1;

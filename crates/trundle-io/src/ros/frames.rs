@@ -7,7 +7,7 @@ use trundle_core::Pose3;
 /// The tree of frames that do not move against each other: the newest transform of each.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(in crate::ros) struct Frames {
-    /// By child: its parent, and `parent_from_child`.
+    /// The parent of each child frame, and `parent_from_child`.
     parents: BTreeMap<String, (String, MessagePose)>,
 }
 

@@ -25,7 +25,7 @@ pub(super) struct Ros1Bag {
     file: BufReader<File>,
     /// Number of unread bytes of the file.
     left: u64,
-    /// By id: topic and type.
+    /// Topic and type of each connection, by id.
     connections: BTreeMap<u32, (String, String)>,
     chunk: Vec<u8>,
     /// Start of the next record in the chunk.

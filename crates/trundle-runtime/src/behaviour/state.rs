@@ -14,7 +14,7 @@ pub(crate) enum State {
     /// No goal.
     #[default]
     Idle,
-    /// At rest until the opening is over.
+    /// The robot is at rest until the opening is over.
     Initialize,
     /// One turn on the spot that observes the surroundings.
     Spin(Spin),
@@ -32,7 +32,7 @@ pub(crate) enum State {
     Relative(Relative),
     /// A motion at a charging station.
     Station(Station),
-    /// At rest until the way is free.
+    /// The robot is at rest until the path is free.
     Wait(Wait),
     /// Observing more of the surroundings in search of a path.
     Recover(Recover),

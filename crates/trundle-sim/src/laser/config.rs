@@ -14,7 +14,7 @@ pub struct LaserConfig {
     pub x: f64,
     /// Left of the base's origin, m, -5 to 5. Default 0.
     pub y: f64,
-    /// Above the floor, m, 0.01 to 5. Default 0.2: on top of a Kobuki.
+    /// Height above the floor, m, 0.01 to 5. Default 0.2: on top of a Kobuki.
     pub z: f64,
     /// Direction of the middle of the field of view, from the base's x, rad, -2 pi to 2 pi. Default 0.
     pub yaw: f64,

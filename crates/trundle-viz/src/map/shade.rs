@@ -18,7 +18,7 @@ pub(crate) struct Shade {
 /// Paint of a value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Paint {
-    /// From light, 0, to dark, this value.
+    /// A scale from light (0) to dark (this value).
     Scale(f32),
     /// This colour, with opacity equal to the value.
     Tint(Color),
