@@ -1,4 +1,4 @@
-//! Scans in motion: each beam put to where the base was when it was measured.
+//! Scans in motion: each beam is moved to the pose of the base at the time of its measurement.
 
 use crate::{BeamTimes, Pose2, Scan, Stamp};
 

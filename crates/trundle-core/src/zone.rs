@@ -42,8 +42,8 @@ impl Zone {
     /// The zone, its numbers checked.
     ///
     /// # Errors
-    /// When the name is too long or contains control characters, a number is not finite or out of range, the number of corners is too small
-    /// or too large, two sides cross, or the zone has no area.
+    /// When the name is too long or contains control characters, or a number is not finite or out of range. When the number of corners is
+    /// too small or too large, two sides cross, or the zone has no area.
     pub fn validated(self) -> Result<Self, Invalid> {
         let label = self.label();
         require_name(&label, &self.name)?;

@@ -124,7 +124,7 @@ impl<'a> DepthView<'a> {
         self.map_from_camera.transform(Vector3::zeros())
     }
 
-    /// Whether the image may show a ball (camera frame, m), or what lies up to `behind` m behind a surface.
+    /// Whether the image may show a ball (camera frame, m), or points up to `behind` m behind a surface.
     pub(crate) fn may_show(&self, centre: Vector3<f32>, radius: f32, behind: f32) -> bool {
         let nearest = centre.z - radius;
         if centre.z + radius < self.depths.0 || nearest > self.depths.1 + behind {

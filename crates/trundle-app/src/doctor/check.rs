@@ -5,7 +5,7 @@ use serde::Serialize;
 /// Result of one check.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Check {
-    /// The checked thing, in two words at most.
+    /// The subject of the check, in two words at most.
     pub topic: &'static str,
     /// CheckLevel of the finding.
     pub level: CheckLevel,

@@ -89,7 +89,7 @@ fn pause_note(counts: &ScanCounts) -> String {
     )
 }
 
-/// Reason why no scan was put into the map or found in it.
+/// Reason why no scan was inserted into the map or localized in it.
 fn nothing_processed(log: &LaserLog, counts: &ScanCounts, is_stopped: bool) -> String {
     let all = log.scans.len();
     if counts.lost > 0 {

@@ -57,12 +57,12 @@ pub struct FirstCamera {
 }
 
 impl FirstCamera {
-    /// Whether part of the pose is asked for: then all of it is.
+    /// Whether a part of the pose is requested; the whole pose is then set.
     fn is_asked(&self) -> bool {
         self.height.or(self.tilt_deg).or(self.roll_deg).is_some()
     }
 
-    /// Height (m), tilt and roll (deg) that are asked for.
+    /// Requested height (m), tilt and roll (deg).
     fn asked(&self) -> (f64, f64, f64) {
         let height = self.height.unwrap_or(DEFAULT_CAMERA_HEIGHT_M);
         (height, self.tilt_deg.unwrap_or_default(), self.roll_deg.unwrap_or_default())

@@ -46,7 +46,7 @@ pub struct SequenceRun {
     logged_issues: usize,
     /// Reason why frames could not be read.
     frame_problems: Warnings,
-    /// The images asked for that no pass of tracking saw.
+    /// The requested images that no pass of tracking used.
     left_out: LeftOut,
 }
 
@@ -61,7 +61,7 @@ struct OdometryLog {
 /// Images of an input, and why some are left out before tracking.
 #[derive(Debug, Clone, Copy)]
 struct LeftOut {
-    /// All that were asked for.
+    /// Number of requested images.
     asked: usize,
     /// Number of images without a depth image of their time.
     unpaired: usize,
@@ -175,7 +175,7 @@ impl SequenceRun {
         })
     }
 
-    /// The trajectory that was asked for.
+    /// The requested trajectory.
     fn final_trajectory(
         &self,
         request: &SequenceRequest,

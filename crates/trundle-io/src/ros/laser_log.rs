@@ -81,7 +81,7 @@ fn turned(base_from_laser: &Pose3) -> LaserMount {
     LaserMount { turn: ahead.y.atan2(ahead.x), upside_down: up.z < 0.0 }
 }
 
-/// Adds what is known beside the scans; refuses a log without any.
+/// Adds the data other than scans. A log without scans is refused.
 fn finish(
     mut log: LaserLog,
     mut contents: Contents,

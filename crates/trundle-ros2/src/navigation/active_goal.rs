@@ -1,4 +1,4 @@
-//! The one goal that the robot works on, of whichever action.
+//! The one active goal of the robot, of any action.
 
 use super::goal_outcome::NavigationOutcome;
 use crate::clock::RosClock;

@@ -6,7 +6,7 @@ use crate::color::Color;
 use crate::colormap::color_at;
 use trundle_core::{GridGeometry, Vector2};
 
-/// A value a cell, laid over the map as a translucent tint.
+/// One value per cell, drawn over the map as a translucent tint.
 #[derive(Debug, Clone)]
 pub(crate) struct Shade {
     pub geometry: GridGeometry,
