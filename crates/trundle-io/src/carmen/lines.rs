@@ -26,7 +26,7 @@ pub(super) struct LogLines {
 }
 
 impl LogLines {
-    /// Reads all lines. Where a compressed file breaks off after a scan, the rest is a broken line.
+    /// Reads all lines. If a compressed file is truncated after a scan, the rest counts as a broken line.
     pub(super) fn read(mut text: TextLines) -> Result<Self, IoError> {
         let mut lines = Self::default();
         let mut last = 0;

@@ -32,8 +32,8 @@ pub fn read_laser_log(path: &Path, options: &LaserLogOptions) -> Result<LaserLog
 /// [`LaserLog::skipped`], by its number in the bag.
 ///
 /// # Errors
-/// When the bag cannot be read or breaks off before its first scan, there is no scan or no odometry, no transform gives the mount of
-/// the laser, or no scan can be used: then the first problem is named.
+/// When the bag cannot be read or is truncated before its first scan, there is no scan or no odometry, no transform gives the mount of the
+/// laser, or no scan can be used: then the first problem is named.
 pub fn read_ros_bag(path: &Path, options: &LaserLogOptions) -> Result<LaserLog, IoError> {
     options.validate().map_err(IoError::field(path))?;
     let mut contents = Contents::read(path)?;

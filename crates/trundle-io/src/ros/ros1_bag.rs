@@ -30,7 +30,7 @@ pub(super) struct Ros1Bag {
     chunk: Vec<u8>,
     /// Start of the next record in the chunk.
     at: usize,
-    /// Note behind the last whole record, if the file breaks off in the chunk.
+    /// Note behind the last whole record, if the file is truncated in the chunk.
     cut: Option<IoError>,
 }
 

@@ -65,7 +65,7 @@ impl Linear {
         values
     }
 
-    /// The most in a row.
+    /// The largest value in a row.
     #[inline(always)]
     pub(super) fn max_in_row(&self, row: usize) -> f32 {
         let (left, right) = (self.left(row), self.left(row) + (TILE_COLUMNS - 1) as f32 * self.right);
