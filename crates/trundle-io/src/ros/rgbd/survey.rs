@@ -19,7 +19,7 @@ pub(super) struct Survey {
     /// Odometry and transforms.
     pub(super) contents: Contents,
     images: BTreeMap<String, ImageStamps>,
-    /// The first image of each topic.
+    /// The first camera_info message of each topic.
     pub(super) infos: BTreeMap<String, CameraInfo>,
     /// True poses: the frame whose pose it is, and the pose.
     pub(super) truth: Vec<(Stamp, String, Pose3)>,
