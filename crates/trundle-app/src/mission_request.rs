@@ -14,7 +14,7 @@ pub struct MissionRequest {
     pub explore: bool,
     /// Whether the robot drives onto the charging station at the end.
     pub dock: bool,
-    /// A mission file, in place of the others.
+    /// A mission file, in place of the other fields.
     pub file: Option<PathBuf>,
 }
 

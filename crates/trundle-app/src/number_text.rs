@@ -15,9 +15,9 @@ pub enum NumberRange {
     Any,
     /// 0 or more.
     FromZero,
-    /// Above 0.
+    /// A number above 0.
     AboveZero,
-    /// Above 0, to this.
+    /// A number above 0 and at most this.
     UpTo(f64),
 }
 
@@ -52,7 +52,7 @@ impl NumberText {
     /// The number of the text given to `option`.
     ///
     /// # Errors
-    /// When the text is no finite number, or the number is outside the range: option, value, unit and what is expected.
+    /// When the text is no finite number, or the number is outside the range: the error names option, value, unit and accepted range.
     pub fn read(self, option: &str, text: &str) -> Result<f64, String> {
         let wanted = self.wanted();
         match text.trim().parse::<f64>() {

@@ -127,7 +127,7 @@ fn ending_signals() -> Vec<i32> {
     if ignores_closed_terminal(&status) { vec![SIGINT, SIGTERM] } else { vec![SIGINT, SIGTERM, SIGHUP] }
 }
 
-/// Whether the status of a process, as Linux has it in /proc, shows that SIGHUP is ignored.
+/// Whether the status of a process (the form of Linux's /proc) shows that SIGHUP is ignored.
 #[cfg(unix)]
 fn ignores_closed_terminal(status: &str) -> bool {
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
@@ -136,7 +136,7 @@ fn ignores_closed_terminal(status: &str) -> bool {
 }
 
 /// Ends the program at Ctrl-C or SIGTERM if `prepare` returns true: for commands that write nothing before their end. If `prepare` returns
-/// false, the program is ending by itself and continues.
+/// false, the program is ending already and continues to its end.
 ///
 /// # Errors
 /// When the system refuses.

@@ -34,7 +34,7 @@ pub struct SurfaceFiles {
     pub files: Vec<(PathBuf, Vec<u8>)>,
     /// Table for a front end: name and value.
     pub rows: Vec<Vec<String>>,
-    /// Why there is no surface; `None` if there is one.
+    /// Reason why there is no surface; `None` if there is one.
     pub failure: Option<String>,
     /// Whether the user ended the work before the last image.
     pub is_interrupted: bool,
@@ -73,7 +73,7 @@ fn pose_at(poses: &[(Stamp, Pose3)], stamp: Stamp) -> Option<Pose3> {
     poses.binary_search_by_key(&stamp, |(at, _)| *at).ok().map(|index| poses[index].1)
 }
 
-/// A surface in the making.
+/// The surface of the images so far.
 struct Surface {
     map: SurfaceMap,
     voxels: Option<OccupiedVoxels>,
@@ -148,7 +148,7 @@ impl Surface {
         Ok(())
     }
 
-    fn files(&self, request: &SurfaceRequest, input: &Path) -> Result<SurfaceFiles, AppError> {
+    fn files(&mut self, request: &SurfaceRequest, input: &Path) -> Result<SurfaceFiles, AppError> {
         let smallest = MIN_PART_AREA_M2 / self.map.config().voxel.powi(2);
         let mesh = surface_mesh(&self.map).without_specks(smallest.ceil() as usize);
         if mesh.vertices.is_empty() {
@@ -165,7 +165,8 @@ impl Surface {
         if let Some(path) = &request.cloud {
             files.push((path.clone(), ply_bytes(&SurfaceData { triangles: &[], ..data_of(&mesh) })));
         }
-        if let (Some(path), Some(voxels)) = (&request.octomap, &self.voxels) {
+        if let (Some(path), Some(voxels)) = (&request.octomap, &mut self.voxels) {
+            voxels.mark_surface(&mesh)?;
             let states = voxels.iter().map(|(voxel, state)| (voxel, state == VoxelState::Occupied));
             files.push((path.clone(), octomap_bytes(voxels.resolution(), states)));
         }
@@ -175,7 +176,7 @@ impl Surface {
         Ok(SurfaceFiles { files, rows: self.rows(&mesh), ..SurfaceFiles::default() })
     }
 
-    /// Why there is no surface.
+    /// Reason why there is no surface.
     fn failure(&self, input: &Path) -> String {
         let (config, images) = (self.map.config(), self.images);
         let (near, far) = (config.min_depth, config.max_depth);

@@ -3,7 +3,7 @@
 use crate::segment::Segment;
 use trundle_core::{Footprint, Pose2, Vector2};
 
-/// Smallest radius of the corners, m: the closed forms need corners with a radius. Smaller margins are none. Source: ours.
+/// Smallest radius of the corners, m: the closed forms need corners with a radius. A smaller margin counts as no margin. Source: ours.
 pub const MIN_CORNER_RADIUS_M: f64 = 1e-6;
 
 /// Largest overlap that counts as contact and is free, m: rounding of poses and corners. Planner and docking share this value, so both pass

@@ -102,16 +102,16 @@ pub struct DockInfrared {
 }
 
 impl DockInfrared {
-    /// Whether any receiver sees any sector.
+    /// Whether any receiver detects any sector.
     #[must_use]
     pub fn is_any(&self) -> bool {
         *self != Self::default()
     }
 }
 
-/// Beams of a charging station that one receiver sees. Left and right are those of the station, seen in the direction of its front: the
-/// left sector is on the right-hand side of a robot that faces the station. Source: the vendor's dock drive. It turns a robot in the right
-/// sector clockwise until its left receiver detects the station, and then drives ahead to the middle.
+/// Beams of a charging station that one receiver detects. Left and right are those of the station, as seen in the direction of its front:
+/// the left sector is on the right-hand side of a robot that faces the station. Source: the vendor's dock drive. It turns a robot in the
+/// right sector clockwise until its left receiver detects the station, and then drives ahead to the middle.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DockBeams {
     /// The left sector, near the station.

@@ -1,9 +1,9 @@
-//! Scans in motion: each beam put to where the base was when it was measured.
+//! Scans in motion: each beam is moved to the pose of the base at the time of its measurement.
 
 use crate::{BeamTimes, Pose2, Scan, Stamp};
 
-/// Poses of the base over a scan, between which it moves evenly: eight stretches of a turn at 5 Hz are 25 ms each. Source: ours, the period
-/// of wheel readings.
+/// Number of stretches of a scan within which the base moves at constant velocity: for a laser of 5 Hz a stretch is 25 ms. Source: ours,
+/// the period of wheel readings.
 const STRETCH_COUNT: usize = 8;
 
 /// The scan as if all its beams were measured at its stamp, by the poses of the base over its beams' times.

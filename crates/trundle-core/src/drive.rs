@@ -22,7 +22,7 @@ impl Default for DifferentialDrive {
 }
 
 impl DifferentialDrive {
-    /// The Kobuki of \[Li18\]: wheel radius 0.035 m, wheelbase 0.230 m, 2578.33 ticks a turn.
+    /// The Kobuki of \[Li18\]: wheel radius 0.035 m, wheelbase 0.230 m, 2578.33 ticks per turn.
     pub const KOBUKI: Self = Self { wheel_radius: 0.035, wheelbase: 0.230, ticks_per_turn: 2578.33 };
 
     /// Checks the values and returns them.

@@ -18,7 +18,7 @@ impl FromStr for Footprint {
 /// The corners of a footprint as text, in either form, base frame, m.
 ///
 /// # Errors
-/// Names the corner that is none.
+/// Names the text that is no corner.
 pub fn footprint_corners(text: &str) -> Result<Vec<Vector2>, String> {
     let text = text.trim();
     let Some(list) = text.strip_prefix('[') else {

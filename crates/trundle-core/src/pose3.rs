@@ -29,7 +29,7 @@ impl Pose3 {
         Self { rotation: UnitQuaternion::identity(), translation: Vector3::zeros() }
     }
 
-    /// From a rotation and a translation in metres.
+    /// A pose from a rotation and a translation in metres.
     pub fn new(rotation: UnitQuaternion<f64>, translation: Vector3) -> Self {
         Self { rotation, translation }
     }

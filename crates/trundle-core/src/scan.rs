@@ -22,21 +22,21 @@ pub enum Beam {
 /// A stretch of a beam that was seen to be free.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeSpan {
-    /// Which beam.
+    /// Index of the beam.
     pub beam: u32,
-    /// Where it begins, m from the sensor.
+    /// Range at which the stretch begins, m from the sensor.
     pub from: f64,
-    /// Where it ends, m from the sensor.
+    /// Range at which the stretch ends, m from the sensor.
     pub to: f64,
 }
 
 /// Kind of the obstacle at a hit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ObstacleKind {
-    /// It stands on the floor, or nothing is known of that.
+    /// The obstacle stands on the floor, or its lower side is unknown.
     #[default]
     Standing,
-    /// It hangs in the robot's way, and the floor goes on under it: a table top.
+    /// The obstacle hangs in the robot's way above free floor, as a table top.
     Overhang,
     /// The floor ends: a hole, stairs that lead down.
     Drop,
@@ -189,7 +189,7 @@ impl Scan {
         self.stamp
     }
 
-    /// Where the beams start, base frame, m.
+    /// The origin of the beams, base frame, m.
     pub fn origin(&self) -> Vector2 {
         self.origin
     }

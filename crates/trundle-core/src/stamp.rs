@@ -14,7 +14,7 @@ pub struct Stamp {
 }
 
 impl Stamp {
-    /// From nanoseconds since the epoch.
+    /// A stamp from nanoseconds since the epoch.
     pub const fn from_nanos(nanos: i64) -> Self {
         Self { nanos }
     }

@@ -15,7 +15,7 @@ impl Twist2 {
     /// Standing still.
     pub const ZERO: Self = Self { v: 0.0, omega: 0.0 };
 
-    /// From m/s and rad/s.
+    /// A twist from m/s and rad/s.
     pub const fn new(v: f64, omega: f64) -> Self {
         Self { v, omega }
     }

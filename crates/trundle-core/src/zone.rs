@@ -9,7 +9,7 @@ pub const MAX_ZONE_CORNERS: usize = 200;
 pub const SPEED_LIMIT_RANGE_M_S: (f64, f64) = (0.05, 10.0);
 /// Longest name of a zone or place \[characters\]. Source: ours; a line of a page.
 pub(crate) const MAX_NAME_CHARS: usize = 60;
-/// Smallest area of a zone \[m^2\]: a square of 1 cm. Source: ours; a smaller one is a slip of the hand.
+/// Smallest area of a zone \[m^2\]: a square of 1 cm. Source: ours; a smaller zone is drawn by mistake.
 const MIN_ZONE_AREA_M2: f64 = 1e-4;
 
 /// An area of the floor with a rule for the robot, map frame.
@@ -42,8 +42,8 @@ impl Zone {
     /// The zone, its numbers checked.
     ///
     /// # Errors
-    /// When the name is too long or contains control characters, a number is not finite or out of range, the number of corners is too small
-    /// or too large, two sides cross, or the zone has no area.
+    /// When the name is too long or contains control characters, or a number is not finite or out of range. When the number of corners is
+    /// too small or too large, two sides cross, or the zone has no area.
     pub fn validated(self) -> Result<Self, Invalid> {
         let label = self.label();
         require_name(&label, &self.name)?;

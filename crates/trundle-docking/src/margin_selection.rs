@@ -75,7 +75,7 @@ impl<'a> MarginSelection<'a> {
         }
     }
 
-    /// By many motions, with the full margin, the smallest, or one between.
+    /// The manoeuvre of many motions, with the full margin, the smallest margin, or one between.
     async fn with_many_motions(&self) -> Result<FoundLegs<'a>, NoLegs> {
         let whole = self.many(self.most, 1).await;
         if let Ok(found) = &whole

@@ -10,7 +10,7 @@ pub struct GoalError {
     pub dx: f64,
     /// Reached minus goal along the map's y, m.
     pub dy: f64,
-    /// Between the two positions, m.
+    /// Distance between the two positions, m.
     pub distance: f64,
     /// Reached minus goal heading by the shorter turn, rad, in (-pi, pi].
     pub dtheta: f64,

@@ -4,7 +4,7 @@ use crate::{ErrorStatistics, EvalError, Side, occupied_cells::OccupiedCells};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Cell, CellIndex, Invalid, OccupancyGrid, Pose2, Vector2, require_in};
 
-/// How a map is compared with the true one.
+/// Settings of the comparison of a map with the true map.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MapAgreementConfig {

@@ -27,7 +27,7 @@ const MAX_LATERAL_ERROR_M: f64 = 0.01;
 
 /// The docks, one for each start.
 pub struct DocksOutcome {
-    /// In the order of the starts.
+    /// Trials in the order of the starts.
     pub trials: Vec<(Pose2, DockTrial)>,
 }
 

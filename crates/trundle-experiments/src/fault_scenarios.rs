@@ -14,9 +14,9 @@ use trundle_viz::{Figure, Report, Table, Verdict};
 /// Required end of a scenario.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum End {
-    /// At the goal, within 5 cm and 3 deg.
+    /// The robot is at the goal, within 5 cm and 3 deg.
     Arrived,
-    /// At rest, with a reason of one of these kinds.
+    /// The robot is at rest, with a reason of one of these kinds.
     Stopped(&'static [ReasonKind]),
     /// The same within [`CLOSED_DOOR_TIME_S`].
     StoppedSoon(&'static [ReasonKind]),

@@ -1,7 +1,7 @@
 //! Grids of the floor: occupancy as log-odds, ray updates, and the distance to the nearest obstacle.
 //!
 //! - [`TileGrid`]: unbounded grid of tiles that clones share; [`LogOddsGrid`] and [`tiles::TileMap`] are its two kinds.
-//! - [`LogOddsGrid`] and [`ScanCells`]: log-odds of each cell, and the cells that one scan hits or sees free.
+//! - [`LogOddsGrid`] and [`ScanCells`]: log-odds of each cell, and the cells that one scan hits or observes free.
 //! - [`PublishedGrid`]: three-valued occupancy grid, updated in place, with a revision number for each tile.
 //! - [`DistanceField`]: exact distance to the nearest obstacle, updated after changes of the grid.
 //! - [`LikelihoodField`] over [`SurfacePoints`]: likelihood of a hit near the mean hits of occupied cells.

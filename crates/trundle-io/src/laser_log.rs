@@ -27,12 +27,12 @@ pub struct LaserLogScan {
     pub scan: Scan,
 }
 
-/// How a laser is turned on the base.
+/// The rotation of a laser on the base.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LaserMount {
-    /// To the left, rad.
+    /// Rotation to the left, rad.
     pub turn: f64,
-    /// Whether its beams run from left to right.
+    /// Whether the laser is upside down: its beams then run from left to right.
     pub upside_down: bool,
 }
 
@@ -54,17 +54,17 @@ pub struct LaserLog {
     pub odometry: Vec<(Stamp, Pose2)>,
     /// Lines or messages that were skipped.
     pub skipped: Vec<LaserLogSkip>,
-    /// Ranges that were negative, zero, no number, in a CARMEN log infinite, in a bag below `range_min`.
+    /// Number of ranges that were negative, zero or no number; in a CARMEN log also infinite ones, in a bag also those below `range_min`.
     pub bad_ranges: usize,
     /// The first line, or message, with such a range.
     pub first_bad_range: Option<usize>,
     /// Range from which on readings counted as no returns, m.
     pub max_range: Option<f64>,
-    /// Why the depth images that the scans were made of have no usable depth; `None` if they have, or the log is a laser's.
+    /// The reason why the depth images of the scans have no usable depth; `None` if they have, or if the scans are those of a laser.
     pub depth_problem: Option<String>,
     /// The topics of a bag, or the lines of a CARMEN log, that made the log, and the unused ones.
     pub sources: LaserLogSources,
-    /// How the laser was taken to be mounted.
+    /// The assumed mount of the laser.
     pub mount: LaserMount,
 }
 

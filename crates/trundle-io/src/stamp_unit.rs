@@ -5,11 +5,11 @@ use crate::stamp_text::parse_scaled_stamp;
 use std::fmt;
 use trundle_core::{Invalid, Stamp};
 
-/// Stamp from which on seconds are none \[s\]: the year 5138. Larger numbers are read as milliseconds. Source: ours.
+/// Smallest number that is read as milliseconds. As seconds it would be the year 5138. Source: ours.
 const MIN_MILLISECONDS: f64 = 1e11;
-/// Stamp from which on milliseconds are none \[ms\]: the year 5138. Larger numbers are read as microseconds. Source: ours.
+/// Smallest number that is read as microseconds. As milliseconds it would be the year 5138. Source: ours.
 const MIN_MICROSECONDS: f64 = 1e14;
-/// Stamp from which on microseconds are none \[us\]: the year 5138. Larger numbers are read as nanoseconds. Source: ours.
+/// Smallest number that is read as nanoseconds. As microseconds it would be the year 5138. Source: ours.
 const MIN_NANOSECONDS: f64 = 1e17;
 /// Median step between whole-numbered stamps from which their unit is milliseconds, not seconds \[s\]. Images and poses 5 s apart are not a
 /// sequence. Source: ours.

@@ -6,7 +6,7 @@ use std::fmt;
 const MAX_EXAMPLES: usize = 3;
 /// Maximum number of stored kinds; further kinds are counted together. Source: ours.
 const MAX_KINDS: usize = 16;
-/// The kind of what comes after [`MAX_KINDS`].
+/// The kind of all problems after the first [`MAX_KINDS`] kinds.
 const OTHERS: &str = "other problems";
 
 /// Warnings by kind. Problems that differ only in their numbers are of one kind.

@@ -9,7 +9,7 @@ use trundle_app::AppError;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum LiveError {
-    /// The address is in use, or is none of this machine.
+    /// The address is in use, or it is not an address of this machine.
     #[error(
         "--live {address}: {problem}; give another address, as --live 127.0.0.1:0 (the system takes a free port)"
     )]

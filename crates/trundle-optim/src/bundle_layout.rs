@@ -18,7 +18,7 @@ pub(crate) struct Layout {
 pub(crate) struct Measurement {
     /// Index of the pose.
     pub pose: u32,
-    /// From the principal point, px.
+    /// Offset from the principal point, px.
     pub pixel: [f64; 2],
     /// 1 / sigma, 1/px.
     pub per_px: f64,

@@ -33,7 +33,7 @@ struct PointBlock {
 /// The normal equations of a bundle problem J'WJ and J'Wr, in blocks, and the reduced system of the poses.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Normal {
-    /// By row.
+    /// Blocks of poses, by row.
     poses: Vec<(Block, Column)>,
     points: Vec<PointBlock>,
     couplings: Vec<Coupling>,

@@ -16,7 +16,7 @@ const MAX_MOVING_SPREAD_RATIO: usize = 3;
 const SPREAD_CELLS: f64 = 12.0;
 
 impl PoseProblem<'_> {
-    /// Refines `world_from_camera`. With nothing to go by the pose comes back as it was.
+    /// Refines `world_from_camera`. Without measurements the pose is returned unchanged.
     ///
     /// With `bounded`, a point determines at most a quarter of a part of the pose (three times the mean where points are few). The Huber
     /// loss bounds points that disagree with others, but not a point that no other contradicts: a wrong point 0.1 m before the camera

@@ -29,7 +29,7 @@ const DISC_REDUCTION_M: f64 = 2e-4;
 /// Reduction of a polygon for the check, m: overlap that a sweep may have missed. Source: ours.
 const POLYGON_REDUCTION_M: f64 = 5e-4;
 
-/// The shape for the check, reduced by what planning may have missed.
+/// The shape for the check, reduced by the largest overlap that planning may miss.
 pub(crate) fn reduced_shape(shape: &RobotShape) -> RobotShape {
     let reduction = if shape.is_disc() { DISC_REDUCTION_M } else { POLYGON_REDUCTION_M };
     shape.shrunk(reduction).unwrap_or_else(|| shape.clone())

@@ -19,7 +19,7 @@ pub struct SimConfig {
     pub has_camera: bool,
     /// The camera, rectified. Default Kinect V2.
     pub camera: PinholeCamera,
-    /// Where the camera sits, in its optical frame (x right, y down, z forward). Default [`camera_mount`]`(0.05, 0.45, 8 deg)`.
+    /// Pose of the camera's optical frame (x right, y down, z forward) on the base. Default [`camera_mount`]`(0.05, 0.45, 8 deg)`.
     pub base_from_camera: Pose3,
     /// Images per second, Hz, 0.1 to 120. Default 15: half the Kinect V2's 30.
     pub camera_rate_hz: f64,
@@ -120,7 +120,7 @@ impl SimConfig {
         })
     }
 
-    /// How long the base's poses must be remembered, s: a turn of the laser, half an exposure.
+    /// Time for which poses of the base are stored, s: one turn of the laser, or half an exposure if that is longer.
     pub(crate) fn memory(&self) -> f64 {
         let turn = self.laser.as_ref().map_or(0.0, |laser| 1.0 / laser.rate_hz);
         turn.max(self.shutter_s / 2.0)

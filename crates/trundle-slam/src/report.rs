@@ -37,9 +37,9 @@ pub struct MapMerge {
 /// Report of one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrackReport {
-    /// Of the image.
+    /// Stamp of the image.
     pub stamp: Stamp,
-    /// How the frame was located.
+    /// Result of the tracking of the frame.
     pub tracking: Tracking,
     /// The map of `visual_from_camera`.
     pub map: MapId,
@@ -73,7 +73,7 @@ pub struct TrackReport {
 /// A past frame by the present maps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FramePose {
-    /// Of the image.
+    /// Stamp of the image.
     pub stamp: Stamp,
     /// The map of the pose.
     pub map: MapId,

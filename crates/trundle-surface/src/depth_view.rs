@@ -9,6 +9,8 @@ const TILE_PX: usize = 16;
 /// Depth of a voxel at which an observation has weight 1, m. Nearer ones weigh more by the square of the depth, as the noise of a structured-light or
 /// time-of-flight camera. Source: \[Khoshelham12\].
 const UNIT_WEIGHT_DEPTH_M: f32 = 2.0;
+/// Largest coordinate of a point, map frame, m: farther points are left out. Source: ours.
+const MAX_COORDINATE_M: f64 = 10_000.0;
 /// Largest weight of an observation.
 const MAX_OBSERVATION_WEIGHT: f32 = 16.0;
 
@@ -108,12 +110,13 @@ impl<'a> DepthView<'a> {
         let pixels = (0..depth.height())
             .step_by(stride)
             .flat_map(move |y| (0..depth.width()).step_by(stride).map(move |x| (x, y)));
-        pixels.filter(move |&pixel| self.is_valid(depth[pixel])).map(move |(x, y)| {
+        let points = pixels.filter(move |&pixel| self.is_valid(depth[pixel])).map(move |(x, y)| {
             let rectified = self.camera.undistort(Vector2::new(x as f64, y as f64));
             at(depth[(x, y)]).map(|depth| {
                 self.map_from_camera.transform(self.camera.unproject(rectified, f64::from(depth)))
             })
-        })
+        });
+        points.filter(|points| points.iter().all(|point| point.amax() <= MAX_COORDINATE_M))
     }
 
     /// The centre of the camera, map frame, m.
@@ -121,7 +124,7 @@ impl<'a> DepthView<'a> {
         self.map_from_camera.transform(Vector3::zeros())
     }
 
-    /// Whether the image may show a ball (camera frame, m), or what lies up to `behind` m behind a surface.
+    /// Whether the image may show a ball (camera frame, m), or points up to `behind` m behind a surface.
     pub(crate) fn may_show(&self, centre: Vector3<f32>, radius: f32, behind: f32) -> bool {
         let nearest = centre.z - radius;
         if centre.z + radius < self.depths.0 || nearest > self.depths.1 + behind {

@@ -6,7 +6,7 @@
 //!
 //! - [`SurfaceMap`]: integrates RGB-D images with known poses.
 //! - [`surface_mesh`]: a [`SurfaceMesh`] with a colour and a normal at each vertex.
-//! - [`OccupiedVoxels`]: free and occupied voxels along the camera's rays, for planners in space.
+//! - [`OccupiedVoxels`]: free voxels along the camera's rays, and occupied voxels at their ends and on the surface, for planners in space.
 //! - [`HeightMap`]: the highest surface over each cell of the floor.
 //!
 //! Cost: an image takes O(voxels in view); memory grows with the area of the surface, not with the number of images. The result depends on
@@ -38,6 +38,7 @@ mod surface_config;
 mod surface_map;
 mod surface_mesh;
 mod surface_nets;
+mod triangle_voxels;
 mod voxel_block;
 
 pub use height_map::HeightMap;

@@ -1,7 +1,9 @@
-//! Free and occupied voxels along the camera's rays.
+//! Free voxels along the camera's rays, and occupied voxels at their ends and on a surface.
 
 use crate::depth_view::DepthView;
 use crate::surface_config::SurfaceConfig;
+use crate::surface_mesh::SurfaceMesh;
+use crate::triangle_voxels::Triangle;
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, HashSet};
 use trundle_core::{Invalid, PinholeCamera, Pose3, RgbdImage, require_in};
@@ -20,9 +22,9 @@ const MAX_VOXELS: usize = 40_000_000;
 /// State of a known voxel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VoxelState {
-    /// Rays pass.
+    /// Rays pass, and no surface.
     Free,
-    /// Rays end.
+    /// Rays end, or a surface passes.
     Occupied,
 }
 
@@ -61,7 +63,7 @@ impl OccupiedVoxels {
         self.sums.iter().map(move |(key, sum)| (*key, state(*sum)))
     }
 
-    /// Adds the rays of an image that `camera` took at `map_from_camera`. `config` says which depths count.
+    /// Adds the rays of an image that `camera` took at `map_from_camera`. `config` has the range of valid depths.
     ///
     /// # Errors
     /// When the image has another size than the camera, or the pose is not finite.
@@ -86,6 +88,29 @@ impl OccupiedVoxels {
         Ok(())
     }
 
+    /// Marks every voxel that holds a vertex of `mesh` (map frame, m), or that a triangle passes through, as occupied. The rays of a distant
+    /// or slanted surface are sparser than voxels; the mesh closes the holes between them.
+    ///
+    /// # Errors
+    /// When a triangle has a missing vertex, a coordinate is not finite, or a triangle has more than 10^6 voxels in its box. Nothing is
+    /// then marked.
+    pub fn mark_surface(&mut self, mesh: &SurfaceMesh) -> Result<(), Invalid> {
+        let points = (0..mesh.vertices.len() as u32).map(|vertex| [vertex; 3]);
+        let shapes = points.chain(mesh.triangles.iter().copied());
+        let shapes = shapes.map(|corners| Triangle::of(mesh, corners, self.resolution));
+        let shapes = shapes.collect::<Result<Vec<_>, _>>()?;
+        shapes.into_iter().flat_map(Triangle::voxels).for_each(|voxel| self.mark(voxel));
+        Ok(())
+    }
+
+    /// Makes a voxel occupied as one end of a ray does; a higher sum stays.
+    fn mark(&mut self, voxel: [i32; 3]) {
+        if !self.is_full() || self.sums.contains_key(&voxel) {
+            let sum = self.sums.entry(voxel).or_default();
+            *sum = (*sum).max(HIT_STEPS);
+        }
+    }
+
     fn add(&mut self, voxel: [i32; 3], steps: i16) {
         if !self.is_full() || self.sums.contains_key(&voxel) {
             let sum = self.sums.entry(voxel).or_default();
@@ -101,18 +126,18 @@ fn voxel_of(at: Vector3<f64>) -> [i32; 3] {
 /// The voxels from `start` to before the one of `end`, in units of voxels: each step crosses the nearest face (\[Amanatides87\]).
 fn voxels_between(start: Vector3<f64>, end: Vector3<f64>) -> impl Iterator<Item = [i32; 3]> {
     let (mut voxel, last) = (voxel_of(start), voxel_of(end));
-    let way = end - start;
-    let step: [i32; 3] = way.map(|along| if along < 0.0 { -1 } else { 1 }).into();
+    let along = end - start;
+    let step: [i32; 3] = along.map(|component| if component < 0.0 { -1 } else { 1 }).into();
     let mut next: [f64; 3] = std::array::from_fn(|i| {
         let face = f64::from(voxel[i]) + if step[i] > 0 { 1.0 } else { 0.0 };
-        if way[i] == 0.0 { f64::INFINITY } else { (face - start[i]) / way[i] }
+        if along[i] == 0.0 { f64::INFINITY } else { (face - start[i]) / along[i] }
     });
     let steps: u32 = (0..3).map(|i| voxel[i].abs_diff(last[i])).sum();
     (0..steps).map(move |_| {
         let passed = voxel;
         let axis = (0..3).min_by(|&a, &b| next[a].total_cmp(&next[b])).unwrap_or(0);
         voxel[axis] += step[axis];
-        next[axis] += (1.0 / way[axis]).abs();
+        next[axis] += (1.0 / along[axis]).abs();
         passed
     })
 }

@@ -11,8 +11,6 @@ use trundle_core::{Invalid, PinholeCamera, Pose3, RgbdImage};
 const MAX_RAY_STRIDE_PX: f64 = 4.0;
 /// Largest number of blocks. The map then takes no new ones. Source: ours, 4 GB.
 const MAX_BLOCKS: usize = 800_000;
-/// Largest coordinate of the map, m: farther points are errors. Source: ours.
-const MAX_COORDINATE_M: f64 = 10_000.0;
 
 /// The surface of a scene.
 #[derive(Debug, Clone)]
@@ -94,7 +92,7 @@ impl SurfaceMap {
         {
             for step in 0..=(2.0 * steps) as usize {
                 let point = near + (far - near) * (step as f64 / (2.0 * steps));
-                if point.amax() > MAX_COORDINATE_M || self.is_full() {
+                if self.is_full() {
                     continue;
                 }
                 let key = point.map(|at| (at / side).floor() as i32).into();

@@ -5,9 +5,9 @@
 pub struct SurfaceMesh {
     /// Positions, m.
     pub vertices: Vec<[f32; 3]>,
-    /// Unit normals, out of the surface, one a vertex.
+    /// Unit normals out of the surface, one per vertex.
     pub normals: Vec<[f32; 3]>,
-    /// sRGB, one a vertex.
+    /// Colours, sRGB, one per vertex.
     pub colors: Vec<[u8; 3]>,
     /// Indices of the corners among the vertices.
     pub triangles: Vec<[u32; 3]>,

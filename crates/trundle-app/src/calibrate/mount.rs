@@ -52,7 +52,7 @@ pub fn calibrate_mount(
 struct FloorImages<'a> {
     input: &'a CalibrationInput,
     search: FloorSearch,
-    /// Images from one that is used to the next.
+    /// Step between two used images \[images\].
     step: usize,
     seen: usize,
 }

@@ -67,7 +67,7 @@ fn of_fit(fit: &WheelCameraFit, input: &CalibrationInput) -> Calibration {
     }
 }
 
-/// Adds the gyro's scale, or why it is not known.
+/// Adds the gyro's scale, or the reason why the scale is unknown.
 fn add_gyro(
     calibration: &mut Calibration,
     input: &CalibrationInput,

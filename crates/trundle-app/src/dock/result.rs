@@ -50,7 +50,7 @@ impl DockingResult {
         }
     }
 
-    /// The steps, a row each, and a closing sentence. `seconds`: wall-clock time of planning.
+    /// The steps, one row each, and a closing sentence. `seconds`: wall-clock time of planning.
     #[must_use]
     pub fn report(&self, seconds: f64) -> (Vec<Vec<String>>, String) {
         match self {

@@ -59,8 +59,8 @@ fn cores(system: &System, groups: &str) -> Option<f64> {
     (quota > 0.0 && period > 0.0).then_some(quota / period)
 }
 
-/// A file of the group that holds this process; in a container the group may be the root of what is mounted. The controller of version 2
-/// is empty.
+/// A file of the group that contains this process; in a container the group may be the root of the mounted folder. `controller` is empty
+/// for version 2.
 fn read(system: &System, groups: &str, controller: &str, file: &str) -> Option<String> {
     let group = groups.lines().find_map(|line| group(line, controller))?;
     let folder = if controller.is_empty() { String::new() } else { format!("{controller}/") };

@@ -5,11 +5,11 @@ use serde::Serialize;
 /// Result of one check.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Check {
-    /// The checked thing, in two words at most.
+    /// The subject of the check, in two words at most.
     pub topic: &'static str,
     /// CheckLevel of the finding.
     pub level: CheckLevel,
-    /// The finding, in words.
+    /// The finding, as a sentence.
     pub finding: String,
     /// The remedy, in words or as a command; `None` if all is well.
     pub remedy: Option<String>,

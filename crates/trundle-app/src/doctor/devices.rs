@@ -1,4 +1,4 @@
-//! Base and cameras: ports, libraries and what is plugged in.
+//! Base and cameras: ports, libraries and connected devices.
 
 use super::check::Check;
 use trundle_drivers::camera::native::{LibraryReport, LibraryState, NativeKind, list_devices, reports};

@@ -1,4 +1,4 @@
-//! Files and variables that the checks read, of this computer or of a folder that stands for one.
+//! Files and variables that the checks read, of this computer or of a folder that represents a computer.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

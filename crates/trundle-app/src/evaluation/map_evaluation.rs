@@ -33,7 +33,7 @@ impl MapEvaluation {
         Ok(Self { agreement, pose, within })
     }
 
-    /// The numbers, a row each.
+    /// The numbers, one row each.
     #[must_use]
     pub fn rows(&self) -> Vec<Vec<String>> {
         let (found, pose) = (&self.agreement, self.pose);

@@ -22,7 +22,7 @@ pub struct TrajectoryEvaluation {
     pub absolute_config: AbsoluteConfig,
     /// Settings of the relative error.
     pub relative_config: RelativeConfig,
-    /// The estimate, laid over the reference.
+    /// The estimate, aligned with the reference.
     pub aligned: Vec<(Stamp, Pose3)>,
     /// Position of the reference at each compared pose, m.
     pub truth: Vec<Vector3>,
@@ -66,7 +66,7 @@ impl TrajectoryEvaluation {
         Self::of(&truth, &poses, absolute, relative).map_err(|error| named_error(&error, reference, estimate))
     }
 
-    /// The positions of the estimate that are compared, laid over the reference, m.
+    /// The compared positions of the estimate, aligned with the reference, m.
     pub(crate) fn compared(&self) -> Vec<Vector3> {
         self.absolute.pairs.iter().map(|&(_, e)| self.aligned[e].1.translation).collect()
     }
@@ -83,7 +83,7 @@ impl TrajectoryEvaluation {
         self.aligned[pose].0 - start
     }
 
-    /// The errors, a row each.
+    /// The errors, one row each.
     #[must_use]
     pub fn rows(&self) -> Vec<Vec<String>> {
         let delta = self.relative_config.delta;
@@ -115,7 +115,7 @@ impl TrajectoryEvaluation {
     }
 }
 
-/// Degrees a radian.
+/// Degrees per radian.
 const DEGREES_A_RADIAN: f64 = 180.0 / std::f64::consts::PI;
 
 fn row(name: &str, s: &ErrorStatistics, factor: f64, unit: &str) -> Vec<String> {

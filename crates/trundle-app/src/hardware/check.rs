@@ -54,7 +54,7 @@ pub struct HardwareReport {
 }
 
 impl HardwareReport {
-    /// The parts that were not checked, a line each, and a line if no fault was found.
+    /// The parts that were not checked, one line each, and one line if no fault was found.
     #[must_use]
     pub fn closing_lines(&self) -> Vec<String> {
         let notes = self.notes.iter().map(|note| format!("note: {note}"));

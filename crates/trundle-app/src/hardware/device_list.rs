@@ -28,7 +28,7 @@ pub fn udev_rules() -> String {
     )
 }
 
-/// The devices and libraries, a row each: kind, state.
+/// The devices and libraries, one row each: kind, state.
 #[must_use]
 pub fn device_rows() -> Vec<Vec<String>> {
     let devices = serial_devices();

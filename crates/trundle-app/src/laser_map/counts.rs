@@ -3,10 +3,10 @@
 use trundle_core::Stamp;
 use trundle_mapping::{Localized, MappingPause, Processed, ScanUpdate};
 
-/// The scans of a log, by what the filter made of them.
+/// Numbers of scans of a log, by the filter's result.
 #[derive(Debug, Default)]
 pub struct ScanCounts {
-    /// Scans put into the map or found in it.
+    /// Scans inserted into the map or localized in it.
     pub processed: usize,
     /// Scans refused.
     pub refused: usize,
@@ -24,9 +24,9 @@ pub struct ScanCounts {
     pub corrections: usize,
     /// Scans while the pose was not known.
     pub lost: usize,
-    /// Pauses of mapping, where scans contradicted the map that the run went on with.
+    /// Pauses of mapping, because scans contradicted the loaded map.
     pub pauses: usize,
-    /// Scans left out by these pauses: those taken out again, and those until the robot was found.
+    /// Scans left out by these pauses: those removed from the map, and those until the robot was localized.
     pub left_out: usize,
     /// Stamp of the first scan that was left out.
     pub first_pause: Option<Stamp>,

@@ -8,7 +8,7 @@ use crate::{AppError, StepProgress};
 use trundle_core::deskewed;
 use trundle_io::{FileKind, LaserLog, read_laser_log};
 
-/// Reads the log, its scans deskewed where they can be and the request asks for it.
+/// Reads the log. Its scans are deskewed if the log allows it and the request asks for it.
 ///
 /// # Errors
 /// Names the file, and the line or frame that cannot be accepted.

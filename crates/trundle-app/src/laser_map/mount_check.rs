@@ -23,7 +23,7 @@ const MAX_STEP_LENGTH_M: f64 = 1.0;
 const MAX_STEP_SCANS: usize = 40;
 /// Distance from which a point has no match \[m\]. Source: ours.
 const MAX_MATCH_DISTANCE_M: f64 = 0.3;
-/// Difference of two turns of a laser below which they are equal \[rad\]: half a degree, as messages give whole degrees. Source: ours.
+/// Difference of two turns of a laser below which they are equal \[rad\]: half a degree, since messages give whole degrees. Source: ours.
 const MIN_TURN_DIFFERENCE_RAD: f64 = 0.0087;
 /// Largest ratio of the better mount's error to the given mount's error. Above it no mount is suggested. Source: ours.
 const MAX_ERROR_SHARE: f64 = 0.6;
@@ -98,7 +98,7 @@ pub(super) fn better_mount(log: &LaserLog) -> Option<LaserMount> {
 #[derive(Debug, Clone, Copy)]
 struct Reading {
     is_mirrored: bool,
-    /// rad.
+    /// Rotation to the left, rad.
     turn: f64,
 }
 

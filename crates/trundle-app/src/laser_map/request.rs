@@ -27,18 +27,18 @@ pub struct LaserMapRequest {
     pub seed: u64,
     /// Side of a cell, m.
     pub resolution: f64,
-    /// The laser, if the log does not hold it.
+    /// The laser, if the log does not contain it.
     pub laser: LaserLogOptions,
     /// The map of an earlier run, in which the robot is localized first.
     pub map: Option<PathBuf>,
-    /// Whether each beam is put to where the base was when it was measured, where the log says the times of the beams.
+    /// Whether each beam is corrected for the motion of the base during the scan, if the log has the times of the beams.
     pub deskew: bool,
     /// Format of the picture of the map that is written.
     pub map_image: MapImage,
 }
 
 impl LaserMapRequest {
-    /// A new filter, or one that goes on with the saved map.
+    /// A new filter, or one that continues the saved map.
     pub(super) fn mapper(&self, depth: Option<&DepthLog>) -> Result<ParticleMapper, AppError> {
         let config = self.config(depth);
         let Some(file) = &self.map else { return Ok(ParticleMapper::new(config, self.seed)?) };

@@ -13,7 +13,7 @@ use trundle_core::{Pose2, Stamp};
 use trundle_io::{LaserLog, OutputFolder, write_map_as};
 use trundle_mapping::{Localized, MapLocalizer, ParticleMapper, ScanUpdate};
 
-/// Maps a log, or with `localize_only` follows the robot in the map asked for; writes trajectory, map, picture and summary.
+/// Maps a log, or with `localize_only` localizes the robot in the requested map; writes trajectory, map, picture and summary.
 ///
 /// # Errors
 /// When the map cannot be read, a setting cannot be accepted or a file cannot be written.

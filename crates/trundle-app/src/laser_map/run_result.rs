@@ -24,12 +24,12 @@ pub struct LaserMapRun {
     pub is_interrupted: bool,
     /// Probable error of the laser's mount, where the scans contradict the odometry at many steps.
     pub mount_hint: Option<String>,
-    /// Why the run missed its aim; `None` if it did not.
+    /// Reason why the run missed its aim; `None` if it did not.
     pub failure: Option<String>,
 }
 
 impl LaserMapRun {
-    /// Why a log that gave these counts and this map, if one was made, missed the aim, with the likely cause. `is_stopped`: whether
+    /// Reason why a log that gave these counts and this map, if one was made, missed the aim, with the likely cause. `is_stopped`: whether
     /// the user ended the run.
     pub(super) fn failure_of(
         log: &LaserLog,
@@ -89,7 +89,7 @@ fn pause_note(counts: &ScanCounts) -> String {
     )
 }
 
-/// Why no scan was put into the map or found in it.
+/// Reason why no scan was inserted into the map or localized in it.
 fn nothing_processed(log: &LaserLog, counts: &ScanCounts, is_stopped: bool) -> String {
     let all = log.scans.len();
     if counts.lost > 0 {

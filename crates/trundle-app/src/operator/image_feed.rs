@@ -9,7 +9,7 @@ use trundle_io::{JPEG_QUALITY, encode_color};
 /// Time between two copies of the camera's image \[s\]. A copy of 100 kB takes 10 us. Source: ours.
 const IMAGE_PERIOD_S: f64 = 0.1;
 /// Wall-clock time between two images that are encoded only for views. A simulator runs faster than real time, and encoding takes some 3
-/// ms. Source: ours; a page receives an image each 180 ms.
+/// ms. Source: ours; a page receives one image per 180 ms.
 const ENCODING_PERIOD: Duration = Duration::from_millis(150);
 
 /// Keeps the newest image of the camera.

@@ -57,7 +57,7 @@ pub enum RunState {
 /// Activity of a run without a robot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Activity {
-    /// In one or two words.
+    /// Name of the activity in one or two words.
     pub name: &'static str,
     /// Details of the activity, in one sentence.
     pub reason: Option<String>,
@@ -98,7 +98,7 @@ impl fmt::Display for RunState {
 }
 
 impl RunState {
-    /// In one or two words.
+    /// The name in one or two words.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {

@@ -7,7 +7,7 @@ use trundle_slam::RgbdSlam;
 
 /// Time between two copies of the visual map \[s\]. A copy of 6,000 landmarks takes 0.1 ms. Source: ours.
 pub const VISUAL_MAP_PERIOD_S: f64 = 3.0;
-/// Most landmarks of a copy; of more every second, third is taken. Source: ours.
+/// Largest number of landmarks of a copy. Of more landmarks, every second or third one is copied. Source: ours.
 const MAX_LANDMARKS: usize = 6000;
 
 /// Copies the visual map for views.

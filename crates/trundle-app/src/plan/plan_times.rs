@@ -7,6 +7,6 @@ use trundle_planning::PlanningTimes;
 pub struct PlanTimes {
     /// Total time.
     pub all: f64,
-    /// By stage.
+    /// Times by stage.
     pub stages: PlanningTimes,
 }

@@ -13,7 +13,7 @@ pub struct RealTimePacer {
 }
 
 impl RealTimePacer {
-    /// From simulated time 0 on.
+    /// A pacer that starts at simulated time 0.
     pub fn start() -> Self {
         Self::start_at(Instant::now())
     }

@@ -33,7 +33,7 @@ pub struct ThreadedBody {
 
 /// Largest number of events that wait for the control thread: those of some seconds. Further events are refused. Source: ours.
 const INBOX_CAPACITY: usize = 1024;
-/// Time without any event after which the body counts as gone. Source: ours.
+/// Time without any event after which the body counts as lost. Source: ours.
 const BODY_TIMEOUT: Duration = Duration::from_secs(5);
 
 impl ThreadedBody {

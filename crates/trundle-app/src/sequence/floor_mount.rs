@@ -8,9 +8,9 @@ use trundle_runtime::CameraMount;
 
 /// Number of images from which those with the floor are taken, of a camera that is fixed on a robot. Source: ours, 20 to 40 s.
 const FIRST_IMAGES: usize = 600;
-/// Images from one that is searched to the next, of a camera that is fixed on a robot. Source: ours.
+/// Step between two searched images of a camera that is fixed on a robot \[images\]. Source: ours.
 const IMAGE_STEP: usize = 20;
-/// Images that are searched of a camera that moves by itself: its pose is then still that of the first one. Source: ours.
+/// Number of searched images of a camera that is not fixed on a robot: its pose is then still that of the first image. Source: ours.
 const HAND_HELD_IMAGES: usize = 3;
 /// Smallest share of the searched images that must show the same floor \[1\]. Source: ours.
 const MIN_IMAGE_SHARE: f64 = 0.5;

@@ -44,9 +44,9 @@ pub struct SequenceRun {
     depth: (DepthStatistics, f64),
     /// Calibration issues that were logged.
     logged_issues: usize,
-    /// Why frames could not be read.
+    /// Reason why frames could not be read.
     frame_problems: Warnings,
-    /// The images asked for that no pass of tracking saw.
+    /// The requested images that no pass of tracking used.
     left_out: LeftOut,
 }
 
@@ -61,9 +61,9 @@ struct OdometryLog {
 /// Images of an input, and why some are left out before tracking.
 #[derive(Debug, Clone, Copy)]
 struct LeftOut {
-    /// All that were asked for.
+    /// Number of requested images.
     asked: usize,
-    /// Without a depth image of their time.
+    /// Number of images without a depth image of their time.
     unpaired: usize,
 }
 
@@ -74,7 +74,7 @@ impl LeftOut {
         Self { asked, unpaired: input.unpaired() }
     }
 
-    /// Why one image alone was used, with the first of those that could not be read.
+    /// Reason why one image alone was used, with the first of those that could not be read.
     fn failure(self, unreadable: Option<&String>) -> String {
         let Self { asked, unpaired } = self;
         let cause = match unreadable {
@@ -86,10 +86,10 @@ impl LeftOut {
     }
 }
 
-/// Tracks a sequence and records every frame into `recording.mcap` of `folder`; `watch` is shown how it goes.
+/// Tracks a sequence and records every frame into `recording.mcap` of `folder`; `watch` receives the progress.
 ///
 /// # Errors
-/// When a setting cannot be accepted or no frame can be read. A recording that the disk does not take ends; tracking goes on.
+/// When a setting cannot be accepted or no frame can be read. If the disk is full, the recording ends and tracking continues.
 pub fn track_sequence(
     request: &SequenceRequest,
     input: &SequenceInput,
@@ -175,7 +175,7 @@ impl SequenceRun {
         })
     }
 
-    /// The trajectory that was asked for.
+    /// The requested trajectory.
     fn final_trajectory(
         &self,
         request: &SequenceRequest,
@@ -197,7 +197,7 @@ impl SequenceRun {
         SequenceTrajectory::fused(&self.slam, &self.odometry.motions, mount, scans.as_ref())
     }
 
-    /// Why the run missed its aim, with the likely cause; `None` if it did not.
+    /// Reason why the run missed its aim, with the likely cause; `None` if it did not.
     #[must_use]
     pub fn failure(&self) -> Option<String> {
         let depth = self.depth.0.problem(self.depth.1);

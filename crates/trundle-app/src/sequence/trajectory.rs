@@ -13,7 +13,7 @@ const LEVEL_MAP: u32 = 0;
 /// Poses of the frames of a sequence, `level_from_camera`.
 #[derive(Debug, Clone, Default)]
 pub struct SequenceTrajectory {
-    /// By rising stamps.
+    /// Poses by rising stamps.
     pub poses: Vec<(Stamp, Pose3)>,
     /// Number of frames that were tracked.
     pub frames: usize,
@@ -75,7 +75,7 @@ impl SequenceTrajectory {
         self.missing() as f64 / self.frames.max(1) as f64
     }
 
-    /// Why too few frames have a pose; `None` if enough have.
+    /// Reason why too few frames have a pose; `None` if enough have.
     pub(super) fn failure(&self) -> Option<String> {
         let (missing, frames) = (self.missing(), self.frames);
         (self.missing_share() > MAX_MISSING_SHARE).then(|| {
@@ -103,7 +103,7 @@ fn count_located(frames: &[FramePose]) -> usize {
     frames.iter().filter(|frame| frame.visual_from_camera.is_some()).count()
 }
 
-/// The tracker's frames with their odometry. Where no frame is in the level map, the first camera stands in it at `start`.
+/// The tracker's frames with their odometry. If no frame is in the level map, `start` is the pose of the first camera in it.
 fn sequence_frames(
     frames: &[FramePose],
     motions: &[Option<CameraMotion>],

@@ -21,7 +21,7 @@ pub enum MeshFormat {
     Ply,
 }
 
-/// The files of a surface that are asked for.
+/// The requested files of a surface.
 #[derive(Debug, Clone, Default)]
 pub struct SurfaceRequest {
     /// Triangles with colours.
@@ -70,7 +70,7 @@ impl SurfaceRequest {
         Ok(request)
     }
 
-    /// Whether no file is asked for.
+    /// Whether no file is requested.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.mesh.is_none() && self.cloud.is_none() && self.octomap.is_none() && self.heights.is_none()

@@ -35,13 +35,13 @@ struct FollowTask {
 pub enum FollowPhase {
     /// No trajectory: the robot brakes and remains at rest.
     Idle,
-    /// Along the trajectory.
+    /// The robot tracks the trajectory.
     Tracking,
-    /// Near the goal, to its position.
+    /// The robot is near the goal and approaches its position.
     Approaching,
-    /// On the goal's position, to its heading.
+    /// The robot is on the goal's position and turns to its heading.
     Turning,
-    /// At the goal, at rest.
+    /// The robot is at the goal, at rest.
     Settled,
 }
 

@@ -7,7 +7,7 @@ use trundle_core::{Pose2, difference_of_angles};
 pub struct TrackingError {
     /// Ahead of the robot, m.
     pub along: f64,
-    /// To the robot's left, m.
+    /// Cross-track error, m, positive to the robot's left.
     pub cross: f64,
     /// Counter-clockwise of the robot's heading, rad, in (-pi, pi].
     pub heading: f64,

@@ -21,7 +21,7 @@ pub struct ProblemAnswer {
 /// A part of a path, from rest to rest: a turn in place, a straight move, an arc.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathPiece {
-    /// Along the path, m, backward negative; 0 for a turn in place.
+    /// Distance along the path, m, backward negative; 0 for a turn in place.
     pub way: f64,
     /// Change of heading, rad, counter-clockwise positive; 0 for a straight.
     pub turn: f64,

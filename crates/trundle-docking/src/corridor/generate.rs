@@ -29,7 +29,7 @@ pub fn generate(name: impl Into<String>, rng: &mut ChaCha8Rng) -> Problem {
     }
 }
 
-/// In most cases the box of 0.6 x 0.4 m around its axle.
+/// A random footprint: in most cases the box of 0.6 x 0.4 m around its axle.
 fn footprint(rng: &mut ChaCha8Rng) -> Footprint {
     let rectangle =
         |front: f64, back: f64, half: f64| vec![(front, half), (-back, half), (-back, -half), (front, -half)];

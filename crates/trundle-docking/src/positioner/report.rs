@@ -23,13 +23,13 @@ pub struct PositionerInput<'a> {
 /// Reason for a command.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PositionerReason {
-    /// At rest, averaging the pose.
+    /// The robot is at rest, and its pose is averaged.
     Measuring,
-    /// At rest, planning: `PositionerConfig::step_work` per step.
+    /// The robot is at rest, and a manoeuvre is planned with `PositionerConfig::step_work` per step.
     Planning,
     /// Carrying out a motion.
     Moving(Motion),
-    /// At the goal, within tolerance.
+    /// The robot is at the goal, within tolerance.
     Settled,
     /// An obstacle blocks the motion, or a new plan: stopped, and planning again from here.
     Obstacle(Blocker),

@@ -29,9 +29,9 @@ pub async fn trace(
 /// A part of the motion still to be joined; the next parts are on top of the stack.
 #[derive(Debug, Clone, Copy)]
 enum Part {
-    /// From one of the poses to another.
+    /// A run from one of the poses to another.
     Run(usize, usize),
-    /// Between two neighbours, with the remaining halvings.
+    /// A gap between two neighbours, with the remaining halvings.
     Gap(Pose2, Pose2, u32),
 }
 

@@ -86,7 +86,7 @@ pub enum CameraError {
         /// The camera.
         device: String,
     },
-    /// The camera hangs at a port that is too slow.
+    /// The camera is connected to a port that is too slow.
     #[error(
         "the camera {device} is connected by {speed}, expected USB 3: use a blue USB port and a USB 3 cable"
     )]

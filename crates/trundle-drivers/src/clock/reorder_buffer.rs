@@ -5,12 +5,12 @@ use trundle_core::Stamp;
 
 /// A buffer that delays each event, which allows events with earlier stamps to overtake it.
 ///
-/// It yields events in the order of their stamps; events of one stamp in the order of their arrival.
+/// The buffer yields events in the order of their stamps, and events of one stamp in the order of their arrival.
 #[derive(Debug, Clone)]
 pub struct ReorderBuffer<T> {
     hold_s: f64,
     max_events: usize,
-    /// By stamp and number of arrival.
+    /// Events by stamp and number of arrival.
     events: BTreeMap<(Stamp, u64), T>,
     arrivals: u64,
     last: Option<Stamp>,

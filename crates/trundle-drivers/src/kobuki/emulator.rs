@@ -1,6 +1,6 @@
 //! The device's side of the protocol: feedback packets from a state, wanted speeds from command bytes.
 //!
-//! It has no clock, no noise and no inertia. A simulator supplies the state every 20 ms, and drives with the returned twist.
+//! The emulator has no clock, no noise and no inertia. A simulator supplies the state every 20 ms, and drives with the returned twist.
 
 use super::decoder::{CommandDecoder, DecoderCounters};
 use super::feedback_events::FEEDBACK_PERIOD_S;

@@ -53,7 +53,7 @@ pub(super) struct IoLoop {
     schedule: CommandSchedule,
     check: StreamCheck,
     outbox: Outbox,
-    /// Last requested outputs: the base forgets them when switched off.
+    /// Last requested outputs. The base loses its outputs when it is switched off.
     outputs: Option<Outputs>,
     /// Stamp of the newest packet \[ms\], of this connection or the previous one.
     last_ms: Option<u16>,

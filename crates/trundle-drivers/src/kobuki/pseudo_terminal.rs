@@ -28,7 +28,7 @@ impl PseudoTerminal {
     /// A new pair of terminals, raw.
     ///
     /// # Errors
-    /// When the system has none left.
+    /// When the system has no pseudo-terminal left.
     pub fn open() -> io::Result<Self> {
         let device = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
         grantpt(&device)?;

@@ -15,7 +15,7 @@ pub enum WheelReport {
         /// Turn rate by the wheels minus turn rate by the gyro, rad/s.
         rate: f64,
     },
-    /// Not newer than the last reading: rejected.
+    /// The reading is not newer than the last one: rejected.
     TimeWentBack {
         /// Difference of the stamps, s, 0 or more.
         by: f64,

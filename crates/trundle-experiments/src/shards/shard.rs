@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 /// Part `index` of `count` parts of the runs of an experiment: every `count`-th run, starting with the `index`-th.
 ///
-/// Its text is `K/N`, K from 1 to N.
+/// The text of a part is `K/N`, K from 1 to N.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct Shard {

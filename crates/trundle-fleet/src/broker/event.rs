@@ -29,7 +29,7 @@ impl Publication {
 pub enum BrokerEvent {
     /// The broker accepted the robot.
     Joined,
-    /// A message on a topic that the robot listens to.
+    /// A message on a topic to which the robot subscribes.
     Message {
         /// Topic of the message.
         topic: String,

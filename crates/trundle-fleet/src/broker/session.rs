@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 /// Maximum number of messages waiting for the robot. While the queue is full, the broker is not read. Source: ours.
 const MAX_WAITING_EVENTS: usize = 64;
-/// Messages that wait for the broker; more are not taken. Source: ours.
+/// Largest number of messages that wait for the broker; further messages are refused. Source: ours.
 const MAX_WAITING_PUBLICATIONS: usize = 64;
 /// Largest packet that is read \[bytes\]. A larger one ends the session. Source: ours, four times the largest order.
 const MAX_PACKET_BYTES: usize = 1024 * 1024;
@@ -29,7 +29,7 @@ pub struct SessionOptions {
     pub address: BrokerAddress,
     /// The password.
     pub password: Option<Password>,
-    /// Topics that the robot listens to.
+    /// Topics to which the robot subscribes.
     pub topics: Vec<String>,
     /// Message that the broker publishes when it loses the robot.
     pub last_will: Publication,
@@ -86,7 +86,7 @@ impl Session {
         self.client.try_publish(topic, quality, is_retained, payload).is_ok()
     }
 
-    /// Says goodbye with a last message.
+    /// Sends a last message and ends the session.
     pub fn leave(self, last: Publication) {
         self.publish(last);
         if self.client.try_disconnect().is_err() {
@@ -100,7 +100,7 @@ impl Session {
 }
 
 impl Drop for Session {
-    /// A session that has ended already takes no goodbye.
+    /// A session that has ended already sends no last message.
     fn drop(&mut self) {
         _ = self.client.try_disconnect();
     }

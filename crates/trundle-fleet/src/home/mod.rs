@@ -59,7 +59,7 @@ impl Home {
         }
     }
 
-    /// The topics that commands come by.
+    /// The topics of commands.
     pub fn topics(&self) -> Vec<String> {
         vec![self.topics.command.clone()]
     }

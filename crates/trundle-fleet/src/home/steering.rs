@@ -9,7 +9,7 @@ use trundle_runtime::{Mission, MotionHold, OperatorCommand, Task};
 /// Carries out a command; returns the robot's activity in words.
 ///
 /// # Errors
-/// Why the robot cannot carry the command out.
+/// Reason why the robot cannot carry the command out.
 pub fn obey(
     command: &HomeCommand,
     view: &RobotGlance,

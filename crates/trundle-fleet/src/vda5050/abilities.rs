@@ -8,7 +8,7 @@ use crate::robot_facts::RobotFacts;
 pub struct Ability {
     /// Type of the action.
     pub action_type: &'static str,
-    /// In a sentence.
+    /// Description in a sentence.
     pub description: &'static str,
     /// Whether the action is allowed at a node.
     pub at_node: bool,

@@ -34,7 +34,7 @@ impl Drive {
     /// Begins the drive from `pose` to a node.
     ///
     /// # Errors
-    /// When the robot takes no command.
+    /// When the robot accepts no command.
     pub fn begin(node: &OrderNode, pose: Pose2, robot: &mut dyn RobotCommands) -> Result<Self, String> {
         let goal = goal_of(node, pose).ok_or_else(|| format!("node {} has no position", node.node_id))?;
         let mission = Mission::new(vec![Task::go(goal)]).map_err(|error| error.to_string())?;

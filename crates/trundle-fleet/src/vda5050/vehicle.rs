@@ -96,7 +96,7 @@ impl Vehicle {
         Ok(())
     }
 
-    /// A robot that is being cancelled or driven by a person takes no order.
+    /// A robot that is being cancelled or driven by a person accepts no order.
     fn require_free(&self, view: &RobotGlance) -> Result<(), ErrorReport> {
         if self.is_cancelling() {
             return Err(ErrorReport::warning("orderError", "the present order is being cancelled"));

@@ -73,7 +73,7 @@ pub struct DistanceField {
     per_metre: f64,
     unknown: UnknownIs,
     is_obstacle: Vec<bool>,
-    /// From cell centres to squares; 0 in obstacles.
+    /// Distances from cell centres to the squares of obstacles; 0 in obstacles.
     distance: Vec<f32>,
     /// Rows to the nearest obstacle of the same column, at most `none`.
     gap: Vec<u16>,
@@ -279,7 +279,7 @@ struct Stencil {
     u: f64,
     /// Fraction along y.
     v: f64,
-    /// From the nearest point among the centres to the point, m; zero inside.
+    /// Offset from the nearest point among the centres to the point, m; zero inside.
     beyond: Vector2,
 }
 

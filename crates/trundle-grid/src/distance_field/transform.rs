@@ -21,7 +21,7 @@ pub(super) struct Transform<'a> {
     pub(super) outside: bool,
     /// For each cell, rows to the nearest obstacle of its column, at most `none`; 0 in obstacles.
     pub(super) gap: &'a mut [u16],
-    /// From centres to squares, m, at most `reach`.
+    /// Distances from centres to squares, m, at most `reach`.
     pub(super) distance: &'a mut [f32],
     /// The count of rows that means a column without an obstacle.
     pub(super) none: u16,

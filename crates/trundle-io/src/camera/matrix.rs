@@ -2,7 +2,7 @@
 
 use trundle_core::Invalid;
 
-/// In which order a file lists the numbers of a matrix.
+/// Order in which a file lists the numbers of a matrix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum MatrixOrder {
     RowByRow,

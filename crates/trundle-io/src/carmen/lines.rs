@@ -1,4 +1,4 @@
-//! The lines of a CARMEN log by what they hold, and the choice of the laser.
+//! The lines of a CARMEN log by their content, and the choice of the laser.
 
 use super::line::{LaserLine, Line, laser_name, parse};
 use super::text::TextLines;
@@ -14,7 +14,7 @@ const FRONT: [&str; 2] = ["FLASER", "ROBOTLASER1"];
 #[derive(Debug, Default)]
 pub(super) struct LogLines {
     pub odometry: Vec<(Stamp, Pose2)>,
-    /// How far ahead of the base the front laser sits, m.
+    /// Distance of the front laser ahead of the base, m.
     pub offset: f64,
     /// The front laser's field of view, rad, for lines without one.
     pub field_of_view: Option<f64>,
@@ -26,7 +26,7 @@ pub(super) struct LogLines {
 }
 
 impl LogLines {
-    /// Reads all lines. Where a compressed file breaks off after a scan, the rest is a broken line.
+    /// Reads all lines. If a compressed file is truncated after a scan, the rest counts as a broken line.
     pub(super) fn read(mut text: TextLines) -> Result<Self, IoError> {
         let mut lines = Self::default();
         let mut last = 0;

@@ -14,9 +14,9 @@ use std::path::Path;
 /// A CARMEN log, plain or compressed with gzip: lines of a laser (`FLASER`, `ROBOTLASER1`, `RAWLASER1` to `RAWLASER4` and those of
 /// the rear), `ODOM` and three of `PARAM`; others are ignored.
 ///
-/// The scans are those of the front laser, else the lines that are most; [`LaserLogOptions::scan_topic`] names others. A `RAWLASER`
-/// line has no pose: its odometry is interpolated between `ODOM` lines. Lines up to 0.05 s out of order are sorted. A broken line, or
-/// one whose time goes back farther, is skipped and named in [`LaserLog::skipped`]; so is the rest of a compressed file that breaks off.
+/// The scans are those of the front laser, else the lines that are most; [`LaserLogOptions::scan_topic`] names others. A `RAWLASER` line
+/// has no pose: its odometry is interpolated between `ODOM` lines. Lines up to 0.05 s out of order are sorted. A broken line, or one whose
+/// time goes back farther, is skipped and named in [`LaserLog::skipped`]; so is the rest of a truncated compressed file.
 ///
 /// # Errors
 /// When the file cannot be read, an option is out of range, or no line holds a scan: then the first problem is named.

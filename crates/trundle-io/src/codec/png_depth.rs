@@ -17,7 +17,7 @@ fn metres(millimetres: u16) -> f32 {
     f32::from(millimetres) * 0.001
 }
 
-/// The nearest whole number of millimetres; 0, no reading, for what does not fit into 16 bits or is not a depth.
+/// The nearest whole number of millimetres; 0 (no reading) if the value is no depth or does not fit into 16 bits.
 fn millimetres(metres: f32) -> u16 {
     let rounded = (f64::from(metres) * 1000.0).round();
     if rounded > 0.0 && rounded <= f64::from(u16::MAX) { rounded as u16 } else { 0 }

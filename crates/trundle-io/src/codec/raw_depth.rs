@@ -4,8 +4,8 @@ use trundle_core::Image;
 
 /// The pixels of a depth image in the numbers of its file.
 pub(super) enum RawDepth {
-    /// In units of the camera.
+    /// Depth in units of the camera.
     Units(Image<u16>),
-    /// In metres.
+    /// Depth in metres.
     Metres(Image<f32>),
 }

@@ -81,7 +81,7 @@ impl Expected {
         found == K::Stream || self.kinds().contains(&found)
     }
 
-    /// The kinds that are taken. Text of no known kind is taken by readers of text, who name its line.
+    /// The accepted kinds. Readers of text accept text of no known kind too: their errors name the line.
     fn kinds(self) -> &'static [FileKind] {
         match self {
             Self::Map => &[K::MapYaml, K::Yaml, K::Json, K::Text],

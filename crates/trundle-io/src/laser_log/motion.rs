@@ -3,13 +3,13 @@
 use super::order::insert_in_order;
 use trundle_core::{Pose2, Stamp};
 
-/// Where the base was by odometry, over time.
+/// The poses of the base by odometry, over time.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Motion {
     poses: Vec<(Stamp, Pose2)>,
 }
 
-/// Between two poses that are farther apart in time nothing is known, s.
+/// Largest time between two poses that are interpolated, s. In a longer gap the pose is unknown.
 const LONGEST_GAP: f64 = 1.0;
 /// Time before and after a pose for which it holds, s.
 const POSE_HOLD_S: f64 = 0.1;
@@ -52,10 +52,10 @@ impl Motion {
         })
     }
 
-    /// The pose at a time, between the poses about it.
+    /// The pose at a time, interpolated between the poses before and after it.
     ///
     /// # Errors
-    /// When there is none near.
+    /// When no pose is near in time.
     pub(crate) fn at(&self, stamp: Stamp) -> Result<Pose2, String> {
         let after = self.poses.partition_point(|(at, _)| *at < stamp);
         let (before, next) = (after.checked_sub(1).and_then(|i| self.poses.get(i)), self.poses.get(after));

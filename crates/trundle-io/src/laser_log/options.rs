@@ -10,7 +10,7 @@ pub struct LaserLogOptions {
     pub laser_x: Option<f64>,
     /// Turn of the laser to the left, rad. Default: the log's, else 0.
     pub laser_turn: Option<f64>,
-    /// The laser hangs upside down: its beams run from left to right.
+    /// The laser is upside down: its beams run from left to right.
     pub upside_down: bool,
     /// Smallest range that counts as no return, m. Default: the line's limit, else the range at which many beams end.
     pub max_range: Option<f64>,

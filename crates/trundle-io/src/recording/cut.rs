@@ -5,7 +5,7 @@ use mcap::records::op;
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
 
-/// Length of what an MCAP file begins and ends with \[bytes\].
+/// Length of the magic number at both ends of an MCAP file \[bytes\].
 const MAGIC_BYTES: u64 = mcap::MAGIC.len() as u64;
 
 /// The part of a file that is whole.

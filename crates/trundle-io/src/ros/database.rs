@@ -13,7 +13,7 @@ use trundle_core::Stamp;
 pub(super) struct BagDatabase {
     path: PathBuf,
     sqlite: Sqlite,
-    /// By id: name and type.
+    /// Name and type of each topic, by id.
     topics: BTreeMap<i64, (String, String)>,
     messages: TableRows,
 }

@@ -7,7 +7,7 @@ use trundle_core::Pose3;
 /// The tree of frames that do not move against each other: the newest transform of each.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(in crate::ros) struct Frames {
-    /// By child: its parent, and `parent_from_child`.
+    /// The parent of each child frame, and `parent_from_child`.
     parents: BTreeMap<String, (String, MessagePose)>,
 }
 
@@ -24,7 +24,7 @@ pub(in crate::ros) enum NoTransform {
 const MAX_FRAME_CHAIN: usize = 100;
 
 impl Frames {
-    /// Adds a transform; a broken one in place of a good one is left out.
+    /// Adds a transform. A broken transform does not replace a good one.
     pub(in crate::ros) fn insert(&mut self, transform: Transform) {
         let Transform { parent, child, parent_from_child, .. } = transform;
         let is_good = |known: &(String, MessagePose)| known.1.is_ok();

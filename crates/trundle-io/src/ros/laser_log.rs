@@ -32,8 +32,8 @@ pub fn read_laser_log(path: &Path, options: &LaserLogOptions) -> Result<LaserLog
 /// [`LaserLog::skipped`], by its number in the bag.
 ///
 /// # Errors
-/// When the bag cannot be read or breaks off before its first scan, there is no scan or no odometry, no transform gives the mount of
-/// the laser, or no scan can be used: then the first problem is named.
+/// When the bag cannot be read or is truncated before its first scan, there is no scan or no odometry, no transform gives the mount of the
+/// laser, or no scan can be used: then the first problem is named.
 pub fn read_ros_bag(path: &Path, options: &LaserLogOptions) -> Result<LaserLog, IoError> {
     options.validate().map_err(IoError::field(path))?;
     let mut contents = Contents::read(path)?;
@@ -55,7 +55,7 @@ pub fn read_ros_bag(path: &Path, options: &LaserLogOptions) -> Result<LaserLog, 
     finish(log, contents, &topic, &scans, motion).map_err(wrong)
 }
 
-/// Where the laser of a message sits on the base.
+/// The pose of the laser of a message, `base_from_laser`.
 fn mount(
     contents: &Contents,
     topic: &str,
@@ -74,14 +74,14 @@ fn mount(
     })
 }
 
-/// How a laser at this pose is turned.
+/// The rotation of a laser at this pose.
 fn turned(base_from_laser: &Pose3) -> LaserMount {
     let ahead = base_from_laser.rotate(Vector3::x());
     let up = base_from_laser.rotate(Vector3::z());
     LaserMount { turn: ahead.y.atan2(ahead.x), upside_down: up.z < 0.0 }
 }
 
-/// Adds what is known beside the scans; refuses a log without any.
+/// Adds the data other than scans. A log without scans is refused.
 fn finish(
     mut log: LaserLog,
     mut contents: Contents,

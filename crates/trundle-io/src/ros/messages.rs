@@ -29,30 +29,30 @@ pub(in crate::ros) mod types {
     }
 }
 
-/// `sensor_msgs/msg/LaserScan`, as far as it is used.
+/// The used fields of `sensor_msgs/msg/LaserScan`.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::ros) struct LaserScan {
     pub stamp: Stamp,
     pub frame: String,
-    /// Of the first beam and between beams, about the laser's z, rad.
+    /// Angle of the first beam about the laser's z, rad.
     pub angle_min: f64,
     pub angle_increment: f64,
-    /// Time between two beams, the first of which is measured at the stamp, s; 0 if all are.
+    /// Time between two beams, s; the first beam is measured at the stamp. 0: all beams are measured at the stamp.
     pub time_increment: f64,
-    /// m.
+    /// Smallest valid range, m.
     pub range_min: f64,
     pub range_max: f64,
     pub ranges: Vec<f32>,
 }
 
-/// A pose of a message, or what is wrong with it.
+/// A pose of a message, or its error.
 pub(in crate::ros) type MessagePose = Result<Pose3, String>;
 
-/// `nav_msgs/msg/Odometry`, as far as it is used.
+/// The used fields of `nav_msgs/msg/Odometry`.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::ros) struct Odometry {
     pub stamp: Stamp,
-    /// Whose pose it is.
+    /// The frame that has this pose.
     pub child: String,
     /// `odom_from_child`.
     pub pose: MessagePose,
@@ -99,7 +99,7 @@ impl Odometry {
 }
 
 impl Transform {
-    /// All of a message.
+    /// All transforms of a `tf2_msgs/msg/TFMessage`.
     pub(in crate::ros) fn read_all(bytes: &[u8], wire: Wire) -> Result<Vec<Self>, CdrError> {
         let mut r = CdrReader::new(types::TF, bytes, wire)?;
         // A transform is two times, two texts and seven numbers.
@@ -107,7 +107,7 @@ impl Transform {
         (0..count).map(|_| Self::read(&mut r)).collect()
     }
 
-    /// The only one of a `geometry_msgs/msg/TransformStamped`.
+    /// The transform of a `geometry_msgs/msg/TransformStamped` message.
     pub(in crate::ros) fn read_one(bytes: &[u8], wire: Wire) -> Result<Self, CdrError> {
         Self::read(&mut CdrReader::new(types::TRANSFORM, bytes, wire)?)
     }
@@ -119,7 +119,7 @@ impl Transform {
     }
 }
 
-/// `std_msgs/msg/Header`: stamp and frame; in ROS 1 a number comes first.
+/// Stamp and frame of a `std_msgs/msg/Header`. The header of ROS 1 begins with a number.
 pub(crate) fn header(r: &mut CdrReader<'_>) -> Result<(Stamp, String), CdrError> {
     if r.wire() == Wire::Ros1 {
         r.u32("header.seq")?;
@@ -129,7 +129,7 @@ pub(crate) fn header(r: &mut CdrReader<'_>) -> Result<(Stamp, String), CdrError>
     Ok((stamp, frame(r, "header.frame_id")?))
 }
 
-/// The name of a frame; a slash before it is of ROS 1's days.
+/// The name of a frame, without the leading slash that ROS 1 permits.
 fn frame(r: &mut CdrReader<'_>, field: &'static str) -> Result<String, CdrError> {
     let name = r.string(field)?;
     Ok(name.strip_prefix('/').map_or(name.clone(), str::to_owned))
@@ -149,7 +149,7 @@ fn pose(r: &mut CdrReader<'_>, field: &'static str) -> Result<MessagePose, CdrEr
     }))
 }
 
-/// Norms between which a quaternion is normalised to a rotation. Beyond them it is none: messages whose orientation was never
-/// set have 0. Source: ours.
+/// Norms between which a quaternion is normalised to a rotation. A quaternion beyond them is invalid: an orientation that was never set has
+/// the norm 0. Source: ours.
 const MIN_QUATERNION_NORM: f64 = 1e-6;
 const MAX_QUATERNION_NORM: f64 = 1e6;

@@ -25,12 +25,12 @@ pub(super) struct Ros1Bag {
     file: BufReader<File>,
     /// Number of unread bytes of the file.
     left: u64,
-    /// By id: topic and type.
+    /// Topic and type of each connection, by id.
     connections: BTreeMap<u32, (String, String)>,
     chunk: Vec<u8>,
     /// Start of the next record in the chunk.
     at: usize,
-    /// Note behind the last whole record, if the file breaks off in the chunk.
+    /// Note behind the last whole record, if the file is truncated in the chunk.
     cut: Option<IoError>,
 }
 

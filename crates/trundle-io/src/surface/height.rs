@@ -1,4 +1,4 @@
-//! Heights over the floor as a 16-bit PNG and a YAML file that says what its numbers mean.
+//! Heights over the floor as a 16-bit PNG and a YAML file with the meaning of its numbers.
 
 use crate::IoError;
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};

@@ -33,7 +33,7 @@ impl TumFrame {
     }
 }
 
-/// The nearest whole number of fifths of a millimetre; 0, no reading, for what does not fit or is not a depth.
+/// The nearest whole number of fifths of a millimetre; 0 (no reading) if the value is no depth or does not fit.
 fn tum_units(metres: f32) -> u16 {
     let rounded = (f64::from(metres) * TUM_DEPTH_SCALE).round();
     if rounded > 0.0 && rounded <= f64::from(u16::MAX) { rounded as u16 } else { 0 }

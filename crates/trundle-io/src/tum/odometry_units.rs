@@ -29,17 +29,17 @@ pub(super) fn unit_problems(rows: &[(Stamp, OdometryRow)]) -> Vec<String> {
     [wrong_positions(&steps), wrong_headings(rows, &steps)].into_iter().flatten().collect()
 }
 
-/// From one row to the next.
+/// Motion between two successive rows.
 struct Step {
-    /// s, above 0.
+    /// Time between the rows, s, above 0.
     duration: f64,
-    /// m.
+    /// Distance of the positions, m.
     distance: f64,
     /// Direction of motion, rad.
     way: f64,
     /// Heading in the file, rad.
     heading: f64,
-    /// Change of the heading, rad, at least 0; a jump by one turn is none.
+    /// Change of the heading, rad, at least 0; a jump by one turn counts as no change.
     turn: f64,
 }
 

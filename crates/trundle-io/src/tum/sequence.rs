@@ -37,7 +37,7 @@ impl TumSequence {
     /// `depth_scale` is the number of a depth of 1 m in the depth images (5000 for TUM).
     ///
     /// # Errors
-    /// When the folder or a list is missing, a line is wrong, no images can be paired, or the depth scale is none.
+    /// When the folder or a list is missing, a line is wrong, no images can be paired, or the depth scale is invalid.
     pub fn open(dir: &Path, depth_scale: f64, max_difference: f64) -> Result<Self, IoError> {
         let checked = checked_depth_scale(depth_scale)
             .and_then(|_| require_finite("max_difference", max_difference, "s"));

@@ -89,7 +89,7 @@ impl<'f> TumWriter<'f> {
     }
 }
 
-/// By rising stamp, of equal stamps the first that came.
+/// The poses by rising stamp; of equal stamps the first pose.
 fn by_stamp<T>(mut poses: Vec<(Stamp, T)>) -> Vec<(Stamp, T)> {
     poses.sort_by_key(|(stamp, _)| *stamp);
     poses.dedup_by_key(|(stamp, _)| *stamp);

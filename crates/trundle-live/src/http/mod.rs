@@ -58,7 +58,7 @@ async fn open_link(
         .on_upgrade(move |socket| viewer::serve(socket, state, id))
 }
 
-/// The stop without a link, for a page whose link hangs.
+/// The stop by a plain request, for a page whose connection does not respond.
 async fn stop(State(state): State<Arc<PageState>>, headers: HeaderMap) -> Response {
     let token = headers.get(header::AUTHORIZATION).and_then(|value| value.to_str().ok());
     let access = token.and_then(|token| state.tokens.access(token.strip_prefix("Bearer ")?));

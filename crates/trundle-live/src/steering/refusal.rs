@@ -6,7 +6,7 @@ use trundle_core::Invalid;
 /// Reason why a command is refused.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CommandRefusal {
-    /// In a sentence.
+    /// The refusal in a sentence.
     pub text: String,
     /// Number of the goal that cannot be reached, from 0.
     pub goal: Option<usize>,

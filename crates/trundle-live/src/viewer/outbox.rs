@@ -17,7 +17,7 @@ const GOING_AWAY_CLOSE_CODE: u16 = 1001;
 /// The reason for closing a link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Close {
-    /// The viewer broke a rule, or went.
+    /// The viewer broke a rule or closed the connection.
     Rule(&'static str),
     /// The program ends.
     ProgramEnded,

@@ -43,7 +43,7 @@ pub enum Reply {
     Series(SeriesText),
     /// States of the robot since some time ago.
     States {
-        /// In the order of time.
+        /// States in the order of time.
         states: Vec<StateEntry>,
     },
 }

@@ -93,7 +93,7 @@ pub struct WheelText {
 /// A task in words, and its goal.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TaskText {
-    /// In words.
+    /// The task in words.
     pub text: String,
     /// Goal of the task: x \[m\], y \[m\], heading \[rad\].
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -12,7 +12,7 @@ use trundle_app::operator::VisualMapView;
 
 /// Centimetres of a metre.
 const CM_PER_M: f64 = 100.0;
-/// Parts of a radian that a heading is sent in.
+/// Steps per radian of a heading that is sent.
 const HEADING_PARTS_PER_RAD: f64 = 1e4;
 
 /// The message of a visual map. Points farther than 327 m are clamped to this distance.

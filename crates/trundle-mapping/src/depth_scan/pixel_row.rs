@@ -17,9 +17,9 @@ pub(super) struct ClassifiedRow {
 pub(super) mod kind {
     /// Unknown, or no depth.
     pub const NOTHING: u32 = 0;
-    /// In the height band.
+    /// Class of a pixel in the height band.
     pub const OBSTACLE: u32 = 1;
-    /// In the height band, with too few neighbours on its surface.
+    /// Class of a pixel in the height band with too few neighbours on its surface.
     pub const DOUBTFUL: u32 = 2;
     /// The floor.
     pub const FLOOR: u32 = 3;

@@ -30,7 +30,7 @@ pub struct MappingPause {
     pub removed_scans: usize,
 }
 
-/// Why a scan was not used.
+/// Reason why a scan was not used.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Refusal {
     /// The odometry is not finite.

@@ -10,14 +10,14 @@ use std::collections::BTreeSet;
 use trundle_core::{Pose2, Stamp};
 use trundle_grid::tiles::TileMap;
 
-/// Why the pose is unknown.
+/// Reason why the pose is unknown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lost {
     /// The map is empty, or the scans have too few points.
     NothingToSee,
     /// No place fits better than unknown ground.
     NothingFits,
-    /// Several places fit equally well: the robot must see more.
+    /// Several places fit equally well: the robot must observe more of its surroundings.
     SeveralPlaces,
     /// The search ended at its budget before all places were compared.
     Unfinished,

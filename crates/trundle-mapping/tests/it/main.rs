@@ -13,6 +13,7 @@ mod fusion;
 mod grid_laws;
 mod lasting;
 mod live;
+mod localizer;
 mod maps;
 mod matching;
 mod settings;

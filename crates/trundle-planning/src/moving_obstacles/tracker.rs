@@ -17,7 +17,7 @@ use crate::moving_obstacles::forecast::MovingObstacle;
 use crate::moving_obstacles::track::{MAX_HIDDEN_S, Track};
 use trundle_core::{Beam, Cell, CellIndex, Invalid, OccupancyGrid, Pose2, Scan, Stamp, Vector2};
 
-/// Length at the end of a beam that is not taken for free, m: pose and range are not exact. Source: ours.
+/// Length at the end of a beam that does not count as free, m: pose and range are not exact. Source: ours.
 const UNCERTAIN_END_M: f64 = 0.1;
 /// Largest number of interpolated rays between two beams. Source: ours.
 const MAX_RAYS_BETWEEN: f64 = 8.0;

@@ -14,7 +14,8 @@ use trundle_grid::DistanceField;
 /// Shortest advance between two checks, m. An overlap below half of this may be missed. Source: ours.
 const MIN_ADVANCE_M: f64 = 4e-4;
 
-/// Largest overlap that is measured for a polygon, m; or to the axle. A deeper one is not planned out of. Source: ours.
+/// Largest measured overlap of a polygon with an obstacle, m, at most the distance to the axle. There is no plan out of a deeper overlap.
+/// Source: ours.
 pub(crate) const MAX_OVERLAP_M: f64 = 0.2;
 
 /// The robot's footprint in the base frame.

@@ -137,7 +137,7 @@ fn curve_along(
     (points.len() > 1).then(|| query.route(context, points, start, goal, moving)).flatten()
 }
 
-/// From rest: a curve, or else the straight moves and turns themselves.
+/// The phases of a plan from rest: a curve, or else the straight moves and turns themselves.
 fn phases_from_rest(
     query: &PlanQuery<'_>,
     context: &RouteContext<'_>,

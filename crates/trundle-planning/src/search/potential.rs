@@ -66,9 +66,9 @@ impl PotentialConfig {
 /// Result of a descent.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PotentialOutcome {
-    /// At the goal; the dense path, start and goal included, map frame, m.
+    /// The path reached the goal; the dense path, start and goal included, map frame, m.
     Reached(Vec<Vector2>),
-    /// In a local minimum, or at a wall.
+    /// The path ended in a local minimum, or at a wall.
     Trapped {
         /// Position, map frame, m.
         at: Vector2,

@@ -13,7 +13,7 @@ const MAX_WAITING: usize = 10;
 pub struct ImagePairs<C, D> {
     colors: VecDeque<(Stamp, C)>,
     depths: VecDeque<(Stamp, D)>,
-    /// Images in a row that found no other half, and the smallest gap among them \[s\].
+    /// Number of successive images without a partner, and the smallest gap to a possible partner \[s\].
     unpaired: (usize, f64),
 }
 

@@ -12,9 +12,9 @@ const RATIONAL: &str = "rational_polynomial";
 /// Whether images are rectified: then the projection matrix `p` counts, else `k` and the distortion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rectification {
-    /// With lens distortion.
+    /// Image with lens distortion.
     Raw,
-    /// Without distortion.
+    /// Image without lens distortion.
     Rectified,
 }
 

@@ -32,7 +32,7 @@ const JPEG_MAGIC: [u8; 3] = [0xFF, 0xD8, 0xFF];
 /// A colour image.
 ///
 /// # Errors
-/// When the encoding is none of colour, or size and number of bytes do not fit.
+/// When the encoding is no colour encoding, or the number of bytes does not fit the size.
 pub fn color_from_ros(image: Image) -> Result<RawImage, Invalid> {
     raw_from_ros(image, &COLORS, "rgb8, bgr8, rgba8, bgra8, mono8, yuv422 or yuv422_yuy2")
 }
@@ -40,7 +40,7 @@ pub fn color_from_ros(image: Image) -> Result<RawImage, Invalid> {
 /// A depth image.
 ///
 /// # Errors
-/// When the encoding is none of depth, or size and number of bytes do not fit.
+/// When the encoding is no depth encoding, or the number of bytes does not fit the size.
 pub fn depth_from_ros(image: Image) -> Result<RawImage, Invalid> {
     raw_from_ros(image, &DEPTHS, "16UC1 (mm) or 32FC1 (m)")
 }

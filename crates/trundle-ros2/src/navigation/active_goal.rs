@@ -1,4 +1,4 @@
-//! The one goal that the robot works on, of whichever action.
+//! The one active goal of the robot, of any action.
 
 use super::goal_outcome::NavigationOutcome;
 use crate::clock::RosClock;
@@ -83,7 +83,7 @@ impl ActiveGoal {
     /// Starts a mission for a goal. The previous goal ends as aborted, as in Nav2's servers.
     ///
     /// # Errors
-    /// Why the goal is refused.
+    /// Reason why the goal is refused.
     pub fn begin(
         &self,
         tasks: Vec<Task>,

@@ -11,14 +11,14 @@ use trundle_core::{Invalid, Pose2};
 pub enum GoalPoseError {
     /// A number is invalid: the goal is refused.
     Invalid(Invalid),
-    /// Its frame is unknown: the goal fails.
+    /// The frame of the pose is unknown: the goal fails.
     Frame(String),
 }
 
 /// A goal pose in the map frame. Poses in the frames of odometry and base are moved by the estimate of `view`.
 ///
 /// # Errors
-/// When a number is not finite, the rotation was never set, or the frame is none of these.
+/// When a number is not finite, the rotation was never set, or the frame is not that of map, odometry or base.
 pub fn in_map(
     goal: &PoseStamped,
     frames: &FrameNames,

@@ -33,7 +33,7 @@ pub trait NavigationAction: ActionType<Result: Default> + 'static {
     /// The tasks of a goal.
     ///
     /// # Errors
-    /// Why the goal is not performed.
+    /// Reason why the goal is not performed.
     fn tasks(
         goal: &Self::Goal,
         context: &GoalContext<'_>,

@@ -83,7 +83,7 @@ fn guess(message: &PoseWithCovarianceStamped) -> Result<PoseGuess, Invalid> {
     })
 }
 
-/// At most [`MAX_GOALS_PER_SECOND`] in a second.
+/// Limit of [`MAX_GOALS_PER_SECOND`] goals in a second.
 #[derive(Default)]
 struct RateLimit {
     since: Option<Instant>,

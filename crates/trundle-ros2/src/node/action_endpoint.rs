@@ -30,7 +30,7 @@ pub trait GoalHandler<A: ActionType>: Send {
     /// Accepts a goal, or returns the reason for its refusal.
     ///
     /// # Errors
-    /// Why the goal is refused.
+    /// Reason why the goal is refused.
     fn on_goal(&mut self, id: GoalId, goal: A::Goal) -> Result<(), String>;
 
     /// The client of a goal requests its cancellation.

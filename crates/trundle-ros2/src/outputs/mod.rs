@@ -1,4 +1,4 @@
-//! The robot's state as topics, as a Nav2 user expects them.
+//! The robot's state as topics, with the names and types of Nav2.
 
 pub mod costmap;
 mod frames;
@@ -29,7 +29,7 @@ pub struct OutputSettings {
 }
 
 impl OutputSettings {
-    /// The settings of `robot`; `has_own_body`: its body does not come by topics.
+    /// The settings of `robot`. `has_own_body`: whether the body is trundle's own and not one by ROS topics.
     #[must_use]
     pub fn of(
         options: &crate::Ros2Options,

@@ -21,7 +21,7 @@ impl Contacts {
         self.touched = pressed;
     }
 
-    /// Counts anew for the next goal.
+    /// Resets the count for the next goal.
     pub(crate) fn restart(&mut self) {
         self.count = 0;
     }

@@ -21,7 +21,7 @@ pub enum DriveState {
     Planning,
     /// Following a trajectory.
     Driving,
-    /// Near the goal: point stabilisation onto the exact pose.
+    /// The robot is near the goal: point stabilisation onto the exact pose.
     FinalApproach,
     /// Near the goal in a narrow space: turns on the spot and straight moves onto the exact pose.
     Maneuvering,
@@ -40,7 +40,7 @@ pub enum DriveState {
         /// State of the pose estimate.
         reason: Reason,
     },
-    /// At rest at the goal.
+    /// The robot is at rest at the goal.
     Arrived,
     /// The goal is abandoned.
     Stopped {

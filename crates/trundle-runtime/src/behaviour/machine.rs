@@ -38,8 +38,8 @@ impl StateMachine {
         self.reason
     }
 
-    /// Changes the state, if a change is asked for. A change that the table of transitions lacks is an error of this program: it is
-    /// logged, and a debug build stops.
+    /// Changes the state, if a change is requested. A change that the table of transitions lacks is an error of this program: it is logged,
+    /// and a debug build stops.
     pub(crate) fn change(&mut self, next: Next) {
         let Some(Change { to, reason }) = next else { return };
         let (from, into) = (self.state.kind(), to.kind());

@@ -145,7 +145,7 @@ impl Navigator {
         Decision { twist, replanned }
     }
 
-    /// What every state shares: zones, the opening, and the checks of pose, progress and view.
+    /// Updates the data that all states share: zones, the opening, and the checks of pose, progress and view.
     fn prepare(&mut self, s: &WorldState<'_>) {
         if self.tools.planner.take_zones(s) {
             self.tools.check_due.hurry();

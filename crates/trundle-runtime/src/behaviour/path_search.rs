@@ -1,4 +1,4 @@
-//! The search for a path: everything that was seen and tried since the last plan.
+//! The search for a path: observations and attempts since the last plan.
 
 mod seek_viewpoint;
 pub(crate) mod viewpoint;

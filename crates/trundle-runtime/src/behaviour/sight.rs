@@ -22,7 +22,7 @@ impl Sight {
         Self { recovery: SightRecovery::default(), image_timeout }
     }
 
-    /// Counts anew for the next goal.
+    /// Resets the count for the next goal.
     pub(crate) fn restart(&mut self) {
         self.recovery = SightRecovery::default();
     }

@@ -14,7 +14,7 @@ pub(crate) enum State {
     /// No goal.
     #[default]
     Idle,
-    /// At rest until the opening is over.
+    /// The robot is at rest until the opening is over.
     Initialize,
     /// One turn on the spot that observes the surroundings.
     Spin(Spin),
@@ -32,7 +32,7 @@ pub(crate) enum State {
     Relative(Relative),
     /// A motion at a charging station.
     Station(Station),
-    /// At rest until the way is free.
+    /// The robot is at rest until the path is free.
     Wait(Wait),
     /// Observing more of the surroundings in search of a path.
     Recover(Recover),
@@ -58,7 +58,7 @@ pub(crate) struct Drive {
 pub(crate) struct Wait {
     pub(crate) reason: Reason,
     pub(crate) search: PathSearch,
-    /// The drive that goes on once the safety monitor permits; none if the trajectory was dropped.
+    /// The drive that continues once the safety monitor permits it; `None` if the trajectory was dropped.
     pub(crate) interrupted: Option<Drive>,
 }
 
@@ -92,7 +92,7 @@ pub(crate) struct Change {
     pub(crate) reason: TransitionReason,
 }
 
-/// The change that a state asks for; `None`: the state goes on.
+/// The change that a state requests; `None`: the state continues.
 pub(crate) type Next = Option<Change>;
 
 impl State {

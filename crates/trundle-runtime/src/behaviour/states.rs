@@ -1,4 +1,4 @@
-//! What the robot does in each state: one file a state.
+//! The actions of the robot in each state, one file per state.
 
 pub(crate) mod approach;
 pub(crate) mod detour;

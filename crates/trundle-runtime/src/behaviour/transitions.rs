@@ -8,7 +8,7 @@ use TransitionReason as R;
 pub(crate) enum StateKind {
     /// No goal.
     Idle,
-    /// At rest until the opening is over and the first scan is in the grid.
+    /// The robot is at rest until the opening is over and the first scan is in the grid.
     Initialize,
     /// One turn on the spot that observes the surroundings.
     Spin,
@@ -32,7 +32,7 @@ pub(crate) enum StateKind {
     Recover,
     /// The pose is unknown: turning on the spot to recognise a place.
     Relocalize,
-    /// At rest at the goal.
+    /// The robot is at rest at the goal.
     Arrived,
     /// The goal is abandoned.
     Stopped,

@@ -68,7 +68,7 @@ enum Phase {
     },
     Sweeping,
     Aligning,
-    /// On the axis, nearer to the station.
+    /// The robot drives on the axis, nearer to the station.
     Advancing,
     /// The second sweep, near the station.
     NearSweeping,

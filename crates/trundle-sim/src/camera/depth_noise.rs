@@ -4,8 +4,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 use trundle_core::{Invalid, require_in, require_positive};
 
-/// How a camera's depth differs from the truth. Presets: [`DepthNoise::kinect_v2`], the default, and
-/// [`DepthNoise::kinect_v1`].
+/// Errors of a camera's depth. Presets: [`DepthNoise::kinect_v2`], the default, and [`DepthNoise::kinect_v1`].
 ///
 /// Axial noise is normal with sigma = a0 + a1 z + a2 z^2 + s z^p theta^2 / (pi/2 - theta)^2 (mm, z in m, theta the angle between ray and
 /// normal): both published models have this form. Pixels at depth edges mix both surfaces ("flying pixels"), take the depth of the other
@@ -23,11 +22,11 @@ pub struct DepthNoise {
     pub farthest: f64,
     /// Factor on sigma, 0 to 100. Default 1; 0 turns axial noise off.
     pub axial_factor: f64,
-    /// a0 (mm), a1 (mm/m), a2 (mm/m^2), -100 to 100 each.
+    /// Coefficients a0 (mm), a1 (mm/m) and a2 (mm/m^2) of the axial noise, -100 to 100 each.
     pub axial_mm: [f64; 3],
-    /// s, mm, 0 to 100.
+    /// Factor s of the slanted term, mm, 0 to 100.
     pub slant_mm: f64,
-    /// p, -2 to 2.
+    /// Exponent p of the slanted term, -2 to 2.
     pub slant_power: f64,
     /// Angle of incidence below which the slanted term is left out, deg, 0 to 90.
     pub slant_from_deg: f64,

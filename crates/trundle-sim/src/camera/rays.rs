@@ -48,13 +48,13 @@ impl Linear {
         Self { start: self.start * factor, right: self.right * factor, down: self.down * factor }
     }
 
-    /// At the left end of a row.
+    /// The value at the left end of a row.
     #[inline(always)]
     pub(super) fn left(&self, row: usize) -> f32 {
         self.start + row as f32 * self.down
     }
 
-    /// In every column of a row.
+    /// The values in every column of a row.
     #[inline(always)]
     pub(super) fn row(&self, row: usize) -> Row<f32> {
         let left = self.left(row);
@@ -65,7 +65,7 @@ impl Linear {
         values
     }
 
-    /// The most in a row.
+    /// The largest value in a row.
     #[inline(always)]
     pub(super) fn max_in_row(&self, row: usize) -> f32 {
         let (left, right) = (self.left(row), self.left(row) + (TILE_COLUMNS - 1) as f32 * self.right);

@@ -72,7 +72,7 @@ impl Tile {
     }
 }
 
-/// All bits of a truth: with these, no compiler makes branches of what shall be SIMD.
+/// A truth value as a mask of all bits: with masks, the compiler makes SIMD code instead of branches.
 #[inline(always)]
 pub(super) fn mask(is_true: bool) -> u32 {
     u32::from(is_true).wrapping_neg()

@@ -32,7 +32,7 @@ pub enum Following {
         /// Index of the way-point.
         waypoint: usize,
     },
-    /// At the last way-point, within 1 cm and 1 deg.
+    /// The robot is at the last way-point, within 1 cm and 1 deg.
     Arrived,
     /// An obstacle blocks the path to this way-point, from 0; the drive ends.
     Blocked {
@@ -164,7 +164,7 @@ impl WaypointFollower {
         }
     }
 
-    /// Along a line with `left` m to go.
+    /// The command along a line of which `left` m remain.
     fn along(&self, line: Line, left: f64, pose: Pose2, goal: Pose2) -> Twist2 {
         let aside = line.direction.perp(&(pose.position() - goal.position()));
         let course = line.direction.y.atan2(line.direction.x) - (LINE_RETURN_GAIN_RAD_PER_M * aside).atan();

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose2, require_finite, require_in};
 
-/// A thing that breaks.
+/// Kind of a fault.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case", deny_unknown_fields)]
 pub enum FaultKind {
@@ -36,7 +36,7 @@ pub enum FaultKind {
     EncodersStuck,
     /// The gyro repeats its last rate.
     GyroStuck,
-    /// At `from_s` the encoders' counters jump, for good; `to_s` does not matter.
+    /// The encoders' counters jump once, at `from_s`; `to_s` has no effect.
     OdometryJumps {
         /// Ticks of the left wheel.
         left_ticks: i32,
@@ -72,7 +72,7 @@ pub enum WheelSide {
     Right,
 }
 
-/// A thing that breaks, and when: at `from_s <= t < to_s`.
+/// A fault and its time: `from_s <= t < to_s`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Fault {

@@ -114,7 +114,7 @@ impl Faults {
         faults.filter(|(_, fault)| fault.holds_at(self.now)).map(|(i, fault)| (i, fault.kind))
     }
 
-    /// The first thing of a kind whose moment has come and has not been, if `may_be`.
+    /// The first fault of a kind that is due and has not occurred yet, if `may_be`.
     fn once<T>(&mut self, pick: impl Fn(FaultKind) -> Option<T>, may_be: impl Fn(&T) -> bool) -> Option<T> {
         for (fault, is_done) in self.schedule.faults.iter().zip(&mut self.is_done) {
             if *is_done || self.now < fault.from_s {

@@ -25,7 +25,7 @@ pub enum ImportNote {
     },
     /// The size is implausible for an indoor space.
     OddSize {
-        /// Along x, y and z, m.
+        /// Size along x, y and z, m.
         size_m: [f64; 3],
         /// Probable unit of the file, and its metres.
         unit: Option<(&'static str, f64)>,

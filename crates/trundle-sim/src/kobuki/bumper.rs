@@ -51,7 +51,7 @@ impl Bumper {
         (stays, is_new.then_some(true))
     }
 
-    /// Discards the stored distance: the body was put somewhere else.
+    /// Discards the stored distance: the body was moved to another place.
     pub(super) fn lift(&mut self) {
         self.free_way = 0.0;
     }

@@ -14,7 +14,7 @@ pub struct LaserConfig {
     pub x: f64,
     /// Left of the base's origin, m, -5 to 5. Default 0.
     pub y: f64,
-    /// Above the floor, m, 0.01 to 5. Default 0.2: on top of a Kobuki.
+    /// Height above the floor, m, 0.01 to 5. Default 0.2: on top of a Kobuki.
     pub z: f64,
     /// Direction of the middle of the field of view, from the base's x, rad, -2 pi to 2 pi. Default 0.
     pub yaw: f64,
@@ -32,7 +32,7 @@ pub struct LaserConfig {
     pub noise: f64,
     /// Standard deviation of a range, part of it, 0 to 0.5; adds to `noise` as a square. Default 0.
     pub noise_part: f64,
-    /// Ranges are whole multiples of this, m, 0 to 1; 0 is none. Default 0.
+    /// Step of the ranges, m, 0 to 1; with 0 ranges have no step. Default 0.
     pub quantum: f64,
     /// Share of beams that fail, 0 to 1. Default 0.
     pub drop_out: f64,

@@ -40,12 +40,12 @@ pub(super) fn lifted(color: Rgb, step: f32) -> Rgb {
     color.map(|c| c + step)
 }
 
-/// Between two colours, `part` of the second.
+/// A mixture of two colours with the fraction `part` of the second.
 pub(super) fn mixed(a: Rgb, b: Rgb, part: f32) -> Rgb {
     [0, 1, 2].map(|i| a[i] + (b[i] - a[i]) * part)
 }
 
-/// To a texel, `0x00BBGGRR`.
+/// The colour as a texel, `0x00BBGGRR`.
 pub(super) fn packed(color: Rgb) -> u32 {
     let [r, g, b] = color.map(|c| (c + 0.5).clamp(0.0, 255.0) as u32);
     r | g << 8 | b << 16

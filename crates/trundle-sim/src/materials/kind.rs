@@ -65,7 +65,7 @@ pub enum Paint {
     },
     /// Cast concrete: floors of halls, columns.
     Concrete {
-        /// Its colour.
+        /// Main colour, sRGB.
         color: [u8; 3],
     },
     /// Corrugated sheets: walls of halls.
@@ -75,12 +75,12 @@ pub enum Paint {
     },
     /// Worn floor paint.
     Marking {
-        /// Its colour.
+        /// Main colour, sRGB.
         color: [u8; 3],
     },
     /// Slotted steel: uprights of racks.
     Slotted {
-        /// Its colour.
+        /// Main colour, sRGB.
         color: [u8; 3],
     },
     /// Boxes stacked under film: goods on pallets.

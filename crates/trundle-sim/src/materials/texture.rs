@@ -126,7 +126,7 @@ impl Texture {
         [inside(0), inside(1)]
     }
 
-    /// Between the four texels around a point, in sixteenths of a texel.
+    /// The light between the four texels around a point, in sixteenths of a texel.
     #[inline(always)]
     fn bilinear(&self, level: &Level, x: f32, y: f32) -> Light {
         let x = self.inside((x * level.scale[0] - 8.0) as i32, level.extent[0]);

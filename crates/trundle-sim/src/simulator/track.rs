@@ -25,7 +25,7 @@ impl Track {
         self.poses.truncate(self.most);
     }
 
-    /// Discards earlier poses: the base was put to `pose`.
+    /// Discards earlier poses: the base was moved to `pose`.
     pub(super) fn restart(&mut self, pose: Pose2) {
         self.poses.clear();
         self.poses.push_front(pose);

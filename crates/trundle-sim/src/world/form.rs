@@ -7,7 +7,7 @@ use super::Shape;
 pub(crate) struct Form {
     /// The middle of a box, or of a cylinder's lower disc, world frame, m.
     pub(crate) place: [f64; 3],
-    /// Its own axes in the world frame, unit length.
+    /// Axes of the body in the world frame, unit length.
     pub(crate) axes: [[f64; 3]; 3],
     pub(crate) kind: Kind,
 }

@@ -19,7 +19,7 @@ pub struct Lights {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lamp {
-    /// From the scene to the lamp, world frame; its length does not matter.
+    /// Direction from the scene to the lamp, world frame, of any length.
     pub direction: [f64; 3],
     /// Strength on a surface that faces the lamp, 0 to 2.
     pub strength: f64,

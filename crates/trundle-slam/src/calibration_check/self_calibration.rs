@@ -11,7 +11,7 @@ pub(crate) type CalibrationOffset = Vector6<f64>;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct FeaturePair {
     pub a: Vector2,
-    /// Along the optical axis, m.
+    /// Depth along the optical axis, m.
     pub depth_a: f64,
     pub b: Vector2,
     /// Inverse depth and its standard deviation, 1/m.

@@ -77,7 +77,7 @@ fn without_depth(keyframe: &Keyframe) -> impl Iterator<Item = usize> + '_ {
 #[derive(Debug, Clone, Copy)]
 struct Ray {
     feature: usize,
-    /// At 1 m along the optical axis.
+    /// Coordinate x at 1 m along the optical axis.
     x: f64,
     y: f64,
     /// Largest distance from the epipolar line, px.

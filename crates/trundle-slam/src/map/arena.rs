@@ -41,12 +41,12 @@ impl<T> Arena<T> {
         thing
     }
 
-    /// The thing, unless it is gone.
+    /// The thing; `None` if it was removed.
     pub fn get(&self, number: usize) -> Option<&T> {
         self.things.get(*self.places.get(number)? as usize)?.as_ref()
     }
 
-    /// The thing, unless it is gone.
+    /// The thing; `None` if it was removed.
     pub fn get_mut(&mut self, number: usize) -> Option<&mut T> {
         self.things.get_mut(*self.places.get(number)? as usize)?.as_mut()
     }

@@ -14,9 +14,9 @@ const MAX_PRIOR_TURN_RATE_RAD_S: f64 = 20.0;
 /// Upper bounds of translation and rotation per second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MotionLimits {
-    /// m/s.
+    /// Upper bound of the speed, m/s.
     speed: f64,
-    /// rad/s.
+    /// Upper bound of the turn rate, rad/s.
     turn_rate: f64,
 }
 

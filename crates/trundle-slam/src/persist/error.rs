@@ -1,8 +1,8 @@
-//! Why a saved map cannot be loaded.
+//! Reason why a saved map cannot be loaded.
 
 use trundle_core::Invalid;
 
-/// Why a saved map was not loaded.
+/// Reason why a saved map was not loaded.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapFileError {
     /// The file is not a visual map of this program.

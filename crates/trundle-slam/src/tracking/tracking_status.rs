@@ -10,9 +10,9 @@ pub enum Tracking {
     Ok,
     /// Located, but by few landmarks: the covariance is large.
     Weak,
-    /// Not located: the pose is the last one moved by the given prior.
+    /// The frame was not located: the pose is the last one, moved by the given prior.
     DeadReckoning,
-    /// Not located and no prior: the pose stays.
+    /// The frame was not located and has no prior: the pose is the last one.
     Lost,
 }
 

@@ -6,9 +6,9 @@ use trundle_core::Vector2;
 /// A corner of a board.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoardPoint {
-    /// On the board, m: x along a row, y down the rows, seen from the front.
+    /// Position on the board, m: x along a row, y down the rows, in front view.
     pub board: Vector2,
-    /// In the image, px.
+    /// Position in the image, px.
     pub pixel: Vector2,
 }
 

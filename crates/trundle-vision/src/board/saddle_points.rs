@@ -9,7 +9,7 @@ use trundle_core::Vector2;
 /// A candidate for a corner.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct SaddlePoint {
-    /// px.
+    /// Position in the image, px.
     pub(super) pixel: Vector2,
     /// Strength: minus the determinant of the Hessian.
     pub(super) strength: f32,

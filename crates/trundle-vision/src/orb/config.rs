@@ -67,7 +67,7 @@ impl OrbConfig {
         (0..self.levels).map(|level| self.scale_factor.powi(level as i32)).collect()
     }
 
-    /// How many of the features each level should give: falling by the scale factor, adding up to `features`.
+    /// Number of features of each level: the numbers fall by the scale factor and add up to `features`.
     pub(crate) fn quotas(&self) -> Vec<usize> {
         let share: Vec<f64> = self.scale_factors().iter().map(|scale| 1.0 / scale).collect();
         let unit = self.features as f64 / share.iter().sum::<f64>();

@@ -67,8 +67,8 @@ impl OrbExtractor {
     }
 
     /// The features of `image`, octave by octave, at most [`OrbConfig::features`]; keypoints in px of `image`, to a fraction of a pixel. A
-    /// pixel within 16 px (of its own level) of the border has no feature, because its patch would be incomplete. An image of less than 33
-    /// px a side has none.
+    /// pixel within 16 px (of its own level) of the border has no feature, because its patch would be incomplete. An image with a side
+    /// below 33 px has no feature.
     pub fn extract(&mut self, image: &GrayImage) -> Features {
         let mut features = Features::default();
         self.extract_into(image, &mut features);

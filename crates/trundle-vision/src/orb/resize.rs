@@ -17,7 +17,7 @@ pub(crate) struct Resize {
     row: Vec<i16>,
 }
 
-/// Between which two samples to interpolate.
+/// The two samples between which a pixel is interpolated.
 #[derive(Debug, Clone, Copy)]
 struct Tap {
     first: u32,

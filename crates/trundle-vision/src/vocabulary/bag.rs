@@ -5,7 +5,7 @@ use super::node_id::NodeId;
 /// The words of an image with their weights: term frequency times inverse document frequency, L1 norm 1.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct BagOfWords {
-    /// By rising word.
+    /// Entries by rising word.
     entries: Vec<(NodeId, f32)>,
 }
 

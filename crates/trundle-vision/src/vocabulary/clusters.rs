@@ -18,7 +18,7 @@ const MIN_BATCH: usize = 4096;
 pub(super) struct Cluster {
     /// The bitwise majority of its members.
     pub median: Descriptor,
-    /// In the order of the input.
+    /// Members in the order of the input.
     pub members: Vec<Descriptor>,
 }
 

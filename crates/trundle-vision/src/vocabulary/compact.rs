@@ -18,7 +18,7 @@ pub enum VocabularyError {
     /// A line of a text is invalid.
     #[error("line {number}: {problem}")]
     Line {
-        /// From 1.
+        /// Number of the line, from 1.
         number: usize,
         /// The problem.
         problem: String,

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// A query costs the entries of its words, plus memory for one number per place.
 #[derive(Debug, Clone, Default)]
 pub struct PlaceIndex {
-    /// By word, as far as any place has shown one.
+    /// Entries by word, up to the largest word that a place has shown.
     shown: Vec<Vec<Entry>>,
     /// The slot of each place.
     slots: BTreeMap<u32, u32>,

@@ -13,7 +13,7 @@ const MAX_SIDE: usize = 3000;
 /// A camera image on a canvas, enlarged or shrunk by a whole number.
 pub(crate) struct Photo {
     pub canvas: Canvas,
-    /// Canvas pixels an image pixel.
+    /// Canvas pixels per image pixel.
     pub zoom: f64,
 }
 

@@ -6,7 +6,7 @@ use crate::color::Color;
 use crate::colormap::color_at;
 use trundle_core::{GridGeometry, Vector2};
 
-/// A value a cell, laid over the map as a translucent tint.
+/// One value per cell, drawn over the map as a translucent tint.
 #[derive(Debug, Clone)]
 pub(crate) struct Shade {
     pub geometry: GridGeometry,
@@ -18,7 +18,7 @@ pub(crate) struct Shade {
 /// Paint of a value.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Paint {
-    /// From light, 0, to dark, this value.
+    /// A scale from light (0) to dark (this value).
     Scale(f32),
     /// This colour, with opacity equal to the value.
     Tint(Color),

@@ -31,9 +31,9 @@ impl FittedDistortion {
 /// A point of the image in both forms, normalized by the focal length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LensPair {
-    /// In the rectified image.
+    /// Point in the rectified image.
     pub rectified: Vector2,
-    /// In the raw image.
+    /// Point in the raw image.
     pub raw: Vector2,
 }
 

@@ -11,9 +11,9 @@ pub struct WheelAngles {
 #[derive(Debug, Clone, Copy)]
 struct Reading {
     stamp: Stamp,
-    /// rad.
+    /// Angle of the left wheel, rad.
     left: f64,
-    /// rad.
+    /// Angle of the right wheel, rad.
     right: f64,
     /// Number of gaps before the reading.
     gaps: usize,
@@ -22,9 +22,9 @@ struct Reading {
 /// Turns of both wheels between two stamps.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct WheelTurn {
-    /// rad, forward.
+    /// Turn of the left wheel, rad, forward positive.
     pub(super) left: f64,
-    /// rad, forward.
+    /// Turn of the right wheel, rad, forward positive.
     pub(super) right: f64,
 }
 

@@ -14,17 +14,17 @@ const INTERFACE_NAME: &str = "uagv";
 /// The topics of a robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Topic {
-    /// From the master: an order.
+    /// An order of the master.
     Order,
-    /// From the master: instant actions.
+    /// Instant actions of the master.
     InstantActions,
-    /// From the robot: its state.
+    /// State of the robot.
     State,
-    /// From the robot: its position, often.
+    /// Position of the robot, sent more often than the state.
     Visualization,
-    /// From the robot and the broker: whether the robot is connected.
+    /// Whether the robot is connected, sent by the robot and the broker.
     Connection,
-    /// From the robot: its abilities.
+    /// Abilities of the robot.
     Factsheet,
 }
 

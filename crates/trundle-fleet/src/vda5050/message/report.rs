@@ -10,7 +10,7 @@ pub struct ErrorReport {
     pub error_type: String,
     /// The reference.
     pub error_references: Vec<ErrorReference>,
-    /// In a sentence.
+    /// The error in a sentence.
     pub error_description: String,
     /// The remedy.
     #[serde(skip_serializing_if = "Option::is_none")]

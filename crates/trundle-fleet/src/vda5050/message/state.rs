@@ -161,7 +161,7 @@ pub struct RobotPosition {
 pub struct Velocity {
     /// Ahead \[m/s\].
     pub vx: f64,
-    /// To the left \[m/s\].
+    /// Velocity to the left \[m/s\].
     pub vy: f64,
     /// Turn rate \[rad/s\].
     pub omega: f64,
@@ -189,7 +189,7 @@ pub struct ActionState {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum ActionStatus {
-    /// Not started.
+    /// The action has not started.
     Waiting,
     /// Under way.
     Running,
@@ -234,9 +234,9 @@ pub enum OperatingMode {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Information {
-    /// In a word.
+    /// Type of the information in a word.
     pub info_type: &'static str,
-    /// In a sentence.
+    /// The information in a sentence.
     pub info_description: String,
     /// For whom.
     pub info_level: &'static str,

@@ -16,7 +16,7 @@ pub(in crate::recording) enum Group {
 }
 
 impl Group {
-    /// All, in the order of the file.
+    /// All groups, in the order of the file.
     pub(super) const ALL: [Self; 3] = [Self::Depth, Self::Color, Self::Rest];
 }
 

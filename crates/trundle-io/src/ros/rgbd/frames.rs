@@ -70,7 +70,7 @@ impl<'a> RosFrames<'a> {
         Some(RosFrame { color, depth: depth_image, depth_scale: self.depth_scale })
     }
 
-    /// Reads the next message. Returns whether a message was read. A bag that breaks off ends here, as in the first pass.
+    /// Reads the next message. Returns whether a message was read. A truncated bag ends at the same message as in the first pass.
     fn read_message(&mut self) -> Result<bool, IoError> {
         let Ok(Some(message)) = self.bag.next_message() else { return Ok(false) };
         let is_color = message.topic == self.topics.color;
@@ -91,7 +91,7 @@ impl<'a> RosFrames<'a> {
         Ok(true)
     }
 
-    /// Keeps an image that a pair needs; of two with one stamp the first.
+    /// Keeps an image that a pair needs. Of two images with one stamp the first is kept.
     fn keep(&mut self, image: BagImage, is_color: bool) {
         let stamp = image.stamp;
         let is_needed = match is_color {

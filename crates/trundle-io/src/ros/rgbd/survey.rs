@@ -19,7 +19,7 @@ pub(super) struct Survey {
     /// Odometry and transforms.
     pub(super) contents: Contents,
     images: BTreeMap<String, ImageStamps>,
-    /// The first of each topic.
+    /// The first camera_info message of each topic.
     pub(super) infos: BTreeMap<String, CameraInfo>,
     /// True poses: the frame whose pose it is, and the pose.
     pub(super) truth: Vec<(Stamp, String, Pose3)>,
@@ -40,7 +40,7 @@ fn is_truth(topic: &str) -> bool {
 }
 
 impl Survey {
-    /// Reads a bag. A broken message gives one warning with its topic; a bag that breaks off is read up to the break.
+    /// Reads a bag. A broken message gives one warning with its topic; a truncated bag is read up to its end.
     pub(super) fn read(path: &Path) -> Result<Self, IoError> {
         let (mut survey, mut bag) = (Self::default(), Bag::open(path)?);
         for number in 1.. {

@@ -120,10 +120,10 @@ pub struct RosTopics {
 }
 
 impl RosTopics {
-    /// Reads a ROS 2 bag or a ROS 1 bag; one that breaks off, up to the break.
+    /// Reads a ROS 2 bag or a ROS 1 bag. A truncated bag is read up to its end.
     ///
     /// # Errors
-    /// When the bag cannot be read, or breaks off before its first message.
+    /// When the bag cannot be read, or is truncated before its first message.
     pub fn read(path: &Path) -> Result<Self, IoError> {
         let (mut bag, mut topics) = (Bag::open(path)?, Self::default());
         loop {

@@ -1,5 +1,6 @@
 //! Laws of the particle filter's scan matcher.
 
 mod cloud_match;
+mod held_directions;
 mod motion_prior;
 mod room;

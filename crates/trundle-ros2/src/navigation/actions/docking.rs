@@ -1,4 +1,4 @@
-//! `DockRobot` and `UndockRobot`, at the charging station whose light the base sees.
+//! `DockRobot` and `UndockRobot`, at the charging station whose light the base detects.
 
 use super::duration;
 use crate::generated::nav2_msgs::{
@@ -23,7 +23,7 @@ const STAGING_M: f64 = 0.7;
 /// Names of the only dock known to the robot, and of its type: the charging station with infrared light.
 const STATION_NAMES: [&str; 2] = ["", "station"];
 
-/// A limit in seconds; 0 and below is none.
+/// A time limit; `None` for 0 s and below.
 fn limit(seconds: f32) -> Option<Duration> {
     (seconds.is_finite() && seconds > 0.0).then(|| Duration::from_secs_f32(seconds))
 }

@@ -17,7 +17,7 @@ use trundle_app::operator::RunView;
 use trundle_core::wrap_angle;
 use trundle_runtime::Task;
 
-/// The time that a goal allows; 0 is none, as Nav2 has it.
+/// The time that a goal allows; `None` for 0, as in Nav2.
 fn allowance(time: &Allowance) -> Option<Duration> {
     let seconds = stamp::seconds(time);
     (seconds > 0.0).then(|| Duration::from_secs_f64(seconds))

@@ -30,7 +30,7 @@ struct Base {
 }
 
 impl Base {
-    /// At rest in a closed room of 6 x 4 m.
+    /// A robot at rest in a closed room of 6 x 4 m.
     fn new(pose: Pose2) -> Self {
         let mut grid = floor(|_| false);
         let sides = (0..80).flat_map(|row| [0, 119].map(|col| CellIndex { col, row }));

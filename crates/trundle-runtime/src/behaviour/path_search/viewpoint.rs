@@ -16,7 +16,7 @@ pub(crate) enum Viewpoint {
     Choosing(ViewTarget, Vec<Pose2>),
     /// The robot drives to the viewpoint.
     Going(ViewTarget, Trajectory),
-    /// At the viewpoint, observing until this time.
+    /// The robot is at the viewpoint and observes until this time.
     Looking(Stamp),
     /// Finished: at the viewpoint, or without any viewpoint.
     Settled,

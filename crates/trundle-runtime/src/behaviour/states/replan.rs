@@ -44,7 +44,7 @@ impl Planned {
     }
 }
 
-/// Plans along floor that the camera observes in time, and reacts to the result. A search that goes on keeps its data in `search`.
+/// Plans along floor that the camera observes in time, and reacts to the result. An unfinished search keeps its data in `search`.
 pub(crate) fn replan(
     tools: &mut Tools,
     search: &mut PathSearch,

@@ -74,7 +74,7 @@ impl Wait {
         tools.contacts.is_any() && waited && is_free_behind(s, tools.body.radius)
     }
 
-    /// Takes the reason of a stop, or goes on with the drive once the safety monitor permits.
+    /// Stores the reason of a stop, or continues the drive once the safety monitor permits it.
     pub(crate) fn on_safety(&mut self, tools: &Tools, action: SafetyAction, s: &WorldState<'_>) -> Next {
         match action {
             SafetyAction::Stop(stop) => {

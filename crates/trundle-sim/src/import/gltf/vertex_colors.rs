@@ -7,7 +7,7 @@ use trundle_core::ColorImage;
 /// The colours of the triangles of each material with vertex colours.
 #[derive(Debug, Default)]
 pub(super) struct Painting {
-    /// By the material's place.
+    /// Triangles by the index of their material.
     triangles: BTreeMap<usize, Vec<PaintedTriangle>>,
 }
 

@@ -5,7 +5,7 @@
 pub(crate) struct Light(pub(super) u64);
 
 impl Light {
-    /// Between two colours, `part` of 256 of the second.
+    /// A mixture of two colours with `part` of 256 of the second.
     #[inline(always)]
     pub(crate) fn blend(self, other: Self, part: u32) -> Self {
         let part = u64::from(part);

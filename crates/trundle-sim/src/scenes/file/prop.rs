@@ -8,10 +8,10 @@ use crate::world::Solid;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose2, require_finite, require_in};
 
-/// Colour of what has none given.
+/// Colour of a prop without a given colour.
 const WOOD: [u8; 3] = [176, 128, 80];
 
-/// A thing in a scene file.
+/// A prop in a scene file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Prop {

@@ -3,7 +3,7 @@
 use crate::materials::Paint;
 use serde::{Deserialize, Serialize};
 
-/// A thing to place.
+/// Kind of a prop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PropKind {

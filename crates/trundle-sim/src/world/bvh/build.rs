@@ -105,7 +105,7 @@ impl Builder<'_> {
     }
 }
 
-/// From centres to bins.
+/// Scale from centres to bins.
 struct Scale {
     low: Vector3,
     bins_per_metre: Vector3,

@@ -75,7 +75,7 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 /// The grey values of a quad by cells.
 struct Cells<'a> {
     image: &'a SmoothImage,
-    /// From cells, x right and y down, to px.
+    /// Homography from cells, x right and y down, to px.
     image_from_cells: Matrix3<f64>,
 }
 

@@ -44,7 +44,7 @@ pub(crate) fn block_mut<const N: usize, T>(slice: &mut [T], start: usize) -> &mu
 mod tests {
     use super::*;
 
-    /// Without vectors, the tests of the kernels would have no comparison.
+    /// The test machine must have vectors: without them, the tests of the kernels would compare nothing.
     #[test]
     fn the_test_machine_has_vectors() {
         assert!(is_available());

@@ -100,7 +100,7 @@ impl ReplyReader {
     }
 }
 
-/// The sequence in a completion; `None` if `transfer` is none.
+/// The sequence in a completion; `None` if `transfer` is no completion.
 fn completed_sequence(transfer: &[u8]) -> Option<u32> {
     let (words, []) = transfer.as_chunks::<4>() else { return None };
     let [magic, sequence, _, _] = *words else { return None };

@@ -36,7 +36,7 @@ pub fn candidates(spec: &LibrarySpec, setting: Option<&Path>) -> Candidates {
     }
 }
 
-/// The last of a list separated by `:`, with the others loaded first.
+/// The last file of a list separated by `:`. The other files are loaded before it.
 fn named_file(files: &Path) -> Option<Candidate> {
     let mut files: Vec<PathBuf> = std::env::split_paths(files).collect();
     let file = files.pop()?;

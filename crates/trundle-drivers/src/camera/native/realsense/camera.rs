@@ -16,10 +16,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trundle_core::Invalid;
 
-/// Silence of a stopped recording that counts as its end: 0.5 s. The library reports a recording as stopped before its thread has started,
-/// and again before the last frames are delivered. Source: ours.
+/// Duration without frames after which a stopped recording has ended: 0.5 s. The library reports a recording as stopped before its thread
+/// has started, and again before the last frames are delivered. Source: ours.
 const END_SILENCE: Duration = Duration::from_millis(500);
-/// Period of queries of the state of a silent recording. Source: ours.
+/// Period at which the state of a recording without frames is queried. Source: ours.
 const STATUS_PERIOD: Duration = Duration::from_millis(20);
 
 /// A RealSense camera, or a recording of one.
@@ -34,7 +34,8 @@ pub struct RealSenseCamera {
 }
 
 impl RealSenseCamera {
-    /// Opens a camera or a recording, a file `.db3` of librealsense 2.56 or newer or `.bag` of an older one, and starts its streams.
+    /// Opens a camera or a recording and starts its streams. A recording is a file `.db3` of librealsense 2.56 or newer, or `.bag` of an
+    /// older version.
     ///
     /// # Errors
     /// When the camera is missing, in use, forbidden, too slow or without these streams, or its intrinsics are unusable.

@@ -7,7 +7,7 @@ use crate::behaviour::station_drive::StationGoal;
 use proptest::sample::select;
 use trundle_control::MotionHold;
 
-/// What happens to the robot for a while.
+/// An event that affects the robot for some time.
 #[derive(Debug, Clone)]
 struct Episode {
     goal: Option<Goal>,
