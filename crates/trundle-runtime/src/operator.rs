@@ -1,6 +1,6 @@
 //! Commands of an operator (a person or a program) to a running robot.
 
-use crate::mission::executor_config::PATIENCE_RANGE_S;
+use crate::mission::goal_options::PATIENCE_RANGE_S;
 use crate::{Mission, RobotConfig};
 use serde::{Deserialize, Serialize};
 use trundle_core::{

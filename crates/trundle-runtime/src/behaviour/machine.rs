@@ -9,6 +9,7 @@
 //! | tick | the twist |
 //! | safety | the reaction to the safety monitor's decision about the twist |
 
+use super::path_search::PathSearch;
 use super::state::{Change, Next, State};
 use super::states::{approach, drive, initialize, maneuver, plan, relocalize, spin_once};
 use super::tools::Tools;
@@ -144,6 +145,15 @@ impl StateMachine {
     pub(crate) fn permission(&self, s: &WorldState<'_>) -> Option<StationMotion> {
         match &self.state {
             State::Station(station) => station.permission(s),
+            _ => None,
+        }
+    }
+
+    /// The search for a path, in a state that waits or recovers without a path.
+    pub(crate) fn search(&mut self) -> Option<&mut PathSearch> {
+        match &mut self.state {
+            State::Recover(recover) => Some(&mut recover.search),
+            State::Wait(wait) if wait.interrupted.is_none() => Some(&mut wait.search),
             _ => None,
         }
     }

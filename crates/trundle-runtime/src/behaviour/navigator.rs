@@ -12,6 +12,7 @@ use crate::{
     behaviour::drive_state::DriveState,
     behaviour::goal::Goal,
     behaviour::machine::StateMachine,
+    behaviour::path_search::viewpoint::Viewpoint,
     behaviour::progress::guard::Remaining,
     behaviour::progress::rest::rest,
     behaviour::spin::Spin,
@@ -22,7 +23,7 @@ use crate::{
     mission::GoalOptions,
     mission::executor_config::MissionExecutorConfig,
     operator::RunSetting,
-    reason::{Reason, TransitionReason},
+    reason::{NoPath, Reason, TransitionReason},
     stage::{Stage, StageTimes},
 };
 use trundle_control::{MotionSense, SafetyInput, SafetyMemory, SafetyMonitor};
@@ -193,19 +194,31 @@ impl Navigator {
         let is_driving = matches!(self.machine.state(), State::Drive(_));
         let remaining = Remaining { rest, results: self.tools.planner.visibility.results(), is_driving };
         let time = self.tools.guard.time_without_progress(s.now, &remaining);
-        if self.tools.options.patience.is_some_and(|patience| time > patience) {
+        let is_over = self.tools.options.patience.is_some_and(|patience| time > patience);
+        if is_over && !self.looks_again(s) {
             let state = self.state();
-            let cause = self.blocked_path(s).or_else(|| state.reason().cloned());
+            let looked = self.tools.guard.last_look();
+            let blocked =
+                looked.map(|look| self.tools.planner.no_path(NoPath::Blocked { nearest: look.nearest }));
+            let cause = blocked.or_else(|| state.reason().cloned());
             let (state, cause) = (state.name(), cause.map(Box::new));
             self.tools.halt();
             self.machine.stop(Reason::NoProgress { time, state, cause }, TransitionReason::NoProgress);
         }
     }
 
-    /// The obstacle on the path that the robot followed to its goal.
-    fn blocked_path(&self, s: &WorldState<'_>) -> Option<Reason> {
-        let (path, time) = self.tools.guard.path()?;
-        self.tools.planner.obstacle_on(path, time, s).map(|at| Reason::PathBlocked { at })
+    /// Whether the robot looks once more at the reachable point nearest to the goal. A search over unseen floor may have led away from it.
+    fn looks_again(&mut self, s: &WorldState<'_>) -> bool {
+        if let Some(look) = self.tools.guard.last_look() {
+            return look.goes_on(s.now);
+        }
+        let search = self.machine.search().filter(|search| search.rest_over_unseen_floor.is_some());
+        let (Some(search), Some(goal)) = (search, self.tools.goal.pose()) else { return false };
+        let Some(nearest) = self.tools.planner.nearest_seen_point(s, goal) else { return false };
+        self.tools.guard.begin_last_look(s.now, nearest);
+        (search.last_look, search.viewpoint) = (Some(nearest), Viewpoint::default());
+        self.tools.follower.halt();
+        true
     }
 
     /// Whether the robot waits for a blocked path, as the goal asks.

@@ -10,7 +10,7 @@ use crate::reason::{NoPath, Reason};
 use crate::world_state::WorldState;
 use camera_fov::CameraFov;
 pub(crate) use plan_in_view::{InView, UnseenPath};
-use trundle_core::{Footprint, Invalid, Pose2, Twist2};
+use trundle_core::{Cell, Footprint, Invalid, Pose2, Twist2, Vector2};
 use trundle_planning::{Plan, Planner};
 use visibility_constraint::VisibilityConstraint;
 
@@ -79,6 +79,25 @@ impl PathPlanner {
     ) -> bool {
         !s.dynamic_obstacles.movers.is_empty()
             && matches!(self.planner.plan(s.permitted_floor(), from.0, from.1, goal), Plan::Found(_))
+    }
+
+    /// The point nearest to the goal that the robot reaches over seen floor alone, map frame, m; `None` if a path over seen floor leads to the
+    /// goal.
+    pub(crate) fn nearest_seen_point(&mut self, s: &WorldState<'_>, goal: Pose2) -> Option<Vector2> {
+        let mut seen = s.permitted_floor().clone();
+        let geometry = *seen.geometry();
+        // The goal itself may be out of sight.
+        let around_goal = self.radius + 2.0 * geometry.resolution;
+        for cell in (0..geometry.len()).map(|k| geometry.cell(k)) {
+            let is_off = (geometry.center(cell) - goal.position()).norm() > around_goal;
+            if is_off && seen.get(cell) == Cell::Unknown {
+                seen.set(cell, Cell::Occupied);
+            }
+        }
+        match self.planner.plan(&seen, s.estimate.pose, Twist2::ZERO, goal) {
+            Plan::Blocked { nearest } => Some(nearest),
+            _ => None,
+        }
     }
 
     /// The reason for a missing path, with the floor excluded from the search.

@@ -1,12 +1,9 @@
 //! Configuration of the mission executor.
 
-use super::goal_options::WhenBlocked;
+use super::goal_options::{PATIENCE_RANGE_S, WhenBlocked};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, require_in};
 use trundle_planning::ExploreConfig;
-
-/// Range of the patience \[s\]. Source: ours.
-pub(crate) const PATIENCE_RANGE_S: (f64, f64) = (1.0, 3600.0);
 
 /// Settings of missions, and time limits.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

@@ -3,8 +3,6 @@
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose2, require_in};
 
-use super::executor_config::PATIENCE_RANGE_S;
-
 /// A goal of a mission: a pose, and how the robot drives there.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -48,6 +46,8 @@ pub enum WhenBlocked {
     Wait,
 }
 
+/// Range of the patience \[s\]. Source: ours.
+pub(crate) const PATIENCE_RANGE_S: (f64, f64) = (1.0, 3600.0);
 /// Range of the tolerance of a position \[m\]. Source: ours; below it the robot settles exactly.
 const TOLERANCE_RANGE_M: (f64, f64) = (0.01, 10.0);
 /// Range of the tolerance of a heading \[rad\]. Source: ours.

@@ -1,6 +1,6 @@
 //! Ends an attempt whose potential does not fall.
 
-use trundle_core::{Stamp, Trajectory};
+use trundle_core::{Stamp, Trajectory, Vector2};
 
 /// The one guard against a lack of progress.
 ///
@@ -12,6 +12,9 @@ use trundle_core::{Stamp, Trajectory};
 /// - the drive along a path that was found at rest, while its rest falls;
 /// - the time until an obstacle on the path made the path longer, once between two falls below the lowest value. Observations on the detour
 ///   are no progress.
+///
+/// At the end of the patience in a search over unseen floor the robot looks once more at the reachable point nearest to the goal: what blocked
+/// the path there may have left.
 ///
 /// Every goal ends: the lowest value falls a finite number of times, and each drive that leads nowhere ends with a stop, which counts.
 #[derive(Debug, Clone, Default)]
@@ -45,6 +48,16 @@ struct Clock {
     since: Stamp,
     /// Number of observations before an obstacle made the path longer; `None` if none did since the last fall of the lowest potential.
     results_at_detour: Option<usize>,
+    /// The last look, `None` before it.
+    last_look: Option<LastLook>,
+}
+
+/// The last look before a goal is given up.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LastLook {
+    /// The reachable seen point nearest to the goal, map frame \[m\].
+    pub(crate) nearest: Vector2,
+    until: Stamp,
 }
 
 /// Fall of the potential that counts as progress \[m\]. Source: ours.
@@ -52,6 +65,8 @@ const MIN_FALL_M: f64 = 0.15;
 /// Length that an observation with a result takes off the potential \[m\]: the width of the floor that it shows. Source: ours, the diameter
 /// of a virtual obstacle.
 const OBSERVATION_LENGTH_M: f64 = 0.6;
+/// Duration of the last look, with the way there \[s\]. Source: ours.
+const LAST_LOOK_DURATION_S: f64 = 30.0;
 
 impl ProgressGuard {
     /// Starts anew for another goal.
@@ -95,6 +110,17 @@ impl ProgressGuard {
         }
     }
 
+    /// Begins the last look: `nearest` is the reachable seen point nearest to the goal, map frame, m.
+    pub(crate) fn begin_last_look(&mut self, now: Stamp, nearest: Vector2) {
+        let until = now.after(LAST_LOOK_DURATION_S);
+        self.clock(now).last_look = Some(LastLook { nearest, until });
+    }
+
+    /// The last look since the last fall of the lowest potential, also after its end.
+    pub(crate) fn last_look(&self) -> Option<LastLook> {
+        self.clock?.last_look
+    }
+
     /// Whether the potential of a path of a length \[m\] is above the lowest one: the path has become longer.
     pub(crate) fn is_longer(&self, length: f64, results: usize) -> bool {
         self.clock.is_some_and(|clock| clock.potential(length, results) > clock.lowest)
@@ -120,11 +146,25 @@ impl ProgressGuard {
     }
 }
 
+impl LastLook {
+    /// Whether the last look goes on.
+    pub(crate) fn goes_on(&self, now: Stamp) -> bool {
+        now < self.until
+    }
+}
+
 impl Clock {
     /// A clock that starts, before any path.
     fn new(now: Stamp) -> Self {
         let lowest = f64::INFINITY;
-        Self { lowest, lowest_of_drive: lowest, waited: 0.0, since: now, results_at_detour: None }
+        Self {
+            lowest,
+            lowest_of_drive: lowest,
+            waited: 0.0,
+            since: now,
+            results_at_detour: None,
+            last_look: None,
+        }
     }
 
     /// The potential \[m\].

@@ -4,6 +4,7 @@ use super::detour::{Detour, detour};
 use super::maneuver::{STANDING_SPEED_M_S, begin_if_possible};
 use crate::behaviour::path_planner::{InView, UnseenPath};
 use crate::behaviour::path_search::PathSearch;
+use crate::behaviour::path_search::viewpoint::Viewpoint;
 use crate::behaviour::progress::rest::length;
 use crate::behaviour::state::{Change, Drive, Next, Recover, State, Wait};
 use crate::behaviour::tools::Tools;
@@ -123,6 +124,9 @@ fn observe_first(
     if let Some(wait) = judge_detour(tools, search, new, s) {
         return ControlFlow::Break(Some(wait));
     }
+    if let Some(change) = look_again(tools, search, s) {
+        return ControlFlow::Break(Some(change));
+    }
     search.rest_over_unseen_floor = Some(new);
     if search.seeks_view_of(at, &mut tools.planner, &mut tools.follower, s) {
         return ControlFlow::Break(observe(tools, search, at));
@@ -161,6 +165,9 @@ fn stop_for_path_in_view(
 /// Reaction to a missing path: stops, turns on the spot until the surroundings are observed, drives to a viewpoint of the blocked
 /// place, and waits with the camera on that place.
 fn without_path(tools: &mut Tools, search: &mut PathSearch, cause: NoPath, s: &WorldState<'_>) -> Next {
+    if let Some(change) = look_again(tools, search, s) {
+        return Some(change);
+    }
     search.rest_over_unseen_floor = None;
     let is_final = is_final(tools, search, &cause, s.now);
     if search.is_going() {
@@ -196,6 +203,18 @@ fn is_final(tools: &Tools, search: &mut PathSearch, cause: &NoPath, now: Stamp) 
     let is_kept_out = tools.planner.visibility.keep_out().is_some();
     let is_proven = is_at_goal && !is_kept_out && now - since >= NO_PATH_CONFIRMATION_S;
     tools.goal.is_viewpoint() || tools.ends_without_path && !tools.waits_when_blocked() && is_proven
+}
+
+/// The drive to the last look before the goal is given up; `None` before it, and once the robot is there.
+fn look_again(tools: &mut Tools, search: &mut PathSearch, s: &WorldState<'_>) -> Next {
+    let nearest = search.last_look?;
+    search.blocked_at = Some(nearest);
+    if !search.seeks_viewpoint(&mut tools.planner, &mut tools.follower, s) {
+        (search.last_look, search.viewpoint) = (None, Viewpoint::default());
+        return None;
+    }
+    let (reason, search) = (tools.planner.no_path(NoPath::Blocked { nearest }), std::mem::take(search));
+    State::Recover(Recover { reason, is_wedged: false, search }).because(TransitionReason::NoPath)
 }
 
 /// A new path of a length \[m\] that is longer than the one before it: the guard allows the detour, or the goal asks to wait.

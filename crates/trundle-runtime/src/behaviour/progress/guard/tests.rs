@@ -120,3 +120,15 @@ fn a_pause_does_not_count() {
     fresh.pause(at(7.0));
     assert_eq!(fresh.time_without_progress(at(9.0), &left(f64::INFINITY)), 2.0);
 }
+
+#[test]
+fn the_last_look_ends_after_its_time_and_is_forgotten_with_the_next_progress() {
+    let (mut guard, door) = (ProgressGuard::default(), Vector2::new(3.0, 1.0));
+    guard.time_without_progress(at(0.0), &left(1.0));
+    assert!(guard.last_look().is_none());
+    guard.begin_last_look(at(80.0), door);
+    let look = guard.last_look().unwrap();
+    assert!(look.nearest == door && look.goes_on(at(109.9)) && !look.goes_on(at(110.1)));
+    guard.time_without_progress(at(120.0), &left(0.5));
+    assert!(guard.last_look().is_none());
+}
