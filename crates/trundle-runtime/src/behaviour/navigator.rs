@@ -185,7 +185,7 @@ impl Navigator {
     /// Checks that the robot makes progress.
     fn monitor_progress(&mut self, s: &WorldState<'_>) {
         if let Some(reference) = self.tools.follower.reference().filter(|_| self.tools.plan.is_some()) {
-            self.tools.guard.note_time(reference.time);
+            self.tools.guard.note(reference.time, s.floor());
         }
         let rest = rest(self.machine.state(), &self.tools, s);
         // A hold by the body is not a fault of the goal.

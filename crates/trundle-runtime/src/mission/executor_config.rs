@@ -16,7 +16,8 @@ pub struct MissionExecutorConfig {
     /// observation of unseen floor on it. Default 75: longer than a person stands in a door.
     pub patience: f64,
     /// What the robot does if an obstacle blocks its path: `detour`: another path of any length, and the end of the goal after the patience;
-    /// `wait`: a wait without a limit of time, in place of a much longer path. Default `detour`.
+    /// `wait`: a wait without a limit of time, in place of a much longer path around an obstacle on floor that was seen free. Default
+    /// `detour`.
     pub when_blocked: WhenBlocked,
     /// Standard deviation of the position above which the robot counts as lost and stops, m, 0.1 to 10. Default 0.7 (ours).
     pub lost_sigma: f64,

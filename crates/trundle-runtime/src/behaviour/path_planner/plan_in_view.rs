@@ -6,7 +6,7 @@ use super::visibility_constraint::{MAX_VIRTUAL_OBSTACLES, VIRTUAL_OBSTACLE_RADIU
 use crate::behaviour::progress::rest::length;
 use crate::world_state::WorldState;
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Trajectory, TrajectoryPoint, Twist2, Vector2};
-use trundle_planning::{Plan, PlanResult};
+use trundle_planning::{Obstruction, Plan, PlanResult};
 
 /// Result of the search for a path within the camera's view.
 #[derive(Debug)]
@@ -102,10 +102,9 @@ impl PathPlanner {
         self.obstacle_on(way, time, s).is_none() && self.unseen_on(way, time, s).is_none()
     }
 
-    /// The robot's position at the first contact on the rest of a path, from `time` \[s\] on; `None` if the rest is free.
-    pub(crate) fn obstacle_on(&self, way: &Trajectory, time: f64, s: &WorldState<'_>) -> Option<Vector2> {
-        let checked = self.planner.validate_trajectory(s.permitted_floor(), way, time);
-        checked.err().map(|obstruction| obstruction.pose.position())
+    /// The first contact on the rest of a path, from `time` \[s\] on; `None` if the rest is free.
+    pub(crate) fn obstacle_on(&self, way: &Trajectory, time: f64, s: &WorldState<'_>) -> Option<Obstruction> {
+        self.planner.validate_trajectory(s.permitted_floor(), way, time).err()
     }
 
     /// First place on the rest of a path at which it enters floor that the camera does not observe in time.

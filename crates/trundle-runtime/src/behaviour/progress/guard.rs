@@ -1,6 +1,7 @@
 //! Ends an attempt whose potential does not fall.
 
-use trundle_core::{Stamp, Trajectory, Vector2};
+use super::followed_path::FollowedPath;
+use trundle_core::{OccupancyGrid, Stamp, Trajectory, Vector2};
 
 /// The one guard against a lack of progress.
 ///
@@ -20,8 +21,7 @@ use trundle_core::{Stamp, Trajectory, Vector2};
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ProgressGuard {
     clock: Option<Clock>,
-    /// The last path to the goal, and the robot's time on it, s.
-    path: Option<(Trajectory, f64)>,
+    path: Option<FollowedPath>,
 }
 
 /// What remains until the goal.
@@ -126,19 +126,19 @@ impl ProgressGuard {
         self.clock.is_some_and(|clock| clock.potential(length, results) > clock.lowest)
     }
 
-    /// The last path to the goal, and the robot's time on it, s. The path remains after an obstacle has blocked it.
-    pub(crate) fn path(&self) -> Option<(&Trajectory, f64)> {
-        self.path.as_ref().map(|(path, time)| (path, *time))
+    /// The last path to the goal. It remains after an obstacle has blocked it.
+    pub(crate) fn path(&self) -> Option<&FollowedPath> {
+        self.path.as_ref()
     }
 
     /// Takes a new path to the goal.
     pub(crate) fn follow(&mut self, path: Trajectory) {
-        self.path = Some((path, 0.0));
+        self.path = Some(FollowedPath::new(path));
     }
 
-    /// Records the robot's time on the path, s.
-    pub(crate) fn note_time(&mut self, time: f64) {
-        self.path.iter_mut().for_each(|path| path.1 = time);
+    /// Records the robot's time on the path, s, and the floor that is seen free.
+    pub(crate) fn note(&mut self, time: f64, floor: &OccupancyGrid) {
+        self.path.iter_mut().for_each(|path| path.note(time, floor));
     }
 
     fn clock(&mut self, now: Stamp) -> &mut Clock {

@@ -1,5 +1,6 @@
 //! A path that has become longer: whether the robot takes the detour or waits.
 
+use crate::behaviour::progress::followed_path::FollowedPath;
 use crate::behaviour::progress::rest::length;
 use crate::behaviour::tools::Tools;
 use crate::world_state::WorldState;
@@ -12,7 +13,8 @@ pub(super) enum Detour {
     None,
     /// The new path is longer, because of an obstacle.
     Taken,
-    /// The new path is much longer because of an obstacle at this place, map frame \[m\], and the goal asks to wait.
+    /// The new path is much longer because of an obstacle on floor that was seen free, at this place, map frame \[m\], and the goal asks
+    /// to wait.
     Refused(Vector2),
 }
 
@@ -26,21 +28,18 @@ pub(super) fn detour(tools: &Tools, new: f64, s: &WorldState<'_>) -> Detour {
     if !tools.guard.is_longer(new, tools.planner.visibility.results()) {
         return Detour::None;
     }
-    let planner = &tools.planner;
-    let before = tools.guard.path();
-    let obstacle = before.and_then(|(path, time)| planner.obstacle_on(path, time, s));
-    if let Some(at) = obstacle
-        && tools.waits_when_blocked()
-        && is_much_longer(tools, new)
-    {
-        return Detour::Refused(at);
+    let Some(before) = tools.guard.path() else { return Detour::None };
+    let obstacle = tools.planner.obstacle_on(&before.trajectory, before.time, s);
+    let Some(obstacle) = obstacle else { return Detour::None };
+    // A wall that was not in view yet does not leave.
+    let is_new = before.was_free(obstacle.time, &obstacle.pose, tools.body.radius);
+    if is_new && tools.waits_when_blocked() && is_much_longer(before, new, tools.body.radius) {
+        return Detour::Refused(obstacle.pose.position());
     }
-    if obstacle.is_some() { Detour::Taken } else { Detour::None }
+    Detour::Taken
 }
 
-/// Whether a new path is much longer than the rest of the path before it.
-fn is_much_longer(tools: &Tools, new: f64) -> bool {
-    tools.guard.path().is_some_and(|(path, time)| {
-        new > MAX_DETOUR_RATIO * length(path, time, tools.body.radius) + MAX_DETOUR_EXTRA_M
-    })
+/// Whether a new path of a length \[m\] is much longer than the rest of the path before it.
+fn is_much_longer(before: &FollowedPath, new: f64, radius: f64) -> bool {
+    new > MAX_DETOUR_RATIO * length(&before.trajectory, before.time, radius) + MAX_DETOUR_EXTRA_M
 }
