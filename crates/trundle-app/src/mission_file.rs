@@ -224,7 +224,7 @@ mod tests {
             ),
             (
                 "[[task]]\ngo = [1, 2, 3]\nwhen_blocked = \"push\"\n",
-                "mission.toml, line 3: unknown value push, expected detour or wait",
+                "mission.toml, line 3: when_blocked is push, expected detour or wait",
             ),
             ("[[task]]\ngo = [1, nan, 3]\n", "mission.toml: y of the goal of task 1 is NaN m, expected "),
             (

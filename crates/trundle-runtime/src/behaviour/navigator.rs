@@ -23,7 +23,7 @@ use crate::{
     mission::GoalOptions,
     mission::executor_config::MissionExecutorConfig,
     operator::RunSetting,
-    reason::{NoPath, Reason, TransitionReason},
+    reason::{NoPath, Reason, ReasonKind, TransitionReason},
     stage::{Stage, StageTimes},
 };
 use trundle_control::{MotionSense, SafetyInput, SafetyMemory, SafetyMonitor};
@@ -197,7 +197,7 @@ impl Navigator {
         let is_over = self.tools.options.patience.is_some_and(|patience| time > patience);
         if is_over && !self.looks_again(s) {
             let state = self.state();
-            let looked = self.tools.guard.last_look();
+            let looked = self.tools.guard.last_look().filter(|_| self.searches_over_unseen_floor());
             let blocked =
                 looked.map(|look| self.tools.planner.no_path(NoPath::Blocked { nearest: look.nearest }));
             let cause = blocked.or_else(|| state.reason().cloned());
@@ -212,13 +212,26 @@ impl Navigator {
         if let Some(look) = self.tools.guard.last_look() {
             return look.goes_on(s.now);
         }
-        let search = self.machine.search().filter(|search| search.rest_over_unseen_floor.is_some());
-        let (Some(search), Some(goal)) = (search, self.tools.goal.pose()) else { return false };
+        if !self.searches_over_unseen_floor() {
+            return false;
+        }
+        let (Some(search), Some(goal)) = (self.machine.search(), self.tools.goal.pose()) else {
+            return false;
+        };
+        if search.rest_over_unseen_floor.is_none() {
+            return false;
+        }
         let Some(nearest) = self.tools.planner.nearest_seen_point(s, goal) else { return false };
         self.tools.guard.begin_last_look(s.now, nearest);
         (search.last_look, search.viewpoint) = (Some(nearest), Viewpoint::default());
         self.tools.follower.halt();
         true
+    }
+
+    /// Whether obstacles and unseen floor are all that keeps the robot from its goal: not a sensor, and not the base.
+    fn searches_over_unseen_floor(&self) -> bool {
+        let reason = self.machine.state().reason().map(Reason::kind);
+        reason.is_some_and(|kind| kind == ReasonKind::UnseenFloor || kind.is_blockage())
     }
 
     /// Whether the robot waits for a blocked path, as the goal asks.

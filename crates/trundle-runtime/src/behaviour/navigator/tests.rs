@@ -11,7 +11,6 @@ use super::testing::{at_rest, floor, navigator, waiting};
 use super::*;
 use crate::behaviour::contacts::MAX_BUMPER_CONTACTS;
 use crate::behaviour::path_search::PathSearch;
-use crate::reason::ReasonKind;
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 use trundle_control::{SafetyScan, StopReason};

@@ -153,3 +153,20 @@ fn a_goal_keeps_its_own_patience_when_the_robots_changes() {
         base.navigator.change(RunSetting::Patience(75.0));
     }
 }
+
+#[test]
+fn a_camera_that_fails_in_a_search_over_unseen_floor_is_the_reason_of_the_end() {
+    let mut base = Base::new(Pose2::new(2.6, 1.1, 0.0));
+    base.grid = super::unseen::unseen_bend();
+    base.navigator.set_goal_with(Goal::Exact(Pose2::new(2.9, 3.2, 1.57)), options(WhenBlocked::Detour));
+    base.run(8.0);
+    let seen = base.now;
+    let steps = (0..3000).take_while(|_| {
+        base.step_with(|s| s.seen = Some(seen));
+        !base.navigator.state().is_over()
+    });
+    let seconds = steps.count() as f64 * STEP_S;
+    assert!(seconds < 21.0, "{seconds} s");
+    let reason = base.navigator.state().reason().unwrap().clone();
+    assert!(reason.is_due_to(ReasonKind::ImageMissing), "{reason}");
+}
