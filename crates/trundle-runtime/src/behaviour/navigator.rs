@@ -173,7 +173,7 @@ impl Navigator {
             None if is_lost && position_sigma(&s.estimate) < 0.5 * self.config.lost_sigma => {
                 // The robot may have been carried here.
                 self.tools.planner.visibility.home = None;
-                self.tools.guard.allow_detour(s.now, self.tools.planner.visibility.results());
+                self.tools.guard.carried(s.now, self.tools.planner.visibility.results());
                 let spins = self.tools.goal == Goal::Spin;
                 let state = if spins { State::Spin(Spin::default()) } else { State::Initialize };
                 self.machine.change(state.because(TransitionReason::PoseFound));
@@ -188,8 +188,9 @@ impl Navigator {
             self.tools.guard.note(reference.time, s.floor());
         }
         let rest = rest(self.machine.state(), &self.tools, s);
-        // A hold by the body is not a fault of the goal.
-        let rest = rest.filter(|_| s.hold.is_none() && !self.waits_by_request());
+        // The opening and a hold by the body are not faults of the goal.
+        let is_asked = self.tools.opening.is_rested(s) && s.hold.is_none() && !self.waits_by_request();
+        let rest = rest.filter(|_| is_asked);
         let Some(rest) = rest else { return self.tools.guard.pause(s.now) };
         let is_driving = matches!(self.machine.state(), State::Drive(_));
         let remaining = Remaining { rest, results: self.tools.planner.visibility.results(), is_driving };

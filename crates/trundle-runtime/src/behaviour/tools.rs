@@ -109,9 +109,9 @@ impl Tools {
         self.goal_approach.reset();
     }
 
-    /// Whether the goal asks to wait for a blocked path.
+    /// Whether the goal asks to wait for a blocked path. A viewpoint is skipped.
     pub(crate) fn waits_when_blocked(&self) -> bool {
-        self.options.when_blocked == Some(WhenBlocked::Wait)
+        self.options.when_blocked == Some(WhenBlocked::Wait) && !self.goal.is_viewpoint()
     }
 
     /// Takes up a plan, and follows it: to the goal, or near a blocked goal with a tolerance to the end of the trajectory.

@@ -44,8 +44,9 @@ struct Clock {
     lowest_of_drive: f64,
     /// Time without progress before `since`, s.
     waited: f64,
-    /// Stamp of the last fall of either length.
+    /// Stamp of the last fall of either length, or of the end of a pause.
     since: Stamp,
+    is_paused: bool,
     /// Number of observations before an obstacle made the path longer; `None` if none did since the last fall of the lowest potential.
     results_at_detour: Option<usize>,
     /// The last look, `None` before it.
@@ -66,7 +67,7 @@ const MIN_FALL_M: f64 = 0.15;
 /// of a virtual obstacle.
 const OBSERVATION_LENGTH_M: f64 = 0.6;
 /// Duration of the last look, with the way there \[s\]. Source: ours.
-const LAST_LOOK_DURATION_S: f64 = 30.0;
+pub(crate) const LAST_LOOK_DURATION_S: f64 = 30.0;
 
 impl ProgressGuard {
     /// Starts anew for another goal.
@@ -78,6 +79,7 @@ impl ProgressGuard {
     pub(crate) fn time_without_progress(&mut self, now: Stamp, remaining: &Remaining) -> f64 {
         let &Remaining { rest, results, is_driving } = remaining;
         let clock = self.clock(now);
+        clock.is_paused = false;
         let potential = clock.potential(rest, results);
         if potential < clock.lowest - MIN_FALL_M {
             *clock = Clock { lowest: potential, ..Clock::new(now) };
@@ -88,10 +90,19 @@ impl ProgressGuard {
         (now - clock.since) + if is_driving { 0.0 } else { clock.waited }
     }
 
-    /// Excludes the time until `now`: nothing is asked of the robot, or the wait is wanted.
+    /// Excludes the time from the first of successive calls until the last one: nothing is asked of the robot, or the wait is wanted.
     pub(crate) fn pause(&mut self, now: Stamp) {
         let clock = self.clock(now);
-        (clock.waited, clock.since) = (0.0, now);
+        if !clock.is_paused {
+            (clock.waited, clock.is_paused) = (clock.waited + (now - clock.since), true);
+        }
+        clock.since = now;
+    }
+
+    /// The robot may have been carried: its path has no meaning any more, and the way back is a detour.
+    pub(crate) fn carried(&mut self, now: Stamp, results: usize) {
+        self.path = None;
+        self.allow_detour(now, results);
     }
 
     /// A drive begins from rest: its own falls stop the clock.
@@ -161,6 +172,7 @@ impl Clock {
             lowest,
             lowest_of_drive: lowest,
             waited: 0.0,
+            is_paused: false,
             since: now,
             results_at_detour: None,
             last_look: None,

@@ -1,6 +1,7 @@
 //! What is left to drive and to turn to a goal, as a length.
 
 use crate::behaviour::state::State;
+use crate::behaviour::station_drive::StationGoal;
 use crate::behaviour::tools::Tools;
 use crate::world_state::WorldState;
 use trundle_core::{Pose2, Trajectory, difference_of_angles};
@@ -10,6 +11,9 @@ pub(crate) fn rest(state: &State, tools: &Tools, s: &WorldState<'_>) -> Option<f
     let (pose, radius) = (s.estimate.pose, tools.body.radius);
     let to_goal = || tools.goal.pose().map_or(f64::INFINITY, |goal| motion_between(&pose, &goal, radius));
     Some(match state {
+        // Neither a turn at a charging station nor a wait for the view has a limit of its own.
+        State::Station(station) if matches!(station.goal, StationGoal::Sweep(_)) => f64::INFINITY,
+        State::Maneuver if tools.sight.is_blind(s) => f64::INFINITY,
         State::Station(_) | State::Maneuver => return None,
         State::Relative(relative) => relative.drive.rest(relative.motion, pose, radius),
         State::Spin(spin) => radius * spin.rest(),
