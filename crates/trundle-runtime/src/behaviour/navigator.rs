@@ -231,14 +231,17 @@ impl Navigator {
 
     /// Whether obstacles and unseen floor are all that keeps the robot from its goal: not a sensor, and not the base.
     fn searches_over_unseen_floor(&self) -> bool {
-        let reason = self.machine.state().reason().map(Reason::kind);
-        reason.is_some_and(|kind| kind == ReasonKind::UnseenFloor || kind.is_blockage())
+        self.reason_kind().is_some_and(|kind| kind == ReasonKind::UnseenFloor || kind.is_blockage())
     }
 
     /// Whether the robot waits for a blocked path, as the goal asks.
     fn waits_by_request(&self) -> bool {
-        let state = self.machine.state();
-        self.tools.waits_when_blocked() && state.reason().is_some_and(|reason| reason.kind().is_blockage())
+        self.tools.waits_when_blocked() && self.reason_kind().is_some_and(ReasonKind::is_blockage)
+    }
+
+    /// Kind of the reason of the present state; `None` in a state without a reason.
+    fn reason_kind(&self) -> Option<ReasonKind> {
+        self.state().reason().map(Reason::kind)
     }
 
     /// If a turn restored the view twice at one place, the path to the viewpoint leads into the camera's blind range, and the navigator

@@ -122,14 +122,6 @@ impl State {
         }
     }
 
-    /// The reason of a state in which the robot waits or recovers.
-    pub(crate) fn reason(&self) -> Option<&Reason> {
-        match self {
-            Self::Wait(Wait { reason, .. }) | Self::Recover(Recover { reason, .. }) => Some(reason),
-            _ => None,
-        }
-    }
-
     /// The state as front ends show it.
     pub(crate) fn published(&self) -> DriveState {
         match self {

@@ -99,18 +99,13 @@ impl PathPlanner {
 
     /// Whether the rest of a path, from `time` \[s\] on, is free on the newest map, and its floor was or will be observed.
     pub(crate) fn is_still_good(&self, way: &Trajectory, time: f64, s: &WorldState<'_>) -> bool {
-        self.obstacle_on(way, time, s).is_none() && self.unseen_on(way, time, s).is_none()
+        let rest = &way.points()[way.points().partition_point(|point| point.time < time)..];
+        self.obstacle_on(way, time, s).is_none() && self.first_unseen(rest, s.floor()).is_none()
     }
 
     /// The first contact on the rest of a path, from `time` \[s\] on; `None` if the rest is free.
     pub(crate) fn obstacle_on(&self, way: &Trajectory, time: f64, s: &WorldState<'_>) -> Option<Obstruction> {
         self.planner.validate_trajectory(s.permitted_floor(), way, time).err()
-    }
-
-    /// First place on the rest of a path at which it enters floor that the camera does not observe in time.
-    pub(crate) fn unseen_on(&self, way: &Trajectory, time: f64, s: &WorldState<'_>) -> Option<Vector2> {
-        let rest = &way.points()[way.points().partition_point(|point| point.time < time)..];
-        self.first_unseen(rest, s.floor())
     }
 
     /// The floor with the unknown cells about these places blocked, except under the ends of the path; none without places.
