@@ -1,11 +1,13 @@
 """SLAM under degraded images: `trundle slam` and ORB-SLAM3 on the same degraded copies of a TUM RGB-D folder of freiburg1.
 
 usage: degradation.py FOLDER --trundle PROGRAM [--vocabulary VOC.txt] [--only WORD] [--runs 3] [--core 1] [--out out/degradation]
+       degradation.py --read OUT/degradation.json
 
 Each case of degraded.py is written, tracked by both programs on one core, and deleted. The table begins with the case in which trundle's
 error is the largest multiple of ORB-SLAM3's. A program's error is the ATE RMSE of the images that it locates; a case counts as lost if it
 locates less than 0.9 of them. ORB-SLAM3 is not deterministic: its row is the median of `--runs` runs. Without --vocabulary trundle runs alone.
-Writes OUT/degradation.json. Needs the Python environment of compare.py.
+Writes OUT/degradation.json; --read prints the table and the figures of such a file. The last lines are the figures of each case, for
+results/slam-degradation.json. Needs the Python environment of compare.py.
 """
 import argparse
 import json
@@ -27,10 +29,14 @@ def median(rows):
     return sorted(rows, key=error)[(len(rows) - 1) // 2]
 
 
+def located(row):
+    """Share of the images with a pose in the trajectory that is compared: not those of another map."""
+    return row.get("posed", 0) / row["frames"]
+
+
 def error(row):
     """ATE [cm], infinite if too few images are located."""
-    located = row["tracked"] / row["frames"]
-    return row["ate_cm"] if located >= MIN_LOCATED and row["ate_cm"] == row["ate_cm"] else float("inf")
+    return row["ate_cm"] if located(row) >= MIN_LOCATED and row["ate_cm"] == row["ate_cm"] else float("inf")
 
 
 def compare_case(args, name):
@@ -53,7 +59,7 @@ def attempt(args, folder):
     except Exception as why:  # the peer may crash, or save no trajectory
         print(f"ORB-SLAM3 fails: {why}")
         frames = len(degraded.read_rows(folder / "rgb.txt"))
-        return {"frames": frames, "tracked": 0, "ate_cm": float("nan"), "median_ms": float("nan")}
+        return {"frames": frames, "tracked": 0, "posed": 0, "ate_cm": float("nan"), "median_ms": float("nan")}
 
 
 def multiple(result):
@@ -65,7 +71,7 @@ def multiple(result):
 
 
 def cell(row):
-    return f"{row['ate_cm']:.2f} | {row['tracked']} of {row['frames']} | {row['median_ms']:.1f}"
+    return f"{row['ate_cm']:.2f} | {row.get('posed', 0)} of {row['frames']} | {row['median_ms']:.1f}"
 
 
 def table(results):
@@ -76,27 +82,45 @@ def table(results):
     for result in results:
         peer = cell(result["ORB-SLAM3"]) if "ORB-SLAM3" in result else " | | "
         print(f"| {result['case']} | {cell(result['trundle'])} | {peer} |")
-    located = sum(error(r["trundle"]) < float("inf") for r in results)
-    print(f"cases: {len(results)}\nlocated by trundle: {located}")
+    print(f"cases: {len(results)}\nlocated by trundle: {sum(error(r['trundle']) < float('inf') for r in results)}")
     if "ORB-SLAM3" in results[0]:
         print(f"no worse than ORB-SLAM3: {sum(multiple(r) <= 1.0 for r in results)}")
         print(f"located by ORB-SLAM3: {sum(error(r['ORB-SLAM3']) < float('inf') for r in results)}")
-        print(f"largest multiple: {multiple(results[0]):.2f} ({results[0]['case']})")
+        both = [r for r in results if max(error(r["trundle"]), error(r["ORB-SLAM3"])) < float("inf")]
+        worst = max(both, key=multiple)
+        print(f"largest multiple where both locate: {multiple(worst):.2f} ({worst['case']})")
         ratios = [r["ORB-SLAM3"]["median_ms"] / r["trundle"]["median_ms"] for r in results if r["ORB-SLAM3"]["tracked"]]
         print(f"median ratio of times: {statistics.median(ratios):.2f}")
     return results
 
 
+def figures(results):
+    """Prints error and share of located images of each case and program; the error of a lost case is nan."""
+    for result in results:
+        for name in (name for name in ("trundle", "ORB-SLAM3") if name in result):
+            row = result[name]
+            cm = error(row) if error(row) < float("inf") else float("nan")
+            print(f"case {result['case']}, error of {name}: {cm:.4f} cm")
+            print(f"case {result['case']}, located by {name}: {100 * located(row):.2f} %")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=pathlib.Path)
-    parser.add_argument("--trundle", type=pathlib.Path, required=True)
+    parser.add_argument("folder", type=pathlib.Path, nargs="?")
+    parser.add_argument("--trundle", type=pathlib.Path)
+    parser.add_argument("--read", type=pathlib.Path, help="degradation.json of an earlier run: nothing is run")
     parser.add_argument("--vocabulary", type=pathlib.Path, help="DBoW2 text, for ORB-SLAM3")
     parser.add_argument("--only", default="", help="only cases whose name holds this word")
     parser.add_argument("--runs", type=int, default=3, help="runs of ORB-SLAM3")
     parser.add_argument("--core", type=int, default=1)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/degradation"))
     args = parser.parse_args()
+    if args.read:
+        results = json.loads(args.read.read_text())
+        table(results)
+        return figures(results)
+    if not args.folder or not args.trundle:
+        parser.error("FOLDER and --trundle PROGRAM, or --read FILE, are needed")
     args.out.mkdir(parents=True, exist_ok=True)
     results = []
     for name in (name for name in degraded.CASES if args.only in name):
@@ -104,6 +128,7 @@ def main():
         print(json.dumps(results[-1]), flush=True)
         (args.out / "degradation.json").write_text(json.dumps(results, indent=1) + "\n")
     table(results)
+    figures(results)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-//! Chores of the workspace: `cargo xtask ci | tidy | book | golden | packages | dist | deb | reproduce | results | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | states | demo-seeds`.
+//! Chores of the workspace: `cargo xtask ci | tidy | book | golden | packages | dist | deb | reproduce | results | gallery | replay-check | fuzz | fault-scenarios | aarch64 | robot-memory | ros-interfaces | states | demo-seeds`.
 #![expect(clippy::print_stdout, clippy::print_stderr, reason = "this is a program that talks")]
 
 mod aarch64;
@@ -8,6 +8,7 @@ mod compare;
 mod dist;
 mod fault_scenarios;
 mod fuzz;
+mod gallery;
 mod golden;
 mod markdown;
 mod packages;
@@ -91,6 +92,15 @@ enum Chore {
         /// Repeat this measurement first (its name in results/); may be given several times.
         #[arg(long, value_name = "NAME")]
         measure: Vec<String>,
+        /// Take the figures from this file, the standard output of an earlier run of the command, in place of running it.
+        #[arg(long, value_name = "FILE", requires = "measure")]
+        printed: Option<std::path::PathBuf>,
+    },
+    /// Write docs/gallery.md and its charts from results/*.json.
+    Gallery {
+        /// Repeat the measurements and pictures of the page first: all of them, or the named ones.
+        #[arg(long, value_name = "NAME", num_args = 0..)]
+        measure: Option<Vec<String>>,
     },
     /// Write the reference of settings from the doc comments of the configuration structs.
     Settings,
@@ -145,7 +155,8 @@ fn main() -> ExitCode {
         Chore::Deb { arm64 } => dist::deb::run(&root, arm64),
         Chore::Reproduce => dist::reproduce::run(&root),
         Chore::Packages { every_feature } => packages::run(&root, every_feature),
-        Chore::Results { measure } => results::run(&root, &measure),
+        Chore::Results { measure, printed } => results::run(&root, &measure, printed.as_deref()),
+        Chore::Gallery { measure } => gallery::run(&root, measure.as_deref()),
         Chore::Settings => settings::run(&root, false),
         Chore::States => states::run(&root, false),
         Chore::RosInterfaces => ros_interfaces::run(&root, false),

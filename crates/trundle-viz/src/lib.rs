@@ -27,7 +27,7 @@ mod ticks;
 mod wedge;
 
 pub use camera::{FeatureMark, depth_picture, feature_picture};
-pub use chart::{BarChart, Chart};
+pub use chart::{BarChart, Chart, GroupChart};
 pub use color::Color;
 pub use compose::{
     CameraView, MaskShares, PlanParts, PlanScene, RunMap, RunReport, VisualMapScene, no_plan_picture,

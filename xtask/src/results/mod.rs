@@ -1,12 +1,11 @@
 //! Results: `results/*.json` contain every figure; `docs/results.md` is generated from them only.
 
 mod measure;
-mod model;
-mod page;
+pub mod model;
+pub mod page;
 
 use crate::workspace::Verdict;
-use model::Measurement;
-use std::collections::BTreeMap;
+use model::{Measurement, Measurements};
 use std::path::{Path, PathBuf};
 
 /// The page, relative to the workspace.
@@ -16,14 +15,18 @@ const FOLDER: &str = "results";
 /// The file of known limits in that folder: a list of sentences.
 const LIMITS: &str = "known-limits.json";
 
-/// Writes the page; repeats the measurements named in `measured` first.
-pub fn run(root: &Path, measured: &[String]) -> Verdict {
+/// Writes the page; repeats the measurements named in `measured` first. With `printed`, the only one takes its figures from this file, the
+/// standard output of an earlier run of its command.
+pub fn run(root: &Path, measured: &[String], printed: Option<&Path>) -> Verdict {
+    if printed.is_some() && measured.len() != 1 {
+        return Err(format!("--printed FILE belongs to one --measure NAME, not to {}", measured.len()));
+    }
     let mut measurements = read(root)?;
     for name in measured {
         let known = || measurements.keys().cloned().collect::<Vec<_>>().join(", ");
         let old =
             measurements.get(name).ok_or_else(|| format!("no results/{name}.json; there are {}", known()))?;
-        let new = measure::measure(root, name, old)?;
+        let new = measure::measure(root, name, old, printed)?;
         let text = serde_json::to_string_pretty(&new).map_err(|e| e.to_string())? + "\n";
         write(&root.join(FOLDER).join(format!("{name}.json")), &text)?;
         measurements.insert(name.clone(), new);
@@ -48,7 +51,11 @@ pub fn render(root: &Path) -> Result<String, String> {
     Ok(page::page(&read(root)?, &limits))
 }
 
-fn read(root: &Path) -> Result<BTreeMap<String, Measurement>, String> {
+/// The measurements by name.
+///
+/// # Errors
+/// As [`render`].
+pub fn read(root: &Path) -> Result<Measurements, String> {
     let folder = root.join(FOLDER);
     let entries = std::fs::read_dir(&folder).map_err(|e| format!("cannot list {}: {e}", folder.display()))?;
     let paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();

@@ -1,6 +1,10 @@
 //! A result file: `results/NAME.json`, what one command measures.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::collections::BTreeMap;
+
+/// The measurements by name.
+pub type Measurements = BTreeMap<String, Measurement>;
 
 /// Measurements of one command.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -28,8 +32,12 @@ pub struct Measurement {
 pub struct Figure {
     /// The name.
     pub name: String,
-    /// The value.
+    /// The value; NaN, `null` in the file, if the program gave none.
+    #[serde(deserialize_with = "number_or_none")]
     pub value: f64,
+    /// Whether the figure stands on the gallery only, not on the results page.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub detail: bool,
     /// Unit of the figure; empty for counts.
     pub unit: String,
     /// The goal.
@@ -41,6 +49,9 @@ pub struct Figure {
     /// Another program's or paper's figure.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peer: Option<Peer>,
+    /// Further peers, on the gallery only.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub more_peers: Vec<Peer>,
     /// Place of the figure in the command's output; without it, the figure is copied by hand.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<Source>,
@@ -72,7 +83,8 @@ pub enum Better {
 pub struct Peer {
     /// Name of the peer.
     pub name: String,
-    /// The value, in the same unit.
+    /// The value, in the same unit; NaN, `null` in the file, if the peer gave none.
+    #[serde(deserialize_with = "number_or_none")]
     pub value: f64,
     /// Whether the command measures the peer in the same run.
     #[serde(default)]
@@ -92,6 +104,9 @@ pub struct Source {
     /// Text on standard output that precedes the number.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<String>,
+    /// JSON pointer into `summary.json` of a number by which the number is divided.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub over: Option<String>,
     /// Factor from the output's unit to the figure's.
     #[serde(default = "one")]
     pub scale: f64,
@@ -99,6 +114,16 @@ pub struct Source {
 
 fn one() -> f64 {
     1.0
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the form that serde asks for")]
+fn is_false(value: &bool) -> bool {
+    !value
+}
+
+/// JSON has no NaN: `null` stands for it.
+fn number_or_none<'de, D: Deserializer<'de>>(input: D) -> Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(input)?.unwrap_or(f64::NAN))
 }
 
 impl Goal {
@@ -114,7 +139,12 @@ impl Goal {
 impl Figure {
     /// Ratio to the peer's figure; above 1 is better. `None` without a peer, or without a better direction.
     pub fn ratio(&self) -> Option<f64> {
-        let peer = self.peer.as_ref()?.value;
+        self.ratio_to(self.peer.as_ref()?)
+    }
+
+    /// As [`Figure::ratio`], to any peer.
+    pub fn ratio_to(&self, peer: &Peer) -> Option<f64> {
+        let peer = peer.value;
         let better = self.better.or(self.goal.map(|goal| match goal {
             Goal::AtMost(_) => Better::Less,
             Goal::AtLeast(_) => Better::More,

@@ -1,6 +1,6 @@
 //! The results page: one table a subject, then known limits.
 
-use super::model::{Figure, Goal, Measurement};
+use super::model::{Figure, Goal, Measurement, Peer};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -17,7 +17,8 @@ How a peer was measured stands in `bench/`; a peer marked * is a published figur
 /// The page for measurements by name, and for limits.
 pub fn page(measurements: &BTreeMap<String, Measurement>, limits: &[String]) -> String {
     let mut subjects: BTreeMap<&str, Vec<(&String, &Measurement)>> = BTreeMap::new();
-    for (name, measurement) in measurements {
+    let has_row = |m: &Measurement| m.figures.iter().any(|figure| !figure.detail);
+    for (name, measurement) in measurements.iter().filter(|(_, m)| has_row(m)) {
         subjects.entry(&measurement.subject).or_default().push((name, measurement));
     }
     let mut page = HEAD.to_owned();
@@ -27,8 +28,8 @@ pub fn page(measurements: &BTreeMap<String, Measurement>, limits: &[String]) -> 
             "\n## {subject}\n\n| what | trundle | goal | peer | ratio |\n|---|---|---|---|---|\n"
         );
         for (_, measurement) in &measurements {
-            for figure in &measurement.figures {
-                page.push_str(&row(measurement, figure));
+            for figure in measurement.figures.iter().filter(|figure| !figure.detail) {
+                page.push_str(&row(&format!("{}: {}", measurement.title, figure.name), figure));
             }
         }
         page.push('\n');
@@ -41,8 +42,8 @@ pub fn page(measurements: &BTreeMap<String, Measurement>, limits: &[String]) -> 
     page
 }
 
-/// The commands of a subject in one line, by machine.
-fn commands(measurements: &[(&String, &Measurement)]) -> String {
+/// Commands of measurements in one line, by machine.
+pub fn commands(measurements: &[(&String, &Measurement)]) -> String {
     let mut machines: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for (name, m) in measurements {
         let entry = format!("`{name}`: `{}`, commit `{}`, {}", m.command, m.commit, m.date);
@@ -52,22 +53,30 @@ fn commands(measurements: &[(&String, &Measurement)]) -> String {
     parts.collect::<Vec<_>>().join(". ") + ".\n"
 }
 
-fn row(measurement: &Measurement, figure: &Figure) -> String {
-    let value = format!("{} {}", figure.value, figure.unit);
-    let value = value.trim();
+/// The row of a figure: name, value, goal, peer, ratio.
+pub fn row(what: &str, figure: &Figure) -> String {
+    let value = value_text(figure.value, &figure.unit);
     let is_missed = figure.goal.is_some_and(|goal| !goal.is_kept_by(figure.value));
-    let value = if is_missed { format!("**{value}**") } else { value.to_owned() };
+    let value = if is_missed { format!("**{value}**") } else { value };
     let goal = match figure.goal {
         Some(Goal::AtMost(limit)) => format!("at most {limit}"),
         Some(Goal::AtLeast(limit)) => format!("at least {limit}"),
         None => String::new(),
     };
-    let peer = figure.peer.as_ref().map_or(String::new(), |peer| {
-        format!("{} {}{}", peer.value, peer.name, if peer.same_run { "" } else { " *" })
-    });
-    let ratio = figure.ratio().map_or(String::new(), |ratio| format!("{ratio:.1}"));
-    let what = format!("{}: {}", measurement.title, figure.name).replace('|', "&#124;");
-    format!("| {what} | {value} | {goal} | {peer} | {ratio} |\n")
+    let (peer, ratio) = figure.peer.as_ref().map_or_else(Default::default, |peer| peer_cells(figure, peer));
+    format!("| {} | {value} | {goal} | {peer} | {ratio} |\n", what.replace('|', "&#124;"))
+}
+
+/// A peer's value with its name, and the ratio to it.
+pub fn peer_cells(figure: &Figure, peer: &Peer) -> (String, String) {
+    let mark = if peer.same_run { "" } else { " *" };
+    let ratio = figure.ratio_to(peer).map_or(String::new(), |ratio| format!("{ratio:.1}"));
+    (format!("{} {}{mark}", value_text(peer.value, ""), peer.name), ratio)
+}
+
+/// A value with its unit; without a value, "none".
+pub fn value_text(value: f64, unit: &str) -> String {
+    if value.is_finite() { format!("{value} {unit}").trim().to_owned() } else { "none".to_owned() }
 }
 
 #[cfg(test)]
@@ -94,5 +103,23 @@ mod tests {
         assert!(page.contains("| ten seeds: goals | **97** | at least 100 |  |  |"), "{page}");
         assert!(page.contains("On m: `poses`: `trundle experiment poses`, commit `abc`, 2026-01-01.\n"));
         assert!(page.ends_with("- One limit.\n"));
+    }
+
+    #[test]
+    fn details_are_left_to_the_gallery() {
+        let mut detailed = measurement();
+        detailed.figures[0].detail = true;
+        let page = |m: &Measurement| page(&BTreeMap::from([("poses".to_owned(), m.clone())]), &[]);
+        assert!(!page(&detailed).contains("dx") && page(&detailed).contains("goals"));
+        detailed.figures[1].detail = true;
+        assert!(!page(&detailed).contains("Poses"), "a subject of details alone has no table");
+    }
+
+    #[test]
+    fn a_figure_without_value_reads_and_shows_as_none() {
+        let text = r#"{"name": "error", "value": null, "unit": "cm", "peer": {"name": "P", "value": null, "same_run": true}}"#;
+        let figure: Figure = serde_json::from_str(text).unwrap();
+        assert_eq!(row("lost", &figure), "| lost | none |  | none P |  |\n");
+        assert!(serde_json::to_string(&figure).unwrap().contains(r#""value":null"#));
     }
 }

@@ -1,6 +1,7 @@
 //! Line charts as SVG.
 
 use super::axes::{Axis, HEIGHT, PLOT_RECTANGLE, WIDTH};
+use super::standalone;
 use super::thin::pieces;
 use crate::color::Color;
 use crate::html::{escape, ink};
@@ -24,6 +25,7 @@ pub struct Chart {
     series: Vec<Series>,
     limits: Vec<(String, f64)>,
     log_y: bool,
+    from_zero: bool,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +33,8 @@ struct Series {
     label: String,
     color: Color,
     dashed: bool,
+    /// Whether each point has a mark.
+    marked: bool,
     points: Vec<(f64, f64)>,
 }
 
@@ -38,17 +42,22 @@ impl Chart {
     /// An empty chart; the names of the axes include their units.
     pub fn new(title: &str, x_name: &str, y_name: &str) -> Self {
         let [title, x_name, y_name] = [title, x_name, y_name].map(str::to_owned);
-        Self { title, x_name, y_name, series: Vec::new(), limits: Vec::new(), log_y: false }
+        Self { title, x_name, y_name, series: Vec::new(), limits: Vec::new(), log_y: false, from_zero: false }
     }
 
     /// Adds a series of (x, y). A point that is not finite leaves a gap; long series are thinned without losing peaks.
     pub fn line(self, label: &str, color: Color, points: Vec<(f64, f64)>) -> Self {
-        self.series(label, color, false, points)
+        self.series(Series { label: label.to_owned(), color, dashed: false, marked: false, points })
+    }
+
+    /// Adds a series of few (x, y), each with a mark: measurements with straight lines between them.
+    pub fn marked(self, label: &str, color: Color, points: Vec<(f64, f64)>) -> Self {
+        self.series(Series { label: label.to_owned(), color, dashed: false, marked: true, points })
     }
 
     /// Adds a dashed series, for references.
     pub fn dashed(self, label: &str, color: Color, points: Vec<(f64, f64)>) -> Self {
-        self.series(label, color, true, points)
+        self.series(Series { label: label.to_owned(), color, dashed: true, marked: false, points })
     }
 
     /// Adds a line at a limit. A limit that is not finite is left out.
@@ -64,16 +73,29 @@ impl Chart {
         Self { log_y: true, ..self }
     }
 
-    fn series(mut self, label: &str, color: Color, dashed: bool, points: Vec<(f64, f64)>) -> Self {
-        self.series.push(Series { label: label.to_owned(), color, dashed, points });
+    /// A y axis that begins at 0.
+    pub fn from_zero(self) -> Self {
+        Self { from_zero: true, ..self }
+    }
+
+    fn series(mut self, series: Series) -> Self {
+        self.series.push(series);
         self
+    }
+
+    /// The chart as the content of an `.svg` file.
+    pub fn to_svg_file(&self) -> String {
+        standalone::document(&self.to_svg())
     }
 
     /// The chart as an `<svg>` element, all text escaped. Equal content gives equal bytes.
     pub fn to_svg(&self) -> String {
         let finite =
             || self.series.iter().flat_map(|s| &s.points).filter(|p| p.0.is_finite() && p.1.is_finite());
-        let heights = finite().map(|p| p.1).chain(self.limits.iter().map(|limit| limit.1));
+        let heights = finite()
+            .map(|p| p.1)
+            .chain(self.limits.iter().map(|limit| limit.1))
+            .chain(self.from_zero.then_some(0.0));
         let x = Axis::over(finite().map(|p| p.0), false, 0.0, (PLOT_RECTANGLE[0], PLOT_RECTANGLE[2]));
         let y = Axis::over(heights, self.log_y, 0.06, (PLOT_RECTANGLE[3], PLOT_RECTANGLE[1]));
         let mut svg = open_svg(&self.title, WIDTH, HEIGHT);
@@ -118,7 +140,7 @@ pub(super) fn put(svg: &mut String, what: std::fmt::Arguments) {
 
 /// About the width of a text in the page's own typeface, generously.
 pub(super) fn text_width(text: &str) -> f64 {
-    7.0 * text.chars().count() as f64
+    7.8 * text.chars().count() as f64
 }
 
 fn stroke(color: Color, dashed: bool) -> String {
@@ -200,6 +222,12 @@ fn draw_series(svg: &mut String, series: &Series, x: &Axis, y: &Axis) {
     }
     let style = stroke(series.color, series.dashed);
     put(svg, format_args!("<path d=\"{path}\" stroke-linecap=\"round\" style=\"{style}\"/>"));
+    for point in series.points.iter().filter(|_| series.marked) {
+        if let (Some(px), Some(py)) = (x.place(point.0), y.place(point.1)) {
+            let fill = ink(series.color);
+            put(svg, format_args!("<circle cx=\"{px:.1}\" cy=\"{py:.1}\" r=\"3.5\" style=\"fill:{fill}\"/>"));
+        }
+    }
 }
 
 #[cfg(test)]
@@ -218,6 +246,20 @@ mod tests {
         let path = svg.split("d=\"").find(|part| part.contains('L')).unwrap();
         assert_eq!(path.split('"').next().unwrap().matches('M').count(), 2);
         assert!(!svg.contains("NaN") && !svg.contains("inf"));
+    }
+
+    #[test]
+    fn a_marked_series_has_a_mark_for_each_finite_point() {
+        let points = vec![(0.0, 1.0), (1.0, f64::NAN), (2.0, 3.0)];
+        let file = Chart::new("", "x", "y").marked("m", Color::BLUE, points).to_svg_file();
+        assert_eq!(file.matches("<circle").count(), 2, "{file}");
+        let high = || Chart::new("", "x", "y").line("m", Color::BLUE, vec![(0.0, 8.0), (1.0, 9.0)]);
+        assert!(!high().to_svg().contains(">0<") && high().from_zero().to_svg().matches(">0<").count() == 1);
+        assert!(
+            file.starts_with("<svg ")
+                && file.contains("xmlns=\"http://www.w3.org/2000/svg\"")
+                && !file.contains("NaN")
+        );
     }
 
     #[test]

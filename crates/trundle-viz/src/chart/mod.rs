@@ -2,8 +2,11 @@
 
 mod axes;
 mod bars;
+mod groups;
 mod line;
+mod standalone;
 mod thin;
 
 pub use bars::BarChart;
+pub use groups::GroupChart;
 pub use line::Chart;
