@@ -98,6 +98,12 @@ pub fn print_closed_loop(tracks: &[Track]) {
             part(&ratios, 0.95)
         );
     }
+    for track in tracks {
+        let share = |is: &dyn Fn(&Run) -> bool| track.runs.iter().filter(|(_, run)| is(run)).count();
+        let within = 100.0 * share(&good) as f64 / track.runs.len().max(1) as f64;
+        let contacts = share(&|run: &Run| run.contact);
+        println!("{}: within 1 cm and 1 deg: {within:.1} %, runs with contact: {contacts}", track.name);
+    }
     for (name, run) in tracks[0].runs.iter().filter(|(_, run)| !good(run)) {
         println!(
             "{} {name}: settled {}, within {}, contact {}, {:.1} s, {} motions",
@@ -133,6 +139,14 @@ pub fn print(rows: &[Row]) {
             part(&row.planning_ms, 0.99),
             part(&row.planning_ms, 1.0),
         );
+    }
+    println!();
+    for row in rows {
+        let answered = row.times.iter().flatten().count() + row.never + row.at_resolution;
+        let [median, p99] = [0.5, 0.99].map(|q| part(&row.planning_ms, q));
+        println!("{}: settled or proven impossible: {answered}", row.name);
+        println!("{}: median planning time: {median:.2} ms", row.name);
+        println!("{}: p99 planning time: {p99:.1} ms", row.name);
     }
     for row in rows {
         let over: Vec<f64> = row
