@@ -22,25 +22,31 @@ takes some hours; `--measure NAME` repeats one. The columns are those of the [re
 ratio says how many times better than the peer, and a peer marked * is a published figure, not one of the same run.
 ";
 
-/// Writes the page and its charts. With `measured`, first repeats these measurements, or all of the page if the list is empty.
+/// Writes the page and its charts. With `measured`, first repeats these measurements, or all of the page if the list is empty. Returns
+/// whether all of them gave their figures and pictures; the page is written with those that did.
 pub fn run(root: &Path, measured: Option<&[String]>) -> Verdict {
     let all: Vec<String> =
         SECTIONS.iter().flat_map(|s| s.measurements).map(|name| (*name).to_owned()).collect();
-    for name in measured.map_or(&[][..], |names| if names.is_empty() { &all } else { names }) {
-        if !all.contains(name) {
-            return Err(format!("--measure {name}: the gallery shows {}", all.join(", ")));
-        }
-        if !results::run(root, std::slice::from_ref(name), None)? {
-            return Ok(false);
-        }
-        pictures::take(root, name)?;
+    let names = measured.map_or(&[][..], |names| if names.is_empty() { &all } else { names });
+    if let Some(unknown) = names.iter().find(|name| !all.contains(name)) {
+        return Err(format!("--measure {unknown}: the gallery shows {}", all.join(", ")));
     }
+    let failures: Vec<String> = names.iter().filter_map(|name| repeat(root, name).err()).collect();
     let measurements = results::read(root)?;
     charts::draw(root, &measurements, &root.join(charts::FOLDER))?;
     let text = render(&measurements)?;
     std::fs::write(root.join(PAGE), &text).map_err(|e| format!("cannot write {PAGE}: {e}"))?;
     println!("wrote {PAGE} and {} charts", charts::all(&measurements)?.len());
-    Ok(true)
+    failures.iter().for_each(|failure| println!("not measured: {failure}"));
+    Ok(failures.is_empty())
+}
+
+/// Repeats a measurement, and takes its pictures.
+fn repeat(root: &Path, name: &String) -> Result<(), String> {
+    if !results::run(root, std::slice::from_ref(name), None)? {
+        return Err(format!("{name}: {} is too long", results::PAGE));
+    }
+    pictures::take(root, name)
 }
 
 /// The page.
