@@ -57,7 +57,8 @@ def read_frames(folder, limit_s=0.02):
 
 def settings(camera):
     """The camera as a settings file of ORB-SLAM3."""
-    lens = "".join(f"Camera1.{key}: {camera[key]:.9g}\n" for key in LENS)
+    # A number without a decimal point is refused.
+    lens = "".join(f"Camera1.{key}: {float(camera[key])!r}\n" for key in LENS)
     return (
         '%YAML:1.0\n---\nFile.version: "1.0"\nCamera.type: "PinHole"\n' + lens
         + f"Camera.width: {camera['width']}\nCamera.height: {camera['height']}\nCamera.fps: {camera['fps']:.0f}\nCamera.RGB: 1\n"
