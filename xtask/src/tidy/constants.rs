@@ -58,7 +58,7 @@ fn is_number(kind: &str) -> bool {
 /// The problem of the constant that a line declares.
 fn fault(line: &str) -> Option<String> {
     let (name, kind) = declared(line)?;
-    if kind.starts_with("(f64, ") || kind.starts_with("(f32, ") {
+    if NUMBERS.iter().any(|number| kind.starts_with(&format!("({number}, "))) {
         let is_one_unit = name.contains("RANGE") || name.contains("BAND") || name.contains("_XY_");
         let is_one_unit =
             is_one_unit || name.contains("SIZE") || name.contains("_PER_") || name.contains("RADII");
@@ -89,6 +89,7 @@ mod tests {
         assert!(fault("const NEAR: f64 = 0.1;").is_some());
         assert!(fault("pub(super) const REACH: [f64; 2] = [0.1, 0.2];").is_some());
         assert!(fault("const FAR_OFF: (f64, f64) = (0.1, 0.2);").is_some());
+        assert!(fault("const TRANSFERS: (usize, usize) = (20, 4096);").is_some());
         assert!(fault("const MAX_RANGE_M: f64 = 8.0;").is_none());
         assert!(fault("const SPEED_RANGE_M_S: (f64, f64) = (0.7, 1.6);").is_none());
         assert!(fault("const MAGIC: &[u8; 4] = b\"abcd\";").is_none());
