@@ -5,7 +5,7 @@ use crate::SlamConfig;
 use crate::calibration_check::check::pair_of;
 use crate::frame::front_end::FrontEnd;
 use crate::frame::rgbd_frame::Frame;
-use trundle_core::{Invalid, PinholeCamera, RgbdImage, Vector3, gray_from_color};
+use trundle_core::{Invalid, PinholeCamera, RgbdImage, Vector3};
 
 /// Number of images between the two images of a pair: 5. Source: ours.
 const PAIR_STRIDE: usize = 5;
@@ -42,16 +42,16 @@ impl ReadoutEstimator {
     /// When the configuration is invalid.
     pub fn new(camera: PinholeCamera, config: SlamConfig) -> Result<Self, Invalid> {
         let config = config.validated()?;
-        let front_end = FrontEnd::new(camera.with_readout(0.0)?, &config.orb, config.tracking.pixel_sigma)?;
+        let front_end = FrontEnd::new(camera.with_readout(0.0)?, &config)?;
         Ok(Self { front_end, config, images: 0, last: None, anchor: None, pairs: Vec::new() })
     }
 
     /// Adds the next image.
     pub fn record(&mut self, image: &RgbdImage) {
-        let features = self.front_end.extract(&gray_from_color(image.color()));
-        let depth = image.depth();
+        let (gray, depth) = self.front_end.reduced(image);
+        let features = self.front_end.extract(&gray);
         let frame =
-            self.front_end.frame(image.stamp(), features, depth, Vector3::zeros(), &self.config.depth);
+            self.front_end.frame(image.stamp(), features, &depth, Vector3::zeros(), &self.config.depth);
         let rate_before = self.last.as_ref().and_then(|last| self.turn_rate(&last.frame, &frame));
         let last = self.last.replace(LastFrame { frame, rate_before });
         if self.images % PAIR_STRIDE == 1
