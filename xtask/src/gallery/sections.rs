@@ -91,8 +91,8 @@ cargo run --release -p trundle-docking --example corridor_bench -- --problems 50
         title: "SLAM on degraded images",
         text: "Both programs track the same degraded copies of freiburg1_rpy [Sturm12], on one core. The error is the ATE RMSE of the located
 images. A case counts as lost, with the error \"none\", if the compared trajectory has fewer than 0.9 of the images; the curves leave it
-out. ORB-SLAM3 [Campos21] is not deterministic: its figures are the median of three runs. `bench/slam/degradation.py` describes the
-degradations.",
+out. 0 % located means that a program wrote no trajectory. ORB-SLAM3 [Campos21] is not deterministic: its figures are the median of three
+runs. `bench/slam/degradation.py` describes the degradations.",
         pictures: &[
             ("gallery/slam-rate.svg", "Error over the rate of the images"),
             ("gallery/slam-blur.svg", "Error over blur"),
