@@ -26,11 +26,15 @@ pub struct GroupChart {
     rows: Vec<(String, Vec<f64>)>,
 }
 
+/// Width of the chart, px: that of the line charts. Ours.
 const CHART_WIDTH: f64 = 540.0;
-/// Height of a bar, and from one to the next of the same row.
+/// Height of a bar, px. Ours.
 const BAR_HEIGHT: f64 = 13.0;
+/// Distance from a bar to the next of the same row, px. Ours.
 const BAR_PITCH: f64 = 16.0;
+/// Gap between the bars of two rows, px. Ours.
 const ROW_GAP: f64 = 11.0;
+/// Upper end of the bars, below the legend, px. Ours.
 const PLOT_TOP: f64 = 40.0;
 
 impl GroupChart {
