@@ -61,14 +61,7 @@ pub fn judge(problems: &[Problem], answers: &[ProblemAnswer]) -> Result<Judged, 
     }
     let mut judged = Judged::default();
     for problem in problems {
-        match open.remove(problem.name.as_str()).map(|answer| &answer.path) {
-            None => judged.missing += 1,
-            Some(None) => judged.impossible += 1,
-            Some(Some(path)) => match time(problem, path) {
-                Ok(time) => judged.times.push(time),
-                Err(reason) => judged.wrong.push(format!("{}: {reason}", problem.name)),
-            },
-        }
+        judged.note(problem, open.remove(problem.name.as_str()));
     }
     match open.keys().next() {
         Some(name) => Err(format!("an answer to problem `{name}`, which is none of the {}", problems.len())),
@@ -77,6 +70,23 @@ pub fn judge(problems: &[Problem], answers: &[ProblemAnswer]) -> Result<Judged, 
 }
 
 impl Judged {
+    /// Evaluates the answer to a problem; `None` if there is none.
+    pub fn note(&mut self, problem: &Problem, answer: Option<&ProblemAnswer>) {
+        match answer.map(|answer| &answer.path) {
+            None => self.missing += 1,
+            Some(None) => self.impossible += 1,
+            Some(Some(path)) => match time(problem, path) {
+                Ok(time) => self.times.push(time),
+                Err(reason) => self.refuse(problem, &reason),
+            },
+        }
+    }
+
+    /// Counts a wrong answer.
+    pub fn refuse(&mut self, problem: &Problem, reason: &str) {
+        self.wrong.push(format!("{}: {reason}", problem.name));
+    }
+
     /// A line for each wrong answer, and one for all.
     pub fn summary(&self) -> String {
         let Self { times, impossible, wrong, missing } = self;

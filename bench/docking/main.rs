@@ -3,7 +3,7 @@
 //! `cargo run --release -p trundle-docking --example corridor_bench -- --problems 5000`
 //!
 //! `--seed N`, `--file PATH` instead of a seed, `--write PATH` writes the problems and ends, `--answers PATH` evaluates the answers of
-//! another program and ends, `--write-answers PATH` keeps the default method's, `--boxes N` of the bound that evaluates,
+//! another program and ends, `--planner PROGRAM` runs another program on each problem (`--seconds N`), `--write-answers PATH` keeps the default method's, `--boxes N` of the bound that evaluates,
 //! `--baselines N` problems for the slow ones, `--loops N` problems in closed loop with noise, `--nodes N` of the search, `--margin M` asked for (default 0), `--list PATH` keeps what
 //! became of each problem as CSV.
 
@@ -11,6 +11,7 @@
 
 mod clock;
 mod dynamic_window;
+mod entry;
 mod hybrid;
 mod judge;
 mod race;
@@ -21,6 +22,7 @@ mod world;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use std::process::ExitCode;
+use std::time::Duration;
 use table::{Row, Track};
 use trundle_core::Invalid;
 use trundle_docking::corridor::{
@@ -47,6 +49,11 @@ fn run() -> Result<(), String> {
     if let Some(path) = argument("--answers") {
         let answers = read(&path, parse_answers)?;
         println!("{}", judge::judge(&problems, &answers).map_err(|e| format!("{path}: {e}"))?.summary());
+        return Ok(());
+    }
+    if let Some(program) = argument("--planner") {
+        let limit = Duration::from_secs(number("--seconds", 10) as u64);
+        println!("{}", entry::run(&program, &problems, limit)?.summary());
         return Ok(());
     }
     let mut rows = vec![optimal(&problems, number("--boxes", 50_000))];
