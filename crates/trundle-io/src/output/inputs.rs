@@ -3,7 +3,7 @@
 use super::file_identity::{FileIdentity, is_same, resolved};
 use super::tree::files_below;
 use crate::IoError;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Component, Path, PathBuf};
 
 /// The files and folders that a command reads, with the files that these name: no output may replace them.
@@ -100,8 +100,8 @@ fn holds(place: &Path, input: &Path) -> IoError {
 }
 
 /// The files that an input names, and those that these name: a scene names a map, and the map its picture.
-fn named_by(path: &Path) -> HashSet<PathBuf> {
-    let (mut found, mut new) = (HashSet::new(), named_in(path));
+fn named_by(path: &Path) -> BTreeSet<PathBuf> {
+    let (mut found, mut new) = (BTreeSet::new(), named_in(path));
     while let Some(file) = new.pop() {
         if !found.contains(&file) {
             new.extend(named_in_text(&file).into_iter().map(|file| resolved(&file)));
