@@ -90,7 +90,7 @@ def inflated(occupied, resolution, fine):
 
 
 def ask(ob, og, blocked, step, origin, start, goal, name):
-    """Milliseconds, the same without the validity checks, and length (None: no way) of one planner on one question."""
+    """Milliseconds, the same without the validity checks, and length (None: no path) of one planner on one question."""
     height, width = blocked.shape
     rows = blocked.tolist()
     checks = 0

@@ -57,7 +57,8 @@ def read_frames(folder, limit_s=0.02):
 
 def settings(camera):
     """The camera as a settings file of ORB-SLAM3."""
-    lens = "".join(f"Camera1.{key}: {camera[key]:.9g}\n" for key in LENS)
+    # A number without a decimal point is refused.
+    lens = "".join(f"Camera1.{key}: {float(camera[key])!r}\n" for key in LENS)
     return (
         '%YAML:1.0\n---\nFile.version: "1.0"\nCamera.type: "PinHole"\n' + lens
         + f"Camera.width: {camera['width']}\nCamera.height: {camera['height']}\nCamera.fps: {camera['fps']:.0f}\nCamera.RGB: 1\n"
@@ -73,7 +74,7 @@ def settings(camera):
 def camera_file(camera):
     """The camera as trundle's camera.toml."""
     names = [("depth_scale", "depth_units_per_metre"), *((key, key) for key in ("width", "height", "readout", *LENS))]
-    return "".join(f"{name} = {camera[key]!r}\n" for name, key in names)
+    return "".join(f"{name} = {camera[key]!r}\n" for name, key in names if camera[key] is not None)
 
 
 def write(folder, source, frames, camera):
@@ -155,11 +156,11 @@ def without_depth(share, block=32):
 
 
 def upright(frames, camera, _):
-    """The camera turned by a quarter turn clockwise about its axis. Its rows become columns, so its readout cannot be set."""
+    """The camera turned by a quarter turn clockwise about its axis. Its rows become columns, so that no readout time by rows is right."""
     turned = camera | {
         "fx": camera["fy"], "fy": camera["fx"], "cx": camera["height"] - 1 - camera["cy"], "cy": camera["cx"],
         "p1": camera["p2"], "p2": -camera["p1"], "width": camera["height"], "height": camera["width"],
-        "readout": 0.0,
+        "readout": None,
     }
     turn = cv2.ROTATE_90_CLOCKWISE
     frames = (dataclasses.replace(f, color=cv2.rotate(f.color, turn), depth=cv2.rotate(f.depth, turn)) for f in frames)
@@ -175,6 +176,7 @@ def enlarged(width, height):
         larger = camera | {
             "fx": camera["fx"] * factor, "fy": camera["fy"] * factor, "cx": (camera["cx"] + 0.5) * factor - 0.5,
             "cy": (camera["cy"] + 0.5) * factor - 0.5 - top, "width": width, "height": height,
+            "readout": camera["readout"] * height / size[1],
         }
         def change(frame):
             color = cv2.resize(frame.color, size, interpolation=cv2.INTER_CUBIC)[top : top + height]
@@ -191,7 +193,7 @@ def wrong_focal_length(factor):
 
 def unknown_readout(frames, camera, _):
     """The camera file does not have the readout time."""
-    return frames, camera | {"readout": 0.0}
+    return frames, camera | {"readout": None}
 
 
 def photo(share):

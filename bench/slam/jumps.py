@@ -1,10 +1,10 @@
-"""Whether the estimated pose of house runs ever left the true one, image by image.
+"""Error of the estimated pose in house runs at every image.
 
 usage: jumps.py DIR...
 
-DIR is what `trundle experiment house --out DIR` wrote: `seed-N.csv` holds believed and true pose at every image. Prints of each seed how far
-heading and position were off at most, at how many images the heading was off by more than 0.8 degrees, and how often the error of the
-position changed by more than 3 cm from one image to the next.
+DIR is the folder of `trundle experiment house --out DIR`: `seed-N.csv` holds the estimated and the true pose at every image. Prints for each
+seed the largest errors of heading and position, the number of images with a heading error above 0.8 degrees, and the number of changes of
+the position error by more than 3 cm between two images.
 """
 import csv
 import math

@@ -13,7 +13,7 @@ import cv2
 parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
 parser.add_argument("out", type=pathlib.Path)
 parser.add_argument("folders", type=pathlib.Path, nargs="+", metavar="DIR")
-parser.add_argument("--stride", type=int, default=5, help="take each so manieth image")
+parser.add_argument("--stride", type=int, default=5, help="use every N-th image")
 args = parser.parse_args()
 args.out.mkdir(parents=True, exist_ok=True)
 orb = cv2.ORB_create(nfeatures=1000, scaleFactor=1.2, nlevels=8, fastThreshold=7)

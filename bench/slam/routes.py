@@ -2,7 +2,7 @@
 
 usage: routes.py MAP.yaml OUT.txt [--length 40] [--seed 1] [--clearance 0.35]
 
-Draws places in the free space that is connected with the middle, visits them one after the other along ways that keep the
+Draws places in the free space that is connected with the middle, visits them one after the other along paths that keep the
 clearance, comes back to the first one, and goes on until the drive is long enough. The drive ends where it began, so that
 it has a loop. Needs numpy. The first way-point is the start: pass it as --start.
 """
@@ -67,12 +67,12 @@ def sees(free, a, b):
     return all(free[round(a[0] + (b[0] - a[0]) * i / steps), round(a[1] + (b[1] - a[1]) * i / steps)] for i in range(steps + 1))
 
 
-def corners(free, way):
-    """The fewest cells of a way that see each other, greedily."""
-    kept, at = [way[0]], 0
-    while at < len(way) - 1:
-        to = next(j for j in range(len(way) - 1, at, -1) if j == at + 1 or sees(free, way[at], way[j]))
-        kept.append(way[to])
+def corners(free, path):
+    """The smallest number of cells of a path with a free line between successive ones, greedily."""
+    kept, at = [path[0]], 0
+    while at < len(path) - 1:
+        to = next(j for j in range(len(path) - 1, at, -1) if j == at + 1 or sees(free, path[at], path[j]))
+        kept.append(path[to])
         at = to
     return kept
 
@@ -90,10 +90,10 @@ def drive(free, length, rng):
         away, before = shortest(free, at)
         far = sorted(reach, key=lambda cell: away[cell])
         goal = start if last else far[rng.integers(len(far) // 3, len(far))]
-        way = [goal]
-        while way[-1] != at:
-            way.append(before[way[-1]])
-        tour += corners(free, way[::-1])[1:]
+        path = [goal]
+        while path[-1] != at:
+            path.append(before[path[-1]])
+        tour += corners(free, path[::-1])[1:]
         done, at = done + away[goal], goal
         if last:
             return tour

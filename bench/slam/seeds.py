@@ -3,7 +3,7 @@
 usage: seeds.py SCENE... --trundle T --drive D [--first 1] [--seeds 5] [--length 46] [--up z] [--maps] [--out FILE]
 
 SCENE is a built-in scene of `trundle sim` or a scene file. Each seed is another route and another noise. T is the program
-`trundle`, D the example `drive` of trundle-slam (both built for release). Prints of each drive what `drive` says, and of each scene the
+`trundle`, D the example `drive` of trundle-slam (both built for release). Prints the output of `drive` for each drive, and for each scene the
 median of the ATE. With --maps the drive is also mapped, along the poses of `trundle slam` and by wheels alone, and each map judged against
 the true one. Needs numpy; a recording takes about 2 GB while it is looked at.
 """
@@ -27,34 +27,34 @@ def run(*command):
 
 
 def judge(scene, seed, length, args, scratch):
-    """What `drive` says of one recorded drive."""
+    """Output of `drive` for one recorded drive."""
     # A seed is another furnishing, too.
     sim = ["sim", scene, "--up", args.up, "--seed", seed]
     run(args.trundle, *sim, "--map", scratch / "map.yaml")
-    way, recording = scratch / "way.txt", scratch / "drive"
-    route = run(sys.executable, HERE / "routes.py", scratch / "map.yaml", way, "--length", length, "--seed", seed)
+    path, recording = scratch / "path.txt", scratch / "drive"
+    route = run(sys.executable, HERE / "routes.py", scratch / "map.yaml", path, "--length", length, "--seed", seed)
     start = route.rsplit("start ", 1)[1].strip()
-    run(args.trundle, *sim, f"--start={start}", "--follow", way, "--record", recording)
-    said = run(args.drive, recording)
+    run(args.trundle, *sim, f"--start={start}", "--follow", path, "--record", recording)
+    printed = run(args.drive, recording)
     if args.maps:
         run(args.trundle, *sim, "--map", scratch / "truth.yaml", "--resolution", 0.01)
-        said += maps(args.trundle, start, seed, recording, scratch)
+        printed += maps(args.trundle, start, seed, recording, scratch)
     run("rm", "-r", recording)
-    return said
+    return printed
 
 
 def maps(trundle, start, seed, recording, scratch):
     """How many of the occupied cells of the maps of a recording are right."""
     poses, out = scratch / "slam", scratch / "mapped"
     run(trundle, "slam", recording, "--height", 0.45, "--tilt", 8, "--out", poses)
-    said = "map: occupied cells within 5 cm of true ones, and true ones within 5 cm of the map's:"
+    printed = "map: occupied cells within 5 cm of true ones, and true ones within 5 cm of the map's:"
     for motion, option in [("slam", ["--poses", poses / "trajectory.txt"]), ("wheels", [])]:
         run(trundle, "map", recording, *option, "--seed", seed, "--out", out)
         run(trundle, "eval", "map", scratch / "truth.yaml", out / "map.yaml", f"--at={start}", "--out", scratch / "judged")
         judged = json.loads((scratch / "judged" / "summary.json").read_text())
-        said += f" {motion} {judged['precision'] * 100:.2f} and {judged['recall'] * 100:.1f} %;"
+        printed += f" {motion} {judged['precision'] * 100:.2f} and {judged['recall'] * 100:.1f} %;"
     run("rm", "-r", poses, out)
-    return said + "\n"
+    return printed + "\n"
 
 
 def main():
@@ -81,9 +81,9 @@ def main():
         errors = []
         with tempfile.TemporaryDirectory() as scratch:
             for seed in range(args.first, args.first + args.seeds):
-                said = judge(scene, seed, args.length, args, pathlib.Path(scratch))
-                errors.append(float(re.search(r"ATE ([\d.]+) cm", said)[1]))
-                say(f"{scene}, seed {seed}\n{said.rstrip()}")
+                printed = judge(scene, seed, args.length, args, pathlib.Path(scratch))
+                errors.append(float(re.search(r"ATE ([\d.]+) cm", printed)[1]))
+                say(f"{scene}, seed {seed}\n{printed.rstrip()}")
         say(f"{scene}: ATE {', '.join(f'{e:.2f}' for e in errors)} cm, median {statistics.median(errors):.2f} cm\n")
 
 

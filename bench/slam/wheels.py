@@ -1,9 +1,9 @@
-"""What wrong wheels do to the SLAM: one recorded drive, evaluated with its odometry and with spoilt ones.
+"""SLAM with wrong odometry: one recorded drive, evaluated with its own odometry and with falsified ones.
 
 usage: wheels.py DIR --drive D
 
-DIR is a recording of `trundle sim --record`, D the example `drive` of trundle-slam, built for release. Each row is one way to spoil
-`odometry.txt`; the images are the same. Prints frames located, loops, ATE, and how far off the live pose was when the first loop closed.
+DIR is a recording of `trundle sim --record`, D the example `drive` of trundle-slam, built for release. Each row is one falsification
+of `odometry.txt`; the images are the same. Prints frames located, loops, ATE, and how far off the live pose was when the first loop closed.
 """
 import argparse
 import math
@@ -48,7 +48,7 @@ def frozen(rows, start, length, period=math.inf):
 
 
 def aside(rows, degrees):
-    """A camera that is mounted so far aside of where it is said to be."""
+    """A camera whose mount is turned by `degrees` relative to its description."""
     c, s = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
     return driven([(t, c * a - s * b, s * a + c * b, w) for t, a, b, w in steps(rows)])
 
@@ -60,7 +60,7 @@ def restarted(rows):
 
 
 def holes(rows):
-    """Nothing told for 4 s in every 5 s."""
+    """No odometry for 4 s of every 5 s."""
     return [row for row in rows if (row[0] - rows[0][0]) % 5 < 1]
 
 
@@ -69,11 +69,11 @@ def scaled(rows, along, turned):
 
 
 def slipping(rows):
-    """One wheel that slips by half on 2 m in every 10 m: half of the way is turned into a turn."""
-    out, way = [], 0.0
+    """One wheel that slips by half on 2 m in every 10 m: half of its path appears as a turn."""
+    out, path = [], 0.0
     for time, along, across, turn in steps(rows):
-        way += abs(along)
-        out.append((time, along * 0.75, across, turn + along) if way % 10 < 2 else (time, along, across, turn))
+        path += abs(along)
+        out.append((time, along * 0.75, across, turn + along) if path % 10 < 2 else (time, along, across, turn))
     return driven(out)
 
 
@@ -83,9 +83,9 @@ SPOILT = {
     "frozen 3 s in every 10 s": lambda rows: frozen(rows, 5, 3, 10),
     "one wheel slips by half, 2 m in every 10 m": slipping,
     "starts again at the origin half way": restarted,
-    "nothing told 4 s in every 5 s": holes,
+    "no odometry 4 s of every 5 s": holes,
     "wheels five times as large": lambda rows: scaled(rows, 5, 1),
-    "turns told 5 % too large": lambda rows: scaled(rows, 1, 1.05),
+    "turns 5 % too large": lambda rows: scaled(rows, 1, 1.05),
     "camera mounted 2 deg aside": lambda rows: aside(rows, 2),
     "camera mounted 20 deg aside": lambda rows: aside(rows, 20),
 }
@@ -106,10 +106,10 @@ def main():
             (copy / "odometry.txt").unlink()
             lines = (f"{t:.9f} {x:.9f} {y:.9f} {w:.9f}" for t, x, y, w in spoil(rows))
             (copy / "odometry.txt").write_text("\n".join(lines) + "\n")
-            said = subprocess.run([args.drive, copy], capture_output=True, text=True, check=True).stdout
-        located, loops = re.search(r"(\d+ of \d+) frames located, (\d+) loops", said).groups()
-        ate = re.search(r"ATE ([\d.]+) cm", said)[1]
-        off = re.search(r"until the first loop: .* ([\d.]+) %", said)
+            printed = subprocess.run([args.drive, copy], capture_output=True, text=True, check=True).stdout
+        located, loops = re.search(r"(\d+ of \d+) frames located, (\d+) loops", printed).groups()
+        ate = re.search(r"ATE ([\d.]+) cm", printed)[1]
+        off = re.search(r"until the first loop: .* ([\d.]+) %", printed)
         off = off[1] if off else "-"
         print(f"| {name} | {located} | {loops} | {ate} | {off} |", flush=True)
 

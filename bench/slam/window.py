@@ -1,10 +1,10 @@
-"""How much heading a drive past a window loses: seven drives of small_house with other noise, recorded once, evaluated by `drive`.
+"""Heading error of a drive past a window: seven drives in small_house with different noise, recorded once, evaluated by `drive`.
 
 usage: window.py MESH --trundle T --drive D --records DIR [--seeds 7] [-- FLAGS OF drive]
 
 MESH is small_house.glb, T the program `trundle`, D the example `drive` of trundle-slam (both built for release). Recordings that are in DIR
-are used again (0.7 GB each). Prints of each drive how far its rotation was off at the end and at most, in degrees, told at once; then the
-root mean square of these, and the mean ATE.
+are used again (0.7 GB each). Prints for each drive the rotation error of the live pose at the end and its maximum, in degrees; then the root
+mean square of these, and the mean ATE.
 """
 import argparse
 import math
@@ -29,10 +29,10 @@ def run(*command, env=None, fine=(0,)):
 def judged(drive, recording, flags):
     """Degrees at the end, at most, and the ATE in cm."""
     with tempfile.NamedTemporaryFile("r") as frames:
-        said = run(drive, recording, *flags, env={**os.environ, "TRUNDLE_FRAMES": frames.name})
+        printed = run(drive, recording, *flags, env={**os.environ, "TRUNDLE_FRAMES": frames.name})
         rows = [line.split() for line in frames if line[0].isdigit()]
     off = [math.degrees(float(row[5])) for row in rows]
-    return off[-1], max(off), float(re.search(r"ATE ([\d.]+)", said).group(1))
+    return off[-1], max(off), float(re.search(r"ATE ([\d.]+)", printed).group(1))
 
 
 def rms(values):
@@ -56,9 +56,9 @@ def main():
             start = ["--start", "6.22,-2.52,66", "--follow", HERE / "window.txt"]
             # 1: it ends at a chair, before the last way-point.
             run(args.trundle, "sim", args.mesh, "--up", "z", "--seed", seed, *start, "--record", recording, fine=(0, 1))
-        end, most, ate = judged(args.drive, recording, flags)
-        all_drives.append((end, most, ate))
-        print(f"seed {seed}: {end:.3f} deg at the end, {most:.3f} at most, ATE {ate:.2f} cm", flush=True)
+        end, largest, ate = judged(args.drive, recording, flags)
+        all_drives.append((end, largest, ate))
+        print(f"seed {seed}: {end:.3f} deg at the end, {largest:.3f} at most, ATE {ate:.2f} cm", flush=True)
     ends, mosts, ates = zip(*all_drives)
     print(f"{rms(ends):.3f} and {rms(mosts):.3f} deg rms, ATE {sum(ates) / len(ates):.2f} cm on average")
 

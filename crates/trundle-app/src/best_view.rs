@@ -32,7 +32,7 @@ impl BestView {
         if self.best.is_none() || inliers > self.inliers {
             self.best = Some(image);
             self.inliers = inliers;
-            self.features = robot.slam().map_or_else(Vec::new, |slam| slam.last_features().to_vec());
+            self.features = robot.slam().map_or_else(Vec::new, |slam| slam.last_features());
         }
     }
 

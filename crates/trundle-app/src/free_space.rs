@@ -64,9 +64,9 @@ mod tests {
     fn a_shortage_of_disk_space_is_reported_when_checked() {
         let mut plenty = FreeSpace::new(|| Some(5_000_000), 4_000_000);
         let mut little = FreeSpace::new(|| Some(3_000_000), 4_000_000);
-        let mut untold = FreeSpace::new(|| None, u64::MAX);
+        let mut unknown = FreeSpace::new(|| None, u64::MAX);
         assert_eq!(plenty.shortage_at_message(), None);
-        assert_eq!(untold.shortage_at_message(), None);
+        assert_eq!(unknown.shortage_at_message(), None);
         assert_eq!(little.shortage().unwrap(), "3 MB are free on the disk, expected 4 MB or more");
         assert!(little.shortage_at_message().is_some());
         assert!((1..MESSAGES_BETWEEN_CHECKS).all(|_| little.shortage_at_message().is_none()));

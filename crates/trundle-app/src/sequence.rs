@@ -8,6 +8,7 @@ mod live_view;
 mod numbers;
 mod odometry_prior;
 mod output;
+mod readout;
 mod recorder;
 mod report;
 mod request;

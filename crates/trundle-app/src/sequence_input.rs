@@ -16,6 +16,7 @@ use trundle_io::{
     TumSequence, Warnings,
 };
 use trundle_runtime::{CameraMount, RobotConfig};
+use trundle_slam::ReadoutEstimate;
 
 /// Input of a sequence.
 #[derive(Debug, Clone)]
@@ -50,6 +51,8 @@ pub struct SequenceInput {
     pub robot: RobotConfig,
     /// Height, tilt and roll of the first camera by the floor in the images, if they were searched and show it.
     pub floor_mount: Option<CameraMount>,
+    /// Readout time of the camera by the images, if it was searched and they show a rolling shutter.
+    pub readout_by_images: Option<ReadoutEstimate>,
     source: Source,
 }
 
@@ -61,7 +64,7 @@ enum Source {
 
 impl SequenceInput {
     fn new(path: &Path, camera: SequenceCamera, robot: RobotConfig, source: Source) -> Self {
-        Self { path: path.to_owned(), camera, robot, floor_mount: None, source }
+        Self { path: path.to_owned(), camera, robot, floor_mount: None, readout_by_images: None, source }
     }
 
     /// Whether `path` is read as RGB-D images: a TUM RGB-D folder, a recording of trundle, or a bag with images and without scans of a
@@ -102,6 +105,7 @@ impl SequenceInput {
             Some(camera) => SequenceCamera {
                 model: CameraModel { camera, depth_scale: KINECT_V2_DEPTH_SCALE },
                 name: sequence.topics().info.clone(),
+                is_readout_known: false,
                 is_assumed: false,
                 warnings: Warnings::default(),
             },
@@ -286,6 +290,7 @@ fn camera_of(robot: &RobotConfig, recording: &Path) -> SequenceCamera {
     SequenceCamera {
         model: CameraModel { camera: robot.camera, depth_scale: KINECT_V2_DEPTH_SCALE },
         name: recording.display().to_string(),
+        is_readout_known: true,
         is_assumed: false,
         warnings: Warnings::default(),
     }

@@ -41,7 +41,7 @@ impl DifferentialDrive {
         std::f64::consts::TAU * self.wheel_radius / self.ticks_per_turn
     }
 
-    /// Rim speeds (left, right), m/s, for a twist of the base.
+    /// Speeds of the circumferences of the wheels (left, right), m/s, for a twist of the base.
     pub fn wheel_speeds(&self, twist: Twist2) -> (f64, f64) {
         let turn = twist.omega * self.wheelbase / 2.0;
         (twist.v - turn, twist.v + turn)

@@ -77,7 +77,7 @@ impl BeamTimes {
 /// laser.
 const MAX_BEAM_TIME_S: f64 = 10.0;
 
-/// No sensor of a robot is farther from its base, m.
+/// Largest distance of a sensor from its base \[m\]. Source: ours.
 const MAX_SENSOR_OFFSET_M: f64 = 20.0;
 
 /// A laser-like scan in a horizontal plane: beam i points along `angle_min + i * angle_increment` from the sensor, or along its own

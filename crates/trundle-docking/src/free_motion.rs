@@ -60,7 +60,7 @@ impl FreeTurn {
     }
 
     /// The turn that changes the heading by `angle` (in (-pi, pi], rad): the shorter turn if it is free, else the longer.
-    pub fn way(&self, angle: f64) -> Option<f64> {
+    pub fn turn_by(&self, angle: f64) -> Option<f64> {
         let longer = -(TAU - angle.abs()).copysign(angle);
         [angle, longer].into_iter().find(|&turn| self.allows(turn))
     }

@@ -60,8 +60,6 @@ pub fn run_obstacles(
     })
 }
 
-/// The robot's start in the house, world frame: m, m, deg.
-const HOUSE_START_XY_DEG: (f64, f64, f64) = (0.0, 0.0, 0.0);
 /// The goals, world frame: m, m, deg; by rooms.
 const HOUSE_GOALS: [(f64, f64, f64); 10] = [
     (3.0, -1.0, 0.0),
@@ -90,7 +88,7 @@ pub fn run_house(
         return Err(AppError::Input(format!("{} {problem}", mesh.display())));
     }
     let pose = |(x, y, degrees): (f64, f64, f64)| Pose2::new(x, y, degrees.to_radians());
-    let start = pose(HOUSE_START_XY_DEG);
+    let start = Pose2::IDENTITY;
     run_story(&HOUSE, request, context, |seed| {
         let options = SceneOptions {
             seed,

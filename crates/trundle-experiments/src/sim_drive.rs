@@ -2,13 +2,13 @@
 
 mod drive;
 mod driver;
-mod hand;
 mod key_driver;
 mod live_drive;
 mod numbers;
 mod recording;
 mod steering;
 mod steering_keys;
+mod teleop;
 mod terminal;
 mod true_map;
 

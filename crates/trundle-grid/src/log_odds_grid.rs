@@ -47,7 +47,9 @@ impl TileData for EvidenceTile {
 /// Reading and writing a cell is O(1). Memory: 48 kB for each stored tile.
 pub type LogOddsGrid = TileGrid<EvidenceTile>;
 
+/// log2 of the side of a tile in cells. Source: ours.
 const TILE_BITS: i32 = 6;
+/// Bits of a coordinate within its tile.
 const TILE_MASK: i32 = LogOddsGrid::TILE_SIDE as i32 - 1;
 
 impl LogOddsGrid {

@@ -53,6 +53,7 @@ struct MarkWindow {
     marks: Vec<u32>,
 }
 
+/// Marks of the cells in a [`MarkWindow`].
 const UNTOUCHED_MARK: u32 = 0;
 const FREE_MARK: u32 = 1;
 const SURFACE_MARK: u32 = 2;

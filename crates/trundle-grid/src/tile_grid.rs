@@ -9,7 +9,9 @@ pub trait TileData: Clone + 'static {
     const EMPTY: Self;
 }
 
+/// log2 of the side of a chunk in tiles. Source: ours.
 const CHUNK_BITS: i32 = 4;
+/// Side of a chunk \[tiles\].
 const CHUNK_SIDE: usize = 1 << CHUNK_BITS;
 
 /// Tile coordinates.

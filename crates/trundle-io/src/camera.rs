@@ -87,23 +87,37 @@ impl CameraModel {
     /// content determines the format.
     ///
     /// The TOML has `width`, `height`, `fx`, `fy`, `cx`, `cy` (px) and `depth_scale` (units per metre). The lens `k1`, `k2`, `p1`, `p2`,
-    /// `k3` in OpenCV's order and `readout` (s) default to 0. A file without a depth scale means millimetres, as in ROS.
+    /// `k3` in OpenCV's order default to 0, and `readout` (s) to an unknown time, taken as 0. A file without a depth scale means millimetres, as in ROS.
     ///
     /// # Errors
     /// With the line and key, when the file has no known format, a key is wrong or missing, or a value is invalid.
     pub fn read(path: &Path) -> Result<Self, IoError> {
-        let kind = Expected::Camera.check(path)?;
-        let text = read_text(path)?;
-        Self::of_fields(path, &parse(path, kind, &text)?)
+        Self::of_fields(path, &Self::fields(path)?)
     }
 
-    /// Whether the file holds the depth scale.
+    /// Whether a preset or a file holds the depth scale.
     ///
     /// # Errors
-    /// As [`CameraModel::read`].
-    pub fn holds_depth_scale(path: &Path) -> Result<bool, IoError> {
+    /// As [`CameraModel::named`].
+    pub fn holds_depth_scale(name: &str) -> Result<bool, IoError> {
+        Ok(Self::preset(name).is_some() || Self::fields(Path::new(name))?.depth_scale.is_some())
+    }
+
+    /// Whether a preset or a file holds the readout time. The camera of preset freiburg3, an Xtion, has an unknown one.
+    ///
+    /// # Errors
+    /// As [`CameraModel::named`].
+    pub fn holds_readout(name: &str) -> Result<bool, IoError> {
+        match Self::preset(name) {
+            Some(_) => Ok(name != "freiburg3"),
+            None => Ok(Self::fields(Path::new(name))?.readout.is_some()),
+        }
+    }
+
+    /// The numbers of a file.
+    fn fields(path: &Path) -> Result<CameraFields, IoError> {
         let kind = Expected::Camera.check(path)?;
-        Ok(parse(path, kind, &read_text(path)?)?.depth_scale.is_some())
+        parse(path, kind, &read_text(path)?)
     }
 
     fn of_fields(path: &Path, fields: &CameraFields) -> Result<Self, IoError> {

@@ -14,6 +14,8 @@ pub struct SequenceCamera {
     pub model: CameraModel,
     /// The preset or the file.
     pub name: String,
+    /// Whether the readout time is known; else it is 0 in the model.
+    pub is_readout_known: bool,
     /// Whether the camera is a guess: neither options nor files give one.
     pub is_assumed: bool,
     /// Warnings about the choice.
@@ -42,14 +44,14 @@ impl SequenceCamera {
 
     fn named(name: &str) -> Result<Self, IoError> {
         let (model, mut warnings) = (CameraModel::named(name)?, Warnings::default());
-        let path = Path::new(name);
-        if CameraModel::preset(name).is_none() && !CameraModel::holds_depth_scale(path)? {
+        if !CameraModel::holds_depth_scale(name)? {
             let problem = format!(
                 "no depth scale in the camera file: {KINECT_V2_DEPTH_SCALE} units per metre are assumed; --depth-scale N sets another"
             );
             warnings.add(&problem, name);
         }
-        Ok(Self { model, name: name.to_owned(), is_assumed: false, warnings })
+        let is_readout_known = CameraModel::holds_readout(name)?;
+        Ok(Self { model, name: name.to_owned(), is_readout_known, is_assumed: false, warnings })
     }
 
     fn assumed(dir: &Path) -> Result<Self, IoError> {
@@ -64,7 +66,8 @@ impl SequenceCamera {
             model.depth_scale
         );
         warnings.add(&problem, &dir.display().to_string());
-        Ok(Self { model, name: ASSUMED_PRESET.to_owned(), is_assumed: true, warnings })
+        let name = ASSUMED_PRESET.to_owned();
+        Ok(Self { model, name, is_readout_known: true, is_assumed: true, warnings })
     }
 }
 

@@ -15,8 +15,10 @@ use trundle_mapping::{LiveMapper, MapperConfig};
 
 const HERTZ: f64 = 5.0;
 const SCANS: usize = 18_000;
-/// Minimum number of cells redrawn per control step, and number of steps for the whole map; the values of the robot.
-const REDRAWING: (usize, usize) = (60_000, 90);
+/// Minimum number of cells redrawn per control step. Source: `trundle-runtime`.
+const MIN_REDRAWN_CELLS: usize = 60_000;
+/// Number of control steps for the whole map. Source: `trundle-runtime`.
+const REDRAWING_STEPS: usize = 90;
 
 /// Time on the processor, ms: others may be at work too.
 fn processor_ms() -> f64 {
@@ -56,7 +58,11 @@ fn main() {
         let before = mapper.revision();
         shown.push(timed(|| mapper.changes_since(before.saturating_sub(1)).count()).0);
     }
-    println!("{SCANS} scans over {:.0} min, {} things kept", SCANS as f64 / HERTZ / 60.0, mapper.kept());
+    println!(
+        "{SCANS} scans over {:.0} min, {} things kept",
+        SCANS as f64 / HERTZ / 60.0,
+        mapper.logged_entries()
+    );
     report("drawing a scan", inserts);
     report("telling what changed", shown);
     let end = SCANS as f64 / HERTZ;
@@ -66,8 +72,8 @@ fn main() {
     let (correct, moved) = timed(|| mapper.correct(bend));
     let mut slices = Vec::new();
     while mapper.is_redrawing() {
-        let within = REDRAWING.1.saturating_sub(slices.len()).max(1);
-        slices.push(timed(|| mapper.work_within(REDRAWING.0, within)).0);
+        let within = REDRAWING_STEPS.saturating_sub(slices.len()).max(1);
+        slices.push(timed(|| mapper.work_within(MIN_REDRAWN_CELLS, within)).0);
     }
     let all: f64 = slices.iter().sum();
     println!(

@@ -27,7 +27,7 @@ impl View {
 
     /// A point of the world in the camera's frame, m.
     #[inline(always)]
-    pub fn see(&self, p: &[f64; 3]) -> [f64; 3] {
+    pub fn camera_point(&self, p: &[f64; 3]) -> [f64; 3] {
         std::array::from_fn(|i| dot(&self.rotation[i], p) + self.translation[i])
     }
 }
@@ -47,7 +47,7 @@ impl Lens {
     /// Squared residual of a point in a camera; infinite behind the lens.
     #[inline(always)]
     pub fn chi2(&self, view: &View, seen: &Measurement, point: &[f64; 3]) -> f64 {
-        let p = view.see(point);
+        let p = view.camera_point(point);
         if p[2] < MIN_PROJECTION_DEPTH_M {
             return f64::INFINITY;
         }

@@ -402,7 +402,7 @@ impl BundleProblem {
     }
 }
 
-/// Units of work of moving that many poses.
+/// Units of work for moving a number of poses.
 fn reduced_work(poses: usize) -> usize {
     20 * poses + 1
 }

@@ -108,7 +108,7 @@ impl Normal {
         for (seen, kept) in layout.seen[range.clone()].iter().zip(&mut self.couplings[range]) {
             let view = &views[seen.pose as usize];
             *kept = UNCOUPLED;
-            let p = view.see(point);
+            let p = view.camera_point(point);
             if p[2] < MIN_PROJECTION_DEPTH_M {
                 cost += COST_BEHIND_CAMERA;
                 continue;

@@ -115,7 +115,7 @@ fn main() {
     let grid = OccupancyGrid::from_ascii(0.1, ROOM).unwrap();
     let (start, goal) = (Pose2::new(0.35, 0.35, 1.2), Pose2::new(5.5, 1.8, 0.6));
     let mut planner = support::planner(support::at_home(), ROBOT);
-    let plan = support::found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    let plan = support::found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
     field(&grid);
     potential(&grid, goal.position());
     way(&grid, &plan);
@@ -261,7 +261,7 @@ fn outline() {
     let mut planner =
         Planner::new(config, &footprint, DriveLimits::KOBUKI, DifferentialDrive::KOBUKI).unwrap();
     let (start, goal) = (Pose2::new(0.7, 0.7, 1.3), Pose2::new(3.7, 1.1, -2.0));
-    let plan = support::found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    let plan = support::found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
     let mut picture = Picture::of(&grid);
     picture.walls(&grid);
     for point in plan.trajectory.points().iter().step_by(20) {
@@ -282,7 +282,7 @@ fn obstacles() {
     let (start, goal) = (Pose2::new(0.8, 1.3, 0.0), Pose2::new(5.0, 1.3, 0.0));
     let obstacle = MovingObstacle::new(Vector2::new(1.7, 0.3), Vector2::new(0.0, 0.7), 0.3).unwrap();
     let mut planner = support::planner(support::at_home(), 0.1755);
-    let plan = support::found(planner.plan_among_moving(&grid, &[obstacle], start, Twist2::ZERO, goal));
+    let plan = support::found_plan(planner.plan_among_moving(&grid, &[obstacle], start, Twist2::ZERO, goal));
     let mut picture = Picture::of(&grid);
     picture.walls(&grid);
     for step in 0..=4 {

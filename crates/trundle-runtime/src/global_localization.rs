@@ -89,7 +89,7 @@ impl GlobalLocalization {
 
     /// Adds a scan; returns the pose once certain. `in_the_dark` states that images have too few features for place recognition. Cost until
     /// a pose is found: linear in the map's area, for each scan 10 deg or 0.3 m after the previous one.
-    pub(crate) fn look(
+    pub(crate) fn on_scan(
         &mut self,
         odom_from_base: Pose2,
         scan: &Scan,
@@ -179,14 +179,14 @@ mod tests {
     ) -> Option<(Pose2, usize)> {
         let mut global_localization = GlobalLocalization::new(&RobotConfig::default(), 0.5).unwrap();
         assert!(
-            global_localization.look(at, &scan(truth, at, Stamp::default()), true).is_none(),
+            global_localization.on_scan(at, &scan(truth, at, Stamp::default()), true).is_none(),
             "nothing is looked for"
         );
         global_localization.search_pose(map.clone());
         (0..108).find_map(|i: u32| {
             let turned = Pose2::new(0.0, 0.0, 0.175 * f64::from(i));
             let seen = scan(truth, at * turned, Stamp::from_nanos(i64::from(i) * 300_000_000));
-            let place = global_localization.look(turned, &seen, in_the_dark)?;
+            let place = global_localization.on_scan(turned, &seen, in_the_dark)?;
             assert!(place.covariance.symmetric_eigenvalues().min() > 0.0);
             Some((place.map_from_base * turned.inverse(), i as usize))
         })
@@ -231,7 +231,7 @@ mod tests {
         global_localization.search_pose(map.clone());
         for i in 0..40 {
             let seen = scan(&map, at, Stamp::from_nanos(i * 3_000_000_000));
-            assert_eq!(global_localization.look(Pose2::IDENTITY, &seen, true), None);
+            assert_eq!(global_localization.on_scan(Pose2::IDENTITY, &seen, true), None);
         }
     }
 

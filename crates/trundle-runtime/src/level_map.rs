@@ -41,7 +41,7 @@ impl LevelMap {
     ///
     /// # Errors
     /// When the map's configuration is not valid.
-    pub fn draw(
+    pub fn grid(
         &self,
         trajectory: &[(Stamp, Pose3)],
         config: MapperConfig,
@@ -49,7 +49,7 @@ impl LevelMap {
         Ok(self.mapper(trajectory, config)?.grid().clone())
     }
 
-    /// A mapper with all scans, as [`LevelMap::draw`]: further scans may be inserted.
+    /// A mapper with all scans, as [`LevelMap::grid`]: further scans may be inserted.
     ///
     /// # Errors
     /// When the map's configuration is not valid.
@@ -149,7 +149,7 @@ mod tests {
             let at = |time: f64, pose| (Stamp::default().after(time), Pose3::from_pose2(pose) * at_first);
             let mut trajectory: Vec<_> = times.iter().map(|time| at(*time, pose)).collect();
             trajectory.push(at(9.0, Pose2::new(50.0, 0.0, 0.0)));
-            let grid = map.draw(&trajectory, MapperConfig::default()).unwrap();
+            let grid = map.grid(&trajectory, MapperConfig::default()).unwrap();
             assert_eq!(grid.at(pose.transform(Vector2::new(2.02, 0.0))), Cell::Occupied, "{pose:?}");
             assert_eq!(grid.at(pose.transform(Vector2::new(1.2, 0.0))), Cell::Free, "{pose:?}");
             assert!(grid.geometry().cell_at(Vector2::new(52.0, 0.0)).is_none(), "an image without a scan");

@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let frames: usize = frames.parse()?;
     let mesh = gltf(Path::new(scene), &GltfOptions::z_up())?.mesh;
     let world = World::with_meshes(Vec::new(), vec![mesh], 1)?;
-    world.paint();
+    world.prepare_textures();
     let stage = SceneSnapshot { world: &world, movers: &[], lights: &Lights::default() };
     let renderer = Renderer::new(PinholeCamera::kinect_v2())?;
     let sensor = RgbdSensor::new(DepthNoise::default(), ColorNoise::default(), 1)?;

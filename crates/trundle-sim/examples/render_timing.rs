@@ -12,7 +12,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for name in Scene::NAMES {
         let started = Instant::now();
         let scene = Scene::by_name(name, 1)?;
-        scene.world.paint();
+        scene.world.prepare_textures();
         let painting = started.elapsed().as_secs_f64() * 1e3;
         let renderer = Renderer::new(PinholeCamera::kinect_v2())?;
         let sensor = RgbdSensor::new(DepthNoise::default(), ColorNoise::default(), 1)?;

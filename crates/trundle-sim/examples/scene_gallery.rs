@@ -37,7 +37,7 @@ fn main() -> Result<(), Failure> {
         let started = Instant::now();
         let scene = Scene::by_name(name, seed)?;
         let built = started.elapsed();
-        scene.world.paint();
+        scene.world.prepare_textures();
         println!(
             "{name}: {} solids, built in {:.1} ms, painted in {:.0} ms on {} threads",
             scene.world.solids().len(),

@@ -98,8 +98,8 @@ impl Simulator {
         let obstacles = scene.world.obstacles(band);
         require_free(&scene, &config, &obstacles, &crowd)?;
         if config.has_camera {
-            scene.world.paint();
-            crowd.paint();
+            scene.world.prepare_textures();
+            crowd.prepare_textures();
         }
         let clocks = Clocks {
             wheels: Clock::new(config.kobuki.wheel_rate_hz),

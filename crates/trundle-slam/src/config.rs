@@ -10,12 +10,18 @@ use serde::{Deserialize, Serialize};
 use trundle_core::Invalid;
 use trundle_vision::OrbConfig;
 
+/// Smallest limit of an image's longest side: 320 px. Smaller images hold too few features. Source: ours.
+const MIN_SIDE_PX: usize = 320;
+
 /// All settings of the RGB-D SLAM.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SlamConfig {
     /// Features.
     pub orb: OrbConfig,
+    /// Longest side of an image that is tracked at full size, px, 320 or more. Larger images are reduced by a whole factor: a smaller
+    /// number takes less time, a larger one uses finer detail. Default 960: search windows and numbers of features are those of 640 x 480.
+    pub max_side_px: usize,
     /// Depth camera.
     pub depth: DepthConfig,
     /// Pose of a frame.
@@ -39,6 +45,7 @@ impl Default for SlamConfig {
     fn default() -> Self {
         Self {
             orb: OrbConfig::default(),
+            max_side_px: 960,
             depth: DepthConfig::default(),
             tracking: TrackingConfig::default(),
             motion: MotionModelConfig::default(),
@@ -59,6 +66,10 @@ impl SlamConfig {
     pub fn validated(self) -> Result<Self, Invalid> {
         if self.kept_frames == 0 {
             return Err(Invalid::new("slam.kept_frames", 0, "", "1 or more"));
+        }
+        if self.max_side_px < MIN_SIDE_PX {
+            let expected = format!("{MIN_SIDE_PX} or more");
+            return Err(Invalid::new("slam.max_side_px", self.max_side_px, "px", expected));
         }
         Ok(Self {
             orb: self.orb.validated()?,

@@ -47,6 +47,7 @@
 //! | `loop_closing/` | loops found, verified and closed |
 //! | `atlas/` | several maps, and their merging |
 //! | `calibration_check/` | wrong settings found by the images |
+//! | `readout/` | the readout time of a rolling shutter, by images of a turning camera |
 //! | `persist/` | maps as bytes |
 //!
 //! | \[MurArtal17\] | here | unit |
@@ -71,6 +72,7 @@ mod motion;
 mod optimisation;
 mod persist;
 mod place_recognition;
+mod readout;
 mod report;
 mod slam;
 #[cfg(test)]
@@ -87,6 +89,7 @@ pub use loop_closing::config::LoopConfig;
 pub use loop_closing::loop_closure::LoopClosure;
 pub use motion::motion_model::MotionModelConfig;
 pub use persist::error::MapFileError;
+pub use readout::{ReadoutEstimate, ReadoutEstimator};
 pub use report::{FramePose, MapMerge, Mode, SeenFeature, TrackReport};
 pub use slam::RgbdSlam;
 pub use tracking::config::TrackingConfig;

@@ -1,11 +1,12 @@
 //! Report of one frame.
 
+use crate::frame::reduction::Reduction;
 use crate::ids::{KeyframeId, MapId};
 use crate::loop_closing::loop_closure::LoopClosure;
 use crate::tracking::tracking_status::Tracking;
 use nalgebra::Matrix6;
 use serde::{Deserialize, Serialize};
-use trundle_core::{Pose3, Stamp};
+use trundle_core::{Pose3, Stamp, Vector2};
 use trundle_vision::Keypoint;
 
 /// Mapping, or localization in fixed maps.
@@ -88,4 +89,16 @@ pub struct SeenFeature {
     pub keypoint: Keypoint,
     /// Whether the feature shows a landmark that agrees with the pose.
     pub tracked: bool,
+}
+
+impl SeenFeature {
+    /// The feature at its position in the image before the reduction.
+    pub(crate) fn enlarged(mut self, reduction: Reduction) -> Self {
+        let keypoint = &mut self.keypoint;
+        if reduction.factor() > 1 {
+            let full = reduction.enlarged(Vector2::new(f64::from(keypoint.x), f64::from(keypoint.y)));
+            (keypoint.x, keypoint.y) = (full.x as f32, full.y as f32);
+        }
+        self
+    }
 }

@@ -22,9 +22,7 @@ use crate::report::{FramePose, Mode, SeenFeature, TrackReport};
 use crate::tracking::tracking_state::TrackingState;
 use localizer::Localizer;
 use std::sync::Arc;
-use trundle_core::{
-    CameraMotion, DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Stamp, Vector3, gray_from_color,
-};
+use trundle_core::{CameraMotion, DepthImage, Invalid, PinholeCamera, Pose3, RgbdImage, Stamp, Vector3};
 use trundle_vision::{Features, Vocabulary};
 
 /// Tolerance of a motion prior besides the largest speeds: 0.2 m and 0.2 rad. A larger prior is an odometry that jumped, and is dropped.
@@ -69,7 +67,7 @@ impl RgbdSlam {
     pub fn new(camera: PinholeCamera, config: SlamConfig) -> Result<Self, Invalid> {
         let config = config.validated()?;
         let camera = config.motion.with_readout_of(camera)?;
-        let front_end = FrontEnd::new(camera, &config.orb, config.tracking.pixel_sigma)?;
+        let front_end = FrontEnd::new(camera, &config)?;
         Ok(Self {
             mode: Mode::default(),
             front_end,
@@ -126,13 +124,14 @@ impl RgbdSlam {
     /// prior, or with an impossibly fast one, the camera is predicted at constant velocity. An empty image, or one of a wrong size, counts
     /// as an image without features and is not located.
     pub fn step(&mut self, image: &RgbdImage, prior: Option<CameraMotion>) -> TrackReport {
-        let gray = gray_from_color(image.color());
+        let (gray, depth) = self.front_end.reduced(image);
         let features = self.front_end.extract(&gray);
-        self.calibration.record_image(&gray, image.depth());
-        self.step_with_features(image.stamp(), features, image.depth(), prior)
+        self.calibration.record_image(&gray, &depth);
+        self.step_with_features(image.stamp(), features, &depth, prior)
     }
 
-    /// A step with given features, from an extractor of the same configuration in another thread, for example.
+    /// A step with given features, from an extractor of the same configuration in another thread, for example. Images larger than
+    /// `max_side_px` are given in their reduced size.
     pub fn step_with_features(
         &mut self,
         stamp: Stamp,
@@ -274,14 +273,15 @@ impl RgbdSlam {
         self.atlas.maps().into_iter().map(|map| map.id).collect()
     }
 
-    /// The features of the last image.
-    pub fn last_features(&self) -> &[SeenFeature] {
-        &self.features
+    /// The features of the last image, with their positions in that image.
+    pub fn last_features(&self) -> Vec<SeenFeature> {
+        self.features.iter().map(|feature| feature.enlarged(self.front_end.reduction)).collect()
     }
 
     /// Settings that are probably wrong, by the first images.
-    pub fn calibration_issues(&self) -> &[CalibrationIssue] {
-        self.calibration.issues()
+    pub fn calibration_issues(&self) -> Vec<CalibrationIssue> {
+        let factor = self.front_end.reduction.factor() as f64;
+        self.calibration.issues().iter().map(|issue| issue.enlarged(factor)).collect()
     }
 
     /// All maps as bytes: versioned, with a checksum and the settings of their features. The trajectory is not included.

@@ -36,6 +36,7 @@ fn proportional(rows: [u8; HEIGHT], drop: usize) -> Glyph {
     Glyph { rows: rows.map(|row| row << left), drop, width: WIDTH - left - right }
 }
 
+/// Rows of the box that replaces a missing character.
 const BOX: [u8; HEIGHT] = [0b11111, 0b10001, 0b10001, 0b10001, 0b10001, 0b10001, 0b11111];
 
 /// Character, rows below the base line, rows from the top.

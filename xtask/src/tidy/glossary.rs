@@ -1,4 +1,5 @@
-//! Names: the glossary's second table lists those that are refused for modules, types, functions, fields and variables.
+//! Names: the glossary's second table lists those that are refused for modules, types, functions, fields
+//! and variables, in tests too.
 
 use super::finding::{Finding, Rule};
 use super::source::identifiers;
@@ -7,12 +8,13 @@ use std::collections::BTreeMap;
 
 const GLOSSARY: &str = "docs/glossary.md";
 const TABLE: &str = "## Names that are not used";
-/// Checks all identifiers of every package.
+
+/// Checks all identifiers of every package, in code and tests.
 pub fn check(tree: &Tree) -> Vec<Finding> {
     let Some(glossary) = tree.file(GLOSSARY) else { return Vec::new() };
     let refused = refused(&glossary.text);
     let mut findings = Vec::new();
-    for source in tree.packages.iter().flat_map(|package| tree.sources(package)) {
+    for source in tree.packages.iter().flat_map(|package| tree.sources_with_tests(package)) {
         for (line, code) in source.code.lines() {
             for name in identifiers(code) {
                 if let Some(instead) = instead_of(&refused, name) {
@@ -57,10 +59,15 @@ mod tests {
              | `least_*` | `min_*` |\n"
         );
         let code = "mod helm;\npub struct Helm;\n// helm\nfn f() { g::helmet(\"helm\") }\nconst Used: u8 = 1;\n\
-                    let least_cost = atleast_cost;\n";
-        let files =
-            [("x/Cargo.toml", "[package]\nname = \"x\""), ("x/src/lib.rs", code), (GLOSSARY, &glossary)];
+                    let least_cost = atleast_cost;\n\
+                    #[cfg(test)]\nmod tests { fn helm() {} }\n";
+        let files = [
+            ("x/Cargo.toml", "[package]\nname = \"x\""),
+            ("x/src/lib.rs", code),
+            ("x/tests/it/a.rs", "fn f() {}\nfn helm() {}\n"),
+            (GLOSSARY, &glossary),
+        ];
         let found: Vec<usize> = check(&tree(&files)).iter().map(|f| f.line).collect();
-        assert_eq!(found, [1, 2, 6]);
+        assert_eq!(found, [1, 2, 6, 8, 2]);
     }
 }

@@ -19,6 +19,7 @@ mod markdown;
 mod modules;
 mod prose;
 mod purity;
+mod results_page;
 mod shape;
 mod source;
 mod tree;
@@ -85,6 +86,7 @@ fn all_findings(root: &Path) -> Result<Vec<Finding>, String> {
         prose::check,
     ];
     let mut findings: Vec<Finding> = rules.iter().flat_map(|rule| rule(&tree)).collect();
+    findings.extend(results_page::check(root));
     findings.sort();
     Ok(findings)
 }

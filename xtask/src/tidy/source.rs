@@ -14,6 +14,13 @@ impl Code {
         Self { text: chars.into_iter().collect() }
     }
 
+    /// The code of a Rust file with its tests.
+    pub fn with_tests(text: &str) -> Self {
+        let mut chars: Vec<char> = text.chars().collect();
+        blank_comments_and_strings(&mut chars);
+        Self { text: chars.into_iter().collect() }
+    }
+
     /// The code as text.
     pub fn text(&self) -> &str {
         &self.text

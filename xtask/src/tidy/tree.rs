@@ -79,6 +79,14 @@ impl Tree {
         self.files.iter().filter(move |file| file.path.ends_with(end))
     }
 
+    /// All Rust files of a package, each with its code and its tests.
+    pub fn sources_with_tests<'a>(&'a self, package: &Package) -> impl Iterator<Item = Source<'a>> {
+        let folder = format!("{}/", package.folder);
+        self.ending(".rs")
+            .filter(move |file| file.path.starts_with(&folder))
+            .map(|file| Source { file, code: Code::with_tests(&file.text) })
+    }
+
     /// The Rust files of a package's `src`.
     pub fn sources<'a>(&'a self, package: &Package) -> impl Iterator<Item = Source<'a>> {
         let src = format!("{}/src/", package.folder);

@@ -26,7 +26,7 @@ pub struct SlamArgs {
     /// The topics of a bag.
     #[command(flatten)]
     pub topics: BagTopicsArgs,
-    /// Stop after this many frames.
+    /// Maximum number of frames.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,
     /// The pose of the first camera.

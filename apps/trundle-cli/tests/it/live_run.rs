@@ -24,9 +24,9 @@ impl EmulatedRobot {
             .stdout(Stdio::piped())
             .spawn()
             .unwrap();
-        let begun = Instant::now();
+        let start = Instant::now();
         while !(port.exists() && camera.exists()) {
-            assert!(begun.elapsed() < Duration::from_secs(60), "the emulated robot does not start");
+            assert!(start.elapsed() < Duration::from_secs(60), "the emulated robot does not start");
             std::thread::sleep(Duration::from_millis(20));
         }
         Self { process, folder: folder.to_owned() }

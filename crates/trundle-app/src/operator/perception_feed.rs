@@ -33,7 +33,7 @@ impl PerceptionFeed {
         if self.features.as_ref().is_some_and(|(copied, _)| track.stamp - *copied < FEATURES_PERIOD_S) {
             return;
         }
-        let spots = slam.last_features().iter().map(|feature| FeatureSpot {
+        let spots = slam.last_features().into_iter().map(|feature| FeatureSpot {
             at_px: [feature.keypoint.x.into(), feature.keypoint.y.into()],
             is_tracked: feature.tracked,
         });

@@ -17,8 +17,9 @@ pub fn camera_view(image: &RgbdImage, features: &[SeenFeature]) -> CameraView {
     CameraView { color: image.color().clone(), features: features.iter().map(mark).collect() }
 }
 
-/// The side of a feature's patch on the full-size level, px, and what each level of the pyramid multiplies it by.
+/// Side of a feature's patch on the full-size level \[px\]. Source: \[Rublee11\].
 const PATCH_PX: f64 = 31.0;
+/// Ratio of the patch's sides on neighbouring levels of the pyramid. Source: \[Rublee11\].
 const OCTAVE_SCALE: f64 = 1.2;
 
 fn mark(feature: &SeenFeature) -> FeatureMark {

@@ -8,6 +8,7 @@ use crate::sequence_input::SequenceInput;
 use crate::surface::SurfaceFiles;
 use trundle_io::Summary;
 use trundle_runtime::CameraMount;
+use trundle_slam::ReadoutEstimate;
 
 /// The table of a tracked sequence, all but the wall clock's part.
 #[must_use]
@@ -49,6 +50,10 @@ pub fn sequence_rows(
     if let Some(mount) = &input.floor_mount {
         rows.push(row("first camera, by the floor", mount_text(mount)));
     }
+    if let Some(ReadoutEstimate { readout_s, sigma_s, .. }) = input.readout_by_images {
+        let text = format!("{:.1} ms, standard deviation {:.1} ms", readout_s * 1e3, sigma_s * 1e3);
+        rows.push(row("readout time, by the images", text));
+    }
     rows
 }
 
@@ -83,6 +88,7 @@ pub fn summary(
         .set("camera", &input.camera.name)
         .set("camera_assumed", input.camera.is_assumed)
         .set("camera_by_floor", input.floor_mount)
+        .set("camera_readout_by_images_s", input.readout_by_images.map(|found| found.readout_s))
         .set("seed", request.seed)
         .set("frames", c.ok + c.weak + c.dead_reckoned + c.lost)
         .set("frames_unreadable", &run.unreadable)

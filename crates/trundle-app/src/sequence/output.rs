@@ -37,7 +37,7 @@ pub fn write_sequence(
     let trajectory = &run.trajectory.poses;
     let comparison = input.ground_truth().and_then(|truth| against_truth(&input.path, truth, trajectory));
     let comparison = comparison.as_ref();
-    let grid = run.map.draw(trajectory, input.robot.mapping.clone())?;
+    let grid = run.map.grid(trajectory, input.robot.mapping.clone())?;
     write_map_as(&folder, "map", &grid, request.map_image)?;
     folder.write("trajectory.txt", trajectory_text(trajectory).as_bytes())?;
     folder.write("visual.map", &run.slam.save())?;

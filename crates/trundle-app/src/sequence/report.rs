@@ -51,7 +51,7 @@ pub fn page(
             estimated_path: trajectory.iter().map(|(_, pose)| pose.to_pose2()).collect(),
             ..RunMap::default()
         },
-        camera: run.last_image.as_ref().map(|image| camera_view(image, run.slam.last_features())),
+        camera: run.last_image.as_ref().map(|image| camera_view(image, &run.slam.last_features())),
         depth: run.last_image.as_ref().map(|image| image.depth().clone()),
         figures: vec![visual_map(run)],
         charts,

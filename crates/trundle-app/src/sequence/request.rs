@@ -3,6 +3,7 @@
 use super::first_camera::{DEFAULT_CAMERA_HEIGHT_M, FirstCamera};
 use super::floor_log::log_choice;
 use super::floor_mount::floor_evidence;
+use super::readout::find_readout;
 use crate::sequence_input::{SequenceInput, SequenceOptions};
 use crate::vocabulary_file::vocabulary_or_builtin;
 use crate::{AppError, RecordingContent};
@@ -64,6 +65,7 @@ impl SequenceRequest {
             input.robot = RobotConfig::clone(robot);
             input.robot.camera = input.camera.model.camera;
         }
+        find_readout(&mut input, self.frames)?;
         if self.map.is_some() {
             if self.first_camera.is_asked() {
                 take_mount(&mut input, &self.first_camera.mount());

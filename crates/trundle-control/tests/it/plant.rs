@@ -21,7 +21,7 @@ pub struct Plant {
     set: [f64; 2],
     pending: VecDeque<(i64, Twist2)>,
     target: Twist2,
-    chance: u64,
+    rng_state: u64,
 }
 
 impl Plant {
@@ -37,7 +37,7 @@ impl Plant {
             set: [0.0; 2],
             pending: VecDeque::new(),
             target: Twist2::ZERO,
-            chance: 0x9E37_79B9_7F4A_7C15,
+            rng_state: 0x9E37_79B9_7F4A_7C15,
         }
     }
 
@@ -91,9 +91,9 @@ impl Plant {
 
     /// Uniform in -1..1 (xorshift: the same in every run).
     fn draw(&mut self) -> f64 {
-        self.chance ^= self.chance << 13;
-        self.chance ^= self.chance >> 7;
-        self.chance ^= self.chance << 17;
-        (self.chance >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+        self.rng_state ^= self.rng_state << 13;
+        self.rng_state ^= self.rng_state >> 7;
+        self.rng_state ^= self.rng_state << 17;
+        (self.rng_state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 }

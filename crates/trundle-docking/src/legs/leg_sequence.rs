@@ -84,5 +84,5 @@ impl Legs {
 
 fn free_turn(space: &mut ContactSpace<'_>, pose: &Pose2, heading: f64) -> Option<f64> {
     let turn = wrap_angle(heading - pose.theta);
-    if turn.abs() < 1e-9 { Some(0.0) } else { space.turn(pose).way(turn) }
+    if turn.abs() < 1e-9 { Some(0.0) } else { space.turn(pose).turn_by(turn) }
 }

@@ -12,7 +12,7 @@ use trundle_core::Pose2;
 #[derive(Debug)]
 pub struct ShrunkHulls<'a> {
     whole: ContactSpace<'a>,
-    /// Created on demand; `None` of a hull that has vanished.
+    /// Created on demand; `None` for a hull without area.
     spaces: [Option<Option<ContactSpace<'a>>>; SHRINK_STEPS],
     gaps: BTreeMap<Square, Vec<HeadingArc>>,
     blocked: Vec<HeadingArc>,

@@ -99,7 +99,7 @@ impl<'s, 'a> LegSearch<'s, 'a> {
         };
         let corner = Motion::Drive(way).after(Pose2 { theta: heading, ..*pose }, way);
         let turn = wrap_angle(next - heading);
-        let taken = self.space.turn(&corner).way(turn)?;
+        let taken = self.space.turn(&corner).turn_by(turn)?;
         Some(tail.time + self.query.turn_cost(taken) - self.query.turn_cost(turn))
     }
 

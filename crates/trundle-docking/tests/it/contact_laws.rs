@@ -234,10 +234,10 @@ fn a_motion_has_a_blocker_exactly_when_it_is_not_free() {
 fn a_change_of_heading_takes_the_shorter_turn_where_it_is_free_and_else_the_longer() {
     let free = |left: f64, right: f64| FreeTurn { left, right, left_by: None, right_by: None };
     let close = |turn: Option<f64>, expected: f64| turn.is_some_and(|turn| (turn - expected).abs() < 1e-12);
-    assert!(close(free(2.0, 2.0).way(1.0), 1.0) && close(free(2.0, 2.0).way(-1.0), -1.0));
-    assert!(close(free(0.5, 6.0).way(1.0), 1.0 - TAU) && close(free(6.0, 0.5).way(-1.0), TAU - 1.0));
-    assert_eq!((free(0.5, 0.5).way(1.0), free(0.5, 0.5).way(-1.0)), (None, None));
-    assert!(close(free(0.0, 0.0).way(0.0), 0.0));
+    assert!(close(free(2.0, 2.0).turn_by(1.0), 1.0) && close(free(2.0, 2.0).turn_by(-1.0), -1.0));
+    assert!(close(free(0.5, 6.0).turn_by(1.0), 1.0 - TAU) && close(free(6.0, 0.5).turn_by(-1.0), TAU - 1.0));
+    assert_eq!((free(0.5, 0.5).turn_by(1.0), free(0.5, 0.5).turn_by(-1.0)), (None, None));
+    assert!(close(free(0.0, 0.0).turn_by(0.0), 0.0));
 }
 
 #[test]

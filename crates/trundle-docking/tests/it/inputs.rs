@@ -236,7 +236,7 @@ fn a_hundred_thousand_points_are_planned() {
     let mut space = ContactSpace::new(&robot(), solution.margin, &scene);
     for step in solution.manoeuvre.steps() {
         let free = match step.motion {
-            Motion::Turn(angle) => space.turn(&step.from).way(angle) == Some(angle),
+            Motion::Turn(angle) => space.turn(&step.from).turn_by(angle) == Some(angle),
             Motion::Drive(way) => space.drive(&step.from, way.abs() + 0.01).allows(way),
         };
         assert!(free, "{step:?}");

@@ -41,11 +41,11 @@ fn main() -> Result<(), AppError> {
         }
         let count = (seeds * MAPS.len() as u64) as f64;
         for (what, sum) in ["as measured", "deskewed"].iter().zip(sums) {
-            let [mean, most, turn, most_turn] = sum.map(|sum| sum / count);
+            let [mean, max_distance, turn, max_turn] = sum.map(|sum| sum / count);
             println!(
-                "{name} {what}: mean {:.2} cm, largest {:.2} cm, heading mean {turn:.3} deg, largest {most_turn:.3} deg",
+                "{name} {what}: mean {:.2} cm, largest {:.2} cm, heading mean {turn:.3} deg, largest {max_turn:.3} deg",
                 100.0 * mean,
-                100.0 * most
+                100.0 * max_distance
             );
         }
     }

@@ -1,7 +1,7 @@
 //! First places in known maps: three small lasers, random starts on each map.
 //!
 //! `cargo run --release -p trundle-experiments --example first_place -- ../shared/data/nav [STARTS] [MAP]`
-//! prints, for each map and laser, the number of starts at which the first place told as known was right and wrong, and the time to it.
+//! prints, for each map and laser, the number of starts at which the first place result as known was right and wrong, and the time to it.
 #![allow(
     clippy::print_stdout,
     clippy::print_stderr,
@@ -29,12 +29,14 @@ const MAPS: [&str; 6] = [
 ];
 /// Duration of a drive \[s\].
 const DRIVE_S: f64 = 60.0;
-/// Distance and turn from the truth beyond which a place is wrong \[m, rad\].
-const MAX_ERROR: (f64, f64) = (0.5, 0.26);
+/// Distance from the truth beyond which a pose is wrong \[m\]. Source: ours.
+const MAX_DISTANCE_M: f64 = 0.5;
+/// Turn from the truth beyond which a pose is wrong \[rad\]: 15 deg. Source: ours.
+const MAX_TURN_RAD: f64 = 0.26;
 
-/// What was told of one drive.
+/// What was result of one drive.
 #[derive(Debug, Clone, Copy, Default)]
-struct Told {
+struct DriveResult {
     /// Time of the first known place, s.
     first_s: Option<f64>,
     is_first_wrong: bool,
@@ -51,13 +53,15 @@ fn main() -> Result<(), AppError> {
     for map in MAPS.iter().filter(|map| map.contains(only)) {
         let grid = read_map(&folder.join(map))?;
         for (name, _, laser) in LaserConfig::PRESETS.iter().filter(|(name, ..)| *name != "ust-10lx") {
-            let told: Result<Vec<Told>, AppError> =
-                (0..starts).into_par_iter().map(|seed| tell(Path::new(map), &grid, laser(), seed)).collect();
-            let told = told?;
-            let mut times: Vec<f64> = told.iter().filter_map(|told| told.first_s).collect();
+            let result: Result<Vec<DriveResult>, AppError> = (0..starts)
+                .into_par_iter()
+                .map(|seed| localize_drive(Path::new(map), &grid, laser(), seed))
+                .collect();
+            let result = result?;
+            let mut times: Vec<f64> = result.iter().filter_map(|result| result.first_s).collect();
             times.sort_by(f64::total_cmp);
-            let first_wrong = told.iter().filter(|told| told.is_first_wrong).count();
-            let (known, wrong) = told.iter().fold((0, 0), |sum, t| (sum.0 + t.known, sum.1 + t.wrong));
+            let first_wrong = result.iter().filter(|result| result.is_first_wrong).count();
+            let (known, wrong) = result.iter().fold((0, 0), |sum, t| (sum.0 + t.known, sum.1 + t.wrong));
             let median = times.get(times.len() / 2).copied().unwrap_or(f64::NAN);
             println!(
                 "{map} {name}: found {} of {starts}, first place wrong {first_wrong}, scans wrong {wrong} of {known}, median {median:.1} s",
@@ -71,35 +75,40 @@ fn main() -> Result<(), AppError> {
 }
 
 /// Localizes one drive in the map of its walls.
-fn tell(name: &Path, grid: &OccupancyGrid, laser: LaserConfig, seed: u64) -> Result<Told, AppError> {
+fn localize_drive(
+    name: &Path,
+    grid: &OccupancyGrid,
+    laser: LaserConfig,
+    seed: u64,
+) -> Result<DriveResult, AppError> {
     let world = world_of(&name.display().to_string(), grid)?;
     let start = random_start(grid, &world, seed)?;
     let drive = drive(world, (laser, start), DRIVE_S, seed)?;
     let default = ParticleConfig::default();
     let map = MapperConfig { ..default.map.with_resolution(grid.geometry().resolution) };
     let mut localizer = MapLocalizer::from_grid(grid, ParticleConfig { map, ..default }, seed)?;
-    let mut told = Told::default();
+    let mut result = DriveResult::default();
     for scan in &drive.scans {
         let said = localizer.update(scan.odom_from_base, &scan.scan);
         let Localized::Known { map_from_base, .. } = said else { continue };
         let wrong = is_wrong(map_from_base, scan.world_from_base);
-        if told.first_s.is_none() {
-            told.first_s = Some(scan.scan.stamp().as_secs());
-            told.is_first_wrong = wrong;
+        if result.first_s.is_none() {
+            result.first_s = Some(scan.scan.stamp().as_secs());
+            result.is_first_wrong = wrong;
             if wrong {
                 eprintln!(
                     "seed {seed}: {map_from_base:?} for {:?} at {:?}",
-                    scan.world_from_base, told.first_s
+                    scan.world_from_base, result.first_s
                 );
             }
         }
-        told.known += 1;
-        told.wrong += usize::from(wrong);
+        result.known += 1;
+        result.wrong += usize::from(wrong);
     }
-    Ok(told)
+    Ok(result)
 }
 
-fn is_wrong(told: Pose2, truth: Pose2) -> bool {
-    let off = truth.inverse() * told;
-    off.position().norm() > MAX_ERROR.0 || off.theta.abs() > MAX_ERROR.1
+fn is_wrong(result: Pose2, truth: Pose2) -> bool {
+    let off = truth.inverse() * result;
+    off.position().norm() > MAX_DISTANCE_M || off.theta.abs() > MAX_TURN_RAD
 }

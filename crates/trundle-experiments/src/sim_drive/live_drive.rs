@@ -1,7 +1,7 @@
 //! A drive displayed to viewers in real time. The viewers steer if no other driver is given.
 
 use super::driver::SimDriver;
-use super::hand::Hand;
+use super::teleop::Teleop;
 use std::sync::Arc;
 use trundle_app::AppError;
 use trundle_app::operator::{Activity, MapView, OperatorLink, RunView};
@@ -12,7 +12,7 @@ use trundle_sim::Simulator;
 /// Displays a drive; follows the requests of viewers if no other driver is given.
 pub struct LiveDrive<'d> {
     driver: Option<Box<dyn SimDriver + 'd>>,
-    hand: Hand,
+    teleop: Teleop,
     link: OperatorLink,
     pacer: RealTimePacer,
     map: Arc<MapView>,
@@ -25,8 +25,8 @@ impl<'d> LiveDrive<'d> {
     #[must_use]
     pub fn start(driver: Option<Box<dyn SimDriver + 'd>>, link: OperatorLink, map: OccupancyGrid) -> Self {
         let map = Arc::new(MapView { number: 0, revision: 1, grid: map });
-        let (hand, pacer) = (Hand::default(), RealTimePacer::start());
-        Self { driver, hand, link, pacer, map, scan: None, contacts: 0 }
+        let (teleop, pacer) = (Teleop::default(), RealTimePacer::start());
+        Self { driver, teleop, link, pacer, map, scan: None, contacts: 0 }
     }
 
     fn activity(&self, twist: Twist2) -> Activity {
@@ -59,11 +59,11 @@ impl SimDriver for LiveDrive<'_> {
     fn twist(&mut self, stamp: Stamp, pose: Pose2) -> Result<Twist2, AppError> {
         self.pacer.wait_for(stamp.as_secs());
         while let Some(request) = self.link.next_request() {
-            self.hand.obey(&request.command, stamp);
+            self.teleop.obey(&request.command, stamp);
         }
         let twist = match &mut self.driver {
             Some(driver) => driver.twist(stamp, pose)?,
-            None => self.hand.twist(stamp),
+            None => self.teleop.twist(stamp),
         };
         self.publish(stamp, pose, twist);
         Ok(twist)

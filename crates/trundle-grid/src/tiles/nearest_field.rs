@@ -215,6 +215,7 @@ type Part = (RangeInclusive<i32>, RangeInclusive<i32>);
 const NOT_IN_REACH: usize = 512;
 /// Cells of one vector: at least as many as an obstacle reaches across.
 const LANES: usize = 16;
+/// Index of each lane.
 const COLUMNS: [i16; LANES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
 /// Offset from the centre of a lane's cell to that of lane 0, 1/16 cells.
 const STEPS: [i16; LANES] =

@@ -12,8 +12,8 @@ pub(super) struct CameraFields {
     pub lens: Distortion,
     /// Units per metre, if the file holds them.
     pub depth_scale: Option<f64>,
-    /// Readout time, s.
-    pub readout: f64,
+    /// Readout time, s, if the file holds it.
+    pub readout: Option<f64>,
 }
 
 impl CameraFields {
@@ -23,7 +23,7 @@ impl CameraFields {
         let camera = PinholeCamera::new(self.size, self.focal, self.centre, self.lens)?;
         require_inside("cx", self.centre.0, self.size.0)?;
         require_inside("cy", self.centre.1, self.size.1)?;
-        camera.with_readout(self.readout)
+        camera.with_readout(self.readout.unwrap_or(0.0))
     }
 }
 

@@ -41,7 +41,7 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<CameraFields, IoError> {
         centre: matrix.centre,
         lens: Distortion::default(),
         depth_scale: file.depth_scale,
-        readout: 0.0,
+        readout: None,
     };
     fields.camera().map_err(IoError::field(path))?;
     Ok(fields)

@@ -23,5 +23,5 @@ pub(crate) fn camera_of_info(info: &InfoNumbers) -> Result<PinholeCamera, Invali
     let lens = lens_of(Some(&info.model), &info.lens)
         .map_err(|expected| Invalid::new("distortion_model", &info.model, "", expected))?;
     let CameraMatrix { focal, centre } = matrix;
-    CameraFields { size: info.size, focal, centre, lens, depth_scale: None, readout: 0.0 }.camera()
+    CameraFields { size: info.size, focal, centre, lens, depth_scale: None, readout: None }.camera()
 }

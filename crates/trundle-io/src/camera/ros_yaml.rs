@@ -27,7 +27,7 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<CameraFields, IoError> {
         centre: matrix.centre,
         lens: lens(&document)?,
         depth_scale: None,
-        readout: 0.0,
+        readout: None,
     };
     fields.camera().map_err(IoError::field(path))?;
     Ok(fields)

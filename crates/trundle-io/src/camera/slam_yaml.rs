@@ -32,7 +32,7 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<CameraFields, IoError> {
             k3: lens("k3")?,
         },
         depth_scale: depth_scale(&document)?,
-        readout: 0.0,
+        readout: None,
     };
     fields.camera().map_err(|invalid| document.invalid(renamed(prefix, invalid)))?;
     Ok(fields)

@@ -27,8 +27,7 @@ pub(super) struct CameraFile {
     p2: f64,
     #[serde(default)]
     k3: f64,
-    #[serde(default)]
-    readout: f64,
+    readout: Option<f64>,
 }
 
 impl CameraFile {
@@ -37,7 +36,21 @@ impl CameraFile {
         let Distortion { k1, k2, p1, p2, k3 } = camera.distortion();
         let (width, height) = (camera.width(), camera.height());
         let (fx, fy, cx, cy) = (camera.fx(), camera.fy(), camera.cx(), camera.cy());
-        Self { width, height, fx, fy, cx, cy, depth_scale, k1, k2, p1, p2, k3, readout: camera.readout() }
+        Self {
+            width,
+            height,
+            fx,
+            fy,
+            cx,
+            cy,
+            depth_scale,
+            k1,
+            k2,
+            p1,
+            p2,
+            k3,
+            readout: Some(camera.readout()),
+        }
     }
 
     fn fields(self) -> CameraFields {

@@ -41,8 +41,8 @@ mod tests {
     #[test]
     fn a_flood_ends_and_a_usual_page_never_does() {
         let start = Instant::now();
-        let mut flood = RateLimit::new(start);
-        assert_eq!((0..1000).filter(|_| flood.take(start)).count(), BURST_REQUESTS as usize);
+        let mut limit = RateLimit::new(start);
+        assert_eq!((0..1000).filter(|_| limit.take(start)).count(), BURST_REQUESTS as usize);
         let mut page = RateLimit::new(start);
         assert!((0..10_000).all(|i| page.take(start + Duration::from_millis(25 * i))));
     }

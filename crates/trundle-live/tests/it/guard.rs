@@ -92,12 +92,12 @@ fn broken_large_and_many_messages_end_the_link_and_not_the_server() {
         _ = browser.send_text(text);
         browser.wait_for_close();
     }
-    let mut flood = Browser::enter(&run, Access::Drive, "flood");
+    let mut sender = Browser::enter(&run, Access::Drive, "flood");
     let sent = (0..2000)
-        .take_while(|i| flood.send_text(format!(r#"{{"type":"seen","batch":{i}}}"#)).is_ok())
+        .take_while(|i| sender.send_text(format!(r#"{{"type":"seen","batch":{i}}}"#)).is_ok())
         .count();
     assert!(sent > 50, "{sent}");
-    let (code, reason) = flood.wait_for_close();
+    let (code, reason) = sender.wait_for_close();
     assert!(code == 0 || reason.contains("too many requests"), "{code} {reason}");
     assert_eq!(Browser::enter(&run, Access::Drive, "last").ask(json!({"type": "pause"})), None);
 }

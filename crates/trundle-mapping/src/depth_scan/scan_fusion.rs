@@ -90,7 +90,7 @@ impl ScanFusion {
             self.average(*pose, scan);
         }
         let step = TAU / beams as f64;
-        let parts = self.tell();
+        let parts = self.scan_parts();
         Scan::from_parts(stamp.unwrap_or_default(), Vector2::zeros(), (-PI + step / 2.0, step), parts)
             .expect("invariant: ranges are norms of finite points, spans come from rising bins")
     }
@@ -138,7 +138,7 @@ impl ScanFusion {
         }
     }
 
-    fn tell(&self) -> ScanParts {
+    fn scan_parts(&self) -> ScanParts {
         let bin = self.config.max_range / BIN_COUNT as f64;
         let mut parts = ScanParts { free: Some(Vec::new()), ..ScanParts::default() };
         for (i, (nearest, bits)) in self.nearest.iter().zip(&self.free).enumerate() {

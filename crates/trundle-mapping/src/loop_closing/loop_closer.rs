@@ -73,7 +73,7 @@ impl LoopCloser {
             let Some(constraint) = self.match_candidate(models, history, poses, candidate, &own_map) else {
                 continue;
             };
-            return self.accept(history, poses, constraint);
+            return self.confirmed_correction(history, poses, constraint);
         }
         None
     }
@@ -122,7 +122,7 @@ impl LoopCloser {
     }
 
     /// Accepts a constraint that an earlier one at some distance confirms; corrects the trajectory if necessary.
-    fn accept(
+    fn confirmed_correction(
         &mut self,
         history: &mut ScanHistory,
         poses: &[Pose2],

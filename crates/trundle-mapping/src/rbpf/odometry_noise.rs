@@ -117,7 +117,7 @@ mod tests {
     use super::*;
     use crate::rbpf::rng::ParticleRng;
 
-    fn learnt(good: f64, steps: usize) -> OdometryNoise {
+    fn estimated_noise(good: f64, steps: usize) -> OdometryNoise {
         let covariance = Matrix3::from_diagonal(&Vector3::new(2.0, 1.0, 0.01));
         let (mut trust, mut rng) = (OdometryNoise::default(), ParticleRng::new(1, 0, 0));
         let open = Vector3::new(0.02, 0.02, 1e-4);
@@ -134,13 +134,13 @@ mod tests {
     #[test]
     fn learns_how_good_the_odometry_is_and_forgets_it() {
         for good in [0.1, 0.2, 0.3] {
-            let trust = learnt(good, 300);
+            let trust = estimated_noise(good, 300);
             assert!((trust.shift.scale() - ERROR_SCALE_FACTOR * good).abs() < 0.2, "{good}: {trust:?}");
             assert!((trust.turn.scale() - ERROR_SCALE_FACTOR * good).abs() < 0.25, "{good}: {trust:?}");
         }
-        assert_eq!(learnt(0.0, 400).turn.scale(), MIN_ERROR_SCALE);
-        assert_eq!(learnt(3.0, 50).shift.scale(), 1.0);
-        let mut trust = learnt(0.2, 300);
+        assert_eq!(estimated_noise(0.0, 400).turn.scale(), MIN_ERROR_SCALE);
+        assert_eq!(estimated_noise(3.0, 50).shift.scale(), 1.0);
+        let mut trust = estimated_noise(0.2, 300);
         let covariance = Matrix3::identity();
         for _ in 0..8 {
             let wild = Innovation { off: Vector3::repeat(4.0), open: Vector3::repeat(0.01) };

@@ -71,7 +71,7 @@ impl LogEntry {
     }
 
     /// Draws the entry; returns the cost in cells.
-    pub(crate) fn draw(&self, mapper: &mut GridMapper) -> usize {
+    pub(crate) fn integrate_into(&self, mapper: &mut GridMapper) -> usize {
         match &self.data {
             EntryData::Scan(scan) => {
                 let Insertion { hits, free, .. } = mapper.insert(self.map_from_base, &scan.unpack());
@@ -84,7 +84,7 @@ impl LogEntry {
     }
 
     /// Kind, place and direction of the entry, and the maximum number of such entries.
-    fn place(&self) -> (Place, u32) {
+    fn place(&self) -> (PoseBin, u32) {
         let (kind, side, enough) = match self.data {
             EntryData::Scan(_) => (0, SCAN_SQUARE_M, MAX_SCANS_PER_SQUARE),
             EntryData::FreeDisc { .. } => (1, SMALL_SQUARE_M, 1),
@@ -97,11 +97,11 @@ impl LogEntry {
 }
 
 /// Kind, column, row and direction.
-type Place = (u8, i64, i64, i64);
+type PoseBin = (u8, i64, i64, i64);
 
 /// Drops entries with enough newer ones of the same place and direction. The log therefore grows with the area, not with time.
 pub(crate) fn thin(kept: &mut Vec<LogEntry>) {
-    let mut newer: HashMap<Place, u32> = HashMap::new();
+    let mut newer: HashMap<PoseBin, u32> = HashMap::new();
     let mut stays: Vec<bool> = kept
         .iter()
         .rev()

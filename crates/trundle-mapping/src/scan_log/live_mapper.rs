@@ -140,7 +140,7 @@ impl LiveMapper {
         let Some(mut redrawing) = self.redrawing.take() else { return Redrawn { cells, left: 0 } };
         let due = redrawing.drawn + (self.kept.len() - redrawing.drawn).div_ceil(calls.max(1));
         while redrawing.drawn < self.kept.len() && (cells < budget || redrawing.drawn < due) {
-            cells += self.kept[redrawing.drawn].draw(&mut redrawing.back);
+            cells += self.kept[redrawing.drawn].integrate_into(&mut redrawing.back);
             redrawing.drawn += 1;
             self.note(redrawing.drawn, redrawing.back.evidence());
         }
@@ -189,7 +189,7 @@ impl LiveMapper {
     }
 
     /// Number of scans and free discs in the log.
-    pub fn kept(&self) -> usize {
+    pub fn logged_entries(&self) -> usize {
         self.kept.len()
     }
 

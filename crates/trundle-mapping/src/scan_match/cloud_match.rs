@@ -1,7 +1,7 @@
 //! Match of a cloud of points with a map within a search region.
 
 use crate::particle_config::ParticleConfig;
-use crate::scan_match::branch_and_bound::{LookupBudget, Place, Pyramid, Query};
+use crate::scan_match::branch_and_bound::{FoundPose, LookupBudget, Pyramid, Query};
 use crate::scan_match::likelihood::Likelihood;
 use crate::scan_match::motion_prior::MotionPrior;
 use crate::scan_match::pose_optimizer::PoseOptimizer;
@@ -81,7 +81,7 @@ impl CloudMatcher<'_> {
             turn_step: (2.0 / self.cloud.spread.lever).clamp(0.004, 0.05),
             sigma: (covariance[(0, 0)].sqrt(), covariance[(1, 1)].sqrt(), covariance[(2, 2)].sqrt()),
         };
-        let mut places: Vec<Place> = Vec::new();
+        let mut places: Vec<FoundPose> = Vec::new();
         while places.len() < most {
             // A place below half of the best score is no competitor.
             let least = places.first().map_or(0.0, |best| 0.5 * best.score);

@@ -13,6 +13,7 @@ const SAMPLES_PER_TILE_SIDE: usize = Tile::COARSE_SIDE;
 const SAMPLE_STEP_CELLS: f64 = 2.0;
 /// Maximum reach of the search to each side [samples]. A wider prior is searched up to this reach. Source: ours.
 const MAX_REACH_SAMPLES: usize = 7;
+/// Number of samples of one vector: a tile's side.
 const LANES: usize = 16;
 const _: () = assert!(SAMPLES_PER_TILE_SIDE == LANES && 2 * MAX_REACH_SAMPLES < LANES);
 /// Maximum number of points of the search. Larger scans are subsampled. Source: ours.

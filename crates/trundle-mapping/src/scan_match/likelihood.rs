@@ -21,7 +21,9 @@ pub(crate) struct Likelihood {
     slack: f32,
 }
 
+/// Number of entries of the table: squared distances of 0 to 16 in steps of 1/16, in squared standard deviations. Source: ours.
 const TABLE_STEPS: usize = 257;
+/// Entries of the table per unit of the squared distance. Source: ours.
 const PER_UNIT: f32 = 16.0;
 
 /// Normal equations of a pose in a map of tiles (cells, rad), with the agreement of the hits.
@@ -129,13 +131,13 @@ impl Likelihood {
     fn tell_each<L: PointSink>(&self, to: &mut L, window: &TileWindow<'_>, shape: &ScanPoints, pose: Pose2) {
         let place = RotatedPose::new(pose);
         for group in &shape.groups {
-            to.take(self, group, &self.look(window, group, &place));
+            to.take(self, group, &self.residuals(window, group, &place));
         }
     }
 
     /// Evaluates eight hits: arithmetic lane by lane, which the compiler turns into vector code, and one load for each.
     #[inline(always)]
-    fn look(&self, window: &TileWindow<'_>, group: &PointGroup, place: &RotatedPose) -> Residuals {
+    fn residuals(&self, window: &TileWindow<'_>, group: &PointGroup, place: &RotatedPose) -> Residuals {
         let mut r = Residuals {
             rx: [0.0; LANES],
             ry: [0.0; LANES],

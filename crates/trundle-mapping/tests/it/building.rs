@@ -18,13 +18,13 @@ pub struct Drive {
 }
 
 /// In [0, 1), from a hash.
-fn chance(seed: u64, i: u64) -> f64 {
+fn random_share(seed: u64, i: u64) -> f64 {
     (crate::boxes::mix(seed.wrapping_mul(0x9e37_79b9) ^ i) >> 11) as f64 / 2_f64.powi(53)
 }
 
 /// About normal, sigma 1.
 fn normal(seed: u64, i: u64) -> f64 {
-    (0..6).map(|k| chance(seed, 6 * i + k) - 0.5).sum::<f64>() * 2_f64.sqrt()
+    (0..6).map(|k| random_share(seed, 6 * i + k) - 0.5).sum::<f64>() * 2_f64.sqrt()
 }
 
 impl Building {
@@ -48,10 +48,10 @@ impl Building {
         for k in 0..9_u64 {
             let x = 4.0 * k as f64;
             for (side, up) in [(1.0, true), (-1.0, false)] {
-                let deep = 4.0 + chance(k, side as u64);
+                let deep = 4.0 + random_share(k, side as u64);
                 let (low, high) = if up { (1.2, 1.2 + deep) } else { (-1.2 - deep, -1.2) };
                 it.rooms.push([x, low, x + 3.8, high]);
-                let door = x + 1.2 + chance(k, 7 + side as u64);
+                let door = x + 1.2 + random_share(k, 7 + side as u64);
                 it.rooms.push([door, low.min(0.9), door + 0.9, high.max(-0.9)].map(|v: f64| v));
                 let (low, high) = if up { (0.9, 1.3) } else { (-1.3, -0.9) };
                 let last = it.rooms.len() - 1;
@@ -107,11 +107,12 @@ impl Building {
         let length = (b.0 - a.0) + (b.1 - a.1);
         let mut at = 1.5;
         for i in 0.. {
-            at += 1.5 + 4.0 * chance(seed, 3 * i);
+            at += 1.5 + 4.0 * random_share(seed, 3 * i);
             if at > length - 3.0 {
                 break;
             }
-            let (wide, deep) = (0.7 + 0.6 * chance(seed, 3 * i + 1), 0.12 + 0.5 * chance(seed, 3 * i + 2));
+            let (wide, deep) =
+                (0.7 + 0.6 * random_share(seed, 3 * i + 1), 0.12 + 0.5 * random_share(seed, 3 * i + 2));
             let side = if i % 2 == 0 { (half - 0.1, half + deep) } else { (-half - deep, -half + 0.1) };
             self.rooms.push(if along_x {
                 [a.0 + at, a.1 + side.0, a.0 + at + wide, a.1 + side.1]
@@ -155,7 +156,7 @@ impl Building {
         for (i, pair) in truth.windows(2).enumerate() {
             let step = pair[0].inverse() * pair[1];
             let (n, way) = (|k| normal(seed, 3 * i as u64 + k), step.position().norm());
-            let said = if chance(seed ^ 77, i as u64) < 1.0 / 150.0 {
+            let said = if random_share(seed ^ 77, i as u64) < 1.0 / 150.0 {
                 Pose2::IDENTITY
             } else {
                 let turn = step.theta * 1.02 + 0.005 * way + 0.02 * way * n(0) + 0.03 * step.theta * n(1);

@@ -107,9 +107,9 @@ fn bytes_that_are_not_a_map_are_refused_with_the_reason() {
     for end in (0..bytes.len()).step_by(bytes.len() / 60) {
         assert!(ParticleMapper::load(&bytes[..end], config(5)).is_err());
     }
-    let finer = ParticleConfig { map: MapperConfig { resolution: 0.1, ..config(5).map }, ..config(5) };
+    let other = ParticleConfig { map: MapperConfig { resolution: 0.1, ..config(5).map }, ..config(5) };
     assert_eq!(
-        ParticleMapper::load(&bytes, finer).unwrap_err().to_string(),
+        ParticleMapper::load(&bytes, other).unwrap_err().to_string(),
         "the map was made with map.resolution 0.05, not 0.1"
     );
 }

@@ -161,7 +161,7 @@ fn standing_still_keeps_nothing() {
     for _ in 0..200 {
         live.insert(lap()[0], &scan);
     }
-    assert_eq!(live.kept(), 1);
+    assert_eq!(live.logged_entries(), 1);
 }
 
 #[test]
@@ -176,15 +176,20 @@ fn the_log_grows_with_the_floor_and_not_with_the_time() {
                 live.mark_free_disc(*pose, 0.2);
             }
         }
-        live.kept()
+        live.logged_entries()
     };
     let once = drive(&mut live, 1);
     let laps = 4096 / once + 2;
     drive(&mut live, laps);
-    assert!(live.kept() < 4 * 1024, "{} of {} things kept", live.kept(), once * (laps + 1));
+    assert!(
+        live.logged_entries() < 4 * 1024,
+        "{} of {} things kept",
+        live.logged_entries(),
+        once * (laps + 1)
+    );
     let before = live.grid().clone();
     let shift = Pose2::new(1.0, 0.5, 0.0);
-    assert_eq!(live.correct(|_, pose| shift * pose), live.kept());
+    assert_eq!(live.correct(|_, pose| shift * pose), live.logged_entries());
     while live.is_redrawing() {
         live.work(500_000);
     }

@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+/// Number of unknowns of a block of the chain, and of the border.
 const BLOCK_SIZE: usize = 3;
 const BORDER_SIZE: usize = 4;
 

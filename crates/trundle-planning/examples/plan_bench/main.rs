@@ -208,7 +208,7 @@ fn random_pairs(grid: &OccupancyGrid, count: usize) -> Vec<(Pose2, Pose2)> {
     while pairs.len() < count {
         let mut cell = || geometry.cell((next() * geometry.len() as f64) as usize);
         let (from, to) = (cell(), cell());
-        let reached = open(from) && open(to) && flood(&geometry, from, open)[geometry.linear(to)];
+        let reached = open(from) && open(to) && reachable_cells(&geometry, from, open)[geometry.linear(to)];
         let mut pose = |cell| {
             let at = geometry.center(cell);
             Pose2::new(at.x, at.y, next() * std::f64::consts::TAU)
@@ -220,7 +220,7 @@ fn random_pairs(grid: &OccupancyGrid, count: usize) -> Vec<(Pose2, Pose2)> {
     pairs
 }
 
-fn flood(geometry: &GridGeometry, from: CellIndex, open: impl Fn(CellIndex) -> bool) -> Vec<bool> {
+fn reachable_cells(geometry: &GridGeometry, from: CellIndex, open: impl Fn(CellIndex) -> bool) -> Vec<bool> {
     let mut reached = vec![false; geometry.len()];
     let mut stack = vec![from];
     while let Some(cell) = stack.pop() {

@@ -33,7 +33,7 @@ pub(crate) fn corridor(
             continue;
         };
         let face = normal.dot(&on_square);
-        planes.push(HalfPlane { normal, offset: face - kept(space, gap.norm(), want) });
+        planes.push(HalfPlane { normal, offset: face - side_clearance(space, gap.norm(), want) });
         let reach = half * (normal.x.abs() + normal.y.abs());
         left.retain(|(_, other)| normal.dot(other) - reach < face - 1e-9);
     }
@@ -45,7 +45,7 @@ pub(crate) fn corridor(
 const MAX_SPARE_SHARE: f64 = 0.6;
 
 /// The clearance of a side at `distance` m from the segment: `want`, or less if the segment itself has only slightly more.
-fn kept(space: &ConfigurationSpace<'_>, distance: f64, want: f64) -> f64 {
+fn side_clearance(space: &ConfigurationSpace<'_>, distance: f64, want: f64) -> f64 {
     let spare = (distance - space.radius).max(0.0);
     want.min(distance - spare * (1.0 - MAX_SPARE_SHARE))
 }

@@ -11,6 +11,7 @@ pub(super) struct TravelDistances {
     length: Vec<u32>,
 }
 
+/// Length of a cell that the disc cannot reach.
 const UNREACHED: u32 = u32::MAX;
 /// Factor on the length of a step through unknown space: it may hold a wall. Source: ours.
 const UNKNOWN_STEP_FACTOR: u32 = 3;

@@ -19,6 +19,7 @@ const HEADING_COUNT: usize = 16;
 const BY_HEADING: [usize; HEADING_COUNT] = [0, 8, 4, 12, 2, 14, 6, 10, 1, 11, 7, 15, 3, 13, 5, 9];
 /// Cost of a turn to the next heading, in lattice units. A lower one makes paths with many turns. Source: ours.
 const TURN_COST: u32 = 2 * SIDE;
+/// Cost of a state that the search has not reached.
 const UNREACHED: u32 = u32::MAX;
 /// Mark of states reached from the start directly.
 const SEED_MARK: u8 = 3;

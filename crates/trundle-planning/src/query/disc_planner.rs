@@ -25,7 +25,7 @@ pub(crate) fn plan_disc(
         return refusal;
     }
     let radius = query.shape.radius;
-    let space = query.space(radius, start.position());
+    let space = query.configuration_space(radius, start.position());
     let missing = missing_about_disc(query.field, goal.position(), radius);
     let in_obstacle = missing.map(|missing| Plan::GoalInObstacle { clearance: -missing });
     if let (Some(refusal), true) = (&in_obstacle, tolerance == 0.0) {
@@ -92,7 +92,7 @@ pub(crate) fn start_refusal(query: &PlanQuery<'_>, start: Vector2) -> Option<Pla
 
 pub(crate) fn turn_only(query: &PlanQuery<'_>, start: Pose2, twist: Twist2, goal: Pose2) -> Plan {
     let path = GridPath::new(vec![start.position()], vec![start.position()]);
-    let space = query.space(query.shape.inner.max(MIN_SEARCH_RADIUS_M), start.position());
+    let space = query.configuration_space(query.shape.inner.max(MIN_SEARCH_RADIUS_M), start.position());
     match turn(&query.context(&space), start, start.theta, goal.theta) {
         Some(phase) => {
             query.timed(path, phase.into_iter().collect(), start, 0.0, twist.v.abs() <= REST_SPEED_M_S)

@@ -53,7 +53,7 @@ pub(crate) struct SearchBuffers {
 
 impl PlanQuery<'_> {
     /// The configuration space of a disc.
-    pub(crate) fn space(&self, radius: f64, start: Vector2) -> ConfigurationSpace<'_> {
+    pub(crate) fn configuration_space(&self, radius: f64, start: Vector2) -> ConfigurationSpace<'_> {
         let space = self.space_of_centres(radius, start);
         let space = if self.shape.is_disc() { space.with_clearance_from_others(start) } else { space };
         if !self.is_fine {

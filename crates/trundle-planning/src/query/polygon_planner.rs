@@ -101,7 +101,7 @@ fn nearest_reachable(
     start: Pose2,
     goal: Pose2,
 ) -> Vector2 {
-    let space = query.space(query.shape.radius, start.position());
+    let space = query.configuration_space(query.shape.radius, start.position());
     match search.run(&space, start.position(), goal.position()) {
         SearchOutcome::Unreachable(nearest) => nearest,
         SearchOutcome::Found(_) => goal.position(),

@@ -10,7 +10,9 @@ use crate::search::configuration_space::ConfigurationSpace;
 use crate::search::lattice::{self, LONGEST_STEP, STEPS};
 use trundle_grid::{BLOCK_SIDE_CELLS, BlockMaxima};
 
+/// Cost of a block that the search has not reached.
 const UNREACHED: u32 = u32::MAX;
+/// Side of a block \[cells\].
 const BLOCK_LENGTH: u32 = BLOCK_SIDE_CELLS as u32;
 
 /// The heuristic with its buffers, reused from plan to plan.

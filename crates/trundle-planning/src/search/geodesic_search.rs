@@ -32,12 +32,14 @@ pub(crate) struct GeodesicSearch {
     heuristic: CoarseHeuristic,
 }
 
+/// Mark of a cell in [`GeodesicSearch::step`] from which the search starts.
 const SEED_MARK: u8 = 16;
 /// Mark of a cell in [`GeodesicSearch::step`] that has been expanded: it is not entered again.
 const CLOSED_MARK: u8 = 128;
 /// Inverse of the weight on the heuristic: of equal paths one is followed to its end. A path costs at most 1 / this more than the
 /// cheapest. Source: ours.
 const HEURISTIC_WEIGHT_INVERSE: u32 = 32;
+/// Cost of a cell that the search has not reached.
 const UNREACHED: u32 = u32::MAX;
 /// Radius of the lattice entry around start and goal, cells. Source: ours.
 const ENTRY_RADIUS_CELLS: i64 = 2;

@@ -37,7 +37,7 @@ pub struct PotentialConfig {
     /// Gain eta of the repulsion by obstacles, above 0, for `printed`. Default 0.001 (ours): 5 m from the goal the forces balance 0.15 m
     /// from a wall.
     pub repulsion: f64,
-    /// Distance rho_0 within which obstacles repel, m, above 0, for `printed`. Default 0.5 (ours).
+    /// Distance rho_0 within which obstacles repel, m, above 0, to 100, for `printed`. Default 0.5 (ours).
     pub reach: f64,
     /// Number of steps without progress after which the descent counts as trapped, 1 to 100000, for `printed`. Default 100 (ours).
     pub patience: usize,
@@ -57,7 +57,7 @@ impl PotentialConfig {
     pub fn validated(self) -> Result<Self, Invalid> {
         require_positive("potential.attraction", self.attraction, "")?;
         require_positive("potential.repulsion", self.repulsion, "")?;
-        require_positive("potential.reach", self.reach, "m")?;
+        require_in("potential.reach", self.reach, "m", 1e-3, 100.0)?;
         require_in("potential.patience", self.patience as f64, "steps", 1.0, 1e5)?;
         Ok(self)
     }

@@ -1,6 +1,6 @@
 //! Paths on maps that a person can see.
 
-use crate::support::{at_home, found, judge, planner};
+use crate::support::{at_home, found_plan, judge, planner};
 use trundle_core::{OccupancyGrid, Pose2, Twist2};
 use trundle_planning::{Plan, PlannerConfig, PotentialConfig, PotentialKind};
 
@@ -44,7 +44,7 @@ fn drawn(grid: &OccupancyGrid, art: &str, plan: &trundle_planning::PlanResult) -
 fn out_of_the_u_by_the_geodesic_potential() {
     let grid = OccupancyGrid::from_ascii(0.2, TRAP).unwrap();
     let (start, goal) = (Pose2::new(2.5, 1.7, 0.0), Pose2::new(5.1, 1.5, std::f64::consts::FRAC_PI_2));
-    let result = found(planner(at_home(), 0.1755).plan(&grid, start, Twist2::ZERO, goal));
+    let result = found_plan(planner(at_home(), 0.1755).plan(&grid, start, Twist2::ZERO, goal));
     assert!(!result.fell_back);
     judge(&grid, &result, start, goal, 0.1755);
     insta::assert_snapshot!(drawn(&grid, TRAP, &result));
@@ -56,11 +56,11 @@ fn the_printed_potential_is_trapped_and_rescued() {
     let (start, goal) = (Pose2::new(2.5, 1.7, 0.0), Pose2::new(5.1, 1.5, 0.0));
     let potential = PotentialConfig { kind: PotentialKind::Printed, ..Default::default() };
     let mut planner = planner(PlannerConfig { potential, ..at_home() }, 0.1755);
-    let rescued = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    let rescued = found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
     assert!(rescued.fell_back);
     judge(&grid, &rescued, start, goal, 0.1755);
     let near = Pose2::new(0.7, 0.7, 0.0);
-    let direct = found(planner.plan(&grid, near, Twist2::ZERO, Pose2::new(4.9, 0.5, 0.0)));
+    let direct = found_plan(planner.plan(&grid, near, Twist2::ZERO, Pose2::new(4.9, 0.5, 0.0)));
     assert!(!direct.fell_back, "an open way needs no rescue");
 }
 
@@ -79,7 +79,7 @@ fn a_door_as_wide_as_the_robot_is_passed_and_a_narrower_one_is_not() {
         ####################";
     let grid = OccupancyGrid::from_ascii(0.2, art).unwrap();
     let (start, goal) = (Pose2::new(0.8, 1.4, 0.0), Pose2::new(3.0, 0.6, 0.0));
-    let result = found(planner(at_home(), 0.299).plan(&grid, start, Twist2::ZERO, goal));
+    let result = found_plan(planner(at_home(), 0.299).plan(&grid, start, Twist2::ZERO, goal));
     judge(&grid, &result, start, goal, 0.299);
     let blocked = planner(at_home(), 0.301).plan(&grid, start, Twist2::ZERO, goal);
     assert!(matches!(blocked, Plan::Blocked { nearest } if nearest.x < 2.2), "{blocked:?}");
@@ -94,7 +94,7 @@ fn the_goals_of_the_paper_from_all_sides() {
         [(0.0, 2.4), (2.4, 2.4), (2.4, 0.0), (2.4, -2.4), (0.0, -2.4), (-2.4, -2.4), (-2.4, 0.0), (-2.4, 2.4)]
     {
         let start = Pose2::new(4.0 + dx, 4.0 + dy, 0.0);
-        let result = found(planner(at_home(), 0.1755).plan(&grid, start, Twist2::ZERO, goal));
+        let result = found_plan(planner(at_home(), 0.1755).plan(&grid, start, Twist2::ZERO, goal));
         judge(&grid, &result, start, goal, 0.1755);
         let straight = start.distance(&goal);
         eprintln!(
@@ -118,7 +118,7 @@ fn a_goal_beyond_a_tiny_grid_is_planned_through_the_unknown() {
         ??????????";
     let grid = OccupancyGrid::from_ascii(0.2, art).unwrap();
     let (start, goal) = (Pose2::new(0.9, 0.7, 0.0), Pose2::new(6.0, 0.7, 0.0));
-    let result = found(planner(PlannerConfig::default(), 0.1755).plan(&grid, start, Twist2::ZERO, goal));
+    let result = found_plan(planner(PlannerConfig::default(), 0.1755).plan(&grid, start, Twist2::ZERO, goal));
     judge(&grid, &result, start, goal, 0.1755);
 }
 
@@ -130,7 +130,7 @@ fn a_robot_parked_at_a_wall_plans_its_way_out() {
     for gap in [0.16, 0.1756, 0.19] {
         let start = Pose2::new(1.0, 2.0 - gap, 0.0);
         let goal = Pose2::new(2.5, 0.5, 0.0);
-        let result = found(planner(at_home(), 0.1755).plan(&grid, start, Twist2::ZERO, goal));
+        let result = found_plan(planner(at_home(), 0.1755).plan(&grid, start, Twist2::ZERO, goal));
         judge(&grid, &result, start, goal, gap.min(0.1755));
     }
     let start = Pose2::new(1.0, 1.95, 0.0);
@@ -154,10 +154,10 @@ fn a_known_way_is_preferred_to_the_unknown() {
         ......??????????....";
     let grid = OccupancyGrid::from_ascii(0.25, art).unwrap();
     let (start, goal) = (Pose2::new(1.2, 0.9, 0.0), Pose2::new(4.4, 0.9, 0.0));
-    let through = found(planner(at_home(), 0.17).plan(&grid, start, Twist2::ZERO, goal));
+    let through = found_plan(planner(at_home(), 0.17).plan(&grid, start, Twist2::ZERO, goal));
     assert!(through.length < 3.4, "{}", through.length);
     let room = trundle_planning::ClearanceCostConfig { unknown_weight: 3.0, ..Default::default() };
     let around =
-        found(planner(PlannerConfig { room, ..at_home() }, 0.17).plan(&grid, start, Twist2::ZERO, goal));
+        found_plan(planner(PlannerConfig { room, ..at_home() }, 0.17).plan(&grid, start, Twist2::ZERO, goal));
     assert!(around.waypoints.points().iter().any(|p| p.y > 1.0), "{:?}", around.waypoints);
 }

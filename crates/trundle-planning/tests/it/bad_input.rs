@@ -1,6 +1,6 @@
 //! Questions that have no way for an answer.
 
-use crate::support::{at_home, found, judge, planner, room};
+use crate::support::{at_home, clearance, found_plan, judge, planner};
 use trundle_core::{
     Cell, CellIndex, DifferentialDrive, DriveLimits, Footprint, OccupancyGrid, Pose2, Twist2, Vector2,
 };
@@ -78,10 +78,10 @@ fn every_answer_is_a_sentence() {
 fn staying_is_a_plan() {
     let grid = OccupancyGrid::from_ascii(0.25, MAP).unwrap();
     let here = Pose2::new(1.0, 1.0, 0.3);
-    let stay = found(planner(at_home(), 0.17).plan(&grid, here, Twist2::ZERO, here));
+    let stay = found_plan(planner(at_home(), 0.17).plan(&grid, here, Twist2::ZERO, here));
     assert_eq!((stay.trajectory.points().len(), stay.length, stay.phases.len()), (1, 0.0, 0));
     let turned = Pose2::new(1.0, 1.0, -2.0);
-    let turn = found(planner(at_home(), 0.17).plan(&grid, here, Twist2::ZERO, turned));
+    let turn = found_plan(planner(at_home(), 0.17).plan(&grid, here, Twist2::ZERO, turned));
     assert!((turn.trajectory.end().theta + 2.0).abs() < 1e-9 && turn.length == 0.0);
 }
 
@@ -106,11 +106,11 @@ fn a_start_within_the_clearance_is_planned_out_of() {
     let goal = Pose2::new(2.5, 1.5, 0.0);
     for missing in [0.01, 0.03, 0.059] {
         let start = Pose2::new(0.5, 0.05 + 0.17 - missing, 0.0);
-        let plan = found(planner(at_home(), 0.17).plan(&grid, start, Twist2::ZERO, goal));
+        let plan = found_plan(planner(at_home(), 0.17).plan(&grid, start, Twist2::ZERO, goal));
         // The robot never comes nearer than at the start, and is clear of the wall after leaving it.
         judge(&grid, &plan, start, goal, 0.17 - missing);
         let far = plan.trajectory.points().iter().filter(|p| p.pose.distance(&start) > missing + 0.16);
-        assert!(far.map(|p| room(&grid, p.pose.position())).fold(9.0, f64::min) >= 0.17 - 2e-4);
+        assert!(far.map(|p| clearance(&grid, p.pose.position())).fold(9.0, f64::min) >= 0.17 - 2e-4);
     }
     for missing in [0.07, 0.15, 0.2] {
         let start = Pose2::new(0.5, 0.05 + 0.17 - missing, 0.0);
@@ -134,7 +134,7 @@ fn unknown_space_is_allowed_dear_or_forbidden() {
             room: ClearanceCostConfig { unknown_weight, ..ClearanceCostConfig::default() },
             ..at_home()
         };
-        let plan = found(planner(config, 0.17).plan(&grid, start, Twist2::ZERO, goal));
+        let plan = found_plan(planner(config, 0.17).plan(&grid, start, Twist2::ZERO, goal));
         // The path avoids costly cells; the curve may cut their corners.
         let deep =
             |at: Vector2| [at, at - Vector2::new(0.0, 0.17)].iter().all(|p| grid.at(*p) == Cell::Unknown);
@@ -160,7 +160,7 @@ fn a_gap_of_one_cell_lets_through_what_fits_and_nothing_else() {
     let grid = OccupancyGrid::from_ascii(0.1, &format!("{open}\n{wall}\n{open}")).unwrap();
     let (start, goal) = (Pose2::new(0.6, 0.5, 0.0), Pose2::new(3.4, 2.6, 1.0));
     for radius in [0.03, 0.045, 0.0499] {
-        let plan = found(planner(at_home(), radius).plan(&grid, start, Twist2::ZERO, goal));
+        let plan = found_plan(planner(at_home(), radius).plan(&grid, start, Twist2::ZERO, goal));
         judge(&grid, &plan, start, goal, radius);
     }
     for radius in [0.0501, 0.06, 0.17] {
@@ -173,11 +173,11 @@ fn a_gap_of_one_cell_lets_through_what_fits_and_nothing_else() {
 fn the_smallest_questions_have_answers() {
     let speck = OccupancyGrid::from_ascii(0.5, ".").unwrap();
     let here = Pose2::new(0.25, 0.25, 0.0);
-    assert_eq!(found(planner(at_home(), 0.1).plan(&speck, here, Twist2::ZERO, here)).length, 0.0);
+    assert_eq!(found_plan(planner(at_home(), 0.1).plan(&speck, here, Twist2::ZERO, here)).length, 0.0);
     let hair = Pose2::new(0.2504, 0.25, 0.0);
-    assert!(found(planner(at_home(), 0.1).plan(&speck, here, Twist2::ZERO, hair)).length < 1e-3);
+    assert!(found_plan(planner(at_home(), 0.1).plan(&speck, here, Twist2::ZERO, hair)).length < 1e-3);
     let near = Pose2::new(0.2525, 0.25, 0.0);
-    let plan = found(planner(at_home(), 0.1).plan(&speck, here, Twist2::ZERO, near));
+    let plan = found_plan(planner(at_home(), 0.1).plan(&speck, here, Twist2::ZERO, near));
     assert!((plan.length - 0.0025).abs() < 1e-3 && plan.trajectory.end().distance(&near) < 1.1e-3);
     let wall = OccupancyGrid::from_ascii(0.5, "#").unwrap();
     let plan = planner(at_home(), 0.1).plan(&wall, here, Twist2::ZERO, here);
@@ -190,7 +190,7 @@ fn numbers_that_are_not_finite_are_refused_at_every_entry_point() {
     let (here, there) = (Pose2::new(0.5, 1.0, 0.0), Pose2::new(2.5, 1.0, 0.0));
     let nowhere = Pose2 { x: f64::NAN, ..there };
     let mut planner = planner(at_home(), 0.17);
-    let first = found(planner.plan(&grid, here, Twist2::ZERO, there));
+    let first = found_plan(planner.plan(&grid, here, Twist2::ZERO, there));
     let refused = |plan: &Plan| matches!(plan, Plan::Refused(invalid) if invalid.field == "goal x");
     assert!(refused(&planner.plan_among_moving(&grid, &[], here, Twist2::ZERO, nowhere)));
     let (at, why) = planner.plan_multi_goal(&grid, here, Twist2::ZERO, &[there, nowhere]).unwrap_err();

@@ -1,6 +1,6 @@
 //! Robots that cannot, or should not, bend sharply.
 
-use crate::support::{at_home, found, judge, planner};
+use crate::support::{at_home, found_plan, judge, planner};
 use proptest::prelude::*;
 use trundle_core::{OccupancyGrid, Pose2, Twist2};
 use trundle_planning::{CurveConfig, PlanResult, PlannerConfig};
@@ -33,7 +33,7 @@ fn bends() -> OccupancyGrid {
 fn corners_are_taken_as_gently_as_asked() {
     let (start, goal) = (Pose2::new(0.8, 0.8, 0.0), Pose2::new(9.0, 5.2, 0.0));
     for most in [8.0, 3.0, 2.0, 1.5, 1.2] {
-        let result = found(planner(gentle(most), RADIUS).plan(&bends(), start, Twist2::ZERO, goal));
+        let result = found_plan(planner(gentle(most), RADIUS).plan(&bends(), start, Twist2::ZERO, goal));
         judge(&bends(), &result, start, goal, RADIUS);
         eprintln!(
             "at most {most} /m: {:.2} /m, {} phases, {:.2} m",
@@ -49,7 +49,7 @@ fn corners_are_taken_as_gently_as_asked() {
 #[test]
 fn where_no_curve_is_gentle_enough_it_turns_on_the_spot() {
     let (start, goal) = (Pose2::new(0.8, 0.8, 0.0), Pose2::new(9.0, 5.2, 0.0));
-    let result = found(planner(gentle(0.3), RADIUS).plan(&bends(), start, Twist2::ZERO, goal));
+    let result = found_plan(planner(gentle(0.3), RADIUS).plan(&bends(), start, Twist2::ZERO, goal));
     judge(&bends(), &result, start, goal, RADIUS);
     assert!(sharpest(&result) <= 0.3 * 1.001 && result.phases.len() > 1);
 }
@@ -65,7 +65,7 @@ proptest! {
         let grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(120); 120].join("\n")).unwrap();
         let way = f64::atan2(y, x);
         let (start, goal) = (Pose2::new(3.0, 6.0, way + start), Pose2::new(3.0 + x, 6.0 + y, way + end));
-        let result = found(planner(gentle(most), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
+        let result = found_plan(planner(gentle(most), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
         judge(&grid, &result, start, goal, RADIUS);
         prop_assert!(sharpest(&result) <= most * 1.001, "{} of {most}", sharpest(&result));
         prop_assert!(result.phases.len() == 1, "{most}: {:?}", result.phases.len());

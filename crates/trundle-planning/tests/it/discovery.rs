@@ -1,6 +1,6 @@
 //! A robot that discovers its map during the drive: unknown at first, observed within a radius, with a new plan every second.
 
-use crate::support::{found, planner, room};
+use crate::support::{clearance, found_plan, planner};
 use trundle_core::{Cell, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle_planning::PlannerConfig;
 
@@ -51,7 +51,7 @@ fn the_goal_is_reached_through_a_house_never_seen() {
     let (mut time, mut plans, mut breaks, mut least) = (0.0, 0, 0, f64::INFINITY);
     while pose.distance(&goal) > 1e-3 || twist != Twist2::ZERO {
         look(&world, pose.position(), &mut map);
-        let plan = found(planner.plan(&map, pose, twist, goal));
+        let plan = found_plan(planner.plan(&map, pose, twist, goal));
         plans += 1;
         breaks += usize::from(!plan.is_continuous);
         let begin = plan.trajectory.points()[0];
@@ -61,7 +61,7 @@ fn the_goal_is_reached_through_a_house_never_seen() {
             now += 0.1;
             let at = plan.trajectory.at(now);
             (pose, twist) = (at.pose, at.twist);
-            least = least.min(room(&world, pose.position()));
+            least = least.min(clearance(&world, pose.position()));
             look(&world, pose.position(), &mut map);
             if planner.validate_trajectory(&map, &plan.trajectory, now).is_err() {
                 break;

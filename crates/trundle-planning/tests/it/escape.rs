@@ -1,6 +1,6 @@
 //! Starts too near to an obstacle, on every cell size: the path leads out, no deeper, and keeps clear of all other obstacles.
 
-use crate::support::{at_home, found, planner, room};
+use crate::support::{at_home, clearance, found_plan, planner};
 use proptest::prelude::*;
 use trundle_core::{
     Cell, CellIndex, DifferentialDrive, Footprint, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2,
@@ -83,8 +83,8 @@ proptest! {
         let along = Vector2::new(f64::cos(bearing), f64::sin(bearing));
         let off = |t: f64| beside + along * t;
         let steps = (0..2000).map(|k| f64::from(k) * 1e-3);
-        let Some(out) = steps.map(off).find(|p| room(&grid, *p) >= RADIUS - missing) else { return Ok(()) };
-        if room(&grid, out) >= RADIUS || grid.geometry().cell_at(out).is_none() {
+        let Some(out) = steps.map(off).find(|p| clearance(&grid, *p) >= RADIUS - missing) else { return Ok(()) };
+        if clearance(&grid, out) >= RADIUS || grid.geometry().cell_at(out).is_none() {
             return Ok(());
         }
         let start = Pose2::new(out.x, out.y, bearing * 0.7);
@@ -126,7 +126,7 @@ fn coarse_cells_do_not_cause_a_livelock() {
         let start = Pose2::new(5.0 * resolution, resolution + RADIUS - 0.04, 0.0);
         let goal = Pose2::new(25.0 * resolution, 9.0 * resolution, 0.0);
         for mut planner in [planner(at_home(), RADIUS), cart()] {
-            let plan = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+            let plan = found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
             for k in 0..20 {
                 let time = plan.trajectory.duration() * f64::from(k) / 20.0;
                 assert_eq!(planner.replan(&grid, &[], &plan, time, goal), Replan::Keep, "{resolution}: {k}");
@@ -144,7 +144,7 @@ fn leaving_a_wall_does_not_open_a_gap_that_is_too_narrow() {
     (0..30)
         .filter(|col| !(8..=10).contains(col))
         .for_each(|col| grid.set(CellIndex { col, row: 4 }, Cell::Occupied));
-    found(planner(at_home(), 0.149).plan(&grid, start, Twist2::ZERO, goal));
+    found_plan(planner(at_home(), 0.149).plan(&grid, start, Twist2::ZERO, goal));
     let plan = planner(at_home(), 0.16).plan(&grid, start, Twist2::ZERO, goal);
     assert!(matches!(plan, Plan::Blocked { nearest } if nearest.y < 0.4), "{plan}");
 }

@@ -1,6 +1,6 @@
 //! Robots that are not discs: long ones with an axle outside the middle.
 
-use crate::support::{HALF_BASE, LIMITS, at_home, found};
+use crate::support::{HALF_BASE, LIMITS, at_home, found_plan};
 use trundle_core::{
     Cell, CellIndex, DifferentialDrive, Footprint, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2,
     difference_of_angles, wrap_angle,
@@ -84,7 +84,7 @@ fn two_rooms(corridor: usize) -> OccupancyGrid {
 fn a_long_robot_passes_a_corridor_narrower_than_its_circle() {
     // The circle around the axle is 1.08 m across, the robot 0.4 m.
     let (start, goal) = (Pose2::new(0.7, 0.7, 1.3), Pose2::new(3.7, 1.1, -2.0));
-    let result = found(cart_planner(at_home()).plan(&two_rooms(5), start, Twist2::ZERO, goal));
+    let result = found_plan(cart_planner(at_home()).plan(&two_rooms(5), start, Twist2::ZERO, goal));
     judge_cart(&two_rooms(5), &result, start, goal);
     assert!(result.length < 4.0, "{}", result.length);
     let plan = cart_planner(at_home()).plan(&two_rooms(3), start, Twist2::ZERO, goal);
@@ -95,7 +95,7 @@ fn a_long_robot_passes_a_corridor_narrower_than_its_circle() {
 fn in_the_open_the_circle_is_the_fast_path_and_the_curve_is_one() {
     let grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(60); 60].join("\n")).unwrap();
     let (start, goal) = (Pose2::new(1.0, 1.0, 0.6), Pose2::new(5.0, 4.0, 0.7));
-    let result = found(cart_planner(at_home()).plan(&grid, start, Twist2::ZERO, goal));
+    let result = found_plan(cart_planner(at_home()).plan(&grid, start, Twist2::ZERO, goal));
     assert_eq!(result.phases.len(), 1);
     judge_cart(&grid, &result, start, goal);
 }
@@ -117,7 +117,7 @@ fn where_the_short_way_round_is_blocked_it_turns_the_long_way() {
     let grid = OccupancyGrid::from_ascii(0.1, art).unwrap();
     let at = |theta: f64| Pose2::new(0.6, 0.45, theta);
     let (start, goal) = (at(0.0), at(-3.1));
-    let result = found(cart_planner(at_home()).plan(&grid, start, Twist2::ZERO, goal));
+    let result = found_plan(cart_planner(at_home()).plan(&grid, start, Twist2::ZERO, goal));
     let Phase::Turn { angle, .. } = result.phases[0] else { panic!("{:?}", result.phases) };
     assert!(angle > 3.15, "{angle}");
     judge_cart(&grid, &result, start, goal);
@@ -134,7 +134,7 @@ fn an_outline_in_a_wall_is_refused_with_reasons() {
     assert!(matches!(plan(inside, free), Plan::StartInObstacle { .. }));
     assert!(matches!(plan(free, inside), Plan::GoalInObstacle { .. }));
     let beside = Pose2::new(1.5, 2.6, 0.0);
-    let result = found(plan(beside, free));
+    let result = found_plan(plan(beside, free));
     judge_cart(&grid, &result, beside, free);
 }
 
@@ -143,14 +143,14 @@ fn a_long_robot_that_moves_is_planned_for_as_it_moves() {
     let (start, goal) = (Pose2::new(0.7, 0.7, 1.3), Pose2::new(3.7, 1.1, -2.0));
     let grid = two_rooms(5);
     let mut planner = cart_planner(at_home());
-    let first = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    let first = found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
     let (mut moving, mut continued) = (0, 0);
     for k in 1..20 {
         let now = first.trajectory.at(first.trajectory.duration() * f64::from(k) / 20.0);
         if now.twist.v < 0.05 {
             continue;
         }
-        let plan = found(planner.plan(&grid, now.pose, now.twist, Pose2::new(3.7, 0.8, 1.0)));
+        let plan = found_plan(planner.plan(&grid, now.pose, now.twist, Pose2::new(3.7, 0.8, 1.0)));
         judge_cart(&grid, &plan, now.pose, Pose2::new(3.7, 0.8, 1.0));
         let begin = plan.trajectory.points()[0].twist;
         moving += 1;
@@ -173,7 +173,7 @@ fn an_outline_may_touch_a_wall_and_go_along_it() {
     // The left side is exactly on the wall at both ends.
     let (start, goal) = (Pose2::new(0.8, 2.7, 0.0), Pose2::new(2.0, 2.7, 0.0));
     let mut planner = cart_planner(at_home());
-    let result = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    let result = found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
     judge_cart(&grid, &result, start, goal);
     assert!(planner.validate_trajectory(&grid, &result.trajectory, 0.0).is_ok());
     // A wall across the path is detected although the robot touches another wall.
@@ -190,7 +190,7 @@ fn an_outline_within_a_wall_is_planned_out_of_it_or_refused_with_the_depth() {
         // The back is inside the wall.
         let start = Pose2::new(0.8, 2.8 + depth, -std::f64::consts::FRAC_PI_2);
         let mut planner = cart_planner(at_home());
-        let result = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+        let result = found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
         assert!(result.trajectory.end().distance(&goal) < 1.1e-3);
         let left = result.trajectory.points().iter().filter(|p| p.pose.distance(&start) > depth + 0.31);
         assert_eq!(left.filter(|p| touches(&grid, &cart(), p.pose)).count(), 0, "{depth}");
@@ -233,5 +233,5 @@ fn a_closed_room_is_detected_without_searching_all_cells() {
     assert!(spent < 1000.0, "{spent} ms");
     // With a wide enough opening, the path is found.
     (415..=425).for_each(|row| grid.set(CellIndex { col: 400, row }, Cell::Free));
-    found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
 }

@@ -1,6 +1,6 @@
 //! Gaps that the footprint fits by a hair, of odd and even numbers of cells, along the axes and across them.
 
-use crate::support::{LIMITS, at_home, found, judge, planner};
+use crate::support::{LIMITS, at_home, found_plan, judge, planner};
 use trundle_core::{DifferentialDrive, Footprint, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle_planning::{Plan, Planner};
 
@@ -21,7 +21,7 @@ fn fits_and_does_not(grid: &OccupancyGrid, width: f64, name: &str) {
     let (start, goal) = (Pose2::new(0.62, 0.57, 0.3), Pose2::new(2.41, 2.37, 1.0));
     let through = planner(at_home(), width / 2.0 - SPARE_M).plan(grid, start, Twist2::ZERO, goal);
     assert!(matches!(through, Plan::Found(_)), "{name}: {through}");
-    judge(grid, &found(through), start, goal, width / 2.0 - SPARE_M);
+    judge(grid, &found_plan(through), start, goal, width / 2.0 - SPARE_M);
     let wider = planner(at_home(), width / 2.0 + SPARE_M).plan(grid, start, Twist2::ZERO, goal);
     assert!(matches!(wider, Plan::Blocked { .. }), "{name}: {wider}");
 }

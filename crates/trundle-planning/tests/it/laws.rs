@@ -1,6 +1,6 @@
 //! Properties that hold on any map.
 
-use crate::support::{at_home, found, judge, planner, room};
+use crate::support::{at_home, clearance, found_plan, judge, planner};
 use proptest::prelude::*;
 use trundle_core::{Cell, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle_planning::{CurveConfig, Plan, PlannerConfig};
@@ -29,10 +29,10 @@ prop_compose! {
 }
 
 /// Cells that a robot on 4-neighbour moves between free centres can reach: an oracle without a distance field.
-fn flood(grid: &OccupancyGrid, from: Vector2, radius: f64) -> Vec<bool> {
+fn reachable_cells(grid: &OccupancyGrid, from: Vector2, radius: f64) -> Vec<bool> {
     let geometry = grid.geometry();
     let free: Vec<bool> =
-        (0..geometry.len()).map(|i| room(grid, geometry.center(geometry.cell(i))) >= radius).collect();
+        (0..geometry.len()).map(|i| clearance(grid, geometry.center(geometry.cell(i))) >= radius).collect();
     let mut reached = vec![false; free.len()];
     let mut stack = vec![geometry.linear(geometry.cell_at(from).unwrap())];
     while let Some(cell) = stack.pop() {
@@ -61,15 +61,15 @@ proptest! {
         let (start, goal) = (pose(from, a), pose(to, b));
         // A move between two centres loses this much clearance at a corner between them.
         let sure = (RADIUS * RADIUS + 0.0025_f64).sqrt();
-        let connected = flood(&grid, start.position(), sure)[geometry.linear(to)];
+        let connected = reachable_cells(&grid, start.position(), sure)[geometry.linear(to)];
         let plan = planner(at_home(), RADIUS).plan(&grid, start, Twist2::ZERO, goal);
         prop_assert!(!connected || matches!(plan, Plan::Found(_)), "{plan:?}");
-        if from != to && room(&grid, goal.position()) < RADIUS - 1e-6 {
+        if from != to && clearance(&grid, goal.position()) < RADIUS - 1e-6 {
             let refused = matches!(plan, Plan::GoalInObstacle { .. } | Plan::StartInObstacle { .. });
             prop_assert!(refused, "{plan:?}");
         }
         if let Plan::Found(result) = &plan {
-            judge(&grid, result, start, goal, RADIUS.min(room(&grid, start.position())));
+            judge(&grid, result, start, goal, RADIUS.min(clearance(&grid, start.position())));
         }
     }
 }
@@ -83,7 +83,7 @@ proptest! {
     ) {
         let geometry = *grid.geometry();
         let (at, end) = (geometry.center(geometry.cell(from)), geometry.center(geometry.cell(to)));
-        prop_assume!(room(&grid, at) >= RADIUS && from != to);
+        prop_assume!(clearance(&grid, at) >= RADIUS && from != to);
         let (start, goal) = (Pose2::new(at.x, at.y, heading), Pose2::new(end.x, end.y, 0.0));
         let twist = Twist2::new(v, turn * v / 0.3);
         if let Plan::Found(result) = planner(at_home(), RADIUS).plan(&grid, start, twist, goal) {
@@ -102,7 +102,7 @@ proptest! {
         let from = Pose2::new(2.0, 4.0, 0.0);
         let way = f64::atan2(y, x);
         let (start, goal) = (Pose2::new(2.0, 4.0, way + start), Pose2::new(2.0 + x, 4.0 + y, way + end));
-        let result = found(planner(into_headings(), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
+        let result = found_plan(planner(into_headings(), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
         judge(&grid, &result, start, goal, RADIUS);
         prop_assert!(from.distance(&start) == 0.0 && result.phases.len() == 1, "{:?}", result.phases);
         let curve = result.curves().next().unwrap();
@@ -125,7 +125,7 @@ fn into_headings() -> PlannerConfig {
 fn pieces_meet_in_position_heading_and_curvature() {
     let grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(120); 60].join("\n")).unwrap();
     let (start, goal) = (Pose2::new(1.0, 1.0, 0.7), Pose2::new(11.0, 5.0, 1.2));
-    let result = found(planner(at_home(), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
+    let result = found_plan(planner(at_home(), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
     let curve = result.curves().next().unwrap();
     assert!(curve.pieces().len() > 5);
     for pair in curve.pieces().windows(2) {
@@ -142,7 +142,7 @@ fn headings_straight_up_and_down_are_not_singular() {
         let up = f64::signum(a);
         let start = Pose2::new(3.0, 3.0 - 1.5 * up, f64::to_radians(a));
         let goal = Pose2::new(3.2, 3.0 + 1.5 * up, f64::to_radians(b));
-        let result = found(planner(into_headings(), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
+        let result = found_plan(planner(into_headings(), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
         assert_eq!(result.phases.len(), 1, "{a} {b}");
         judge(&grid, &result, start, goal, RADIUS);
     }

@@ -1,6 +1,6 @@
 //! Laws of masks, of the validation of trajectories, and of encounters.
 
-use crate::support::{at_home, found, planner, room};
+use crate::support::{at_home, clearance, found_plan, planner};
 use trundle_core::{
     Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Trajectory, TrajectoryPoint, Twist2, Vector2,
 };
@@ -22,7 +22,7 @@ fn goal() -> Pose2 {
 }
 
 fn planned(planner: &mut Planner) -> Box<PlanResult> {
-    found(planner.plan(&floor(), start(), Twist2::ZERO, goal()))
+    found_plan(planner.plan(&floor(), start(), Twist2::ZERO, goal()))
 }
 
 /// The cells of the floor in a box, m.
@@ -60,9 +60,9 @@ fn a_keep_out_area_is_kept_out_of_as_if_it_were_occupied() {
     masked.set_keep_out(Some(area.clone()));
     let around = planned(&mut masked);
     for point in around.trajectory.points() {
-        assert!(room(&area, point.pose.position()) >= RADIUS - 2e-4, "{point:?}");
+        assert!(clearance(&area, point.pose.position()) >= RADIUS - 2e-4, "{point:?}");
     }
-    let occupied = found(planner(at_home(), RADIUS).plan(&area, start(), Twist2::ZERO, goal()));
+    let occupied = found_plan(planner(at_home(), RADIUS).plan(&area, start(), Twist2::ZERO, goal()));
     assert_eq!(around.trajectory, occupied.trajectory);
 }
 

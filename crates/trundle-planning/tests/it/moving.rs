@@ -1,6 +1,6 @@
 //! Moving obstacles: the robot passes them or waits for them.
 
-use crate::support::{at_home, found, judge, planner};
+use crate::support::{at_home, found_plan, judge, planner};
 use trundle_core::{OccupancyGrid, Pose2, Trajectory, Twist2, Vector2};
 use trundle_planning::{MovingObstacle, Plan, Replan};
 
@@ -38,9 +38,9 @@ fn someone_who_crosses_is_let_pass_or_gone_around() {
         let (from, velocity) = (Vector2::new(from.0, from.1), Vector2::new(velocity.0, velocity.1));
         let obstacle = MovingObstacle::new(from, velocity, PERSON).unwrap();
         let mut planner = planner(at_home(), RADIUS);
-        let alone = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+        let alone = found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
         assert!(min_gap(&alone.trajectory, from, velocity) < 0.0, "no encounter: {from} {velocity}");
-        let plan = found(planner.plan_among_moving(&grid, &[obstacle], start, Twist2::ZERO, goal));
+        let plan = found_plan(planner.plan_among_moving(&grid, &[obstacle], start, Twist2::ZERO, goal));
         assert!(min_gap(&plan.trajectory, from, velocity) >= -2e-3, "{} s of wait", plan.wait);
         judge(&grid, &plan, start, goal, RADIUS);
         eprintln!("{:?}: {:.1} s of wait, {:.2} m", from.as_slice(), plan.wait, plan.length);
@@ -62,9 +62,9 @@ fn a_robot_that_moves_stops_for_someone_who_crosses_and_goes_on() {
         let obstacle = MovingObstacle::new(from, velocity, PERSON).unwrap();
         let twist = Twist2::new(0.5, 0.0);
         let mut planner = planner(at_home(), RADIUS);
-        let alone = found(planner.plan(&grid, start, twist, goal));
+        let alone = found_plan(planner.plan(&grid, start, twist, goal));
         assert!(min_gap_within(&alone.trajectory, from, velocity) < 0.0, "no encounter at {y}");
-        let plan = found(planner.plan_among_moving(&grid, &[obstacle], start, twist, goal));
+        let plan = found_plan(planner.plan_among_moving(&grid, &[obstacle], start, twist, goal));
         assert!(plan.is_continuous && plan.trajectory.points()[0].twist.v == 0.5);
         assert!(min_gap_within(&plan.trajectory, from, velocity) >= -2e-3, "{y}: {} s of wait", plan.wait);
         judge(&grid, &plan, start, goal, RADIUS);
@@ -80,7 +80,7 @@ fn a_plan_is_kept_while_it_holds() {
     let grid = hall(40);
     let (start, goal) = (Pose2::new(1.0, 2.0, 0.0), Pose2::new(8.0, 2.5, 0.0));
     let mut planner = planner(at_home(), RADIUS);
-    let first = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    let first = found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
     assert_eq!(planner.replan(&grid, &[], &first, 3.0, goal), Replan::Keep);
     let away = MovingObstacle::new(Vector2::new(2.0, 3.5), Vector2::new(0.0, 1.0), PERSON).unwrap();
     assert_eq!(planner.replan(&grid, &[away], &first, 3.0, goal), Replan::Keep);

@@ -1,6 +1,6 @@
 //! Guarantees for a user: no swinging in corridors, the same bytes, speeds that go with room and sight, no jump in curvature.
 
-use crate::support::{LIMITS, at_home, found, judge, planner};
+use crate::support::{LIMITS, at_home, found_plan, judge, planner};
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, TrajectoryPoint, Twist2, Vector2};
 use trundle_planning::{PlanResult, PlannerConfig, PotentialConfig, PotentialKind, TimingConfig};
 
@@ -45,7 +45,7 @@ fn nothing_swings_in_a_corridor() {
             let middle = f64::from(wide as u32 + 4) * 0.025;
             for off in [0.0, 0.02] {
                 let (start, goal) = (Pose2::new(0.5, middle + off, 0.0), Pose2::new(11.5, middle - off, 0.0));
-                let result = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+                let result = found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
                 judge(&grid, &result, start, goal, RADIUS);
                 let turned: f64 =
                     result.trajectory.points().iter().map(|p| p.pose.theta.abs()).fold(0.0, f64::max);
@@ -71,7 +71,7 @@ fn the_same_question_gives_the_same_bytes_whatever_was_asked_before() {
             .map(f64::to_bits)
             .collect()
     };
-    let fresh = bytes(&found(planner(at_home(), RADIUS).plan(&grid, start, Twist2::ZERO, goal)));
+    let fresh = bytes(&found_plan(planner(at_home(), RADIUS).plan(&grid, start, Twist2::ZERO, goal)));
     let mut used = planner(at_home(), RADIUS);
     let mut other = grid.clone();
     for k in 0..5 {
@@ -80,7 +80,7 @@ fn the_same_question_gives_the_same_bytes_whatever_was_asked_before() {
         let _ =
             used.plan(&other, Pose2::new(6.0, 0.7, 1.0), Twist2::new(0.3, 0.1), Pose2::new(0.5, 0.6, 0.0));
         let _ = used.plan(&corridor(40, false), start, Twist2::ZERO, goal);
-        assert_eq!(bytes(&found(used.plan(&grid, start, Twist2::ZERO, goal))), fresh, "{k}");
+        assert_eq!(bytes(&found_plan(used.plan(&grid, start, Twist2::ZERO, goal))), fresh, "{k}");
     }
 }
 
@@ -92,7 +92,7 @@ fn speed_goes_with_the_room_beside_the_robot() {
         let grid = corridor(wide, false);
         let middle = f64::from(wide as u32 + 4) * 0.025;
         let (start, goal) = (Pose2::new(0.5, middle, 0.0), Pose2::new(11.5, middle, 0.0));
-        let result = found(planner(at_home(), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
+        let result = found_plan(planner(at_home(), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
         let fastest = result.trajectory.points().iter().map(|p| p.twist.v).fold(0.0, f64::max);
         let room = wide as f64 * 0.025 - RADIUS;
         let share = (room / timing.full_speed_clearance).min(1.0);
@@ -119,7 +119,7 @@ fn speed_is_limited_by_what_has_been_seen() {
             }
         }
         let (start, goal) = (Pose2::new(1.0, 2.5, 0.0), Pose2::new(9.0, 2.5, 0.0));
-        let result = found(planner(at_home(), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
+        let result = found_plan(planner(at_home(), RADIUS).plan(&grid, start, Twist2::ZERO, goal));
         let points = result.trajectory.points();
         let is_unknown =
             |p: &&TrajectoryPoint| grid.at(p.pose.position() + p.pose.direction() * RADIUS) == Cell::Unknown;
@@ -136,7 +136,7 @@ fn replanning_goes_on_in_place_heading_curvature_and_speed() {
         OccupancyGrid::filled(GridGeometry::new(0.05, Vector2::zeros(), 200, 120).unwrap(), Cell::Free);
     let (start, goal) = (Pose2::new(1.0, 1.0, 0.8), Pose2::new(8.0, 4.5, -0.6));
     let mut planner = planner(at_home(), RADIUS);
-    let first = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    let first = found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
     let mut bent = 0;
     for k in 1..14 {
         let now = first.trajectory.at(first.trajectory.duration() * f64::from(k) / 15.0);
@@ -149,7 +149,7 @@ fn replanning_goes_on_in_place_heading_curvature_and_speed() {
             }
         }
         let other = Pose2::new(8.5, 1.5, 0.0);
-        let second = found(planner.plan(&changed, now.pose, now.twist, other));
+        let second = found_plan(planner.plan(&changed, now.pose, now.twist, other));
         if now.twist.v < 0.05 || !second.is_continuous {
             continue;
         }

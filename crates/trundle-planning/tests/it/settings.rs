@@ -142,7 +142,7 @@ fn every_number_of_the_potential_is_checked() {
     );
     assert_eq!(
         text(PotentialConfig { reach: f64::NAN, ..good }),
-        format!("potential.reach is NaN m, {above}")
+        "potential.reach is NaN m, expected 0.001 to 100"
     );
     assert_eq!(
         text(PotentialConfig { patience: 0, ..good }),

@@ -1,6 +1,6 @@
 //! Large and strange maps.
 
-use crate::support::{at_home, found, judge, planner};
+use crate::support::{at_home, found_plan, judge, planner};
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
 
 /// Walls every 100 cells with an opening at alternating ends: the path is long.
@@ -20,7 +20,7 @@ fn across(size: usize) {
     let (start, goal) = (Pose2::new(1.0, 1.0, 0.0), Pose2::new(side - 1.0, side / 2.0, 1.0));
     let mut planner = planner(at_home(), 0.1755);
     let begin = crate::support::cpu_ms();
-    let result = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+    let result = found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
     let spent = crate::support::cpu_ms() - begin;
     eprintln!(
         "{size} x {size}: {spent:.0} ms CPU for {:.0} m, {} way-points",
@@ -48,7 +48,7 @@ fn a_warehouse_of_a_thousand_cells_square() {
     let mut planner = planner(at_home(), 0.1755);
     for round in ["new field", "same field"] {
         let begin = crate::support::cpu_ms();
-        let result = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+        let result = found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
         let spent = crate::support::cpu_ms() - begin;
         eprintln!("warehouse, {round}: {spent:.0} ms CPU for {:.0} m", result.length);
         judge(&grid, &result, start, goal, 0.1755);
@@ -69,7 +69,7 @@ fn sixteen_million_cells_in_a_second() {
     let ask = || {
         let mut planner = planner(at_home(), 0.26);
         let begin = crate::support::cpu_ms();
-        let plan = found(planner.plan(&grid, start, Twist2::ZERO, goal));
+        let plan = found_plan(planner.plan(&grid, start, Twist2::ZERO, goal));
         (crate::support::cpu_ms() - begin, plan)
     };
     let ((first, plan), (second, same)) = (ask(), ask());

@@ -1,6 +1,6 @@
 //! Maps of every kind: mazes, spirals, slanted walls, crumbs; fine and coarse, far from the origin, tiny, unknown at the border.
 
-use crate::support::{LIMITS, at_home, found, judge, planner};
+use crate::support::{LIMITS, at_home, found_plan, judge, planner};
 use trundle_core::{
     Cell, CellIndex, DifferentialDrive, Footprint, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2,
 };
@@ -138,7 +138,7 @@ fn corridors_an_even_number_of_cells_wide() {
         let at = |col: f64, row: f64| geometry.origin + Vector2::new(col, row) * resolution;
         let (a, b) = (at(10.0, 9.0), at(50.0, 20.0));
         let (start, goal) = (Pose2::new(a.x, a.y, 0.3), Pose2::new(b.x, b.y, 1.0));
-        let plan = found(planner(at_home(), radius).plan(&grid, start, Twist2::ZERO, goal));
+        let plan = found_plan(planner(at_home(), radius).plan(&grid, start, Twist2::ZERO, goal));
         judge(&grid, &plan, start, goal, radius);
         let wider = wide as f64 * resolution / 2.0 + 1e-3;
         let plan = planner(at_home(), wider).plan(&grid, start, Twist2::ZERO, goal);
@@ -187,7 +187,7 @@ fn an_unknown_border_is_left_and_entered_as_configured() {
         (Pose2::new(-1.0, 0.0, 2.0), Pose2::new(1.0, 1.0, 0.0), Pose2::new(1.8, 0.0, 0.0));
     for (unknown, outside) in [(UnknownIs::Free, true), (UnknownIs::Obstacle, false)] {
         let mut planner = planner(PlannerConfig { unknown, ..at_home() }, 0.1755);
-        judge(&grid, &found(planner.plan(&grid, start, Twist2::ZERO, inside)), start, inside, 0.1755);
+        judge(&grid, &found_plan(planner.plan(&grid, start, Twist2::ZERO, inside)), start, inside, 0.1755);
         let plan = planner.plan(&grid, start, Twist2::ZERO, beyond);
         assert_eq!(matches!(plan, Plan::Found(_)), outside, "{plan}");
         assert!(outside || matches!(plan, Plan::GoalInObstacle { .. }), "{plan}");
@@ -235,20 +235,20 @@ fn a_tight_gap_is_passed_whatever_else_is_allowed() {
     let (mut grid, start, goal) = gap(4);
     let radius = 0.17;
     let near = PlannerConfig { goal_tolerance: 6.0, ..at_home() };
-    let plan = found(planner(near, radius).plan(&grid, start, Twist2::ZERO, goal));
+    let plan = found_plan(planner(near, radius).plan(&grid, start, Twist2::ZERO, goal));
     assert_eq!(plan.instead_of, None);
     judge(&grid, &plan, start, goal, radius);
     let at = |x: f64, y: f64| Vector2::new(x, y);
     let graph = WaypointGraph::new(vec![at(1.5, 0.5)], vec![]).unwrap();
     let along = WaypointGraph::new(vec![at(4.0, 1.0), at(5.0, 1.0)], vec![(0, 1)]).unwrap();
     let plan = planner(at_home(), radius).plan_on_graph(&grid, &graph, start, Twist2::ZERO, goal);
-    judge(&grid, &found(plan), start, goal, radius);
-    let plan = found(planner(at_home(), radius).plan_on_graph(&grid, &along, start, Twist2::ZERO, goal));
+    judge(&grid, &found_plan(plan), start, goal, radius);
+    let plan = found_plan(planner(at_home(), radius).plan_on_graph(&grid, &along, start, Twist2::ZERO, goal));
     judge(&grid, &plan, start, goal, radius);
     assert!(plan.waypoints.points().contains(&at(4.0, 1.0)));
     (48..52).for_each(|col| grid.set(CellIndex { col, row: 20 }, Cell::Occupied));
     let some = PlannerConfig { goal_tolerance: 0.6, ..at_home() };
-    let plan = found(planner(some, radius).plan(&grid, start, Twist2::ZERO, goal));
+    let plan = found_plan(planner(some, radius).plan(&grid, start, Twist2::ZERO, goal));
     assert!(plan.trajectory.end().distance(&goal) < 0.4, "{:?}", plan.trajectory.end());
     assert!(matches!(plan.instead_of, Some(Plan::GoalInObstacle { .. })), "{:?}", plan.instead_of);
 }
@@ -262,7 +262,7 @@ fn the_finer_field_follows_the_map() {
         (14..18).for_each(|col| grid.set(CellIndex { col, row }, Cell::Occupied));
         let plan = kept.plan(&grid, start, Twist2::ZERO, goal);
         assert_eq!(plan, planner(at_home(), 0.17).plan(&grid, start, Twist2::ZERO, goal));
-        judge(&grid, &found(plan), start, goal, 0.17);
+        judge(&grid, &found_plan(plan), start, goal, 0.17);
     }
 }
 
@@ -277,14 +277,14 @@ fn an_outline_passes_what_its_lattice_passes() {
     };
     let (odd, start, goal) = gap(3);
     for half in [0.1, 0.14, 0.15] {
-        let plan = found(cart(half).plan(&odd, start, Twist2::ZERO, goal));
+        let plan = found_plan(cart(half).plan(&odd, start, Twist2::ZERO, goal));
         assert!(plan.trajectory.end().distance(&goal) < 1.1e-3);
     }
     let plan = cart(0.151).plan(&odd, start, Twist2::ZERO, goal);
     assert!(matches!(plan, Plan::Blocked { nearest } if nearest.x < 2.9), "{plan}");
     let (even, ..) = gap(4);
     for half in [0.15, 0.19, 0.2] {
-        let plan = found(cart(half).plan(&even, start, Twist2::ZERO, goal));
+        let plan = found_plan(cart(half).plan(&even, start, Twist2::ZERO, goal));
         assert!(plan.trajectory.end().distance(&goal) < 1.1e-3);
     }
     let plan = cart(0.201).plan(&even, start, Twist2::ZERO, goal);

@@ -17,7 +17,7 @@ pub fn at_home() -> PlannerConfig {
     PlannerConfig { beyond: 0.0, ..PlannerConfig::default() }
 }
 
-pub fn found(plan: Plan) -> Box<PlanResult> {
+pub fn found_plan(plan: Plan) -> Box<PlanResult> {
     match plan {
         Plan::Found(result) => result,
         other => panic!("no way: {other:?}"),
@@ -25,7 +25,7 @@ pub fn found(plan: Plan) -> Box<PlanResult> {
 }
 
 /// The distance from a point to the nearest occupied square within 1 m, by looking at every cell.
-pub fn room(grid: &OccupancyGrid, point: Vector2) -> f64 {
+pub fn clearance(grid: &OccupancyGrid, point: Vector2) -> f64 {
     let geometry = grid.geometry();
     let reach = (1.0 / geometry.resolution) as i64 + 1;
     let at = (point - geometry.origin) / geometry.resolution;
@@ -52,7 +52,7 @@ pub fn min_clearance(grid: &OccupancyGrid, result: &PlanResult) -> f64 {
         let position = point.pose.position();
         if (position - at).norm() > 0.002 {
             at = position;
-            least = least.min(room(grid, position));
+            least = least.min(clearance(grid, position));
         }
     }
     least

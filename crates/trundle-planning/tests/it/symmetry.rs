@@ -1,6 +1,6 @@
 //! Plans on moved, turned and mirrored maps, and on maps that are the same for the robot.
 
-use crate::support::{at_home, found, judge, planner};
+use crate::support::{at_home, found_plan, judge, planner};
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Twist2, Vector2};
 use trundle_planning::{Plan, PlanResult};
 
@@ -32,7 +32,7 @@ fn goal() -> Pose2 {
 }
 
 fn planned(grid: &OccupancyGrid, start: Pose2, goal: Pose2) -> Box<PlanResult> {
-    let plan = found(planner(at_home(), RADIUS).plan(grid, start, Twist2::ZERO, goal));
+    let plan = found_plan(planner(at_home(), RADIUS).plan(grid, start, Twist2::ZERO, goal));
     judge(grid, &plan, start, goal, RADIUS);
     plan
 }
@@ -106,7 +106,7 @@ fn a_wider_robot_keeps_farther_away_until_it_no_longer_fits() {
     let (start, goal) = (Pose2::new(1.85, 0.7, 1.57), Pose2::new(1.85, 3.3, 1.57));
     let plan = |radius: f64| planner(at_home(), radius).plan(&grid, start, Twist2::ZERO, goal);
     for radius in [0.1, 0.2, 0.34] {
-        judge(&grid, &found(plan(radius)), start, goal, radius);
+        judge(&grid, &found_plan(plan(radius)), start, goal, radius);
     }
     assert!(matches!(plan(0.36), Plan::Blocked { nearest } if nearest.y < 2.0), "{}", plan(0.36));
 }

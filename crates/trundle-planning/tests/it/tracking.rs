@@ -1,6 +1,6 @@
 //! Movers found in successive scans.
 
-use crate::support::{at_home, cpu_ms, found, judge, planner};
+use crate::support::{at_home, cpu_ms, found_plan, judge, planner};
 use trundle_core::{Beam, Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Scan, Stamp, Twist2, Vector2};
 use trundle_planning::{MovingObstacle, MovingObstacleTracker, ObstacleTrackerConfig};
 
@@ -246,7 +246,7 @@ fn whoever_passes_one_who_stopped_goes_behind() {
         let (from, goal) = (Pose2::new(4.3, 3.0, 0.0), Pose2::new(8.0, 3.0, 0.0));
         let plan =
             planner(at_home(), RADIUS).plan_among_moving(&with_them, &ways_on, from, Twist2::ZERO, goal);
-        let plan = found(plan);
+        let plan = found_plan(plan);
         let beside = plan.trajectory.points().iter().find(|p| p.pose.x >= 5.0).unwrap().pose.y - 3.0;
         assert!(beside * side < -0.3, "{beside} m to the left of who goes to {side}");
     }
@@ -275,7 +275,7 @@ fn dim(
 }
 
 /// New obstacles within 2 m.
-fn lately(tracker: &MovingObstacleTracker, now: f64) -> Vec<Vector2> {
+fn unconfirmed_hits(tracker: &MovingObstacleTracker, now: f64) -> Vec<Vector2> {
     tracker.unconfirmed_hits(stamp(now), at(1.0, 3.0), 2.0)
 }
 
@@ -293,10 +293,10 @@ fn who_steps_to_where_the_camera_is_blind_stands_there_until_seen_to_leave() {
         );
     }
     // The person has left: cells observed free are free.
-    assert!(!lately(&tracker, 9.0).is_empty());
+    assert!(!unconfirmed_hits(&tracker, 9.0).is_empty());
     world.people.clear();
     assert!(dim(&mut tracker, &mut world, (9.1, 9.5, 1.5), 0.5).is_empty());
-    assert!(lately(&tracker, 9.5).is_empty());
+    assert!(unconfirmed_hits(&tracker, 9.5).is_empty());
 }
 
 #[test]
@@ -319,7 +319,10 @@ fn of_whom_an_edge_is_seen_on_stands_there_for_safety() {
         let now = 0.1 * f64::from(k);
         dim(&mut tracker, &mut world, (now, now, 1.5), 0.5);
         let they = at(1.82, 4.2 - 0.8 * now.min(1.5));
-        let near = lately(&tracker, now).iter().filter(|hit| (**hit - they).norm() < PERSON + 0.05).count();
+        let near = unconfirmed_hits(&tracker, now)
+            .iter()
+            .filter(|hit| (**hit - they).norm() < PERSON + 0.05)
+            .count();
         assert!(near > 3 || now < 1.0, "{now} s: {near} hits");
     }
 }
@@ -329,7 +332,7 @@ fn who_stood_where_the_camera_is_blind_now_still_stands_there() {
     let mut tracker = tracker();
     let (mut nobody, mut world) = (World::new(&[]), World::new(&[(at(1.8, 3.0), at(0.0, 0.0))]));
     dim(&mut tracker, &mut nobody, (0.0, 1.0, 0.0), 0.3);
-    assert!(lately(&tracker, 1.0).is_empty());
+    assert!(unconfirmed_hits(&tracker, 1.0).is_empty());
     assert!(dim(&mut tracker, &mut world, (1.1, 1.8, 0.0), 0.3).is_empty(), "nobody was seen to move");
     let is_theirs = |hit: &Vector2| ((hit - at(1.8, 3.0)).norm() - PERSON).abs() < 0.03;
     for until in [2.4, 4.0, 9.0] {
@@ -339,7 +342,7 @@ fn who_stood_where_the_camera_is_blind_now_still_stands_there() {
             "{until} s: {obstacles:?}"
         );
         assert!(obstacles.iter().all(|m| m.at(0.0) == m.at(9.0)), "they stand");
-        let hits = lately(&tracker, until);
+        let hits = unconfirmed_hits(&tracker, until);
         assert!(hits.len() > 3 && hits.iter().all(is_theirs), "{until} s: {hits:?}");
         assert!(
             tracker.unconfirmed_hits(stamp(until), at(1.0, 3.0), 0.4).is_empty(),
@@ -347,7 +350,7 @@ fn who_stood_where_the_camera_is_blind_now_still_stands_there() {
         );
     }
     assert!(dim(&mut tracker, &mut world, (12.0, 12.4, 0.0), 0.9).is_empty(), "nobody waits for ever");
-    assert!(lately(&tracker, 12.4).is_empty());
+    assert!(unconfirmed_hits(&tracker, 12.4).is_empty());
     dim(&mut tracker, &mut nobody, (12.5, 13.0, 0.0), 0.3);
     assert!(dim(&mut tracker, &mut nobody, (13.1, 13.5, 0.0), 0.3).is_empty());
 }
@@ -358,7 +361,7 @@ fn new_obstacles_are_not_kept_when_scans_end_or_the_clock_is_set_back() {
     let mut world = World::new(&[(at(1.8, 3.0), at(0.0, 0.0))]);
     dim(&mut tracker, &mut nobody, (100.0, 101.0, 0.0), 0.3);
     dim(&mut tracker, &mut world, (101.1, 101.8, 0.0), 0.3);
-    let count = |tracker: &MovingObstacleTracker, now: f64| lately(tracker, now).len();
+    let count = |tracker: &MovingObstacleTracker, now: f64| unconfirmed_hits(tracker, now).len();
     assert!(count(&tracker, 101.8) > 3 && count(&tracker, 111.0) == count(&tracker, 101.8));
     assert_eq!(count(&tracker, 112.0), 0, "no scan came for 10 s");
     dim(&mut tracker, &mut nobody, (0.0, 1.0, 0.0), 0.3);
@@ -436,9 +439,9 @@ fn someone_seen_to_cross_is_let_pass() {
     assert!(left <= 12, "{left} cells of someone who has left");
     let twist = Twist2::new(0.4, 0.0);
     let mut planner = planner(at_home(), RADIUS);
-    let direct = found(planner.plan(&still, pose, twist, goal));
+    let direct = found_plan(planner.plan(&still, pose, twist, goal));
     assert!(planner.first_encounter(&direct.trajectory, 0.0, &obstacles).is_some_and(|time| time < 2.0));
-    let plan = found(planner.plan_among_moving(&still, &obstacles, pose, twist, goal));
+    let plan = found_plan(planner.plan_among_moving(&still, &obstacles, pose, twist, goal));
     judge(&still, &plan, pose, goal, RADIUS);
     assert!(plan.is_continuous && planner.first_encounter(&plan.trajectory, 0.0, &obstacles).is_none());
     let gap = |k: i32| {

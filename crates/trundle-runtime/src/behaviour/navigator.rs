@@ -13,8 +13,8 @@ use crate::{
     behaviour::goal::Goal,
     behaviour::machine::StateMachine,
     behaviour::path_search::viewpoint::Viewpoint,
-    behaviour::progress::guard::Remaining,
-    behaviour::progress::rest::rest,
+    behaviour::progress_checker::guard::Remaining,
+    behaviour::progress_checker::rest::rest,
     behaviour::spin::Spin,
     behaviour::state::{Drive, Relative, State, Station},
     behaviour::tools::Tools,
@@ -157,7 +157,7 @@ impl Navigator {
             self.monitor_pose(s);
             self.monitor_progress(s);
         }
-        self.monitor_sight(s);
+        self.monitor_view(s);
     }
 
     /// Checks that the pose is known.
@@ -246,8 +246,8 @@ impl Navigator {
 
     /// If a turn restored the view twice at one place, the path to the viewpoint leads into the camera's blind range, and the navigator
     /// gives up the viewpoint.
-    fn monitor_sight(&mut self, s: &WorldState<'_>) {
-        let is_in_vain = self.tools.sight.is_restored_in_vain(s);
+    fn monitor_view(&mut self, s: &WorldState<'_>) {
+        let is_in_vain = self.tools.view_monitor.is_restored_in_vain(s);
         let waits = matches!(self.machine.state(), State::Wait(_));
         if is_in_vain && waits && self.tools.goal.is_viewpoint() {
             self.tools.follower.halt();

@@ -4,8 +4,8 @@ use super::contacts::Contacts;
 use super::goal::Goal;
 use super::opening::Opening;
 use super::path_planner::PathPlanner;
-use super::progress::guard::ProgressGuard;
-use super::sight::Sight;
+use super::progress_checker::guard::ProgressGuard;
+use super::view_monitor::ViewMonitor;
 use crate::mission::{GoalOptions, WhenBlocked};
 use crate::{bumper, config::RobotConfig, goal_approach::GoalApproach, schedule::Ticker};
 use trundle_control::Follower;
@@ -27,7 +27,7 @@ pub(crate) struct Tools {
     pub(crate) follower: Follower,
     pub(crate) goal_approach: GoalApproach,
     pub(crate) contacts: Contacts,
-    pub(crate) sight: Sight,
+    pub(crate) view_monitor: ViewMonitor,
     pub(crate) opening: Opening,
     pub(crate) check_due: Ticker,
     pub(crate) improve_due: Ticker,
@@ -69,7 +69,7 @@ impl Tools {
             follower: Follower::new(config.control.clone(), config.drive, config.limits)?,
             goal_approach: GoalApproach::new(&config.docking, footprint)?,
             contacts: Contacts::default(),
-            sight: Sight::new(config.safety.image_timeout),
+            view_monitor: ViewMonitor::new(config.safety.image_timeout),
             opening: Opening::new(config.mission_executor.opening),
             check_due: Ticker::new(config.schedule.validated()?.check_hz),
             improve_due: Ticker::new(config.schedule.improve_hz),
@@ -87,7 +87,7 @@ impl Tools {
         self.plan = None;
         self.planner.visibility.restart();
         self.contacts.restart();
-        self.sight.restart();
+        self.view_monitor.restart();
         self.goal_approach.reset();
         self.check_due.hurry();
         if !rolls_on {

@@ -25,7 +25,7 @@ pub struct GoalOptions {
     /// within this distance. `None`: the robot settles exactly on the goal.
     #[serde(default, rename = "tolerance_m", skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
-    /// Difference of heading that counts as an arrival \[rad\], 0.06 to pi. `None`: with a [`GoalOptions::tolerance`] any heading, else the
+    /// Difference of heading that counts as an arrival \[rad\], 3.5 to 180 deg. `None`: with a [`GoalOptions::tolerance`] any heading, else the
     /// robot turns exactly to the heading.
     #[serde(default, rename = "heading_tolerance_rad", skip_serializing_if = "Option::is_none")]
     pub heading_tolerance: Option<f64>,
@@ -50,8 +50,8 @@ pub enum WhenBlocked {
 pub(crate) const PATIENCE_RANGE_S: (f64, f64) = (1.0, 3600.0);
 /// Range of the tolerance of a position \[m\]. Source: ours; below it the robot settles exactly.
 const TOLERANCE_RANGE_M: (f64, f64) = (0.01, 10.0);
-/// Range of the tolerance of a heading \[rad\]. Source: ours; the turn at the end of a path is exact to 0.05 rad.
-const HEADING_TOLERANCE_RANGE_RAD: (f64, f64) = (0.06, std::f64::consts::PI);
+/// Range of the tolerance of a heading \[deg\]. Source: ours; the turn at the end of a path is exact to 2.9 deg.
+const HEADING_TOLERANCE_RANGE_DEG: (f64, f64) = (3.5, 180.0);
 
 impl TaskGoal {
     /// A pose with these options.
@@ -79,11 +79,13 @@ impl GoalOptions {
         };
         check("patience", self.patience, "s", PATIENCE_RANGE_S)?;
         check("tolerance", self.tolerance, "m", TOLERANCE_RANGE_M)?;
-        if let (Some(heading), None) = (self.heading_tolerance, self.tolerance) {
+        // Missions hold headings in degrees.
+        let heading = self.heading_tolerance.map(f64::to_degrees);
+        if let (Some(heading), None) = (heading, self.tolerance) {
             let name = format!("heading tolerance {of}");
-            return Err(Invalid::new(name, heading, "rad", "a tolerance of the position beside it"));
+            return Err(Invalid::new(name, heading, "deg", "a tolerance of the position beside it"));
         }
-        check("heading tolerance", self.heading_tolerance, "rad", HEADING_TOLERANCE_RANGE_RAD)?;
+        check("heading tolerance", heading, "deg", HEADING_TOLERANCE_RANGE_DEG)?;
         Ok(self)
     }
 
@@ -117,10 +119,8 @@ mod tests {
         assert!(message(GoalOptions { patience: Some(0.0), ..some }).contains("patience of task 1"));
         assert!(message(GoalOptions { tolerance: Some(0.001), ..some }).contains("tolerance of task 1"));
         assert!(message(GoalOptions { tolerance: Some(f64::NAN), ..some }).contains("tolerance of task 1"));
-        assert!(
-            message(GoalOptions { heading_tolerance: Some(4.0), tolerance: Some(0.3), ..some })
-                .contains("heading tolerance")
-        );
+        let turned = message(GoalOptions { heading_tolerance: Some(4.0), tolerance: Some(0.3), ..some });
+        assert!(turned.contains("heading tolerance of task 1 is 229") && turned.contains(" deg"), "{turned}");
     }
 
     #[test]

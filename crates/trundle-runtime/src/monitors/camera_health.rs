@@ -5,14 +5,14 @@ use trundle_core::{Beam, Pose2, RgbdImage, Scan, Stamp};
 /// Distinguishes images with content from those of a covered or frozen camera, or without depth.
 #[derive(Debug, Default)]
 pub(crate) struct CameraHealth {
-    last: Option<Look>,
+    last: Option<FirstIdentical>,
     /// Stamp of the newest scan with content.
     seen: Option<Stamp>,
 }
 
 /// The first of a series of identical images.
 #[derive(Debug, Clone, Copy)]
-struct Look {
+struct FirstIdentical {
     print: u64,
     stamp: Stamp,
     odom_from_base: Pose2,
@@ -29,7 +29,7 @@ impl CameraHealth {
     /// Whether this image, taken at `odom_from_base`, is bit-identical to the last ones although the robot has moved or a long time has
     /// passed. The noise of a real camera makes any two images differ.
     pub(crate) fn is_frozen(&mut self, image: &RgbdImage, odom_from_base: Pose2) -> bool {
-        let now = Look { print: fingerprint(image), stamp: image.stamp(), odom_from_base };
+        let now = FirstIdentical { print: fingerprint(image), stamp: image.stamp(), odom_from_base };
         let Some(first) = self.last.filter(|first| first.print == now.print) else {
             self.last = Some(now);
             return false;

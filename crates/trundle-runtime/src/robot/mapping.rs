@@ -88,7 +88,7 @@ impl GridMapping {
     }
 
     /// Draws a scan taken at `pose`, and the floor under the robot.
-    pub(super) fn draw(&mut self, pose: Pose2, scan: &Scan) {
+    pub(super) fn integrate_scan(&mut self, pose: Pose2, scan: &Scan) {
         self.mapper.insert(pose, scan);
         self.mapper.mark_free_disc(pose, self.inscribed_radius);
     }

@@ -49,6 +49,6 @@ impl Robot {
     /// Draws the scan and the floor under the robot into the map, if a pose is known for its stamp.
     fn integrate_scan(&mut self, scan: &Scan) {
         let Ok(pose) = self.localizer.pose_at(scan.stamp()) else { return };
-        self.times.measure(Stage::Mapping, || self.mapping.draw(pose, scan));
+        self.times.measure(Stage::Mapping, || self.mapping.integrate_scan(pose, scan));
     }
 }

@@ -2,8 +2,7 @@
 
 use super::missing_keys::missing_keys;
 use super::overrides::overridden;
-use super::plausibility::require_plausible;
-use super::reference::reference;
+use super::refusal::require_valid;
 use super::settings_error::SettingsError;
 use super::translation::translate;
 use crate::RobotConfig;
@@ -32,13 +31,7 @@ impl RobotFile {
         if !overrides.is_empty() {
             config = overridden(&config, overrides, &mut warnings)?;
         }
-        let config = require_plausible(&config).and_then(|()| config.validated()).map_err(|error| {
-            let unit = error.unit;
-            let key =
-                reference().iter().find(|setting| setting.path == error.field).map(|setting| setting.key);
-            let field = key.unwrap_or(&error.field).to_owned();
-            SettingsError::new(None, trundle_core::Invalid { field, unit, ..error }.to_string())
-        })?;
+        require_valid(&config)?;
         Ok(Self { config, warnings })
     }
 }

@@ -7,6 +7,7 @@ mod overrides;
 mod plausibility;
 mod print;
 mod reference;
+mod refusal;
 mod schema;
 mod settings_error;
 mod translation;

@@ -49,7 +49,8 @@ fn as_kind(value: toml::Value, kind: &str) -> toml::Value {
     }
 }
 
-fn set(table: &mut toml::Table, path: &str, value: toml::Value) {
+/// Sets the value at a dotted path.
+pub(super) fn set(table: &mut toml::Table, path: &str, value: toml::Value) {
     match path.split_once('.') {
         None => {
             table.insert(path.to_owned(), value);

@@ -138,7 +138,7 @@ impl PerceptionWorker {
     ) -> Option<LocalizedPose> {
         let global_localization = &mut self.global_localization;
         let is_sought = global_localization.is_sought();
-        let look = || global_localization.look(odom_from_base, scan, in_the_dark);
+        let look = || global_localization.on_scan(odom_from_base, scan, in_the_dark);
         is_sought.then(|| times.measure(Stage::Search, look)).flatten()
     }
 

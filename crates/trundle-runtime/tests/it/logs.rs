@@ -51,7 +51,7 @@ fn events_of(level: Level, work: impl FnOnce()) -> Vec<String> {
     lines.into_iter().filter(|(at, _)| *at == level).map(|(_, text)| text).collect()
 }
 
-/// Drives towards a wall for so long, s; images until `until`, s.
+/// Drives towards a wall for `seconds` s, with images until `until`, s.
 fn drive(robot: &mut Robot, seconds: f64, until: f64) {
     let mut base = Base::default();
     for i in 0..(seconds * 50.0) as i64 {

@@ -58,13 +58,13 @@ impl Exposure {
 
 /// The automatic gain.
 #[derive(Debug, Clone)]
-pub(super) struct Meter {
+pub(super) struct ExposureMeter {
     exposure: Exposure,
     gain: f64,
     last: Option<Stamp>,
 }
 
-impl Meter {
+impl ExposureMeter {
     pub(super) fn new(exposure: Exposure) -> Self {
         Self { gain: exposure.gain, exposure, last: None }
     }
@@ -74,7 +74,7 @@ impl Meter {
     }
 
     /// Adapts to the view at `stamp`; the first call sets the gain without delay.
-    pub(super) fn look(&mut self, view: &View, stamp: Stamp) {
+    pub(super) fn measure(&mut self, view: &View, stamp: Stamp) {
         if !self.exposure.auto {
             return;
         }
@@ -109,16 +109,16 @@ mod tests {
 
     #[test]
     fn the_gain_follows_with_its_time_constant() {
-        let mut meter = Meter::new(Exposure::default());
+        let mut meter = ExposureMeter::new(Exposure::default());
         let bright = f64::from(linear_from_srgb(200));
-        meter.look(&grey(200), Stamp::default());
+        meter.measure(&grey(200), Stamp::default());
         assert!((meter.gain() - 0.18 / bright).abs() < 1e-6);
         // The light goes out; after one time constant 63 % of the difference in stops is compensated.
-        meter.look(&grey(20), Stamp::from_nanos(300_000_000));
+        meter.measure(&grey(20), Stamp::from_nanos(300_000_000));
         let (from, to) = ((0.18 / bright).ln(), 8_f64.ln());
         assert!((meter.gain().ln() - (to + (from - to) * (-1.0_f64).exp())).abs() < 1e-6);
-        let mut fixed = Meter::new(Exposure::fixed(2.0));
-        fixed.look(&grey(5), Stamp::default());
+        let mut fixed = ExposureMeter::new(Exposure::fixed(2.0));
+        fixed.measure(&grey(5), Stamp::default());
         assert_eq!(fixed.gain(), 2.0);
         assert!(Exposure { target: 0.0, ..Exposure::default() }.validated().is_err());
     }

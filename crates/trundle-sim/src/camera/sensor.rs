@@ -1,7 +1,7 @@
 //! The RGB-D sensor: ideal images to noisy images.
 
 use super::depth_model::{DepthModel, DepthTruth};
-use super::exposure::Meter;
+use super::exposure::ExposureMeter;
 use super::tone::Tone;
 use super::{ColorNoise, DepthNoise, View, multi_path, shadow};
 use crate::rng::{GOLDEN_RATIO_STEP, NormalTable, hash, mix};
@@ -13,7 +13,7 @@ use trundle_core::{ColorImage, DepthImage, Invalid, RgbdImage, Stamp};
 pub struct RgbdSensor {
     depth: DepthModel,
     color: ColorNoise,
-    meter: Meter,
+    meter: ExposureMeter,
     tone: Tone,
     seed: u64,
 }
@@ -34,7 +34,7 @@ impl RgbdSensor {
     /// When a parameter is outside its range.
     pub fn new(depth: DepthNoise, color: ColorNoise, seed: u64) -> Result<Self, Invalid> {
         let color = color.validated()?;
-        let meter = Meter::new(color.exposure.clone());
+        let meter = ExposureMeter::new(color.exposure.clone());
         let tone = Tone::new(&color, meter.gain());
         Ok(Self { depth: DepthModel::new(&depth.validated()?), color, meter, tone, seed })
     }
@@ -43,7 +43,7 @@ impl RgbdSensor {
     /// gain.
     pub fn adapt(&mut self, view: &View, stamp: Stamp) {
         let before = self.meter.gain();
-        self.meter.look(view, stamp);
+        self.meter.measure(view, stamp);
         if self.meter.gain() != before {
             self.tone = Tone::new(&self.color, self.meter.gain());
         }

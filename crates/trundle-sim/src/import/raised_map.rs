@@ -15,7 +15,7 @@ const SLAB_THICKNESS_M: f64 = 0.1;
 
 /// Bytes of a texel with its mip levels, and texels per metre of the paints.
 const TEXEL_BYTES: f64 = 16.0 / 3.0;
-const TEXELS_A_METRE: f64 = 250.0;
+const TEXELS_PER_METRE: f64 = 250.0;
 
 /// Paint of hidden faces.
 const HIDDEN: Paint = Paint::Flat { color: [150; 3] };
@@ -167,14 +167,14 @@ fn visible_sides(grid: &OccupancyGrid, block: &Block) -> [bool; 4] {
 
 /// Memory of the textures, bytes.
 fn memory(grid: &OccupancyGrid, blocks: &[Block], slabs: usize, options: &RaisedMap) -> f64 {
-    let texels = |length: f64| (length * TEXELS_A_METRE / 16.0).ceil() * 16.0;
+    let texels = |length: f64| (length * TEXELS_PER_METRE / 16.0).ceil() * 16.0;
     let side = |cells: (usize, usize)| texels((cells.1 - cells.0) as f64 * grid.geometry().resolution);
     let face = |block: &Block| {
         let [right, left, up, down] = visible_sides(grid, block).map(f64::from);
         texels(options.wall_height) * ((right + left) * side(block.rows) + (up + down) * side(block.cols))
     };
     let floor =
-        slabs as f64 * (SLAB_SIDE_M * TEXELS_A_METRE).powi(2) * if options.ceiling { 1.25 } else { 1.0 };
+        slabs as f64 * (SLAB_SIDE_M * TEXELS_PER_METRE).powi(2) * if options.ceiling { 1.25 } else { 1.0 };
     (blocks.iter().map(face).sum::<f64>() + floor) * TEXEL_BYTES
 }
 

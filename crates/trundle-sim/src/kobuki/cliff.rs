@@ -23,7 +23,7 @@ impl CliffSensors {
     }
 
     /// Whether any has no floor below, when that changed.
-    pub(super) fn look(&mut self, pose: Pose2, world: &World) -> Option<bool> {
+    pub(super) fn update(&mut self, pose: Pose2, world: &World) -> Option<bool> {
         let reach = self.height + self.depth;
         let has_floor = |place: &Vector2| {
             let p = pose.transform(*place);

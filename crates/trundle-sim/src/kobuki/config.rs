@@ -11,14 +11,14 @@ pub struct KobukiConfig {
     pub drive: DifferentialDrive,
     /// Highest speed of a wheel's circumference, m/s, 0.01 to 10; faster commands are slowed along the same curve. Default 0.70 \[Li18\].
     pub wheel_speed: f64,
-    /// Highest acceleration of a wheel's circumference, m/s^2, 0.01 to 100. Default 1.2: above what trundle commands, below slipping.
+    /// Highest acceleration of a wheel's circumference, m/s^2, 0.01 to 100. Default 1.2: above the limits of trundle's commands, below slipping.
     pub wheel_acceleration: f64,
     /// Time constant of the speed loop, a first-order lag, s, 0 to 2. Default 0.05, typical of small geared motors.
     pub motor_lag: f64,
-    /// From a command to its effect, s, 0 to 2. Default 0.02: one cycle of the Kobuki's 50 Hz serial protocol.
+    /// Delay from a command to its effect, s, 0 to 2. Default 0.02: one cycle of the Kobuki's 50 Hz serial protocol.
     pub command_delay: f64,
-    /// The base stops when it had no command for this long, s, 0 to 60; 0 is never. Default 0: the Kobuki keeps its last
-    /// command; it is the driver kobuki_node that stops it, by default after 0.6 s (`cmd_vel_timeout`).
+    /// Time without a command after which the base stops, s, 0 (never) to 60. Default 0: the Kobuki keeps its last command. Its driver
+    /// kobuki_node stops it, by default after 0.6 s (`cmd_vel_timeout`).
     pub command_timeout: f64,
     /// Standard deviation of each wheel's radius over the nominal one, 0 to 0.1. Default 0.003: the unequal diameters
     /// of \[Borenstein96\] are of this size.
@@ -49,11 +49,11 @@ pub struct KobukiConfig {
     /// Places of the cliff sensors, base frame, m; without any there is no cliff event. Default the Kobuki's three, as its
     /// robot description (kobuki_description, URDF) has them.
     pub cliff_sensors: Vec<[f64; 2]>,
-    /// A floor lower than this under a cliff sensor is a cliff, m, 0.01 to 1. Default 0.05, the Kobuki's.
+    /// Smallest drop under a cliff sensor that is a cliff, m, 0.01 to 1. Default 0.05, the Kobuki's.
     pub cliff_depth: f64,
     /// Height of the robot with its camera, m, 0.05 to 3. Default 0.6: it passes under a table of 0.72 m, not under one of 0.45 m.
     pub height: f64,
-    /// Ridges up to this height are rolled over, m, 0.001 to 0.04. Default 0.012, the Kobuki's step climbing.
+    /// Largest height of a ridge that the base drives over, m, 0.001 to 0.04. Default 0.012, the Kobuki's step climbing.
     pub step_over: f64,
 }
 

@@ -17,12 +17,12 @@ impl Encoders {
         Self { drive, start, way: (0.0, 0.0) }
     }
 
-    /// The wheels roll by this much, m, of wheels of nominal radius.
+    /// Adds a motion of the wheels, m, as of wheels of nominal radius.
     pub(super) fn roll(&mut self, left: f64, right: f64) {
         self.way = (self.way.0 + left, self.way.1 + right);
     }
 
-    /// The counters jump by this many ticks, for no reason.
+    /// Adds ticks to the counters without a motion: a fault.
     pub(super) fn jump(&mut self, left: i32, right: i32) {
         let jumped = |start: u16, ticks: i32| start.wrapping_add(ticks as u16);
         self.start = (jumped(self.start.0, left), jumped(self.start.1, right));

@@ -133,7 +133,7 @@ impl Kobuki {
 
     /// Whether any cliff sensor has no floor below, when that changed.
     pub(crate) fn look_for_cliffs(&mut self, world: &World) -> Option<bool> {
-        self.cliff.look(self.pose, world)
+        self.cliff.update(self.pose, world)
     }
 
     /// Sets the fraction of each wheel's distance that moves the body, left and right.
@@ -141,7 +141,7 @@ impl Kobuki {
         self.grip = grip;
     }
 
-    /// The encoders' counters jump by this many ticks, left and right.
+    /// Adds ticks to the encoders' counters without a motion, left and right.
     pub(crate) fn jump_ticks(&mut self, left: i32, right: i32) {
         self.encoders.jump(left, right);
     }

@@ -29,6 +29,7 @@ const CLOTHES: [([u8; 3], [u8; 3]); 4] = [
     ([98, 88, 72], [92, 128, 84]),
 ];
 
+/// Colour of face and hands, sRGB. Source: ours.
 const SKIN: [u8; 3] = [206, 164, 134];
 
 /// The parts of a person, upright cylinders around their own origin; the pieces of a leg are one part for both legs.
@@ -73,9 +74,9 @@ impl Body {
     }
 
     /// Draws the textures.
-    pub(super) fn paint(&self) {
+    pub(super) fn prepare_textures(&self) {
         for part in [&self.shin, &self.knee, &self.thigh, &self.trunk] {
-            part.world.paint();
+            part.world.prepare_textures();
         }
     }
 }

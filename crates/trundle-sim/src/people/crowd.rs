@@ -8,7 +8,7 @@ use crate::world::{HeightBand, Mover, Obstacles};
 use std::sync::Arc;
 use trundle_core::{Footprint, Invalid, Pose2};
 
-/// A person waits while the robot reaches into a disc this far ahead, of this radius, m.
+/// Disc in which a robot makes a person wait: distance of its middle ahead of the person, and radius, m. Source: ours.
 const YIELD_DISTANCE_M: f64 = 0.5;
 const ELBOW_ROOM: f64 = 0.3;
 
@@ -126,8 +126,8 @@ impl Crowd {
     }
 
     /// Draws the textures of all persons.
-    pub(crate) fn paint(&self) {
-        self.bodies.iter().for_each(Body::paint);
+    pub(crate) fn prepare_textures(&self) {
+        self.bodies.iter().for_each(Body::prepare_textures);
     }
 }
 

@@ -21,7 +21,7 @@ const LIVING_ROOM_WALL_X_M: f64 = 5.5;
 const BATH_WALL_X_M: f64 = 2.6;
 
 /// Appearance of rooms.
-struct Look {
+struct HouseMaterials {
     bedroom: Paint,
     bath: Paint,
     study: Paint,
@@ -40,10 +40,10 @@ struct Look {
 /// Never for any seed; the type is that of every scene.
 pub fn house(seed: u64) -> Result<Scene, Invalid> {
     let mut build = Builder::new(seed);
-    let look = look(&mut build);
+    let materials = materials(&mut build);
     floors(&mut build);
-    outer_walls(&mut build, &look);
-    inner_walls(&mut build, &look);
+    outer_walls(&mut build, &materials);
+    inner_walls(&mut build, &materials);
     bedroom(&mut build);
     bath(&mut build);
     study(&mut build);
@@ -61,9 +61,9 @@ pub fn house(seed: u64) -> Result<Scene, Invalid> {
     })
 }
 
-fn look(build: &mut Builder) -> Look {
+fn materials(build: &mut Builder) -> HouseMaterials {
     let plaster = |color, prints| Paint::Plaster { color, prints };
-    Look {
+    HouseMaterials {
         bedroom: Paint::Wallpaper {
             color: build.choose(&[[186, 192, 204], [204, 190, 190], [190, 200, 184]]),
         },
@@ -94,26 +94,32 @@ fn floors(build: &mut Builder) {
 }
 
 /// The outer walls, room by room.
-fn outer_walls(build: &mut Builder, look: &Look) {
+fn outer_walls(build: &mut Builder, materials: &HouseMaterials) {
     let ([x1, y1], half) = (FLAT_SIZE_M, WALL_THICKNESS_M / 2.0);
     let (south, north) = (HALL_FACES_Y_M[0] - half, HALL_FACES_Y_M[1] + half);
-    build.wall([-WALL_THICKNESS_M, -WALL_THICKNESS_M, 0.0, south], &[(Side::East, look.bedroom)]);
-    build.wall([-WALL_THICKNESS_M, south, 0.0, north], &[(Side::East, look.hall)]);
-    build.wall([-WALL_THICKNESS_M, north, 0.0, y1 + WALL_THICKNESS_M], &[(Side::East, look.bath)]);
-    build.wall([0.0, -WALL_THICKNESS_M, LIVING_ROOM_WALL_X_M + half, 0.0], &[(Side::North, look.bedroom)]);
-    build.wall([LIVING_ROOM_WALL_X_M + half, -WALL_THICKNESS_M, x1, 0.0], &[(Side::North, look.living)]);
+    build.wall([-WALL_THICKNESS_M, -WALL_THICKNESS_M, 0.0, south], &[(Side::East, materials.bedroom)]);
+    build.wall([-WALL_THICKNESS_M, south, 0.0, north], &[(Side::East, materials.hall)]);
+    build.wall([-WALL_THICKNESS_M, north, 0.0, y1 + WALL_THICKNESS_M], &[(Side::East, materials.bath)]);
+    build.wall(
+        [0.0, -WALL_THICKNESS_M, LIVING_ROOM_WALL_X_M + half, 0.0],
+        &[(Side::North, materials.bedroom)],
+    );
+    build.wall([LIVING_ROOM_WALL_X_M + half, -WALL_THICKNESS_M, x1, 0.0], &[(Side::North, materials.living)]);
     build.wall([x1, -WALL_THICKNESS_M, x1 + WALL_THICKNESS_M, north], &[(Side::West, Paint::Bricks)]);
-    build.wall([x1, north, x1 + WALL_THICKNESS_M, y1 + WALL_THICKNESS_M], &[(Side::West, look.kitchen)]);
-    build.wall([0.0, y1, BATH_WALL_X_M + half, y1 + WALL_THICKNESS_M], &[(Side::South, look.bath)]);
+    build.wall([x1, north, x1 + WALL_THICKNESS_M, y1 + WALL_THICKNESS_M], &[(Side::West, materials.kitchen)]);
+    build.wall([0.0, y1, BATH_WALL_X_M + half, y1 + WALL_THICKNESS_M], &[(Side::South, materials.bath)]);
     build.wall(
         [BATH_WALL_X_M + half, y1, LIVING_ROOM_WALL_X_M + half, y1 + WALL_THICKNESS_M],
-        &[(Side::South, look.study)],
+        &[(Side::South, materials.study)],
     );
-    build.wall([LIVING_ROOM_WALL_X_M + half, y1, x1, y1 + WALL_THICKNESS_M], &[(Side::South, look.kitchen)]);
+    build.wall(
+        [LIVING_ROOM_WALL_X_M + half, y1, x1, y1 + WALL_THICKNESS_M],
+        &[(Side::South, materials.kitchen)],
+    );
 }
 
 /// The inner walls with their doors, and the doors' leaves.
-fn inner_walls(build: &mut Builder, look: &Look) {
+fn inner_walls(build: &mut Builder, materials: &HouseMaterials) {
     let jamb = Paint::Plain { color: [224, 220, 210] };
     let wall = |along, span, low: f64, paints| Partition {
         along,
@@ -123,10 +129,13 @@ fn inner_walls(build: &mut Builder, look: &Look) {
         jamb,
     };
     let (south, north) = (HALL_FACES_Y_M[0] - WALL_THICKNESS_M, HALL_FACES_Y_M[1]);
-    build.partition(&wall(Along::X, [0.0, LIVING_ROOM_WALL_X_M], south, [look.bedroom, look.hall]), &[4.4]);
-    build.partition(&wall(Along::X, [0.0, BATH_WALL_X_M], north, [look.hall, look.bath]), &[1.3]);
     build.partition(
-        &wall(Along::X, [BATH_WALL_X_M, LIVING_ROOM_WALL_X_M], north, [look.hall, look.study]),
+        &wall(Along::X, [0.0, LIVING_ROOM_WALL_X_M], south, [materials.bedroom, materials.hall]),
+        &[4.4],
+    );
+    build.partition(&wall(Along::X, [0.0, BATH_WALL_X_M], north, [materials.hall, materials.bath]), &[1.3]);
+    build.partition(
+        &wall(Along::X, [BATH_WALL_X_M, LIVING_ROOM_WALL_X_M], north, [materials.hall, materials.study]),
         &[4.3],
     );
     build.partition(
@@ -134,18 +143,29 @@ fn inner_walls(build: &mut Builder, look: &Look) {
             Along::X,
             [LIVING_ROOM_WALL_X_M + WALL_THICKNESS_M, FLAT_SIZE_M[0]],
             north,
-            [look.living, look.kitchen],
+            [materials.living, materials.kitchen],
         ),
         &[7.4],
     );
     build.partition(
-        &wall(Along::Y, [north + WALL_THICKNESS_M, FLAT_SIZE_M[1]], BATH_WALL_X_M, [look.bath, look.study]),
+        &wall(
+            Along::Y,
+            [north + WALL_THICKNESS_M, FLAT_SIZE_M[1]],
+            BATH_WALL_X_M,
+            [materials.bath, materials.study],
+        ),
         &[],
     );
-    build.partition(&wall(Along::Y, [0.0, south], LIVING_ROOM_WALL_X_M, [look.bedroom, look.living]), &[]);
-    build.partition(&wall(Along::Y, [south, north], LIVING_ROOM_WALL_X_M, [look.hall, look.living]), &[4.3]);
     build.partition(
-        &wall(Along::Y, [north, FLAT_SIZE_M[1]], LIVING_ROOM_WALL_X_M, [look.study, look.kitchen]),
+        &wall(Along::Y, [0.0, south], LIVING_ROOM_WALL_X_M, [materials.bedroom, materials.living]),
+        &[],
+    );
+    build.partition(
+        &wall(Along::Y, [south, north], LIVING_ROOM_WALL_X_M, [materials.hall, materials.living]),
+        &[4.3],
+    );
+    build.partition(
+        &wall(Along::Y, [north, FLAT_SIZE_M[1]], LIVING_ROOM_WALL_X_M, [materials.study, materials.kitchen]),
         &[],
     );
     let half = DOOR_WIDTH / 2.0;

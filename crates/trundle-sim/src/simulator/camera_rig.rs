@@ -60,14 +60,14 @@ impl CameraRig {
         }
         let image = match self.last.take().filter(|_| fault.is_frozen) {
             Some(frozen) => RgbdImage::new(stamp, frozen.color().clone(), frozen.depth().clone())?,
-            None => self.look(snapshot, track, stamp, frame)?,
+            None => self.capture(snapshot, track, stamp, frame)?,
         };
         self.last = self.may_freeze.then(|| image.clone());
         let image = if fault.is_dark { without_light(&image)? } else { image };
         if fault.has_no_depth { without_depth(&image) } else { Ok(image) }
     }
 
-    fn look(
+    fn capture(
         &mut self,
         snapshot: &SceneSnapshot<'_>,
         track: &Track,

@@ -123,7 +123,7 @@ impl World {
     }
 
     /// Draws the textures immediately instead of at their first use: some tenths of a second.
-    pub fn paint(&self) {
+    pub fn prepare_textures(&self) {
         self.paintings();
         self.pictures();
     }

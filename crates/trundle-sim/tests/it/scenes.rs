@@ -1,8 +1,8 @@
 mod files;
-mod flood;
 mod office;
+mod reachable_floor;
 
-use flood::Flood;
+use reachable_floor::ReachableFloor;
 use trundle_core::{Cell, Footprint, Pose2, Vector2};
 use trundle_sim::{HeightBand, Scene};
 
@@ -78,10 +78,10 @@ fn check(promise: &Promise, seed: u64) {
         assert!(free >= promise.clearance, "{name} {seed}: {free} m at {pose:?}");
     }
     let grid = scene.world.true_grid(promise.resolution, band()).unwrap();
-    let flood = Flood::new(&grid, promise.way, scene.start.position());
+    let reachable = ReachableFloor::new(&grid, promise.way, scene.start.position());
     let places = promise.places.iter().map(|[x, y]| Vector2::new(*x, *y));
     for place in places.chain([scene.goal.position()]) {
-        assert!(flood.reaches(place), "{name} {seed}: {place} on ways of {} m", 2.0 * promise.way);
+        assert!(reachable.reaches(place), "{name} {seed}: {place} on ways of {} m", 2.0 * promise.way);
     }
 }
 

@@ -8,7 +8,7 @@ use crate::calibration_check::self_calibration::{FeaturePair, Pair};
 use crate::calibration_check::travelled_distance::TravelledDistance;
 use crate::frame::depth::DepthConfig;
 use crate::frame::observation_model::ObservationModel;
-use crate::frame::rgbd_frame::Frame;
+use crate::frame::rgbd_frame::{Frame, row_fraction};
 use trundle_core::{DepthImage, GrayImage, PinholeCamera, Pose3, Vector2, Vector3};
 use trundle_vision::{RansacConfig, estimate_rigid_motion, match_mutual};
 
@@ -116,10 +116,11 @@ impl CalibrationCheck {
 }
 
 /// The matches of two frames that one motion explains with loose tolerances.
-fn pair_of(a: &Frame, b: &Frame, model: &ObservationModel) -> Option<Pair> {
+pub(crate) fn pair_of(a: &Frame, b: &Frame, model: &ObservationModel) -> Option<Pair> {
     let camera = &model.camera;
     let normal =
         |p: Vector2| Vector2::new((p.x - camera.cx()) / camera.fx(), (p.y - camera.cy()) / camera.fy());
+    let row = |frame: &Frame, i: usize| row_fraction(&frame.features.keypoints[i], camera);
     let (mut points, mut matches): ((Vec<Vector3>, Vec<Vector3>), Vec<FeaturePair>) = Default::default();
     for pair in match_mutual(&a.features.descriptors, &b.features.descriptors, 50, 0.8) {
         let (Some(here), Some(there)) = (a.point(pair.a, model), b.point(pair.b, model)) else { continue };
@@ -131,6 +132,7 @@ fn pair_of(a: &Frame, b: &Frame, model: &ObservationModel) -> Option<Pair> {
             b: normal(b.pixels[pair.b]),
             inverse_b: b.depths[pair.b].map(|d| (d.value, d.sigma)),
             sigma: 1.5 * model.scale(a.octave(pair.a).max(b.octave(pair.b))) / camera.fx(),
+            rows: (row(a, pair.a), row(b, pair.b)),
         });
     }
     let (pixel_sigma, depth_sigma) = (LOOSE_PIXEL_SIGMA_PX, LOOSE_DEPTH_SIGMA_M);

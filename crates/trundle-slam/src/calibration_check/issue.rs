@@ -47,6 +47,22 @@ pub enum CalibrationIssue {
     },
 }
 
+impl CalibrationIssue {
+    /// The issue with pixels of an image `factor` times as large.
+    pub(crate) fn enlarged(self, factor: f64) -> Self {
+        let both = |(x, y): (f64, f64)| (factor * x, factor * y);
+        match self {
+            Self::FocalLengths { given, found, swapped } => {
+                Self::FocalLengths { given: both(given), found: both(found), swapped }
+            }
+            Self::PrincipalPoint { offset } => Self::PrincipalPoint { offset: both(offset) },
+            Self::Distortion { at_the_rim } => Self::Distortion { at_the_rim: factor * at_the_rim },
+            Self::Registration { offset } => Self::Registration { offset: both(offset) },
+            Self::DepthRange { .. } | Self::NoDepth | Self::TravelledDistance { .. } => self,
+        }
+    }
+}
+
 impl fmt::Display for CalibrationIssue {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {

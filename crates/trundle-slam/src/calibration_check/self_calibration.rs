@@ -18,6 +18,8 @@ pub(crate) struct FeaturePair {
     pub inverse_b: Option<(f64, f64)>,
     /// Standard deviation of `b`.
     pub sigma: f64,
+    /// Rows of the feature in the two raw images, as fractions of the height from the middle row, -0.5 to 0.5.
+    pub rows: (f64, f64),
 }
 
 /// Matches of two frames and the motion between.
@@ -198,7 +200,7 @@ impl PairEquations {
 }
 
 /// Weight and cost of a squared residual.
-fn cauchy(squared: f64) -> (f64, f64) {
+pub(crate) fn cauchy(squared: f64) -> (f64, f64) {
     let bent = 1.0 + squared / (CAUCHY_SIGMAS * CAUCHY_SIGMAS);
     (1.0 / bent, CAUCHY_SIGMAS * CAUCHY_SIGMAS * bent.ln())
 }
@@ -213,7 +215,7 @@ struct ResidualRows {
 
 impl ResidualRows {
     fn of(matched: &FeaturePair, b_from_a: &Pose3, offset: &CalibrationOffset) -> Option<Self> {
-        let FeaturePair { a, depth_a, b, inverse_b, sigma } = *matched;
+        let FeaturePair { a, depth_a, b, inverse_b, sigma, .. } = *matched;
         let ray = corrected(a, offset);
         let p = b_from_a.transform(Vector3::new(ray.x, ray.y, 1.0) * depth_a);
         if p.z <= 0.05 {

@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix2;
 use serde::{Deserialize, Serialize};
-use trundle_core::{DepthImage, Invalid, Vector2, require_in, require_positive};
+use trundle_core::{DepthImage, Invalid, Vector2, require_in};
 use trundle_optim::InverseDepth;
 
 /// Offsets of the pixels by which the slope of the depth is fitted, px of the octave; each with its mirror image. Source: ours.
@@ -21,11 +21,11 @@ pub(crate) const MAX_RELATIVE_SIGMA: f64 = 0.1;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DepthConfig {
-    /// Nearest usable depth, m, above 0. Default 0.3: below it no Kinect measures.
+    /// Nearest usable depth, m, 0.001 to 10. Default 0.3: below it no Kinect measures.
     pub nearest: f64,
-    /// Farthest usable depth, m. Default 8: the Kinect V2's range \[Li18\].
+    /// Farthest usable depth, m, `nearest` to 100. Default 8: the Kinect V2's range \[Li18\].
     pub farthest: f64,
-    /// Standard deviation of a depth that does not grow with range, m, above 0. Default 0.01: half of the Kinect V2's
+    /// Standard deviation of a depth that does not grow with range, m, above 0, to 1. Default 0.01: half of the Kinect V2's
     /// 2 cm \[Li18\], and the registration error of a Kinect v1.
     pub sigma: f64,
     /// Part of the standard deviation that grows with the square of the depth, 1/m, 0 or more. Default 0.0025: the
@@ -45,9 +45,9 @@ impl DepthConfig {
     /// # Errors
     /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
-        require_positive("depth.nearest", self.nearest, "m")?;
-        require_in("depth.farthest", self.farthest, "m", self.nearest, f64::MAX)?;
-        require_positive("depth.sigma", self.sigma, "m")?;
+        require_in("depth.nearest", self.nearest, "m", 0.001, 10.0)?;
+        require_in("depth.farthest", self.farthest, "m", self.nearest, 100.0)?;
+        require_in("depth.sigma", self.sigma, "m", 1e-6, 1.0)?;
         require_in("depth.sigma_quadratic", self.sigma_quadratic, "1/m", 0.0, 1.0)?;
         Ok(self)
     }

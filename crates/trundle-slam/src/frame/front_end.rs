@@ -1,15 +1,22 @@
 //! From an image to a frame.
 
+use crate::config::SlamConfig;
 use crate::frame::depth::DepthConfig;
 use crate::frame::observation_model::ObservationModel;
+use crate::frame::reduction::Reduction;
 use crate::frame::rgbd_frame::Frame;
-use trundle_core::{DepthImage, GrayImage, Invalid, PinholeCamera, Stamp, Vector3};
-use trundle_vision::{Features, OrbConfig, OrbExtractor};
+use std::borrow::Cow;
+use trundle_core::{
+    DepthImage, GrayImage, Invalid, PinholeCamera, RgbdImage, Stamp, Vector3, gray_from_color,
+};
+use trundle_vision::{Features, OrbExtractor};
 
 /// The camera and the feature extractor.
 #[derive(Debug)]
 pub(crate) struct FrontEnd {
     pub model: ObservationModel,
+    /// Reduction of the images to those of `model`.
+    pub reduction: Reduction,
     extractor: OrbExtractor,
     /// Reused buffers for the features of the next image: half a megabyte.
     spare: Features,
@@ -18,10 +25,17 @@ pub(crate) struct FrontEnd {
 impl FrontEnd {
     /// # Errors
     /// When the settings are invalid.
-    pub fn new(camera: PinholeCamera, orb: &OrbConfig, pixel_sigma: f64) -> Result<Self, Invalid> {
-        let extractor = OrbExtractor::new(orb.clone())?;
-        let model = ObservationModel::new(camera, extractor.scale_factors().to_vec(), pixel_sigma);
-        Ok(Self { model, extractor, spare: Features::default() })
+    pub fn new(camera: PinholeCamera, config: &SlamConfig) -> Result<Self, Invalid> {
+        let extractor = OrbExtractor::new(config.orb.clone())?;
+        let reduction = Reduction::of(&camera, config.max_side_px);
+        let scales = extractor.scale_factors().to_vec();
+        let model = ObservationModel::new(reduction.camera(camera)?, scales, config.tracking.pixel_sigma);
+        Ok(Self { model, reduction, extractor, spare: Features::default() })
+    }
+
+    /// The grey image and the depth image at the size at which they are tracked.
+    pub fn reduced<'a>(&self, image: &'a RgbdImage) -> (GrayImage, Cow<'a, DepthImage>) {
+        (self.reduction.gray(gray_from_color(image.color())), self.reduction.depth(image.depth()))
     }
 
     /// The features of an image; empty if the image size differs from the camera's.

@@ -5,4 +5,5 @@ pub(crate) mod depth;
 pub(crate) mod depth_edges;
 pub(crate) mod front_end;
 pub(crate) mod observation_model;
+pub(crate) mod reduction;
 pub(crate) mod rgbd_frame;

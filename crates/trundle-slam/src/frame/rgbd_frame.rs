@@ -6,7 +6,7 @@ use crate::frame::depth_edges::drop_depth_edges;
 use crate::frame::observation_model::ObservationModel;
 use crate::median::median;
 use nalgebra::UnitQuaternion;
-use trundle_core::{DepthImage, Stamp, Vector2, Vector3};
+use trundle_core::{DepthImage, PinholeCamera, Stamp, Vector2, Vector3};
 use trundle_optim::{InverseDepth, PointObservation};
 use trundle_vision::{Descriptor, FeatureGrid, Features, Keypoint};
 
@@ -145,13 +145,18 @@ impl Frame {
 /// readout is small.
 fn correct_rolling_shutter(keypoint: &mut Keypoint, turn: Vector3, model: &ObservationModel) {
     let camera = &model.camera;
-    let late = f64::from(keypoint.y) / (camera.height() as f64 - 1.0) - 0.5;
+    let late = row_fraction(keypoint, camera);
     let ray = camera.unproject(rectified(keypoint, model), 1.0);
     let turned = UnitQuaternion::from_scaled_axis(turn * late) * ray;
     if let Some(pixel) = camera.project(turned) {
         let moved = camera.distort(pixel);
         (keypoint.x, keypoint.y) = (moved.x as f32, moved.y as f32);
     }
+}
+
+/// Row of a keypoint as a fraction of the height from the middle row, -0.5 to 0.5.
+pub(crate) fn row_fraction(keypoint: &Keypoint, camera: &PinholeCamera) -> f64 {
+    f64::from(keypoint.y) / (camera.height() as f64 - 1.0) - 0.5
 }
 
 /// Position of a keypoint without lens distortion, px.

@@ -4,24 +4,24 @@ use crate::frame::rgbd_frame::{Frame, with_depth};
 use crate::ids::KeyframeId;
 use crate::map::landmark_map::LandmarkMap;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeSet;
-use trundle_core::{Invalid, Pose3, Vector2, require_in, require_positive};
+use std::{collections::BTreeSet, f64::consts::PI};
+use trundle_core::{Invalid, Pose3, Vector2, require_in};
 
 /// When a frame becomes a keyframe. Time does not matter: a camera at rest adds no keyframe.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct KeyframeConfig {
-    /// Distance from a keyframe up to which no frame becomes a keyframe, unless turned by more than `min_rotation`, m, above 0. A larger
+    /// Distance from a keyframe up to which no frame becomes a keyframe, unless turned by more than `min_rotation`, m, above 0, to 10. A larger
     /// value makes fewer keyframes. Default 0.03: well over the tracking noise.
     pub min_translation: f64,
-    /// Rotation against a keyframe up to which no frame becomes a keyframe, unless farther than `min_translation`, rad, above 0. Default
+    /// Rotation against a keyframe up to which no frame becomes a keyframe, unless farther than `min_translation`, rad, above 0, to pi. Default
     /// 0.05 (3 deg): a tenth of the image at most.
     pub min_rotation: f64,
-    /// Distance from every keyframe beyond which a frame with half of `new_ratio` new features becomes a keyframe, m; beyond twice the
-    /// distance any frame does. A smaller value makes more keyframes. Default 0.3: small detail then looks different.
+    /// Distance from every keyframe beyond which a frame with half of `new_ratio` new features becomes a keyframe, m, `min_translation` to 10;
+    /// beyond twice the distance any frame does. A smaller value makes more keyframes. Default 0.3: small detail then looks different.
     pub max_translation: f64,
-    /// Rotation against every keyframe beyond which a frame with half of `new_ratio` new features becomes a keyframe, rad; beyond twice the
-    /// rotation any frame does. Default 0.35 (20 deg): a third of the image is new.
+    /// Rotation against every keyframe beyond which a frame with half of `new_ratio` new features becomes a keyframe, rad, `min_rotation` to pi;
+    /// beyond twice the rotation any frame does. Default 0.35 (20 deg): a third of the image is new.
     pub max_rotation: f64,
     /// Fraction of the features with depth in areas without an expected landmark, 0 to 1, above which a frame becomes a keyframe. Expected
     /// landmarks count, not found ones: a blurred frame finds few landmarks and would be a bad keyframe. Default 0.25.
@@ -50,10 +50,10 @@ impl KeyframeConfig {
     /// # Errors
     /// When a number is outside the range in its field's documentation, or a `min` is above its `max`.
     pub fn validated(self) -> Result<Self, Invalid> {
-        require_positive("keyframes.min_translation", self.min_translation, "m")?;
-        require_positive("keyframes.min_rotation", self.min_rotation, "rad")?;
-        require_in("keyframes.max_translation", self.max_translation, "m", self.min_translation, f64::MAX)?;
-        require_in("keyframes.max_rotation", self.max_rotation, "rad", self.min_rotation, f64::MAX)?;
+        require_in("keyframes.min_translation", self.min_translation, "m", 1e-6, 10.0)?;
+        require_in("keyframes.min_rotation", self.min_rotation, "rad", 1e-6, PI)?;
+        require_in("keyframes.max_translation", self.max_translation, "m", self.min_translation, 10.0)?;
+        require_in("keyframes.max_rotation", self.max_rotation, "rad", self.min_rotation, PI)?;
         require_in("keyframes.new_ratio", self.new_ratio, "", 0.0, 1.0)?;
         Ok(self)
     }

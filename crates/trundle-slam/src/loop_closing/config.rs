@@ -1,7 +1,8 @@
 //! Settings of loop closing.
 
 use serde::{Deserialize, Serialize};
-use trundle_core::{Invalid, require_in, require_positive};
+use std::f64::consts::PI;
+use trundle_core::{Invalid, require_in};
 use trundle_optim::PoseGraphConfig;
 
 /// Detection of loops, and correction of the map.
@@ -13,10 +14,10 @@ pub struct LoopConfig {
     pub candidates: usize,
     /// Number of newest keyframes that are no loop candidates, 1 or more. Default 10: as many as a local bundle moves.
     pub min_age: usize,
-    /// Largest distance between two keyframes of one place, m, above 0, besides the drift. A larger value compares more keyframes. Default
+    /// Largest distance between two keyframes of one place, m, above 0, to 100, besides the drift. A larger value compares more keyframes. Default
     /// 1.5: half a room.
     pub reach: f64,
-    /// Largest rotation between two keyframes of one place, rad, above 0, besides the drift. Default 0.9 (50 deg): a quarter of a Kinect's
+    /// Largest rotation between two keyframes of one place, rad, above 0, to pi, besides the drift. Default 0.9 (50 deg): a quarter of a Kinect's
     /// image is then common.
     pub turn: f64,
     /// Smallest number of points of the old place that agree on one pose, 10 or more. A larger number misses loops; a smaller one accepts
@@ -25,14 +26,14 @@ pub struct LoopConfig {
     /// Number of keyframes in a row that must give the same correction before the merge of a map, or a correction that the drift does not
     /// explain, is accepted, 1 or more. Default 3 \[MurArtal17\].
     pub consistency: usize,
-    /// Largest correction that the drift does not explain, m, above 0. Default 1: wheels may slip by as much, and look-alike
+    /// Largest correction that the drift does not explain, m, above 0, to 100. Default 1: wheels may slip by as much, and look-alike
     /// rooms are farther apart.
     pub max_correction: f64,
-    /// Largest rotation of a correction that the drift does not explain, rad, above 0. Default 0.5.
+    /// Largest rotation of a correction that the drift does not explain, rad, above 0, to pi. Default 0.5.
     pub max_correction_turn: f64,
     /// Smallest fraction of the matches that agree on the pose, 0 to 1. Default 0.5: chance matches stay below it.
     pub min_agreement: f64,
-    /// Largest correction in standard deviations of the drift, above 0. A larger correction counts as a look-alike place. Default 5:
+    /// Largest correction in standard deviations of the drift, above 0, to 1000. A larger correction counts as a look-alike place. Default 5:
     /// covariances along a chain are somewhat small.
     pub max_sigmas: f64,
     /// Standard deviation of the drift, besides the covariance, as a fraction of the length of each constraint by common
@@ -86,14 +87,14 @@ impl LoopConfig {
                 return Err(Invalid::new(name, value, "", format!("{least} or more")));
             }
         }
-        for (name, value, unit) in [
-            ("loops.reach", self.reach, "m"),
-            ("loops.turn", self.turn, "rad"),
-            ("loops.max_correction", self.max_correction, "m"),
-            ("loops.max_correction_turn", self.max_correction_turn, "rad"),
-            ("loops.max_sigmas", self.max_sigmas, ""),
+        for (name, value, unit, high) in [
+            ("loops.reach", self.reach, "m", 100.0),
+            ("loops.turn", self.turn, "rad", PI),
+            ("loops.max_correction", self.max_correction, "m", 100.0),
+            ("loops.max_correction_turn", self.max_correction_turn, "rad", PI),
+            ("loops.max_sigmas", self.max_sigmas, "", 1e3),
         ] {
-            require_positive(name, value, unit)?;
+            require_in(name, value, unit, 1e-6, high)?;
         }
         require_in("loops.min_agreement", self.min_agreement, "", 0.0, 1.0)?;
         require_in("loops.drift_part", self.drift_part, "", 0.0, 1.0)?;

@@ -92,7 +92,7 @@ impl PlaceVerifier<'_> {
             .frame_bow(self.map, candidate)?
             .matches(own, self.tracking.unwindowed_thresholds());
         let anchor: ReferenceFrame = self.map.keyframe(candidate).into();
-        let (pose, matches) = anchor.locate(own.frame, &pairs, self.seed, (self.map, self.model))?;
+        let (pose, matches) = anchor.localize(own.frame, &pairs, self.seed, (self.map, self.model))?;
         let fix = MatchedPose::by(
             matches,
             (pose, PosePriorKind::Unknown),

@@ -72,7 +72,7 @@ impl ReferenceFrame<'_> {
 
     /// Locates `frame` without a prediction, by pairs of similar features (`a` of the reference frame, `b` of the frame): RANSAC over the
     /// pairs with depth in both frames, else over the pixels of all pairs. Returns the pose and every match of a known point.
-    pub fn locate(
+    pub fn localize(
         &self,
         frame: &Frame,
         pairs: &[Match],

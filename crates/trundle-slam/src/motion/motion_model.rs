@@ -13,9 +13,9 @@ pub struct MotionModelConfig {
     /// the length, since errors of steps are independent \[Chong97\]. A larger value trusts images more than wheels. Default 0.05: wheels
     /// that slip occasionally.
     pub prior_part: f64,
-    /// Standard deviation that a motion prior gains in 1 s: m, and rad, 0 or more. It grows with the root of the time. Default 0.01.
+    /// Standard deviation that a motion prior gains in 1 s: m, and rad, 0 to 1. It grows with the root of the time. Default 0.01.
     pub prior_drift: f64,
-    /// Standard deviation of the speed of a camera without a prior, m/s, and of its turn rate, rad/s, 0 or more. Default 1.
+    /// Standard deviation of the speed of a camera without a prior, m/s, and of its turn rate, rad/s, 0 to 100. Default 1.
     pub unseen: f64,
     /// Readout time of a camera that has none of its own, s. Deprecated: set the camera's readout time
     /// ([`PinholeCamera::with_readout`]). Default 0.
@@ -59,9 +59,9 @@ impl MotionModelConfig {
     /// # Errors
     /// When a number is outside the range in its field's documentation.
     pub fn validated(self) -> Result<Self, Invalid> {
-        require_in("motion.prior_part", self.prior_part, "", 0.0, 1.0)?;
-        require_in("motion.prior_drift", self.prior_drift, "", 0.0, 1e3)?;
-        require_in("motion.unseen", self.unseen, "", 0.0, 1e3)?;
+        require_in("motion.prior_part", self.prior_part, "m", 0.0, 1.0)?;
+        require_in("motion.prior_drift", self.prior_drift, "m", 0.0, 1.0)?;
+        require_in("motion.unseen", self.unseen, "m/s", 0.0, 100.0)?;
         require_in("motion.readout", self.readout, "s", 0.0, 0.05)?;
         Ok(self)
     }

@@ -285,7 +285,7 @@ mod tests {
         assert!((map.landmark(own).unwrap().position - Vector3::new(0.1, 0.2, 2.5)).norm() < 1e-4);
         let variance = |id: KeyframeId| map.keyframe(id).covariance.trace();
         assert!(variance(ids[0]) == 0.0 && variance(ids[4]) > 0.0 && variance(ids[4]) < 1e-2);
-        assert!(variance(ids[6]) > 0.2, "it is as uncertain as what it hangs on: {}", variance(ids[6]));
+        assert!(variance(ids[6]) > 0.2, "it has the uncertainty of its keyframe: {}", variance(ids[6]));
         let (sliced, ..) = run(500);
         for (id, keyframe) in map.keyframes() {
             assert_eq!(keyframe.visual_from_camera, sliced.keyframe(id).visual_from_camera);
@@ -314,12 +314,8 @@ mod tests {
         let sigma = |m: &Matrix6<f64>| m[(0, 0)].sqrt();
         let seen = map.keyframe(after);
         assert!((0.29..0.4).contains(&sigma(&seen.covariance)), "{}", sigma(&seen.covariance));
-        assert!(
-            sigma(&seen.map_covariance) > 0.29,
-            "what is located by these points: {}",
-            sigma(&seen.map_covariance)
-        );
+        assert!(sigma(&seen.map_covariance) > 0.29, "pose by these points: {}", sigma(&seen.map_covariance));
         let before = map.keyframe(ids[4]);
-        assert!(sigma(&before.map_covariance) < sigma(&before.covariance), "it shares all that it sees");
+        assert!(sigma(&before.map_covariance) < sigma(&before.covariance), "all its landmarks are shared");
     }
 }

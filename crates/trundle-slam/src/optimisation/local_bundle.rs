@@ -152,11 +152,11 @@ mod tests {
         let ids: Vec<LandmarkId> = map.landmarks().map(|(id, _)| id).collect();
         let second = map.add_keyframe(painted_frame(truth, &points, Vector2::zeros()), truth * off);
         ids.iter().enumerate().skip(2).for_each(|(feature, id)| assert!(map.observe(*id, second, feature)));
-        let astray = truth * off * truth.inverse();
-        let own = map.add_landmark(astray.transform(points[0]));
+        let displaced = truth * off * truth.inverse();
+        let own = map.add_landmark(displaced.transform(points[0]));
         map.observe(own, second, 0);
         let [right, down, toward_camera] =
-            [Vector3::x(), Vector3::y(), -Vector3::z()].map(|v| astray.rotate(v));
+            [Vector3::x(), Vector3::y(), -Vector3::z()].map(|v| displaced.rotate(v));
         let image = ImagePatch::new([0; 441], [0.0; 2]).unwrap();
         map.landmark_mut(own).unwrap().reference_patches.push(ReferencePatch {
             image,

@@ -137,6 +137,7 @@ impl Localizer<'_> {
     }
 
     /// The confirmed relocalisation. Within the covariance gate one frame is enough; within the gate of a camera without odometry, two.
+    /// After a brief gap a place within reach needs no large part of the view, since look-alike places are farther away.
     /// Outside the gate, `patience` successive frames must agree: odometry outweighs a look-alike room, but not a robot that was carried.
     /// Frames without a relocalisation do not reset the count.
     fn confirmed(
@@ -148,6 +149,9 @@ impl Localizer<'_> {
     ) -> Option<LocalizedFrame> {
         let covariance = state.belief.covariance;
         let is_near = |found: &LocalizedFrame| gate.allows(found.pose(), predicted, &covariance);
+        if gate.is_brief() {
+            found.iter_mut().filter(|found| is_near(found)).for_each(LocalizedFrame::accept_partial_view);
+        }
         let needed = if found.iter().any(|found| found.is_certain && is_near(found)) {
             found.retain(is_near);
             if gate == PoseGate::Covariance { 1 } else { MIN_CONFIRMING_FRAMES }

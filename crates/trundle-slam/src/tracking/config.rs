@@ -2,7 +2,7 @@
 
 use crate::matching::projection_search::MatchThresholds;
 use serde::{Deserialize, Serialize};
-use trundle_core::{Invalid, require_in, require_positive};
+use trundle_core::{Invalid, require_in};
 use trundle_optim::PoseConfig;
 
 /// Search for the pose of a frame.
@@ -12,10 +12,10 @@ pub struct TrackingConfig {
     /// Standard deviation of a keypoint of the finest octave, px, 0.01 to 100. A larger value trusts depth and odometry more than pixels.
     /// Default 1 \[MurArtal17\].
     pub pixel_sigma: f64,
-    /// Radius of the search for a point of the last frame around its prediction, px of its octave, above 0. The second try doubles it. A
+    /// Radius of the search for a point of the last frame around its prediction, px of its octave, above 0, to 1000. The second try doubles it. A
     /// larger window tolerates faster motion and takes longer. Default 15 \[MurArtal17\].
     pub motion_window_px: f64,
-    /// Radius of the search for a landmark of the map after tracking from the last frame, px of its octave. Default 6: three standard
+    /// Radius of the search for a landmark of the map after tracking from the last frame, px of its octave, above 0, to 1000. Default 6: three standard
     /// deviations of a keypoint and as much for the map.
     pub map_window_px: f64,
     /// Largest distance of descriptors in a match within a window, bits of 256. A larger value gives more, and more wrong, matches. Default
@@ -42,7 +42,7 @@ pub struct TrackingConfig {
     /// look-alike rooms. Default 0.6: in 400 views of a simulated office with look-alike rooms, wrong relocalisations without a competitor
     /// reached 0.56, and pictures that hang in two rooms 0.45.
     pub recognised_part: f64,
-    /// Largest standard deviation of a relocalisation's position, m, above 0, including the common errors of one image's points. Default
+    /// Largest standard deviation of a relocalisation's position, m, above 0, to 10, including the common errors of one image's points. Default
     /// 0.05. Views with almost all points beyond 6 m exceed it, with errors up to 0.3 m; 97 of 100 other views do not (docs/results.md).
     pub recognised_sigma: f64,
     /// Number of frames in a row without a pose after which mapping restarts: at the dead-reckoned pose, or without odometry in a new map.
@@ -81,12 +81,12 @@ impl TrackingConfig {
     /// When a number is outside the range in its field's documentation.
     pub fn validated(mut self) -> Result<Self, Invalid> {
         require_in("tracking.pixel_sigma", self.pixel_sigma, "px", 0.01, 100.0)?;
-        require_positive("tracking.motion_window_px", self.motion_window_px, "px")?;
-        require_positive("tracking.map_window_px", self.map_window_px, "px")?;
+        require_in("tracking.motion_window_px", self.motion_window_px, "px", 1e-3, 1e3)?;
+        require_in("tracking.map_window_px", self.map_window_px, "px", 1e-3, 1e3)?;
         require_in("tracking.window_ratio", f64::from(self.window_ratio), "", 0.01, 1.0)?;
         require_in("tracking.free_ratio", f64::from(self.free_ratio), "", 0.01, 1.0)?;
         require_in("tracking.recognised_part", self.recognised_part, "", 0.0, 1.0)?;
-        require_positive("tracking.recognised_sigma", self.recognised_sigma, "m")?;
+        require_in("tracking.recognised_sigma", self.recognised_sigma, "m", 1e-6, 10.0)?;
         let counts = [
             ("tracking.min_inliers", self.min_inliers, 6),
             ("tracking.weak_inliers", self.weak_inliers, self.min_inliers),

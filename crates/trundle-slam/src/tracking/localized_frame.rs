@@ -42,6 +42,8 @@ pub(crate) struct LocalizedFrame {
     pub is_plausible: bool,
     /// Whether the pose is also certain.
     pub is_certain: bool,
+    /// Whether the landmarks determine the pose, however small their part of the view.
+    is_determined: bool,
 }
 
 impl LocalizedFrame {
@@ -95,9 +97,10 @@ impl LocalizedFrame {
         let covariance = pose.solution.covariance? * CORRELATED_POINTS;
         let sigma = covariance.fixed_view::<3, 3>(0, 0).trace().sqrt();
         let is_plausible = pose.is_sound(config.weak_inliers) && seen >= config.recognised_part;
-        let is_certain = is_plausible && sigma <= config.recognised_sigma;
+        let is_determined = sigma <= config.recognised_sigma;
+        let is_certain = is_plausible && is_determined;
         let localized = Self::by_matches(with_correlated_errors(pose), visible);
-        Some(Self { recognized: Some(keyframe), is_plausible, is_certain, ..localized })
+        Some(Self { recognized: Some(keyframe), is_plausible, is_certain, is_determined, ..localized })
     }
 
     /// A pose by the map, tracked there.
@@ -113,7 +116,13 @@ impl LocalizedFrame {
             recognized: None,
             is_plausible: true,
             is_certain: true,
+            is_determined: true,
         }
+    }
+
+    /// Accepts a relocalisation by a small part of the view: no look-alike place is within reach.
+    pub fn accept_partial_view(&mut self) {
+        (self.is_plausible, self.is_certain) = (true, self.is_determined);
     }
 
     /// This frame with aligned features, if enough can be aligned and the pose stays at its place.

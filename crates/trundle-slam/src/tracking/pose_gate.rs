@@ -12,6 +12,10 @@ const MIN_PREDICTION_SIGMA: f64 = 0.1;
 /// Error of a prediction without odometry besides the camera's largest motion: 0.3 m and 0.3 rad. Source: ours.
 const PREDICTION_TOLERANCE: f64 = 0.3;
 
+/// Longest time without odometry after which a place near the prediction needs no large part of the view: 2.5 s. A camera in a hand rarely
+/// reaches another room in that time. Source: ours, for bursts of dropped images of up to 2 s.
+const MAX_BRIEF_GAP_S: f64 = 2.5;
+
 /// Possible poses of a camera since it was last located.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum PoseGate {
@@ -24,6 +28,11 @@ pub(crate) enum PoseGate {
 }
 
 impl PoseGate {
+    /// Whether the gate is the reach of a camera over a time so brief that look-alike places are outside it.
+    pub fn is_brief(self) -> bool {
+        matches!(self, Self::Elapsed(seconds) if seconds <= MAX_BRIEF_GAP_S)
+    }
+
     /// Whether a camera predicted at `predicted` with this covariance can be at `pose`.
     pub fn allows(self, pose: Pose3, predicted: Pose3, covariance: &Matrix6<f64>) -> bool {
         let error = predicted.inverse() * pose;

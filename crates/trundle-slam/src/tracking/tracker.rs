@@ -104,7 +104,7 @@ impl Tracker<'_> {
     }
 
     fn located(&self, anchor: ReferenceFrame, pairs: &[Match], prior: PosePriorKind) -> Option<MatchedPose> {
-        let (pose, matches) = anchor.locate(self.frame, pairs, self.seed, (self.map, self.model))?;
+        let (pose, matches) = anchor.localize(self.frame, pairs, self.seed, (self.map, self.model))?;
         self.refined(matches, pose, prior)
     }
 

@@ -5,7 +5,7 @@ use crate::drive::Drive;
 use std::path::Path;
 use std::time::Instant;
 use trundle_core::{Pose3, RgbdImage, Stamp, Vector3, gray_from_color};
-use trundle_slam::{RgbdSlam, SlamConfig, Tracking};
+use trundle_slam::{ReadoutEstimator, RgbdSlam, SlamConfig, Tracking};
 
 const SEQUENCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/tum_fr1_rpy_400");
 
@@ -80,4 +80,49 @@ fn freiburg1_rpy_is_tracked_within_2_cm() {
     );
     assert_eq!(located, drive.frames.len(), "every frame is located by sight");
     assert!(rmse < 0.02, "ATE RMSE {rmse} m");
+}
+
+/// Error of the trajectory against the ground truth, m.
+fn ate(drive: &Drive, slam: &RgbdSlam) -> f64 {
+    let pair = |(stamp, pose): &(Stamp, Pose3)| {
+        let i = drive.frames.binary_search_by_key(stamp, |frame| frame.stamp).ok()?;
+        Some((pose.translation, drive.frames[i].truth?.translation))
+    };
+    let pairs: Vec<(Vector3, Vector3)> = slam.trajectory().iter().filter_map(pair).collect();
+    let (estimate, truth): (Vec<_>, Vec<_>) = pairs.into_iter().unzip();
+    aligned_rmse(&estimate, &truth)
+}
+
+/// Time of the first dropped image, s after the first image.
+const DROPPED_FROM_S: f64 = 4.0;
+
+#[test]
+fn a_camera_in_a_hand_is_located_again_after_a_second_without_images() {
+    let Some(drive) = sequence() else { return };
+    let mut slam = RgbdSlam::new(drive.camera, SlamConfig::default()).unwrap();
+    let start = drive.frames[0].stamp;
+    let (mut located, mut images) = (0, 0);
+    for i in 0..drive.frames.len() {
+        let since = drive.frames[i].stamp - start;
+        if (DROPPED_FROM_S..DROPPED_FROM_S + 1.0).contains(&since) {
+            continue;
+        }
+        images += 1;
+        located += usize::from(slam.step(&drive.image(i), None).tracking.is_located());
+    }
+    let error = ate(&drive, &slam);
+    println!("{located} of {images} located, {} maps, ATE RMSE {:.2} cm", slam.maps().len(), error * 100.0);
+    assert!(located + 5 >= images, "{located} of {images} located");
+    assert!(error < 0.03, "ATE RMSE {error} m");
+}
+
+#[test]
+fn the_readout_time_of_a_kinect_v1_is_found_by_its_images() {
+    let Some(drive) = sequence() else { return };
+    let mut estimator = ReadoutEstimator::new(drive.camera, SlamConfig::default()).unwrap();
+    (0..200).for_each(|i| estimator.record(&drive.image(i)));
+    let found = estimator.estimate().unwrap();
+    println!("{found:?}");
+    // 26 ms [Ringaby11].
+    assert!(found.is_clear() && (found.readout_s - 0.026).abs() < 0.008, "{found:?}");
 }

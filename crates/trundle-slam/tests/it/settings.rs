@@ -18,7 +18,7 @@ fn suspected(
         slam.step(&change(image), None);
     }
     println!("{:?}", slam.calibration_issues());
-    Some(slam.calibration_issues().to_vec())
+    Some(slam.calibration_issues())
 }
 
 fn with_depth(image: &RgbdImage, depth: DepthImage) -> RgbdImage {
@@ -112,7 +112,7 @@ fn suspected_in_the_room(said: PinholeCamera, wheels: f64) -> Vec<CalibrationIss
         slam.step(&Clean::at(pose(i)).shot(i), Some(prior.into()));
     }
     println!("{:?}", slam.calibration_issues());
-    slam.calibration_issues().to_vec()
+    slam.calibration_issues()
 }
 
 #[test]

@@ -11,7 +11,7 @@ pub struct RansacConfig {
     pub confidence: f64,
     /// Samples at most, 1 or more. Default 1000: sure enough (0.999) down to one right pair in five.
     pub max_iterations: usize,
-    /// Fewer right pairs than this are not motion, 3 or more. Default 12: that many do not agree by chance.
+    /// Fewest inliers of a motion, 3 or more. Default 12: chance matches agree less often.
     pub min_inliers: usize,
     /// Standard deviation of a keypoint moved into the other image, px, positive. Default 1.5: a corner of the middle
     /// octaves.

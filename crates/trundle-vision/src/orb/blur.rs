@@ -7,6 +7,7 @@ use trundle_core::GrayImage;
 /// Weights of a Gaussian of standard deviation 2 px over 7 px, in 1/256: middle first. BRIEF compares single pixels and therefore needs a
 /// smoothed image \[Calonder10, sec. 3.1\].
 const KERNEL: [u32; 4] = [56, 49, 34, 17];
+/// Reach of the Gaussian to each side \[px\].
 const KERNEL_RADIUS_PX: usize = KERNEL.len() - 1;
 /// Number of pixels whose seven slices are found together: finding them costs as much as smoothing 16 px. Source: ours.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]

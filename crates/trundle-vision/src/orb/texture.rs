@@ -5,9 +5,11 @@ use trundle_core::GrayImage;
 
 /// Radius of the area in which a corner's texture is measured: 7 px. Source: ours.
 const TEXTURE_RADIUS_PX: usize = 7;
+/// Side of that area \[px\].
 const TEXTURE_SIDE_PX: usize = 2 * TEXTURE_RADIUS_PX + 1;
 /// Columns that are read: a power of two; the last is not counted.
 const TEXTURE_STRIDE: usize = TEXTURE_SIDE_PX + 1;
+/// Weight of each column that is read: 0 for the last, else 1.
 const COUNT_WEIGHTS: [i16; TEXTURE_STRIDE] = {
     let mut counts = [1; TEXTURE_STRIDE];
     counts[TEXTURE_SIDE_PX] = 0;

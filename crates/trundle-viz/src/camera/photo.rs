@@ -7,7 +7,7 @@ use trundle_core::Image;
 
 /// Width to which small camera pictures are enlarged, px, for sharp marks.
 const TARGET_WIDTH: usize = 960;
-/// No picture of a camera is wider or higher than this, px.
+/// Largest side of a picture of a camera \[px\]. Source: ours.
 const MAX_SIDE: usize = 3000;
 
 /// A camera image on a canvas, enlarged or shrunk by a whole number.

@@ -15,8 +15,11 @@ pub struct BarChart {
     rows: Vec<(String, f64, f64)>,
 }
 
+/// Width of the chart, in its own units. Source: ours.
 const CHART_WIDTH: f64 = 540.0;
+/// Distance of neighbouring bars, in the chart's units. Source: ours.
 const BAR_PITCH: f64 = 28.0;
+/// Distance of the first bar from the upper edge, in the chart's units. Source: ours.
 const PLOT_TOP: f64 = 40.0;
 
 impl BarChart {

@@ -13,9 +13,9 @@ const MAX_PX: i64 = 3000;
 /// Number of pixels per cell, or of cells per pixel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Zoom {
-    /// Each cell is this many pixels wide.
+    /// Width of a cell in pixels.
     PxPerCell(i64),
-    /// Each pixel is this many cells wide.
+    /// Width of a pixel in cells.
     CellsPerPx(i64),
 }
 

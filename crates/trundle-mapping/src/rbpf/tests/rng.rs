@@ -3,6 +3,7 @@
 use crate::rbpf::rng::ParticleRng;
 use nalgebra::{Matrix3, Vector3};
 
+/// Number of draws of a moment: its error is then about 1 %.
 const DRAW_COUNT: usize = 8_000;
 
 fn moments(draw: impl FnMut(usize) -> Vector3<f64>) -> (Vector3<f64>, Matrix3<f64>) {

@@ -6,4 +6,4 @@ mod search;
 
 pub(crate) use lookup_budget::LookupBudget;
 pub(crate) use pyramid::Pyramid;
-pub(crate) use search::{Place, Query};
+pub(crate) use search::{FoundPose, Query};

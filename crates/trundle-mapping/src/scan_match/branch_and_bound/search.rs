@@ -24,7 +24,7 @@ pub(crate) struct Query<'a> {
 
 /// A pose that was found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place {
+pub(crate) struct FoundPose {
     pub(crate) pose: Pose2,
     /// Nats.
     pub(crate) score: f64,
@@ -32,7 +32,7 @@ pub(crate) struct Place {
     pub(crate) fit: f64,
 }
 
-impl Place {
+impl FoundPose {
     /// Whether a pose is more than `apart` cells or `turned` rad away.
     pub(crate) fn is_apart(&self, pose: Pose2, apart: f64, turned: f64) -> bool {
         (self.pose.position() - pose.position()).norm() > apart
@@ -62,10 +62,10 @@ impl Pyramid {
     pub(crate) fn search(
         &self,
         query: &Query<'_>,
-        known: &[Place],
+        known: &[FoundPose],
         (apart, least): ((f64, f64), f64),
         budget: &LookupBudget,
-    ) -> Option<Place> {
+    ) -> Option<FoundPose> {
         let reach = ((query.reach.0 / 2.0).ceil() as i32, (query.reach.1 / 2.0).ceil() as i32);
         let turns = ((query.turn_reach / query.turn_step).ceil() as i32).max(0);
         let all: Vec<Turned> = (-turns..=turns).map(|turn| self.turned(query, turn, reach)).collect();
@@ -105,7 +105,7 @@ impl Pyramid {
 struct Search<'a> {
     pyramid: &'a Pyramid,
     query: &'a Query<'a>,
-    known: &'a [Place],
+    known: &'a [FoundPose],
     apart: (f64, f64),
     reach: (i32, i32),
     all: Vec<Turned>,
@@ -141,7 +141,7 @@ impl Search<'_> {
         sum
     }
 
-    fn descend(&self, level: usize, square: Square, best: &mut (f64, Option<Place>)) {
+    fn descend(&self, level: usize, square: Square, best: &mut (f64, Option<FoundPose>)) {
         if square.bound <= best.0 || self.budget.is_spent() {
             return;
         }
@@ -164,7 +164,7 @@ impl Search<'_> {
         }
     }
 
-    fn place(&self, square: Square) -> Place {
+    fn place(&self, square: Square) -> FoundPose {
         let turned = &self.all[square.turn as usize];
         let shift = |at: i32, reach: i32| 2.0 * f64::from(at - reach);
         let pose = Pose2::new(
@@ -174,7 +174,7 @@ impl Search<'_> {
         );
         let sum = self.sum(0, turned, square.x, square.y);
         let fit = f64::from(sum) / 255.0 / self.query.points.len().max(1) as f64;
-        Place { pose, score: square.bound, fit }
+        FoundPose { pose, score: square.bound, fit }
     }
 }
 
@@ -223,7 +223,7 @@ mod tests {
             budget: &budget,
             all: (-20..=20).map(|turn| pyramid.turned(&query, turn, (20, 20))).collect(),
         };
-        let best = |accept: &dyn Fn(&Place) -> bool| {
+        let best = |accept: &dyn Fn(&FoundPose) -> bool| {
             let mut best = f64::NEG_INFINITY;
             for turn in 0..41 {
                 for (x, y) in (0..=40).flat_map(|x| (0..=40).map(move |y| (x, y))) {

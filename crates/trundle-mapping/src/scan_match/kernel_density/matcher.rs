@@ -64,9 +64,10 @@ impl ScanMatcher {
         if points.len() < config.min_points {
             return None;
         }
-        let sites = self.sites(mapper, &points, guess)?;
-        let start = search(config, &LikelihoodField::new(&sites, config.search_sigma), &points, guess);
-        let (end, equations) = refine(config, &sites, &points, start);
+        let surface_points = self.surface_points(mapper, &points, guess)?;
+        let start =
+            search(config, &LikelihoodField::new(&surface_points, config.search_sigma), &points, guess);
+        let (end, equations) = refine(config, &surface_points, &points, start);
 
         let spread = PointSpread::new(points.iter().copied(), MIN_LEVER_M);
         let information = Information::new(config, &equations, &spread);
@@ -84,7 +85,7 @@ impl ScanMatcher {
         })
     }
 
-    fn sites(&self, mapper: &GridMapper, points: &[Vector2], guess: Pose2) -> Option<SurfacePoints> {
+    fn surface_points(&self, mapper: &GridMapper, points: &[Vector2], guess: Pose2) -> Option<SurfacePoints> {
         let config = &self.config;
         let there: Vec<Vector2> = points.iter().map(|&p| guess.transform(p)).collect();
         let farthest = points.iter().map(Vector2::norm).fold(0.0, f64::max);

@@ -1,10 +1,10 @@
 //! Rules of the navigator: its transitions between states, and its commands in each state.
 
 mod no_path;
-mod progress;
-mod sight;
+mod progress_checker;
 mod transitions;
-mod unseen;
+mod view_monitor;
+mod visibility_constraint;
 mod zones;
 
 use super::testing::{at_rest, floor, navigator, waiting};

@@ -3,7 +3,7 @@
 use super::PathPlanner;
 use super::camera_fov::unknown_about;
 use super::visibility_constraint::{MAX_VIRTUAL_OBSTACLES, VIRTUAL_OBSTACLE_RADIUS_M};
-use crate::behaviour::progress::rest::length;
+use crate::behaviour::progress_checker::rest::length;
 use crate::world_state::WorldState;
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Pose2, Trajectory, TrajectoryPoint, Twist2, Vector2};
 use trundle_planning::{Obstruction, Plan, PlanResult};
@@ -52,44 +52,44 @@ impl PathPlanner {
             let floor = floor.as_ref().unwrap_or(s.permitted_floor());
             self.planner.plan_among_moving(floor, s.dynamic_obstacles.movers, from, twist, goal)
         };
-        let Plan::Found(best) = best else { return self.found(InView::Plan(best)) };
+        let Plan::Found(best) = best else { return self.ended(InView::Plan(best)) };
         let Some(unseen) = self.first_unseen(best.trajectory.points(), s.floor()) else {
-            return self.found(InView::Plan(Plan::Found(best)));
+            return self.ended(InView::Plan(Plan::Found(best)));
         };
         if self.visibility.virtual_obstacles.is_empty() {
             self.visibility.virtual_obstacles.push(unseen);
         }
         let walls = [bars, self.visibility.virtual_obstacles.clone()].concat();
         let Some(floor) = self.with_virtual_obstacles(s.permitted_floor(), &walls, ends) else {
-            return self.unseen(unseen, &best, None);
+            return self.unseen_path(unseen, &best, None);
         };
         let Plan::Found(plan) =
             self.planner.plan_among_moving(&floor, s.dynamic_obstacles.movers, from, twist, goal)
         else {
-            return self.unseen(unseen, &best, None);
+            return self.unseen_path(unseen, &best, None);
         };
         match self.first_unseen(plan.trajectory.points(), s.floor()) {
             Some(next) if self.visibility.virtual_obstacles.len() < MAX_VIRTUAL_OBSTACLES => {
                 self.visibility.virtual_obstacles.push(next);
                 InView::Asking
             }
-            Some(_) => self.unseen(unseen, &best, None),
-            None if !goes_on(&plan, &best, &floor) => self.unseen(unseen, &best, None),
-            None if is_worth(&plan, &best) => self.found(InView::Plan(Plan::Found(plan))),
-            None => self.unseen(unseen, &best, Some(plan)),
+            Some(_) => self.unseen_path(unseen, &best, None),
+            None if !goes_on(&plan, &best, &floor) => self.unseen_path(unseen, &best, None),
+            None if is_worth(&plan, &best) => self.ended(InView::Plan(Plan::Found(plan))),
+            None => self.unseen_path(unseen, &best, Some(plan)),
         }
     }
 
     /// The end of a search whose best path enters unseen floor at a place.
-    fn unseen(&mut self, at: Vector2, best: &PlanResult, seen: Option<Box<PlanResult>>) -> InView {
+    fn unseen_path(&mut self, at: Vector2, best: &PlanResult, seen: Option<Box<PlanResult>>) -> InView {
         let length = length(&best.trajectory, 0.0, self.radius);
-        self.found(InView::Unseen(UnseenPath { at, length, seen }))
+        self.ended(InView::Unseen(UnseenPath { at, length, seen }))
     }
 
     /// The end of a search.
-    fn found(&mut self, found: InView) -> InView {
+    fn ended(&mut self, result: InView) -> InView {
         self.visibility.virtual_obstacles.clear();
-        found
+        result
     }
 
     /// First place at which a path enters floor that the camera does not observe in time.

@@ -10,7 +10,7 @@ pub(crate) struct VisibilityConstraint {
     /// Places at which the candidate paths entered unseen floor.
     pub(crate) virtual_obstacles: Vec<Vector2>,
     /// Observations of the last 20 s.
-    looks: Vec<Look>,
+    looks: Vec<FloorObservation>,
     /// Number of observations with a result since the goal was given.
     results: usize,
     /// Keep-out zones: floor that observations did not show, and when each zone began.
@@ -19,7 +19,7 @@ pub(crate) struct VisibilityConstraint {
 
 /// An observation: the floor, the viewpoint, and the time of its start or, after the arrival, of the arrival.
 #[derive(Debug, Clone, Copy)]
-struct Look {
+struct FloorObservation {
     at: Vector2,
     from: Vector2,
     since: Stamp,
@@ -45,7 +45,7 @@ impl VisibilityConstraint {
 
     /// Records an observation of `at` from `from`.
     pub(crate) fn record_observation(&mut self, at: Vector2, from: Vector2, now: Stamp) {
-        self.looks.push(Look { at, from, since: now, is_in_vain: true });
+        self.looks.push(FloorObservation { at, from, since: now, is_in_vain: true });
     }
 
     /// Records the arrival at the last viewpoint.

@@ -1,7 +1,7 @@
 //! The search for a viewpoint, the path to it, and the observation there.
 
 use super::PathSearch;
-use super::viewpoint::{ViewTarget, Viewpoint, best_last, places, sights};
+use super::viewpoint::{ViewTarget, Viewpoint, best_last, free_viewpoints, new_viewpoints};
 use crate::behaviour::path_planner::PathPlanner;
 use crate::behaviour::path_planner::known_floor::is_in_sight;
 use crate::world_state::WorldState;
@@ -38,8 +38,11 @@ impl PathSearch {
             let own_size = if s.grid.at(at) == Cell::Free { 0.0 } else { BLOCKAGE_DEPTH_M };
             let stands_well = VIEWING_RANGE_M.contains(&(at - here.position()).norm())
                 && is_in_sight(s.grid, here.position(), at, own_size);
-            let places =
-                if stands_well { Vec::new() } else { places(s.grid, here, at, own_size, planner.camera_fov) };
+            let places = if stands_well {
+                Vec::new()
+            } else {
+                free_viewpoints(s.grid, here, at, own_size, planner.camera_fov)
+            };
             self.viewpoint = Viewpoint::Choosing(ViewTarget::Blockage, best_last(places));
         }
         self.plan_to_viewpoint(planner, follower, s)
@@ -158,7 +161,7 @@ impl PathSearch {
 /// Candidate viewpoints of unseen floor; none after its observations without result.
 fn views_of(at: Vector2, planner: &PathPlanner, s: &WorldState<'_>) -> Vec<Pose2> {
     if planner.visibility.is_worth_observing(at) {
-        sights(s.floor(), s.estimate.pose, at, planner.camera_fov, &planner.visibility)
+        new_viewpoints(s.floor(), s.estimate.pose, at, planner.camera_fov, &planner.visibility)
     } else {
         Vec::new()
     }

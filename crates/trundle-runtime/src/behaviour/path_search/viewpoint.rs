@@ -46,7 +46,7 @@ pub(crate) fn best_last(mut places: Vec<Pose2>) -> Vec<Pose2> {
 
 /// Places on the map's free floor with a clear line of sight to `at`, nearest to `here` first. Occupied cells on the last `own_size` m do
 /// not block the line.
-pub(crate) fn places(
+pub(crate) fn free_viewpoints(
     grid: &OccupancyGrid,
     here: Pose2,
     at: Vector2,
@@ -66,7 +66,7 @@ pub(crate) fn places(
 
 /// Viewpoints from which the camera observes the floor at `at`, without those of earlier observations. The present place comes first if a
 /// turn is enough; then the nearest places.
-pub(crate) fn sights(
+pub(crate) fn new_viewpoints(
     grid: &OccupancyGrid,
     here: Pose2,
     at: Vector2,
@@ -75,7 +75,7 @@ pub(crate) fn sights(
 ) -> Vec<Pose2> {
     let Some(view) = view else { return Vec::new() };
     let turned = facing(here.position(), at, Some(view));
-    let all = std::iter::once(turned).chain(places(grid, here, at, 0.0, Some(view)));
+    let all = std::iter::once(turned).chain(free_viewpoints(grid, here, at, 0.0, Some(view)));
     let is_new = |place: &Pose2| unseen.is_elsewhere(at, place.position());
     all.filter(is_new).filter(|place| view.shows(grid, *place, at)).collect()
 }
@@ -99,7 +99,7 @@ mod tests {
             [vec![rows[0].clone(); 10], vec![rows[1].clone()], vec![rows[2].clone(); 30]].concat().join("\n");
         let grid = OccupancyGrid::from_ascii(0.1, &text).unwrap();
         let (here, at) = (Pose2::new(2.0, 2.6, 1.5), Vector2::new(2.0, 2.7));
-        let places = places(&grid, here, at, 0.0, None);
+        let places = free_viewpoints(&grid, here, at, 0.0, None);
         assert!(!places.is_empty());
         for place in &places {
             let way = at - place.position();
@@ -126,16 +126,16 @@ mod tests {
             let base_from_sector = Pose2::new(0.05, 0.0, aside);
             let view = CameraFov { base_from_sector, half_angle: 0.5, nearest: 0.6 };
             let mut unseen = VisibilityConstraint::default();
-            let first = sights(&grid, here, at, Some(view), &unseen);
+            let first = new_viewpoints(&grid, here, at, Some(view), &unseen);
             assert!(first.len() > 2 && first.iter().all(|place| view.shows(&grid, *place, at)), "{first:?}");
             assert_eq!(first[0].position(), here.position(), "a turn is enough");
             unseen.record_observation(at, here.position(), Stamp::default());
-            let second = sights(&grid, here, at, Some(view), &unseen);
+            let second = new_viewpoints(&grid, here, at, Some(view), &unseen);
             assert!(!second.is_empty() && second.len() < first.len());
             assert!(second.iter().all(|place| place.distance(&here) > 0.4), "{second:?}");
         }
         assert!(
-            sights(&grid, here, at, None, &VisibilityConstraint::default()).is_empty(),
+            new_viewpoints(&grid, here, at, None, &VisibilityConstraint::default()).is_empty(),
             "a laser sees all"
         );
     }

@@ -80,7 +80,7 @@ pub(crate) fn face(heading: f64, s: &WorldState<'_>) -> (Twist2, Next) {
 
 /// Waits; the arc begins again after the wait. The turn to a viewpoint needs another plan.
 pub(crate) fn on_stop(tools: &mut Tools, wanted: Twist2, stop: StopReason, s: &WorldState<'_>) -> Next {
-    tools.sight.held(wanted);
+    tools.view_monitor.held(wanted);
     let interrupted = tools.follower.end().map(|_| Drive::default());
     let wait = Wait { reason: Reason::Safety(stop), search: PathSearch::held(s.now), interrupted };
     State::Wait(wait).because(TransitionReason::SafetyStop)

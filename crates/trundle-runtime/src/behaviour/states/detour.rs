@@ -1,7 +1,7 @@
 //! A path that has become longer: whether the robot takes the detour or waits.
 
-use crate::behaviour::progress::followed_path::FollowedPath;
-use crate::behaviour::progress::rest::length;
+use crate::behaviour::progress_checker::followed_path::FollowedPath;
+use crate::behaviour::progress_checker::rest::length;
 use crate::behaviour::tools::Tools;
 use crate::world_state::WorldState;
 use trundle_core::Vector2;

@@ -67,7 +67,7 @@ impl Drive {
         stop: StopReason,
         s: &WorldState<'_>,
     ) -> Next {
-        tools.sight.held(wanted);
+        tools.view_monitor.held(wanted);
         let interrupted = tools.follower.end().map(|_| *self);
         let wait = Wait { reason: Reason::Safety(stop), search: PathSearch::held(s.now), interrupted };
         State::Wait(wait).because(TransitionReason::SafetyStop)

@@ -21,18 +21,18 @@ pub(crate) fn begin(tools: &mut Tools) -> Next {
 /// Begins a manoeuvre near the goal, if no path is found or the safety monitor stops the robot.
 pub(super) fn begin_if_possible(tools: &mut Tools, goal: Pose2, s: &WorldState<'_>) -> Next {
     let stands = s.estimate.twist.v.abs() < STANDING_SPEED_M_S;
-    let may = matches!(tools.goal, Goal::Exact(_)) && stands && !tools.sight.is_blind(s);
+    let may = matches!(tools.goal, Goal::Exact(_)) && stands && !tools.view_monitor.is_blind(s);
     if may && tools.goal_approach.begin_if_possible(s, goal) { begin(tools) } else { None }
 }
 
 /// One step of turns and straight moves.
 pub(crate) fn tick(tools: &mut Tools, s: &WorldState<'_>, times: &mut StageTimes) -> (Twist2, Next) {
-    if tools.sight.is_blind(s) {
-        return (tools.sight.recover(None, s), None);
+    if tools.view_monitor.is_blind(s) {
+        return (tools.view_monitor.recover(None, s), None);
     }
     match times.measure(Stage::Control, || tools.goal_approach.step(s)) {
         Progress::Moving(twist) => {
-            tools.sight.held(twist);
+            tools.view_monitor.held(twist);
             (twist, None)
         }
         Progress::Settled => (Twist2::ZERO, State::Arrived.because(TransitionReason::GoalReached)),
@@ -45,7 +45,7 @@ pub(crate) fn tick(tools: &mut Tools, s: &WorldState<'_>, times: &mut StageTimes
 
 /// The safety monitor stopped the motion.
 pub(crate) fn on_stop(tools: &mut Tools, wanted: Twist2, s: &WorldState<'_>) -> Next {
-    if wanted != Twist2::ZERO && !tools.sight.is_blind(s) {
+    if wanted != Twist2::ZERO && !tools.view_monitor.is_blind(s) {
         tools.goal_approach.interrupted(s);
     }
     None

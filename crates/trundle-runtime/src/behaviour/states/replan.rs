@@ -5,7 +5,7 @@ use super::maneuver::{STANDING_SPEED_M_S, begin_if_possible};
 use crate::behaviour::path_planner::{InView, UnseenPath};
 use crate::behaviour::path_search::PathSearch;
 use crate::behaviour::path_search::viewpoint::Viewpoint;
-use crate::behaviour::progress::rest::length;
+use crate::behaviour::progress_checker::rest::length;
 use crate::behaviour::state::{Change, Drive, Next, Recover, State, Wait};
 use crate::behaviour::tools::Tools;
 use crate::reason::{NoPath, Reason, TransitionReason};

@@ -26,7 +26,7 @@ impl Wait {
     pub(crate) fn plan(&mut self, tools: &mut Tools, s: &WorldState<'_>, times: &mut StageTimes) -> Planned {
         let is_short =
             self.search.held_since.is_some_and(|since| s.now - since < SAFETY_HOLD_BEFORE_REPLAN_S);
-        let may = !tools.contacts.is_any() && !tools.sight.is_blind(s) && !is_short;
+        let may = !tools.contacts.is_any() && !tools.view_monitor.is_blind(s) && !is_short;
         let Some(goal) = tools.goal.pose().filter(|_| may && tools.check_due.due(s.now)) else {
             return Planned::default();
         };
@@ -58,8 +58,8 @@ impl Wait {
     ) -> (Twist2, Next) {
         let twist = if self.backs_out(tools, s) {
             Twist2::new(-BACK_OUT_SPEED_M_S, 0.0)
-        } else if tools.sight.is_blind(s) {
-            tools.sight.recover(self.search.held_since, s)
+        } else if tools.view_monitor.is_blind(s) {
+            tools.view_monitor.recover(self.search.held_since, s)
         } else {
             let blocked_at = self.search.blocked_at.filter(|_| tools.plan.is_none());
             blocked_at.map_or(follow.twist, |at| face(s.estimate.pose, at))

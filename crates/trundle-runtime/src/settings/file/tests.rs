@@ -1,6 +1,6 @@
 //! Tests of robot files: keys, old keys, overrides, refusals.
 
-use super::super::reference::Setting;
+use super::super::reference::{Setting, reference};
 use super::*;
 
 fn parse(text: &str) -> Result<RobotFile, SettingsError> {

@@ -1,7 +1,7 @@
 //! Assembly of all glTF surfaces into one mesh.
 
 use super::buffers::Buffers;
-use super::looks::{Look, image_of, materials};
+use super::mesh_materials::{MaterialUse, image_of, materials};
 use super::primitive::Surface;
 use super::schema::at;
 use super::vertex_colors::Painting;
@@ -24,7 +24,7 @@ pub(super) struct Builder<'a> {
     uvs: Vec<[f32; 2]>,
     triangles: Vec<Triangle>,
     /// The appearances in use, by their index in the mesh.
-    looks: Vec<Look>,
+    material_uses: Vec<MaterialUse>,
     painting: Painting,
     /// Number of surfaces whose vertex colours are ignored because they have a texture.
     hidden: usize,
@@ -37,7 +37,7 @@ impl<'a> Builder<'a> {
             positions: Vec::new(),
             uvs: Vec::new(),
             triangles: Vec::new(),
-            looks: Vec::new(),
+            material_uses: Vec::new(),
             painting: Painting::default(),
             hidden: 0,
         }
@@ -67,7 +67,7 @@ impl<'a> Builder<'a> {
                 .into());
             }
             let is_painted = surface.colors.is_some();
-            let material = self.place_of(Look { material: primitive.material, is_painted });
+            let material = self.place_of(MaterialUse { material: primitive.material, is_painted });
             let name = || {
                 mesh.name.as_ref().map_or(format!("mesh {index}"), |name| format!("mesh {index} ('{name}')"))
             };
@@ -121,10 +121,10 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn place_of(&mut self, look: Look) -> u32 {
-        let place = self.looks.iter().position(|used| *used == look).unwrap_or_else(|| {
-            self.looks.push(look);
-            self.looks.len() - 1
+    fn place_of(&mut self, material_use: MaterialUse) -> u32 {
+        let place = self.material_uses.iter().position(|used| *used == material_use).unwrap_or_else(|| {
+            self.material_uses.push(material_use);
+            self.material_uses.len() - 1
         });
         place as u32
     }
@@ -135,7 +135,7 @@ impl<'a> Builder<'a> {
             return Err(ImportFault::NoTriangles);
         }
         self.painting.place(&mut self.uvs);
-        let (materials, lost) = materials(self.buffers, &self.looks, &self.painting)?;
+        let (materials, lost) = materials(self.buffers, &self.material_uses, &self.painting)?;
         let hidden = (self.hidden > 0).then_some(ImportNote::HiddenColors { surfaces: self.hidden });
         let notes = lost.into_iter().chain(hidden).collect();
         Ok((Mesh::new(self.positions, self.uvs, self.triangles, materials)?, notes))

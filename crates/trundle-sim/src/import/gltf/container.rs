@@ -2,6 +2,7 @@
 
 use crate::import::ImportFault;
 
+/// First bytes of a file, and kinds of its chunks. Source: glTF 2.0, section 4.4.
 const MAGIC: &[u8] = b"glTF";
 const JSON_CHUNK: u32 = u32::from_le_bytes(*b"JSON");
 const BINARY_CHUNK: u32 = u32::from_le_bytes(*b"BIN\0");

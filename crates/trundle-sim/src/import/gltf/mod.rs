@@ -5,7 +5,7 @@ mod buffers;
 mod builder;
 mod container;
 mod floor;
-mod looks;
+mod mesh_materials;
 mod nodes;
 mod options;
 mod primitive;

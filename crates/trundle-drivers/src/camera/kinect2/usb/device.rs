@@ -31,10 +31,14 @@ const FUNCTION_SUSPEND: u16 = 0;
 const SUSPENDED_INDEX: u16 = 3 << 8;
 /// Delay without hubs in between \[ns\].
 const ISOCHRONOUS_DELAY_NS: u16 = 40;
-/// Colour transfers that wait at the same time, and their size \[bytes\].
-const COLOR_TRANSFERS: (usize, usize) = (20, 0x4000);
-/// Depth transfers that wait at the same time, and their packets: 60 ms of packets of 0.125 ms.
-const DEPTH_TRANSFERS: (usize, usize) = (60, 8);
+/// Number of colour transfers that wait at the same time.
+const COLOR_TRANSFER_COUNT: usize = 20;
+/// Size of a colour transfer \[bytes\].
+const COLOR_TRANSFER_BYTES: usize = 0x4000;
+/// Number of depth transfers that wait at the same time: 60 ms of packets of 0.125 ms.
+const DEPTH_TRANSFER_COUNT: usize = 60;
+/// Number of packets of a depth transfer.
+const PACKETS_PER_DEPTH_TRANSFER: usize = 8;
 
 /// The device's own description.
 #[derive(Debug)]
@@ -87,9 +91,9 @@ impl Kinect2Device {
 
     /// The transfers of colour and depth.
     pub(super) fn plans(&self) -> [TransferPlan; 2] {
-        let (count, bytes) = COLOR_TRANSFERS;
+        let (count, bytes) = (COLOR_TRANSFER_COUNT, COLOR_TRANSFER_BYTES);
         let color = TransferPlan { endpoint: ids::COLOR_ENDPOINT, count, packets: 0, bytes };
-        let (count, packets) = DEPTH_TRANSFERS;
+        let (count, packets) = (DEPTH_TRANSFER_COUNT, PACKETS_PER_DEPTH_TRANSFER);
         [color, TransferPlan { endpoint: ids::DEPTH_ENDPOINT, count, packets, bytes: self.packet_bytes }]
     }
 

@@ -118,7 +118,7 @@ fn the_reason_for_the_last_change_of_state_is_kept_until_the_next_change() {
 fn a_robot_that_was_wedged_observes_unseen_floor_and_does_not_back_out() {
     let goal = Pose2::new(2.9, 3.2, 1.57);
     let mut base = Base::new(Pose2::new(2.6, 1.1, 0.0));
-    base.grid = super::unseen::unseen_bend();
+    base.grid = super::visibility_constraint::unseen_bend();
     base.navigator.set_goal(Goal::Exact(goal));
     let (reason, search) = (Reason::MovingObstacle, PathSearch::default());
     base.navigator.machine.place(State::Recover(Recover { reason, is_wedged: true, search }));

@@ -1,13 +1,13 @@
 use trundle_core::{Cell, CellIndex, OccupancyGrid, Vector2};
 
 /// Free positions of a disc on a true grid.
-pub struct Flood<'g> {
+pub struct ReachableFloor<'g> {
     grid: &'g OccupancyGrid,
     /// Reached from the start.
     reached: Vec<bool>,
 }
 
-impl<'g> Flood<'g> {
+impl<'g> ReachableFloor<'g> {
     /// Everywhere that a disc of `radius` m can go from `start`, keeping off every occupied cell's square.
     pub fn new(grid: &'g OccupancyGrid, radius: f64, start: Vector2) -> Self {
         let mut free = free_for(grid, radius);

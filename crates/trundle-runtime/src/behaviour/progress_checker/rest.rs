@@ -13,7 +13,7 @@ pub(crate) fn rest(state: &State, tools: &Tools, s: &WorldState<'_>) -> Option<f
     Some(match state {
         // Neither a turn at a charging station nor a wait for the view has a limit of its own.
         State::Station(station) if matches!(station.goal, StationGoal::Sweep(_)) => f64::INFINITY,
-        State::Maneuver if tools.sight.is_blind(s) => f64::INFINITY,
+        State::Maneuver if tools.view_monitor.is_blind(s) => f64::INFINITY,
         State::Station(_) | State::Maneuver => return None,
         State::Relative(relative) => relative.drive.rest(relative.motion, pose, radius),
         State::Spin(spin) => radius * spin.rest(),

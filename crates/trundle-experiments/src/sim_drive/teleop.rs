@@ -5,11 +5,11 @@ use trundle_runtime::{OperatorCommand, TELEOP_SILENCE_S};
 
 /// The last twist of the viewers. Without a new twist for [`TELEOP_SILENCE_S`] the robot stops.
 #[derive(Debug, Default)]
-pub struct Hand {
+pub struct Teleop {
     wanted: Option<(Twist2, Stamp)>,
 }
 
-impl Hand {
+impl Teleop {
     /// Obeys a command at `now`: a twist drives, all others stop.
     pub fn obey(&mut self, command: &OperatorCommand, now: Stamp) {
         self.wanted = match command {
@@ -32,13 +32,13 @@ mod tests {
 
     #[test]
     fn a_twist_holds_until_silence_or_another_command() {
-        let (mut hand, twist) = (Hand::default(), Twist2::new(0.2, 0.1));
+        let (mut teleop, twist) = (Teleop::default(), Twist2::new(0.2, 0.1));
         let at = |seconds: f64| Stamp::default().after(seconds);
-        assert_eq!(hand.twist(at(0.0)), Twist2::ZERO);
-        hand.obey(&OperatorCommand::Drive(twist), at(1.0));
-        assert_eq!((hand.twist(at(1.29)), hand.twist(at(1.31))), (twist, Twist2::ZERO));
-        hand.obey(&OperatorCommand::Drive(twist), at(2.0));
-        hand.obey(&OperatorCommand::Pause, at(2.0));
-        assert_eq!(hand.twist(at(2.0)), Twist2::ZERO);
+        assert_eq!(teleop.twist(at(0.0)), Twist2::ZERO);
+        teleop.obey(&OperatorCommand::Drive(twist), at(1.0));
+        assert_eq!((teleop.twist(at(1.29)), teleop.twist(at(1.31))), (twist, Twist2::ZERO));
+        teleop.obey(&OperatorCommand::Drive(twist), at(2.0));
+        teleop.obey(&OperatorCommand::Pause, at(2.0));
+        assert_eq!(teleop.twist(at(2.0)), Twist2::ZERO);
     }
 }

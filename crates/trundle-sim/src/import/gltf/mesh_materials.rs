@@ -19,7 +19,7 @@ const NO_IMAGE: usize = u32::MAX as usize;
 
 /// Appearance of surfaces: a material of the file, and optionally vertex colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Look {
+pub(super) struct MaterialUse {
     /// `None` is the default material.
     pub(super) material: Option<Index<material::Material>>,
     /// Whether the corners' colours are drawn.
@@ -29,15 +29,15 @@ pub(super) struct Look {
 /// The decoded images, and for each other image the reason.
 type Images = BTreeMap<usize, Result<ColorImage, String>>;
 
-/// The materials of a mesh, in the order of `looks`, and notes about the materials.
+/// The materials of a mesh, in the order of `material_uses`, and notes about the materials.
 pub(super) fn materials(
     buffers: &Buffers<'_>,
-    looks: &[Look],
+    material_uses: &[MaterialUse],
     painting: &Painting,
 ) -> Result<(Vec<Material>, Option<ImportNote>), ImportFault> {
     let mut wanted = Vec::new();
-    for look in looks {
-        wanted.extend(image_of(buffers, look.material)?);
+    for material_use in material_uses {
+        wanted.extend(image_of(buffers, material_use.material)?);
     }
     wanted.sort_unstable();
     wanted.dedup();
@@ -47,8 +47,10 @@ pub(super) fn materials(
         .collect::<Vec<_>>()
         .into_iter()
         .collect();
-    let make = |(place, look): (usize, &Look)| material_of(buffers, *look, &images, painting.picture(place));
-    let materials = looks.iter().enumerate().map(make).collect::<Result<_, _>>()?;
+    let make = |(place, material_use): (usize, &MaterialUse)| {
+        material_of(buffers, *material_use, &images, painting.picture(place))
+    };
+    let materials = material_uses.iter().enumerate().map(make).collect::<Result<_, _>>()?;
     let lost: Vec<String> = images.into_values().filter_map(Result::err).collect();
     Ok((materials, (!lost.is_empty()).then_some(ImportNote::LostTextures { reasons: lost })))
 }
@@ -68,25 +70,25 @@ pub(super) fn image_of(
 ) -> Result<Option<Index<image::Image>>, ImportFault> {
     let Some(material) = material else { return Ok(None) };
     let root = buffers.root();
-    let look = &at(&root.materials, material, "materials")?.pbr_metallic_roughness;
-    let texture = look.base_color_texture.as_ref();
+    let material_use = &at(&root.materials, material, "materials")?.pbr_metallic_roughness;
+    let texture = material_use.base_color_texture.as_ref();
     texture.map(|info| Ok(at(&root.textures, info.index, "textures")?.source)).transpose()
 }
 
 fn material_of(
     buffers: &Buffers<'_>,
-    look: Look,
+    material_use: MaterialUse,
     images: &Images,
     painted: Option<ColorImage>,
 ) -> Result<Material, ImportFault> {
-    let Some(index) = look.material else {
+    let Some(index) = material_use.material else {
         return Ok(Material { name: "default".into(), color: [255; 3], texture: painted });
     };
     let material = at(&buffers.root().materials, index, "materials")?;
     let [r, g, b, _] = material.pbr_metallic_roughness.base_color_factor.0;
     let color = [r, g, b].map(srgb);
     let name = material.name.clone().unwrap_or_else(|| format!("material {index}"));
-    let image = image_of(buffers, look.material)?.and_then(|image| images.get(&image.value()));
+    let image = image_of(buffers, material_use.material)?.and_then(|image| images.get(&image.value()));
     let (color, texture) = match image {
         Some(Ok(image)) => (color, Some(image.clone())),
         Some(Err(_)) => (color.map(|level| (u16::from(level) * u16::from(GREY_LEVEL) / 255) as u8), None),

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::behaviour::path_search::viewpoint::{ViewTarget, Viewpoint};
-use crate::behaviour::progress::guard::LAST_LOOK_DURATION_S;
+use crate::behaviour::progress_checker::guard::LAST_LOOK_DURATION_S;
 use trundle_planning::Plan;
 
 /// A lane along x whose bend into a side lane along y, at x from 2.6 to 3.2 m, was never seen.

@@ -99,7 +99,7 @@ impl ProgressGuard {
         clock.since = now;
     }
 
-    /// The robot may have been carried: its path has no meaning any more, and the way back is a detour.
+    /// The robot may have been carried: its path is void, and the return to it is a detour.
     pub(crate) fn carried(&mut self, now: Stamp, results: usize) {
         self.path = None;
         self.allow_detour(now, results);

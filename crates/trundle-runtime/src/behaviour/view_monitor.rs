@@ -7,7 +7,7 @@ use trundle_core::{Stamp, Twist2};
 
 /// The robot's view, and the turns that restore it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Sight {
+pub(crate) struct ViewMonitor {
     recovery: SightRecovery,
     /// The safety monitor's timeout of images, s.
     image_timeout: f64,
@@ -16,7 +16,7 @@ pub(crate) struct Sight {
 /// Time without a usable scan \[s\] after which the robot turns to regain one. Source: ours.
 const BLIND_PAUSE_S: f64 = 3.0;
 
-impl Sight {
+impl ViewMonitor {
     /// A view that counts as lost `image_timeout` s after the last image with content.
     pub(crate) fn new(image_timeout: f64) -> Self {
         Self { recovery: SightRecovery::default(), image_timeout }
