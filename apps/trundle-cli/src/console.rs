@@ -30,7 +30,18 @@ pub fn warn(message: &str) {
 /// Prints a result on standard output.
 pub fn print(text: &str) {
     let mut out = std::io::stdout();
-    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+    note_refusal(writeln!(out, "{text}").and_then(|()| out.flush()));
+}
+
+/// Prints help, the version or an error of usage; returns false if standard output refuses it.
+pub fn print_usage(usage: &clap::Error) -> bool {
+    let result = usage.print().and_then(|()| std::io::stdout().flush());
+    note_refusal(result);
+    usage.use_stderr() || print_failure().is_none()
+}
+
+fn note_refusal(result: std::io::Result<()>) {
+    match result {
         // A closed reader is not a failure of the run.
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             PRINT_FAILURE.get_or_init(|| error);

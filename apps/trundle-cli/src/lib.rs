@@ -47,12 +47,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let (cli, matches) = match matches.and_then(|found| Ok((Cli::from_arg_matches(&found)?, found))) {
         Ok(parsed) => parsed,
         Err(usage) => {
-            // This case includes help and version. A closed standard output is no error here.
-            let _ = usage.print();
-            return usage.exit_code() as u8;
+            // This case includes help and version.
+            let code = usage.exit_code() as u8;
+            return if console::print_usage(&usage) { code } else { outcome::end(Ok(Outcome::Reached), &[]) };
         }
     };
-    match trundle::app::start_log(cli.verbose).and_then(|()| output_args::check(&matches)) {
+    let started = stop::survive_file_limits().and_then(|()| trundle::app::start_log(cli.verbose));
+    match started.and_then(|()| output_args::check(&matches)) {
         Ok(folders) => {
             let result = listen(&cli.command).and_then(|()| run_command(cli));
             wait_for_abandonment();
@@ -75,7 +76,7 @@ fn listen(command: &Command) -> Result<(), AppError> {
         _ => stop::end_at_once(|signal| {
             let is_ending = abandon_outputs();
             if is_ending {
-                console::print_stopped(signal.name(), "; nothing was written");
+                console::print_stopped(signal.name(), &format!("; {}", output_args::written()));
             }
             is_ending
         }),

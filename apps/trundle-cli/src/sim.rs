@@ -49,12 +49,8 @@ pub fn run(args: &SimArgs) -> Result<Outcome, AppError> {
     let mut robot = load_simulator(name, args.place.options(), config)?;
     let grid =
         args.needs_map().then(|| true_map(robot.scene(), args.true_map.resolution, band)).transpose()?;
-    if let (Some(file), Some(grid)) = (&args.true_map.map, &grid) {
-        for (file, bytes) in map_files(file, grid, args.true_map.map_image)? {
-            write_file(&file, &bytes)?;
-        }
-    }
     if args.wants_only_map() {
+        write_true_map(args, grid.as_ref())?;
         return Ok(Outcome::Reached);
     }
     let drive = drive(args, &mut robot, driver, grid.as_ref(), folder.as_ref())?;
@@ -102,6 +98,8 @@ fn drive(
         console::print(&recording_announcement(robot, args.driver.duration.or_else(|| driver.end_s())));
     }
     let mut recording = folder.map(|folder| DriveRecording::new(folder, robot)).transpose()?;
+    // All inputs are accepted by now: exit code 2 promises that nothing was written.
+    write_true_map(args, grid)?;
     let display = console::StepDisplay::new(args.common.quiet);
     let drive = drive_simulator(robot, driver.as_mut(), args.driver.duration, recording.as_mut(), &display)?;
     drop(driver); // a driver at the keys gives the terminal back
@@ -111,6 +109,13 @@ fn drive(
         recording.finish(grid, scene.start, &drive_summary(&drive, &scene.name, args.place.seed))?;
     }
     Ok(drive)
+}
+
+/// Writes the files of `--map`, if given.
+fn write_true_map(args: &SimArgs, grid: Option<&OccupancyGrid>) -> Result<(), AppError> {
+    let (Some(file), Some(grid)) = (&args.true_map.map, grid) else { return Ok(()) };
+    let mut files = map_files(file, grid, args.true_map.map_image)?.into_iter();
+    files.try_for_each(|(file, bytes)| write_file(&file, &bytes))
 }
 
 fn facts(args: &SimArgs, robot: &Simulator) -> RunFacts {

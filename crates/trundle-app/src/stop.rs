@@ -110,6 +110,18 @@ pub fn listen(abandon: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppEr
     })
 }
 
+/// Makes a write beyond the limit of a file's size (`ulimit -f`) an error of the write. Without this, the system ends the program and the
+/// results so far are lost.
+///
+/// # Errors
+/// When the system refuses.
+#[cfg(unix)]
+pub fn survive_file_limits() -> Result<(), AppError> {
+    let signal = signal_hook::consts::SIGXFSZ;
+    signal_hook::flag::register(signal, std::sync::Arc::default()).map_err(refused)?;
+    Ok(())
+}
+
 /// Ignores the signals that request the end of a program.
 ///
 /// # Errors
@@ -171,12 +183,18 @@ fn on_signal(act: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppError> 
 
 #[cfg(unix)]
 fn refused(error: std::io::Error) -> AppError {
-    AppError::Environment(format!("cannot listen for Ctrl-C: {error}"))
+    AppError::Environment(format!("cannot listen for signals: {error}"))
 }
 
 /// On other systems Ctrl-C ends the program immediately.
 #[cfg(not(unix))]
 pub fn listen(_abandon: impl Fn(StopSignal) + Send + 'static) -> Result<(), AppError> {
+    Ok(())
+}
+
+/// Other systems have no such signal.
+#[cfg(not(unix))]
+pub fn survive_file_limits() -> Result<(), AppError> {
     Ok(())
 }
 

@@ -176,7 +176,9 @@ pub(crate) fn reason(error: &std::io::Error) -> String {
         ErrorKind::NotFound => "it does not exist",
         ErrorKind::PermissionDenied => "no permission",
         ErrorKind::StorageFull => "the disk is full",
-        ErrorKind::FileTooLarge => "the file would be larger than the system allows",
+        ErrorKind::FileTooLarge => {
+            "the file would be larger than the system allows (`ulimit -f`, or the kind of the disk)"
+        }
         ErrorKind::QuotaExceeded => "the disk quota is used up",
         ErrorKind::ReadOnlyFilesystem => "the file system is read-only",
         ErrorKind::IsADirectory => "it is a folder",

@@ -1,7 +1,7 @@
-//! The search for the mount of a laser that the odometry does not contradict: mirrored, and turned by quarters.
+//! The search for the mount of a laser that the odometry does not contradict: mirrored, and turned.
 
 use super::counts::ScanCounts;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 use trundle_core::{Pose2, Vector2, wrap_angle};
 use trundle_io::{LaserLog, LaserLogScan, LaserMount};
 
@@ -25,6 +25,9 @@ const MAX_STEP_SCANS: usize = 40;
 const MAX_MATCH_DISTANCE_M: f64 = 0.3;
 /// Difference of two turns of a laser below which they are equal \[rad\]: half a degree, since messages give whole degrees. Source: ours.
 const MIN_TURN_DIFFERENCE_RAD: f64 = 0.0087;
+/// Difference of the turns of a laser that are tried first \[rad\]: 15 degrees, so that one of them is within 8 degrees of the true turn.
+/// Source: ours.
+const COARSE_TURN_STEP_RAD: f64 = TAU / 24.0;
 /// Largest ratio of the better mount's error to the given mount's error. Above it no mount is suggested. Source: ours.
 const MAX_ERROR_SHARE: f64 = 0.6;
 
@@ -87,11 +90,38 @@ pub(super) fn better_mount(log: &LaserLog) -> Option<LaserMount> {
         return None;
     }
     let taken = mean_error(&steps, Reading { is_mirrored: false, turn: 0.0 })?;
-    let quarters = (0..4).map(|quarter| f64::from(quarter) * FRAC_PI_2);
-    let readings = quarters.flat_map(|turn| [false, true].map(|is_mirrored| Reading { is_mirrored, turn }));
-    let errors = readings.filter_map(|reading| Some((mean_error(&steps, reading)?, reading)));
-    let (error, best) = errors.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
-    (error < MAX_ERROR_SHARE * taken).then(|| best.applied_to(log.mount))
+    let (quarter_error, quarter) = best_reading(&steps, readings_every(FRAC_PI_2))?;
+    let (turned_error, turned) = best_turn(&steps)?;
+    // Most lasers are mounted by quarters of a turn: another angle has to fit clearly better than each of these.
+    if turned_error < MAX_ERROR_SHARE * quarter_error {
+        return Some(turned.applied_to(log.mount));
+    }
+    (quarter_error < MAX_ERROR_SHARE * taken).then(|| quarter.applied_to(log.mount))
+}
+
+/// The reading with the smallest mean error, and this error, m.
+fn best_reading(steps: &[Step<'_>], readings: impl IntoIterator<Item = Reading>) -> Option<(f64, Reading)> {
+    let errors = readings.into_iter().filter_map(|reading| Some((mean_error(steps, reading)?, reading)));
+    errors.min_by(|(a, _), (b, _)| a.total_cmp(b))
+}
+
+/// Upright and mirrored readings at each multiple of `step` \[rad\] in a turn.
+fn readings_every(step: f64) -> impl Iterator<Item = Reading> {
+    let turns = (0..).map(move |k| f64::from(k) * step).take_while(|turn| *turn < TAU - step / 2.0);
+    turns.flat_map(|turn| [false, true].map(|is_mirrored| Reading { is_mirrored, turn }))
+}
+
+/// The best reading at any angle: a search at coarse steps, then at half the step around the best angle, down to half a degree.
+fn best_turn(steps: &[Step<'_>]) -> Option<(f64, Reading)> {
+    let mut best = best_reading(steps, readings_every(COARSE_TURN_STEP_RAD))?;
+    let mut step = COARSE_TURN_STEP_RAD / 2.0;
+    while step > MIN_TURN_DIFFERENCE_RAD / 2.0 {
+        let (error, reading) = best;
+        let beside = [-step, step].map(|change| Reading { turn: reading.turn + change, ..reading });
+        best = best_reading(steps, beside).filter(|(other, _)| *other < error).unwrap_or(best);
+        step /= 2.0;
+    }
+    Some(best)
 }
 
 /// Another interpretation of a scan's angles: mirrored at the base's x axis, then rotated to the left, around the laser.
@@ -175,7 +205,6 @@ fn points(scan: &LaserLogScan, reading: Reading) -> Vec<Vector2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::TAU;
     use trundle_core::{Beam, Scan, Stamp};
 
     /// A simulated drive along a curve in a room of 6 x 4 m with a box; the laser is mounted as `truth` and its log claims an upright laser
@@ -224,6 +253,17 @@ mod tests {
             let found = better_mount(&drive(truth)).unwrap();
             assert_eq!(found.upside_down, upside_down, "{truth:?}: {found:?}");
             assert!(wrap_angle(found.turn - truth.turn).abs() < 1e-9, "{truth:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn lasers_turned_by_any_angle_are_named() {
+        for (degrees, upside_down) in [(45.0_f64, false), (-135.0, false), (30.0, true), (67.0, false)] {
+            let truth = LaserMount { turn: degrees.to_radians(), upside_down };
+            let found = better_mount(&drive(truth)).unwrap();
+            assert_eq!(found.upside_down, upside_down, "{truth:?}: {found:?}");
+            let error = wrap_angle(found.turn - truth.turn).abs();
+            assert!(error < 2.0_f64.to_radians(), "{truth:?}: {found:?}");
         }
     }
 

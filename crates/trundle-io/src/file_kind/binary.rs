@@ -8,11 +8,11 @@ const MAGICS: &[(&[u8], FileKind)] = &[
     (b"SQLite format 3\0", FileKind::Ros2Sqlite),
     (b"\x1f\x8b", FileKind::Gzip),
     (b"\x28\xb5\x2f\xfd", FileKind::Zstd),
-    (b"PK\x03\x04", FileKind::Archive),
-    (b"7z\xbc\xaf\x27\x1c", FileKind::Archive),
-    (b"BZh", FileKind::Archive),
-    (b"\xfd7zXZ\0", FileKind::Archive),
-    (b"\x04\x22\x4d\x18", FileKind::Archive),
+    (b"PK\x03\x04", FileKind::Zip),
+    (b"7z\xbc\xaf\x27\x1c", FileKind::SevenZip),
+    (b"BZh", FileKind::Bzip2),
+    (b"\xfd7zXZ\0", FileKind::Xz),
+    (b"\x04\x22\x4d\x18", FileKind::Lz4),
     (b"\x89PNG\r\n\x1a\n", FileKind::Png),
     (b"\xff\xd8\xff", FileKind::Jpeg),
     (b"II*\0", FileKind::Tiff),
@@ -41,6 +41,8 @@ const MAGICS: &[(&[u8], FileKind)] = &[
     (b"\xfe\xff", FileKind::Utf16Text),
 ];
 
+/// Place of the mark in the header of a tar archive \[bytes\]. Source: POSIX.1-1988.
+const TAR_MARK_OFFSET: usize = 257;
 /// First bytes of an MCAP file.
 pub(super) const MCAP_MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
@@ -86,6 +88,9 @@ fn container(head: &[u8]) -> Option<FileKind> {
     let at = |offset: usize, mark: &[u8]| head.get(offset..).is_some_and(|rest| rest.starts_with(mark));
     if at(0, b"BM") && head.get(6..10) == Some(&[0; 4]) {
         return Some(FileKind::Bmp);
+    }
+    if at(TAR_MARK_OFFSET, b"ustar") {
+        return Some(FileKind::Tar);
     }
     if at(0, b"MZ") && head.contains(&0) {
         return Some(FileKind::Executable);

@@ -21,10 +21,13 @@ pub(super) fn check(path: &Path, found: FileKind, expected: &str) -> Result<(), 
     if read.contains(&inside) {
         return Ok(());
     }
-    let problem = format!(
-        "this is {} packed with {packing}, expected {expected}; unpack it with `{unpack}`",
-        words::name(inside)
-    );
+    let unpack = if inside == FileKind::Tar {
+        words::TAR_REMEDY.to_owned()
+    } else {
+        format!("unpack it with `{unpack}`")
+    };
+    let problem =
+        format!("this is {} packed with {packing}, expected {expected}; {unpack}", words::name(inside));
     Err(IoError::malformed(path, problem))
 }
 
@@ -71,6 +74,25 @@ mod tests {
         assert_eq!(checked(&zstd(b"\x89MCAP0\r\n\x01")), Ok(FileKind::Zstd));
         assert_eq!(checked(b"\x1f\x8b\x08\0broken"), Ok(FileKind::Gzip));
         assert_eq!(checked(b"\x28\xb5\x2f\xfdbroken"), Ok(FileKind::Zstd));
+    }
+
+    #[test]
+    fn archives_are_named_with_the_program_that_unpacks_them() {
+        let tar = [&[b'a'; 257][..], b"ustar\x0000"].concat();
+        for (bytes, name, program) in [
+            (&b"BZh91AY&SY"[..], "a file packed with bzip2", "bunzip2"),
+            (b"\xfd7zXZ\0\0\x04", "a file packed with xz", "unxz"),
+            (b"\x04\x22\x4d\x18d", "a file packed with lz4", "unlz4"),
+            (b"PK\x03\x04\x14\0", "a zip archive", "unzip"),
+            (b"7z\xbc\xaf\x27\x1c", "a 7z archive", "7z x"),
+            (&tar, "a tar archive", "tar xf"),
+            (&gzip(&tar), "a tar archive packed with gzip", "tar xf"),
+            (&zstd(&tar), "a tar archive packed with zstd", "tar xf"),
+        ] {
+            let said = checked(bytes).unwrap_err();
+            assert!(said.starts_with(&format!("this is {name}, expected")), "{said}");
+            assert!(said.ends_with(&format!("; unpack it with `{program}`")), "{said}");
+        }
     }
 
     #[test]

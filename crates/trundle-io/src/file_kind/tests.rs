@@ -71,6 +71,8 @@ fn text_files_by_their_first_lines() {
         ("\u{feff}resolution: 0.05\nimage: m.pgm\n", K::MapYaml),
         ("%YAML:1.0\n---\nCamera.type: \"PinHole\"\nCamera.fx: 500.0\n", K::OrbSlamYaml),
         ("File.version: \"1.0\"\nCamera1.fx: 500.0\n", K::OrbSlamYaml),
+        ("%YAML:1.0\nCamera.fy: 500.0\n", K::OrbSlamYaml),
+        ("Camera:\n  fy: 500\n", K::StellaVslamYaml),
         ("Camera:\n  name: a\n  fx: 500\n  fy: 500\n", K::StellaVslamYaml),
         ("image_width: 640\ncamera_matrix:\n  data: [1, 0, 0]\n", K::RosCameraYaml),
         ("height: 4\nwidth: 4\ndistortion_model: plumb_bob\nk: [1]\n", K::RosCameraYaml),

@@ -91,13 +91,13 @@ fn of_yaml(lines: &[&str]) -> Option<FileKind> {
     let any = |keys: &[&str]| keys.iter().any(|key| has(key));
     if has("rosbag2_bagfile_information") {
         Some(FileKind::RosBagMetadata)
-    } else if any(&["Camera.fx", "Camera1.fx"]) {
+    } else if lines.iter().any(|line| line.starts_with("Camera.") || line.starts_with("Camera1.")) {
         Some(FileKind::OrbSlamYaml)
     } else if any(&["camera_matrix", "projection_matrix", "distortion_model", "K", "k"])
         && any(&["image_width", "image_height", "width", "height", "camera_matrix"])
     {
         Some(FileKind::RosCameraYaml)
-    } else if has("Camera") && has("fx") {
+    } else if has("Camera") && any(&["fx", "fy", "cx", "cy"]) {
         Some(FileKind::StellaVslamYaml)
     } else if MAP_KEYS.iter().filter(|key| has(key)).count() > 1 {
         Some(FileKind::MapYaml)

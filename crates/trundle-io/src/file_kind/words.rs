@@ -34,7 +34,12 @@ const WORDS: &[(FileKind, &str, &str)] = &[
     (K::OtherMcap, "an MCAP file", "`trundle map` and `slam` read it if its messages are those of ROS 2"),
     (K::Gzip, "a file packed with gzip", "unpack it with `gunzip`"),
     (K::Zstd, "a file packed with zstd", "unpack it with `unzstd`"),
-    (K::Archive, "a packed archive", "unpack it first"),
+    (K::Bzip2, "a file packed with bzip2", "unpack it with `bunzip2`"),
+    (K::Xz, "a file packed with xz", "unpack it with `unxz`"),
+    (K::Lz4, "a file packed with lz4", "unpack it with `unlz4`"),
+    (K::Zip, "a zip archive", "unpack it with `unzip`"),
+    (K::SevenZip, "a 7z archive", "unpack it with `7z x`"),
+    (K::Tar, "a tar archive", TAR_REMEDY),
     (K::Pgm, "a PGM picture", ""),
     (K::Netpbm, "a PBM or PPM picture", ""),
     (K::Png, "a PNG picture", ""),
@@ -91,6 +96,8 @@ const WORDS: &[(FileKind, &str, &str)] = &[
     (K::Folder, "a folder", ""),
 ];
 
+/// Remedy for a tar archive; GNU tar and bsdtar recognise a packed one.
+pub(super) const TAR_REMEDY: &str = "unpack it with `tar xf`";
 const MESH_REMEDY: &str = "trundle reads meshes as .glb or .gltf: Blender (File > Export > glTF 2.0) or `assimp export FILE FILE.glb` \
                            makes one of it";
 

@@ -3,7 +3,7 @@
 use super::file_identity::{FileIdentity, is_same, resolved};
 use super::tree::files_below;
 use crate::IoError;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::{Component, Path, PathBuf};
 
 /// The files and folders that a command reads, with the files that these name: no output may replace them.
@@ -22,7 +22,7 @@ impl InputFiles {
     pub fn new(paths: impl IntoIterator<Item = PathBuf>) -> Self {
         let mut files = Self::default();
         for path in paths {
-            files.paths.extend(named_in(&path));
+            files.paths.extend(named_by(&path));
             files.paths.push(path);
         }
         files
@@ -99,6 +99,18 @@ fn holds(place: &Path, input: &Path) -> IoError {
     IoError::malformed(place, problem)
 }
 
+/// The files that an input names, and those that these name: a scene names a map, and the map its picture.
+fn named_by(path: &Path) -> BTreeSet<PathBuf> {
+    let (mut found, mut new) = (BTreeSet::new(), named_in(path));
+    while let Some(file) = new.pop() {
+        if !found.contains(&file) {
+            new.extend(named_in_text(&file).into_iter().map(|file| resolved(&file)));
+            found.insert(file);
+        }
+    }
+    found
+}
+
 /// The files named in a text file, or in the text files of a folder, at any location.
 fn named_in(path: &Path) -> Vec<PathBuf> {
     let texts: Vec<PathBuf> = if path.is_dir() {
@@ -167,6 +179,21 @@ mod tests {
         }
         assert_eq!(refusal(&[&data], &other), None);
         assert_eq!(refusal(&[&data], &data.join("slam")), None, "a new folder in an input replaces nothing");
+    }
+
+    #[test]
+    fn a_file_that_a_named_file_names_is_an_input() {
+        let scratch = tempfile::tempdir().unwrap();
+        let [scenes, maps, pictures] = ["scenes", "maps", "pictures"].map(|name| scratch.path().join(name));
+        [&scenes, &maps, &pictures].iter().for_each(|folder| fs::create_dir(folder).unwrap());
+        fs::write(scenes.join("s.toml"), "[base]\nmap = \"../maps/map.yaml\"\n").unwrap();
+        fs::write(maps.join("map.yaml"), "image: ../pictures/map.pgm\nsame: map.yaml\n").unwrap();
+        fs::write(pictures.join("map.pgm"), "1").unwrap();
+        let said = refusal(&[&scenes.join("s.toml")], &pictures).unwrap();
+        assert!(said.contains("holds the input") && said.contains("map.pgm"), "{said}");
+        let inputs = InputFiles::new([scenes.join("s.toml")]);
+        assert!(inputs.require_other_than(&pictures.join("map.pgm")).is_err());
+        assert_eq!(refusal(&[&scenes.join("s.toml")], &scratch.path().join("new")), None);
     }
 
     #[test]
