@@ -107,7 +107,7 @@ fn best_reading(steps: &[Step<'_>], readings: impl IntoIterator<Item = Reading>)
 
 /// Upright and mirrored readings at each multiple of `step` \[rad\] in a turn.
 fn readings_every(step: f64) -> impl Iterator<Item = Reading> {
-    let turns = (0..).map(move |k| f64::from(k) * step).take_while(|turn| *turn < TAU - step / 2.0);
+    let turns = (0..).map(move |k| f64::from(k) * step).take_while(move |turn| *turn < TAU - step / 2.0);
     turns.flat_map(|turn| [false, true].map(|is_mirrored| Reading { is_mirrored, turn }))
 }
 
