@@ -28,6 +28,8 @@ const MIN_TURN_DIFFERENCE_RAD: f64 = 0.0087;
 /// Difference of the turns of a laser that are tried first \[rad\]: 15 degrees, so that one of them is within 8 degrees of the true turn.
 /// Source: ours.
 const COARSE_TURN_STEP_RAD: f64 = TAU / 24.0;
+/// Largest ratio of the error at any angle to that at the best quarter of a turn. Above it the quarter is suggested. Source: ours.
+const MAX_TURNED_SHARE: f64 = 0.85;
 /// Largest ratio of the better mount's error to the given mount's error. Above it no mount is suggested. Source: ours.
 const MAX_ERROR_SHARE: f64 = 0.6;
 
@@ -92,11 +94,10 @@ pub(super) fn better_mount(log: &LaserLog) -> Option<LaserMount> {
     let taken = mean_error(&steps, Reading { is_mirrored: false, turn: 0.0 })?;
     let (quarter_error, quarter) = best_reading(&steps, readings_every(FRAC_PI_2))?;
     let (turned_error, turned) = best_turn(&steps)?;
-    // Most lasers are mounted by quarters of a turn: another angle has to fit clearly better than each of these.
-    if turned_error < MAX_ERROR_SHARE * quarter_error {
-        return Some(turned.applied_to(log.mount));
-    }
-    (quarter_error < MAX_ERROR_SHARE * taken).then(|| quarter.applied_to(log.mount))
+    // Most lasers are mounted by quarters of a turn, and beams far apart blur the error: another angle has to fit better than these.
+    let is_turned = turned_error < MAX_TURNED_SHARE * quarter_error;
+    let (error, best) = if is_turned { (turned_error, turned) } else { (quarter_error, quarter) };
+    (error < MAX_ERROR_SHARE * taken).then(|| best.applied_to(log.mount))
 }
 
 /// The reading with the smallest mean error, and this error, m.
