@@ -35,8 +35,7 @@ pub fn print(text: &str) {
 
 /// Prints help, the version or an error of usage; returns false if standard output refuses it.
 pub fn print_usage(usage: &clap::Error) -> bool {
-    let result = usage.print().and_then(|()| std::io::stdout().flush());
-    note_refusal(result);
+    note_refusal(usage.print().and_then(|()| std::io::stdout().flush()));
     usage.use_stderr() || print_failure().is_none()
 }
 

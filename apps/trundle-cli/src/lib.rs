@@ -76,7 +76,7 @@ fn listen(command: &Command) -> Result<(), AppError> {
         _ => stop::end_at_once(|signal| {
             let is_ending = abandon_outputs();
             if is_ending {
-                console::print_stopped(signal.name(), &format!("; {}", output_args::written()));
+                console::print_stopped(signal.name(), &format!("; {}", trundle::app::written_text()));
             }
             is_ending
         }),

@@ -1,6 +1,6 @@
 //! The end of a command: its exit code, and a sentence on failure.
 
-use crate::{console, output_args};
+use crate::console;
 use std::path::PathBuf;
 use trundle::app::exit_codes::{CODE_BAD_INPUT, CODE_INCOMPLETE, CODE_MISSED};
 use trundle::app::{AppError, stop};
@@ -47,7 +47,7 @@ pub fn end(result: Result<Outcome, AppError>, folders: &[PathBuf]) -> u8 {
         [folder, ..] if result.is_ok() || code == CODE_INCOMPLETE => {
             format!("the results so far are in {}", folder.display())
         }
-        _ => output_args::written(),
+        _ => trundle::app::written_text(),
     };
     console::print_stopped(signal.name(), &format!(" after {done}; {place}"));
     if code == CODE_INCOMPLETE { code } else { signal.exit_code() }

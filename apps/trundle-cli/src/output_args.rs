@@ -5,7 +5,7 @@ use clap::parser::ValueSource;
 use std::ffi::OsString;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::OnceLock;
 use trundle::app::AppError;
 use trundle::io::{CommandOutputs, InputFiles, OutputFile};
 
@@ -53,8 +53,6 @@ path_arg!(
     ContinuedFileArg
 );
 
-/// The single files that the present command has written.
-static WRITTEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 /// The inputs of the present command.
 static INPUTS: OnceLock<InputFiles> = OnceLock::new();
 
@@ -107,16 +105,6 @@ pub fn inputs() -> &'static InputFiles {
 /// When the file cannot be written, or is an input.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), AppError> {
     OutputFile::create_apart_from(inputs(), path)?.write(bytes)?;
-    WRITTEN.lock().unwrap_or_else(PoisonError::into_inner).push(path.to_owned());
+    trundle::app::note_written(path);
     Ok(())
-}
-
-/// The single files that the present command has written so far, for a person.
-pub fn written() -> String {
-    let files = WRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
-    match files.as_slice() {
-        [] => "nothing was written".to_owned(),
-        [file] => format!("only {} was written", file.display()),
-        [first, .., last] => format!("{} to {} were written", first.display(), last.display()),
-    }
 }

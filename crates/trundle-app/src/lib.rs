@@ -72,6 +72,7 @@ pub mod surface;
 mod text_table;
 mod threads;
 pub mod vocabulary_file;
+mod written_files;
 
 pub use best_view::BestView;
 pub use body_log::BodyLog;
@@ -102,3 +103,4 @@ pub use setup::{RUN_COMMAND, RunSetup};
 pub use step_progress::StepProgress;
 pub use text_table::aligned_table;
 pub use threads::on_threads;
+pub use written_files::{note_written, written_text};
