@@ -37,21 +37,23 @@ pub struct CameraModel {
 /// \[Ringaby11\].
 const KINECT_V1_READOUT_S: f64 = 0.026;
 
+/// The preset of an Xtion, whose readout time is not known to us.
+const UNKNOWN_READOUT_PRESET: &str = "freiburg3";
+
+/// Which numbers the description of a camera holds; the others are assumed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct HeldNumbers {
+    pub depth_scale: bool,
+    pub readout: bool,
+}
+
 impl CameraModel {
     /// The camera of a preset (`freiburg1`, `freiburg2`, `freiburg3`, `kinect_v2`) or else of a file.
     ///
     /// # Errors
     /// When `name` is neither, or as [`CameraModel::read`].
     pub fn named(name: &str) -> Result<Self, IoError> {
-        if let Some(model) = Self::preset(name) {
-            return Ok(model);
-        }
-        let path = Path::new(name);
-        if !path.exists() {
-            let problem = format!("neither a file nor a camera preset ({PRESETS})");
-            return Err(IoError::malformed(path, problem));
-        }
-        Self::read(path)
+        Self::described(name).map(|(model, _)| model)
     }
 
     /// The camera of a preset. The three TUM RGB-D presets are the benchmark's calibration of the colour cameras, to which depth is
@@ -73,8 +75,7 @@ impl CameraModel {
                 let lens = lens(0.2312, -0.7849, -0.0033, -0.0001, 0.9172);
                 tum((520.9, 521.0), (325.1, 249.7), lens, KINECT_V1_READOUT_S)
             }
-            // An Xtion, whose readout is not known to us.
-            "freiburg3" => tum((535.4, 539.2), (320.1, 247.6), Distortion::default(), 0.0),
+            UNKNOWN_READOUT_PRESET => tum((535.4, 539.2), (320.1, 247.6), Distortion::default(), 0.0),
             "kinect_v2" => {
                 let camera = PinholeCamera::kinect_v2();
                 Self { camera, depth_scale: KINECT_V2_DEPTH_SCALE }
@@ -95,23 +96,16 @@ impl CameraModel {
         Self::of_fields(path, &Self::fields(path)?)
     }
 
-    /// Whether a preset or a file holds the depth scale.
-    ///
-    /// # Errors
-    /// As [`CameraModel::named`].
-    pub fn holds_depth_scale(name: &str) -> Result<bool, IoError> {
-        Ok(Self::preset(name).is_some() || Self::fields(Path::new(name))?.depth_scale.is_some())
-    }
-
-    /// Whether a preset or a file holds the readout time. The camera of preset freiburg3, an Xtion, has an unknown one.
-    ///
-    /// # Errors
-    /// As [`CameraModel::named`].
-    pub fn holds_readout(name: &str) -> Result<bool, IoError> {
-        match Self::preset(name) {
-            Some(_) => Ok(name != "freiburg3"),
-            None => Ok(Self::fields(Path::new(name))?.readout.is_some()),
+    /// The camera of a preset or a file, and which of its numbers the description holds; the file is read once.
+    pub(crate) fn described(name: &str) -> Result<(Self, HeldNumbers), IoError> {
+        if let Some(model) = Self::preset(name) {
+            return Ok((model, HeldNumbers { depth_scale: true, readout: name != UNKNOWN_READOUT_PRESET }));
         }
+        let path = existing(name)?;
+        let fields = Self::fields(path)?;
+        let held =
+            HeldNumbers { depth_scale: fields.depth_scale.is_some(), readout: fields.readout.is_some() };
+        Ok((Self::of_fields(path, &fields)?, held))
     }
 
     /// The numbers of a file.
@@ -130,6 +124,13 @@ impl CameraModel {
         let file = CameraFile::of(&self.camera, self.depth_scale);
         toml::to_string(&file).expect("invariant: a camera is plain data")
     }
+}
+
+/// The path of a camera file.
+fn existing(name: &str) -> Result<&Path, IoError> {
+    let path = Path::new(name);
+    let problem = || IoError::malformed(path, format!("neither a file nor a camera preset ({PRESETS})"));
+    path.exists().then_some(path).ok_or_else(problem)
 }
 
 /// The numbers of a file of this kind.

@@ -43,14 +43,15 @@ impl SequenceCamera {
     }
 
     fn named(name: &str) -> Result<Self, IoError> {
-        let (model, mut warnings) = (CameraModel::named(name)?, Warnings::default());
-        if !CameraModel::holds_depth_scale(name)? {
+        let (model, held) = CameraModel::described(name)?;
+        let mut warnings = Warnings::default();
+        if !held.depth_scale {
             let problem = format!(
                 "no depth scale in the camera file: {KINECT_V2_DEPTH_SCALE} units per metre are assumed; --depth-scale N sets another"
             );
             warnings.add(&problem, name);
         }
-        let is_readout_known = CameraModel::holds_readout(name)?;
+        let is_readout_known = held.readout;
         Ok(Self { model, name: name.to_owned(), is_readout_known, is_assumed: false, warnings })
     }
 

@@ -1,4 +1,4 @@
-//! The page of results is what `results/*.json` gives: nobody edits it.
+//! The page of results is generated from `results/*.json` and not edited by hand.
 
 use super::finding::Finding;
 use crate::results::{PAGE, render};

@@ -16,11 +16,11 @@ pub struct BarChart {
 }
 
 /// Width of the chart, in its own units. Source: ours.
-const CHART_WIDTH: f64 = 540.0;
+pub(super) const CHART_WIDTH: f64 = 540.0;
 /// Distance of neighbouring bars, in the chart's units. Source: ours.
 const BAR_PITCH: f64 = 28.0;
 /// Distance of the first bar from the upper edge, in the chart's units. Source: ours.
-const PLOT_TOP: f64 = 40.0;
+pub(super) const PLOT_TOP: f64 = 40.0;
 
 impl BarChart {
     /// An empty chart of values in `unit`; `bar` and `whisker` name the meaning of the two ends.
@@ -54,16 +54,7 @@ impl BarChart {
 
     fn draw_ground(&self, svg: &mut String, axis: &Axis, left: f64, height: f64) {
         let bottom = height - 30.0;
-        for (at, label) in axis.ticks(6) {
-            put(
-                svg,
-                format_args!(
-                    "<path class=\"rule\" d=\"M{at:.1} {PLOT_TOP}V{bottom:.1}\"/>\
-                 <text class=\"tick\" x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>",
-                    bottom + 17.0,
-                ),
-            );
-        }
+        draw_rules(svg, axis, bottom);
         let bar = ink(Color::BLUE);
         put(
             svg,
@@ -77,6 +68,20 @@ impl BarChart {
                 left + 76.0 + text_width(&self.names[0]),
                 escape(&self.names[1]),
                 escape(&self.unit),
+            ),
+        );
+    }
+}
+
+/// Upright rules at the ticks of `axis`, from [`PLOT_TOP`] to `bottom` px, with their values below.
+pub(super) fn draw_rules(svg: &mut String, axis: &Axis, bottom: f64) {
+    for (at, label) in axis.ticks(6) {
+        put(
+            svg,
+            format_args!(
+                "<path class=\"rule\" d=\"M{at:.1} {PLOT_TOP}V{bottom:.1}\"/>\
+                 <text class=\"tick\" x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>",
+                bottom + 17.0,
             ),
         );
     }

@@ -1,6 +1,7 @@
 //! Bar charts that compare several series row by row, as SVG.
 
 use super::axes::Axis;
+use super::bars::{CHART_WIDTH, PLOT_TOP, draw_rules};
 use super::line::{open_svg, put, text_width};
 use super::standalone;
 use crate::color::Color;
@@ -26,16 +27,12 @@ pub struct GroupChart {
     rows: Vec<(String, Vec<f64>)>,
 }
 
-/// Width of the chart, px: that of the line charts. Ours.
-const CHART_WIDTH: f64 = 540.0;
 /// Height of a bar, px. Ours.
 const BAR_HEIGHT: f64 = 13.0;
 /// Distance from a bar to the next of the same row, px. Ours.
 const BAR_PITCH: f64 = 16.0;
 /// Gap between the bars of two rows, px. Ours.
 const ROW_GAP: f64 = 11.0;
-/// Upper end of the bars, below the legend, px. Ours.
-const PLOT_TOP: f64 = 40.0;
 
 impl GroupChart {
     /// An empty chart of values in `unit`.
@@ -66,7 +63,7 @@ impl GroupChart {
         let longest = if longest > 0.0 { longest } else { 1.0 };
         let axis = Axis::over([0.0, longest].into_iter(), false, 0.0, (left, right));
         let mut svg = open_svg(&self.title, CHART_WIDTH, bottom + 34.0);
-        draw_ground(&mut svg, &axis, bottom + 4.0);
+        draw_rules(&mut svg, &axis, bottom + 4.0);
         self.draw_legend(&mut svg, left);
         for (i, row) in self.rows.iter().enumerate() {
             self.draw_row(&mut svg, &axis, left, PLOT_TOP + self.row_pitch() * i as f64, row);
@@ -128,19 +125,6 @@ impl GroupChart {
         for (i, ((_, color), value)) in self.series.iter().zip(values).enumerate() {
             draw_bar(svg, axis, left, top + ROW_GAP / 4.0 + BAR_PITCH * i as f64, *color, *value);
         }
-    }
-}
-
-fn draw_ground(svg: &mut String, axis: &Axis, bottom: f64) {
-    for (at, label) in axis.ticks(6) {
-        put(
-            svg,
-            format_args!(
-                "<path class=\"rule\" d=\"M{at:.1} {PLOT_TOP}V{bottom:.1}\"/>\
-                 <text class=\"tick\" x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{label}</text>",
-                bottom + 17.0,
-            ),
-        );
     }
 }
 
