@@ -5,7 +5,7 @@ use super::finding::{Finding, Rule};
 use super::tree::Tree;
 
 /// Types of a constant that is a number, or a row of numbers.
-const NUMBERS: [&str; 13] =
+pub(super) const NUMBERS: [&str; 13] =
     ["f64", "f32", "u8", "u16", "u32", "u64", "usize", "i8", "i16", "i32", "i64", "isize", "Duration"];
 
 /// Words that name a number by themselves, by use in their field.
@@ -44,7 +44,7 @@ fn undocumented(code: &str, text: &str) -> Vec<(usize, String)> {
 }
 
 /// Name and type of the constant that a line declares.
-fn declared(line: &str) -> Option<(&str, &str)> {
+pub(super) fn declared(line: &str) -> Option<(&str, &str)> {
     let visible = ["pub(crate) ", "pub(super) ", "pub "].iter().find_map(|v| line.strip_prefix(v));
     let (name, rest) = visible.unwrap_or(line).strip_prefix("const ")?.split_once(": ")?;
     Some((name, rest.split(" =").next()?))

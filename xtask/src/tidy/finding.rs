@@ -51,11 +51,13 @@ pub enum Rule {
     TypeName,
     /// A constant's name without its quantity.
     ConstantName,
+    /// A constant without the source of its value.
+    ConstantSource,
 }
 
 impl Rule {
     /// All rules with an allow-list.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::ModuleCycle,
         Self::StructFields,
         Self::ImplMethods,
@@ -67,6 +69,7 @@ impl Rule {
         Self::MissingFile,
         Self::TypeName,
         Self::ConstantName,
+        Self::ConstantSource,
     ];
 
     /// The rule's name in the allow-list.
@@ -83,6 +86,7 @@ impl Rule {
             Self::MissingFile => "missing-file",
             Self::TypeName => "type-name",
             Self::ConstantName => "constant-name",
+            Self::ConstantSource => "constant-source",
         }
     }
 }

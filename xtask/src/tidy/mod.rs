@@ -9,6 +9,7 @@ mod book_pages;
 mod citations;
 mod cited_files;
 mod cited_tests;
+mod constant_sources;
 mod constants;
 mod finding;
 mod glossary;
@@ -72,6 +73,7 @@ fn all_findings(root: &Path) -> Result<Vec<Finding>, String> {
         citations::check,
         cited_files::check,
         cited_tests::check,
+        constant_sources::check,
         constants::check,
         glossary::check,
         purity::check,
