@@ -1,8 +1,8 @@
 //! Sources of constants: the documentation of a number says where its value comes from.
 //!
-//! A number whose value is made of literals has a choice or a measurement in it. Three kinds need no source of their own:
-//! an expression of other constants, a whole number that says where or how something is stored, and a constant that shares
-//! the documentation of the line above.
+//! A number whose value is made of literals has a choice or a measurement in it. Four kinds need no source of their own: an expression of
+//! other constants, a whole number that says where or how something is stored, a table of whole numbers, and a constant that shares the
+//! documentation of the line above.
 
 use super::constants::{NUMBERS, declared};
 use super::finding::{Finding, Rule};
@@ -25,7 +25,9 @@ const LIMIT_WORDS: [&str; 3] = ["MAX", "MIN", "MOST"];
 pub fn check(tree: &Tree) -> Vec<Finding> {
     let mut findings = Vec::new();
     for package in &tree.packages {
-        for source in tree.sources(package).filter(|source| !source.is_generated()) {
+        for source in
+            tree.sources(package).filter(|source| !source.is_generated() && !is_test(&source.file.path))
+        {
             let found = |(line, name)| {
                 let message = format!("constant {name} has no source: write `{MARK}KEY, document or ours.`");
                 Finding::ruled(Rule::ConstantSource, &source.file.path, line, message)
@@ -34,6 +36,11 @@ pub fn check(tree: &Tree) -> Vec<Finding> {
         }
     }
     findings
+}
+
+/// Whether a file has tests alone.
+fn is_test(path: &str) -> bool {
+    path.ends_with("/tests.rs") || path.contains("/tests/") || path.ends_with("/testing.rs")
 }
 
 /// Line and name of each documented constant that needs a source and has none.
@@ -81,17 +88,18 @@ fn needs_source(name: &str, kind: &str, value: &str) -> bool {
 /// Whether a value is an expression of other constants.
 fn is_derived(value: &str) -> bool {
     let is_constant = |word: &str| {
-        word.starts_with(|c: char| c.is_ascii_uppercase())
-            && !word.contains(|c: char| c.is_ascii_lowercase())
+        word.starts_with(|c: char| c.is_ascii_uppercase()) && !word.contains(|c: char| c.is_ascii_lowercase())
     };
     identifiers(value).any(is_constant)
 }
 
-/// Whether a whole number says where or how something is stored.
+/// Whether whole numbers are a table, or one says where or how something is stored.
 fn is_layout(name: &str, kind: &str) -> bool {
     let is_whole = !identifiers(kind).any(|word| ["f64", "f32", "Duration"].contains(&word));
     let is_limit = name.split('_').any(|word| LIMIT_WORDS.contains(&word));
-    is_whole && !is_limit && name.rsplit('_').next().is_some_and(|word| LAYOUT_WORDS.contains(&word))
+    let is_table = kind.starts_with(['[', '(', '&']);
+    let has_word = name.rsplit('_').next().is_some_and(|word| LAYOUT_WORDS.contains(&word));
+    is_whole && !is_limit && (is_table || has_word)
 }
 
 #[cfg(test)]
@@ -102,8 +110,9 @@ mod tests {
     fn a_documented_number_without_a_source_is_found() {
         let code = "/// Gap [m].\nconst GAP_M: f64 = 0.1;\nconst STEP_M: f64 = 0.2;\n\
             /// Gap [m]. Source: ours.\n#[allow(dead_code)]\nconst FAR_GAP_M: f64 = 1.0;\n\
+            /// Sum.\nconst fn sum(a: f64) -> f64 { a + 1.0 }\n\
             struct A;\nimpl A {\n    /// Rounds of the search.\n    pub const SEARCH_ROUNDS: usize = 3;\n}\n";
-        assert_eq!(without_source(code, code), [(2, "GAP_M".to_owned()), (10, "SEARCH_ROUNDS".to_owned())]);
+        assert_eq!(without_source(code, code), [(2, "GAP_M".to_owned()), (12, "SEARCH_ROUNDS".to_owned())]);
     }
 
     #[test]
@@ -123,6 +132,7 @@ mod tests {
         assert!(!needs_source("HEAD_BYTES", "usize", " 12"));
         assert!(!needs_source("RUN_S", "f64", " 2.0 * SETTLING_S"));
         assert!(!needs_source("FOREVER_S", "f64", " f64::INFINITY"));
+        assert!(!needs_source("CELL_CORNERS", "[(i32, i32); 2]", " [(0, 0), (1, 1)]"));
         assert!(needs_source("SHARE_INDEX", "f64", " 0.5"), "no place is a fraction");
         assert!(!needs_source("KINDS", "&[(&[u8], FileKind)]", " &[(1, FileKind::A)]"));
     }

@@ -43,11 +43,11 @@ fn undocumented(code: &str, text: &str) -> Vec<(usize, String)> {
     findings
 }
 
-/// Name and type of the constant that a line declares.
+/// Name and type of the constant that a line declares; `None` for a `const fn`.
 pub(super) fn declared(line: &str) -> Option<(&str, &str)> {
     let visible = ["pub(crate) ", "pub(super) ", "pub "].iter().find_map(|v| line.strip_prefix(v));
     let (name, rest) = visible.unwrap_or(line).strip_prefix("const ")?.split_once(": ")?;
-    Some((name, rest.split(" =").next()?))
+    (!name.contains(' ')).then_some((name, rest.split(" =").next()?))
 }
 
 /// Whether a type is a number, or a row of numbers.
