@@ -71,7 +71,7 @@ impl TryFrom<Unchecked> for PinholeCamera {
     }
 }
 
-/// Largest number of columns or rows. Larger numbers are refused as typing errors.
+/// Largest number of columns or rows. Larger numbers are refused as typing errors. Source: ours.
 const MOST_PIXELS: usize = 16_384;
 
 /// Longest readout time of a camera: 0.05 s. A longer one is refused: no colour camera of a robot takes longer. Source: ours.

@@ -3,17 +3,18 @@
 use crate::{Pose2, Pose3};
 use nalgebra::{Matrix3, Matrix6, Vector6};
 
-/// Standard deviation of the floor's height, m per sqrt(m) of path: 1 cm over 4 m \[DIN18202, table 3\].
+/// Standard deviation of the floor's height, m per sqrt(m) of path. Source: \[DIN18202, table 3\], 1 cm over 4 m.
 const FLOOR_HEIGHT_NOISE: f64 = 0.005;
-/// Standard deviation of the floor's tilt, rad per sqrt(m) of path: 4 mm over 1 m \[DIN18202, table 3\].
+/// Standard deviation of the floor's tilt, rad per sqrt(m) of path. Source: \[DIN18202, table 3\], 4 mm over 1 m.
 const FLOOR_TILT_NOISE: f64 = 0.004;
-/// Path of a wheel while the base turns by 1 rad, m: half of the Kobuki's wheelbase.
+/// Path of a wheel while the base turns by 1 rad, m: half of the Kobuki's wheelbase. Source: the Kobuki's protocol, "Base
+/// Control", b = 230 mm.
 const HALF_WHEELBASE_M: f64 = 0.115;
 /// Standard deviation of the camera's position against the base besides the odometry's own error \[m\]: the sway of a camera on a short
 /// mast. Without it the covariance of a robot at rest is singular; a larger value lets a robot that turns on the spot drift by
 /// centimetres. Source: docs/experiments/slam-odometry.md.
 const MAST_SWAY_SIGMA_M: f64 = 1e-4;
-/// Standard deviation of the camera's rotation against the base besides the odometry's own error \[rad\]. See [`MAST_SWAY_SIGMA_M`].
+/// Standard deviation of the camera's rotation against the base besides the odometry's own error \[rad\]. Source: as [`MAST_SWAY_SIGMA_M`].
 const MAST_SWAY_SIGMA_RAD: f64 = 5e-4;
 /// Rows of x, y and yaw.
 const IN_PLANE: [usize; 3] = [0, 1, 5];

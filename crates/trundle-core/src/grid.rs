@@ -37,7 +37,7 @@ pub struct GridGeometry {
     pub height: usize,
 }
 
-/// 2^40: f64 resolves the position in such a cell to 1/4096 of its side.
+/// 2^40: f64 resolves the position in such a cell to 1/4096 of its side. Source: ours.
 const FARTHEST_CELLS: f64 = 1_099_511_627_776.0;
 
 /// Largest difference \[m\] of two resolutions that count as one: what text of 9 decimals loses. Source: ours.
