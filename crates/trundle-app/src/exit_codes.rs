@@ -1,10 +1,10 @@
 //! The exit codes of a program that runs commands, and their text for its help.
 
-/// The run missed its aim.
+/// The run missed its aim. Source: ours.
 pub const CODE_MISSED: u8 = 1;
-/// The input or the place to write to has to change first; nothing was written.
+/// The input or the place to write to has to change first; nothing was written. Source: ours.
 pub const CODE_BAD_INPUT: u8 = 2;
-/// The run worked, but its results could not all be written.
+/// The run worked, but its results could not all be written. Source: ours.
 pub const CODE_INCOMPLETE: u8 = 3;
 
 /// The exit codes, for the help.

@@ -30,7 +30,7 @@ impl RecordingContent {
 const EVENT_BYTES_PER_S: f64 = 40e3;
 /// Size of a pixel of colour and depth, as JPEG and RVL in zstd \[bytes\]. Source: recordings of the demo.
 const BYTES_PER_PIXEL: f64 = 0.9;
-/// Number of bytes in a megabyte.
+/// Number of bytes in a megabyte. Source: SI.
 const BYTES_PER_MB: f64 = 1e6;
 
 impl RecordingContent {

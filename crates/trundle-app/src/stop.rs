@@ -18,9 +18,9 @@ static STOPPED_AFTER: Mutex<Option<String>> = Mutex::new(None);
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StopSignal(usize);
 
-/// Number of the signal of a terminal that is closed.
+/// Number of the signal of a terminal that is closed. Source: POSIX, `kill`.
 const SIGHUP_NUMBER: usize = 1;
-/// Number of the signal of Ctrl-C.
+/// Number of the signal of Ctrl-C. Source: POSIX, `kill`.
 const SIGINT_NUMBER: usize = 2;
 /// Exit code of a program that a signal has ended, less the signal's number. Source: POSIX shells.
 const SIGNAL_EXIT_CODE: u8 = 128;

@@ -6,9 +6,9 @@ use trundle_docking::corridor::Problem;
 use trundle_docking::{Manoeuvre, Motion, Obstacle, Solution, Step};
 use trundle_viz::{Color, DotStyle, LineStyle, MapPicture, PoseStyle};
 
-/// Time between two outlines of the footprint; together they show the floor that it covers.
+/// Time between two outlines of the footprint; together they show the floor that it covers. Source: ours.
 const OUTLINE_PERIOD_S: f64 = 0.1;
-/// Largest number of outlines in a picture.
+/// Largest number of outlines in a picture. Source: ours.
 const MAX_OUTLINES: f64 = 400.0;
 /// Colour of obstacles.
 const SOLID: Color = Color::rgb(0x9a_a1_a9);

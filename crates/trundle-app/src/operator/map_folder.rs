@@ -15,7 +15,7 @@ use trundle_runtime::{RobotConfig, require_loadable};
 const MAX_NAMES: usize = 200;
 /// Largest YAML file of a map \[bytes\]. Source: ours; files of map_saver have 150.
 const MAX_YAML_BYTES: u64 = 64 * 1024;
-/// Largest picture of a map \[bytes\]: a PGM of 16 bits with the most cells that are recorded, and its header.
+/// Largest picture of a map \[bytes\]: a PGM of 16 bits with the most cells that are recorded, and its header. Source: ours.
 const MAX_PICTURE_BYTES: u64 = 2 * MAX_TEXT_CELLS as u64 + 64 * 1024;
 
 /// A folder of maps for a robot: each `NAME.yaml` with its picture.

@@ -102,9 +102,9 @@ fn docking_text(docking: &GoalApproachReport) -> String {
     format!("{motions} motions, {plans} plans, {restarts} broken off, {waits} waits, {time:.1} s; {end}")
 }
 
-/// Distance within which the goal counts as reached \[m\].
+/// Distance within which the goal counts as reached \[m\]. Source: ours.
 const GOAL_TOLERANCE_M: f64 = 0.05;
-/// Heading difference within which the goal counts as reached \[deg\].
+/// Heading difference within which the goal counts as reached \[deg\]. Source: ours.
 const ALIGNED_DEG: f64 = 3.0;
 
 impl RunNumbers {

@@ -17,7 +17,7 @@ const MIN_IMAGE_SHARE: f64 = 0.5;
 /// Tilts from which the search starts, each good for 20 deg around it \[deg\]. A plane seen at a steeper tilt may be the wall before a camera
 /// that looks up. Source: ours, cameras of robots first.
 const START_TILTS_DEG: [f64; 2] = [0.0, 30.0];
-/// Pixels between two samples below the floor.
+/// Pixels between two samples below the floor. Source: ours.
 const SAMPLE_STEP_PX: usize = 8;
 /// Distance below a plane from which a point shows that the plane is a table and not the floor \[m\]. Source: ours.
 const BELOW_FLOOR_M: f64 = 0.1;

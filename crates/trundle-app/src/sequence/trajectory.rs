@@ -7,7 +7,8 @@ use trundle_slam::{FramePose, RgbdSlam};
 
 /// Share of the frames without a pose \[1\]. Above it the run missed its aim. Source: ours.
 const MAX_MISSING_SHARE: f64 = 0.1;
-/// Number of the map whose frame is level, with the first camera at its given pose: the first map of a tracker.
+/// Number of the map whose frame is level, with the first camera at its given pose: the first map of a tracker. Source: `trundle-slam`
+/// numbers maps from 0.
 const LEVEL_MAP: u32 = 0;
 
 /// Poses of the frames of a sequence, `level_from_camera`.
