@@ -6,7 +6,7 @@ use super::safety_config::SafetyConfig;
 use super::safety_input::{MotionSense, SafetyInput};
 use trundle_core::{Footprint, Invalid, Twist2};
 
-/// Age of an image that was just taken, s.
+/// Age of an image that was just taken, s. Source: ours.
 const FRESH_IMAGE_AGE_S: f64 = 0.0;
 
 /// Passes only twists from which the robot can still stop.
