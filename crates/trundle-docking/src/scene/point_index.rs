@@ -26,14 +26,14 @@ struct Node {
 const LEAF_POINTS: usize = 8;
 /// Counted cost of the bound of a box. Source: ours.
 const BOUND_COST: u64 = 12;
-/// Capacity of the stack of nodes: halving makes it deep enough for 2^31 points.
+/// Capacity of the stack of nodes: halving makes it deep enough for 2^31 points. Source: ours.
 const MAX_STACK: usize = 64;
 
 /// A query over all points.
 pub trait PointQuery {
     /// Whether a sample point of every box is visited before its halves, and then again with them.
     const VISITS_SAMPLES: bool = true;
-    /// Counted cost of a visit, in units of [`crate::ContactSpace::work`].
+    /// Counted cost of a visit, in units of [`crate::ContactSpace::work`]. Source: ours.
     const COST: u64 = 1;
 
     /// Relevance of the points in a box, given the results so far: boxes with the smallest value are visited first. `None` if the points
