@@ -4,7 +4,7 @@ use trundle_core::Stamp;
 
 /// Values of the counter: 65536. Source: the Kobuki's stamps have 16 bits.
 const COUNTER_VALUES_MS: i64 = 1 << 16;
-/// Nanoseconds of a millisecond.
+/// Nanoseconds of a millisecond. Source: SI.
 const NANOS_PER_MS: i64 = 1_000_000;
 
 /// Unwraps a 16-bit counter of milliseconds.

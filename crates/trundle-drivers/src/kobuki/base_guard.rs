@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 pub const GUARD_COMMAND: &str = "guard-base";
 /// Number of times that zero speed is sent: a packet on a noisy line may be lost. Source: ours.
 const STOP_COUNT: u32 = 3;
-/// Period of these commands: the base's cycle.
+/// Period of these commands: the base's cycle. Source: the protocol's "Feedback Identifier", 50 Hz.
 const STOP_PERIOD: Duration = Duration::from_millis(20);
 /// Longest time for the guard to end, after which it is killed. Source: ours.
 const MAX_END_TIME: Duration = Duration::from_millis(500);

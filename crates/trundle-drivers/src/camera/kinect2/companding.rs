@@ -4,13 +4,13 @@
 //! codes. This is the division into segments of \[G711\], A-law, with seven bits per segment. The code of minus zero marks a saturated
 //! pixel. This code is an assumption; see [`super`].
 
-/// Codes in one segment.
+/// Codes in one segment. Source: assumed, as in \[G711\].
 const SEGMENT_CODES: u16 = 128;
-/// Bit of the sign in a code.
+/// Bit of the sign in a code. Source: assumed, as in \[G711\].
 const SIGN_BIT: u16 = 1 << 10;
-/// Number of codes.
+/// Number of codes. Source: the 11 bits of a code.
 const CODE_COUNT: usize = 2048;
-/// Measurement of a saturated pixel, which no code yields otherwise.
+/// Measurement of a saturated pixel, which no code yields otherwise. Source: ours.
 pub const SATURATED_MEASUREMENT: i16 = i16::MAX;
 
 /// The measurement of each code.

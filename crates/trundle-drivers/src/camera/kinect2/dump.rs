@@ -17,9 +17,9 @@ use trundle_core::{Invalid, PinholeCamera, require_in};
 
 /// First word of the header.
 const DUMP_MAGIC: &str = "trundle-kinect2";
-/// Version of the form.
+/// Version of the form. Source: ours.
 const DUMP_VERSION: u32 = 1;
-/// First bytes of a packet.
+/// First bytes of a packet. Source: ours.
 const PACKET_MAGIC: [u8; 4] = *b"KV2P";
 /// Longest header \[bytes\]. Source: ours; a header has about 300 bytes.
 const MAX_HEADER_BYTES: u64 = 65_536;

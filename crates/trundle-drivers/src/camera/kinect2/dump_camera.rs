@@ -13,7 +13,7 @@ use std::time::Duration;
 const FRAME_RATE_HZ: f64 = 30.0;
 /// Amplitude that is shown white \[1\]: 4096. Source: ours; a white wall at 0.9 m in the test's model.
 const WHITE_AMPLITUDE: f32 = 4096.0;
-/// Time from exposure to arrival \[s\]: 0, since a recording has no arrival.
+/// Time from exposure to arrival \[s\]: 0, since a recording has no arrival. Source: ours.
 const RECORDING_DELAY_S: f64 = 0.0;
 
 /// A Kinect V2 played back from a dump. Its colour image is the infrared image, with the geometry of depth.

@@ -12,7 +12,7 @@ pub const FREQUENCY_COUNT: usize = 3;
 pub const SHIFT_COUNT: usize = 3;
 /// Images in one frame: nine measurements and one of ambient light.
 pub const IMAGE_COUNT: usize = FREQUENCY_COUNT * SHIFT_COUNT + 1;
-/// Bits of one pixel.
+/// Bits of one pixel. Source: assumed; it agrees with \[Freenect2\].
 pub const PIXEL_BITS: usize = 11;
 /// Bytes of one row: 704.
 pub const ROW_BYTES: usize = COLUMNS * PIXEL_BITS / 8;

@@ -7,9 +7,9 @@
 use super::layout::{IMAGE_BYTES, IMAGE_COUNT};
 use trundle_core::Stamp;
 
-/// Bytes of the footer.
+/// Bytes of the footer. Source: assumed; it agrees with \[Freenect2\].
 pub const FOOTER_BYTES: usize = 152;
-/// First two fields of the footer.
+/// First two fields of the footer. Source: assumed; it agrees with \[Freenect2\].
 const FOOTER_MAGIC: [u32; 2] = [0, 9];
 /// Nanoseconds in one step of the time \[ns\]: 0.125 ms. Source: assumed.
 const TICK_NANOS: i64 = 125_000;

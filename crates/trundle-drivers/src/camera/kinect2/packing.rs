@@ -4,11 +4,11 @@ use super::companding::Companding;
 use super::layout::{COLUMNS, IMAGE_BYTES, PIXEL_BITS, ROW_BYTES, ROWS};
 use trundle_core::{Image, Invalid};
 
-/// Pixels in a group of whole bytes.
+/// Pixels in a group of whole bytes. Source: assumed; it agrees with \[Freenect2\].
 const GROUP_PIXELS: usize = 8;
 /// Bytes of a group.
 const GROUP_BYTES: usize = PIXEL_BITS;
-/// Columns of an interleaved block.
+/// Columns of an interleaved block. Source: assumed; it agrees with \[Freenect2\].
 const BLOCK_COLUMNS: usize = 128;
 /// Interleaved blocks in a row.
 const BLOCK_COUNT: usize = COLUMNS / BLOCK_COLUMNS;

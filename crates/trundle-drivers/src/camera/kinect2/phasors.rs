@@ -10,9 +10,9 @@ use trundle_core::{Image, Invalid};
 
 /// Steps of `p0` in one turn. Source: assumed, the range of its 16 bits.
 const P0_STEPS_PER_TURN: f32 = 65_536.0;
-/// Cosine of a third of a turn.
+/// Cosine of a third of a turn. Source: trigonometry.
 const THIRD_TURN_COS: f32 = -0.5;
-/// Sine of a third of a turn.
+/// Sine of a third of a turn. Source: trigonometry.
 const THIRD_TURN_SIN: f32 = 0.866_025_4;
 
 /// Planes of a phasor image: real and imaginary part at each frequency.

@@ -7,9 +7,9 @@
 use super::layout::{COLUMNS, ROWS};
 use super::phasors::{PLANE_COUNT, PhasorImage};
 
-/// Number of pixels computed together: the compiler turns loops over this number into vector instructions.
+/// Number of pixels computed together: the compiler turns loops over this number into vector instructions. Source: ours.
 const LANES: usize = 8;
-/// Smallest power of a phasor used as a divisor \[1\]. It keeps pixels without a measurement finite.
+/// Smallest power of a phasor used as a divisor \[1\]. It keeps pixels without a measurement finite. Source: ours.
 const MIN_POWER: f32 = 1e-6;
 /// Weights of the neighbours in columns and rows, by a Gaussian of 1 px: exp(-1/2) next to the middle. Source: ours.
 const SPATIAL_WEIGHTS: [f32; 3] = [0.606_53, 1.0, 0.606_53];

@@ -9,9 +9,9 @@ use super::layout::{FREQUENCY_COUNT, wrap_distance_m};
 use super::phasors::Phasors;
 use std::f32::consts::TAU;
 
-/// The highest frequency, which makes the hypotheses.
+/// The highest frequency, which makes the hypotheses. Source: the order of `MODULATION_HZ`.
 const FINEST_INDEX: usize = 2;
-/// The frequencies by which the hypotheses are scored.
+/// The frequencies by which the hypotheses are scored. Source: the order of `MODULATION_HZ`.
 const JUDGE_INDICES: [usize; 2] = [0, 1];
 /// Largest difference of a predicted phase \[turn\]: 0.12. With a larger difference no hypothesis is accepted. Source: ours; hypotheses
 /// differ by 0.33 turn at 80 MHz.

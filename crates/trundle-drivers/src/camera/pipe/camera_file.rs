@@ -8,9 +8,9 @@ use trundle_core::{Invalid, Pose3, require_in, require_positive};
 
 /// First word of the header.
 const STREAM_MAGIC: &str = "trundle-camera";
-/// First bytes of a header in a stream.
+/// First bytes of a header in a stream. Source: docs/camera-stream.md.
 const HEADER_START: &[u8] = br#"{"magic":"trundle-camera""#;
-/// Version of the form.
+/// Version of the form. Source: docs/camera-stream.md.
 const STREAM_VERSION: u32 = 1;
 /// Longest header \[bytes\]. Source: ours; a header has about 800 bytes.
 const MAX_HEADER_BYTES: usize = 65_536;

@@ -6,13 +6,13 @@
 use crate::camera::{CameraFrame, CameraInfo, PixelFormat, RawImage, StreamInfo};
 use trundle_core::{Invalid, Stamp};
 
-/// First bytes of each frame.
+/// First bytes of each frame. Source: docs/camera-stream.md.
 pub const FRAME_MAGIC: [u8; 4] = *b"TRFR";
-/// Bytes before the images: magic, stamp (i64), length of colour (u32), length of depth (u32).
+/// Bytes before the images: magic, stamp (i64), length of colour (u32), length of depth (u32). Source: docs/camera-stream.md.
 pub(super) const FRAME_HEADER_BYTES: usize = 20;
 /// Bytes by which a compressed image may exceed its uncompressed size: 65536. Source: ours; headers and tables of a file.
 const COMPRESSED_EXTRA_BYTES: usize = 65_536;
-/// Bytes of a pixel of a compressed image before compression, at most: 4.
+/// Bytes of a pixel of a compressed image before compression, at most: 4. Source: ours.
 const MAX_BYTES_PER_PIXEL: usize = 4;
 
 /// A frame as cut out of the stream.

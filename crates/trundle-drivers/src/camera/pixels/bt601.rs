@@ -4,7 +4,7 @@
 //! R = 255/219 (Y - 16) + 255/112 (1 - Kr) (Cr - 128), and so on, with Kr = 0.299 and Kb = 0.114.
 //! The weights are held in 16 bits after the point: the result is at most 1 off the rounded exact value.
 
-/// Bits after the binary point of the weights.
+/// Bits after the binary point of the weights. Source: ours.
 const FRACTION_BITS: i32 = 16;
 /// Half of the last digit, for rounding.
 const ROUNDING_HALF: i32 = 1 << (FRACTION_BITS - 1);

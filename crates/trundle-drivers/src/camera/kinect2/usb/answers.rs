@@ -1,8 +1,8 @@
 //! Short answers of the device.
 
-/// Place of the main version among the versions.
+/// Place of the main version among the versions. Source: \[Freenect2\].
 const MAIN_VERSION: usize = 3;
-/// Words of one version: major and minor, revision, build, unused.
+/// Words of one version: major and minor, revision, build, unused. Source: \[Freenect2\].
 const VERSION_WORDS: usize = 4;
 
 /// The main version of the firmware, as 4.3.3912.0; `None` if the answer is too short.

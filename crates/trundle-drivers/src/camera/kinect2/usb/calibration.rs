@@ -13,27 +13,27 @@ use crate::camera::kinect2::layout::{COLUMNS, FREQUENCY_COUNT, PIXEL_COUNT, ROWS
 use nalgebra::UnitQuaternion;
 use trundle_core::{Distortion, Invalid, PinholeCamera, Pose3, Vector3, require_in};
 
-/// Bytes before the tables.
+/// Bytes before the tables. Source: \[Freenect2\].
 const P0_HEADER_BYTES: usize = 32;
-/// Bytes of a table: an unknown number of 16 bits before it and after it.
+/// Bytes of a table: an unknown number of 16 bits before it and after it. Source: \[Freenect2\].
 const P0_TABLE_BYTES: usize = 2 * (PIXEL_COUNT + 2);
-/// Columns and rows of colour \[px\].
+/// Columns and rows of colour \[px\]. Source: \[Freenect2\].
 pub const COLOR_SIZE: (usize, usize) = (1920, 1080);
-/// Scale of a colour pixel in the polynomial \[1/px\].
+/// Scale of a colour pixel in the polynomial \[1/px\]. Source: \[Freenect2\].
 const COLOR_SCALE: f64 = 0.002199;
 /// Middle of a pixel in the device's principal points \[px\]. Source: assumed, after the formula of its range tables.
 const PIXEL_MIDDLE: f64 = 0.5;
-/// Scale of the baseline \[m\]: the device counts millimetres.
+/// Scale of the baseline \[m\]: the device counts millimetres. Source: SI.
 const MILLIMETRE_M: f64 = 1e-3;
 /// Longest baseline \[m\]. Source: ours; the cameras are 0.05 m apart.
 const MAX_BASELINE_M: f64 = 0.2;
 /// Largest angle between the cameras as a tangent \[1\]. Source: ours; both cameras face the same direction.
 const MAX_TILT: f64 = 0.2;
-/// Terms of a polynomial.
+/// Terms of a polynomial. Source: \[Freenect2\].
 const TERM_COUNT: usize = 10;
-/// Place of the coefficient of x.
+/// Place of the coefficient of x. Source: \[Freenect2\].
 const TERM_X: usize = 7;
-/// Place of the constant.
+/// Place of the constant. Source: \[Freenect2\].
 const TERM_ONE: usize = 9;
 
 /// The P0 tables for [`crate::camera::kinect2::Kinect2Calibration`]. The device stores the rows from the bottom, and its angles have the

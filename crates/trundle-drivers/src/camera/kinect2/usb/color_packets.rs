@@ -7,21 +7,21 @@
 use crate::camera::kinect2::packets::TickClock;
 use trundle_core::Stamp;
 
-/// Second word of the header.
+/// Second word of the header. Source: \[Freenect2\].
 pub const HEADER_MAGIC: u32 = 0x4242_4242;
-/// First word of the footer.
+/// First word of the footer. Source: \[Freenect2\].
 pub const FOOTER_MAGIC: u32 = 0x3939_3939;
-/// Bytes of the header.
+/// Bytes of the header. Source: \[Freenect2\].
 pub const HEADER_BYTES: usize = 8;
-/// Bytes of the footer.
+/// Bytes of the footer. Source: \[Freenect2\].
 pub const FOOTER_BYTES: usize = 56;
-/// Longest packet \[bytes\]: 2 MB.
+/// Longest packet \[bytes\]: 2 MB. Source: \[Freenect2\].
 pub const MAX_PACKET_BYTES: usize = 2 << 20;
-/// Most bytes between the end of the JPEG file and the filler.
+/// Most bytes between the end of the JPEG file and the filler. Source: \[Freenect2\].
 const MAX_PADDING_BYTES: usize = 3;
 /// First bytes of a JPEG file. Source: ITU-T T.81, B.1.1.3.
 const JPEG_START: [u8; 2] = [0xff, 0xd8];
-/// Last bytes of a JPEG file. Source: as above.
+/// Last bytes of a JPEG file. Source: ITU-T T.81, B.1.1.3.
 const JPEG_END: [u8; 2] = [0xff, 0xd9];
 
 /// A colour image.

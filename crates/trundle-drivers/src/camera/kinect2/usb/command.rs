@@ -1,8 +1,8 @@
 //! Requests to the device.
 
-/// First word of a request.
+/// First word of a request. Source: \[Freenect2\].
 pub const REQUEST_MAGIC: u32 = 0x0602_2009;
-/// Longest reply of a page of calibration \[bytes\].
+/// Longest reply of a page of calibration \[bytes\]. Source: \[Freenect2\].
 const PAGE_BYTES: u32 = 0x1c_0000;
 
 /// A page of the device's memory.
@@ -87,7 +87,7 @@ impl Page {
     }
 }
 
-/// Number of the mode before the streams start and after they stop.
+/// Number of the mode before the streams start and after they stop. Source: \[Freenect2\].
 pub const STREAM_MODE: u32 = 0x0064_0064;
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! Size of isochronous packets from a configuration descriptor. Source: USB 3.1 specification, 9.6.
 
-/// Types of descriptors.
+/// Types of descriptors. Source: USB 3.1 specification, 9.4, descriptor types.
 const INTERFACE_TYPE: u8 = 4;
 const ENDPOINT_TYPE: u8 = 5;
 const COMPANION_TYPE: u8 = 48;
-/// Types of transfer of an endpoint: isochronous.
+/// Types of transfer of an endpoint: isochronous. Source: USB 3.1 specification, 9.6.6.
 const ISOCHRONOUS_BITS: u8 = 1;
-/// Bits of the type of transfer.
+/// Bits of the type of transfer. Source: USB 3.1 specification, 9.6.6.
 const TRANSFER_MASK: u8 = 3;
 
 /// Bytes per interval of the isochronous `endpoint` of the `interface` in its `alternate` setting, from its SuperSpeed companion. `None`

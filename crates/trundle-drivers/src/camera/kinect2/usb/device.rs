@@ -15,7 +15,7 @@ use trundle_core::{Invalid, PinholeCamera, Pose3};
 
 /// Longest wait for the sensor to become ready \[s\]. Source: ours; less than 1 s by reports of users.
 const READY_TIMEOUT_S: u64 = 5;
-/// Period of queries of the ready state \[ms\].
+/// Period of queries of the ready state \[ms\]. Source: ours.
 const READY_POLL_MS: u64 = 100;
 /// Most transfers that one reply may take. Source: ours; two, and some completions of earlier requests.
 const MAX_REPLY_TRANSFERS: usize = 16;
@@ -27,17 +27,17 @@ const SET_ISOCHRONOUS_DELAY: u8 = 0x31;
 const U1_ENABLE: u16 = 48;
 const U2_ENABLE: u16 = 49;
 const FUNCTION_SUSPEND: u16 = 0;
-/// Suspend with remote wake, in the upper byte of the index.
+/// Suspend with remote wake, in the upper byte of the index. Source: USB 3.1 specification, 9.4.9.
 const SUSPENDED_INDEX: u16 = 3 << 8;
-/// Delay without hubs in between \[ns\].
+/// Delay without hubs in between \[ns\]. Source: \[Freenect2\].
 const ISOCHRONOUS_DELAY_NS: u16 = 40;
-/// Number of colour transfers that wait at the same time.
+/// Number of colour transfers that wait at the same time. Source: \[Freenect2\].
 const COLOR_TRANSFER_COUNT: usize = 20;
-/// Size of a colour transfer \[bytes\].
+/// Size of a colour transfer \[bytes\]. Source: \[Freenect2\].
 const COLOR_TRANSFER_BYTES: usize = 0x4000;
-/// Number of depth transfers that wait at the same time: 60 ms of packets of 0.125 ms.
+/// Number of depth transfers that wait at the same time: 60 ms of packets of 0.125 ms. Source: \[Freenect2\].
 const DEPTH_TRANSFER_COUNT: usize = 60;
-/// Number of packets of a depth transfer.
+/// Number of packets of a depth transfer. Source: \[Freenect2\].
 const PACKETS_PER_DEPTH_TRANSFER: usize = 8;
 
 /// The device's own description.

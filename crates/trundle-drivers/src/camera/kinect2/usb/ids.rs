@@ -2,23 +2,23 @@
 
 /// Vendor number of Microsoft. Source: the USB vendor list.
 pub const VENDOR_ID: u16 = 0x045e;
-/// Product numbers: the Kinect V2 before and after its release.
+/// Product numbers: the Kinect V2 before and after its release. Source: \[Freenect2\].
 pub const PRODUCT_IDS: [u16; 2] = [0x02d8, 0x02c4];
 /// Name of the camera in messages.
 pub const KINECT2_NAME: &str = "Kinect V2";
-/// Bulk endpoint of requests.
+/// Bulk endpoint of requests. Source: \[Freenect2\].
 pub const REQUEST_ENDPOINT: u8 = 0x02;
-/// Bulk endpoint of replies.
+/// Bulk endpoint of replies. Source: \[Freenect2\].
 pub const REPLY_ENDPOINT: u8 = 0x81;
-/// Bulk endpoint of colour.
+/// Bulk endpoint of colour. Source: \[Freenect2\].
 pub const COLOR_ENDPOINT: u8 = 0x83;
-/// Isochronous endpoint of depth.
+/// Isochronous endpoint of depth. Source: \[Freenect2\].
 pub const DEPTH_ENDPOINT: u8 = 0x84;
-/// Interface of requests, replies and colour.
+/// Interface of requests, replies and colour. Source: \[Freenect2\].
 pub const CONTROL_INTERFACE: u8 = 0;
-/// Interface of depth. Its alternate setting 0 has no isochronous endpoint; setting 1 has one.
+/// Interface of depth. Its alternate setting 0 has no isochronous endpoint; setting 1 has one. Source: \[Freenect2\].
 pub const DEPTH_INTERFACE: u8 = 1;
-/// Configuration with both interfaces.
+/// Configuration with both interfaces. Source: \[Freenect2\].
 pub const CONFIGURATION_NUMBER: u8 = 1;
 
 /// Udev rule that gives access to a Kinect V2 to the group `plugdev`.

@@ -19,14 +19,14 @@ const ERROR_NOT_FOUND: c_int = -5;
 const ERROR_BUSY: c_int = -6;
 const ERROR_PIPE: c_int = -9;
 const ERROR_NO_MEM: c_int = -11;
-/// Kinds and states of transfers. Source: as above.
+/// Kinds and states of transfers. Source: `libusb.h`.
 const KIND_ISOCHRONOUS: u8 = 1;
 const KIND_BULK: u8 = 2;
 const STATUS_COMPLETED: c_int = 0;
 const STATUS_CANCELLED: c_int = 3;
 const STATUS_STALL: c_int = 4;
 const STATUS_NO_DEVICE: c_int = 5;
-/// Speeds. Source: as above.
+/// Speeds. Source: `libusb.h`.
 const SPEED_HIGH: c_int = 3;
 const SPEED_SUPER: c_int = 4;
 /// Longest wait for a blocking transfer \[ms\]: 1000. Source: \[Freenect2\].

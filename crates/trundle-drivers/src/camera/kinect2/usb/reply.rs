@@ -4,9 +4,9 @@
 
 use std::fmt;
 
-/// First word of a completion.
+/// First word of a completion. Source: \[Freenect2\].
 pub const COMPLETION_MAGIC: u32 = 0x0a6f_e000;
-/// Bytes of a completion.
+/// Bytes of a completion. Source: \[Freenect2\].
 pub const COMPLETION_BYTES: usize = 16;
 
 /// Reason why a reply is invalid.

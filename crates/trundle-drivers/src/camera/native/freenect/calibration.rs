@@ -5,11 +5,12 @@ use trundle_core::{Distortion, Invalid, PinholeCamera, Pose3, Vector3};
 
 /// Focal length of the depth camera \[px\]. Source: defaults of the ROS packages openni_camera and freenect_camera.
 const DEPTH_FOCAL_LENGTH_PX: f64 = 575.816;
-/// Column of the principal point of the depth image \[px\]: the middle, less half the correlation window of 10 x 8 px. Source: as above.
+/// Column of the principal point of the depth image \[px\]: the middle, less half the correlation window of 10 x 8 px. Source:
+/// defaults of the ROS packages openni_camera and freenect_camera.
 const DEPTH_CENTRE_X_PX: f64 = 314.5;
-/// Row of the principal point \[px\]. Source: as above.
+/// Row of the principal point \[px\]. Source: defaults of the ROS packages openni_camera and freenect_camera.
 const DEPTH_CENTRE_Y_PX: f64 = 235.5;
-/// Distance of the depth camera to the right of the colour camera \[m\]. Source: as above.
+/// Distance of the depth camera to the right of the colour camera \[m\]. Source: defaults of the ROS packages openni_camera and freenect_camera.
 const BASELINE_M: f64 = 0.025;
 
 /// Typical values, with errors of some pixels for any Kinect v1. A calibration of the individual camera is better.

@@ -15,7 +15,8 @@ const RATE_HZ: f64 = 30.0;
 /// Time from the middle of the exposure to the arrival of a frame \[s\]. Source: ours, assumed: one frame of readout and depth computation,
 /// half an exposure. Measure the delay if it matters.
 const DEFAULT_DELAY_S: f64 = 0.05;
-/// Length of one unit of depth \[m\]; without use for raw disparity, which has its own formula.
+/// Length of one unit of depth \[m\]; without use for raw disparity, which has its own formula. Source: `libfreenect.h`,
+/// `FREENECT_DEPTH_MM`.
 const DEPTH_UNIT_M: f64 = 0.001;
 
 /// Settings of a Kinect v1.

@@ -11,7 +11,7 @@ use std::cell::Cell;
 use std::ffi::c_void;
 use std::ptr::NonNull;
 
-/// Columns and rows of both images \[px\].
+/// Columns and rows of both images \[px\]. Source: `libfreenect.h`, `FREENECT_RESOLUTION_MEDIUM`.
 pub(super) const SIZE_PX: (usize, usize) = (640, 480);
 
 thread_local! {

@@ -4,7 +4,7 @@ use trundle_core::Stamp;
 
 /// Ticks per second \[Hz\]. The counter of 32 bits restarts every 71.6 s. Source: OpenKinect wiki, "Protocol Documentation".
 const TICK_RATE_HZ: i128 = 60_000_000;
-/// Nanoseconds in a second.
+/// Nanoseconds in a second. Source: SI.
 const NANOS_PER_S: i128 = 1_000_000_000;
 
 /// A clock that continues after the counter's overflow.

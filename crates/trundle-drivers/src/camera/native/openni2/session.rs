@@ -19,7 +19,7 @@ const STREAM_PROPERTY_VERTICAL_FOV: c_int = 2;
 const STREAM_PROPERTY_VIDEO_MODE: c_int = 3;
 const STREAM_PROPERTY_MIRRORING: c_int = 7;
 const FORMAT_DEPTH_100_UM: c_int = 101;
-/// Nanoseconds in a microsecond.
+/// Nanoseconds in a microsecond. Source: SI.
 const NANOS_PER_US: i64 = 1000;
 
 /// Kind of a stream.

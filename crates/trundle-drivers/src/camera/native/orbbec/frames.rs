@@ -10,9 +10,9 @@ use trundle_core::{Invalid, Pose3, Stamp};
 
 pub(super) const FORMAT_Y16: c_int = 8;
 pub(super) const FORMAT_RGB: c_int = 22;
-/// Nanoseconds in a microsecond.
+/// Nanoseconds in a microsecond. Source: SI.
 const NANOS_PER_US: i64 = 1000;
-/// Metres in a millimetre.
+/// Metres in a millimetre. Source: SI.
 const M_PER_MM: f64 = 1e-3;
 
 /// The form of the pixels for a number of `ob_format`; `None` if [`PixelFormat`] has none.

@@ -13,7 +13,7 @@ const MODEL_MODIFIED_BROWN_CONRADY: c_int = 1;
 const MODEL_INVERSE_BROWN_CONRADY: c_int = 2;
 const MODEL_BROWN_CONRADY: c_int = 3;
 const MODEL_BROWN_CONRADY_K6: c_int = 4;
-/// Metres in a millimetre.
+/// Metres in a millimetre. Source: SI.
 const M_PER_MM: f64 = 1e-3;
 
 /// A camera of the library, with the largest error of its distortion \[px\].

@@ -13,7 +13,7 @@ use std::ffi::c_int;
 use std::sync::Arc;
 use trundle_core::{Stamp, Vector3};
 
-/// Nanoseconds in a millisecond.
+/// Nanoseconds in a millisecond. Source: SI.
 const NANOS_PER_MS: f64 = 1e6;
 
 /// Content of a frame of the library.
