@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-/// 2^64 over the golden ratio: steps of this size are evenly distributed.
+/// 2^64 over the golden ratio: steps of this size are evenly distributed. Source: SplitMix64, Steele, Lea, Flood 2014.
 const GOLDEN_RATIO_STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// A generator: SplitMix64 (Steele, Lea, Flood 2014).

@@ -12,7 +12,7 @@ pub(crate) struct Room {
 }
 
 const HALF: Vector2 = Vector2::new(2.0, 1.5);
-/// Half of the camera's view, deg.
+/// Half of the camera's view, deg. Source: ours.
 const HALF_VIEW_DEG: i32 = 35;
 
 impl Room {

@@ -13,7 +13,7 @@ pub struct Innovation {
 }
 
 impl Innovation {
-    /// Degrees of freedom of a planar pose.
+    /// Degrees of freedom of a planar pose. Source: x, y and heading.
     pub const DEGREES_OF_FREEDOM: usize = 3;
 
     pub(crate) fn new(residual: &Vector3<f64>, spread: &Matrix3<f64>) -> Self {

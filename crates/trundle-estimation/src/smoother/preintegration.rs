@@ -8,7 +8,7 @@ use crate::planar::{adjoint, right_jacobian, symmetric};
 use nalgebra::{Matrix3, RowSVector, SMatrix, SVector, Vector3};
 use trundle_core::Pose2;
 
-/// Number of calibration parameters: bias, scale, left radius, right radius, wheelbase.
+/// Number of calibration parameters: bias, scale, left radius, right radius, wheelbase. Source: ours, the number of the named parameters.
 const PARAMETER_COUNT: usize = 5;
 const PARAMETER_BIAS: usize = 0;
 const PARAMETER_SCALE: usize = 1;

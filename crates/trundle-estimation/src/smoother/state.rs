@@ -3,7 +3,7 @@
 use nalgebra::{SMatrix, SVector, Vector3};
 use trundle_core::Pose2;
 
-/// Unknowns of a keyframe: pose (3), error of the visual pose (3), bias of the gyro (1).
+/// Unknowns of a keyframe: pose (3), error of the visual pose (3), bias of the gyro (1). Source: ours, the sum of the numbers in brackets.
 pub(crate) const CHAIN_SIZE: usize = 7;
 /// Place of the pose in a keyframe's unknowns.
 pub(crate) const POSE_PLACE: usize = 0;
