@@ -48,7 +48,7 @@ impl Similarity {
     }
 }
 
-/// Least gap between the best rotation and the next, relative: below it the rotation is noise of the arithmetic.
+/// Least gap between the best rotation and the next, relative: below it the rotation is noise of the arithmetic. Source: ours.
 const MIN_ROTATION_GAP_RATIO: f64 = 1e-12;
 
 /// The transform T that minimises `sum |reference[i] - T estimate[i]|^2`; positions in m, pair by pair.

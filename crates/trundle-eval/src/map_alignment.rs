@@ -3,9 +3,9 @@
 use crate::{EvalError, Side, occupied_cells::OccupiedCells};
 use trundle_core::{Invalid, OccupancyGrid, Pose2, Vector2};
 
-/// Rounds of pairing and moving.
+/// Rounds of pairing and moving. Source: ours.
 const ALIGNMENT_ROUNDS: usize = 60;
-/// Cells are paired as far as this at first, m, and in the end.
+/// Cells are paired as far as this at first, m, and in the end. Source: ours.
 const PAIRING_RADII_M: (f64, f64) = (0.8, 0.15);
 
 /// Aligns a map with the true one: finds `truth_from_estimate` near `guess` (within about 0.5 m and 5 degrees) with the smallest distances
