@@ -20,9 +20,9 @@ use trundle_viz::{Report, Table, Verdict};
 const START_HALF_SIDE_M: f64 = 2.5;
 /// Smallest distance of a start from the station \[m\]: clearance for the robot and the station's box. Source: ours.
 const MIN_START_DISTANCE_M: f64 = 0.5;
-/// Steps of the low-discrepancy sequence of starts (Roberts 2018, three dimensions).
+/// Steps of the low-discrepancy sequence of starts. Source: Roberts 2018, three dimensions.
 const START_STEPS: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_3];
-/// Limits of the pose at contact, given by the station's plates.
+/// Limits of the pose at contact. Source: ours, the plates' tolerances.
 const MAX_LATERAL_ERROR_M: f64 = 0.01;
 
 /// The docks, one for each start.

@@ -10,15 +10,15 @@ use trundle_runtime::{Mission, RobotConfig, Task, TaskEnd};
 use trundle_sim::{Fault, FaultKind, FaultSchedule, plain_room};
 use trundle_viz::{Report, Table, Verdict};
 
-/// Minimum distance from the goal at which a reported arrival is false, m.
+/// Minimum distance from the goal at which a reported arrival is false, m. Source: ours.
 const FALSE_ARRIVAL_M: f64 = 0.3;
-/// Minimum heading error at which a reported arrival is false, deg.
+/// Minimum heading error at which a reported arrival is false, deg. Source: ours.
 const FALSE_ARRIVAL_DEG: f64 = 20.0;
-/// Change of the estimate's error between two images that counts as a jump away from the truth, m.
+/// Change of the estimate's error between two images that counts as a jump away from the truth, m. Source: ours.
 const JUMP_M: f64 = 0.3;
-/// Time at which the robot is carried away, s.
+/// Time at which the robot is carried away, s. Source: ours.
 const CARRIED_AT_S: f64 = 25.0;
-/// Duration of the carrying, s.
+/// Duration of the carrying, s. Source: ours.
 const CARRIED_FOR_S: f64 = 0.1;
 
 /// Events in a room.

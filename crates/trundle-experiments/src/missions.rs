@@ -60,7 +60,7 @@ pub fn run_obstacles(
     })
 }
 
-/// The goals, world frame: m, m, deg; by rooms.
+/// The goals, world frame: m, m, deg; by rooms. Source: ours.
 const HOUSE_GOALS: [(f64, f64, f64); 10] = [
     (3.0, -1.0, 0.0),
     (6.2, -2.6, -90.0),

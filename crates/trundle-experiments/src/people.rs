@@ -9,19 +9,19 @@ use trundle_runtime::{Mission, RobotConfig, Task};
 use trundle_sim::{Person, Scene};
 use trundle_viz::{Report, Table, Verdict};
 
-/// Start of the robot's crossing, world frame, m.
+/// Start of the robot's crossing, world frame, m. Source: ours.
 const START_XY_M: (f64, f64) = (-2.4, 0.0);
-/// Goal of the robot's crossing, world frame, m.
+/// Goal of the robot's crossing, world frame, m. Source: ours.
 const GOAL_XY_M: (f64, f64) = (2.0, 0.0);
-/// Distance between the robot's front and a person who steps onto its path, m.
+/// Distance between the robot's front and a person who steps onto its path, m. Source: ours.
 const ENCOUNTER_DISTANCE_M: f64 = 1.0;
-/// Range of the encounter along the path from its start, m: the robot drives at full speed there.
+/// Range of the encounter along the path from its start, m: the robot drives at full speed there. Source: ours.
 const ENCOUNTER_PATH_RANGE_M: (f64, f64) = (1.9, 3.6);
-/// Range of the lateral distance between the path and the person's start, m.
+/// Range of the lateral distance between the path and the person's start, m. Source: ours.
 const SIDE_OFFSET_RANGE_M: (f64, f64) = (0.8, 1.2);
-/// Range of walking speeds, m/s.
+/// Range of walking speeds, m/s. Source: ours.
 const WALKING_SPEED_RANGE_M_S: (f64, f64) = (0.7, 1.6);
-/// Range of the time that the person stands on the path, s.
+/// Range of the time that the person stands on the path, s. Source: ours.
 const STAY_RANGE_S: (f64, f64) = (0.0, 4.0);
 
 /// A person who steps out: distance along the path and beside it (left is positive), m; walking speed, m/s; time on the path, s.

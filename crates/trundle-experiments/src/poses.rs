@@ -9,15 +9,15 @@ use trundle_runtime::{Mission, Task};
 use trundle_sim::Scene;
 use trundle_viz::{BarChart, Color, Figure, LineStyle, MapPicture, PoseStyle, Report, Table, Verdict};
 
-/// Start poses of Li et al., m; each with heading 0.
+/// Start positions, m; each with heading 0. Source: \[Li18\].
 const STARTS: [(f64, f64); 8] =
     [(0.0, 2.4), (2.4, 2.4), (2.4, 0.0), (2.4, -2.4), (0.0, -2.4), (-2.4, -2.4), (-2.4, 0.0), (-2.4, 2.4)];
 
-/// Largest mean of |dx| and of |dy|, m.
+/// Largest mean of |dx| and of |dy|, m. Source: ours, below the figures of \[Li18\].
 const MEAN_OFFSET: f64 = 0.004;
-/// Largest distance from the goal in any run, m.
+/// Largest distance from the goal in any run, m. Source: ours, below the figure of \[Li18\].
 const MAX_GOAL_DISTANCE_M: f64 = 0.015;
-/// Largest mean of |dtheta|, rad.
+/// Largest mean of |dtheta|, rad. Source: ours, below the figure of \[Li18\].
 const MEAN_TURN: f64 = 0.8 * std::f64::consts::PI / 180.0;
 
 /// Means of a set of runs: |dx|, |dy|, the largest distance, |dtheta| (m, rad); number of runs without arrival or with a contact.

@@ -9,17 +9,17 @@ use trundle_runtime::{Mission, RobotConfig, Task, TaskEnd, TaskRecord};
 use trundle_sim::{FaultSchedule, Scene, Simulator};
 use trundle_viz::{Chart, Color, Figure, Report, Table, Verdict};
 
-/// Largest jitter of 999 of 1000 commands, ms.
+/// Largest jitter of 999 of 1000 commands, ms. Source: ours.
 const JITTER_MS: f64 = 5.0;
-/// Largest load of the robot's core by all threads, 0 to 1.
+/// Largest load of the robot's core by all threads, 0 to 1. Source: ours.
 const MAX_CPU_LOAD: f64 = 0.6;
-/// Largest growth of memory after maps and buffers have reached their size, MB/h.
+/// Largest growth of memory after maps and buffers have reached their size, MB/h. Source: ours.
 const MAX_MEMORY_GROWTH_MB_PER_H: f64 = 10.0;
-/// Time in which memory may grow while maps and buffers reach their size, s.
+/// Time in which memory may grow while maps and buffers reach their size, s. Source: ours.
 const MEMORY_SETTLING_S: f64 = 600.0;
 /// Shortest run whose growth is evaluated, s.
 const MIN_JUDGED_RUN_S: f64 = 2.0 * MEMORY_SETTLING_S;
-/// Shortest time of a goal and the return, s.
+/// Shortest time of a goal and the return, s. Source: ours.
 const SHORTEST_TASK: f64 = 10.0;
 
 /// A figure and its limit.

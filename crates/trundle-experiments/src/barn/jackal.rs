@@ -12,7 +12,7 @@ use trundle_sim::{FaultSchedule, SimConfig};
 
 /// Half of the robot's length and width, m. Source: the Jackal's data sheet.
 const HALF_SIZE_M: (f64, f64) = (0.254, 0.215);
-/// Commanded acceleration, m/s^2; the robot's own controller allows 20.
+/// Commanded acceleration, m/s^2; the robot's own controller allows 20. Source: ours.
 const ACCELERATION_M_S2: f64 = 3.0;
 
 /// The challenge's robot, a Clearpath Jackal, as configured for the autonomy: two-wheeled, 2 m/s, 0.508 x 0.430 m, a laser.

@@ -21,9 +21,9 @@ pub struct BarnWorld {
     pub cylinders: Vec<Vector2>,
 }
 
-/// Radius of every cylinder, m.
+/// Radius of every cylinder, m. Source: \[Perille20\].
 const CYLINDER_RADIUS_M: f64 = 0.075;
-/// Height of every cylinder, m.
+/// Height of every cylinder, m. Source: ours, above the plane of the laser.
 const CYLINDER_HEIGHT_M: f64 = 1.0;
 
 impl BarnWorld {

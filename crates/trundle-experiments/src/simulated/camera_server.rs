@@ -15,7 +15,7 @@ use trundle_drivers::camera::pipe::StreamWriter;
 use trundle_drivers::camera::{CameraError, CameraFrame, CameraInfo, PixelFormat, RawImage, StreamInfo};
 use trundle_sim::{CameraAside, Shot, SimConfig};
 
-/// Length of a unit of depth \[m\]: a millimetre, as in depth cameras.
+/// Length of a unit of depth \[m\]: a millimetre, as in depth cameras. Source: ours.
 const DEPTH_UNIT_M: f64 = 0.001;
 /// Time between two attempts to find a reader of the FIFO. Source: ours.
 const READER_POLL: Duration = Duration::from_millis(20);
