@@ -7,7 +7,7 @@ use std::str::FromStr;
 
 /// Environment variable of the password.
 const PASSWORD_VARIABLE: &str = "TRUNDLE_MQTT_PASSWORD";
-/// Largest file of a password \[bytes\].
+/// Largest file of a password \[bytes\]. Source: ours.
 const MAX_PASSWORD_BYTES: usize = 1024;
 /// Longest part of a name \[bytes\]. Source: ours.
 const MAX_NAME_BYTES: usize = 64;

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use trundle_app::RunSetup;
 use trundle_core::{DriveLimits, Footprint, Invalid, Vector2};
 
-/// Number of corners of the polygon that approximates a disc.
+/// Number of corners of the polygon that approximates a disc. Source: ours.
 const DISC_CORNERS: u32 = 16;
 
 /// Facts of a robot that the network gets once.

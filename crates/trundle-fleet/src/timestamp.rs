@@ -2,11 +2,11 @@
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Seconds of a day.
+/// Seconds of a day. Source: SI.
 const DAY_S: u64 = 86_400;
-/// Days of 400 years, after which the calendar repeats.
+/// Days of 400 years, after which the calendar repeats. Source: the Gregorian calendar.
 const DAYS_OF_ERA: u64 = 146_097;
-/// Days from 1 March of year 0 to 1 January 1970.
+/// Days from 1 March of year 0 to 1 January 1970. Source: the Gregorian calendar.
 const EPOCH_DAYS: u64 = 719_468;
 
 /// A time as ISO 8601 in UTC with milliseconds, as `2026-11-26T16:30:05.120Z`. A time before 1970 is 1970.

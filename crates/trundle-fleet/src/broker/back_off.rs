@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-/// First wait.
+/// First wait. Source: ours.
 const FIRST_WAIT: Duration = Duration::from_secs(1);
 /// Longest wait. Source: ours; a broker's machine starts in less.
 const LONGEST_WAIT: Duration = Duration::from_secs(30);

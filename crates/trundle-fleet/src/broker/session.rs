@@ -17,7 +17,7 @@ const MAX_PACKET_BYTES: usize = 1024 * 1024;
 const MAX_SENT_BYTES: usize = 16 * 1024 * 1024;
 /// Time of silence after which each side checks the other. Source: ours.
 const KEEP_ALIVE: Duration = Duration::from_secs(10);
-/// Time in which the last message leaves.
+/// Time in which the last message leaves. Source: ours.
 const FAREWELL_TIME: Duration = Duration::from_secs(1);
 
 /// Parts of a session.

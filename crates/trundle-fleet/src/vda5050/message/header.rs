@@ -29,7 +29,7 @@ pub enum Topic {
 }
 
 impl Topic {
-    /// Number of topics.
+    /// Number of topics. Source: VDA 5050 2.1.
     const COUNT: usize = 6;
 
     /// Last part of the topic.
