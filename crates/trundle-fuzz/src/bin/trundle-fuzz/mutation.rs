@@ -3,13 +3,13 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-/// Changes to one input, at most.
+/// Changes to one input, at most. Source: ours.
 const MAX_CHANGES: usize = 6;
 /// Longest input \[bytes\]. Source: ours.
 const MAX_LENGTH: usize = 1 << 18;
-/// Longest piece that is copied or cut \[bytes\].
+/// Longest piece that is copied or cut \[bytes\]. Source: ours.
 const MAX_PIECE: usize = 256;
-/// Extreme values of lengths and counts.
+/// Extreme values of lengths and counts. Source: ours.
 const EDGES: [u64; 14] = [
     0,
     1,

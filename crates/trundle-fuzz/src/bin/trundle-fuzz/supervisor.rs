@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 use trundle_fuzz::FuzzTarget;
 
-/// Number of crashes after which a target is abandoned.
+/// Number of crashes after which a target is abandoned. Source: ours.
 const MAX_DEATHS: u64 = 3;
 /// Memory disk, if available.
 const MEMORY_DISK: &str = "/dev/shm";

@@ -6,9 +6,9 @@ use std::time::Duration;
 
 /// Processor time of an input \[ms\]: an input that takes more is a hang. Source: ours.
 const MAX_INPUT_MS: u64 = 1000;
-/// Exit code of a process that hung.
+/// Exit code of a process that hung. Source: ours.
 pub const HANG_CODE: i32 = 97;
-/// Period of checks of the clock.
+/// Period of checks of the clock. Source: ours.
 const WATCH_PERIOD: Duration = Duration::from_millis(50);
 /// No input is read.
 const NO_INPUT: u64 = u64::MAX;
