@@ -8,9 +8,9 @@
 
 use std::ops::Range;
 
-/// Cells that are processed together.
+/// Cells that are processed together. Source: ours.
 const CELLS_PER_BLOCK: usize = 32;
-/// Edges between two checks for the end of the search.
+/// Edges between two checks for the end of the search. Source: ours.
 const EDGES_PER_CHECK: usize = 4;
 
 /// The memory of a row.

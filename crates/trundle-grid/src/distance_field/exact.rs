@@ -3,7 +3,7 @@
 use super::{DistanceField, UnknownIs};
 use trundle_core::{GridGeometry, Vector2};
 
-/// Rounding of the stored distances (f32) that a comparison forgives, m.
+/// Rounding of the stored distances (f32) that a comparison forgives, m. Source: ours.
 const FIELD_ROUNDING_M: f64 = 1e-6;
 
 impl DistanceField {

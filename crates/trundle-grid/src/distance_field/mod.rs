@@ -20,7 +20,7 @@ use transform::Transform;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Vector2};
 use window::Window;
 
-/// Distance in a map without obstacles, m.
+/// Distance in a map without obstacles, m. Source: ours.
 pub const NO_OBSTACLE_DISTANCE_M: f64 = 1e6;
 
 /// State assumed for unknown cells and the space outside the grid.
@@ -46,7 +46,7 @@ impl UnknownIs {
 
 /// From the first to the last cell of a row that changed between obstacle and no obstacle.
 fn differing(was: &[bool], cells: &[Cell], unknown: UnknownIs) -> Option<Range<usize>> {
-    /// Number of cells that are compared together, without a branch.
+    /// Number of cells that are compared together, without a branch. Source: ours.
     const CHUNK: usize = 256;
     let unknown_blocks = unknown == UnknownIs::Obstacle;
     let differ = |(was, cell): (&bool, &Cell)| {
@@ -98,7 +98,7 @@ impl DistanceField {
     /// The field of `grid` over another `geometry` of the same lattice (same resolution, origins whole cells apart), up to `reach` m; cells
     /// outside the grid are unknown.
     pub fn over(geometry: GridGeometry, grid: &OccupancyGrid, unknown: UnknownIs, reach: f64) -> Self {
-        /// Fewer cells a blocks' middle, and a step of the search, would not see.
+        /// Fewer cells a blocks' middle, and a step of the search, would not see. Source: ours.
         const MIN_REACH_CELLS: f64 = 4.0;
         let (distance, gap) = (vec![0.0; geometry.len()], vec![0; geometry.len()]);
         let per_metre = geometry.resolution.recip();

@@ -211,7 +211,7 @@ fn for_tiles_about(
 type Part = (RangeInclusive<i32>, RangeInclusive<i32>);
 
 /// Index of [`NearestObstacle::NONE`] in the table of likelihoods: its squared distance in quarters of a cell squared. Distances
-/// within reach have lower indices.
+/// within reach have lower indices. Source: ours.
 const NOT_IN_REACH: usize = 512;
 /// Cells of one vector: at least as many as an obstacle reaches across.
 const LANES: usize = 16;

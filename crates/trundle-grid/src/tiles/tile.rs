@@ -12,7 +12,7 @@ pub struct NearestObstacle(i16);
 impl NearestObstacle {
     /// No obstacle within reach.
     pub const NONE: Self = Self::new(i8::MIN, i8::MIN);
-    /// Units per cell.
+    /// Units per cell. Source: ours.
     pub const PER_CELL: i32 = 16;
     /// Maximum offset of an obstacle point from the centre of its own cell, in 1/16 cells. A larger offset is a point of the neighbouring
     /// cell. Source: ours.
@@ -101,7 +101,7 @@ pub struct Tile {
 }
 
 impl Tile {
-    /// log2 of the side of a tile in cells.
+    /// log2 of the side of a tile in cells. Source: ours.
     pub const BITS: i32 = 5;
     /// Side of a tile, cells: 1.6 m at 5 cm.
     pub const SIDE: usize = 1 << Self::BITS;
@@ -109,7 +109,7 @@ impl Tile {
     pub const CELLS: usize = Self::SIDE * Self::SIDE;
     /// Side of a tile in samples of the coarse likelihood, which are two cells apart.
     pub const COARSE_SIDE: usize = Self::SIDE / 2;
-    /// Unit of the stored log-odds: a byte holds -4 to 3.97.
+    /// Unit of the stored log-odds: a byte holds -4 to 3.97. Source: ours.
     pub const LOG_ODDS_UNIT: f64 = 1.0 / 32.0;
 
     /// Tile of unknown cells.
