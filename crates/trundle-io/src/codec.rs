@@ -28,7 +28,7 @@ pub(crate) use rvl::decode_rvl;
 use jpeg_encoder::{ColorType, Encoder, SamplingFactor};
 use trundle_core::ColorImage;
 
-/// JPEG quality of recorded colour images, 1 to 100: 90 preserves the positions of corners at a tenth of the raw size.
+/// JPEG quality of recorded colour images, 1 to 100: 90 preserves the positions of corners at a tenth of the raw size. Source: ours.
 pub const JPEG_QUALITY: u8 = 90;
 
 /// A colour image as JPEG of a quality from 1 to 100, chroma halved across (4:2:2): features live on luminance.

@@ -23,11 +23,11 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid};
 
-/// Grey of a free cell, as `map_saver` writes it.
+/// Grey of a free cell. Source: ROS's `map_saver`.
 const FREE_GREY: u8 = 254;
-/// Grey of an occupied cell.
+/// Grey of an occupied cell. Source: ROS's `map_saver`.
 const OCCUPIED_GREY: u8 = 0;
-/// Grey of an unknown cell: its occupancy of 0.19608 is just above the usual `free_thresh`.
+/// Grey of an unknown cell: its occupancy of 0.19608 is just above the usual `free_thresh`. Source: ROS's `map_saver`.
 const UNKNOWN_GREY: u8 = 205;
 
 /// A map of a file.

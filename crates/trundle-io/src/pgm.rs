@@ -2,7 +2,7 @@
 
 use crate::excerpt::excerpt;
 
-/// Most pixels of a map: 2^28, 819 m a side at 5 cm.
+/// Most pixels of a map: 2^28, 819 m a side at 5 cm. Source: ours.
 pub(crate) const MAX_PIXELS: usize = 1 << 28;
 
 /// A grey picture, row by row from the top.

@@ -2,10 +2,10 @@
 
 use trundle_core::{Invalid, require_in, require_positive};
 
-/// Depth units per metre in TUM's depth images.
+/// Depth units per metre in TUM's depth images. Source: TUM RGB-D benchmark, "File Formats".
 pub const TUM_DEPTH_SCALE: f64 = 5000.0;
 
-/// Depth units per metre in the depth images of a Kinect V2, of ROS (REP 118) and of trundle's recordings: millimetres.
+/// Depth units per metre in the depth images of a Kinect V2, of ROS and of trundle's recordings: millimetres. Source: REP 118.
 pub const KINECT_V2_DEPTH_SCALE: f64 = 1000.0;
 
 /// Depth scale below which a file gives the inverse \[units per metre\]: RealSense's 0.001 is in metres per unit. Source: ours.

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// Longest line \[bytes\]. A longer line is refused, which bounds the memory requested by a compressed file. A scan of the largest number
 /// of beams is shorter. Source: ours.
 const MAX_LINE_BYTES: u64 = 1 << 23;
-/// The first bytes of a gzip file (RFC 1952).
+/// The first bytes of a gzip file. Source: RFC 1952.
 const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
 /// The mark of UTF-8 that some editors put at the beginning of a file.
 const BYTE_ORDER_MARK: &str = "\u{feff}";

@@ -9,7 +9,7 @@ use png::{BitDepth, ColorType, Decoder, Filter, Limits};
 use std::io::Cursor;
 use trundle_core::{DepthImage, Image};
 
-/// First bytes of a PNG. Read as a width of RVL, these bytes exceed the limit.
+/// First bytes of a PNG. Read as a width of RVL, these bytes exceed the limit. Source: PNG specification, 5.2.
 const PNG_MAGIC: &[u8] = b"\x89PNG";
 
 /// Depth in metres from a whole number of millimetres: the only conversion from the recorded unit.

@@ -3,12 +3,12 @@
 use super::error::CodecError;
 use trundle_core::Image;
 
-/// Bytes of the width and the height in front of the stream, as `compressed_depth_image_transport` has them.
+/// Bytes of the width and the height in front of the stream. Source: `compressed_depth_image_transport`.
 const SIZE_BYTES: usize = 8;
 /// Largest number of pixels of an RVL image that is read: 8.4 Mpx, above 3840 x 2160. A run of zeros takes a few bytes at any length, so
 /// the number of bytes is no bound. Source: ours.
 const MAX_RVL_PIXELS: usize = 1 << 23;
-/// Number of groups that a word of the stream holds.
+/// Number of groups that a word of the stream holds. Source: \[Wilson17\].
 const GROUPS_PER_WORD: u32 = 8;
 
 /// Width and height (32 bits each, little endian) and the stream of the image.

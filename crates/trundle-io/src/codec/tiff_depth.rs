@@ -65,11 +65,11 @@ const FIELD_BYTES: usize = 12;
 /// Position of the number of values in a field \[bytes\]. Source: TIFF 6.0.
 const COUNT_AT: usize = 4;
 
-/// Sample format of a TIFF without this field: unsigned whole numbers (TIFF 6.0, `SampleFormat`).
+/// Sample format of a TIFF without this field: unsigned whole numbers. Source: TIFF 6.0, `SampleFormat`.
 const UNSIGNED_FORMAT: u16 = 1;
-/// Whole numbers with a sign (TIFF 6.0, `SampleFormat`).
+/// Whole numbers with a sign. Source: TIFF 6.0, `SampleFormat`.
 const SIGNED_FORMAT: u16 = 2;
-/// Floating-point numbers (TIFF 6.0, `SampleFormat`).
+/// Floating-point numbers. Source: TIFF 6.0, `SampleFormat`.
 const FLOAT_FORMAT: u16 = 3;
 
 /// Format of the pixels' numbers.

@@ -43,7 +43,7 @@ const MAGICS: &[(&[u8], FileKind)] = &[
 
 /// Place of the mark in the header of a tar archive \[bytes\]. Source: POSIX.1-1988.
 const TAR_MARK_OFFSET: usize = 257;
-/// First bytes of an MCAP file.
+/// First bytes of an MCAP file. Source: MCAP specification, "Magic".
 pub(super) const MCAP_MAGIC: &[u8] = b"\x89MCAP0\r\n";
 
 /// The kind of a binary file, or of a text file with a signature in its first bytes.

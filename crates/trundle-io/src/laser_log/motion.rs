@@ -9,9 +9,9 @@ pub(crate) struct Motion {
     poses: Vec<(Stamp, Pose2)>,
 }
 
-/// Largest time between two poses that are interpolated, s. In a longer gap the pose is unknown.
+/// Largest time between two poses that are interpolated, s. In a longer gap the pose is unknown. Source: ours.
 const LONGEST_GAP: f64 = 1.0;
-/// Time before and after a pose for which it holds, s.
+/// Time before and after a pose for which it holds, s. Source: ours.
 const POSE_HOLD_S: f64 = 0.1;
 
 impl Motion {

@@ -10,7 +10,7 @@ use crate::{OutputFolder, map::pgm};
 use std::path::Path;
 use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, require_in};
 
-/// A mask's value that forbids.
+/// A mask's value that forbids. Source: `nav_msgs/OccupancyGrid`.
 const LETHAL_VALUE: u8 = 100;
 
 /// Meaning of the values of a speed mask, by Nav2's filter-info server: limit = base + multiplier * value.

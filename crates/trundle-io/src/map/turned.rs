@@ -2,9 +2,9 @@
 
 use trundle_core::{GridGeometry, Invalid, Vector2};
 
-/// Samples along a cell's side.
+/// Samples along a cell's side. Source: ours.
 const SAMPLES_PER_SIDE: usize = 3;
-/// Largest turn of a map that counts as no turn, rad: 1 um at 10 km.
+/// Largest turn of a map that counts as no turn, rad: 1 um at 10 km. Source: ours.
 const MAX_STRAIGHT_TURN_RAD: f64 = 1e-10;
 
 /// The values of a picture with this geometry, rotated by `yaw` rad around its origin, on cells along the axes with the same resolution. A

@@ -5,7 +5,7 @@ use crate::yaml_document::{YamlDocument, YamlValue};
 use std::path::Path;
 use trundle_core::{Cell, Invalid, Vector2, require_finite, require_in, require_positive};
 
-/// Grey of an unknown cell, of 255, as `map_saver` writes it.
+/// Grey of an unknown cell, of 255. Source: ROS's `map_saver`.
 const UNKNOWN_GREY: u32 = 205;
 
 /// The checked content of a map's YAML file.

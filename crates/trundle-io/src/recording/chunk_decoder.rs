@@ -9,9 +9,9 @@ pub(super) type OwnedRecord = (u8, Vec<u8>);
 
 /// Length of a decoded chunk \[bytes\]. A longer chunk is refused, a bound for broken chunks. Source: ours, chunks are some MB.
 const MAX_CHUNK: u64 = 1 << 28;
-/// Length of a record's head: opcode and length \[bytes\].
+/// Length of a record's head: opcode and length \[bytes\]. Source: MCAP specification, "Records".
 pub(super) const HEAD_BYTES: usize = 1 + 8;
-/// Length of a chunk's head before the name of its compression: times, size, checksum \[bytes\].
+/// Length of a chunk's head before the name of its compression: times, size, checksum \[bytes\]. Source: MCAP specification, "Chunk".
 pub(super) const CHUNK_HEAD_BYTES: usize = 8 + 8 + 8 + 4;
 
 /// The records of a whole chunk.

@@ -8,7 +8,7 @@ use trundle_core::Stamp;
 /// The name of the message.
 pub(super) const SCHEMA: &str = "sensor_msgs/msg/CompressedImage";
 
-/// Bytes in front of the image of a `compressedDepth` message.
+/// Bytes in front of the image of a `compressedDepth` message. Source: `compressed_depth_image_transport`.
 const DEPTH_HEADER_BYTES: usize = 12;
 /// Maximum number of images that wait for their place; a recording by trundle never exceeds it. Source: ours, ten times those of a chunk.
 const MAX_WAITING: usize = 4096;

@@ -15,7 +15,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use trundle_core::Stamp;
 
-/// Longest record that is read, bytes: a bound for broken lengths.
+/// Longest record that is read, bytes: a bound for broken lengths. Source: ours.
 const MAX_RECORD: usize = 1 << 28;
 
 /// Largest ratio of a record to its packed file. A bound for broken lengths. Source: ours.

@@ -4,7 +4,7 @@ use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 
-/// First bytes of a file that is packed with zstd (RFC 8878).
+/// First bytes of a file that is packed with zstd. Source: RFC 8878.
 const ZSTD_MAGIC: &[u8] = b"\x28\xb5\x2f\xfd";
 
 /// The bytes of a file, and whether it is packed.

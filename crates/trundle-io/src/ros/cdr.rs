@@ -41,7 +41,7 @@ pub(crate) struct CdrReader<'a> {
     wire: Wire,
 }
 
-/// Length of the header with the encoding of the rest \[bytes\].
+/// Length of the header with the encoding of the rest \[bytes\]. Source: DDSI-RTPS, 10.2.
 const HEADER_BYTES: usize = 4;
 
 impl<'a> CdrReader<'a> {

@@ -4,7 +4,7 @@ use trundle_core::{Pose3, Stamp};
 
 /// First bytes of a message: plain CDR, little endian. Source: OMG DDS-XTypes 1.3, section 7.4.
 const ENCAPSULATION: [u8; 4] = [0, 1, 0, 0];
-/// Number of nanoseconds in a second.
+/// Number of nanoseconds in a second. Source: SI.
 const NANOS_PER_S: i64 = 1_000_000_000;
 
 /// Writes the fields of a message one after the other; each method returns the writer.

@@ -20,7 +20,7 @@ pub(in crate::ros) enum NoTransform {
     Broken(String),
 }
 
-/// Longest chain of frames; a longer one is a cycle.
+/// Longest chain of frames; a longer one is a cycle. Source: ours.
 const MAX_FRAME_CHAIN: usize = 100;
 
 impl Frames {

@@ -12,7 +12,7 @@ pub(super) struct ConvertedScan {
     pub bad_ranges: usize,
 }
 
-/// A laser whose plane is tilted by more than this does not see one plane of the room, deg.
+/// A laser whose plane is tilted by more than this does not see one plane of the room, deg. Source: ours.
 const MOST_TILTED_DEG: f64 = 15.0;
 
 /// The scan of a message by a laser at `base_from_laser`: turned, to the side, upside down, its beams in either order.

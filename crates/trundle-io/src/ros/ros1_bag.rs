@@ -9,14 +9,14 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use trundle_core::Stamp;
 
-/// Kinds of records, of the field `op` (`wiki.ros.org/Bags/Format/2.0`).
+/// Kinds of records, of the field `op`. Source: `wiki.ros.org/Bags/Format/2.0`.
 const MESSAGE_OP: u8 = 2;
 const CHUNK_OP: u8 = 5;
 const CONNECTION_OP: u8 = 7;
 
 /// Longest chunk as unpacked \[bytes\]. A longer one is refused. The limit is a bound for broken files. Source: ours.
 const MAX_CHUNK_BYTES: u64 = 1 << 28;
-/// Longest first line, which contains the format \[bytes\].
+/// Longest first line, which contains the format \[bytes\]. Source: ours.
 const MAX_VERSION_BYTES: u64 = 64;
 
 /// The messages of a ROS 1 bag in the order of the file, with one chunk in memory.

@@ -43,7 +43,7 @@ impl TableRows {
     }
 }
 
-/// No tree is deeper.
+/// Largest depth of a tree \[pages\]. Source: SQLite, `BTCURSOR_MAX_DEPTH`.
 const MAX_TREE_DEPTH: usize = 20;
 
 impl Sqlite {

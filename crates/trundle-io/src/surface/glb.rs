@@ -10,7 +10,7 @@ const UNSIGNED_INT_COMPONENT: u32 = 5125;
 /// Kinds of a chunk: "JSON" and "BIN". Source: glTF 2.0, section 4.4.3.
 const JSON_CHUNK: u32 = 0x4E4F_534A;
 const BINARY_CHUNK: u32 = 0x004E_4942;
-/// Turn from z up to y up, as a quaternion (x, y, z, w): -90 deg about x.
+/// Turn from z up to y up, as a quaternion (x, y, z, w): -90 deg about x. Source: glTF 2.0, section 3.4.
 const Y_UP: [f64; 4] = [-std::f64::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f64::consts::FRAC_1_SQRT_2];
 
 /// The surface as a binary glTF file (`.glb`).

@@ -4,9 +4,9 @@ use crate::IoError;
 use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
 use std::path::Path;
 
-/// Height of one step of the picture, m.
+/// Height of one step of the picture, m. Source: ours.
 const STEP_M: f64 = 0.001;
-/// Pixel of a cell whose height is unknown.
+/// Pixel of a cell whose height is unknown. Source: ours.
 const UNKNOWN_PIXEL: u16 = u16::MAX;
 
 /// Heights over the cells of the floor.

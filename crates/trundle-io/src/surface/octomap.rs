@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-/// Levels of the tree below its root.
+/// Levels of the tree below its root. Source: \[Hornung13\].
 const TREE_LEVELS: u32 = 16;
 /// Key of the voxel at the origin: the middle of the tree.
 const ORIGIN_KEY: i32 = 1 << (TREE_LEVELS - 1);
-/// Codes of a child: no voxel known, all free, all occupied, or a node with children.
+/// Codes of a child: no voxel known, all free, all occupied, or a node with children. Source: \[Hornung13\].
 const UNKNOWN_CODE: u16 = 0b00;
 const FREE_CODE: u16 = 0b01;
 const OCCUPIED_CODE: u16 = 0b10;

@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::path::Path;
 use trundle_core::{Pose2, Stamp};
 
-/// Farther off no robot gets, m, and rad.
+/// Farther off no robot gets, m, and rad. Source: ours.
 const MAX_COORDINATE_M: f64 = 1e6;
 
 /// Odometry of a TUM sequence: lines of `timestamp x y theta` (s, m, m, rad), or of a TUM trajectory, the pose `odom_from_base`, `#` for

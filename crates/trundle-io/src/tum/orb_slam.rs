@@ -3,10 +3,10 @@
 use crate::CameraModel;
 use trundle_core::Distortion;
 
-/// The baseline at which ORB-SLAM models a depth camera as a stereo camera, m: that of its TUM settings, 40 px / 525 px.
+/// The baseline at which ORB-SLAM models a depth camera as a stereo camera, m. Source: ORB-SLAM's TUM settings, 40 px / 525 px.
 const STEREO_BASELINE_M: f64 = 40.0 / 525.0;
 
-/// Depths above this many baselines are "far" to ORB-SLAM, as in its TUM settings.
+/// Depths above this many baselines are "far" to ORB-SLAM. Source: ORB-SLAM's TUM settings.
 const FAR_BASELINES: f64 = 40.0;
 
 /// Required keys of extractor and viewer, with the values of ORB-SLAM's TUM settings.

@@ -30,7 +30,7 @@ pub struct TumSequence {
 }
 
 impl TumSequence {
-    /// Largest time difference between the colour and the depth image of a frame, s: 0.02, as in TUM's tools.
+    /// Largest time difference between the colour and the depth image of a frame, s: 0.02. Source: TUM's `associate.py`.
     pub const MAX_DIFFERENCE: f64 = 0.02;
 
     /// Opens a folder: reads its lists and pairs each colour image with the depth image nearest in time, at most `max_difference` s apart.

@@ -5,14 +5,14 @@ use crate::stamp_unit::StampUnit;
 use nalgebra::Quaternion;
 use trundle_core::{Pose2, Pose3};
 
-/// Largest deviation of a quaternion's norm from 1: files with two decimals or more are accepted and normalised.
+/// Largest deviation of a quaternion's norm from 1: files with two decimals or more are accepted and normalised. Source: ours.
 const NORM_TOLERANCE: f64 = 0.02;
 
-/// Number of columns of EuRoC's states: with velocity, and with biases.
+/// Number of columns of EuRoC's states: with velocity, and with biases. Source: the EuRoC data set's format.
 const EUROC_COLUMNS: [usize; 2] = [11, 17];
-/// Number of columns of KITTI's poses: the upper three rows of a matrix.
+/// Number of columns of KITTI's poses: the upper three rows of a matrix. Source: KITTI's odometry benchmark, its read-me.
 pub(super) const KITTI_COLUMNS: usize = 12;
-/// Number of columns of a planar pose with its stamp.
+/// Number of columns of a planar pose with its stamp. Source: ours.
 const PLANAR_COLUMNS: usize = 4;
 
 /// The form of a trajectory file.

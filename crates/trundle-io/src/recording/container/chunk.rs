@@ -20,7 +20,7 @@ impl Group {
     pub(super) const ALL: [Self; 3] = [Self::Depth, Self::Color, Self::Rest];
 }
 
-/// Level of zstd. Higher levels have no advantage for depth images in RVL (docs/experiments/recording-size.md).
+/// Level of zstd. Higher levels have no advantage for depth images in RVL. Source: docs/experiments/recording-size.md.
 const ZSTD_LEVEL: i32 = 1;
 
 /// A chunk that is being filled.

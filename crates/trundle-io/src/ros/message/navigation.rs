@@ -7,7 +7,7 @@ use trundle_core::{Cell, OccupancyGrid, Odometry, Pose2, Pose3, Stamp};
 
 /// Variance of quantities that a planar base does not measure: height, roll, pitch \[m², rad²\]. Source: ours, very large.
 const UNMEASURED_VARIANCE: f64 = 1e6;
-/// Indices of x, y and heading among the six of ROS: x, y, z, roll, pitch, yaw.
+/// Indices of x, y and heading among x, y, z, roll, pitch, yaw. Source: `geometry_msgs/PoseWithCovariance`.
 const PLANAR: [usize; 3] = [0, 1, 5];
 
 /// `nav_msgs/msg/Odometry`: `frame_from_child` with its covariance, which remains a right perturbation.

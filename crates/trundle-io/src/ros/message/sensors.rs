@@ -4,7 +4,7 @@ use super::RosMessage;
 use crate::ros::cdr_writer::CdrWriter;
 use trundle_core::{Beam, GyroRate, PinholeCamera, Scan, Stamp};
 
-/// Bytes in front of a depth image of `compressed_depth_image_transport`: no quantisation.
+/// Bytes in front of a depth image: no quantisation. Source: `compressed_depth_image_transport`.
 const DEPTH_HEADER: [u8; 12] = [0; 12];
 /// Maximum range of a sweep by trundle \[m\]. Source: ours, more than any room.
 const MAX_RANGE_M: f32 = 100.0;

@@ -4,11 +4,11 @@ use super::RosMessage;
 use crate::ros::cdr_writer::CdrWriter;
 use trundle_core::{Pose3, Stamp, Vector2, Vector3};
 
-/// `sensor_msgs/msg/PointField`: 32-bit float.
+/// Type of a field: 32-bit float. Source: `sensor_msgs/msg/PointField`.
 const FLOAT32_TYPE: u8 = 7;
-/// `visualization_msgs/msg/Marker`: pairs of points as lines.
+/// Type of a marker: pairs of points as lines. Source: `visualization_msgs/msg/Marker`.
 const LINE_LIST: u32 = 5;
-/// `visualization_msgs/msg/ImageMarker`: points.
+/// Type of a marker in an image: points. Source: `visualization_msgs/msg/ImageMarker`.
 const IMAGE_POINTS: u32 = 4;
 /// Width of a line of the covisibility graph \[m\]. Source: ours.
 const LINE_WIDTH_M: f64 = 0.004;
@@ -16,7 +16,7 @@ const LINE_WIDTH_M: f64 = 0.004;
 const LOOP_WIDTH_M: f64 = 0.012;
 /// Size of a feature \[px\]. Source: ours.
 const FEATURE_PX: f32 = 3.0;
-/// Colours: red, green, blue, opacity.
+/// Colours: red, green, blue, opacity. Source: ours.
 const TRACKED_COLOR: [f32; 4] = [0.1, 0.8, 0.3, 1.0];
 const UNTRACKED_COLOR: [f32; 4] = [1.0, 0.8, 0.1, 0.8];
 const COVISIBLE_COLOR: [f32; 4] = [0.3, 0.7, 1.0, 0.5];

@@ -3,9 +3,9 @@
 use crate::codec::{CodecError, decode_raw_depth, decode_rvl};
 use trundle_core::{DepthImage, Image};
 
-/// Bytes in front of the image: a number of the quantisation, and its two parameters as floats.
+/// Bytes in front of the image: a number of the quantisation, and its two parameters as floats. Source: `compressed_depth_image_transport`.
 const HEADER_BYTES: usize = 12;
-/// First bytes of a PNG.
+/// First bytes of a PNG. Source: PNG specification, 5.2.
 const PNG_MAGIC: &[u8] = b"\x89PNG";
 
 /// Whether a format is `compressedDepth`, as `16UC1; compressedDepth png`.

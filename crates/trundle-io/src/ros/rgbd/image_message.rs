@@ -122,7 +122,7 @@ impl BagImage {
     }
 }
 
-/// First bytes of a JPEG.
+/// First bytes of a JPEG. Source: ITU-T T.81, B.1.1.3.
 const JPEG_MAGIC: &[u8] = b"\xff\xd8\xff";
 
 fn is_picture(bytes: &[u8]) -> bool {
