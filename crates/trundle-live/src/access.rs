@@ -16,9 +16,9 @@ pub enum Access {
     View,
 }
 
-/// Length of a token \[bytes\]: 128 bits cannot be guessed.
+/// Length of a token \[bytes\]: 128 bits cannot be guessed. Source: ours.
 const TOKEN_BYTES: usize = 16;
-/// Largest token file that is read \[bytes\].
+/// Largest token file that is read \[bytes\]. Source: ours.
 const MAX_TOKEN_FILE_BYTES: u64 = 1024;
 
 /// The token for driving and the token for viewing, as hexadecimal text.

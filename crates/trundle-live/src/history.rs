@@ -6,7 +6,7 @@ use std::time::Duration;
 use trundle_app::operator::RunView;
 use trundle_core::Pose2;
 
-/// Period of reading views of the run.
+/// Period of reading views of the run. Source: ours.
 pub const HISTORY_PERIOD: Duration = Duration::from_millis(200);
 /// Maximum number of stored points: ten minutes of driving. Source: ours.
 const MAX_POINTS: usize = 3000;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 /// Maximum number of simultaneous viewers. Source: ours; measured: ten viewers do not disturb the robot.
 const MAX_VIEWERS: usize = 24;
-/// Longest name of a viewer \[characters\].
+/// Longest name of a viewer \[characters\]. Source: ours.
 const MAX_NAME_CHARS: usize = 24;
 
 /// Number of a viewer.

@@ -23,7 +23,7 @@ const END_TIMEOUT: Duration = Duration::from_secs(2);
 /// Longest wait until the viewers have received the end of the program. Source: ours; a viewer on the same network receives it within
 /// milliseconds.
 const GOODBYE_TIMEOUT: Duration = Duration::from_millis(300);
-/// Period of checks for the end of the thread.
+/// Period of checks for the end of the thread. Source: ours.
 const END_CHECK_PERIOD: Duration = Duration::from_millis(5);
 
 /// A live page in service. A drop ends the page's thread and all its links.

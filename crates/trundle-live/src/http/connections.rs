@@ -13,9 +13,9 @@ use tokio::sync::Semaphore;
 const MAX_CONNECTIONS: usize = 48;
 /// Longest wait for the head of a request, also between two requests. Source: ours.
 const REQUEST_TIMEOUT: Duration = Duration::from_secs(5);
-/// Longest head of a request \[bytes\].
+/// Longest head of a request \[bytes\]. Source: ours.
 const MAX_HEAD_BYTES: usize = 16 * 1024;
-/// Pause after a refused accept, for example without free file descriptors.
+/// Pause after a refused accept, for example without free file descriptors. Source: ours.
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 
 /// Serves the routes until the task is dropped.

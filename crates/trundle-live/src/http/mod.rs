@@ -19,7 +19,7 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use std::sync::Arc;
 
-/// Largest message of a viewer \[bytes\]: 50 goals are 4 kB.
+/// Largest message of a viewer \[bytes\]: 50 goals are 4 kB. Source: ours.
 const MAX_MESSAGE_BYTES: usize = 16 * 1024;
 
 /// The routes of the page.

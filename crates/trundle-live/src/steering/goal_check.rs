@@ -4,7 +4,7 @@ use super::refusal::CommandRefusal;
 use trundle_core::{MapAnnotations, OccupancyGrid, Pose2, ZoneKind};
 use trundle_planning::FootprintCheck;
 
-/// Centimetres of a metre.
+/// Centimetres of a metre. Source: SI.
 const CM_PER_M: f64 = 100.0;
 
 /// Checks that the outline at a goal reaches into no obstacle of the map and no no-go zone, as the planner does. Unknown floor is no

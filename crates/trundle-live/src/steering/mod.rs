@@ -16,7 +16,7 @@ use trundle_core::{DriveLimits, OccupancyGrid, Pose2, Twist2, Zone, require_in};
 use trundle_planning::{FootprintCheck, require_on_map};
 use trundle_runtime::{Mission, OperatorCommand, PoseGuess, RunSetting, Task};
 
-/// Most goals of one request.
+/// Most goals of one request. Source: ours.
 const MAX_GOALS: usize = 50;
 /// Standard deviation of a position that a person points at \[m\]. Source: ours; a finger on a map of 10 m.
 const POINTED_POSITION_SIGMA_M: f64 = 0.3;

@@ -11,9 +11,9 @@ use std::time::Duration;
 const HELLO_TIMEOUT: Duration = Duration::from_secs(5);
 /// Close code of a wrong token. Source: ours, of the range for applications.
 const WRONG_TOKEN: u16 = 4401;
-/// Close code of another version of the messages.
+/// Close code of another version of the messages. Source: ours, of the range for applications.
 const OTHER_VERSION: u16 = 4406;
-/// Close code of a link without hello.
+/// Close code of a link without hello. Source: ours, of the range for applications.
 const NO_HELLO: u16 = 4408;
 
 /// Receives the hello and welcomes the viewer; `None` without the permission to view.

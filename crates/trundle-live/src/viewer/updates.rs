@@ -17,14 +17,14 @@ use trundle_app::operator::{FeatureView, RunView, SeriesView, VisualMapView};
 use trundle_core::{MapAnnotations, Stamp, Trajectory};
 use trundle_runtime::RunSetting;
 
-/// Period of views.
+/// Period of views. Source: ours.
 const VIEW_PERIOD: Duration = Duration::from_millis(100);
 /// Maximum number of sent views not yet drawn by the page. Above it no view is sent, which keeps old views out of a slow network. Source:
 /// ours; three views hide a delay of 0.3 s.
 const MAX_UNSEEN: u64 = 3;
-/// Period of images.
+/// Period of images. Source: ours.
 const IMAGE_PERIOD: Duration = Duration::from_millis(180);
-/// Longest time without a message during a constant state: the page then knows that the link works.
+/// Longest time without a message during a constant state: the page then knows that the link works. Source: ours.
 const QUIET_PERIOD: Duration = Duration::from_secs(1);
 
 /// Sends answers and views until the viewer takes none; why it ends.

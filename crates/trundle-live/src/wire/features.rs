@@ -9,9 +9,9 @@
 use super::Kind;
 use trundle_app::operator::FeatureView;
 
-/// Parts of a pixel in which a place is sent.
+/// Parts of a pixel in which a place is sent. Source: ours.
 const PARTS_PER_PX: f64 = 8.0;
-/// Bit of a feature that agrees with the pose.
+/// Bit of a feature that agrees with the pose. Source: ours.
 const TRACKED_BIT: u16 = 1 << 15;
 
 /// The message of the features of an image.

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use trundle_app::operator::MapView;
 use trundle_core::{Cell, OccupancyGrid, Vector2};
 
-/// Cells along a side of a tile.
+/// Cells along a side of a tile. Source: ours.
 const TILE_CELLS: i64 = 64;
 /// Bytes of a tile.
 const TILE_BYTES: usize = (TILE_CELLS * TILE_CELLS / 4) as usize;

@@ -27,7 +27,7 @@ pub use scan::scan_message;
 pub use state::{StateMessage, WheelText};
 pub use visual_map::visual_map_message;
 
-/// Version of the messages. A page of another version reloads itself.
+/// Version of the messages. A page of another version reloads itself. Source: ours.
 pub const WIRE_VERSION: u32 = 3;
 
 /// First byte of a message of bytes.

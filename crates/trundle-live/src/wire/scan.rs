@@ -9,7 +9,7 @@
 use super::Kind;
 use trundle_core::{Pose2, Scan};
 
-/// Millimetres of a metre.
+/// Millimetres of a metre. Source: SI.
 const MM_PER_M: f64 = 1000.0;
 
 /// The message of a scan. Points farther than 32 m are left out.

@@ -102,7 +102,7 @@ pub struct TaskText {
 
 /// Time of the forecast of dynamic obstacles that is shown \[s\]. Source: ours; the planner's horizon is longer.
 const FORECAST_S: f64 = 1.0;
-/// Number of ended tasks that are sent.
+/// Number of ended tasks that are sent. Source: ours.
 const SHOWN_ENDED_TASKS: usize = 5;
 
 impl StateMessage {

@@ -10,9 +10,9 @@
 use super::Kind;
 use trundle_app::operator::VisualMapView;
 
-/// Centimetres of a metre.
+/// Centimetres of a metre. Source: SI.
 const CM_PER_M: f64 = 100.0;
-/// Steps per radian of a heading that is sent.
+/// Steps per radian of a heading that is sent. Source: ours.
 const HEADING_PARTS_PER_RAD: f64 = 1e4;
 
 /// The message of a visual map. Points farther than 327 m are clamped to this distance.
