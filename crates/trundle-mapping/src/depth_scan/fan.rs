@@ -22,7 +22,7 @@ const MAX_BEAM_INCREMENT_RAD: f64 = 0.035;
 /// Minimum angle between neighbouring beams \[rad\]. A full circle of beams is counted in 16 bits. Source: ours.
 const MIN_BEAM_INCREMENT_RAD: f64 = 1e-4;
 
-/// Coefficients of t, t^3, t^5 and so on of the arc tangent over 0 to 1 \[Abramowitz64, 4.4.49\].
+/// Coefficients of t, t^3, t^5 and so on of the arc tangent over 0 to 1. Source: \[Abramowitz64\], equation 4.4.49.
 const ATAN_COEFFICIENTS: [f64; 9] = [
     1.0,
     -0.333_331_452_8,
@@ -34,8 +34,8 @@ const ATAN_COEFFICIENTS: [f64; 9] = [
     -0.016_165_736_7,
     0.002_866_225_7,
 ];
-/// Largest error of [`nearly_atan2`] \[rad\], with a margin: the source has 2e-8. The bearing of a pixel nearer to the edge of a beam is
-/// computed exactly.
+/// Largest error of [`nearly_atan2`] \[rad\]. The bearing of a pixel nearer to the edge of a beam is computed exactly. Source: ours, five
+/// times the 2e-8 of \[Abramowitz64\].
 const MAX_NEAR_ERROR_RAD: f64 = 1e-7;
 
 impl Fan {

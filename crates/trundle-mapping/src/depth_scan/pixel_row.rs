@@ -15,17 +15,17 @@ pub(super) struct ClassifiedRow {
 
 /// Classes of pixels.
 pub(super) mod kind {
-    /// Unknown, or no depth.
+    /// Unknown, or no depth. Source: ours.
     pub const NOTHING: u32 = 0;
-    /// Class of a pixel in the height band.
+    /// Class of a pixel in the height band. Source: ours.
     pub const OBSTACLE: u32 = 1;
-    /// Class of a pixel in the height band with too few neighbours on its surface.
+    /// Class of a pixel in the height band with too few neighbours on its surface. Source: ours.
     pub const DOUBTFUL: u32 = 2;
-    /// The floor.
+    /// The floor. Source: ours.
     pub const FLOOR: u32 = 3;
-    /// The ray passed through the band and ended above or behind the band.
+    /// The ray passed through the band and ended above or behind the band. Source: ours.
     pub const PASSING: u32 = 4;
-    /// Far below the floor.
+    /// Far below the floor. Source: ours.
     pub const DROP: u32 = 5;
 }
 

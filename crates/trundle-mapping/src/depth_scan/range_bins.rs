@@ -3,7 +3,7 @@
 /// A set of stretches of a beam, as 128 bins of equal length up to the greatest range.
 pub(super) type SpanBits = u128;
 
-/// Number of bins of a beam.
+/// Number of bins of a beam. Source: ours.
 pub(super) const BIN_COUNT: usize = 128;
 
 /// `BELOW[n]`: the first `n` bins.

@@ -42,7 +42,7 @@ pub(crate) struct StoredRay {
     pub(crate) sigma: f32,
 }
 
-/// Maximum number of units of a stored coordinate per cell.
+/// Maximum number of units of a stored coordinate per cell. Source: ours.
 const MAX_UNITS_PER_CELL: f64 = 16.0;
 /// Smallest unit of a stored coordinate \[m\]. With it 16 bits reach 102 m, the range of the longest indoor lasers. Source: ours.
 const MIN_UNIT_M: f64 = 0.05 / 16.0;
@@ -54,9 +54,9 @@ const JOINED_BIT: u8 = 2;
 const WHOLE_BIT: u8 = 4;
 /// Bits below the number of skipped beams.
 const SKIPPED_SHIFT: u32 = 3;
-/// Maximum number of skipped beams that five bits hold. Larger gaps are stored as this number.
+/// Maximum number of skipped beams that five bits hold. Larger gaps are stored as this number. Source: the five bits above `SKIPPED_SHIFT`.
 const MAX_SKIPPED_BEAMS: usize = 31;
-/// Unit of a stored sigma \[m\].
+/// Unit of a stored sigma \[m\]. Source: ours.
 const SIGMA_UNIT_M: f32 = 0.001;
 
 /// Units of a stored coordinate per cell.

@@ -30,9 +30,9 @@ pub use error::FilterFileError;
 use trundle_core::Stamp;
 use trundle_grid::tiles::{TileMap, TilePools, assemble};
 
-/// First bytes of the file.
+/// First bytes of the file. Source: ours.
 const MAGIC: &[u8; 7] = b"trundlF";
-/// Version of the file's layout. Other versions are refused.
+/// Version of the file's layout. Other versions are refused. Source: ours.
 const FORMAT_VERSION: u8 = 4;
 /// Number of bytes before those covered by the checksum.
 const HEADER_BYTES: usize = 16;

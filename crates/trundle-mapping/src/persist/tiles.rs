@@ -36,7 +36,7 @@ pub(crate) struct ReadPools {
     pub(crate) maps: Vec<Vec<u32>>,
 }
 
-/// Maximum tile coordinate of a valid map.
+/// Maximum tile coordinate of a valid map. Source: ours.
 const MAX_TILE_COORDINATE: i32 = 1 << 20;
 
 pub(crate) fn read(bytes: &mut Reader<'_>) -> Result<ReadPools, FilterFileError> {

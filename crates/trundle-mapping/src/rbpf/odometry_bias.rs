@@ -18,11 +18,11 @@ pub(crate) struct OdometryBias {
     way: [f64; 2],
 }
 
-/// Prior sigma of the heading bias per distance [rad/m]: the worst wheels of \[Borenstein96\].
+/// Prior sigma of the heading bias per distance [rad/m]. Source: \[Borenstein96\], the worst wheels.
 const HEADING_BIAS_SIGMA_PER_M: f64 = 0.02;
-/// Prior sigma of the heading bias per turn [rad/rad]: the worst wheels of \[Borenstein96\].
+/// Prior sigma of the heading bias per turn [rad/rad]. Source: \[Borenstein96\], the worst wheels.
 const HEADING_BIAS_SIGMA_PER_RAD: f64 = 0.03;
-/// Prior sigma of the distance bias per distance \[m/m\]: the worst wheels of \[Borenstein96\].
+/// Prior sigma of the distance bias per distance \[m/m\]. Source: \[Borenstein96\], the worst wheels.
 const DISTANCE_BIAS_SIGMA_PER_M: f64 = 0.03;
 /// Number of steps that the sums cover: tyres and floors change slowly. Source: ours.
 const MEMORY_STEPS: f64 = 300.0;
