@@ -14,9 +14,9 @@ use trundle_core::{Pose3, Vector3};
 const MAX_DENSE_POSES: usize = 64;
 /// Units of work of [`BundleSolver::advance`] to linearise an observation: 4. One unit takes some 20 ns. Source: ours, measured.
 const WORK_PER_OBSERVATION: usize = 4;
-/// Units of work for a product of two 6 x 6 blocks: 3. See [`WORK_PER_OBSERVATION`].
+/// Units of work for a product of two 6 x 6 blocks: 3. Source: as [`WORK_PER_OBSERVATION`].
 const WORK_PER_PRODUCT: usize = 3;
-/// Units of work for a constraint: 60. See [`WORK_PER_OBSERVATION`].
+/// Units of work for a constraint: 60. Source: as [`WORK_PER_OBSERVATION`].
 const WORK_PER_CONSTRAINT: usize = 60;
 
 /// A running bundle adjustment by the Schur complement (Triggs et al. 2000).

@@ -4,13 +4,13 @@ use crate::Huber;
 use nalgebra::{Matrix3, Matrix3x6};
 use trundle_core::{PinholeCamera, Vector2, Vector3};
 
-/// The 95th percentile of the chi-square distribution with 2 degrees of freedom.
+/// The 95th percentile of the chi-square distribution with 2 degrees of freedom. Source: the chi-square distribution.
 pub const CHI2_95_2: f64 = 5.991;
-/// The 95th percentile of the chi-square distribution with 3 degrees of freedom.
+/// The 95th percentile of the chi-square distribution with 3 degrees of freedom. Source: the chi-square distribution.
 pub const CHI2_95_3: f64 = 7.815;
-/// The 95th percentile of the chi-square distribution with 6 degrees of freedom: of a whole pose.
+/// The 95th percentile of the chi-square distribution with 6 degrees of freedom: of a whole pose. Source: the chi-square distribution.
 pub const CHI2_95_6: f64 = 12.592;
-/// The 99.9th percentile of the chi-square distribution with 6 degrees of freedom.
+/// The 99.9th percentile of the chi-square distribution with 6 degrees of freedom. Source: the chi-square distribution.
 pub(crate) const CHI2_999_6: f64 = 22.458;
 /// Smallest depth of a point along the optical axis that has a projection: 0.02 m. A nearer point counts as behind the camera.
 /// Source: ours.
