@@ -2,7 +2,7 @@
 
 use trundle_core::Vector2;
 
-/// Side of a cell, m.
+/// Side of a cell, m. Source: ours.
 pub(super) const CELL_SIDE_M: f64 = 0.05;
 /// Time of free observations after which a hit cell counts as left, s: measurements of walls flicker. Source: ours.
 const MAX_FLICKER_S: f64 = 0.5;

@@ -13,7 +13,7 @@ use crate::search::lattice::SIDE;
 use crate::search::lattice::{STEPS, length};
 use trundle_core::{Pose2, Vector2};
 
-/// Number of headings.
+/// Number of headings. Source: the steps of the lattice, `STEPS`.
 const HEADING_COUNT: usize = 16;
 /// The steps of the lattice by rising direction, counter-clockwise from +x.
 const BY_HEADING: [usize; HEADING_COUNT] = [0, 8, 4, 12, 2, 14, 6, 10, 1, 11, 7, 15, 3, 13, 5, 9];

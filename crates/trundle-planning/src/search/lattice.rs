@@ -1,9 +1,9 @@
 //! Steps to the 16 nearest directions, with whole-numbered lengths: the unit of the search and its heuristic.
-/// Length of a step to a side neighbour, in units of 1/256 of a cell's side.
+/// Length of a step to a side neighbour, in units of 1/256 of a cell's side. Source: ours.
 pub(crate) const SIDE: u32 = 256;
-/// Length of a diagonal step, in the same units.
+/// Length of a diagonal step, in the same units. Source: 256 sqrt(2).
 const DIAGONAL_STEP: u32 = 362;
-/// Length of a knight's move, in the same units.
+/// Length of a knight's move, in the same units. Source: 256 sqrt(5).
 const KNIGHT_STEP: u32 = 572;
 
 /// Columns and rows of each step: sides, diagonals, knight's moves. 16 directions make a path at most 2.8 % longer than a straight

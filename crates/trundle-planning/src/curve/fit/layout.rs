@@ -2,7 +2,7 @@
 
 use clarabel::algebra::CscMatrix;
 
-/// Number of unknown vectors of a knot (a joint, or an end): position, first and second derivative by chord length.
+/// Number of unknown vectors of a knot (a joint, or an end): position, first and second derivative by chord length. Source: ours.
 pub(super) const KNOT_UNKNOWNS: usize = 3;
 
 /// A control point as a sum of unknown vectors.
