@@ -16,7 +16,7 @@ use trundle_drivers::camera::{
 
 /// Rate of a camera whose rate is unknown \[Hz\]. Source: ours.
 const ASSUMED_RATE_HZ: f64 = 30.0;
-/// Length of a unit of whole-numbered depth \[m\] \[REP 118\].
+/// Length of a unit of whole-numbered depth \[m\]. Source: REP 118.
 const DEPTH_UNIT_M: f64 = 0.001;
 
 /// Settings to open the camera.

@@ -6,15 +6,15 @@ use crate::generated::map_msgs::OccupancyGridUpdate;
 use crate::generated::nav_msgs::{MapMetaData, OccupancyGrid as Message};
 use trundle_core::{Cell, GridGeometry, Invalid, OccupancyGrid, Stamp, Vector2};
 
-/// Value of an unknown cell.
+/// Value of an unknown cell. Source: `nav_msgs/OccupancyGrid`.
 const UNKNOWN_CELL: i8 = -1;
-/// Value of a free cell.
+/// Value of a free cell. Source: `nav_msgs/OccupancyGrid`.
 const FREE: i8 = 0;
-/// Value of an occupied cell.
+/// Value of an occupied cell. Source: `nav_msgs/OccupancyGrid`.
 const OCCUPIED_CELL: i8 = 100;
-/// Smallest value of an occupied cell of others: map_server's default `occupied_thresh`, 0.65.
+/// Smallest value of an occupied cell of others. Source: map_server's default `occupied_thresh`, 0.65.
 const MIN_OCCUPIED: i8 = 65;
-/// Largest value of a free cell of others: map_server's default `free_thresh`, 0.25.
+/// Largest value of a free cell of others. Source: map_server's default `free_thresh`, 0.25.
 const MAX_FREE: i8 = 25;
 
 /// The grid as a message.

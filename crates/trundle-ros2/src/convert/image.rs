@@ -26,7 +26,7 @@ const COLORS: [(&str, PixelFormat); 9] = [
 /// Encodings of depth images \[REP 118\]: millimetres, or metres.
 const DEPTHS: [(&str, PixelFormat); 3] =
     [("16UC1", PixelFormat::Depth16), ("mono16", PixelFormat::Depth16), ("32FC1", PixelFormat::DepthF32)];
-/// The first bytes of a JPEG file.
+/// The first bytes of a JPEG file. Source: ITU-T T.81, B.1.1.3.
 const JPEG_MAGIC: [u8; 3] = [0xFF, 0xD8, 0xFF];
 
 /// A colour image.

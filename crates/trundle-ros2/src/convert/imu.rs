@@ -6,7 +6,7 @@ use crate::generated::sensor_msgs::Imu;
 use nalgebra::UnitQuaternion;
 use trundle_core::{GyroRate, Invalid, Stamp, Vector3, require_finite};
 
-/// The covariance element for a quantity that is not measured \[REP 145, sensor_msgs/Imu\].
+/// The covariance element for a quantity that is not measured. Source: REP 145, `sensor_msgs/Imu`.
 const NOT_MEASURED: f64 = -1.0;
 
 /// The turn rate around the base's vertical axis, at `stamp` of the run. `base_from_imu` is the rotation of the sensor on the base.

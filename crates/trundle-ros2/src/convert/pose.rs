@@ -83,7 +83,7 @@ pub fn stamped(pose: &Pose2, stamp: Stamp, frame: &str) -> PoseStamped {
     PoseStamped { header: super::stamp::header(stamp, frame), pose: to_ros(pose) }
 }
 
-/// Places of x, y and turn around z in the six rows of a covariance.
+/// Places of x, y and turn around z in the six rows of a covariance. Source: `geometry_msgs/PoseWithCovariance`.
 pub(super) const PLANAR: [usize; 3] = [0, 1, 5];
 
 /// A pose with its covariance. `covariance` is a right perturbation, in the axes of the base; the message has the axes of the pose's

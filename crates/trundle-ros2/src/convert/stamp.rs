@@ -4,7 +4,7 @@ use crate::generated::builtin_interfaces::{Duration, Time};
 use crate::generated::std_msgs::Header;
 use trundle_core::{Invalid, Stamp};
 
-/// Nanoseconds of a second.
+/// Nanoseconds of a second. Source: SI.
 const NANOS_PER_S: i64 = 1_000_000_000;
 
 /// The stamp on its sender's clock.

@@ -11,9 +11,10 @@ use serde::Serialize;
 use std::io::{self, Write};
 
 /// Largest reply \[bytes\] that RustDDS sends in one datagram to every peer. The size is the smallest MTU of IPv6, 1280 bytes, minus the
-/// headers of IP, UDP and RTPS (48), of a heartbeat (32) and of the submessage (48). Larger replies are not delivered.
+/// headers of IP, UDP and RTPS (48), of a heartbeat (32) and of the submessage (48). Larger replies are not delivered. Source: RFC 8200,
+/// section 5, and DDSI-RTPS.
 pub const MAX_REPLY_BYTES: usize = 1152;
-/// Bytes before a message with its encoding \[DDSI-RTPS 10.2\].
+/// Bytes before a message with its encoding. Source: DDSI-RTPS, 10.2.
 const ENCAPSULATION_BYTES: usize = 4;
 
 /// The size of a reply on the wire \[bytes\] if it is too large for delivery.

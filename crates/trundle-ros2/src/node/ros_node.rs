@@ -27,7 +27,7 @@ pub struct NodeSettings {
     pub networks: Networks,
 }
 
-/// Largest domain id whose ports exist \[DDSI-RTPS 9.6.1\].
+/// Largest domain id whose ports exist. Source: DDSI-RTPS, 9.6.1.
 const MAX_DOMAIN: u16 = 232;
 /// Receive buffer of a socket \[bytes\]: a raw image pair of 640 x 480. The system may grant less. Source: ours.
 const RECEIVE_BUFFER_BYTES: usize = 4 << 20;

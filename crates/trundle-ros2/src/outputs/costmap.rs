@@ -9,9 +9,9 @@ const INFLATION_M: f64 = 0.55;
 const DECAY_PER_M: f64 = 3.0;
 /// Side of the local view \[m\]. Source: Nav2's default.
 pub const LOCAL_SIDE_M: f64 = 3.0;
-/// Cost of an occupied cell.
+/// Cost of an occupied cell. Source: Nav2's `Costmap2DPublisher`.
 const LETHAL_COST: i8 = 100;
-/// Cost of a cell on which the middle of the robot would touch an obstacle.
+/// Cost of a cell on which the middle of the robot would touch an obstacle. Source: Nav2's `Costmap2DPublisher`.
 const INSCRIBED_COST: i8 = 99;
 
 /// Costs of all cells, row by row from the lowest y: 100 occupied, 99 within the body's radius, decreasing outside, -1 unknown. `radius` is

@@ -22,9 +22,9 @@ use trundle_runtime::OperatorCommand;
 
 /// Period of transforms and odometry. Source: the robot's control rate, 50 Hz.
 const POSE_PERIOD: Duration = Duration::from_millis(20);
-/// Period of the pose with covariance, the map's updates, and the local costs.
+/// Period of the pose with covariance, the map's updates, and the local costs. Source: ours.
 const SLOW_PERIOD: Duration = Duration::from_millis(200);
-/// Period of the whole map, the costs of the whole map, diagnostics and battery.
+/// Period of the whole map, the costs of the whole map, diagnostics and battery. Source: ours.
 const SLOWEST_PERIOD: Duration = Duration::from_secs(1);
 /// Time by which the map's transform is stamped ahead \[s\]: a look-up for a newer image then succeeds. Source: ours; AMCL's
 /// `transform_tolerance` is 1 s.
