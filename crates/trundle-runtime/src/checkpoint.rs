@@ -78,7 +78,7 @@ struct Notes {
 }
 
 const MAGIC: &[u8; 8] = b"TRUNDLEM";
-/// Version of the file format.
+/// Version of the file format. Source: ours.
 const FORMAT_VERSION: u32 = 2;
 
 impl Checkpoint {

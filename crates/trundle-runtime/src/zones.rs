@@ -12,7 +12,7 @@ use trundle_planning::{CostMask, FootprintCheck, SpeedMask, forbid, forbidden_ce
 
 /// Highest speed in a no-go zone during the exit \[m/s\]. Source: ours; a slow walk of a person beside the robot.
 const LEAVING_SPEED_M_S: f64 = 0.15;
-/// Cost of the cells of a zone that the robot leaves, in per cent of the largest.
+/// Cost of the cells of a zone that the robot leaves, in per cent of the largest. Source: ours.
 const LEAVING_COST_PERCENT: u8 = 100;
 
 /// The zones of a running robot.

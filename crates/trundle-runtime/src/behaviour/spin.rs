@@ -18,7 +18,7 @@ pub(crate) const SPIN_RATE_RAD_S: f64 = 0.6;
 pub(crate) const SPIN_TURNS: f64 = 1.02;
 /// Factor on the commands needed for a spin; a spin that no sensor measures ends at this multiple. Source: ours.
 const UNMEASURED_SPIN_FACTOR: f64 = 1.5;
-/// Time between two commands \[s\].
+/// Time between two commands \[s\]. Source: ours, a control rate of 50 Hz.
 const COMMAND_PERIOD_S: f64 = 0.02;
 /// Bearing of a target below which the robot faces the target \[rad\]. Source: ours.
 const FACING_TOLERANCE_RAD: f64 = 0.05;

@@ -43,7 +43,7 @@ fn rank(nicer: i32) -> bool {
     getpriority_process(None).and_then(|now| setpriority_process(None, now + nicer)).is_ok()
 }
 
-/// Real-time priority, 1 to 99: below the kernel's own threads.
+/// Real-time priority, 1 to 99: below the kernel's own threads. Source: ours.
 #[cfg(target_os = "linux")]
 const THREAD_PRIORITY: i32 = 10;
 

@@ -13,21 +13,21 @@ struct Plausible {
     meant: &'static str,
 }
 
-/// Largest wheel radius of an indoor robot \[m\]; ours: three times a wheelchair's.
+/// Largest wheel radius of an indoor robot \[m\]. Source: ours, three times a wheelchair's.
 const MAX_WHEEL_RADIUS_M: f64 = 0.5;
-/// Largest wheelbase of an indoor robot \[m\]; ours: the width of a double door.
+/// Largest wheelbase of an indoor robot \[m\]. Source: ours, the width of a double door.
 const MAX_WHEELBASE_M: f64 = 2.0;
-/// Largest footprint radius \[m\]; ours.
+/// Largest footprint radius \[m\]. Source: ours.
 const MAX_FOOTPRINT_RADIUS_M: f64 = 3.0;
-/// Largest forward speed \[m/s\]; ours: a running person.
+/// Largest forward speed \[m/s\]. Source: ours, a running person.
 const MAX_SPEED_M_S: f64 = 5.0;
-/// Largest turn rate \[rad/s\]; ours: two turns per second.
+/// Largest turn rate \[rad/s\]. Source: ours, two turns per second.
 const MAX_TURN_RATE_RAD_S: f64 = 15.0;
 /// Largest acceleration \[m/s^2\], twice that of gravity; no wheel on a floor reaches it. Source: ours.
 const MAX_ACCELERATION_M_S2: f64 = 20.0;
-/// Largest angular acceleration \[rad/s^2\]; ours.
+/// Largest angular acceleration \[rad/s^2\]. Source: ours.
 const MAX_ANGULAR_ACCELERATION_RAD_S2: f64 = 100.0;
-/// Range of focal lengths, as a multiple of the image's width: views of 160 and of 3 degrees; ours.
+/// Range of focal lengths, as a multiple of the image's width: views of 160 and of 3 degrees. Source: ours.
 const FOCAL_LENGTH_PER_WIDTH: (f64, f64) = (0.09, 20.0);
 
 /// Refuses implausible numbers, and suggests the unit that was probably meant.

@@ -5,7 +5,7 @@ use crate::RobotConfig;
 use std::fmt::Write;
 use toml::Value;
 
-/// Width of the comments, characters.
+/// Width of the comments, characters. Source: ours.
 const COMMENT_WIDTH: usize = 110;
 
 /// The whole robot file as TOML. Each key has its meaning, unit, range and default as a comment; unset keys are comments too.
