@@ -4,10 +4,10 @@
 
 use std::sync::LazyLock;
 
-/// Bits of a hash that one deviate of [`NormalTable`] takes.
+/// Bits of a hash that one deviate of [`NormalTable`] takes. Source: ours.
 pub(crate) const NORMAL_BITS: u32 = 12;
 
-/// 2^64 over the golden ratio: steps that fill the circle evenly.
+/// 2^64 over the golden ratio: steps that fill the circle evenly. Source: SplitMix64, Steele, Lea, Flood 2014.
 pub(crate) const GOLDEN_RATIO_STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 
 /// A bijective scrambling of 64 bits: the finaliser of SplitMix64 (Steele, Lea, Flood 2014).

@@ -27,7 +27,7 @@ use trundle_core::{
     BodyEvent, Cliff, PinholeCamera, Pose2, RobotBody, SensorEvent, Stamp, Touch, Twist2, require_finite,
 };
 
-/// Heights between which a person needs free space to walk \[m\].
+/// Heights between which a person needs free space to walk \[m\]. Source: ours.
 const PERSON_HEIGHT_BAND_M: (f64, f64) = (0.05, 1.75);
 
 /// A Kobuki with an RGB-D camera and optionally a laser in a scene, behind the same trait as hardware.

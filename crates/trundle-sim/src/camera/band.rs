@@ -8,7 +8,7 @@ use super::tile::{NO_SURFACE_ID, Row, TILE_COLUMNS, Tile};
 use super::world_view::WorldView;
 use trundle_core::PinholeCamera;
 
-/// Lower bound of the cosines of incidence.
+/// Lower bound of the cosines of incidence. Source: ours.
 const LEAST_COSINE: f32 = 1e-3;
 
 /// All surfaces in one image.

@@ -5,7 +5,7 @@ use super::srgb::{linear_from_srgb, srgb};
 use std::sync::LazyLock;
 use trundle_core::Invalid;
 
-/// Steps of linear light between black and white in the conversion to levels: less than half a level each.
+/// Steps of linear light between black and white in the conversion to levels: less than half a level each. Source: ours.
 const LINEAR_STEPS: usize = 1 << 13;
 
 /// Image of a camera that moves during the exposure: the mean of `views` in linear light.

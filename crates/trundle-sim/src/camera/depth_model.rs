@@ -5,7 +5,7 @@ use super::round::{nearest, nearest_f32};
 use crate::rng::{NormalTable, mix};
 use std::f64::consts::FRAC_PI_2;
 
-/// Entries of the tables over depth, a power of two.
+/// Entries of the tables over depth, a power of two. Source: ours.
 const TABLE_STEPS: usize = 1024;
 
 /// Inputs of a pixel's depth measurement.

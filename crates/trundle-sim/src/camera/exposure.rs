@@ -5,7 +5,7 @@ use super::srgb::linear_from_srgb;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Stamp, require_in};
 
-/// Columns and rows between the pixels that auto exposure uses.
+/// Columns and rows between the pixels that auto exposure uses. Source: ours.
 const METERING_STRIDE_PX: usize = 7;
 
 /// Brightness of images: a gain on linear light, fixed or automatic.

@@ -3,7 +3,7 @@
 use super::patch::Patch;
 use super::tile::{Row, TILE_COLUMNS};
 
-/// Ratio of length to width of a pixel's footprint above which two samples along its length are used.
+/// Ratio of length to width of a pixel's footprint above which two samples along its length are used. Source: ours.
 const MAX_ANISOTROPY: f32 = 2.0;
 
 /// Footprints of the pixels of a row on a patch.

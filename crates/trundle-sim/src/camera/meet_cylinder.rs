@@ -3,7 +3,7 @@
 use super::rays::{Linear, Rays};
 use super::tile::{ROWS, TILE_COLUMNS, Tile, larger, mask};
 
-/// Parts of a cylinder in the last two bits of an id.
+/// Parts of a cylinder in the last two bits of an id. Source: ours.
 pub(super) const SIDE_PART: u32 = 0;
 pub(super) const LID_PART: u32 = 1;
 

@@ -2,10 +2,10 @@
 
 use super::View;
 
-/// Range of the light from a neighbouring wall, px.
+/// Range of the light from a neighbouring wall, px. Source: ours.
 const REACH_PX: usize = 24;
 
-/// Neighbours whose depth differs by more than this share belong to another surface.
+/// Neighbours whose depth differs by more than this share belong to another surface. Source: ours.
 const OTHER_SURFACE: f32 = 0.2;
 
 /// The depths of row `y` with multi-path: in concave corners the light that travels over the other wall makes

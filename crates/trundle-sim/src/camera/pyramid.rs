@@ -6,10 +6,10 @@ use super::rays::{Rays, cross};
 use super::tile::{ROWS, TILE_COLUMNS};
 use crate::world::{Node, Probe, WIDTH};
 
-/// Margin of a pyramid outside the centres of its outer pixels, px: larger than any rounding error.
+/// Margin of a pyramid outside the centres of its outer pixels, px: larger than any rounding error. Source: ours.
 const OUTER_MARGIN_PX: f32 = 0.02;
 
-/// Relative slack of places against the camera's.
+/// Relative slack of places against the camera's. Source: ours, eight times the rounding of f32.
 const RELATIVE_ROUNDING: f32 = 8.0 / (1 << 23) as f32;
 
 /// A pyramid from the camera through the pixels of a tile, in the frame of a world.

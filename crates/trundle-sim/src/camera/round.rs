@@ -1,6 +1,6 @@
 //! Fast rounding of f32 to the nearest whole number.
 
-/// 2^23: f32 has no digits behind the point from here on.
+/// 2^23: f32 has no digits behind the point from here on. Source: IEEE 754, 23 bits of fraction.
 const FIRST_WHOLE_F32: f32 = 8_388_608.0;
 
 /// The whole number nearest to `x`, 0 to 2^22 (ties to even), by an addition. A conversion would cost seven instructions for numbers

@@ -113,7 +113,7 @@ fn luminance([r, g, b]: [u8; 3]) -> f32 {
     (i32::from(r) * 306 + i32::from(g) * 601 + i32::from(b) * 117) as f32 * (1.0 / (255.0 * 1024.0))
 }
 
-/// Depth of a pixel without a surface, m.
+/// Depth of a pixel without a surface, m. Source: ours.
 const NO_SURFACE_DEPTH_M: f32 = 1e6;
 
 /// For every pixel of row `y` the depth on the other side of its edge, m; 0 without an edge of at least `step` m.

@@ -2,9 +2,9 @@
 
 #![expect(clippy::needless_range_loop, reason = "loops over lanes by number become SIMD")]
 
-/// Columns of a tile.
+/// Columns of a tile. Source: ours.
 pub(super) const TILE_COLUMNS: usize = 16;
-/// Rows of a tile.
+/// Rows of a tile. Source: ours.
 pub(super) const ROWS: usize = 8;
 
 /// Id for "no surface" in a [`Tile`].

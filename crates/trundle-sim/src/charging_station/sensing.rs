@@ -9,9 +9,9 @@ use trundle_core::{Battery, BodyEventKind, DockBeams, DockInfrared, Footprint, P
 
 /// Voltage of the simulated battery \[V\]: nearly full. Source: the emulated Kobuki's default.
 const BATTERY_V: f64 = 16.5;
-/// Number of receivers.
+/// Number of receivers. Source: the protocol's "Docking IR": left, central and right.
 const RECEIVER_COUNT: u64 = 3;
-/// Draws of a receiver in a reading.
+/// Draws of a receiver in a reading. Source: ours.
 const DRAWS_PER_RECEIVER: u64 = 2;
 
 /// The body's receivers and charger near the station of the scene.

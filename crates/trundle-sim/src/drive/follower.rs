@@ -4,24 +4,24 @@ use super::WaypointFollowerConfig;
 use super::rows::rows;
 use trundle_core::{Invalid, Pose2, Stamp, Twist2, Vector2, difference_of_angles};
 
-/// Tolerance of way-points, m and rad: half of the guaranteed one; the rest is for coasting.
+/// Tolerance of way-points, m and rad: half of the guaranteed one; the rest is for coasting. Source: ours.
 const POSITION_TOLERANCE_M: f64 = 0.004;
 const HEADING_TOLERANCE_RAD: f64 = 0.004;
 
-/// Distance, m, below which the robot backs up to a way-point behind it.
+/// Distance, m, below which the robot backs up to a way-point behind it. Source: ours.
 const BACK_UP_M: f64 = 0.1;
 
-/// Speed over distance left, 1/s: slow enough for motors that lag by a tenth of a second.
+/// Speed over distance left, 1/s: slow enough for motors that lag by a tenth of a second. Source: ours.
 const APPROACH_GAIN_PER_S: f64 = 2.5;
 
-/// Steering: rate over heading error, 1/s, and heading over distance from the line, rad/m.
+/// Steering: rate over heading error, 1/s, and heading over distance from the line, rad/m. Source: ours.
 const STEERING_GAIN_PER_S: f64 = 3.0;
 const LINE_RETURN_GAIN_RAD_PER_M: f64 = 4.0;
 
-/// Minimum motion that counts as progress, m and rad.
+/// Minimum motion that counts as progress, m and rad. Source: ours.
 const MIN_PROGRESS: f64 = 0.02;
 
-/// Number of attempts at a way-point after a turn that led away from it.
+/// Number of attempts at a way-point after a turn that led away from it. Source: ours.
 const MAX_WAYPOINT_ATTEMPTS: u32 = 5;
 
 /// State of a [`WaypointFollower`].

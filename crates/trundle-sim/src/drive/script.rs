@@ -12,7 +12,7 @@ pub struct TimedCommand {
     pub twist: Twist2,
 }
 
-/// No drive takes longer than this, s: eleven days.
+/// No drive takes longer than this, s: eleven days. Source: ours.
 const MAX_DRIVE_DURATION_S: f64 = 1e6;
 
 /// Timed commands: each is active until the next one. Before the first command the robot is at rest; the last time is the script's end (a

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Number of examples in a note.
+/// Number of examples in a note. Source: ours.
 const MAX_EXAMPLES: usize = 3;
 
 /// A note for the user about an imported file.

@@ -7,13 +7,13 @@ use crate::world::{Cuboid, Shape, Solid};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, Vector2, Vector3, require_in};
 
-/// Side of a slab of floor or ceiling, m: what one painting covers at full sharpness.
+/// Side of a slab of floor or ceiling, m: what one painting covers at full sharpness. Source: ours.
 const SLAB_SIDE_M: f64 = 10.0;
 
-/// Thickness of floor and ceiling, m.
+/// Thickness of floor and ceiling, m. Source: ours.
 const SLAB_THICKNESS_M: f64 = 0.1;
 
-/// Bytes of a texel with its mip levels, and texels per metre of the paints.
+/// Bytes of a texel with its mip levels, and texels per metre of the paints. Source: ours.
 const TEXEL_BYTES: f64 = 16.0 / 3.0;
 const TEXELS_PER_METRE: f64 = 250.0;
 
@@ -77,7 +77,7 @@ pub fn raise_map(file: &str, grid: &OccupancyGrid, options: &RaisedMap) -> Resul
     raise(grid, options).map_err(|fault| ImportFault::Invalid(fault).of(file))
 }
 
-/// Distance from the world's origin beyond which f32 does not resolve a tenth of a millimetre, m.
+/// Distance from the world's origin beyond which f32 does not resolve a tenth of a millimetre, m. Source: ours.
 const MAX_COORDINATE_M: f64 = 1e5;
 
 fn raise(grid: &OccupancyGrid, options: &RaisedMap) -> Result<Vec<Solid>, Invalid> {

@@ -3,7 +3,7 @@
 use super::contact_scene::ContactScene;
 use trundle_core::{Footprint, Pose2};
 
-/// A touch ends when the gap is wider than this, m.
+/// A touch ends when the gap is wider than this, m. Source: ours.
 const RELEASE_GAP_M: f64 = 2e-3;
 
 /// Keeps the body out of fixed obstacles and people, and records contacts.

@@ -4,7 +4,7 @@ use super::LaserConfig;
 use crate::config::Preset;
 use std::f64::consts::TAU;
 
-/// Angle between beams of Hokuyo's URG series: 1024 a turn.
+/// Angle between beams of Hokuyo's URG series: 1024 a turn. Source: Hokuyo's data sheets.
 const URG_STEP: f64 = TAU / 1024.0;
 
 /// Lasers according to their data sheets. The accuracy in a data sheet is a bound with a systematic part; the noise here is a third of it

@@ -6,7 +6,7 @@ use crate::world::SceneSnapshot;
 use rayon::prelude::*;
 use trundle_core::{Beam, BeamTimes, Invalid, Pose2, Scan, Stamp, Vector2, Vector3};
 
-/// Fewest beams that one thread takes.
+/// Fewest beams that one thread takes. Source: ours.
 const MIN_BEAMS_PER_THREAD: usize = 64;
 
 /// Measures scans. Noise is a hash of (seed, scan, beam): the same on any number of threads.

@@ -11,13 +11,13 @@ use crate::solid::Solid;
 use crate::world::shape::Shape;
 use rayon::prelude::*;
 
-/// Sides of textures are multiples of this number, so five levels halve exactly.
+/// Sides of textures are multiples of this number, so five levels halve exactly. Source: ours.
 const TEXEL_MULTIPLE: usize = 16;
 
 /// Grain of every size, which gives corners at 1 m as well as at 6 m.
 const GRAIN: Fractal = Fractal { wavelength: 0.64, octaves: 7, gain: 0.82 };
 
-/// Most texels of one face; larger faces get coarser texels.
+/// Most texels of one face; larger faces get coarser texels. Source: ours.
 const MOST_TEXELS: f64 = 4e6;
 
 /// Faces of a solid: which of [`Finish::faces`], width and height, m.

@@ -10,7 +10,7 @@ pub(super) fn lattice(seed: u32, x: i32, y: i32) -> f32 {
     (h ^ (h >> 16)) as f32 * (1.0 / 4_294_967_808.0)
 }
 
-/// Side of the table of lattice values: value noise repeats after that number of wavelengths.
+/// Side of the table of lattice values: value noise repeats after that number of wavelengths. Source: ours.
 const LATTICE_PERIOD: usize = 256;
 
 /// Lattice values -128 to 127, drawn once: reading one costs a third of a hash.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Index;
 
-/// Texels of a world, about 5.4 bytes each with their mip levels; beyond, all texels get coarser.
+/// Texels of a world, about 5.4 bytes each with their mip levels; beyond, all texels get coarser. Source: ours.
 const MOST_TEXELS: usize = 40_000_000;
 
 /// The painted faces of every solid of a world. Equal solids (equal sizes, equal finishes with a seed) share one set, so repeated furniture

@@ -4,20 +4,20 @@ use crate::materials::{Finish, Paint};
 use crate::world::{Cylinder, HeightBand, Obstacles, Shape, Solid, World};
 use trundle_core::{Invalid, Vector3};
 
-/// Heights of the joints of a leg of three upright pieces, m: below and above the knee of a person of 1.75 m (Drillis and
-/// Contini 1966: knee at 0.285, hip at 0.53 of the height).
+/// Heights of the joints of a leg of three upright pieces, m: below and above the knee of a person of 1.75 m. Source: Drillis and Contini
+/// 1966, knee at 0.285 and hip at 0.53 of the height.
 const CALF_HEIGHT_M: f64 = 0.32;
 const LAP_HEIGHT_M: f64 = 0.62;
 const HIP_HEIGHT_M: f64 = 0.92;
 
-/// Radii of shin, knee, thigh, trunk and head, m.
+/// Radii of shin, knee, thigh, trunk and head, m. Source: ours.
 const SHIN_RADIUS_M: f64 = 0.055;
 const KNEE_RADIUS_M: f64 = 0.065;
 const THIGH_RADIUS_M: f64 = 0.08;
 const TRUNK_RADIUS_M: f64 = 0.16;
 const HEAD_RADIUS_M: f64 = 0.095;
 
-/// Top of trunk and head, m.
+/// Top of trunk and head, m. Source: ours.
 const SHOULDER_HEIGHT_M: f64 = 1.48;
 const CROWN_HEIGHT_M: f64 = 1.75;
 

@@ -12,13 +12,13 @@ use trundle_core::{Footprint, Invalid, Pose2};
 const YIELD_DISTANCE_M: f64 = 0.5;
 const ELBOW_ROOM: f64 = 0.3;
 
-/// Smallest distance of a foot from the robot, m.
+/// Smallest distance of a foot from the robot, m. Source: ours.
 const KEEP_OFF: f64 = 0.03;
 
-/// Radius around a person's middle that contains the whole person, m.
+/// Radius around a person's middle that contains the whole person, m. Source: ours.
 const MAX_PERSON_EXTENT_M: f64 = 0.85;
 
-/// Radius of the space that a walking person needs, m.
+/// Radius of the space that a walking person needs, m. Source: ours.
 const SHOULDER_RADIUS_M: f64 = 0.2;
 
 /// All persons who walk.

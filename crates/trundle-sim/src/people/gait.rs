@@ -2,17 +2,17 @@
 
 use trundle_core::Pose2;
 
-/// Step length over cadence, m s: the walk ratio, 0.0064 m/(step/min), is constant for all speeds \[Sekiya98\].
+/// Step length over cadence, m s: the walk ratio, 0.0064 m/(step/min), is constant for all speeds. Source: \[Sekiya98\].
 const WALK_RATIO: f64 = 0.384;
 
-/// Half the distance between the feet, m.
+/// Half the distance between the feet, m. Source: ours.
 const HALF_TRACK: f64 = 0.1;
 
-/// Fraction of the shin's motion followed by knee and thigh.
+/// Fraction of the shin's motion followed by knee and thigh. Source: ours.
 pub(super) const KNEE_SHARE: f64 = 0.65;
 pub(super) const THIGH_SHARE: f64 = 0.3;
 
-/// Seconds in which a walk begins and ends.
+/// Seconds in which a walk begins and ends. Source: ours.
 const EASE_DURATION_S: f64 = 0.35;
 
 /// Motion of the legs: the foot on the floor is fixed, the other one overtakes it.

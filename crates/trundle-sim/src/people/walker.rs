@@ -4,10 +4,10 @@ use super::Person;
 use super::gait::Gait;
 use trundle_core::{Pose2, Vector2, difference_of_angles};
 
-/// Turn rate of people on the spot, rad/s.
+/// Turn rate of people on the spot, rad/s. Source: ours.
 const TURN_RATE: f64 = 2.5;
 
-/// Tolerance of position and heading at a way-point, m and rad.
+/// Tolerance of position and heading at a way-point, m and rad. Source: ours.
 const ARRIVAL_TOLERANCE: f64 = 1e-6;
 
 /// A person on the path.

@@ -10,10 +10,10 @@ use trundle_core::{Pose2, Vector3};
 /// Colour of faces behind walls and under floors.
 pub(super) const UNSEEN: Paint = Paint::Flat { color: [120, 118, 114] };
 
-/// Height of rooms, m.
+/// Height of rooms, m. Source: ours.
 pub(super) const ROOM_HEIGHT: f64 = 2.5;
 
-/// Thickness of walls, m.
+/// Thickness of walls, m. Source: ours.
 pub(super) const WALL_THICKNESS_M: f64 = 0.1;
 
 /// Sides of a box in the order of [`Finish::faces`].

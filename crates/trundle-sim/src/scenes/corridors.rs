@@ -8,13 +8,13 @@ use std::f64::consts::FRAC_PI_2;
 use trundle_core::{Invalid, Pose2};
 
 /// Clear width, m. The paper's robot (0.6 x 0.4 m, 0.72 m across its corners) can turn round only in the middle; a Kobuki (0.351 m) can
-/// turn anywhere.
+/// turn anywhere. Source: ours, after \[Hong24\].
 const CORRIDOR_WIDTH_M: f64 = 1.0;
 
-/// Half of the corridor's length, m.
+/// Half of the corridor's length, m. Source: ours.
 const HALF_LENGTH_M: f64 = 3.0;
 
-/// Distance of the robot's start to the left of the goal, m.
+/// Distance of the robot's start to the left of the goal, m. Source: ours.
 const START_OFFSET_M: f64 = 0.38;
 
 /// The corridors of \[Hong24\], section 4.

@@ -7,21 +7,21 @@ use crate::world::{Lights, World};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{Invalid, Pose2};
 
-/// Inner size of both rooms together, m.
+/// Inner size of both rooms together, m. Source: ours.
 const ROOM_LENGTH_M: f64 = 8.0;
 const ROOM_WIDTH_M: f64 = 6.0;
 
-/// West face of the wall between the rooms, m.
+/// West face of the wall between the rooms, m. Source: ours.
 const PARTITION_X_M: f64 = 4.35;
 
-/// The door: clear width and height, m.
+/// The door: clear width and height, m. Source: ours.
 const DOOR_WIDTH: f64 = 1.0;
 const DOOR_HEIGHT: f64 = 2.02;
 
-/// Height of low tables: too low for the robot (0.6 m) to pass under; a flat laser near the floor hits only their legs.
+/// Height of low tables: too low for the robot (0.6 m) to pass under; a flat laser near the floor hits only their legs. Source: ours.
 const LOW_TABLE: f64 = 0.45;
 
-/// High tables: the robot passes under.
+/// High tables: the robot passes under. Source: ours.
 const HIGH_TABLE: f64 = 0.72;
 
 /// Two furnished rooms, 8 x 6 m together, and a door between them (world frame: x 0 to 8, y 0 to 6).

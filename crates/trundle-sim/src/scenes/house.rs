@@ -8,16 +8,16 @@ use crate::world::{Lights, World};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{Invalid, Pose2};
 
-/// Inner size of the flat, m.
+/// Inner size of the flat, m. Source: ours.
 const FLAT_SIZE_M: [f64; 2] = [10.0, 8.0];
 
-/// South and north face of the hall, m.
+/// South and north face of the hall, m. Source: ours.
 const HALL_FACES_Y_M: [f64; 2] = [3.7, 4.9];
 
-/// West face of the wall between hall and living room, m.
+/// West face of the wall between hall and living room, m. Source: ours.
 const LIVING_ROOM_WALL_X_M: f64 = 5.5;
 
-/// West face of the wall between bath and study, m.
+/// West face of the wall between bath and study, m. Source: ours.
 const BATH_WALL_X_M: f64 = 2.6;
 
 /// Appearance of rooms.

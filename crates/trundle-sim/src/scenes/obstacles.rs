@@ -7,7 +7,7 @@ use crate::world::{Lights, World};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use trundle_core::{Invalid, Pose2};
 
-/// Inner side of the room, m.
+/// Inner side of the room, m. Source: ours.
 const ROOM_SIDE_M: f64 = 6.0;
 
 /// Middles of the obstacles, m. Their spacing leaves paths of 0.8 m between them for all headings.

@@ -4,7 +4,7 @@ use super::builder::{Builder, ROOM_HEIGHT, Side};
 use crate::materials::{Finish, Paint};
 use trundle_core::Pose2;
 
-/// Clear width and height of doors, m.
+/// Clear width and height of doors, m. Source: ours.
 pub(super) const DOOR_WIDTH: f64 = 1.0;
 pub(super) const DOOR_HEIGHT: f64 = 2.02;
 

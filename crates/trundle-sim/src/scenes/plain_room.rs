@@ -8,21 +8,21 @@ use crate::world::{Lights, World};
 use std::f64::consts::PI;
 use trundle_core::{Invalid, Pose2};
 
-/// Range of a side of the room, m.
+/// Range of a side of the room, m. Source: ours.
 const SIDE_RANGE_M: (f64, f64) = (3.0, 6.0);
-/// Distance of the start, the goal and people from the walls, m.
+/// Distance of the start, the goal and people from the walls, m. Source: ours.
 const MARGIN_M: f64 = 0.7;
-/// Side of the box in a room without symmetry, m.
+/// Side of the box in a room without symmetry, m. Source: ours.
 const BOX_SIDE_M: f64 = 0.5;
-/// Height of the box, m.
+/// Height of the box, m. Source: ours.
 const BOX_HEIGHT_M: f64 = 0.8;
-/// Range of walking speeds, m/s.
+/// Range of walking speeds, m/s. Source: ours.
 const SPEED_RANGE_M_S: (f64, f64) = (0.3, 1.2);
-/// Range of the time that people stand at a way-point, s.
+/// Range of the time that people stand at a way-point, s. Source: ours.
 const PAUSE_RANGE_S: (f64, f64) = (0.0, 20.0);
-/// Smallest distance of people's way-points from the robot's start, m. The smallest room has corners farther off.
+/// Smallest distance of people's way-points from the robot's start, m. The smallest room has corners farther off. Source: ours.
 const CLEAR_START_M: f64 = 0.9;
-/// Number of way-points of a person.
+/// Number of way-points of a person. Source: ours.
 const WAYPOINT_COUNT: usize = 3;
 
 /// A room of 3 to 6 m with walls of one colour, and `people` who walk about.

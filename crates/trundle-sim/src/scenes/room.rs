@@ -7,7 +7,7 @@ use crate::world::{Lights, World};
 use std::f64::consts::FRAC_PI_2;
 use trundle_core::{Invalid, Pose2};
 
-/// Half of the room's inner side, m.
+/// Half of the room's inner side, m. Source: ours.
 const HALF_SIDE_M: f64 = 3.0;
 
 /// An empty room, 6 x 6 m, its middle the origin of the world frame: the scene of the point stabilisation of \[Li18\].

@@ -8,23 +8,23 @@ use crate::world::{Lights, World};
 use std::f64::consts::{FRAC_PI_2, PI};
 use trundle_core::{Invalid, Pose2};
 
-/// Inner side of the hall and its height, m.
+/// Inner side of the hall and its height, m. Source: ours.
 const HALL_SIDE_M: f64 = 30.0;
 const HALL_HEIGHT_M: f64 = 5.5;
 
-/// Middles of the double rows of racks, x, m: aisles of 2.8 m between them.
+/// Middles of the double rows of racks, x, m: aisles of 2.8 m between them. Source: ours.
 const ROW_CENTRES_X_M: [f64; 4] = [4.6, 10.0, 15.4, 20.8];
 
-/// Start of the racks along y, number and length of their bays, m.
+/// Start of the racks along y, number and length of their bays, m. Source: ours.
 const FIRST_BAY_Y_M: f64 = 5.0;
 const BAYS_PER_RACK: usize = 7;
 const BAY_LENGTH_M: f64 = 2.7;
 
-/// Depth of a rack, and from a double row's middle to the middles of its two racks, m.
+/// Depth of a rack, and from a double row's middle to the middles of its two racks, m. Source: ours.
 const RACK_DEPTH_M: f64 = 1.1;
 const HALF_RACK_SPACING_M: f64 = 0.65;
 
-/// Heights of the shelves, m.
+/// Heights of the shelves, m. Source: ours.
 const SHELF_HEIGHTS_M: [f64; 2] = [1.7, 3.3];
 
 const STEEL: Paint = Paint::Slotted { color: [38, 72, 128] };

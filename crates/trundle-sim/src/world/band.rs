@@ -6,7 +6,7 @@ use super::{Mesh, World};
 use rayon::prelude::*;
 use trundle_core::{Invalid, Vector2, Vector3, require_finite};
 
-/// Number of triangles per work item of a thread.
+/// Number of triangles per work item of a thread. Source: ours.
 const TRIANGLES_PER_CHUNK: usize = 4096;
 
 /// The heights between which a solid is an obstacle.

@@ -4,10 +4,10 @@ use super::region::Region;
 use super::{HeightBand, World};
 use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, require_positive};
 
-/// Fraction of their side by which cells are shrunk: a wall that ends at a cell's border does not fill the cell.
+/// Fraction of their side by which cells are shrunk: a wall that ends at a cell's border does not fill the cell. Source: ours.
 const CELL_SHRINK_RATIO: f64 = 1e-6;
 
-/// Most cells of a grid: one byte each.
+/// Most cells of a grid: one byte each. Source: ours.
 const MOST_CELLS: f64 = (1_u64 << 31) as f64;
 
 impl World {

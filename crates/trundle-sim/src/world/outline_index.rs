@@ -3,7 +3,7 @@
 use super::region::Region;
 use trundle_core::Vector2;
 
-/// Most outlines of a leaf.
+/// Most outlines of a leaf. Source: ours.
 const LEAF_SIZE: usize = 4;
 
 /// Many outlines and a hierarchy of boxes over them: a nearest query takes O(log n).
@@ -105,10 +105,10 @@ impl OutlineIndex {
     }
 }
 
-/// Maximum number of the robot's sides used as bounds; any number is valid, more are tighter.
+/// Maximum number of the robot's sides used as bounds; any number is valid, more are tighter. Source: ours.
 const MAX_SIDES: usize = 8;
 
-/// Distance by which bounds are reduced, m, against rounding errors.
+/// Distance by which bounds are reduced, m, against rounding errors. Source: ours.
 const BOUND_SLACK_M: f64 = 1e-9;
 
 /// The box and the sides of a robot: lower bounds of the distance of objects outside of them.

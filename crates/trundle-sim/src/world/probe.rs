@@ -5,7 +5,7 @@
 use super::bvh::{Node, Probe, WIDTH};
 use trundle_core::Vector3;
 
-/// Relative slack of distances: more than the roundings of a subtraction and a product.
+/// Relative slack of distances: more than the roundings of a subtraction and a product. Source: ours, four times the rounding of f32.
 const RELATIVE_ROUNDING: f32 = 4.0 / (1 << 23) as f32;
 
 /// A ray among boxes, in f32: slabs (Kay and Kajiya 1986), wider by more than any rounding.

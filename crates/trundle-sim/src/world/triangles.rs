@@ -4,7 +4,7 @@ use super::mesh::Mesh;
 use super::{Aabb, Bvh};
 use trundle_core::Vector3;
 
-/// Triangles of a [`Block`].
+/// Triangles of a [`Block`]. Source: ours.
 pub(crate) const BLOCK: usize = 4;
 
 /// The triangles of a world's meshes in the order of the leaves of a hierarchy: what rays meet.

@@ -8,7 +8,7 @@ use gltf::json::validation::Checked;
 use gltf::json::{Index, buffer};
 use trundle_core::Invalid;
 
-/// Largest number of elements of an accessor. A file with more elements counts as broken.
+/// Largest number of elements of an accessor. A file with more elements counts as broken. Source: ours.
 const MOST_ELEMENTS: u64 = 100_000_000;
 
 /// Elements in a buffer: `parts` components each, `stride` bytes apart.

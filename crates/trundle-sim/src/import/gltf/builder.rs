@@ -11,10 +11,10 @@ use gltf::json::{Index, mesh};
 use nalgebra::{Matrix4, Point3};
 use trundle_core::Invalid;
 
-/// Farthest coordinate, m: a file beyond it is in another unit or broken.
+/// Farthest coordinate, m: a file beyond it is in another unit or broken. Source: ours.
 const MAX_COORDINATE_M: f64 = 1e5;
 
-/// Maximum number of triangles of a file with all its instances.
+/// Maximum number of triangles of a file with all its instances. Source: ours.
 const MOST_TRIANGLES: usize = 50_000_000;
 
 /// Gathers the surfaces of a file into one mesh.

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use trundle_core::ColorImage;
 
-/// sRGB level of a texture that cannot be read, before the material's own colour.
+/// sRGB level of a texture that cannot be read, before the material's own colour. Source: ours.
 const GREY_LEVEL: u8 = 150;
 /// Place of the image of a texture without one, as `gltf-json` has it.
 const NO_IMAGE: usize = u32::MAX as usize;

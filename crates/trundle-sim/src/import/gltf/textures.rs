@@ -9,10 +9,10 @@ use std::borrow::Cow;
 use std::io::Cursor;
 use trundle_core::ColorImage;
 
-/// Longest side of a texture, px.
+/// Longest side of a texture, px. Source: ours.
 const MOST_PIXELS: u32 = 16_384;
 
-/// Most memory for decoding a texture, bytes.
+/// Most memory for decoding a texture, bytes. Source: ours.
 const MOST_MEMORY: u64 = 1 << 30;
 
 /// Decodes an image, PNG or JPEG; alpha is left out.

@@ -17,7 +17,7 @@ use error::within;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Pose2, require_finite, require_in};
 
-/// Largest distance of any object from the origin, m.
+/// Largest distance of any object from the origin, m. Source: ours.
 const MAX_COORDINATE_M: f64 = 1000.0;
 
 /// A scene file: a base, and additions to it. `docs/formats.md` describes the format.

@@ -4,10 +4,10 @@ use super::node::{LEAF, Node, WIDTH};
 use crate::world::Aabb;
 use trundle_core::Vector3;
 
-/// Bins of the surface area heuristic, an axis.
+/// Bins of the surface area heuristic, an axis. Source: ours.
 const SAH_BINS: usize = 16;
 
-/// Levels after which items are halved by number: no tree gets deeper than this and 32.
+/// Levels after which items are halved by number: no tree gets deeper than this and 32. Source: ours.
 const MAX_SAH_DEPTH: usize = 24;
 
 /// The nodes of a hierarchy, its items in the order of the leaves, and begin and end of each leaf among the items.

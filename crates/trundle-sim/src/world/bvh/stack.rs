@@ -1,6 +1,6 @@
 //! The traversal stack of the hierarchy.
 
-/// Number of entries without heap allocation.
+/// Number of entries without heap allocation. Source: ours.
 const INLINE_ENTRIES: usize = 64;
 
 /// (distance, link).
