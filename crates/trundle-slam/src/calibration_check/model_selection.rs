@@ -13,9 +13,9 @@ const MODELS: [[bool; 6]; 4] = [
     [false, false, true, true, false, false],
     [false, false, false, false, true, true],
 ];
-/// Index of the model with free focal lengths.
+/// Index of the model with free focal lengths. Source: the order of `MODELS`.
 const FOCAL_MODEL: usize = 1;
-/// Index of the model with a free principal point.
+/// Index of the model with a free principal point. Source: the order of `MODELS`.
 const CENTRE_MODEL: usize = 2;
 /// Matches that are evaluated between two frames: 10,000, of 100 ns each. Source: ours.
 const MATCHES_PER_FRAME: usize = 10_000;

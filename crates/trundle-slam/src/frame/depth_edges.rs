@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use trundle_core::{DepthImage, Vector2};
 use trundle_vision::Features;
 
-/// Radii on which the depth is compared, px of the octave: the circle of FAST \[Rosten06\], and one half as large.
+/// Radii on which the depth is compared, px of the octave: the circle of FAST, and one half as large. Source: \[Rosten06\].
 const CIRCLE_RADII_PX: [f64; 2] = [1.5, 3.0];
 /// Half of the directions on a circle; the others are their opposites.
 const DIRECTIONS: [(f64, f64); 4] =
@@ -15,7 +15,8 @@ const DIRECTIONS: [(f64, f64); 4] =
 const MAX_OCTAVE_SCALE: f64 = 2.0;
 /// Second difference of the inverse depth that is a step, as a fraction of it: 0.1. Source: docs/experiments/slam-depth-edges.md.
 const MIN_STEP_RATIO: f64 = 0.1;
-/// Second difference of the inverse depth that is a step, in standard deviations of its noise, besides the ratio: 3. See [`MIN_STEP_RATIO`].
+/// Second difference of the inverse depth that is a step, in standard deviations of its noise, besides the ratio: 3. Source: as
+/// [`MIN_STEP_RATIO`].
 const MIN_STEP_SIGMAS: f64 = 3.0;
 /// Fewest features that must remain: 100. With fewer, no feature is dropped, as on railings, leaves and noisy depths. Source: ours.
 const MIN_KEPT_FEATURES: usize = 100;

@@ -85,4 +85,5 @@ impl<'a> DriftBound<'a> {
 }
 
 /// Difference between the chi-square quantiles of six and of one degree of freedom, at the probability of five standard deviations: 12.
+/// Source: the chi-square distribution.
 const CHI2_MARGIN: f64 = 12.0;

@@ -41,8 +41,7 @@ pub(crate) fn nearest_keyframes(
 /// Largest distance of a keyframe that may show the same landmarks: 3 m, most of a room. The allowed rotation grows with proximity. Source:
 /// ours.
 const NEAR_KEYFRAME_M: f64 = 3.0;
-/// Largest rotation of a keyframe that may show the same landmarks: 1.2 rad, the field of view of a Kinect. See
-/// [`NEAR_KEYFRAME_M`].
+/// Largest rotation of a keyframe that may show the same landmarks: 1.2 rad, the field of view of a Kinect. Source: as [`NEAR_KEYFRAME_M`].
 const NEAR_KEYFRAME_RAD: f64 = 1.2;
 /// Maximum number of near keyframes: 20. Source: ours.
 const MAX_NEAR_KEYFRAMES: usize = 20;

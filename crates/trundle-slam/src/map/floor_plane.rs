@@ -15,7 +15,7 @@ const TILT_SIGMA_RAD: f64 = 0.004;
 /// Largest distance of a keyframe from the plane: 0.1 m. Beyond it the keyframe is on a ramp or on another floor, and is not
 /// constrained. Source: ours.
 const MAX_OFF_PLANE_M: f64 = 0.1;
-/// Largest tilt of a keyframe against the plane: 0.1 rad. See [`MAX_OFF_PLANE_M`].
+/// Largest tilt of a keyframe against the plane: 0.1 rad. Source: as [`MAX_OFF_PLANE_M`].
 const MAX_TILT_RAD: f64 = 0.1;
 /// Fraction of the keyframes that must be on the plane: 0.8. With fewer the map has no plane. Source: ours.
 const MIN_ON_PLANE_RATIO: f64 = 0.8;

@@ -16,7 +16,8 @@ pub(crate) enum PosePriorKind<'a> {
     Unknown,
 }
 
-/// Ratio of the standard deviation of a normal distribution to the median of its absolute values: 1.4826.
+/// Ratio of the standard deviation of a normal distribution to the median of its absolute values: 1.4826. Source: 1 over the 75th
+/// percentile of the normal distribution.
 const SIGMA_OVER_MEDIAN: f64 = 1.4826;
 
 /// The pose of a frame, and the matches that determine it.

@@ -8,7 +8,7 @@ use trundle_core::Stamp;
 use trundle_optim::InverseDepth;
 use trundle_vision::{Features, Keypoint};
 
-/// Fewest bytes of a feature.
+/// Fewest bytes of a feature. Source: the layout that this file writes.
 const MIN_FEATURE_BYTES: usize = 17 + 4 + 32 + 1;
 
 /// Smallest standard deviation of a keypoint: 1e-6 px. A smaller one is refused as damage. Source: ours.

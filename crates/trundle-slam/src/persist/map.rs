@@ -13,11 +13,12 @@ use crate::persist::{frame, reference_patch};
 use nalgebra::Matrix6;
 use std::collections::BTreeMap;
 
-/// Fewest bytes of a keyframe: a count beyond the rest of the bytes is refused before memory is reserved.
+/// Fewest bytes of a keyframe: a count beyond the rest of the bytes is refused before memory is reserved. Source: the layout that this file
+/// writes.
 const MIN_KEYFRAME_BYTES: usize = 8 + 4 + 7 * 8 + 72 * 8 + 1;
-/// Fewest bytes of a landmark.
+/// Fewest bytes of a landmark. Source: the layout that this file writes.
 const MIN_LANDMARK_BYTES: usize = 24 + 32 + 24 + 8 + 4 * 3 + 8 + 1;
-/// Bytes of an observation.
+/// Bytes of an observation. Source: the layout that this file writes.
 const OBSERVATION_BYTES: usize = 8;
 
 pub(crate) fn write(out: &mut Writer, map: &LandmarkMap) {
@@ -119,7 +120,7 @@ fn read_covariance(bytes: &mut Reader, name: &str) -> Result<Matrix6<f64>, MapFi
 }
 
 /// Largest asymmetry and most negative eigenvalue of a covariance, as a fraction of its largest entry: 1e-9, the rounding of sums
-/// of products.
+/// of products. Source: ours.
 const MAX_ASYMMETRY: f64 = 1e-9;
 
 fn write_landmark(out: &mut Writer, landmark: &Landmark, number: impl Fn(KeyframeId) -> usize) {

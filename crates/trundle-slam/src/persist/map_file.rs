@@ -9,9 +9,9 @@ use crate::persist::error::MapFileError;
 use crate::persist::{map, settings};
 use trundle_core::PinholeCamera;
 
-/// First bytes of a map file.
+/// First bytes of a map file. Source: ours.
 const MAGIC: &[u8; 7] = b"trundlM";
-/// Version of the format.
+/// Version of the format. Source: ours.
 const FORMAT_VERSION: u8 = 3;
 /// Bytes before those that the checksum covers.
 const HEAD_BYTES: usize = 16;

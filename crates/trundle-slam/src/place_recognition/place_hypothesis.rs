@@ -4,7 +4,7 @@ use trundle_core::Pose3;
 
 /// Largest distance between two poses of the same place: 0.3 m. Poses farther apart are competitors. Source: ours.
 const SAME_PLACE_M: f64 = 0.3;
-/// Largest rotation between two poses of the same place: 0.3 rad. See [`SAME_PLACE_M`].
+/// Largest rotation between two poses of the same place: 0.3 rad. Source: as [`SAME_PLACE_M`].
 const SAME_PLACE_RAD: f64 = 0.3;
 /// Fraction of the best hypothesis' points above which a second hypothesis elsewhere makes both ambiguous: 0.7. Source: \[Lowe04\], the
 /// ratio test of the second-nearest match.

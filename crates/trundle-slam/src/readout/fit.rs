@@ -15,7 +15,7 @@ const PRIOR_SIGMA_S: f64 = 0.05;
 /// Smallest readout time in standard deviations that shows a rolling shutter: 4. Source: ours.
 const MIN_SIGMAS: f64 = 4.0;
 /// Largest standard deviation of a readout time that is used: 5 ms. On freiburg1_rpy all times within 10 ms of the true one are better than
-/// none (docs/experiments/slam-rolling-shutter.md).
+/// none. Source: docs/experiments/slam-rolling-shutter.md.
 const MAX_SIGMA_S: f64 = 0.005;
 /// Smallest readout time that is used: 3 ms. A shorter one moves points by less than a pixel at 1 rad/s. Source: ours.
 const MIN_READOUT_S: f64 = 0.003;

@@ -16,7 +16,7 @@ const MIN_DIRECTION_COSINE: f64 = 0.5;
 /// Distance behind the measured surface beyond which a landmark is hidden: 0.1 m, plus [`OCCLUSION_MARGIN_RATIO`] of the depth. Source:
 /// ours.
 const OCCLUSION_MARGIN_M: f64 = 0.1;
-/// See [`OCCLUSION_MARGIN_M`].
+/// Share of the depth that adds to [`OCCLUSION_MARGIN_M`]. Source: ours.
 const OCCLUSION_MARGIN_RATIO: f64 = 0.1;
 /// Factor by which a landmark may be finer than the finest octave, or coarser than the coarsest: 1.5. Beyond it the landmark is not
 /// expected. Source: \[MurArtal17\].

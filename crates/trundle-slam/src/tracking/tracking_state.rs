@@ -11,7 +11,7 @@ use trundle_core::{Pose3, Stamp};
 /// Standard deviation of a dead-reckoned position above which a new map begins: 0.2 m. Continuing the map would give all later poses the
 /// same error. Source: ours.
 const MAX_CONTINUATION_SIGMA_M: f64 = 0.2;
-/// Standard deviation of a dead-reckoned rotation above which a new map begins: 0.2 rad. See [`MAX_CONTINUATION_SIGMA_M`].
+/// Standard deviation of a dead-reckoned rotation above which a new map begins: 0.2 rad. Source: as [`MAX_CONTINUATION_SIGMA_M`].
 const MAX_CONTINUATION_SIGMA_RAD: f64 = 0.2;
 
 /// Predicted pose of the camera in the active map, and results of the last frames.
