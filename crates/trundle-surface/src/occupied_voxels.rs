@@ -12,7 +12,7 @@ use trundle_core::{Invalid, PinholeCamera, Pose3, RgbdImage, require_in};
 const RAY_STRIDE_PX: usize = 8;
 /// Logarithm of the odds that an end of a ray adds, in steps of 0.05. Source: the defaults of OctoMap, probabilities 0.7 and 0.4.
 const HIT_STEPS: i16 = 17;
-/// Logarithm of the odds that a passing ray takes away, in steps of 0.05. Source: as above.
+/// Logarithm of the odds that a passing ray takes away, in steps of 0.05. Source: the defaults of OctoMap, probabilities 0.7 and 0.4.
 const MISS_STEPS: i16 = 8;
 /// Bounds of the sum, in steps of 0.05. Source: the defaults of OctoMap, probabilities 0.12 and 0.97.
 const SUM_RANGE_STEPS: (i16, i16) = (-40, 70);

@@ -19,7 +19,8 @@ pub struct SurfaceConfig {
     pub min_weight: u16,
 }
 
-/// Smallest distance from a surface up to which voxels are updated \[m\]: three sigmas of a Kinect's depth at 5 m \[Khoshelham12\].
+/// Smallest distance from a surface up to which voxels are updated \[m\]: three sigmas of a Kinect's depth at 5 m. Source:
+/// \[Khoshelham12\].
 const MIN_TRUNCATION_M: f64 = 0.06;
 
 impl Default for SurfaceConfig {

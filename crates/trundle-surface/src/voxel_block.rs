@@ -1,14 +1,14 @@
 //! Blocks of voxels: signed distance, weight and colour.
 
-/// Voxels along a side of a block.
+/// Voxels along a side of a block. Source: \[Niessner13\].
 pub(crate) const BLOCK_SIDE: usize = 8;
 /// Voxels of a block.
 pub(crate) const BLOCK_VOXELS: usize = BLOCK_SIDE * BLOCK_SIDE * BLOCK_SIDE;
 /// Largest sum of weights: beyond it the average follows changes. Source: ours, 256 images at 2 m.
 const MAX_WEIGHT: u16 = 256;
-/// Stored distance of one truncation.
+/// Stored distance of one truncation. Source: ours.
 const DISTANCE_SCALE: f32 = 32_000.0;
-/// Stored colour of one step of a channel.
+/// Stored colour of one step of a channel. Source: ours.
 const COLOR_SCALE: f32 = 256.0;
 
 /// Key of a block: its corner in units of blocks.
