@@ -9,7 +9,7 @@ const TEMPLATE_RADIUS_PX: usize = 5;
 const TEMPLATE_SIDE_PX: usize = 2 * TEMPLATE_RADIUS_PX + 1;
 /// Pixels of a template, padded with zeros to whole registers.
 const PADDED_LENGTH: usize = (TEMPLATE_SIDE_PX * TEMPLATE_SIDE_PX).next_multiple_of(LANES);
-/// Number of parallel sums on every processor: 8. Sums of floats depend on their order.
+/// Number of parallel sums on every processor: 8. Sums of floats depend on their order. Source: ours.
 const LANES: usize = 8;
 /// Side of a template with a border of one pixel for the gradients, px.
 const WARPED_SIDE_PX: usize = TEMPLATE_SIDE_PX + 2;
@@ -21,7 +21,7 @@ const CONVERGED_STEP_PX: f32 = 0.02;
 const MAX_RESIDUAL_RATIO: f32 = 0.3;
 /// Largest ratio of the contrasts of image and template, or its inverse: 2. Above it the alignment fails. Source: ours.
 const MAX_CONTRAST_RATIO: f32 = 2.0;
-/// Parameters that are fitted: position (two), brightness, contrast.
+/// Parameters that are fitted: position (two), brightness, contrast. Source: ours.
 const FITTED_PARAMETERS: usize = 4;
 
 type Pixels = [f32; PADDED_LENGTH];

@@ -2,7 +2,7 @@
 
 use trundle_core::{Distortion, Invalid, PinholeCamera, Vector2, Vector3};
 
-/// Number of parameters of a camera.
+/// Number of parameters of a camera. Source: ours.
 pub(super) const PARAMETER_COUNT: usize = 9;
 
 /// Intrinsics and lens: fx, fy, cx, cy (px), k1, k2, p1, p2, k3.

@@ -7,7 +7,7 @@ use super::ransac_config::RansacConfig;
 use super::residual::Observation;
 use trundle_core::{PinholeCamera, Vector2, Vector3};
 
-/// Chi-square with two degrees of freedom at 95 %.
+/// Chi-square with two degrees of freedom at 95 %. Source: the chi-square distribution.
 const CHI2_95_2: f64 = 5.991;
 
 /// The pose of camera b from points in a frame a (m) and their rectified `pixels`, with wrong pairs among them. It is the counterpart of

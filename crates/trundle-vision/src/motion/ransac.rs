@@ -6,7 +6,7 @@ use super::residual::Observation;
 use super::rigid::rigid_motion;
 use trundle_core::{PinholeCamera, Pose3, Vector3};
 
-/// Chi-square with three degrees of freedom at 95 %.
+/// Chi-square with three degrees of freedom at 95 %. Source: the chi-square distribution.
 const CHI2_95_3: f64 = 7.815;
 
 /// Result of [`estimate_rigid_motion`] and [`estimate_pose_pnp`](crate::estimate_pose_pnp).

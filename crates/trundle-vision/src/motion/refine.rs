@@ -5,7 +5,7 @@ use nalgebra::{Matrix6, Vector6};
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, PinholeCamera, Pose3, Vector2, Vector3, require_positive};
 
-/// Chi-square with two degrees of freedom at 95 %.
+/// Chi-square with two degrees of freedom at 95 %. Source: the chi-square distribution.
 const CHI2_95_2: f64 = 5.991;
 
 /// How [`refine_pose_by_reprojection`] iterates.

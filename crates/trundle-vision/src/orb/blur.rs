@@ -5,7 +5,7 @@ use super::vector::{self, BLOCK_PX, Bytes, block, block_mut, starts};
 use trundle_core::GrayImage;
 
 /// Weights of a Gaussian of standard deviation 2 px over 7 px, in 1/256: middle first. BRIEF compares single pixels and therefore needs a
-/// smoothed image \[Calonder10, sec. 3.1\].
+/// smoothed image. Source: \[Calonder10, sec. 3.1\].
 const KERNEL: [u32; 4] = [56, 49, 34, 17];
 /// Reach of the Gaussian to each side \[px\].
 const KERNEL_RADIUS_PX: usize = KERNEL.len() - 1;

@@ -4,7 +4,7 @@ use super::orientation::Direction;
 use super::patch::{DISC_RADIUS_PX, PATCH_STRIDE, Patch};
 use crate::Descriptor;
 
-/// Brightness comparisons, a bit each.
+/// Brightness comparisons, a bit each. Source: \[Rublee11\].
 const BRIGHTNESS_TESTS: usize = 256;
 
 /// Rotated BRIEF: bit i is set if the first point of test i is darker than the second. The tests are rotated by the patch's direction
@@ -58,7 +58,7 @@ fn turned_plainly(direction: Direction) -> Places {
 /// Index of the patch's middle, less what [`rounded_bits`] adds.
 const MIDDLE_INDEX: u32 = ((DISC_RADIUS_PX * PATCH_STRIDE + DISC_RADIUS_PX) as u32)
     .wrapping_sub(ROUNDING_OFFSET.to_bits().wrapping_mul(PATCH_STRIDE as u32 + 1));
-/// A sum with this number has no bits for a fraction: its last bits are the nearest whole number.
+/// A sum with this number has no bits for a fraction: its last bits are the nearest whole number. Source: IEEE 754, 1.5 x 2^23.
 const ROUNDING_OFFSET: f32 = 12_582_912.0;
 
 /// The nearest whole number plus the bits of [`ROUNDING_OFFSET`], without a conversion that the compiler cannot vectorise.
@@ -78,7 +78,7 @@ static PATTERN: [Points; 2] = pattern();
 
 /// Largest distance of a test point from the middle, px: the point is in the patch for every rotation.
 const MAX_TEST_RADIUS_PX: f32 = DISC_RADIUS_PX as f32 - 0.5;
-/// Standard deviation of the test points, px: S / 5 of \[Calonder10\].
+/// Standard deviation of the test points, px. Source: \[Calonder10\], S / 5.
 const TEST_SIGMA_PX: f32 = (2 * DISC_RADIUS_PX + 1) as f32 / 5.0;
 
 const fn pattern() -> [Points; 2] {

@@ -12,7 +12,7 @@ use trundle_core::GrayImage;
 /// Radius of the circle: 3 px. Source: \[Rosten06\].
 const CIRCLE_RADIUS_PX: usize = 3;
 
-/// The circle, (x, y) px from the corner of its square, clockwise from the top.
+/// The circle, (x, y) px from the corner of its square, clockwise from the top. Source: \[Rosten06\].
 const CIRCLE: [(usize, usize); 16] = [
     (3, 0),
     (4, 0),
@@ -107,7 +107,7 @@ impl Detector {
     }
 }
 
-/// Number of pixels searched together for maxima: 8.
+/// Number of pixels searched together for maxima: 8. Source: ours.
 const WORD_PX: usize = 8;
 
 /// The `$best` over all arcs of nine of `$circle` of the `$worst` of its pixels, for single pixels or vectors. Two neighbouring arcs of

@@ -7,13 +7,15 @@ const MASK_GAIN: f32 = 6.0;
 /// The answers' quantile that is used: a quarter. The estimate holds as long as a quarter of the image has no texture. Source:
 /// ours.
 const QUANTILE_DIVISOR: usize = 4;
-/// That quantile of the absolute values of a normal distribution, in standard deviations.
+/// That quantile of the absolute values of a normal distribution, in standard deviations. Source: the 62.5th percentile of the normal
+/// distribution.
 const QUANTILE_SIGMAS: f32 = 0.3186;
-/// Smallest standard deviation of an image's noise: 0.29 grey values, the rounding error of whole values.
+/// Smallest standard deviation of an image's noise: 0.29 grey values, the rounding error of whole values. Source: the deviation of a
+/// uniform distribution, 1 / sqrt(12).
 const MIN_NOISE_SIGMA: f32 = 0.29;
 /// Distance between the pixels that are used, in both directions: 2. Source: ours.
 const STRIDE_PX: usize = 2;
-/// Number of possible answers: 8 x 255 and 0.
+/// Number of possible answers: 8 x 255 and 0. Source: the weights of the mask.
 const ANSWER_COUNT: usize = 8 * 255 + 1;
 
 /// Standard deviation of the image's noise, grey values, at least that of rounding: the difference of pixels from the prediction by their

@@ -5,7 +5,7 @@ use trundle_core::GrayImage;
 
 /// Radius of the disc that orients and describes a corner: 15 px. Source: \[Rublee11\].
 pub(crate) const DISC_RADIUS_PX: usize = 15;
-/// Smallest distance of a described corner to the border of its level: 16 px.
+/// Smallest distance of a described corner to the border of its level: 16 px. Source: ours.
 pub(crate) const BORDER_PX: usize = 16;
 /// Columns of a [`Patch`]: 32; the last one is unused. A power of two needs no check of indices.
 pub(crate) const PATCH_STRIDE: usize = 32;

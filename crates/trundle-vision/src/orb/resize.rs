@@ -25,7 +25,7 @@ struct Tap {
     weight: u16,
 }
 
-/// Samples of 16 bits in 16 bytes: a register of NEON, half of one of AVX2.
+/// Samples of 16 bits in 16 bytes: a register of NEON, half of one of AVX2. Source: ours.
 const SAMPLES_PER_REGISTER: usize = 8;
 
 /// Four neighbouring columns: from [`SAMPLES_PER_REGISTER`] samples on from `first`, which bytes make the pairs of samples between which each

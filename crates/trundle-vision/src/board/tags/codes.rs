@@ -1,8 +1,8 @@
 //! The codes of the family tag36h11 \[Olson11\].
 
-/// Number of markers of the family.
+/// Number of markers of the family. Source: the family tag36h11, `data/README.md`.
 pub const TAG_COUNT: usize = 587;
-/// Cells along a side of a marker, its black border of one cell included.
+/// Cells along a side of a marker, its black border of one cell included. Source: the family tag36h11, `data/README.md`.
 pub const TAG_CELLS: usize = 8;
 /// Cells along a side of the code.
 pub(super) const CODE_CELLS: usize = TAG_CELLS - 2;

@@ -2,7 +2,7 @@
 
 use std::arch::x86_64::*;
 
-/// Pixels of a block: as many as a register of AVX2 has bytes.
+/// Pixels of a block: as many as a register of AVX2 has bytes. Source: the processor's registers.
 pub(crate) const BLOCK_PX: usize = 32;
 
 /// A block of pixels, or of masks: bytes with all bits set or none.

@@ -2,7 +2,7 @@
 
 use std::arch::aarch64::*;
 
-/// Pixels of a block: as many as a register of NEON has bytes.
+/// Pixels of a block: as many as a register of NEON has bytes. Source: the processor's registers.
 pub(crate) const BLOCK_PX: usize = 16;
 
 /// A block of pixels, or of masks: bytes with all bits set or none.
