@@ -5,7 +5,7 @@ use crate::color::Color;
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 use tiny_skia::{FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, StrokeDash, Transform};
 
-/// Longest side of any canvas, px.
+/// Longest side of any canvas, px. Source: ours.
 pub(crate) const MAX_SIDE: i64 = 6000;
 
 /// Style of a line.

@@ -3,7 +3,7 @@
 /// A place in a picture: pixels from the left, pixels from the top.
 pub(crate) type Px = (f64, f64);
 
-/// Distance of a point from the last selected one below which it is skipped, px.
+/// Distance of a point from the last selected one below which it is skipped, px. Source: ours.
 const INVISIBLE_STEP: f64 = 0.2;
 
 /// The parts of a polyline within `margin` px of a `width` x `height` picture. A point that is not finite cuts the polyline.

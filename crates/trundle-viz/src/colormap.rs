@@ -1,6 +1,6 @@
 //! A perceptual colour map of our own: lightness falls steadily from near to far, and never reaches black.
 
-/// Pale yellow, orange, rose, violet, deep blue; evenly spaced.
+/// Pale yellow, orange, rose, violet, deep blue; evenly spaced. Source: ours.
 const ANCHORS: [[f64; 3]; 7] = [
     [252.0, 246.0, 176.0],
     [253.0, 198.0, 99.0],

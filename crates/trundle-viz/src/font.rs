@@ -1,10 +1,10 @@
 //! A bitmap typeface: labels of pictures need no font file.
 
-/// Rows of a glyph.
+/// Rows of a glyph. Source: ours.
 pub(crate) const HEIGHT: usize = 7;
-/// Columns of the widest glyph.
+/// Columns of the widest glyph. Source: ours.
 pub(crate) const WIDTH: usize = 5;
-/// Rows below the base line that a descender may take.
+/// Rows below the base line that a descender may take. Source: ours.
 pub(crate) const DESCENT_ROWS: usize = 2;
 
 /// A letter.

@@ -49,9 +49,9 @@ impl LegendItem {
     }
 }
 
-/// Width of a mark in dots of the typeface.
+/// Width of a mark in dots of the typeface. Source: ours.
 const MARK_DOTS: i64 = 14;
-/// Space between two items, in dots.
+/// Space between two items, in dots. Source: ours.
 const GAP_DOTS: i64 = 12;
 
 /// A legend on white, `width` px wide at least, wrapped as text is.

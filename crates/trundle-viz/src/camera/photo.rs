@@ -5,7 +5,7 @@ use crate::color::Color;
 use crate::text::{TextStyle, line_height, text_width};
 use trundle_core::Image;
 
-/// Width to which small camera pictures are enlarged, px, for sharp marks.
+/// Width to which small camera pictures are enlarged, px, for sharp marks. Source: ours.
 const TARGET_WIDTH: usize = 960;
 /// Largest side of a picture of a camera \[px\]. Source: ours.
 const MAX_SIDE: usize = 3000;

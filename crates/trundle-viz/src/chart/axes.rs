@@ -2,7 +2,7 @@
 
 use crate::ticks::Ticks;
 
-/// Size of a chart's own coordinates; the page scales it.
+/// Size of a chart's own coordinates; the page scales it. Source: ours.
 pub(crate) const WIDTH: f64 = 540.0;
 pub(crate) const HEIGHT: f64 = 280.0;
 /// The plotted rectangle: left, top, right, bottom.

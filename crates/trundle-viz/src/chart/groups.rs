@@ -27,11 +27,11 @@ pub struct GroupChart {
     rows: Vec<(String, Vec<f64>)>,
 }
 
-/// Height of a bar, px. Ours.
+/// Height of a bar, px. Source: ours.
 const BAR_HEIGHT: f64 = 13.0;
-/// Distance from a bar to the next of the same row, px. Ours.
+/// Distance from a bar to the next of the same row, px. Source: ours.
 const BAR_PITCH: f64 = 16.0;
-/// Gap between the bars of two rows, px. Ours.
+/// Gap between the bars of two rows, px. Source: ours.
 const ROW_GAP: f64 = 11.0;
 
 impl GroupChart {

@@ -1,6 +1,6 @@
 //! Reduction of a long series to the points that a chart can show, with its peaks.
 
-/// More points than this in a series are thinned.
+/// More points than this in a series are thinned. Source: ours.
 const MAX_SERIES_POINTS: usize = 1500;
 
 /// A series reduced to few points. If the series is long and its x increases, each of many columns retains its lowest and its highest

@@ -20,7 +20,7 @@ pub struct PlanParts<'a> {
     pub active: &'a [Vector2],
 }
 
-/// Largest distance with a separate colour, m.
+/// Largest distance with a separate colour, m. Source: ours.
 const MAX_SHOWN_DISTANCE_M: f32 = 1.0;
 
 /// The pictures of a plan's stages: the distance field with the path of the search, and the corridors with the curve fitted into them.

@@ -5,7 +5,7 @@ use crate::color::Color;
 use crate::map::{DotStyle, LineStyle, MapPicture};
 use trundle_core::{Vector2, Vector3};
 
-/// Largest number of lines between estimate and truth.
+/// Largest number of lines between estimate and truth. Source: ours.
 const MAX_ERROR_LINES: usize = 400;
 
 /// The picture of `trundle slam`: a trajectory, and the true one if given, both in the same frame (aligned), m.

@@ -52,7 +52,7 @@ fn is_way(way: &[Vector3]) -> bool {
     way.iter().find(|a| a.iter().all(|v| v.is_finite())).is_some_and(from)
 }
 
-/// Part of the points at either end of each axis that the picture need not show.
+/// Part of the points at either end of each axis that the picture need not show. Source: ours.
 const OUTLIER_SHARE: f64 = 0.02;
 
 /// Middle and half side of the square that contains nearly all points.

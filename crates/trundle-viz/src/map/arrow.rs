@@ -8,7 +8,7 @@ use crate::clip::Px;
 use crate::color::Color;
 use trundle_core::Vector2;
 
-/// Length of a head in line widths, and half its breadth.
+/// Length of a head in line widths, and half its breadth. Source: ours.
 const HEAD_SIZE_LINE_WIDTHS: (f64, f64) = (4.6, 2.3);
 
 /// A line with an arrowhead at its end; a line shorter than its head becomes the head only.

@@ -8,11 +8,11 @@ use crate::color::Color;
 use crate::text::{TextStyle, cap_height, text_width};
 use trundle_core::Vector2;
 
-/// Space around a text within its badge, in dots of the typeface.
+/// Space around a text within its badge, in dots of the typeface. Source: ours.
 const PADDING_DOTS: f64 = 2.5;
-/// Maximum shift of a badge from its place, in badge diameters.
+/// Maximum shift of a badge from its place, in badge diameters. Source: ours.
 const MAX_SHIFT_DIAMETERS: u32 = 6;
-/// Bearings tried at each distance.
+/// Bearings tried at each distance. Source: ours.
 const BEARINGS_PER_DISTANCE: u32 = 12;
 
 /// Short texts in circles at their places without overlaps: an overlapping one is moved aside, with a line to its place.

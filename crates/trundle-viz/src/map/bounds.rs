@@ -2,7 +2,7 @@
 
 use trundle_core::Vector2;
 
-/// Largest coordinate that is drawn, m: a larger one is an error of the data.
+/// Largest coordinate that is drawn, m: a larger one is an error of the data. Source: ours.
 const MAX_COORDINATE_M: f64 = 1e9;
 
 /// An upright rectangle of the map frame, m.

@@ -33,7 +33,7 @@ impl Paint {
     }
 }
 
-/// Opacity of the tint.
+/// Opacity of the tint. Source: ours.
 const TINT_ALPHA: u8 = 150;
 
 impl Shade {

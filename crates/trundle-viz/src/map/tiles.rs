@@ -6,9 +6,9 @@ use crate::color::Color;
 use crate::legend::paint_legend;
 use crate::text::{TextStyle, line_height};
 
-/// The longer side of a tile, as a part of a picture's own.
+/// The longer side of a tile, as a part of a picture's own. Source: ours.
 const TILE_SIDE_SHARE: f64 = 0.4;
-/// The unit of lettering, px.
+/// The unit of lettering, px. Source: ours.
 const LETTER_UNIT_PX: i64 = 2;
 
 /// Pictures in rows of `columns`, each with its title on top, with one legend: as an 8-bit RGB PNG. The tiles have no axes. Equal content

@@ -5,9 +5,9 @@ use super::cell_box::CellBox;
 use crate::clip::Px;
 use trundle_core::{GridGeometry, Vector2};
 
-/// Minimum length of the longer side of a plot, px; the cells of a grid may make it larger.
+/// Minimum length of the longer side of a plot, px; the cells of a grid may make it larger. Source: ours.
 const TARGET_PX: f64 = 1100.0;
-/// The longer side of a plot is at most this, px.
+/// The longer side of a plot is at most this, px. Source: ours.
 const MAX_PX: i64 = 3000;
 
 /// Number of pixels per cell, or of cells per pixel.
