@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 
 /// Scene of the exploration: larger than the area explored in ten minutes.
 const SCENE: &str = "office";
-/// Time between two samples.
+/// Time between two samples. Source: ours.
 const SAMPLE_PERIOD: Duration = Duration::from_secs(5);
-/// Longest time until the simulator answers.
+/// Longest time until the simulator answers. Source: ours.
 const START_LIMIT: Duration = Duration::from_secs(20);
 /// Largest resident memory at the end \[MB\]. A computer with 1 GB needs most of its memory for other programs. Source: ours.
 const MAX_RESIDENT_MB: f64 = 300.0;

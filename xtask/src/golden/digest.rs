@@ -21,7 +21,7 @@ pub struct Digest {
     bytes: u64,
 }
 
-/// Offset basis and prime of the 64-bit FNV-1a hash (Fowler, Noll, Vo; draft-eastlake-fnv).
+/// Offset basis and prime of the 64-bit FNV-1a hash. Source: Fowler, Noll, Vo, draft-eastlake-fnv.
 const FNV_OFFSET_BASIS: u64 = 0xcbf2_9ce4_8422_2325;
 const FNV_PRIME: u64 = 0x0000_0100_0000_01b3;
 

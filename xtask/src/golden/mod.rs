@@ -18,7 +18,7 @@ use std::sync::Mutex;
 /// The committed digests, relative to the workspace.
 const GOLDEN_FILE: &str = "data/golden/expected.txt";
 
-/// Cases run side by side.
+/// Cases run side by side. Source: ours.
 const CASES_AT_ONCE: usize = 2;
 
 /// Options of the golden net.

@@ -4,9 +4,9 @@ use mcap::records::{Record, op};
 use mcap::{McapError, parse_record};
 use std::io::Read;
 
-/// Length of a record's head: opcode and length \[bytes\].
+/// Length of a record's head: opcode and length \[bytes\]. Source: MCAP specification, "Records".
 const HEAD_BYTES: usize = 1 + 8;
-/// Bytes of a text message before the text: encapsulation and length. A zero follows the text.
+/// Bytes of a text message before the text: encapsulation and length. A zero follows the text. Source: DDSI-RTPS, 10.2.
 const TEXT_HEAD_BYTES: usize = 4 + 4;
 /// In front of the topics of trundle's own messages.
 const OWN_TOPICS: &str = "/trundle";

@@ -4,7 +4,7 @@ use super::model::{Figure, Goal, Measurement, Peer};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Longest page, lines.
+/// Longest page, lines. Source: ours.
 pub const MAX_LINES: usize = 150;
 
 const HEAD: &str = "# Results

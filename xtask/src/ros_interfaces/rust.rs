@@ -3,7 +3,7 @@
 use super::definition::{Constant, Count, Field, Interface, Kind, Part};
 use std::fmt::Write;
 
-/// Largest fixed array supported by serde and `Default`. Longer ones are `FixedArray`.
+/// Largest fixed array supported by serde and `Default`. Longer ones are `FixedArray`. Source: serde and the standard library.
 const MAX_PLAIN_ARRAY: usize = 32;
 /// Keywords of Rust that are names of fields.
 const KEYWORDS: [&str; 4] = ["type", "match", "ref", "move"];

@@ -11,7 +11,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A module's path below its crate's root; empty for the root.
 type ModulePath = Vec<String>;
 
-/// Re-exports that are followed one after the other at the longest.
+/// Re-exports that are followed one after the other at the longest. Source: ours.
 const MAX_REEXPORTS: usize = 8;
 
 /// Checks the modules of every package.

@@ -3,7 +3,7 @@
 use super::finding::{Finding, Rule};
 use super::tree::{File, Tree};
 
-/// Words in a sentence of documents and doc comments.
+/// Words in a sentence of documents and doc comments. Source: ours.
 const MAX_WORDS: usize = 40;
 
 /// Words about the work on the project instead of the product. Written in halves, which keeps this file clean.

@@ -3,14 +3,14 @@
 use super::finding::Finding;
 use super::tree::{Package, Tree};
 
-/// Lines of code above which a file is warned of.
+/// Lines of code above which a file is warned of. Source: ours.
 const MANY_LINES: usize = 400;
-/// Lines of code above which a file is an error.
+/// Lines of code above which a file is an error. Source: ours.
 const TOO_MANY_LINES: usize = 600;
 
 /// The crate of the command line.
 const COMMAND_LINE: &str = "trundle-cli";
-/// Maximum number of lines of the command line's code; more code belongs in a crate shared by all front ends.
+/// Maximum number of lines of the command line's code; more code belongs in a crate shared by all front ends. Source: ours.
 const MAX_COMMAND_LINE_LINES: usize = 3000;
 
 /// Checks sizes of files and of the command line, and the crates' own documentation.

@@ -4,11 +4,11 @@ use super::finding::{Finding, Rule};
 use super::tree::{Package, Tree};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Maximum number of fields of a struct; beyond it, fields that belong together form a separate struct.
+/// Maximum number of fields of a struct; beyond it, fields that belong together form a separate struct. Source: ours.
 const MAX_FIELDS: usize = 15;
-/// Methods of one type's inherent impls.
+/// Methods of one type's inherent impls. Source: ours.
 const MAX_METHODS: usize = 30;
-/// Files over which one type's inherent impls are spread.
+/// Files over which one type's inherent impls are spread. Source: ours.
 const MAX_IMPL_FILES: usize = 2;
 
 /// Checks the structs and inherent impls of every package.
