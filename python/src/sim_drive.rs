@@ -3,7 +3,7 @@
 use trundle::core::{RobotBody, SensorEvent, Twist2, require_in};
 use trundle::sim::{SimError, Simulator};
 
-/// Step of the simulator's dynamics \[s\], the smallest duration of a drive.
+/// Step of the simulator's dynamics \[s\], the smallest duration of a drive. Source: the step of `trundle-sim`.
 const STEP_S: f64 = 0.001;
 /// Largest duration of a drive \[s\]: a longer one is a mistyped number. Source: ours.
 const MAX_DURATION_S: f64 = 3600.0;
