@@ -10,7 +10,7 @@ use trundle_core::{Invalid, Pose2};
 /// Inner side of the room, m. Source: ours.
 const ROOM_SIDE_M: f64 = 6.0;
 
-/// Middles of the obstacles, m. Their spacing leaves paths of 0.8 m between them for all headings.
+/// Middles of the obstacles, m. Their spacing leaves paths of 0.8 m between them for all headings. Source: ours.
 const PLACES: [(f64, f64); 8] =
     [(1.95, 1.75), (3.35, 0.85), (4.75, 1.7), (0.9, 3.2), (3.05, 3.1), (4.7, 3.5), (1.9, 4.7), (3.6, 4.9)];
 

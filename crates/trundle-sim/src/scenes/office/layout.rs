@@ -16,7 +16,7 @@ pub(super) const CORE: [[f64; 2]; 2] = [[1.625, 6.125], [13.375, 12.125]];
 /// South side of the northern rooms, m. Source: ours.
 pub(super) const NORTH_ROOMS_Y_M: f64 = 13.75;
 
-/// Way-points around the office's ring corridor, its centre line, m: 41.8 m around.
+/// Way-points around the office's ring corridor, its centre line, m: 41.8 m around. Source: ours.
 pub const OFFICE_RING: [[f64; 2]; 4] =
     [[0.84375, 5.34375], [14.15625, 5.34375], [14.15625, 12.90625], [0.84375, 12.90625]];
 
