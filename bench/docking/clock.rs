@@ -20,7 +20,7 @@ fn on_processor_ns() -> Option<f64> {
 
 /// Time of [`reference_work`] on the machine that the limits of time are for \[ms\]. Source: measured there, 2 cores of an AMD EPYC.
 const REFERENCE_MS: f64 = 7.0;
-/// Number of runs of the reference, of which the fastest counts.
+/// Number of runs of the reference, of which the fastest counts. Source: ours.
 const REFERENCE_RUNS: usize = 5;
 
 /// How many times longer than the reference machine this one takes at the moment, at least 1: limits of time grow by it.

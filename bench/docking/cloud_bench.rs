@@ -10,7 +10,7 @@ mod clouds;
 use clock::timed;
 use trundle_docking::{DockingConfig, DockingPlan, DockingPlanner};
 
-/// Plans of each scene; the fastest counts.
+/// Plans of each scene; the fastest counts. Source: ours.
 const TIMES: usize = 3;
 
 fn main() {

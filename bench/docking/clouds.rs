@@ -7,7 +7,7 @@ use trundle_core::{Footprint, Pose2, Vector2};
 use trundle_docking::corridor::{Problem, generate};
 use trundle_docking::{Obstacle, ObstacleScene};
 
-/// Points of a scene.
+/// Points of a scene. Source: ours.
 pub const COUNT: usize = 100_000;
 
 /// All scenes.

@@ -8,10 +8,10 @@ use trundle_core::{Footprint, Pose2, Twist2, wrap_angle};
 use trundle_docking::corridor::Problem;
 use trundle_docking::{MotionLimits, ObstacleScene};
 
-/// The period of control, s.
+/// The period of control, s. Source: ours.
 pub const DT: f64 = 0.1;
 const HORIZON: f64 = 1.0;
-/// On the goal's place it turns; it drives again when it is off by twice as much, m.
+/// On the goal's place it turns; it drives again when it is off by twice as much, m. Source: ours.
 const PLACE: f64 = 0.008;
 
 /// Decision for the next tenth of a second, and whether the robot is at the goal's position.

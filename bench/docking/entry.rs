@@ -7,9 +7,9 @@ use std::thread;
 use std::time::{Duration, Instant};
 use trundle_docking::corridor::{Problem, ProblemAnswer, parse_answers, write};
 
-/// Interval between two looks at a running planner: 2 ms, small against the time limit.
+/// Interval between two looks at a running planner: 2 ms, small against the time limit. Source: ours.
 const POLL: Duration = Duration::from_millis(2);
-/// Longest answer that is read: 1 MB, a manoeuvre of over 10,000 pieces.
+/// Longest answer that is read: 1 MB, a manoeuvre of over 10,000 pieces. Source: ours.
 const MAX_ANSWER_BYTES: u64 = 1_000_000;
 
 /// Answers of a planner, evaluated, and its times.

@@ -13,10 +13,10 @@ use trundle_core::{Pose2, Vector2, wrap_angle};
 use trundle_docking::corridor::Problem;
 use trundle_docking::{MotionLimits, ObstacleScene};
 
-/// Least radius, m: what a base that prefers to roll takes in a corridor.
+/// Least radius, m: what a base that prefers to roll takes in a corridor. Source: ours.
 const RADIUS: f64 = 0.25;
 const STEP: f64 = 0.05;
-/// Between two looks for contact, m.
+/// Between two looks for contact, m. Source: ours.
 const SAMPLE: f64 = 0.005;
 const MOST_NODES: usize = 20_000;
 

@@ -5,13 +5,13 @@ use trundle_core::{Pose2, wrap_angle};
 use trundle_docking::MotionLimits;
 use trundle_docking::corridor::{PathPiece, Problem, ProblemAnswer, time_of};
 
-/// How far a point of the robot moves from one sample to the next at most, m.
+/// How far a point of the robot moves from one sample to the next at most, m. Source: ours.
 const STEP: f64 = 0.001;
-/// How far from the goal is on it, m, ...
+/// How far from the goal is on it, m. Source: ours.
 const PLACE: f64 = 0.01;
-/// ... and rad.
+/// Heading error that counts as none, rad. Source: ours.
 const HEADING: f64 = std::f64::consts::PI / 180.0;
-/// Largest error of numbers written and read.
+/// Largest error of numbers written and read. Source: ours.
 const ROUNDING: f64 = 1e-9;
 
 /// The path's time (s) when it touches nothing and ends on the goal, within 1 cm of distance and 1 deg; else what is wrong.

@@ -131,7 +131,7 @@ fn by_paper(problems: &[Problem]) -> Row {
     plan_all("[Hong24]", problems, &DockingPlanner::new(config).expect("valid"))
 }
 
-/// Distance that the path planner keeps from obstacles, m: a millimetre for what lies between its samples.
+/// Distance that the path planner keeps from obstacles, m: a millimetre for what lies between its samples. Source: ours.
 const KEPT: f64 = 0.001;
 
 fn by_hybrid(problems: &[Problem]) -> Row {

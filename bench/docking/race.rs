@@ -7,11 +7,11 @@ use trundle_core::{Pose2, Twist2, wrap_angle};
 use trundle_docking::corridor::Problem;
 use trundle_docking::{MotionLimits, ObstacleScene};
 
-/// The dynamic window gives up after this, s, ...
+/// The dynamic window gives up after this, s. Source: ours.
 const PATIENCE: f64 = 60.0;
-/// ... or when it has come no nearer for this time, s.
+/// The dynamic window also gives up when it has come no nearer for this time, s. Source: ours.
 const STUCK: f64 = 10.0;
-/// The path planner plans again so often, when the end is beside the goal.
+/// The path planner plans again so often, when the end is beside the goal. Source: ours.
 const PLANS: usize = 6;
 
 /// A world, and what is noted in it.

@@ -118,11 +118,11 @@ impl OccupancyGrid {
     }
 }
 
-/// Value of an unknown cell, as in ROS's nav_msgs/OccupancyGrid.
+/// Value of an unknown cell. Source: `nav_msgs/OccupancyGrid`.
 const UNKNOWN_VALUE: i8 = -1;
-/// Value of a free cell.
+/// Value of a free cell. Source: `nav_msgs/OccupancyGrid`.
 const FREE_VALUE: i8 = 0;
-/// Value of an occupied cell.
+/// Value of an occupied cell. Source: `nav_msgs/OccupancyGrid`.
 const OCCUPIED_VALUE: i8 = 100;
 
 fn cell(value: i8) -> PyResult<Cell> {

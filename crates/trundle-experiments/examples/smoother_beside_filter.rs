@@ -15,11 +15,11 @@ use trundle_sim::{Scene, SimConfig, Simulator};
 
 /// Scenes of the drives.
 const SCENES: [&str; 2] = ["demo", "house"];
-/// Seeds of the drives.
+/// Seeds of the drives. Source: ours.
 const SEEDS: [u64; 3] = [1, 2, 3];
-/// Robot's time after which a drive ends \[s\]; ours.
+/// Robot's time after which a drive ends \[s\]. Source: ours.
 const TIME_LIMIT_S: f64 = 120.0;
-/// Time between two comparisons \[s\]; ours.
+/// Time between two comparisons \[s\]. Source: ours.
 const SAMPLE_S: f64 = 0.1;
 
 /// Errors of one estimator.

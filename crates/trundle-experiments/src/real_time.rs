@@ -17,7 +17,7 @@ const MAX_CPU_LOAD: f64 = 0.6;
 const MAX_MEMORY_GROWTH_MB_PER_H: f64 = 10.0;
 /// Time in which memory may grow while maps and buffers reach their size, s. Source: ours.
 const MEMORY_SETTLING_S: f64 = 600.0;
-/// Shortest run whose growth is evaluated, s.
+/// Shortest run whose growth is evaluated, s. Source: ours.
 const MIN_JUDGED_RUN_S: f64 = 2.0 * MEMORY_SETTLING_S;
 /// Shortest time of a goal and the return, s. Source: ours.
 const SHORTEST_TASK: f64 = 10.0;

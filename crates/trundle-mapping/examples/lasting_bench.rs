@@ -15,7 +15,7 @@ use trundle_mapping::{ParticleConfig, ParticleMapper};
 
 const BEAMS: usize = 360;
 const MAX_RANGE_M: f64 = 12.0;
-/// Path between two scans \[m\]: a little more than the filter's gate.
+/// Path between two scans \[m\]: a little more than the filter's gate. Source: ours.
 const STEP_M: f64 = 0.31;
 
 fn room() -> FlatRoom {

@@ -35,9 +35,9 @@ const ROOM: &str = "
     #.............#...........#...................##...........#
     #.............#...........#........#.......................#
     ############################################################";
-/// The robot's radius, m.
+/// The robot's radius, m. Source: ours.
 const ROBOT: f64 = 0.13;
-/// Pixels per metre.
+/// Pixels per metre. Source: ours.
 const SCALE: f64 = 120.0;
 
 /// A picture in the map frame.

@@ -8,10 +8,10 @@ use trundle_core::{Footprint, Pose2, RobotBody, SensorEvent, Twist2};
 use trundle_sim::import::{GltfOptions, gltf};
 use trundle_sim::{HeightBand, LaserConfig, Scene, SimConfig, Simulator, World};
 
-/// Seconds of the robot's time a run.
+/// Seconds of the robot's time a run. Source: ours.
 const SPAN: f64 = 60.0;
 
-/// Runs of which the median counts.
+/// Runs of which the median counts. Source: ours.
 const RUNS: u64 = 5;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

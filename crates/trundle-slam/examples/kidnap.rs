@@ -18,11 +18,11 @@ use std::time::Instant;
 use trundle_core::Pose3;
 use trundle_slam::{Mode, RgbdSlam, SlamConfig};
 
-/// A view farther from all that was mapped is none of a mapped place: m, and rad.
+/// A view farther from all that was mapped is none of a mapped place: m, and rad. Source: ours.
 const MAPPED: (f64, f64) = (0.5, 0.5);
-/// A pose farther off than this is wrong: m, and rad.
+/// A pose farther off than this is wrong: m, and rad. Source: ours.
 const WRONG: (f64, f64) = (0.10, 0.0873);
-/// How long the camera may look, s.
+/// How long the camera may look, s. Source: ours.
 const PATIENCE: f64 = 1.0;
 
 fn main() {

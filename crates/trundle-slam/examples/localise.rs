@@ -18,7 +18,7 @@ use trundle_core::{CameraMotion, DepthImage, Pose3, Stamp, Vector3, gray_from_co
 use trundle_slam::{Mode, RgbdSlam, SlamConfig, TrackReport, Tracking};
 use trundle_vision::{Features, OrbExtractor};
 
-/// Difference of positions that is counted as off, m: the goal of localise-only.
+/// Difference of positions that is counted as off, m: the goal of localise-only. Source: ours.
 const OFF_M: f64 = 0.01;
 
 /// One image, with its features.

@@ -9,10 +9,10 @@ use std::time::Instant;
 use trundle_core::Invalid;
 use trundle_vision::{Descriptor, OrbConfig, OrbExtractor, PlaceIndex, Vocabulary};
 
-/// Keyframes in the index.
+/// Keyframes in the index. Source: ours.
 const KEYFRAMES: u32 = 2000;
 
-/// Drawn pictures; each keyframe shows a mixture of all.
+/// Drawn pictures; each keyframe shows a mixture of all. Source: ours.
 const PICTURES: usize = 40;
 
 fn main() -> Result<(), Invalid> {

@@ -10,9 +10,9 @@ use std::error::Error;
 use trundle::core::{DifferentialDrive, GyroRate, Pose2, RobotBody, SensorEvent, Stamp, Twist2, WheelTicks};
 use trundle::runtime::{Robot, RobotConfig};
 
-/// Time between two readings of wheels and gyro \[s\]: 50 Hz.
+/// Time between two readings of wheels and gyro \[s\]: 50 Hz. Source: ours.
 const PERIOD_S: f64 = 0.02;
-/// Time after which this example ends \[s\].
+/// Time after which this example ends \[s\]. Source: ours.
 const DURATION_S: f64 = 2.0;
 
 /// A base that follows each command exactly. The driver of a real base reads its serial port here.

@@ -15,7 +15,7 @@ use trundle_sim::LaserConfig;
 /// Maps of the folder.
 const MAPS: [&str; 3] =
     ["nav2/tb3_sandbox.yaml", "mrpb/maps/office01add/map.yaml", "mrpb/maps/room02/map.yaml"];
-/// Duration of a drive \[s\].
+/// Duration of a drive \[s\]. Source: ours.
 const DRIVE_S: f64 = 120.0;
 
 /// Error of a trajectory: mean and largest position \[m\], mean and largest heading \[deg\].

@@ -27,7 +27,7 @@ const MAPS: [&str; 6] = [
     "mrpb/maps/room02/map.yaml",
     "mrpb/maps/track/map.yaml",
 ];
-/// Duration of a drive \[s\].
+/// Duration of a drive \[s\]. Source: ours.
 const DRIVE_S: f64 = 60.0;
 /// Distance from the truth beyond which a pose is wrong \[m\]. Source: ours.
 const MAX_DISTANCE_M: f64 = 0.5;

@@ -78,7 +78,7 @@ pub struct Agreement {
     absolute: f64,
 }
 
-/// Loops that are farther off than this are not closed, m: more than the reference itself is.
+/// Loops that are farther off than this are not closed, m: more than the reference itself is. Source: ours.
 const OPEN: f64 = 3.0;
 
 impl Agreement {

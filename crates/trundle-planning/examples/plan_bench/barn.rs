@@ -3,7 +3,7 @@
 use std::path::Path;
 use trundle_core::{Cell, CellIndex, GridGeometry, OccupancyGrid, Pose2, Vector2};
 
-/// Side of a cell, m.
+/// Side of a cell, m. Source: ours.
 const RESOLUTION: f64 = 0.05;
 
 /// All worlds, in order.

@@ -29,12 +29,12 @@ use trundle_planning::{
     DistanceField, Plan, PlannerConfig, PlanningTimes, PotentialConfig, PotentialKind, UnknownIs,
 };
 
-/// The robot of the comparison with Nav2's planners, m.
+/// The robot of the comparison with Nav2's planners, m. Source: ours.
 const RADIUS: f64 = 0.26;
-/// Questions a map.
+/// Questions a map. Source: ours.
 const QUESTIONS: usize = 60;
 const ROUNDS: usize = 20;
-/// The planner's clearance margin beyond the footprint, used if space allows, m.
+/// The planner's clearance margin beyond the footprint, used if space allows, m. Source: ours.
 const MARGIN: f64 = 0.05;
 
 struct Row {

@@ -4,9 +4,9 @@ use std::{cmp::Ordering, collections::BinaryHeap};
 use trundle_core::{GridGeometry, Vector2};
 use trundle_planning::DistanceField;
 
-/// Spacing of the samples along a line of sight, cells.
+/// Spacing of the samples along a line of sight, cells. Source: ours.
 const LOOK: f64 = 0.2;
-/// Tolerance of the checks, m: rounding of the stored distances and the interpolation's error.
+/// Tolerance of the checks, m: rounding of the stored distances and the interpolation's error. Source: ours.
 const SLACK: f64 = 1e-3;
 
 #[derive(PartialEq)]

@@ -5,7 +5,7 @@ use super::noise::lattice;
 /// Red, green, blue, 0 to 255, sRGB.
 pub(super) type Rgb = [f32; 3];
 
-/// Strong, different colours that prints and toys have.
+/// Strong, different colours that prints and toys have. Source: ours.
 const PALETTE: [[u8; 3]; 12] = [
     [196, 52, 44],
     [38, 84, 156],

@@ -21,7 +21,7 @@ const HEAD_RADIUS_M: f64 = 0.095;
 const SHOULDER_HEIGHT_M: f64 = 1.48;
 const CROWN_HEIGHT_M: f64 = 1.75;
 
-/// Clothes of people: trousers and jumper, sRGB.
+/// Clothes of people: trousers and jumper, sRGB. Source: ours.
 const CLOTHES: [([u8; 3], [u8; 3]); 4] = [
     ([52, 62, 92], [168, 64, 56]),
     ([70, 66, 60], [72, 120, 156]),

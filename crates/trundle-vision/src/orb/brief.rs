@@ -76,7 +76,7 @@ struct Points {
 /// sec. 3.2\] (G II). Ours: from a fixed seed, not the learned table of \[Rublee11\].
 static PATTERN: [Points; 2] = pattern();
 
-/// Largest distance of a test point from the middle, px: the point is in the patch for every rotation.
+/// Largest distance of a test point from the middle, px: the point is in the patch for every rotation. Source: ours.
 const MAX_TEST_RADIUS_PX: f32 = DISC_RADIUS_PX as f32 - 0.5;
 /// Standard deviation of the test points, px. Source: \[Calonder10\], S / 5.
 const TEST_SIGMA_PX: f32 = (2 * DISC_RADIUS_PX + 1) as f32 / 5.0;

@@ -2,7 +2,7 @@
 
 use trundle_core::{Beam, Cell, GridGeometry, OccupancyGrid, Pose2, Scan, Stamp, Vector2, Vector3};
 
-/// Boxes: x, y, width, depth, m.
+/// Boxes: x, y, width, depth, m. Source: ours.
 const FURNITURE: [[f64; 4]; 6] = [
     [2.1, 2.2, 1.3, 0.8],
     [4.6, 0.1, 0.5, 2.1],

@@ -5,7 +5,7 @@ use crate::ticks::Ticks;
 /// Size of a chart's own coordinates; the page scales it. Source: ours.
 pub(crate) const WIDTH: f64 = 540.0;
 pub(crate) const HEIGHT: f64 = 280.0;
-/// The plotted rectangle: left, top, right, bottom.
+/// The plotted rectangle: left, top, right, bottom. Source: ours.
 pub(crate) const PLOT_RECTANGLE: [f64; 4] = [52.0, 38.0, WIDTH - 12.0, HEIGHT - 42.0];
 
 /// An axis: numbers to places.

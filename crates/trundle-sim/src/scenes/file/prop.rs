@@ -8,7 +8,7 @@ use crate::world::Solid;
 use serde::{Deserialize, Serialize};
 use trundle_core::{Invalid, Pose2, require_finite, require_in};
 
-/// Colour of a prop without a given colour.
+/// Colour of a prop without a given colour. Source: ours.
 const WOOD: [u8; 3] = [176, 128, 80];
 
 /// A prop in a scene file.
