@@ -1,8 +1,8 @@
 //! The log of a run for evaluation and pictures: poses, truth, commands, states.
 
-use crate::BodyLog;
+use crate::{BodyLog, PoseSample};
 use serde::{Deserialize, Serialize};
-use trundle_core::{Pose2, SensorEvent, Stamp, Twist2};
+use trundle_core::{Pose2, PoseEstimate, SensorEvent, Stamp, Twist2};
 use trundle_runtime::{DriveState, Reason, StepReport, TransitionReason};
 use trundle_slam::Tracking;
 
@@ -14,7 +14,7 @@ pub struct RunLog {
     /// Newest stamp of the run.
     pub now: Stamp,
     /// `map_from_base` as estimated, at every image.
-    pub estimates: Vec<(Stamp, Pose2)>,
+    pub estimates: Vec<PoseEstimate>,
     /// `map_from_base` in truth, at every truth event.
     pub truths: Vec<(Stamp, Pose2)>,
     /// Commands by time.
@@ -97,7 +97,7 @@ impl RunLog {
     fn drop_old(&mut self) {
         let (now, end) = (self.now, self.elapsed());
         let is_old = |stamp: &Stamp| now - *stamp > BRIEF_LOG_S;
-        drop_first(&mut self.estimates, |(stamp, _)| is_old(stamp));
+        drop_first(&mut self.estimates, |estimate| is_old(&estimate.stamp));
         drop_first(&mut self.truths, |(stamp, _)| is_old(stamp));
         drop_first(&mut self.twists, |(stamp, _)| is_old(stamp));
         drop_first(&mut self.changes, |change| end - change.at > BRIEF_LOG_S);
@@ -117,7 +117,7 @@ impl RunLog {
         self.plans += usize::from(report.replanned);
         if let Some(track) = &report.track {
             self.tracked.count(track.tracking);
-            self.estimates.extend(report.estimate.map(|estimate| (estimate.stamp, estimate.pose)));
+            self.estimates.extend(report.estimate);
         }
         self.twists.extend(report.twist.map(|twist| (now, twist)));
         if self.is_brief {
@@ -137,8 +137,9 @@ impl RunLog {
 
     /// Length of the true path, or of the estimated path without truth \[m\].
     pub fn path_length(&self) -> f64 {
-        let path = if self.truths.is_empty() { &self.estimates } else { &self.truths };
-        path.windows(2).map(|pair| pair[1].1.distance(&pair[0].1)).sum()
+        let estimated = || self.estimates.windows(2).map(|pair| pair[1].pose.distance(&pair[0].pose)).sum();
+        let true_length = self.truths.windows(2).map(|pair| pair[1].1.distance(&pair[0].1)).sum();
+        if self.truths.is_empty() { estimated() } else { true_length }
     }
 
     /// Truth at the newest truth event up to `stamp`, map frame.
@@ -147,19 +148,26 @@ impl RunLog {
         self.truths.get(after.checked_sub(1)?).map(|(_, pose)| *pose)
     }
 
-    /// For every image with truth: time since the first event \[s\], estimated pose, true pose, map frame.
-    pub fn pose_pairs(&self) -> Vec<(f64, Pose2, Pose2)> {
+    /// The estimated poses, at every image.
+    pub fn estimated_path(&self) -> Vec<(Stamp, Pose2)> {
+        self.estimates.iter().map(|estimate| (estimate.stamp, estimate.pose)).collect()
+    }
+
+    /// The estimate beside the truth, for every image with truth.
+    pub fn pose_samples(&self) -> Vec<PoseSample> {
         let start = self.start.unwrap_or_default();
-        let pair = |(stamp, pose): &(Stamp, Pose2)| Some((*stamp - start, *pose, self.truth_at(*stamp)?));
-        self.estimates.iter().filter_map(pair).collect()
+        let sample = |estimate: &PoseEstimate| {
+            let truth = self.truth_at(estimate.stamp)?;
+            Some(PoseSample::new(estimate.stamp - start, estimate, truth))
+        };
+        self.estimates.iter().filter_map(sample).collect()
     }
 
     /// Distance of the estimate from truth: root of the mean square, m.
     pub fn estimate_rmse(&self) -> Option<f64> {
-        let pairs = self.pose_pairs();
-        let square = |(_, estimate, truth): &(f64, Pose2, Pose2)| estimate.distance(truth).powi(2);
-        let sum: f64 = pairs.iter().map(square).sum();
-        (!pairs.is_empty()).then(|| (sum / pairs.len() as f64).sqrt())
+        let samples = self.pose_samples();
+        let sum: f64 = samples.iter().map(|sample| sample.distance().powi(2)).sum();
+        (!samples.is_empty()).then(|| (sum / samples.len() as f64).sqrt())
     }
 
     /// Contacts: in truth if it is known, else the bumper's presses.

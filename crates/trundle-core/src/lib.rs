@@ -41,7 +41,7 @@ pub use camera::{Distortion, PinholeCamera};
 pub use camera_motion::CameraMotion;
 pub use deskew::deskewed;
 pub use drive::{DifferentialDrive, DriveLimits};
-pub use estimate::PoseEstimate;
+pub use estimate::{PoseBound, PoseEstimate};
 pub use footprint::Footprint;
 pub use footprint_text::footprint_corners;
 pub use frame::FrameId;

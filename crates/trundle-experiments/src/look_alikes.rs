@@ -2,8 +2,8 @@
 
 use crate::trial::{self, Trial, TrialPlan};
 use crate::{ExperimentContext, ExperimentReport, RunsRequest};
-use trundle_app::AppError;
 use trundle_app::report::GoalOutcome;
+use trundle_app::{AppError, PoseSample};
 use trundle_core::Pose2;
 use trundle_io::{OutputFolder, Summary};
 use trundle_runtime::{Mission, RobotConfig, Task, TaskEnd};
@@ -90,7 +90,7 @@ impl Score {
             arrivals: goals.iter().filter(done).count(),
             false_arrivals: goals.iter().filter(done).filter(|goal| is_false(goal)).count(),
             not_reached: goals.iter().filter(|goal| !done(goal)).count(),
-            jumps: jumps(&trial.pose_pairs),
+            jumps: jumps(&trial.poses),
             contacts: trial.numbers.contacts,
         }
     }
@@ -118,13 +118,12 @@ fn is_false(goal: &GoalOutcome) -> bool {
 }
 
 /// Counts the jumps of the estimate away from the truth. A jump of the truth, when the robot is carried, does not count.
-fn jumps(pairs: &[(f64, Pose2, Pose2)]) -> usize {
-    let is_jump = |pair: &[(f64, Pose2, Pose2)]| {
-        let [(_, believed, truth), (_, next_believed, next_truth)] = pair else { return false };
-        let grown = next_believed.distance(next_truth) - believed.distance(truth);
-        grown > JUMP_M && truth.distance(next_truth) < JUMP_M
+fn jumps(samples: &[PoseSample]) -> usize {
+    let is_jump = |pair: &[PoseSample]| {
+        let [before, after] = pair else { return false };
+        after.distance() - before.distance() > JUMP_M && before.truth.distance(&after.truth) < JUMP_M
     };
-    pairs.windows(2).filter(|pair| is_jump(pair)).count()
+    samples.windows(2).filter(|pair| is_jump(pair)).count()
 }
 
 impl LookAlikesOutcome {
@@ -201,13 +200,23 @@ impl LookAlikesOutcome {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use trundle_core::PoseBound;
 
     #[test]
     fn only_the_estimate_jumps_not_the_robot() {
         let at = |x: f64| Pose2::new(x, 0.0, 0.0);
-        assert_eq!(jumps(&[(0.0, at(1.0), at(1.0)), (0.1, at(2.0), at(1.02))]), 1);
-        assert_eq!(jumps(&[(0.0, at(2.0), at(1.0)), (0.1, at(1.0), at(1.02))]), 0, "it comes back");
-        assert_eq!(jumps(&[(0.0, at(1.0), at(1.0)), (0.1, at(1.0), at(3.0))]), 0, "it is carried away");
+        let bound = PoseBound { distance: 0.1, heading: 0.1 };
+        let sample = |(estimate, truth): (f64, f64)| PoseSample {
+            at_s: 0.0,
+            estimate: at(estimate),
+            truth: at(truth),
+            bound,
+            nees: None,
+        };
+        let jumps = |pairs: [(f64, f64); 2]| super::jumps(&pairs.map(sample));
+        assert_eq!(jumps([(1.0, 1.0), (2.0, 1.02)]), 1);
+        assert_eq!(jumps([(2.0, 1.0), (1.0, 1.02)]), 0, "it comes back");
+        assert_eq!(jumps([(1.0, 1.0), (1.0, 3.0)]), 0, "it is carried away");
     }
 
     #[test]

@@ -5,8 +5,8 @@ use crate::simulated::{MeshOptions, SceneOptions, load_scene, require_free};
 use crate::trial::{self, Trial, TrialPlan};
 use crate::{ExperimentContext, ExperimentReport, RunsRequest};
 use std::path::Path;
-use trundle_app::AppError;
 use trundle_app::report::GoalOutcome;
+use trundle_app::{AppError, PoseSample};
 use trundle_core::{Pose2, Vector2};
 use trundle_io::{OutputFolder, Summary, table_csv, write_map};
 use trundle_runtime::{Mission, Task, TaskEnd};
@@ -156,11 +156,33 @@ impl ExperimentReport for MissionsOutcome {
 
 /// Estimated and true pose at every image, map frame.
 fn poses_csv(trial: &Trial) -> String {
-    let header = ["t_s", "x_m", "y_m", "theta_rad", "true_x_m", "true_y_m", "true_theta_rad"];
-    let row = |(time, here, truth): &(f64, Pose2, Pose2)| {
-        [*time, here.x, here.y, here.theta, truth.x, truth.y, truth.theta]
+    let header = [
+        "t_s",
+        "x_m",
+        "y_m",
+        "theta_rad",
+        "true_x_m",
+        "true_y_m",
+        "true_theta_rad",
+        "bound_95_m",
+        "bound_95_rad",
+        "nees",
+    ];
+    let row = |&PoseSample { at_s, estimate: here, truth, bound, nees }: &PoseSample| {
+        [
+            at_s,
+            here.x,
+            here.y,
+            here.theta,
+            truth.x,
+            truth.y,
+            truth.theta,
+            bound.distance,
+            bound.heading,
+            nees.unwrap_or(f64::NAN),
+        ]
     };
-    table_csv(header, trial.pose_pairs.iter().map(row))
+    table_csv(header, trial.poses.iter().map(row))
 }
 
 const HEADER: [&str; 7] =

@@ -12,8 +12,8 @@ use std::time::Instant;
 use trundle_app::operator::{FrontEnd, OperatorLink};
 use trundle_app::report::RunNumbers;
 use trundle_app::{
-    AFTER_ARRIVAL_S, AppError, BestView, FinishedRun, Progress, RecordingCost, RunLog, RunRecorder, RunSetup,
-    StateChange, run_on_body, stop,
+    AFTER_ARRIVAL_S, AppError, BestView, FinishedRun, PoseSample, Progress, RecordingCost, RunLog,
+    RunRecorder, RunSetup, StateChange, run_on_body, stop,
 };
 use trundle_core::{OccupancyGrid, Pose2, RobotBody, Vector2};
 use trundle_runtime::{Checkpoint, Mission, Robot, RobotConfig};
@@ -101,8 +101,8 @@ pub struct Trial {
     pub driven: Vec<Vector2>,
     /// Time at each of these points, s since the beginning.
     pub times: Vec<f64>,
-    /// At every image: time since the beginning, s, the estimated pose and the true one, map frame.
-    pub pose_pairs: Vec<(f64, Pose2, Pose2)>,
+    /// Estimated and true pose at every image.
+    pub poses: Vec<PoseSample>,
     /// The last planned trajectory, world frame.
     #[serde(with = "points")]
     pub planned: Vec<Vector2>,
@@ -191,7 +191,7 @@ pub fn run_one(plan: TrialPlan, watch: Option<OperatorLink>) -> Result<Trial, Ap
         world_from_map,
         numbers: RunNumbers::of(&setup, &run),
         times: run.log.truths.iter().map(|(stamp, _)| *stamp - run.log.start.unwrap_or_default()).collect(),
-        pose_pairs: run.log.pose_pairs(),
+        poses: run.log.pose_samples(),
         driven: run.log.truths.iter().map(|(_, pose)| world_from_map.transform(pose.position())).collect(),
         planned: planned.into_iter().map(|point| world_from_map.transform(point)).collect(),
         grid: run.robot.grid().clone(),
@@ -316,7 +316,7 @@ pub(crate) mod fixtures {
             numbers,
             driven: line.clone(),
             times: vec![0.0, 2.0],
-            pose_pairs: vec![(0.0, Pose2::IDENTITY, Pose2::IDENTITY)],
+            poses: Vec::new(),
             planned: line,
             grid: OccupancyGrid::from_ascii(0.5, "..\n..").unwrap(),
             changes: Vec::new(),

@@ -131,7 +131,7 @@ fn trial(
         numbers,
         driven: truth.path.iter().map(|(_, pose)| pose.position()).collect(),
         times: truth.path.iter().map(|(time, _)| *time).collect(),
-        pose_pairs: Vec::new(),
+        poses: Vec::new(),
         planned: planned.iter().map(|point| to_world(point.pose.position())).collect(),
         grid: run.robot.grid().clone(),
         changes: run.log.changes.clone(),

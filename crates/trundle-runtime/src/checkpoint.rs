@@ -171,7 +171,7 @@ mod tests {
     use super::*;
     use crate::mission::{Mission, Task, TaskEnd, TaskRecord};
     use proptest::prelude::*;
-    use trundle_core::{Pose2, Pose3, Stamp, Zone, ZoneKind};
+    use trundle_core::{Pose2, Pose3, PoseBound, Stamp, Zone, ZoneKind};
 
     fn anchor(variance: f64) -> VisualAnchor {
         let covariance = nalgebra::Matrix3::from_diagonal_element(variance).into();
@@ -190,6 +190,7 @@ mod tests {
             from: Stamp::from_nanos(5),
             to: Stamp::from_nanos(7),
             pose: Pose2::new(0.1, 0.21, 0.3),
+            bound: Some(PoseBound { distance: 0.03, heading: 0.01 }),
             before_restart: false,
         };
         Checkpoint {

@@ -14,7 +14,7 @@ pub use goal_options::{GoalOptions, TaskGoal, WhenBlocked};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 pub use task::Task;
-use trundle_core::{Invalid, Pose2, Stamp};
+use trundle_core::{Invalid, Pose2, PoseBound, Stamp};
 
 /// A sequence of tasks. An unreachable goal gets one more attempt at the end of the mission, before a return.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -136,6 +136,9 @@ pub struct TaskRecord {
     pub to: Stamp,
     /// Estimated pose of the robot at that time, map frame.
     pub pose: Pose2,
+    /// Error of that pose that is kept with a probability of 95 %; `None` in records of a checkpoint without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bound: Option<PoseBound>,
     /// Whether the robot was restarted since, so that the stamps are of another clock.
     pub before_restart: bool,
 }

@@ -15,7 +15,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 pub use transition::TransitionReason;
 use trundle_control::{SlowReason, StopReason};
-use trundle_core::Vector2;
+use trundle_core::{PoseBound, Vector2};
 
 /// The reason for a stop of the robot, or for an incomplete task. `Display` gives the reason in words.
 ///
@@ -55,6 +55,13 @@ pub enum Reason {
     PoseUncertain {
         /// Standard deviation of the position \[m\].
         sigma: f64,
+    },
+    /// The robot is at its goal by its estimate, which is too uncertain for the goal.
+    ArrivalUncertain {
+        /// Bound of the estimate's error.
+        bound: PoseBound,
+        /// Largest bound that the goal allows.
+        allowed: PoseBound,
     },
     /// The position is too uncertain, and the wheels do not respond to commands.
     WheelsUnresponsive {
@@ -140,6 +147,7 @@ impl Reason {
             Self::NoPath { cause, .. } => ReasonKind::of_no_path(cause),
             Self::PoseUnknown => ReasonKind::PoseUnknown,
             Self::PoseUncertain { .. } => ReasonKind::PoseUncertain,
+            Self::ArrivalUncertain { .. } => ReasonKind::ArrivalUncertain,
             Self::WheelsUnresponsive { .. } => ReasonKind::WheelsUnresponsive,
             Self::RepeatedContact { .. } => ReasonKind::RepeatedContact,
             Self::NoSightOnPath => ReasonKind::NoSightOnPath,
@@ -174,6 +182,7 @@ impl fmt::Display for Reason {
                 f.write_str("the pose is unknown: the robot was moved, or the map shows another place")
             }
             Self::PoseUncertain { sigma } => write!(f, "position uncertain: standard deviation {sigma:.2} m"),
+            Self::ArrivalUncertain { bound, allowed } => uncertain_arrival(f, *bound, *allowed),
             Self::WheelsUnresponsive { sigma } => write!(
                 f,
                 "position uncertain, standard deviation {sigma:.2} m: {}",
@@ -201,6 +210,17 @@ impl fmt::Display for Reason {
             Self::Restored { text, .. } => f.write_str(text),
         }
     }
+}
+
+/// An arrival by an uncertain pose: the bound of the position, or that of the heading if the position is certain.
+fn uncertain_arrival(f: &mut fmt::Formatter<'_>, bound: PoseBound, allowed: PoseBound) -> fmt::Result {
+    f.write_str("arrived, but not sure: ")?;
+    if bound.distance > allowed.distance {
+        let (known, needed) = (bound.distance, allowed.distance);
+        return write!(f, "the position is known within {known:.2} m (95 %), the goal needs {needed:.2} m");
+    }
+    let (known, needed) = (bound.heading.to_degrees(), allowed.heading.to_degrees());
+    write!(f, "the heading is known within {known:.1} deg (95 %), the goal needs {needed:.1} deg")
 }
 
 impl Serialize for Reason {

@@ -25,7 +25,6 @@ pub use views::MissionProgress;
 
 use crate::world_state::{StationState, WorldState};
 use crate::{
-    behaviour::navigator::position_sigma,
     config::RobotConfig,
     mission::{Mission, MissionState, Task},
     monitors::camera_health::CameraHealth,
@@ -333,7 +332,7 @@ impl Robot {
     fn is_pose_known(&self, now: Stamp) -> bool {
         !self.latest.pose_monitor.is_doubtful(now)
             && !self.latest.body.is_lifted()
-            && position_sigma(&self.localizer.estimate()) < self.lost_sigma
+            && self.localizer.estimate().position_sigma() < self.lost_sigma
     }
 
     /// Odometry at the stamp of an image, which may be older than the newest reading. Long after the newest reading, the result is that

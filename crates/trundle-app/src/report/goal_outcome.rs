@@ -2,7 +2,7 @@
 
 use crate::{FinishedRun, RunSetup};
 use serde::{Deserialize, Serialize};
-use trundle_core::Pose2;
+use trundle_core::{Pose2, PoseBound};
 use trundle_eval::{GoalError, goal_error};
 use trundle_runtime::{TaskEnd, TaskRecord};
 
@@ -21,6 +21,8 @@ pub struct GoalOutcome {
     pub error: Option<GoalError>,
     /// Error of the estimated pose at the end.
     pub believed: Option<GoalError>,
+    /// Error of the estimated pose that is kept with a probability of 95 %; `None` if it was not recorded.
+    pub bound: Option<PoseBound>,
     /// Whether the robot was switched off and on again since: the time is of the run before.
     pub before_restart: bool,
 }
@@ -43,6 +45,7 @@ impl GoalOutcome {
             at_s: log.start.map_or(0.0, |start| record.to - start),
             error: truth.and_then(|truth| goal_error(goal, truth).ok()),
             believed: goal_error(goal, record.pose).ok(),
+            bound: record.bound,
             before_restart: record.before_restart,
         })
     }

@@ -3,7 +3,7 @@
 use super::{RunNumbers, camera_view, landmarks_in_map, timing_page, write_zones};
 use crate::real_time::RealTimeReport;
 use crate::setup::mission_text;
-use crate::{AppError, FinishedRun, RunSetup};
+use crate::{AppError, FinishedRun, PoseSample, RunSetup};
 use std::path::PathBuf;
 use trundle_core::{Footprint, Pose2};
 use trundle_io::{IoError, OutputFolder, trajectory_text_from_planar, write_map};
@@ -39,7 +39,7 @@ pub fn write_run(
     write_map(&folder, "map", run.robot.grid())?;
     let (zones, map) = (run.robot.annotations(), run.robot.grid().geometry());
     write_zones(&folder, zones, map, setup.robot.limits.v)?;
-    folder.write("trajectory.txt", trajectory_text_from_planar(&run.log.estimates).as_bytes())?;
+    folder.write("trajectory.txt", trajectory_text_from_planar(&run.log.estimated_path()).as_bytes())?;
     if !run.log.truths.is_empty() {
         folder.write("groundtruth.txt", trajectory_text_from_planar(&run.log.truths).as_bytes())?;
     }
@@ -75,7 +75,7 @@ fn report(setup: &RunSetup, run: &FinishedRun, numbers: &RunNumbers) -> RunRepor
             landmarks: landmarks_in_map(robot),
             way_points: plan.map(|plan| plan.waypoints.points().to_vec()).unwrap_or_default(),
             curve: curve.unwrap_or_default(),
-            estimated_path: run.log.estimates.iter().map(|(_, pose)| *pose).collect(),
+            estimated_path: run.log.estimates.iter().map(|estimate| estimate.pose).collect(),
             true_path: run.log.truths.iter().map(|(_, pose)| *pose).collect(),
             start: Some(Pose2::IDENTITY),
             goal: setup.last_goal(),
@@ -138,13 +138,11 @@ fn table(numbers: &RunNumbers) -> Table {
 
 /// Position error of the estimate against truth, over time.
 fn error_chart(run: &FinishedRun) -> Figure {
-    let start = run.log.start.unwrap_or_default();
-    let errors = run.log.estimates.iter().filter_map(|(stamp, pose)| {
-        let truth = run.log.truth_at(*stamp)?;
-        Some((*stamp - start, pose.distance(&truth) * 100.0))
-    });
+    let samples = run.log.pose_samples();
+    let line = |value: fn(&PoseSample) -> f64| samples.iter().map(|s| (s.at_s, value(s) * 100.0)).collect();
     let chart = Chart::new("How well the robot knew its place", "time, s", "error, cm");
-    Figure::chart(&chart.line("position error", Color::BLUE, errors.collect()))
+    let chart = chart.line("position error", Color::BLUE, line(PoseSample::distance));
+    Figure::chart(&chart.line("claimed bound, 95 %", Color::GREEN, line(|sample| sample.bound.distance)))
 }
 
 fn speed_chart(run: &FinishedRun) -> Figure {

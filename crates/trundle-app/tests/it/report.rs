@@ -20,6 +20,7 @@ fn goal(end: TaskEnd, error: Option<GoalError>) -> GoalOutcome {
         at_s: 12.3,
         error,
         believed: off(0.01, 0.0),
+        bound: None,
         before_restart: false,
     }
 }

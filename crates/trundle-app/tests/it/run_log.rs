@@ -13,15 +13,14 @@ fn truth(seconds: f64, x: f64) -> SensorEvent {
     SensorEvent::Truth { stamp: at(seconds), pose: Pose2::new(x, 0.0, 0.0) }
 }
 
+fn estimate(seconds: f64, pose: Pose2) -> PoseEstimate {
+    let covariance = nalgebra::Matrix3::zeros();
+    PoseEstimate { stamp: at(seconds), pose, twist: Twist2::ZERO, covariance }
+}
+
 fn report(seconds: f64, x: f64, state: DriveState) -> StepReport {
-    let estimate = PoseEstimate {
-        stamp: at(seconds),
-        pose: Pose2::new(x, 0.0, 0.0),
-        twist: Twist2::ZERO,
-        covariance: nalgebra::Matrix3::zeros(),
-    };
     let mut report = StepReport::default();
-    (report.estimate, report.state) = (Some(estimate), state);
+    (report.estimate, report.state) = (Some(estimate(seconds, Pose2::new(x, 0.0, 0.0))), state);
     report
 }
 
@@ -66,12 +65,12 @@ fn the_error_of_the_estimate_is_over_images_with_truth() {
     let mut log = RunLog::default();
     assert_eq!(log.estimate_rmse(), None);
     log.estimates = vec![
-        (at(0.0), Pose2::new(5.0, 0.0, 0.0)),
-        (at(1.0), Pose2::new(1.03, 0.0, 0.0)),
-        (at(2.0), Pose2::new(2.0, 0.04, 0.0)),
+        estimate(0.0, Pose2::new(5.0, 0.0, 0.0)),
+        estimate(1.0, Pose2::new(1.03, 0.0, 0.0)),
+        estimate(2.0, Pose2::new(2.0, 0.04, 0.0)),
     ];
     log.truths = vec![(at(1.0), Pose2::new(1.0, 0.0, 0.0)), (at(2.0), Pose2::new(2.0, 0.0, 0.0))];
-    assert_eq!(log.pose_pairs().len(), 2, "before the first truth there is nothing to compare");
+    assert_eq!(log.pose_samples().len(), 2, "before the first truth there is nothing to compare");
     let expected = ((0.03_f64.powi(2) + 0.04_f64.powi(2)) / 2.0).sqrt();
     assert!((log.estimate_rmse().unwrap() - expected).abs() < 1e-12);
 }
@@ -80,7 +79,7 @@ fn the_error_of_the_estimate_is_over_images_with_truth() {
 fn without_truth_the_path_is_the_estimated_one() {
     let mut log = RunLog::default();
     assert_eq!(log.path_length(), 0.0);
-    log.estimates = vec![(at(0.0), Pose2::IDENTITY), (at(1.0), Pose2::new(0.3, 0.4, 1.0))];
+    log.estimates = vec![estimate(0.0, Pose2::IDENTITY), estimate(1.0, Pose2::new(0.3, 0.4, 1.0))];
     assert_eq!(log.path_length(), 0.5);
 }
 

@@ -55,16 +55,14 @@ fn order_progress(book: &OrderBook) -> OrderProgress {
 /// Pose of the robot.
 #[must_use]
 pub fn robot_position(view: &RobotGlance, map_id: &str) -> RobotPosition {
-    let (pose, covariance) = (view.estimate.pose, view.estimate.covariance);
-    let (xx, yy, xy) = (covariance[(0, 0)], covariance[(1, 1)], covariance[(0, 1)]);
-    let largest_variance = (xx + yy) / 2.0 + ((xx - yy) / 2.0).hypot(xy);
+    let pose = view.estimate.pose;
     RobotPosition {
         x: pose.x,
         y: pose.y,
         theta: wrap_angle(pose.theta),
         map_id: map_id.to_owned(),
         position_initialized: !matches!(view.state, DriveState::Lost { .. }),
-        deviation_range: largest_variance.max(0.0).sqrt(),
+        deviation_range: view.estimate.position_sigma(),
     }
 }
 

@@ -118,7 +118,16 @@ impl TestRobot {
     pub fn end_task(&mut self, end: TaskEnd) {
         let task = self.view.mission.task.take().unwrap();
         let (stamp, pose) = (self.view.estimate.stamp, self.view.estimate.pose);
-        let record = TaskRecord { index: 0, task, end, from: stamp, to: stamp, pose, before_restart: false };
+        let record = TaskRecord {
+            index: 0,
+            task,
+            end,
+            from: stamp,
+            to: stamp,
+            pose,
+            bound: None,
+            before_restart: false,
+        };
         self.view.mission.ended = Arc::new(vec![record]);
         self.view.mission.is_over = true;
     }

@@ -35,7 +35,9 @@ fn of_kind(kind: ReasonKind) -> Option<u16> {
         ReasonKind::PathBlocked => ComputePathToPoseResult::NO_VALID_PATH,
         ReasonKind::TooLittleRoom | ReasonKind::NoGoZone => ComputePathToPoseResult::GOAL_OCCUPIED,
         ReasonKind::OffTheMap => ComputePathToPoseResult::GOAL_OUTSIDE_MAP,
-        ReasonKind::PoseUnknown | ReasonKind::PoseUncertain => FollowPathResult::TF_ERROR,
+        ReasonKind::PoseUnknown | ReasonKind::PoseUncertain | ReasonKind::ArrivalUncertain => {
+            FollowPathResult::TF_ERROR
+        }
         ReasonKind::Obstacle | ReasonKind::Contact | ReasonKind::Cliff | ReasonKind::MovingObstacle => {
             FollowPathResult::NO_VALID_CONTROL
         }

@@ -105,7 +105,8 @@ impl StateMachine {
         let (twist, next) = match &mut self.state {
             State::Spin(spin) => spin_once::tick(spin, tools, s),
             State::Approach => approach::tick(tools, follow),
-            State::Face(heading) => approach::face(*heading, s),
+            State::Face(heading) => approach::face(*heading, tools, s),
+            State::Confirm(confirm) => confirm.tick(tools, s),
             State::Maneuver => maneuver::tick(tools, s, times),
             State::Relative(relative) => relative.tick(tools, s),
             State::Station(station) => station.tick(tools, s),

@@ -27,7 +27,7 @@ use crate::{
     stage::{Stage, StageTimes},
 };
 use trundle_control::{MotionSense, SafetyInput, SafetyMemory, SafetyMonitor};
-use trundle_core::{Footprint, Invalid, PoseEstimate, Twist2};
+use trundle_core::{Footprint, Invalid, Twist2};
 use trundle_planning::PlanResult;
 
 /// Decision of a control step.
@@ -170,7 +170,7 @@ impl Navigator {
                 let state = State::Relocalize { reason };
                 self.machine.change(state.because(TransitionReason::PoseLost));
             }
-            None if is_lost && position_sigma(&s.estimate) < 0.5 * self.config.lost_sigma => {
+            None if is_lost && s.estimate.position_sigma() < 0.5 * self.config.lost_sigma => {
                 // The robot may have been carried here.
                 self.tools.planner.visibility.home = None;
                 self.tools.guard.carried(s.now, self.tools.planner.visibility.results());
@@ -257,7 +257,7 @@ impl Navigator {
 
     /// Returns the reason for an unknown pose; `None` for a known pose.
     fn lost_reason(&self, s: &WorldState<'_>) -> Option<Reason> {
-        let sigma = position_sigma(&s.estimate);
+        let sigma = s.estimate.position_sigma();
         if sigma > UNKNOWN_POSITION_SIGMA_M {
             return Some(Reason::PoseUnknown);
         }
@@ -306,11 +306,4 @@ pub(crate) fn safety_input<'a>(
         motion: s.motion,
         station: None,
     }
-}
-
-/// The larger standard deviation of the position, m.
-pub(crate) fn position_sigma(estimate: &PoseEstimate) -> f64 {
-    let block = estimate.covariance.fixed_view::<2, 2>(0, 0);
-    let (mean, half) = ((block[(0, 0)] + block[(1, 1)]) / 2.0, (block[(0, 0)] - block[(1, 1)]) / 2.0);
-    (mean + half.hypot(block[(0, 1)])).max(0.0).sqrt()
 }

@@ -26,6 +26,8 @@ pub(crate) enum State {
     Approach,
     /// A turn on the spot to the heading of a viewpoint, rad.
     Face(f64),
+    /// At the goal by an uncertain pose: a turn on the spot to observe the surroundings.
+    Confirm(Confirm),
     /// Turns and straight moves onto the exact goal.
     Maneuver,
     /// A motion relative to the robot's pose.
@@ -60,6 +62,13 @@ pub(crate) struct Wait {
     pub(crate) search: PathSearch,
     /// The drive that continues once the safety monitor permits it; `None` if the trajectory was dropped.
     pub(crate) interrupted: Option<Drive>,
+}
+
+/// An observation at the goal, because the pose is uncertain.
+#[derive(Debug, Clone)]
+pub(crate) struct Confirm {
+    pub(crate) reason: Reason,
+    pub(crate) spin: Spin,
 }
 
 /// A recovery from a missing path.
@@ -111,6 +120,7 @@ impl State {
             Self::Drive(_) => StateKind::Drive,
             Self::Approach => StateKind::Approach,
             Self::Face(_) => StateKind::Face,
+            Self::Confirm(_) => StateKind::Confirm,
             Self::Maneuver => StateKind::Maneuver,
             Self::Relative(_) => StateKind::Relative,
             Self::Station(_) => StateKind::Station,
@@ -133,6 +143,7 @@ impl State {
             Self::Maneuver | Self::Relative(_) | Self::Station(_) => DriveState::Maneuvering,
             Self::Wait(Wait { reason, .. }) => DriveState::Waiting { reason: reason.clone() },
             Self::Recover(Recover { reason, .. }) => DriveState::Recovering { reason: reason.clone() },
+            Self::Confirm(Confirm { reason, .. }) => DriveState::Recovering { reason: reason.clone() },
             Self::Relocalize { reason } => DriveState::Lost { reason: reason.clone() },
             Self::Arrived => DriveState::Arrived,
             Self::Stopped { reason } => DriveState::Stopped { reason: reason.clone() },

@@ -1,6 +1,7 @@
 //! The actions of the robot in each state, one file per state.
 
 pub(crate) mod approach;
+pub(crate) mod arrival;
 pub(crate) mod detour;
 pub(crate) mod drive;
 pub(crate) mod initialize;

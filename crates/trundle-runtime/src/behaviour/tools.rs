@@ -9,7 +9,7 @@ use super::view_monitor::ViewMonitor;
 use crate::mission::{GoalOptions, WhenBlocked};
 use crate::{bumper, config::RobotConfig, goal_approach::GoalApproach, schedule::Ticker};
 use trundle_control::Follower;
-use trundle_core::{Footprint, Invalid, Pose2};
+use trundle_core::{Footprint, Invalid, Pose2, PoseBound};
 use trundle_planning::PlanResult;
 
 /// The components that the states share. A component holds no state of the drive.
@@ -34,6 +34,10 @@ pub(crate) struct Tools {
     /// Whether a goal that no path leads to ends, in place of a wait for a path.
     pub(crate) ends_without_path: bool,
     pub(crate) body: BodyShape,
+    /// Largest bound of the pose at which an arrival at an exact goal counts.
+    pub(crate) arrival_bound: PoseBound,
+    /// Turns on the spot at the present goal because of an uncertain pose.
+    pub(crate) confirmations: u32,
 }
 
 /// A plan, and the zones that it respects.
@@ -75,6 +79,8 @@ impl Tools {
             improve_due: Ticker::new(config.schedule.improve_hz),
             ends_without_path: false,
             body: BodyShape::of(footprint),
+            arrival_bound: config.mission_executor.arrival_bound(),
+            confirmations: 0,
         })
     }
 
@@ -84,6 +90,7 @@ impl Tools {
         self.options = options.or(&self.default_options);
         self.planner.planner.set_goal_tolerance(self.options.tolerance.unwrap_or(0.0));
         self.guard.restart();
+        self.confirmations = 0;
         self.plan = None;
         self.planner.visibility.restart();
         self.contacts.restart();

@@ -20,6 +20,8 @@ pub(crate) enum StateKind {
     Approach,
     /// A turn on the spot to the heading of a viewpoint.
     Face,
+    /// At the goal by an uncertain pose: turning on the spot to observe the surroundings.
+    Confirm,
     /// Turns and straight moves onto the exact goal.
     Maneuver,
     /// A turn or a straight drive relative to the robot's pose.
@@ -101,6 +103,13 @@ pub(crate) const TRANSITIONS: &[Transition] = &[
         reason: R::GoalReached,
         to: &[Arrived],
     },
+    Transition {
+        from: Source::Of(&[Drive, Approach, Face, Maneuver]),
+        reason: R::ArrivalUncertain,
+        to: &[Confirm, Stopped],
+    },
+    Transition { from: Source::Of(&[Confirm]), reason: R::ArrivalUncertain, to: &[Stopped] },
+    Transition { from: Source::Of(&[Confirm]), reason: R::PoseConfirmed, to: &[Plan] },
     Transition { from: Source::Of(&[Maneuver, Relative, Station]), reason: R::MotionFailed, to: &[Stopped] },
     Transition { from: Source::Active, reason: R::RepeatedContact, to: &[Stopped] },
     Transition { from: Source::Of(&[Wait]), reason: R::NoSightOnPath, to: &[Stopped] },

@@ -318,8 +318,8 @@ impl MissionExecutor {
     fn end(&mut self, end: TaskEnd, s: &WorldState<'_>) {
         if let Some(Current { entry, from, .. }) = self.current.take() {
             let Entry { index, task, .. } = entry;
-            let (to, pose) = (s.now, s.estimate.pose);
-            self.records.push(TaskRecord { index, task, end, from, to, pose, before_restart: false });
+            let (to, pose, bound) = (s.now, s.estimate.pose, Some(s.estimate.bound_95()));
+            self.records.push(TaskRecord { index, task, end, from, to, pose, bound, before_restart: false });
         }
     }
 }

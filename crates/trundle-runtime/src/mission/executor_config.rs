@@ -2,7 +2,7 @@
 
 use super::goal_options::{PATIENCE_RANGE_S, WhenBlocked};
 use serde::{Deserialize, Serialize};
-use trundle_core::{Invalid, require_in};
+use trundle_core::{Invalid, PoseBound, require_in};
 use trundle_planning::ExploreConfig;
 
 /// Settings of missions, and time limits.
@@ -21,6 +21,11 @@ pub struct MissionExecutorConfig {
     pub when_blocked: WhenBlocked,
     /// Standard deviation of the position above which the robot counts as lost and stops, m, 0.1 to 10. Default 0.7 (ours).
     pub lost_sigma: f64,
+    /// Bound of the position's error (95 %) up to which an arrival at a goal is certain, m, 0.01 to 10; a goal with a wider tolerance has its
+    /// own. Above it the robot turns on the spot to observe its surroundings, and ends the goal as uncertain. Default 0.1 (ours).
+    pub arrival_bound: f64,
+    /// Bound of the heading's error (95 %) up to which an arrival at a goal is certain, deg, 1 to 180. Default 5 (ours).
+    pub arrival_heading_bound_deg: f64,
     /// Exploration.
     pub explore: ExploreConfig,
 }
@@ -32,6 +37,8 @@ impl Default for MissionExecutorConfig {
             patience: 75.0,
             when_blocked: WhenBlocked::Detour,
             lost_sigma: 0.7,
+            arrival_bound: 0.1,
+            arrival_heading_bound_deg: 5.0,
             explore: ExploreConfig::default(),
         }
     }
@@ -47,8 +54,16 @@ impl MissionExecutorConfig {
         let (min, max) = PATIENCE_RANGE_S;
         require_in("mission_executor.patience", self.patience, "s", min, max)?;
         require_in("mission_executor.lost_sigma", self.lost_sigma, "m", 0.1, 10.0)?;
+        require_in("mission_executor.arrival_bound", self.arrival_bound, "m", 0.01, 10.0)?;
+        let heading = self.arrival_heading_bound_deg;
+        require_in("mission_executor.arrival_heading_bound_deg", heading, "deg", 1.0, 180.0)?;
         self.explore.validated()?;
         Ok(self)
+    }
+
+    /// Largest bound of the pose at which an arrival at an exact goal is certain.
+    pub(crate) fn arrival_bound(&self) -> PoseBound {
+        PoseBound { distance: self.arrival_bound, heading: self.arrival_heading_bound_deg.to_radians() }
     }
 }
 
@@ -65,6 +80,10 @@ mod tests {
         assert_eq!(field(MissionExecutorConfig { patience: 0.0, ..good }), "mission_executor.patience");
         assert_eq!(field(MissionExecutorConfig { patience: f64::NAN, ..good }), "mission_executor.patience");
         assert_eq!(field(MissionExecutorConfig { lost_sigma: 11.0, ..good }), "mission_executor.lost_sigma");
+        let bound = MissionExecutorConfig { arrival_bound: f64::NAN, ..good };
+        assert_eq!(field(bound), "mission_executor.arrival_bound");
+        let heading = MissionExecutorConfig { arrival_heading_bound_deg: 0.5, ..good };
+        assert_eq!(field(heading), "mission_executor.arrival_heading_bound_deg");
     }
 
     #[test]

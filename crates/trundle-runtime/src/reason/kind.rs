@@ -58,6 +58,8 @@ pub enum ReasonKind {
     PoseUnknown,
     /// The position is too uncertain.
     PoseUncertain,
+    /// The pose at the goal is too uncertain for the goal.
+    ArrivalUncertain,
     /// The position is too uncertain, and the wheels do not respond.
     WheelsUnresponsive,
     /// The bumper was pressed too often.

@@ -38,6 +38,10 @@ pub enum TransitionReason {
     ManeuverChosen,
     /// The robot is at rest at its goal, or its motion is complete.
     GoalReached,
+    /// The robot is at its goal by its estimate, which is too uncertain for the goal.
+    ArrivalUncertain,
+    /// The pose at the goal is certain enough again.
+    PoseConfirmed,
     /// Turns and straight moves, a motion at a charging station or a relative motion fails.
     MotionFailed,
     /// The bumper was pressed too often on the path to one goal.
@@ -70,6 +74,8 @@ impl fmt::Display for TransitionReason {
             Self::TrajectoryEnd => "the trajectory ends",
             Self::ManeuverChosen => "turns and straight moves are chosen",
             Self::GoalReached => "the goal is reached",
+            Self::ArrivalUncertain => "the pose is too uncertain for the goal",
+            Self::PoseConfirmed => "the pose is certain enough again",
             Self::MotionFailed => "the motion fails",
             Self::RepeatedContact => "the bumper was pressed too often",
             Self::NoSightOnPath => "the camera view is lost repeatedly",

@@ -2,8 +2,8 @@
 
 use super::{MAX_VISUAL_MOTION_AGE_S, Robot, event_log};
 use crate::{
-    behaviour::navigator::position_sigma, global_localization::LocalizedPose,
-    monitors::scan_map_consistency::Fit, range_source::RangeSource, report::StepReport,
+    global_localization::LocalizedPose, monitors::scan_map_consistency::Fit, range_source::RangeSource,
+    report::StepReport,
 };
 use trundle_core::Scan;
 use trundle_estimation::{Correction, Localizer};
@@ -35,7 +35,7 @@ impl Robot {
 
     /// While the pose is unknown, applies the result of global localization, or begins the search.
     pub(super) fn apply_global_localization(&mut self, place: Option<LocalizedPose>) {
-        let is_lost = |localizer: &Localizer| position_sigma(&localizer.estimate()) >= self.lost_sigma;
+        let is_lost = |localizer: &Localizer| localizer.estimate().position_sigma() >= self.lost_sigma;
         if let Some(LocalizedPose { stamp, map_from_base, covariance }) = place
             && is_lost(&self.localizer)
         {

@@ -1,9 +1,7 @@
 //! Check of visual poses by scans, against look-alike places and moving objects.
 
 use super::{Robot, event_log};
-use crate::{
-    behaviour::navigator::position_sigma, stage::Stage, workers::perception_worker::MIN_FEATURES_TO_LOCATE,
-};
+use crate::{stage::Stage, workers::perception_worker::MIN_FEATURES_TO_LOCATE};
 use trundle_core::{Pose2, Scan, Stamp};
 use trundle_estimation::{Correction, ImageEvidence, PoseBelief, VisualEvidence, VisualPose, VisualVerdict};
 use trundle_slam::TrackReport;
@@ -32,11 +30,11 @@ impl Robot {
 
     fn belief_at(&self, stamp: Stamp) -> Option<PoseBelief> {
         let estimate = self.localizer.estimate();
-        let position_sigma = position_sigma(&estimate);
+        let position_sigma = estimate.position_sigma();
         Some(PoseBelief {
             pose: self.localizer.pose_at(stamp).ok()?,
             position_sigma,
-            heading_sigma: estimate.covariance[(2, 2)].sqrt(),
+            heading_sigma: estimate.heading_sigma(),
             is_lost: position_sigma >= self.lost_sigma,
         })
     }

@@ -97,7 +97,8 @@ mod tests {
     fn over(end: TaskEnd) -> MissionState {
         let (from, to) = (Stamp::default(), Stamp::default());
         let (task, pose) = (Task::Return, Pose2::IDENTITY);
-        let ended = vec![TaskRecord { index: 0, task, end, from, to, pose, before_restart: true }];
+        let ended =
+            vec![TaskRecord { index: 0, task, end, from, to, pose, bound: None, before_restart: true }];
         MissionState { ended, ..MissionState::default() }
     }
 

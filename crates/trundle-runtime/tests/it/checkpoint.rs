@@ -1,7 +1,7 @@
 //! Checkpoints: a file is read back whole or refused with the reason.
 
 use std::collections::BTreeMap;
-use trundle_core::{OccupancyGrid, Pose2, Stamp};
+use trundle_core::{OccupancyGrid, Pose2, PoseBound, Stamp};
 use trundle_runtime::{
     Checkpoint, CheckpointError, Mission, MissionState, Reason, ReasonKind, Robot, RobotConfig, Task,
     TaskEnd, TaskRecord,
@@ -16,6 +16,7 @@ fn record(index: usize, end: TaskEnd) -> TaskRecord {
         from: Stamp::from_nanos(5),
         to: Stamp::from_nanos(7),
         pose: Pose2::new(0.1, 0.21, 0.3),
+        bound: Some(PoseBound { distance: 0.03, heading: 0.01 }),
         before_restart: false,
     }
 }

@@ -19,7 +19,7 @@ impl Navigator {
         }
         match self.machine.state() {
             State::Idle | State::Arrived | State::Stopped { .. } => false,
-            State::Relocalize { .. } | State::Approach | State::Face(_) => false,
+            State::Relocalize { .. } | State::Confirm(_) | State::Approach | State::Face(_) => false,
             State::Spin(_) | State::Relative(_) | State::Station(_) => false,
             State::Maneuver | State::Initialize | State::Plan(_) => true,
             _ if tools.planner.has_other_zones(s) => true,

@@ -1,5 +1,6 @@
 //! Rules of the navigator: its transitions between states, and its commands in each state.
 
+mod arrival;
 mod no_path;
 mod progress_checker;
 mod transitions;
@@ -400,16 +401,5 @@ proptest! {
             prop_assert_eq!((decision.twist, decision.replanned), (Twist2::ZERO, false));
         }
         prop_assert_eq!(base.navigator.state(), DriveState::Idle);
-    }
-
-    #[test]
-    fn the_larger_deviation_of_a_position_does_not_depend_on_the_frame(
-        long in 0.01..2.0_f64, part in 0.0..1.0_f64, turn in -3.1..3.1_f64,
-    ) {
-        let axes = nalgebra::Matrix3::from_diagonal(&nalgebra::Vector3::new(long * long, (part * long).powi(2), 9.0));
-        let turned = nalgebra::Rotation3::from_axis_angle(&nalgebra::Vector3::z_axis(), turn).into_inner();
-        let covariance = turned * axes * turned.transpose();
-        let estimate = PoseEstimate { covariance, ..at_rest(&floor(|_| false), Stamp::default(), AHEAD).estimate };
-        prop_assert!((position_sigma(&estimate) - long).abs() < 1e-6);
     }
 }

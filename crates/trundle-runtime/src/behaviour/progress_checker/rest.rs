@@ -14,7 +14,7 @@ pub(crate) fn rest(state: &State, tools: &Tools, s: &WorldState<'_>) -> Option<f
         // Neither a turn at a charging station nor a wait for the view has a limit of its own.
         State::Station(station) if matches!(station.goal, StationGoal::Sweep(_)) => f64::INFINITY,
         State::Maneuver if tools.view_monitor.is_blind(s) => f64::INFINITY,
-        State::Station(_) | State::Maneuver => return None,
+        State::Station(_) | State::Maneuver | State::Confirm(_) => return None,
         State::Relative(relative) => relative.drive.rest(relative.motion, pose, radius),
         State::Spin(spin) => radius * spin.rest(),
         State::Approach => to_goal(),

@@ -1,6 +1,6 @@
 //! Approach: point stabilisation onto the exact goal. Face: a turn to the heading of a viewpoint.
 
-use super::maneuver;
+use super::{arrival, maneuver};
 use crate::behaviour::goal::Goal;
 use crate::behaviour::path_search::PathSearch;
 use crate::behaviour::spin::turn_to;
@@ -40,7 +40,7 @@ fn arrive_within_tolerance(tools: &mut Tools, s: &WorldState<'_>) -> Option<Chan
     }
     tools.follower.halt();
     if options.is_arrival(&pose, &goal) {
-        return State::Arrived.because(TransitionReason::GoalReached);
+        return arrival::arrive(tools, s);
     }
     State::Face(goal.theta).because(TransitionReason::TrajectoryEnd)
 }
@@ -58,7 +58,7 @@ pub(crate) fn on_follow(
     times: &mut StageTimes,
 ) -> Next {
     match follow.phase {
-        FollowPhase::Settled => State::Arrived.because(TransitionReason::GoalReached),
+        FollowPhase::Settled => arrival::arrive(tools, s),
         FollowPhase::Approaching | FollowPhase::Turning => {
             times.measure(Stage::Planning, || select(tools, s))
         }
@@ -72,10 +72,10 @@ pub(crate) fn tick(tools: &Tools, follow: &FollowReport) -> (Twist2, Next) {
 }
 
 /// Turns roughly to the heading of a viewpoint; the field of view is wide.
-pub(crate) fn face(heading: f64, s: &WorldState<'_>) -> (Twist2, Next) {
+pub(crate) fn face(heading: f64, tools: &mut Tools, s: &WorldState<'_>) -> (Twist2, Next) {
     let twist = turn_to(s.estimate.pose, heading);
     let is_done = twist == Twist2::ZERO;
-    (twist, if is_done { State::Arrived.because(TransitionReason::GoalReached) } else { None })
+    (twist, if is_done { arrival::arrive(tools, s) } else { None })
 }
 
 /// Waits; the arc begins again after the wait. The turn to a viewpoint needs another plan.

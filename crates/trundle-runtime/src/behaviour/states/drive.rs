@@ -1,7 +1,7 @@
 //! Drive: following a trajectory.
 
-use super::approach;
 use super::replan::{Planned, Query, replan};
+use super::{approach, arrival};
 use crate::behaviour::path_search::PathSearch;
 use crate::behaviour::state::{Drive, Next, State, Wait};
 use crate::behaviour::tools::Tools;
@@ -46,7 +46,7 @@ impl Drive {
         times: &mut StageTimes,
     ) -> Next {
         match follow.phase {
-            FollowPhase::Settled => State::Arrived.because(TransitionReason::GoalReached),
+            FollowPhase::Settled => arrival::arrive(tools, s),
             FollowPhase::Approaching | FollowPhase::Turning => {
                 times.measure(Stage::Planning, || approach::begin(tools, s))
             }

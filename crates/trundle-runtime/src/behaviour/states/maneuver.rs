@@ -1,5 +1,6 @@
 //! Maneuver: turns and straight moves onto the exact goal.
 
+use super::arrival;
 use crate::behaviour::goal::Goal;
 use crate::behaviour::state::{Next, State};
 use crate::behaviour::tools::Tools;
@@ -35,7 +36,7 @@ pub(crate) fn tick(tools: &mut Tools, s: &WorldState<'_>, times: &mut StageTimes
             tools.view_monitor.held(twist);
             (twist, None)
         }
-        Progress::Settled => (Twist2::ZERO, State::Arrived.because(TransitionReason::GoalReached)),
+        Progress::Settled => (Twist2::ZERO, arrival::arrive(tools, s)),
         Progress::GivenUp(failure) => {
             let reason = Reason::FinalApproach(failure);
             (Twist2::ZERO, State::Stopped { reason }.because(TransitionReason::MotionFailed))

@@ -3,27 +3,28 @@
 use super::*;
 use std::collections::BTreeSet;
 
-const KINDS: [StateKind; 15] = [
-    Idle, Initialize, Spin, Plan, Drive, Approach, Face, Maneuver, Relative, Station, Wait, Recover,
+const KINDS: [StateKind; 16] = [
+    Idle, Initialize, Spin, Plan, Drive, Approach, Face, Confirm, Maneuver, Relative, Station, Wait, Recover,
     Relocalize, Arrived, Stopped,
 ];
 /// A row for each state, a column for each next state, both in the order of `KINDS`; `#`: some reason leads there.
-const NEXT: [&str; 15] = [
-    "###....###.....", // idle
-    "####...###..#.#", // initialize
-    "###....###..###", // spin
-    "###.#..######.#", // plan
-    "###.###########", // drive
-    "###....####.###", // approach
-    "###....####.###", // face
-    "###....###..###", // maneuver
-    "###....###..###", // relative
-    "###....###..###", // station
-    "###.#..######.#", // wait
-    "###.#..######.#", // recover
-    "###....###..#.#", // relocalize
-    "###....###.....", // arrived
-    "###....###.....", // stopped
+const NEXT: [&str; 16] = [
+    "###.....###.....", // idle
+    "####....###..#.#", // initialize
+    "###.....###..###", // spin
+    "###.#...######.#", // plan
+    "###.############", // drive
+    "###....#####.###", // approach
+    "###....#####.###", // face
+    "####....###..#.#", // confirm
+    "###....####..###", // maneuver
+    "###.....###..###", // relative
+    "###.....###..###", // station
+    "###.#...######.#", // wait
+    "###.#...######.#", // recover
+    "###.....###..#.#", // relocalize
+    "###.....###.....", // arrived
+    "###.....###.....", // stopped
 ];
 
 fn reasons() -> BTreeSet<TransitionReason> {
