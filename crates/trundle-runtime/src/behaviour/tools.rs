@@ -29,13 +29,27 @@ pub(crate) struct Tools {
     pub(crate) contacts: Contacts,
     pub(crate) view_monitor: ViewMonitor,
     pub(crate) opening: Opening,
-    pub(crate) check_due: Ticker,
-    pub(crate) improve_due: Ticker,
+    pub(crate) schedule: PlanSchedule,
     /// Whether a goal that no path leads to ends, in place of a wait for a path.
     pub(crate) ends_without_path: bool,
     pub(crate) body: BodyShape,
+    pub(crate) arrival: ArrivalCheck,
+}
+
+/// The times of searches for a plan.
+#[derive(Debug)]
+pub(crate) struct PlanSchedule {
+    /// Of checks of the present plan, and of searches without a plan.
+    pub(crate) check_due: Ticker,
+    /// Of searches for a faster plan.
+    pub(crate) improve_due: Ticker,
+}
+
+/// The certainty that an arrival needs.
+#[derive(Debug)]
+pub(crate) struct ArrivalCheck {
     /// Largest bound of the pose at which an arrival at an exact goal counts.
-    pub(crate) arrival_bound: PoseBound,
+    pub(crate) bound: PoseBound,
     /// Turns on the spot at the present goal because of an uncertain pose.
     pub(crate) confirmations: u32,
 }
@@ -75,12 +89,13 @@ impl Tools {
             contacts: Contacts::default(),
             view_monitor: ViewMonitor::new(config.safety.image_timeout),
             opening: Opening::new(config.mission_executor.opening),
-            check_due: Ticker::new(config.schedule.validated()?.check_hz),
-            improve_due: Ticker::new(config.schedule.improve_hz),
+            schedule: PlanSchedule {
+                check_due: Ticker::new(config.schedule.validated()?.check_hz),
+                improve_due: Ticker::new(config.schedule.improve_hz),
+            },
             ends_without_path: false,
             body: BodyShape::of(footprint),
-            arrival_bound: config.mission_executor.arrival_bound(),
-            confirmations: 0,
+            arrival: ArrivalCheck { bound: config.mission_executor.arrival_bound(), confirmations: 0 },
         })
     }
 
@@ -90,13 +105,13 @@ impl Tools {
         self.options = options.or(&self.default_options);
         self.planner.planner.set_goal_tolerance(self.options.tolerance.unwrap_or(0.0));
         self.guard.restart();
-        self.confirmations = 0;
+        self.arrival.confirmations = 0;
         self.plan = None;
         self.planner.visibility.restart();
         self.contacts.restart();
         self.view_monitor.restart();
         self.goal_approach.reset();
-        self.check_due.hurry();
+        self.schedule.check_due.hurry();
         if !rolls_on {
             self.follower.halt();
         }

@@ -52,7 +52,7 @@ impl Navigator {
 }
 
 fn is_check_due(tools: &Tools, now: Stamp) -> bool {
-    tools.check_due.will_be_due(now) || tools.improve_due.will_be_due(now)
+    tools.schedule.check_due.will_be_due(now) || tools.schedule.improve_due.will_be_due(now)
 }
 
 fn is_nearly_there(tools: &Tools) -> bool {

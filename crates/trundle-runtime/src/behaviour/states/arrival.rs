@@ -18,10 +18,10 @@ pub(crate) fn arrive(tools: &mut Tools, s: &WorldState<'_>) -> Next {
         return State::Arrived.because(TransitionReason::GoalReached);
     };
     tools.halt();
-    if tools.confirmations >= MAX_CONFIRMATIONS {
+    if tools.arrival.confirmations >= MAX_CONFIRMATIONS {
         return State::Stopped { reason }.because(TransitionReason::ArrivalUncertain);
     }
-    tools.confirmations += 1;
+    tools.arrival.confirmations += 1;
     State::Confirm(Confirm { reason, spin: Spin::default() }).because(TransitionReason::ArrivalUncertain)
 }
 
@@ -54,7 +54,7 @@ fn doubt(tools: &Tools, s: &WorldState<'_>) -> Option<Reason> {
 
 /// The bound of the pose that the goal demands: its own tolerance, if that is wider than the demand on an exact goal.
 fn allowed(tools: &Tools) -> PoseBound {
-    let (options, exact) = (&tools.options, tools.arrival_bound);
+    let (options, exact) = (&tools.options, tools.arrival.bound);
     let distance = options.tolerance.map_or(exact.distance, |tolerance| tolerance.max(exact.distance));
     let any_heading = options.tolerance.is_some() && options.heading_tolerance.is_none();
     let heading = options.heading_tolerance.map_or(exact.heading, |tolerance| tolerance.max(exact.heading));

@@ -20,7 +20,8 @@ const MIN_TIME_GAIN_S: f64 = 0.05;
 impl Drive {
     /// Plans again once a check rejects the plan.
     pub(crate) fn plan(&mut self, tools: &mut Tools, s: &WorldState<'_>, times: &mut StageTimes) -> Planned {
-        let Some(goal) = tools.goal.pose().filter(|_| tools.check_due.due(s.now) && !plan_holds(tools, s))
+        let Some(goal) =
+            tools.goal.pose().filter(|_| tools.schedule.check_due.due(s.now) && !plan_holds(tools, s))
         else {
             return Planned::default();
         };
@@ -92,7 +93,7 @@ pub(crate) fn improve(tools: &mut Tools, s: &WorldState<'_>, times: &mut StageTi
     let Some(goal) = tools.goal.pose() else { return false };
     let (Some(old), Some(reference)) = (&tools.plan, tools.follower.reference()) else { return false };
     let left = old.result.trajectory.duration() - reference.time;
-    if left < MIN_IMPROVABLE_S || !tools.improve_due.due(s.now) {
+    if left < MIN_IMPROVABLE_S || !tools.schedule.improve_due.due(s.now) {
         return false;
     }
     let from = (reference.pose, reference.twist);

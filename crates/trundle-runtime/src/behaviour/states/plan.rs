@@ -14,7 +14,7 @@ pub(crate) fn plan(
     s: &WorldState<'_>,
     times: &mut StageTimes,
 ) -> Planned {
-    let Some(goal) = tools.goal.pose().filter(|_| tools.check_due.due(s.now)) else {
+    let Some(goal) = tools.goal.pose().filter(|_| tools.schedule.check_due.due(s.now)) else {
         return Planned::default();
     };
     let query = Query { goal, from: (s.estimate.pose, Twist2::ZERO), is_driving: false };

@@ -16,7 +16,7 @@ const REVERSE_SPEED_M_S: f64 = 0.1;
 impl Recover {
     /// Plans to the goal as soon as the surroundings may show a path; else checks the path to the viewpoint.
     pub(crate) fn plan(&mut self, tools: &mut Tools, s: &WorldState<'_>, times: &mut StageTimes) -> Planned {
-        let Some(goal) = tools.goal.pose().filter(|_| tools.check_due.due(s.now)) else {
+        let Some(goal) = tools.goal.pose().filter(|_| tools.schedule.check_due.due(s.now)) else {
             return Planned::default();
         };
         if !self.search.needs_new_plan(s) {

@@ -27,7 +27,7 @@ impl Wait {
         let is_short =
             self.search.held_since.is_some_and(|since| s.now - since < SAFETY_HOLD_BEFORE_REPLAN_S);
         let may = !tools.contacts.is_any() && !tools.view_monitor.is_blind(s) && !is_short;
-        let Some(goal) = tools.goal.pose().filter(|_| may && tools.check_due.due(s.now)) else {
+        let Some(goal) = tools.goal.pose().filter(|_| may && tools.schedule.check_due.due(s.now)) else {
             return Planned::default();
         };
         times.measure(Stage::Planning, || self.plan_from_rest(tools, goal, s))
