@@ -88,7 +88,7 @@ pub use mission_file::read_mission;
 pub use mission_request::MissionRequest;
 pub use number_text::{NumberRange, NumberText};
 pub use pose_arg::PoseArg;
-pub use pose_sample::{PoseSample, THREE_SIGMA_NEES};
+pub use pose_sample::PoseSample;
 pub use program_log::{log_lines, start_log};
 pub use progress::Progress;
 pub use recorder::{FileRecorder, RunRecorder};

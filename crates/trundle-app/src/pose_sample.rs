@@ -6,7 +6,7 @@ use trundle_core::{Pose2, PoseBound, PoseEstimate};
 
 /// Normalised squared error that 99.73 % of the samples of a consistent pose keep, as three standard deviations of one quantity. Source:
 /// chi-square, 3 degrees of freedom.
-pub const THREE_SIGMA_NEES: f64 = 14.156;
+const THREE_SIGMA_NEES: f64 = 14.156;
 
 /// An estimated pose and the true one at the same time, map frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -28,6 +28,11 @@ impl PoseSample {
     pub fn new(at_s: f64, estimate: &PoseEstimate, truth: Pose2) -> Self {
         let (pose, bound) = (estimate.pose, estimate.bound_95());
         Self { at_s, estimate: pose, truth, bound, nees: nees(estimate, truth) }
+    }
+
+    /// Whether the estimate is off by more than three of its standard deviations.
+    pub fn is_overconfident(&self) -> bool {
+        self.nees.is_some_and(|square| square > THREE_SIGMA_NEES)
     }
 
     /// Distance of the estimated position from the true one, m.
@@ -62,6 +67,8 @@ mod tests {
         let found = sample(Matrix3::from_diagonal(&Vector3::new(0.01, 1e-6, 0.01)));
         assert!((found.nees.unwrap() - (0.09 / 0.01 + 0.01 / 0.01)).abs() < 1e-9, "{found:?}");
         assert!((found.distance() - 0.3).abs() < 1e-12);
+        assert!(!found.is_overconfident());
+        assert!(sample(Matrix3::from_diagonal_element(0.005)).is_overconfident());
     }
 
     #[test]

@@ -80,6 +80,10 @@ struct Score {
     not_reached: usize,
     jumps: usize,
     contacts: usize,
+    /// Estimates at images.
+    samples: usize,
+    /// Estimates off by more than three of their standard deviations.
+    overconfident: usize,
 }
 
 impl Score {
@@ -92,12 +96,19 @@ impl Score {
             not_reached: goals.iter().filter(|goal| !done(goal)).count(),
             jumps: jumps(&trial.poses),
             contacts: trial.numbers.contacts,
+            samples: trial.poses.len(),
+            overconfident: trial.poses.iter().filter(|pose| pose.is_overconfident()).count(),
         }
     }
 
     /// Whether the run has no false arrival, no jump of the estimate away from the truth, and no contact.
     fn is_right(self) -> bool {
         self.false_arrivals == 0 && self.jumps == 0 && self.contacts == 0
+    }
+
+    /// Share of the estimates that are off by more than three of their standard deviations.
+    fn overconfident_share(self) -> f64 {
+        self.overconfident as f64 / self.samples.max(1) as f64
     }
 
     fn plus(self, other: Self) -> Self {
@@ -107,6 +118,8 @@ impl Score {
             not_reached: self.not_reached + other.not_reached,
             jumps: self.jumps + other.jumps,
             contacts: self.contacts + other.contacts,
+            samples: self.samples + other.samples,
+            overconfident: self.overconfident + other.overconfident,
         }
     }
 }
@@ -137,8 +150,16 @@ impl LookAlikesOutcome {
     }
 }
 
-const HEADER: [&str; 7] =
-    ["room", "runs", "arrivals", "false arrivals", "not reached", "jumps off", "contacts"];
+const HEADER: [&str; 8] = [
+    "room",
+    "runs",
+    "arrivals",
+    "false arrivals",
+    "not reached",
+    "jumps off",
+    "contacts",
+    "beyond 3 sigma, %",
+];
 
 impl ExperimentReport for LookAlikesOutcome {
     fn is_success(&self) -> bool {
@@ -148,22 +169,25 @@ impl ExperimentReport for LookAlikesOutcome {
     fn table(&self) -> Vec<Vec<String>> {
         let row = |variant: &Variant| {
             let (runs, score) = self.total(variant.name);
-            let Score { arrivals, false_arrivals, not_reached, jumps, contacts } = score;
+            let Score { arrivals, false_arrivals, not_reached, jumps, contacts, .. } = score;
             let numbers = [runs, arrivals, false_arrivals, not_reached, jumps, contacts];
             let numbers = numbers.iter().map(ToString::to_string);
-            std::iter::once(variant.name.to_owned()).chain(numbers).collect()
+            let share = format!("{:.1}", 100.0 * score.overconfident_share());
+            std::iter::once(variant.name.to_owned()).chain(numbers).chain([share]).collect()
         };
         std::iter::once(HEADER.map(str::to_owned).to_vec()).chain(VARIANTS.iter().map(row)).collect()
     }
 
     fn verdict(&self) -> String {
-        let Score { arrivals, false_arrivals, not_reached, jumps, .. } = self.sum();
+        let sum = self.sum();
+        let Score { arrivals, false_arrivals, not_reached, jumps, .. } = sum;
+        let beyond = 100.0 * sum.overconfident_share();
         let wrong = self.trials.iter().filter(|trial| Score::of(trial).false_arrivals > 0);
         let names: Vec<String> = wrong.map(|trial| format!("{}, seed {}", trial.name, trial.seed)).collect();
         let which = if names.is_empty() { String::new() } else { format!(" False: {}.", names.join("; ")) };
         format!(
             "{} runs in plain rooms: {arrivals} arrivals, {false_arrivals} of them false; {not_reached} goals reported as not reached; \
-             the estimate jumped off {jumps} times.{which}",
+             the estimate jumped off {jumps} times, and {beyond:.1} % of the estimates are off by more than three of their standard deviations.{which}",
             self.trials.len()
         )
     }
@@ -193,6 +217,7 @@ impl LookAlikesOutcome {
         summary.set("success", self.is_success()).set("runs", self.trials.len());
         summary.set("arrivals", sum.arrivals).set("false_arrivals", sum.false_arrivals);
         summary.set("not_reached", sum.not_reached).set("jumps", sum.jumps).set("contacts", sum.contacts);
+        summary.set("beyond_three_sigma_percent", 100.0 * sum.overconfident_share());
         summary
     }
 }

@@ -247,6 +247,7 @@ impl Robot {
 
     /// Processes new odometry: prediction, then navigation.
     fn drive_on(&mut self, odometry: Odometry, now: Stamp, report: &mut StepReport) {
+        self.localizer.set_turn_scale_sigma(self.odometry.turn_scale_sigma());
         self.times.measure(Stage::Localization, || self.localizer.predict(&odometry));
         self.latest.odometry = Some(odometry);
         self.add_station_light(now);

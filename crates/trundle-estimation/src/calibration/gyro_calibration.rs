@@ -78,6 +78,11 @@ impl GyroCalibration {
         self.scale
     }
 
+    /// Standard deviation of the scale, ratio.
+    pub(crate) fn scale_sigma(&self) -> f64 {
+        self.covariance.m22.max(0.0).sqrt()
+    }
+
     /// Whether the bias was measured.
     pub(crate) fn is_measured(&self) -> bool {
         self.is_measured

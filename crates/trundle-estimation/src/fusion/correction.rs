@@ -1,7 +1,8 @@
 //! Measurements of the localizer, and their use.
 
-use nalgebra::Matrix6;
-use trundle_core::{Pose3, Stamp};
+use crate::fusion::pose_uncertainty::PoseUncertainty;
+use nalgebra::{Matrix3, Matrix6};
+use trundle_core::{Pose2, Pose3, Stamp};
 
 /// A camera pose from visual tracking.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +26,28 @@ impl VisualPose {
     /// Whether pose and covariance are finite.
     pub(crate) fn is_finite(&self) -> bool {
         self.visual_from_camera.is_finite() && self.covariance.iter().all(|v| v.is_finite())
+    }
+}
+
+/// A pose of the base from a scan match.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScanPose {
+    /// Stamp of the scan.
+    pub stamp: Stamp,
+    /// The base's pose in the map.
+    pub map_from_base: Pose2,
+    /// Covariance of the match as a right perturbation (m, m, rad).
+    pub covariance: Matrix3<f64>,
+    /// Uncertainty of the map at this pose: [`crate::MapUncertainty::at`].
+    pub map: PoseUncertainty,
+}
+
+impl ScanPose {
+    /// Whether pose and covariances are finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        let PoseUncertainty { covariance, scale_error } = &self.map;
+        let mut numbers = self.covariance.iter().chain(covariance).chain(scale_error);
+        self.map_from_base.is_finite() && numbers.all(|v| v.is_finite())
     }
 }
 

@@ -3,9 +3,10 @@
 use crate::{
     fusion::belief::{Belief, Measurement},
     fusion::config::LocalizerConfig,
-    fusion::correction::{Correction, Prediction, VisualPose},
+    fusion::correction::{Correction, Prediction, ScanPose, VisualPose},
     fusion::divergence_check::{DivergenceAction, DivergenceCheck},
     fusion::measurement_buffer::{MeasurementBuffer, Moment},
+    fusion::pose_uncertainty::PoseUncertainty,
     fusion::visual_frame::{VisualAnchor, VisualFrame},
     odometry::state::OdometryState,
 };
@@ -35,6 +36,8 @@ pub struct Localizer {
     start: Belief,
     buffer: Option<MeasurementBuffer>,
     visual: VisualFrame,
+    /// Standard deviation of the scale of turns by odometry.
+    turn_scale_sigma: f64,
     divergence: DivergenceCheck,
 }
 
@@ -53,16 +56,28 @@ impl Localizer {
             return Err(Invalid::new("base_from_camera", "not finite", "", "finite numbers"));
         }
         let visual = VisualFrame::new(base_from_camera);
-        let start = Belief { pose: Pose2::IDENTITY, covariance: Matrix3::zeros() };
-        Ok(Self { config, start, buffer: None, visual, divergence: DivergenceCheck::default() })
+        let start = Belief::new(Pose2::IDENTITY, Matrix3::zeros());
+        Ok(Self {
+            config,
+            start,
+            buffer: None,
+            visual,
+            turn_scale_sigma: 0.0,
+            divergence: DivergenceCheck::default(),
+        })
     }
 
     /// The localizer of a resumed run in a known map: the poses of the visual maps (by number) are known, the robot's pose is unknown.
     #[must_use]
     pub fn resumed(mut self, visual_maps: BTreeMap<u32, VisualAnchor>) -> Self {
         self.visual.set_anchors(visual_maps);
-        self.start.covariance = Matrix3::from_diagonal(&UNKNOWN_POSE_VARIANCES);
+        self.start = Belief::new(self.start.pose, Matrix3::from_diagonal(&UNKNOWN_POSE_VARIANCES));
         self
+    }
+
+    /// Sets the standard deviation of the scale of turns by odometry, ratio. It counts from the next odometry on; 0 at the beginning.
+    pub fn set_turn_scale_sigma(&mut self, sigma: f64) {
+        self.turn_scale_sigma = if sigma.is_finite() { sigma.max(0.0) } else { 0.0 };
     }
 
     /// Moves the estimate with the odometry.
@@ -81,7 +96,7 @@ impl Localizer {
         if later == 0.0 {
             return Prediction::NothingNew;
         }
-        buffer.push(odometry, self.config.history);
+        buffer.push(odometry, self.turn_scale_sigma, self.config.history);
         Prediction::Moved
     }
 
@@ -127,25 +142,20 @@ impl Localizer {
         }
     }
 
-    /// Corrects the estimate by a scan match: `map_from_base` with its covariance as a right perturbation.
-    pub fn correct_scan(
-        &mut self,
-        stamp: Stamp,
-        map_from_base: Pose2,
-        covariance: &Matrix3<f64>,
-    ) -> Correction {
-        if !(map_from_base.is_finite() && is_finite(covariance)) {
+    /// Corrects the estimate by a scan match.
+    pub fn correct_scan(&mut self, scan: &ScanPose) -> Correction {
+        if !scan.is_finite() {
             return Correction::NotFinite;
         }
-        let noise = self.config.scan_noise() + covariance;
-        match self.find(stamp) {
-            Ok(moment) => {
-                let (prior_inflation, variance_floor) = (Matrix3::zeros(), Vector3::zeros());
-                self.apply(
-                    &moment,
-                    Measurement { pose: map_from_base, noise, prior_inflation, variance_floor },
-                )
-            }
+        let measurement = Measurement {
+            pose: scan.map_from_base,
+            noise: self.config.scan_noise() + scan.covariance + scan.map.covariance,
+            prior_inflation: Matrix3::zeros(),
+            variance_floor: scan.map.covariance.diagonal(),
+            scale_error: scan.map.scale_error,
+        };
+        match self.find(scan.stamp) {
+            Ok(moment) => self.apply(&moment, measurement),
             Err(rejection) => rejection,
         }
     }
@@ -162,7 +172,15 @@ impl Localizer {
         };
         let (stamp, belief) = buffer.newest();
         let twist = buffer.newest_odometry().twist;
-        PoseEstimate { stamp, pose: belief.pose, twist, covariance: belief.covariance }
+        PoseEstimate { stamp, pose: belief.pose, twist, covariance: belief.covariance() }
+    }
+
+    /// Uncertainty of the pose at a stamp of the last seconds, as a right perturbation.
+    ///
+    /// # Errors
+    /// [`Correction::TooOld`], [`Correction::TooNew`] or [`Correction::NoOdometry`].
+    pub fn uncertainty_at(&self, stamp: Stamp) -> Result<PoseUncertainty, Correction> {
+        self.find(stamp).map(|moment| moment.belief.uncertainty)
     }
 
     /// `map_from_base` at a stamp of the last seconds.
@@ -211,7 +229,7 @@ impl Localizer {
         if let Some(buffer) = &mut self.buffer {
             let odometry = *buffer.newest_odometry();
             let (_, Belief { pose, .. }) = buffer.newest();
-            let unknown = Belief { pose: *pose, covariance: Matrix3::from_diagonal(&UNKNOWN_POSE_VARIANCES) };
+            let unknown = Belief::new(*pose, Matrix3::from_diagonal(&UNKNOWN_POSE_VARIANCES));
             *buffer = MeasurementBuffer::new(&odometry, unknown, self.config.min_variances());
         }
         self.divergence = DivergenceCheck::default();

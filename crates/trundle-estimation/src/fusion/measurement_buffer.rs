@@ -1,7 +1,7 @@
 //! Buffer of recent odometry and measurements, ordered by stamp, with the belief after each entry.
 
 use crate::{
-    fusion::belief::{Belief, Measurement},
+    fusion::belief::{Belief, Measurement, Motion},
     fusion::correction::Correction,
     odometry::state::OdometryState,
     planar::transported,
@@ -26,6 +26,8 @@ pub(crate) struct MeasurementBuffer {
 struct Node {
     stamp: Stamp,
     odometry: OdometryState,
+    /// Standard deviation of the scale of turns since the entry before.
+    scale_sigma: f64,
     measurement: Option<Measurement>,
     belief: Belief,
 }
@@ -36,13 +38,20 @@ pub(crate) struct Moment {
     index: usize,
     stamp: Stamp,
     pub(crate) odometry: OdometryState,
+    scale_sigma: f64,
     pub(crate) belief: Belief,
 }
 
 impl MeasurementBuffer {
     /// A buffer that begins with `belief` at the stamp of `odometry`; `min_variances` bound the variances after updates.
     pub(crate) fn new(odometry: &Odometry, belief: Belief, min_variances: Vector3<f64>) -> Self {
-        let node = Node { stamp: odometry.stamp, odometry: odometry.into(), measurement: None, belief };
+        let node = Node {
+            stamp: odometry.stamp,
+            odometry: odometry.into(),
+            scale_sigma: 0.0,
+            measurement: None,
+            belief,
+        };
         Self { nodes: VecDeque::from([node]), newest_odometry: *odometry, min_variances }
     }
 
@@ -56,13 +65,14 @@ impl MeasurementBuffer {
         &self.newest_odometry
     }
 
-    /// Adds odometry newer than the newest, and drops entries older than `length` s.
-    pub(crate) fn push(&mut self, odometry: &Odometry, length: f64) {
+    /// Adds odometry newer than the newest, whose turns have this standard deviation of the scale, and drops entries older than `length` s.
+    pub(crate) fn push(&mut self, odometry: &Odometry, scale_sigma: f64, length: f64) {
         self.newest_odometry = *odometry;
         let index = self.index_after(odometry.stamp);
         let node = Node {
             stamp: odometry.stamp,
             odometry: odometry.into(),
+            scale_sigma,
             measurement: None,
             belief: self.nodes[index - 1].belief,
         };
@@ -81,6 +91,7 @@ impl MeasurementBuffer {
         }
         let index = self.index_after(stamp);
         let before = &self.nodes[index - 1];
+        let scale_sigma = self.nodes.get(index).unwrap_or(before).scale_sigma;
         let odometry = match self.nodes.get(index) {
             _ if before.stamp == stamp => before.odometry,
             Some(after) => {
@@ -89,14 +100,16 @@ impl MeasurementBuffer {
             }
             None => self.extrapolated(before, stamp, max_ahead)?,
         };
-        let (motion, noise) = odometry.since(&before.odometry);
-        Ok(Moment { index, stamp, odometry, belief: before.belief.moved(&motion, &noise) })
+        let (pose, noise) = odometry.since(&before.odometry);
+        let belief = before.belief.moved(&Motion { pose, noise, scale_sigma });
+        Ok(Moment { index, stamp, odometry, scale_sigma, belief })
     }
 
     /// Inserts a measurement at a stamp just looked up, and recomputes the later beliefs.
     pub(crate) fn insert(&mut self, moment: &Moment, measurement: Measurement) {
-        let Moment { index, stamp, odometry, belief } = *moment;
-        self.nodes.insert(index, Node { stamp, odometry, measurement: Some(measurement), belief });
+        let Moment { index, stamp, odometry, scale_sigma, belief } = *moment;
+        let measurement = Some(measurement);
+        self.nodes.insert(index, Node { stamp, odometry, scale_sigma, measurement, belief });
         self.recompute_from(index);
     }
 
@@ -118,8 +131,8 @@ impl MeasurementBuffer {
     fn recompute_from(&mut self, index: usize) {
         for i in index..self.nodes.len() {
             let before = &self.nodes[i - 1];
-            let (motion, noise) = self.nodes[i].odometry.since(&before.odometry);
-            let moved = before.belief.moved(&motion, &noise);
+            let (pose, noise) = self.nodes[i].odometry.since(&before.odometry);
+            let moved = before.belief.moved(&Motion { pose, noise, scale_sigma: self.nodes[i].scale_sigma });
             let measurement = self.nodes[i].measurement;
             self.nodes[i].belief = measurement.map_or(moved, |m| moved.corrected(&m, &self.min_variances));
         }

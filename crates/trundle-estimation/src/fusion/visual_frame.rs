@@ -94,7 +94,7 @@ impl VisualFrame {
         let map_from_camera = Pose3::from_pose2(belief.pose) * self.base_from_camera;
         let map_from_visual = (map_from_camera * visual.visual_from_camera.inverse()).renormalized();
         let to_map = adjoint(&belief.pose);
-        let covariance = symmetric(to_map * belief.covariance * to_map.transpose());
+        let covariance = symmetric(to_map * belief.covariance() * to_map.transpose());
         self.current = visual.map;
         self.anchors.insert(visual.map, Anchor { map_from_visual, covariance });
     }
@@ -122,7 +122,8 @@ impl VisualFrame {
         let anchor_covariance = to_base * anchor.covariance * to_base.transpose();
         let noise = (config.visual_noise() + own) * factor + out_of_plane(&map_from_base) + anchor_covariance;
         let (prior_inflation, variance_floor) = (Matrix3::zeros(), anchor_covariance.diagonal());
-        Some(Measurement { pose, noise: symmetric(noise), prior_inflation, variance_floor })
+        let scale_error = Vector3::zeros();
+        Some(Measurement { pose, noise: symmetric(noise), prior_inflation, variance_floor, scale_error })
     }
 
     /// Refines the anchor by a measurement just accepted, if other sources give the base's pose a smaller uncertainty. The update of `e` is
@@ -136,7 +137,7 @@ impl VisualFrame {
         }
         let (innovation, _) = before.innovation(measurement);
         let to_base = adjoint(&measurement.pose.inverse());
-        let Some(spread) = symmetric(before.covariance + measurement.noise).cholesky() else { return };
+        let Some(spread) = symmetric(before.covariance() + measurement.noise).cholesky() else { return };
         let gain = anchor.covariance * to_base.transpose() * spread.inverse();
         // An anchor with an error ahead gives measured poses the same error.
         let off = Pose2::exp(-(gain * innovation));

@@ -41,6 +41,8 @@ pub struct WheelOdometry {
     wheel_calibration: WheelCalibration,
     pub(super) last: LastInputs,
     resting_since: Option<Stamp>,
+    /// Whether wheels and gyro measured no motion in the newest reading.
+    is_still: bool,
     /// Length of the path, m.
     pub(super) path_length: f64,
     pub(super) odometry: Odometry,
@@ -86,6 +88,7 @@ impl WheelOdometry {
             wheel_fault: WheelFault::default(),
             last: LastInputs::default(),
             resting_since: None,
+            is_still: false,
             path_length: 0.0,
             odometry: Odometry {
                 stamp: Stamp::default(),
@@ -121,6 +124,11 @@ impl WheelOdometry {
     /// Whether the wheels are commanded to roll without counts: encoders are stuck, or wheels are blocked.
     pub fn wheels_are_unresponsive(&self) -> bool {
         self.wheel_fault.is_unresponsive()
+    }
+
+    /// Whether the wheels count nothing without a command to roll, and the gyro measures no turn, by the newest reading.
+    pub fn is_still(&self) -> bool {
+        self.is_still
     }
 
     /// Adds a reading of the wheels and returns the odometry after it; [`WheelOdometry::report`] gives the use of the reading. A rejected
@@ -168,6 +176,11 @@ impl WheelOdometry {
         self.gyro_calibration.scale()
     }
 
+    /// Standard deviation of the scale of turns by the gyro, ratio.
+    pub fn turn_scale_sigma(&self) -> f64 {
+        self.gyro_calibration.scale_sigma()
+    }
+
     /// Estimated radii of the left and the right wheel, m.
     pub fn wheel_radii(&self) -> [f64; 2] {
         let (left, right) = self.wheel_calibration.ratios();
@@ -209,6 +222,7 @@ impl WheelOdometry {
         self.last.ticks = Some(*ticks);
         self.odometry.stamp = ticks.stamp;
         self.resting_since = None;
+        self.is_still = false;
         self.integral.turn_until(ticks.stamp, self.config.gyro_timeout);
         WheelReport::Started
     }
@@ -256,6 +270,10 @@ impl WheelOdometry {
         // The gyro's noise must not turn a robot at rest. A single reading without a tick is no proof of rest: slow wheels give such
         // readings.
         let may_rest = rests && (self.is_at_rest(stamp) || !self.gyro_calibration.is_measured());
+        // A gyro without changes may be stuck and proves no rest.
+        let is_measured = !is_unresponsive && !self.gyro_fault.is_suspect();
+        let is_quiet = turn_by_gyro.is_some_and(|turn| self.is_noise(turn / wheels.dt));
+        self.is_still = rests && is_measured && is_quiet;
         let is_noise = may_rest && turn_by_gyro.is_some_and(|turn| self.is_noise(turn / wheels.dt));
         let turn = if is_noise { 0.0 } else { turn_by_gyro.unwrap_or(turn_by_wheels) };
         let slip_rate = turn_by_gyro.map_or(0.0, |_| (turn_by_wheels - turn) / wheels.dt);
@@ -335,6 +353,7 @@ impl WheelOdometry {
         self.last.ticks = Some(*ticks);
         self.last.suspect_ticks = None;
         self.resting_since = None;
+        self.is_still = false;
         self.wheel_calibration.interrupt();
         self.yaw_segments.interrupt(ticks.stamp);
         self.integral.turn_until(ticks.stamp, self.config.gyro_timeout);

@@ -4,7 +4,7 @@ use crate::fusion::correction::VisualPose;
 use crate::pose_monitor::displacement::{DisplacementMonitor, ImageEvidence, VisualUse};
 use crate::pose_monitor::recent_scans::RecentScans;
 use crate::pose_monitor::visual_jump::{Drift, PoseBelief, VisualJump};
-use crate::pose_monitor::visual_motion::{VisualMotion, VisualMotionMonitor};
+use crate::pose_monitor::visual_motion::{MeasuredMotion, VisualMotion, VisualMotionMonitor};
 use trundle_core::{OccupancyGrid, Pose2, Pose3, Scan, Stamp};
 
 /// Decides the use of visual poses, and whether the robot was carried away.
@@ -45,6 +45,8 @@ pub struct VisualEvidence<'a> {
     pub found: Option<Pose2>,
     /// Pose by the odometry at the image.
     pub odom_from_base: Pose2,
+    /// Whether wheels and gyro measure no motion.
+    pub is_still: bool,
     /// The scan of the image's depth.
     pub scan: Option<&'a Scan>,
     /// The estimate at the image; `None` if the image is too old.
@@ -137,12 +139,13 @@ impl PoseMonitor {
 
     /// Verdict on the motion by images. A recognition interrupts the motion.
     fn motion_of(&mut self, evidence: &VisualEvidence<'_>) -> VisualMotion {
-        let VisualEvidence { visual, visual_from_base, odom_from_base, scan, .. } = *evidence;
+        let VisualEvidence { visual, visual_from_base, odom_from_base, is_still, scan, .. } = *evidence;
         if visual.recognised {
             self.motion.restart();
         }
         let Some(scan) = scan else { return VisualMotion::Own };
-        let motion = self.motion.add((visual.map, visual_from_base), odom_from_base, scan);
+        let odometry = MeasuredMotion { odom_from_base, is_still };
+        let motion = self.motion.add((visual.map, visual_from_base), odometry, scan);
         if motion == VisualMotion::FrameMoved {
             self.motion.restart();
         }

@@ -26,6 +26,15 @@ struct Moment {
     scan: Scan,
 }
 
+/// The motion by wheels and gyro.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct MeasuredMotion {
+    /// Pose by the odometry at the image.
+    pub(crate) odom_from_base: Pose2,
+    /// Whether wheels and gyro measure no motion.
+    pub(crate) is_still: bool,
+}
+
 /// Verdict on the motion by images.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum VisualMotion {
@@ -52,12 +61,17 @@ const DECISIVE_RESIDUAL_M: f64 = 0.004;
 /// Time without a contradiction after which the visual map counts as fixed again \[s\]. Source: ours.
 const CALM_S: f64 = 1.5;
 
+/// Motion by the wheels of a base at rest \[m\]. Source: ours, ten ticks of a Kobuki.
+const REST_M: f64 = 1e-3;
+/// Turn by the gyro of a base at rest \[rad\]: 0.1 deg. Source: ours.
+const REST_RAD: f64 = 1.75e-3;
+
 impl VisualMotionMonitor {
     /// Records a located image of a visual map, with the scan of its depth.
     pub(crate) fn add(
         &mut self,
         (map, visual_from_base): (u32, Pose3),
-        odom_from_base: Pose2,
+        odometry: MeasuredMotion,
         scan: &Scan,
     ) -> VisualMotion {
         let stamp = scan.stamp();
@@ -67,8 +81,9 @@ impl VisualMotionMonitor {
             self.restart();
         }
         self.window.retain(|moment| stamp - moment.stamp <= WINDOW_S);
+        let MeasuredMotion { odom_from_base, is_still } = odometry;
         let newest = Moment { stamp, visual_from_base, odom_from_base, scan: scan.clone() };
-        let is_other = self.window.front().and_then(|earlier| newest.follows_another(earlier));
+        let is_other = self.window.front().and_then(|earlier| newest.follows_another(earlier, is_still));
         self.window.push_back(newest);
         match is_other {
             Some(true) => self.conflict = Some(stamp),
@@ -92,8 +107,9 @@ impl VisualMotionMonitor {
 
 impl Moment {
     /// Whether the motion by images since `earlier` is that of another object. `Some(false)`: the robot's, against the wheels. `None`:
-    /// images and wheels agree, or scans do not decide.
-    fn follows_another(&self, earlier: &Self) -> Option<bool> {
+    /// images and wheels agree, or scans do not decide. A person who fills the view moves scans and images alike, but not wheels and gyro:
+    /// for a base that is still, scans do not decide.
+    fn follows_another(&self, earlier: &Self, is_still: bool) -> Option<bool> {
         let by_wheels = earlier.odom_from_base.inverse() * self.odom_from_base;
         let by_images = (earlier.visual_from_base.inverse() * self.visual_from_base).to_pose2();
         let off = by_wheels.inverse() * by_images;
@@ -103,16 +119,28 @@ impl Moment {
         if is_same {
             return None;
         }
+        if is_still && is_at_rest(&by_wheels) {
+            return Some(true);
+        }
         let residual = |motion: Pose2| mean_residual(&earlier.scan, motion.inverse(), &self.scan);
         let excess = residual(by_images)? - residual(by_wheels)?;
         (excess.abs() > DECISIVE_RESIDUAL_M).then_some(excess > 0.0)
     }
 }
 
+/// Whether a motion by wheels and gyro is none.
+fn is_at_rest(by_wheels: &Pose2) -> bool {
+    by_wheels.position().norm() <= REST_M && by_wheels.theta.abs() <= REST_RAD
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::pose_monitor::testing::Room;
+
+    fn moving(odom_from_base: Pose2) -> MeasuredMotion {
+        MeasuredMotion { odom_from_base, is_still: false }
+    }
 
     /// Verdicts on images every 0.1 s for a robot whose wheels, images and body move along x with these speeds, m/s.
     fn motions(
@@ -125,8 +153,11 @@ mod tests {
             let time = 0.1 * f64::from(i);
             let pose = |x: f64| Pose2::new(x, 0.0, 0.0);
             let scan = Room::with_corner_box().scan(pose(truth(time)), time);
-            let motion =
-                monitor.add((0, Pose3::from_pose2(pose(by_images(time)))), pose(by_wheels(time)), &scan);
+            let motion = monitor.add(
+                (0, Pose3::from_pose2(pose(by_images(time)))),
+                moving(pose(by_wheels(time))),
+                &scan,
+            );
             if motion == VisualMotion::FrameMoved {
                 monitor.restart();
             }
@@ -169,8 +200,28 @@ mod tests {
         let scan = |time| Room::with_corner_box().scan(Pose2::IDENTITY, time);
         let at = |x: f64| Pose3::from_pose2(Pose2::new(x, 0.0, 0.0));
         for (i, (map, x)) in [(0, 0.0), (0, 0.0), (1, 5.0), (1, 5.0), (0, 0.0)].into_iter().enumerate() {
-            let motion = monitor.add((map, at(x)), Pose2::IDENTITY, &scan(0.1 * i as f64));
+            let motion = monitor.add((map, at(x)), moving(Pose2::IDENTITY), &scan(0.1 * i as f64));
             assert_eq!(motion, VisualMotion::Own);
+        }
+    }
+
+    #[test]
+    fn a_person_who_moves_in_all_of_the_view_does_not_move_a_base_that_is_still() {
+        // The scan follows the person as well: it is that of a robot that moves the other way.
+        for (is_still, slow, expected) in [
+            (true, 0.0, VisualMotion::Other),
+            (true, 0.01, VisualMotion::OwnAgainstWheels),
+            (false, 0.0, VisualMotion::OwnAgainstWheels),
+        ] {
+            let mut monitor = VisualMotionMonitor::default();
+            let verdicts = (0..12).map(|i| {
+                let time = 0.05 * f64::from(i);
+                let person = Pose2::new(0.5 * time, 0.0, 0.0);
+                let scan = Room::with_corner_box().scan(person, time);
+                let odometry = MeasuredMotion { odom_from_base: Pose2::new(slow * time, 0.0, 0.0), is_still };
+                monitor.add((0, Pose3::from_pose2(person)), odometry, &scan)
+            });
+            assert_eq!(verdicts.last(), Some(expected), "{is_still} {slow}");
         }
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use trundle_core::{Odometry, Pose2, Pose3, Stamp, Twist2};
-use trundle_estimation::{Localizer, LocalizerConfig};
+use trundle_estimation::{Localizer, LocalizerConfig, PoseUncertainty, ScanPose};
 
 /// Sigmas of a step of odometry and of a measurement.
 const STEP: [f64; 3] = [0.003, 0.001, 0.002];
@@ -52,7 +52,12 @@ fn mean_squared_error(config: &LocalizerConfig, correlation: f64, runs: u64) -> 
             if step % 3 == 0 {
                 error = error * correlation
                     + normal(&mut rng, MEASURED) * (1.0 - correlation * correlation).sqrt();
-                localizer.correct_scan(stamp, truth * Pose2::exp(error), &Matrix3::zeros());
+                localizer.correct_scan(&ScanPose {
+                    stamp,
+                    map_from_base: truth * Pose2::exp(error),
+                    covariance: Matrix3::zeros(),
+                    map: PoseUncertainty::default(),
+                });
             }
             if step > 100 && step % 20 == 0 {
                 let estimate = localizer.estimate();

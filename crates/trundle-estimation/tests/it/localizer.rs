@@ -2,13 +2,19 @@
 
 use nalgebra::{Matrix3, Matrix6, UnitQuaternion};
 use proptest::prelude::*;
-use trundle_core::{Odometry, Pose2, Pose3, Stamp, Twist2, Vector3, wrap_angle};
+use trundle_core::{Odometry, Pose2, Pose3, Stamp, Twist2, Vector2, Vector3, wrap_angle};
 use trundle_estimation::{
-    Correction, Localizer, LocalizerConfig, Prediction, VisualPose, VisualQuality, planar_covariance,
+    Correction, Localizer, LocalizerConfig, MapUncertainty, PoseUncertainty, Prediction, ScanPose,
+    VisualPose, VisualQuality, planar_covariance,
 };
 
 fn at(ms: i64) -> Stamp {
     Stamp::from_nanos(ms * 1_000_000)
+}
+
+/// A scan match with a certain map.
+fn matched(stamp: Stamp, map_from_base: Pose2, covariance: Matrix3<f64>) -> ScanPose {
+    ScanPose { stamp, map_from_base, covariance, map: PoseUncertainty::default() }
 }
 
 /// A camera pitched 8 deg down.
@@ -81,7 +87,7 @@ fn scan_matches_refine_an_uncertain_visual_anchor() {
     for ms in (20_020..26_000).step_by(20) {
         localizer.predict(&odometry(ms));
         if ms % 100 == 0 {
-            localizer.correct_scan(at(ms), truth(ms), &(Matrix3::identity() * 1e-5));
+            localizer.correct_scan(&matched(at(ms), truth(ms), Matrix3::identity() * 1e-5));
             localizer.correct_visual(&visual(ms, truth(ms)));
         }
     }
@@ -188,7 +194,7 @@ fn invalid_measurements_are_rejected_with_the_reason() {
 
     let before = localizer.estimate();
     let far = odometry(4000).pose * Pose2::new(0.0, 0.5, 0.0);
-    let rejected = localizer.correct_scan(at(4000), far, &(Matrix3::identity() * 1e-4));
+    let rejected = localizer.correct_scan(&matched(at(4000), far, Matrix3::identity() * 1e-4));
     assert!(matches!(rejected, Correction::Gated { distance } if distance > 4.0));
     assert_eq!(localizer.estimate(), before);
 
@@ -218,7 +224,7 @@ proptest! {
                 for i in 0..6 {
                     let (ms, pose) = measurement(i);
                     if step * 20 == ms + delay(i) * 20 {
-                        assert!(localizer.correct_scan(at(ms), pose, &noise).is_applied());
+                        assert!(localizer.correct_scan(&matched(at(ms), pose, noise)).is_applied());
                     }
                 }
             }
@@ -236,7 +242,7 @@ proptest! {
         let mut localizer = localizer();
         driven(0, 1000, &mut localizer);
         prop_assert!(gap(localizer.pose_at(at(ms)).unwrap(), truth(ms)) < 1e-9);
-        localizer.correct_scan(at(ms), truth(ms), &(Matrix3::identity() * 1e-4));
+        localizer.correct_scan(&matched(at(ms), truth(ms), Matrix3::identity() * 1e-4));
         prop_assert!(gap(localizer.estimate().pose, truth(1000)) < 1e-9);
     }
 }
@@ -245,7 +251,7 @@ proptest! {
 fn a_measurement_may_be_ahead_of_the_odometry() {
     let mut localizer = localizer();
     driven(0, 1000, &mut localizer);
-    assert!(localizer.correct_scan(at(1013), odometry(1013).pose, &Matrix3::zeros()).is_applied());
+    assert!(localizer.correct_scan(&matched(at(1013), odometry(1013).pose, Matrix3::zeros())).is_applied());
     assert_eq!(localizer.estimate().stamp, at(1013));
     driven(1020, 2000, &mut localizer);
     assert!(gap(localizer.estimate().pose, odometry(2000).pose) < 1e-9);
@@ -331,4 +337,77 @@ fn each_visual_map_keeps_its_own_anchor() {
         }
     }
     assert!(gap(localizer.estimate().pose, odometry(4000).pose) < 1e-6);
+}
+
+#[test]
+fn scans_do_not_make_a_pose_more_certain_than_the_map() {
+    let after_matches = |heading_deg: f64| {
+        let mut localizer = Localizer::new(LocalizerConfig::default(), Pose3::identity()).unwrap();
+        let mut odometry = odometry(0);
+        localizer.predict(&odometry);
+        // A turn by an uncertain gyro: the odometry's heading has a standard deviation of 2 deg.
+        (odometry.stamp, odometry.covariance[(2, 2)]) = (at(20), 2_f64.to_radians().powi(2));
+        localizer.predict(&odometry);
+        let heading = heading_deg.to_radians();
+        let covariance = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, heading * heading));
+        let map = PoseUncertainty { covariance, ..PoseUncertainty::default() };
+        for _ in 0..50 {
+            let scan = ScanPose { map, ..matched(at(20), odometry.pose, Matrix3::zeros()) };
+            assert!(localizer.correct_scan(&scan).is_applied());
+        }
+        localizer.estimate().heading_sigma().to_degrees()
+    };
+    assert!((after_matches(1.0) - 1.0).abs() < 1e-6, "{}", after_matches(1.0));
+    let certain = LocalizerConfig::default().min_heading_sigma_deg;
+    assert!((after_matches(0.0) - certain).abs() < 1e-6, "{}", after_matches(0.0));
+    assert!(after_matches(5.0) <= 2.0, "a worse map takes no certainty away");
+}
+
+/// Scale error of the turns in the tests below, and its standard deviation, ratio.
+const SCALE_ERROR: f64 = 0.005;
+
+/// A turn on the spot of `turns` revolutions by a gyro with [`SCALE_ERROR`], with a scan match at every 0.1 rad against the map that is drawn
+/// on the way: walls 2 m away, seen 35 deg to both sides. Returns the error of the heading, and its standard deviation by the scale, deg.
+fn turn_with_scale_error(turns: f64) -> (f64, f64) {
+    let mut localizer = Localizer::new(LocalizerConfig::default(), Pose3::identity()).unwrap();
+    localizer.set_turn_scale_sigma(SCALE_ERROR);
+    // The same tiles hold the uncertainty of the map, and its true displacement.
+    let (mut map, mut displacement) = (MapUncertainty::default(), MapUncertainty::default());
+    let mut result = (0.0, 0.0);
+    for step in 0..=(turns * std::f64::consts::TAU / 0.1).round() as i64 {
+        let (turned, stamp) = (0.1 * step as f64, at(200 * step));
+        let truth = Pose2::new(0.0, 0.0, turned);
+        let odometry = Pose2::new(0.0, 0.0, turned * (1.0 + SCALE_ERROR));
+        let covariance = Matrix3::zeros();
+        localizer.predict(&Odometry { stamp, pose: odometry, twist: Twist2::ZERO, covariance });
+        let hits = || {
+            let wall = |i| Pose2::new(0.0, 0.0, 0.1 * f64::from(i)).transform(Vector2::new(2.0, 0.0));
+            (-6..=6).map(wall).map(|hit| truth.transform(hit))
+        };
+        let seen = truth * Pose2::exp(displacement.at(truth, hits()).scale_error);
+        let scan = ScanPose { map: map.at(truth, hits()), ..matched(stamp, seen, Matrix3::zeros()) };
+        assert!(localizer.correct_scan(&scan).is_applied());
+        let (pose, uncertainty) =
+            (localizer.pose_at(stamp).unwrap(), localizer.uncertainty_at(stamp).unwrap());
+        map.note(truth, &uncertainty, hits());
+        let error = PoseUncertainty { scale_error: (truth.inverse() * pose).log(), covariance };
+        displacement.note(truth, &error, hits());
+        result = (error.scale_error.z.to_degrees(), uncertainty.scale_error.z.to_degrees());
+    }
+    result
+}
+
+#[test]
+fn a_map_drawn_during_a_turn_has_the_error_of_the_turn() {
+    for turns in [0.1, 0.25, 0.5, 0.75] {
+        let (error, sigma) = turn_with_scale_error(turns);
+        assert!((error - sigma).abs() < 0.05 * sigma, "{turns} turns: {error} deg, sigma {sigma} deg");
+    }
+}
+
+#[test]
+fn the_first_part_of_the_map_reduces_the_error_of_a_turn() {
+    let ((_, before), (_, after)) = (turn_with_scale_error(0.75), turn_with_scale_error(1.1));
+    assert!(before > 0.3, "{before} deg");
+    assert!(after < 0.4 * before, "{before} deg before the first walls are seen again, {after} deg after");
 }

@@ -192,7 +192,8 @@ impl Navigator {
         let is_asked = self.tools.opening.is_rested(s) && s.hold.is_none() && !self.waits_by_request();
         let rest = rest.filter(|_| is_asked);
         let Some(rest) = rest else { return self.tools.guard.pause(s.now) };
-        let is_driving = matches!(self.machine.state(), State::Drive(_));
+        // The final approach belongs to the drive before it.
+        let is_driving = matches!(self.machine.state(), State::Drive(_) | State::Approach | State::Face(_));
         let remaining = Remaining { rest, results: self.tools.planner.visibility.results(), is_driving };
         let time = self.tools.guard.time_without_progress(s.now, &remaining);
         let is_over = self.tools.options.patience.is_some_and(|patience| time > patience);
@@ -224,7 +225,7 @@ impl Navigator {
         }
         let Some(nearest) = self.tools.planner.nearest_seen_point(s, goal) else { return false };
         self.tools.guard.begin_last_look(s.now, nearest);
-        (search.last_look, search.viewpoint) = (Some(nearest), Viewpoint::default());
+        search.viewpoint = Viewpoint::default();
         self.tools.follower.halt();
         true
     }

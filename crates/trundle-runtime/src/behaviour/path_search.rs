@@ -18,8 +18,6 @@ pub(crate) struct PathSearch {
     pub(crate) blocked_at: Option<Vector2>,
     /// Length of the best path over unseen floor \[m\], while this floor is observed first; `None` without such a path.
     pub(crate) rest_over_unseen_floor: Option<f64>,
-    /// The point of the last look, map frame \[m\], during the drive to a viewpoint of it.
-    pub(crate) last_look: Option<Vector2>,
     pub(crate) viewpoint: Viewpoint,
     /// The turns on the spot that observed the surroundings.
     pub(crate) spin: Spin,

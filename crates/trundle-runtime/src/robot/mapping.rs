@@ -4,7 +4,8 @@ use crate::bumper;
 use crate::scan_pose_log::ScanPoseLog;
 use crate::schedule::Ticker;
 use std::collections::BTreeMap;
-use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, Pose3, Scan, Stamp, Vector2};
+use trundle_core::{Cell, Footprint, Invalid, OccupancyGrid, Pose2, Pose3, Scan, Stamp, Vector2};
+use trundle_estimation::{MapUncertainty, PoseUncertainty};
 use trundle_mapping::{LiveMapper, MapperConfig, ScanMatch, ScanMatchConfig, ScanMatcher};
 
 /// Smallest number of cells of a corrected grid that are redrawn after each command: about 1.5 ms of depth scans. Source: ours.
@@ -17,6 +18,7 @@ const REDRAW_COMMANDS: usize = 90;
 pub(super) struct GridMapping {
     pub(super) mapper: LiveMapper,
     matcher: ScanMatcher,
+    uncertainty: MapUncertainty,
     pub(super) scan_poses: ScanPoseLog,
     /// Number of commands within which a corrected grid is redrawn.
     redrawn_within: usize,
@@ -45,6 +47,7 @@ impl GridMapping {
         Ok(Self {
             mapper: LiveMapper::new(mapping)?,
             matcher: ScanMatcher::new(matching)?,
+            uncertainty: MapUncertainty::default(),
             scan_poses: ScanPoseLog::default(),
             redrawn_within: REDRAW_COMMANDS,
             due: Ticker::new(map_hz),
@@ -73,6 +76,7 @@ impl GridMapping {
         let mapper = LiveMapper::from_grid(self.mapper.mapper().config().clone(), grid)?;
         self.earlier_revisions = self.revision() + 1;
         self.mapper = mapper;
+        self.uncertainty = MapUncertainty::of_certain(occupied(grid));
         self.scan_poses = ScanPoseLog::default();
         Ok(())
     }
@@ -87,8 +91,14 @@ impl GridMapping {
         self.matcher.refine(self.mapper.mapper(), scan, guess)
     }
 
-    /// Draws a scan taken at `pose`, and the floor under the robot.
-    pub(super) fn integrate_scan(&mut self, pose: Pose2, scan: &Scan) {
+    /// Uncertainty of the grid at a pose that is matched by a scan.
+    pub(super) fn uncertainty_at(&self, pose: Pose2, scan: &Scan) -> PoseUncertainty {
+        self.uncertainty.at(pose, scan.hits().map(|hit| pose.transform(hit)))
+    }
+
+    /// Draws a scan taken at `pose` of this uncertainty, and the floor under the robot.
+    pub(super) fn integrate_scan(&mut self, pose: Pose2, uncertainty: &PoseUncertainty, scan: &Scan) {
+        self.uncertainty.note(pose, uncertainty, scan.hits().map(|hit| pose.transform(hit)));
         self.mapper.insert(pose, scan);
         self.mapper.mark_free_disc(pose, self.inscribed_radius);
     }
@@ -123,6 +133,13 @@ impl GridMapping {
         self.mapper.work_within(MIN_REDRAWN_CELLS, self.redrawn_within);
         self.redrawn_within = self.redrawn_within.saturating_sub(1).max(1);
     }
+}
+
+/// The centres of the occupied cells, m.
+fn occupied(grid: &OccupancyGrid) -> impl Iterator<Item = Vector2> + '_ {
+    let geometry = grid.geometry();
+    let cells = (0..geometry.len()).map(|k| geometry.cell(k));
+    cells.filter(|cell| grid.get(*cell) == Cell::Occupied).map(|cell| geometry.center(cell))
 }
 
 /// Radius of the largest disc around the base's origin inside the footprint, m; 0 if the origin is outside.

@@ -6,7 +6,7 @@ use crate::{
     report::StepReport,
 };
 use trundle_core::Scan;
-use trundle_estimation::{Correction, Localizer};
+use trundle_estimation::{Correction, Localizer, PoseUncertainty, ScanPose};
 
 impl Robot {
     /// Processes a laser scan, if the laser is the range source.
@@ -40,7 +40,10 @@ impl Robot {
             && is_lost(&self.localizer)
         {
             let before = self.localizer.estimate().pose;
-            let correction = self.localizer.correct_scan(stamp, map_from_base, &covariance);
+            // The search compares with the whole grid: the error of one part of it is not the error of the pose.
+            let map = PoseUncertainty::default();
+            let scan = ScanPose { stamp, map_from_base, covariance, map };
+            let correction = self.localizer.correct_scan(&scan);
             event_log::correction(stamp, "global localization", before, self.localizer.estimate().pose);
             match correction {
                 Correction::Applied { .. } => {

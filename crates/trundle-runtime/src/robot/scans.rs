@@ -4,7 +4,7 @@ use super::{Robot, event_log};
 use crate::report::StepReport;
 use crate::stage::Stage;
 use trundle_core::Scan;
-use trundle_estimation::PlanarMeasurement;
+use trundle_estimation::{PlanarMeasurement, ScanPose};
 
 impl Robot {
     /// Processes a scan for safety and, at the map's rate, for estimate and map. Returns whether the scan was drawn.
@@ -41,14 +41,23 @@ impl Robot {
         let guess = self.localizer.pose_at(stamp).ok()?;
         let found = self.times.measure(Stage::ScanMatch, || self.mapping.matched(scan, guess))?;
         let before = self.localizer.estimate().pose;
-        self.localizer.correct_scan(stamp, found.pose, &found.covariance);
+        self.localizer.correct_scan(&ScanPose {
+            stamp,
+            map_from_base: found.pose,
+            covariance: found.covariance,
+            map: self.mapping.uncertainty_at(found.pose, scan),
+        });
         event_log::correction(stamp, "the scan match", before, self.localizer.estimate().pose);
         Some(PlanarMeasurement { stamp, pose: found.pose, covariance: found.covariance })
     }
 
     /// Draws the scan and the floor under the robot into the map, if a pose is known for its stamp.
     fn integrate_scan(&mut self, scan: &Scan) {
-        let Ok(pose) = self.localizer.pose_at(scan.stamp()) else { return };
-        self.times.measure(Stage::Mapping, || self.mapping.integrate_scan(pose, scan));
+        let stamp = scan.stamp();
+        let (Ok(pose), Ok(drawn)) = (self.localizer.pose_at(stamp), self.localizer.uncertainty_at(stamp))
+        else {
+            return;
+        };
+        self.times.measure(Stage::Mapping, || self.mapping.integrate_scan(pose, &drawn, scan));
     }
 }

@@ -22,6 +22,7 @@ impl Robot {
             visual_from_base: visual.visual_from_camera * self.base_from_camera.inverse(),
             found: self.localizer.base_by_visual(visual),
             odom_from_base,
+            is_still: self.odometry.is_still(),
             scan,
             belief,
             grid: self.mapping.grid(),

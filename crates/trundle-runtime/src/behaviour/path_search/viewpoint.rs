@@ -81,7 +81,7 @@ pub(crate) fn new_viewpoints(
 }
 
 /// The pose at `stand` with `at` in the middle of the view.
-fn facing(stand: Vector2, at: Vector2, view: Option<CameraFov>) -> Pose2 {
+pub(crate) fn facing(stand: Vector2, at: Vector2, view: Option<CameraFov>) -> Pose2 {
     let way = at - stand;
     let aside = view.map_or(0.0, |view| view.base_from_sector.theta);
     Pose2::new(stand.x, stand.y, difference_of_angles(way.y.atan2(way.x), aside))

@@ -31,7 +31,7 @@ pub(crate) struct Remaining {
     pub(crate) rest: f64,
     /// Number of observations that showed unseen floor, since the goal was given.
     pub(crate) results: usize,
-    /// Whether the robot drives along a path to the goal.
+    /// Whether the robot drives along a path to the goal, or settles at its end.
     pub(crate) is_driving: bool,
 }
 
@@ -58,7 +58,12 @@ struct Clock {
 pub(crate) struct LastLook {
     /// The reachable seen point nearest to the goal, map frame \[m\].
     pub(crate) nearest: Vector2,
+    /// Whether the robot was at its viewpoint.
+    pub(crate) is_there: bool,
+    /// End of the search at the viewpoint.
     until: Stamp,
+    /// End of the drive to the viewpoint.
+    limit: Stamp,
 }
 
 /// Fall of the potential that counts as progress \[m\]. Source: ours.
@@ -66,8 +71,12 @@ const MIN_FALL_M: f64 = 0.15;
 /// Length that an observation with a result takes off the potential \[m\]: the width of the floor that it shows. Source: ours, the diameter
 /// of a virtual obstacle.
 const OBSERVATION_LENGTH_M: f64 = 0.6;
-/// Duration of the last look, with the way there \[s\]. Source: ours.
-pub(crate) const LAST_LOOK_DURATION_S: f64 = 30.0;
+/// Smallest duration of the last look, with the way there \[s\]. Source: ours.
+pub(crate) const LAST_LOOK_DURATION_S: f64 = 25.0;
+/// Smallest duration of the search at the viewpoint of the last look \[s\]. Source: ours, a turn on the spot.
+const SEARCH_AT_LAST_LOOK_S: f64 = 10.0;
+/// Largest duration of the drive to the viewpoint of the last look \[s\]. Source: ours, 15 m at half the speed.
+const LAST_LOOK_LIMIT_S: f64 = 60.0;
 
 impl ProgressGuard {
     /// Starts anew for another goal.
@@ -123,8 +132,16 @@ impl ProgressGuard {
 
     /// Begins the last look: `nearest` is the reachable seen point nearest to the goal, map frame, m.
     pub(crate) fn begin_last_look(&mut self, now: Stamp, nearest: Vector2) {
-        let until = now.after(LAST_LOOK_DURATION_S);
-        self.clock(now).last_look = Some(LastLook { nearest, until });
+        let (until, limit) = (now.after(LAST_LOOK_DURATION_S), now.after(LAST_LOOK_LIMIT_S));
+        self.clock(now).last_look = Some(LastLook { nearest, until, limit, is_there: false });
+    }
+
+    /// The robot is at the viewpoint of the last look, or no viewpoint is left.
+    pub(crate) fn arrived_at_last_look(&mut self, now: Stamp) {
+        if let Some(look) = &mut self.clock(now).last_look {
+            look.is_there = true;
+            look.until = look.until.max(now.after(SEARCH_AT_LAST_LOOK_S));
+        }
     }
 
     /// The last look since the last fall of the lowest potential, also after its end.
@@ -158,9 +175,9 @@ impl ProgressGuard {
 }
 
 impl LastLook {
-    /// Whether the last look goes on.
+    /// Whether the last look goes on: the drive to its viewpoint, and the search there.
     pub(crate) fn goes_on(&self, now: Stamp) -> bool {
-        now < self.until
+        now < self.until || !self.is_there && now < self.limit
     }
 }
 

@@ -207,10 +207,11 @@ fn is_final(tools: &Tools, search: &mut PathSearch, cause: &NoPath, now: Stamp) 
 
 /// The drive to the last look before the goal is given up; `None` before it, and once the robot is there.
 fn look_again(tools: &mut Tools, search: &mut PathSearch, s: &WorldState<'_>) -> Next {
-    let nearest = search.last_look?;
+    let nearest = tools.guard.last_look().filter(|look| !look.is_there)?.nearest;
     search.blocked_at = Some(nearest);
     if !search.seeks_viewpoint(&mut tools.planner, &mut tools.follower, s) {
-        (search.last_look, search.viewpoint) = (None, Viewpoint::default());
+        tools.guard.arrived_at_last_look(s.now);
+        search.viewpoint = Viewpoint::default();
         return None;
     }
     let (reason, search) = (tools.planner.no_path(NoPath::Blocked { nearest }), std::mem::take(search));

@@ -128,8 +128,20 @@ fn the_last_look_ends_after_its_time_and_is_forgotten_with_the_next_progress() {
     guard.time_without_progress(at(0.0), &left(1.0));
     assert!(guard.last_look().is_none());
     guard.begin_last_look(at(80.0), door);
-    let look = guard.last_look().unwrap();
-    assert!(look.nearest == door && look.goes_on(at(109.9)) && !look.goes_on(at(110.1)));
+    assert_eq!(guard.last_look().unwrap().nearest, door);
+    guard.arrived_at_last_look(at(90.0));
+    let goes_on = |seconds| guard.last_look().unwrap().goes_on(at(seconds));
+    assert!(goes_on(104.9) && !goes_on(105.1));
     guard.time_without_progress(at(120.0), &left(0.5));
     assert!(guard.last_look().is_none());
+}
+
+#[test]
+fn a_long_drive_to_the_last_look_leaves_time_for_the_search_there() {
+    let mut guard = ProgressGuard::default();
+    guard.begin_last_look(at(80.0), Vector2::zeros());
+    let goes_on = |guard: &ProgressGuard, seconds| guard.last_look().unwrap().goes_on(at(seconds));
+    assert!(goes_on(&guard, 139.9) && !goes_on(&guard, 140.1), "the drive has a limit");
+    guard.arrived_at_last_look(at(125.0));
+    assert!(goes_on(&guard, 134.9) && !goes_on(&guard, 135.1));
 }
