@@ -12,8 +12,8 @@ struct Output {
     printed: String,
 }
 
-/// Runs the command of `measurement`; the same with new figures, commit, machine and date. With `printed`, a file with the standard output
-/// of an earlier run, the command is not run again.
+/// Runs the command of `measurement`; the same with new figures, commit, machine and date. With `printed`, the folder of an earlier run or a
+/// file with its standard output, the command is not run again.
 pub fn measure(
     root: &Path,
     name: &str,
@@ -45,10 +45,17 @@ pub fn measure(
 }
 
 impl Output {
-    fn of_earlier_run(file: &Path) -> Result<Self, String> {
-        let printed =
-            std::fs::read_to_string(file).map_err(|e| format!("cannot read {}: {e}", file.display()))?;
-        Ok(Self { summary: Value::Null, printed })
+    /// Output of an earlier run: its folder with `summary.json`, or a file with its standard output.
+    fn of_earlier_run(place: &Path) -> Result<Self, String> {
+        let read = |file: &Path| {
+            std::fs::read_to_string(file).map_err(|e| format!("cannot read {}: {e}", file.display()))
+        };
+        if !place.is_dir() {
+            return Ok(Self { summary: Value::Null, printed: read(place)? });
+        }
+        let file = place.join("summary.json");
+        let summary = serde_json::from_str(&read(&file)?).map_err(|e| format!("{}: {e}", file.display()))?;
+        Ok(Self { summary, printed: String::new() })
     }
 }
 

@@ -175,3 +175,29 @@ fn views_of(at: Vector2, planner: &PathPlanner, s: &WorldState<'_>) -> Vec<Pose2
 fn is_faced(here: Pose2, turned: Pose2) -> bool {
     difference_of_angles(here.theta, turned.theta).abs() <= MAX_VIEWING_ANGLE_RAD
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::behaviour::navigator::testing::{at_rest, floor};
+    use crate::config::RobotConfig;
+
+    #[test]
+    fn a_robot_near_a_blockage_turns_to_it_unless_it_faces_it() {
+        let config = RobotConfig::default();
+        let mut planner = PathPlanner::new(&config, &config.footprint().unwrap()).unwrap();
+        let mut follower = Follower::new(config.control.clone(), config.drive, config.limits).unwrap();
+        let (grid, at) = (floor(|_| false), Vector2::new(4.2, 2.0));
+        for (heading, turns) in [(0.0, false), (0.2, false), (1.0, true), (-3.0, true)] {
+            let mut search = PathSearch { blocked_at: Some(at), ..PathSearch::default() };
+            let s = at_rest(&grid, Stamp::default(), Pose2::new(3.0, 2.0, heading));
+            assert_eq!(search.seeks_viewpoint(&mut planner, &mut follower, &s), turns, "{heading}");
+            let Viewpoint::Going(_, way) = &search.viewpoint else {
+                assert!(!turns, "{heading}: {:?}", search.viewpoint);
+                continue;
+            };
+            let end = way.end();
+            assert!(end.theta.abs() < 0.02 && end.distance(&s.estimate.pose) < 0.01, "{heading}: {end:?}");
+        }
+    }
+}
