@@ -88,12 +88,12 @@ impl Belief {
         let rest = Matrix3::identity() - gain;
         let prior = symmetric(self.uncertainty.covariance + measurement.prior_inflation);
         let covariance = rest * prior * rest.transpose() + gain * measurement.noise * gain.transpose();
-        let floor = min_variances.sup(&measurement.variance_floor.inf(&prior.diagonal()));
-        let lacking = (floor - covariance.diagonal()).sup(&Vector3::zeros());
-        let uncertainty = PoseUncertainty {
-            covariance: symmetric(covariance) + Matrix3::from_diagonal(&lacking),
-            scale_error: rest * self.uncertainty.scale_error + gain * measurement.scale_error,
-        };
+        let prior_total = self.covariance() + measurement.prior_inflation;
+        let floor = min_variances.sup(&measurement.variance_floor.inf(&prior_total.diagonal()));
+        let scale_error = rest * self.uncertainty.scale_error + gain * measurement.scale_error;
+        let mut uncertainty = PoseUncertainty { covariance: symmetric(covariance), scale_error };
+        let lacking = (floor - uncertainty.total().diagonal()).sup(&Vector3::zeros());
+        uncertainty.covariance += Matrix3::from_diagonal(&lacking);
         Self { pose: self.pose * Pose2::exp(gain * innovation), uncertainty }
     }
 }

@@ -151,7 +151,7 @@ impl Localizer {
             pose: scan.map_from_base,
             noise: self.config.scan_noise() + scan.covariance + scan.map.covariance,
             prior_inflation: Matrix3::zeros(),
-            variance_floor: scan.map.covariance.diagonal(),
+            variance_floor: scan.map.total().diagonal(),
             scale_error: scan.map.scale_error,
         };
         match self.find(scan.stamp) {

@@ -336,6 +336,7 @@ impl WheelOdometry {
 
     /// Rejects a first reading at impossible counts as broken. A second one near it indicates a reset of the counters.
     fn reject(&mut self, ticks: &WheelTicks, dt: f64, speed: f64) -> WheelReport {
+        self.is_still = false;
         let is_confirmed = self.last.suspect_ticks.is_some_and(|suspect| {
             let wheels = self.wheel_motion(&suspect, ticks);
             wheels.dt > 0.0 && wheels.left.abs().max(wheels.right.abs()) / wheels.dt <= self.config.max_speed

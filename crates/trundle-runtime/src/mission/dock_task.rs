@@ -5,7 +5,7 @@ use crate::behaviour::goal::Goal;
 use crate::behaviour::station_drive::StationGoal;
 use crate::mission::dock_failure::DockFailure;
 use crate::mission::light_search::LightSearch;
-use crate::reason::Reason;
+use crate::reason::{Reason, ReasonKind};
 use crate::schedule::Ticker;
 use crate::world_state::WorldState;
 use std::f64::consts::PI;
@@ -148,6 +148,10 @@ impl DockTask {
         let Some(station) = s.station.estimate else { return self.without_light(s, failure.is_some()) };
         match (&self.phase, failure) {
             (Phase::Surveying { next, .. }, _) => self.after_survey_pose(station, *next),
+            // The motions that follow are relative to the station's light: the staging pose needs no certain pose in the map.
+            (Phase::Staging { .. }, Some(reason)) if reason.kind() == ReasonKind::ArrivalUncertain => {
+                self.sweep(station)
+            }
             (Phase::Staging { .. } | Phase::Aligning | Phase::Advancing, Some(reason)) => {
                 DockStep::GivenUp(reason.clone())
             }

@@ -11,10 +11,12 @@ use trundle_core::{PoseBound, Twist2};
 
 /// Number of turns on the spot at one goal. After the last one an uncertain arrival ends the goal. Source: ours.
 const MAX_CONFIRMATIONS: u32 = 2;
+/// Share of the goal's bound below which an observation ends: the drive that follows makes the pose less certain. Source: ours.
+const CONFIRMED_SHARE: f64 = 0.8;
 
 /// At the goal by the estimate: the arrival, or a turn on the spot if the pose is too uncertain for the goal.
 pub(crate) fn arrive(tools: &mut Tools, s: &WorldState<'_>) -> Next {
-    let Some(reason) = doubt(tools, s) else {
+    let Some(reason) = doubt(tools, s, 1.0) else {
         return State::Arrived.because(TransitionReason::GoalReached);
     };
     tools.halt();
@@ -28,7 +30,10 @@ pub(crate) fn arrive(tools: &mut Tools, s: &WorldState<'_>) -> Next {
 impl Confirm {
     /// A command of the turn. It ends when the pose is certain, or after a complete turn.
     pub(crate) fn tick(&mut self, tools: &Tools, s: &WorldState<'_>) -> (Twist2, Next) {
-        let Some(reason) = doubt(tools, s) else {
+        if s.hold.is_some() {
+            return (Twist2::ZERO, None);
+        }
+        let Some(reason) = doubt(tools, s, CONFIRMED_SHARE) else {
             return (
                 Twist2::ZERO,
                 State::Plan(PathSearch::default()).because(TransitionReason::PoseConfirmed),
@@ -42,13 +47,14 @@ impl Confirm {
     }
 }
 
-/// The doubt about an arrival: the pose is too uncertain for the goal. A viewpoint and a relative motion need no certain pose.
-fn doubt(tools: &Tools, s: &WorldState<'_>) -> Option<Reason> {
+/// The doubt about an arrival: the bound of the pose is above this share of the goal's. A viewpoint and a relative motion need no certain
+/// pose.
+fn doubt(tools: &Tools, s: &WorldState<'_>, share: f64) -> Option<Reason> {
     if !matches!(tools.goal, Goal::Exact(_)) {
         return None;
     }
     let (bound, allowed) = (s.estimate.bound_95(), allowed(tools));
-    let is_certain = bound.distance <= allowed.distance && bound.heading <= allowed.heading;
+    let is_certain = bound.distance <= share * allowed.distance && bound.heading <= share * allowed.heading;
     (!is_certain).then_some(Reason::ArrivalUncertain { bound, allowed })
 }
 
