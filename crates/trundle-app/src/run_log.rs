@@ -137,9 +137,8 @@ impl RunLog {
 
     /// Length of the true path, or of the estimated path without truth \[m\].
     pub fn path_length(&self) -> f64 {
-        let estimated = || self.estimates.windows(2).map(|pair| pair[1].pose.distance(&pair[0].pose)).sum();
-        let true_length = self.truths.windows(2).map(|pair| pair[1].1.distance(&pair[0].1)).sum();
-        if self.truths.is_empty() { estimated() } else { true_length }
+        let path = if self.truths.is_empty() { &self.estimated_path() } else { &self.truths };
+        path.windows(2).map(|pair| pair[1].1.distance(&pair[0].1)).sum()
     }
 
     /// Truth at the newest truth event up to `stamp`, map frame.

@@ -57,21 +57,32 @@ pub struct PoseBound {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Vector3;
+    use proptest::prelude::*;
+
+    fn at(covariance: Matrix3<f64>) -> PoseEstimate {
+        PoseEstimate { stamp: Stamp::default(), pose: Pose2::IDENTITY, twist: Twist2::ZERO, covariance }
+    }
 
     #[test]
     fn the_bound_is_that_of_the_longest_axis() {
-        let mut covariance = Matrix3::from_diagonal(&nalgebra::Vector3::new(0.01, 0.04, 0.25));
-        let at = |covariance| PoseEstimate {
-            stamp: Stamp::default(),
-            pose: Pose2::IDENTITY,
-            twist: Twist2::ZERO,
-            covariance,
-        };
+        let mut covariance = Matrix3::from_diagonal(&Vector3::new(0.01, 0.04, 0.25));
         assert!((at(covariance).position_sigma() - 0.2).abs() < 1e-12);
         assert!((at(covariance).bound_95().distance - 0.4896).abs() < 1e-4);
         assert!((at(covariance).bound_95().heading - 0.98).abs() < 1e-3);
         // Half a right angle between the axes and those of the ellipse.
         (covariance[(0, 0)], covariance[(0, 1)], covariance[(1, 0)]) = (0.04, 0.03, 0.03);
         assert!((at(covariance).position_sigma() - 0.07_f64.sqrt()).abs() < 1e-12);
+    }
+
+    proptest! {
+        #[test]
+        fn the_larger_deviation_of_a_position_does_not_depend_on_the_frame(
+            long in 0.01..2.0_f64, part in 0.0..1.0_f64, turn in -3.1..3.1_f64,
+        ) {
+            let axes = Matrix3::from_diagonal(&Vector3::new(long * long, (part * long).powi(2), 9.0));
+            let turned = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), turn).into_inner();
+            prop_assert!((at(turned * axes * turned.transpose()).position_sigma() - long).abs() < 1e-6);
+        }
     }
 }

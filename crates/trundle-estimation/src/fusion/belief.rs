@@ -1,7 +1,7 @@
 //! A Gaussian over planar poses, with its Kalman update.
 
 use crate::fusion::pose_uncertainty::PoseUncertainty;
-use crate::planar::{adjoint, symmetric};
+use crate::planar::symmetric;
 use nalgebra::{Matrix3, Vector3};
 use trundle_core::Pose2;
 
@@ -54,13 +54,9 @@ impl Belief {
 
     /// The belief after a motion.
     pub(crate) fn moved(&self, motion: &Motion) -> Self {
-        let back = adjoint(&motion.pose.inverse());
-        let PoseUncertainty { covariance, scale_error } = self.uncertainty;
-        let turn_error = motion.pose.theta * motion.scale_sigma;
-        let uncertainty = PoseUncertainty {
-            covariance: symmetric(back * covariance * back.transpose()) + motion.noise,
-            scale_error: back * scale_error + Vector3::new(0.0, 0.0, turn_error),
-        };
+        let mut uncertainty = self.uncertainty.at_pose(&motion.pose);
+        uncertainty.covariance += motion.noise;
+        uncertainty.scale_error.z += motion.pose.theta * motion.scale_sigma;
         Self { pose: self.pose * motion.pose, uncertainty }
     }
 

@@ -28,7 +28,7 @@ impl PoseUncertainty {
         self.transformed(&adjoint(pose))
     }
 
-    /// The inverse of [`PoseUncertainty::in_map`].
+    /// The inverse of [`PoseUncertainty::in_map`]; also the uncertainty after the motion `pose`, without its own noise.
     pub(crate) fn at_pose(&self, pose: &Pose2) -> Self {
         self.transformed(&adjoint(&pose.inverse()))
     }
