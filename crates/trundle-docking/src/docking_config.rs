@@ -20,7 +20,7 @@ pub enum Method {
 impl Method {
     /// The choices of a front end: name, help text, value.
     pub const CHOICES: [(&'static str, &'static str, Self); 2] = [
-        ("optimal", "Least time, with a proven bound", Self::Optimal),
+        ("optimal", "Shortest time, with a proven bound", Self::Optimal),
         ("paper", "The greedy method of Hong (2024)", Self::Hong24),
     ];
 }
@@ -59,7 +59,7 @@ pub struct DockingConfig {
     /// Cost limit of a whole plan, in the same counted steps, 10^5 to 10^11. At the limit the best manoeuvre so far is the result. Default
     /// 2 * 10^8 (ours: two seconds; the hardest of 5,000 corridor problems takes half of it); in the robot file 2 * 10^7.
     pub plan_work: u64,
-    /// Cost limit of a whole plan among more than 200 points, in the same counted steps, if smaller than `plan_work`. Default 6 * 10^6
+    /// Cost limit of a whole plan among more than 200 points, in the same counted steps, 10^5 to 10^11, if smaller than `plan_work`. Default 6 * 10^6
     /// (ours: less than 100 ms among a hundred thousand points).
     pub points_work: u64,
     /// Number of boxes of the branch and bound for the lower bound, 0 to 10^8. With more than 200 segments the number is reduced in
@@ -105,8 +105,8 @@ impl DockingConfig {
     /// contain all of them.
     pub fn view(&self, footprint: &Footprint, start: &Pose2, goal: &Pose2) -> (Vector2, f64) {
         let middle = (start.position() + goal.position()) / 2.0;
-        let way = WIDER_REACH_FACTOR * self.reach + start.distance(goal) / 2.0;
-        (middle, way + footprint.circumscribed_radius() + OBSTACLE_MARGIN_M)
+        let distance = WIDER_REACH_FACTOR * self.reach + start.distance(goal) / 2.0;
+        (middle, distance + footprint.circumscribed_radius() + OBSTACLE_MARGIN_M)
     }
 
     /// Returns a valid configuration unchanged.

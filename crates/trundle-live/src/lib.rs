@@ -20,11 +20,11 @@ mod history;
 mod http;
 mod options;
 mod page_state;
-mod roster;
 mod run_facts;
 mod server;
 mod steering;
 mod viewer;
+mod viewer_list;
 mod wire;
 
 pub use access::{Access, Tokens};

@@ -214,7 +214,7 @@ impl fmt::Display for Reason {
 
 /// An arrival by an uncertain pose: the bound of the position, or that of the heading if the position is certain.
 fn uncertain_arrival(f: &mut fmt::Formatter<'_>, bound: PoseBound, allowed: PoseBound) -> fmt::Result {
-    f.write_str("arrived, but not sure: ")?;
+    f.write_str("arrived, but the pose is uncertain: ")?;
     if bound.distance > allowed.distance {
         let (known, needed) = (bound.distance, allowed.distance);
         return write!(f, "the position is known within {known:.2} m (95 %), the goal needs {needed:.2} m");

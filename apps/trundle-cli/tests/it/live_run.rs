@@ -147,7 +147,7 @@ fn replayed_alike(folder: &Path) {
 }
 
 #[test]
-fn a_robot_that_is_unplugged_stops_says_so_and_goes_on_when_it_is_back() {
+fn an_unplugged_robot_stops_with_that_reason_and_continues_when_it_returns() {
     let folder = tempfile::tempdir().unwrap();
     let robot = EmulatedRobot::start(folder.path());
     let mut run = robot.run(&["--goal", "2,0,0", "--time-limit", RUN_LIMIT_S]);

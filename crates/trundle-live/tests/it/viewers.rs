@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use trundle_live::Access;
 
 #[test]
-fn a_link_that_looks_drives_nothing() {
+fn a_link_for_viewing_does_not_drive() {
     let run = LiveRun::start();
     let mut viewer = Browser::enter(&run, Access::View, "viewer");
     for kind in ["explore", "return", "dock", "stop", "pause", "continue", "take_wheel"] {
@@ -28,7 +28,7 @@ fn a_replay_takes_no_commands() {
 }
 
 #[test]
-fn one_holds_the_wheel_and_the_other_sees_who() {
+fn one_viewer_is_in_control_and_the_other_is_shown_which() {
     let run = LiveRun::start();
     let mut anna = Browser::enter(&run, Access::Drive, "Anna");
     let mut bert = Browser::enter(&run, Access::Drive, "Bert");
@@ -59,7 +59,7 @@ fn a_viewer_that_draws_nothing_is_sent_three_views_and_the_others_go_on() {
     slow.send(&json!({"type": "seen", "batch": 3}));
     let fresh = slow.wait_for("state");
     assert_eq!(fresh["batch"], 4);
-    let (newest, shown) = (run.operator.glance().unwrap().stamp.as_secs(), fresh["time"].as_f64().unwrap());
+    let (newest, shown) = (run.operator.peek().unwrap().stamp.as_secs(), fresh["time"].as_f64().unwrap());
     assert!(newest - shown < 0.5, "the newest view, not one that waited: {newest} s, {shown} s");
 }
 

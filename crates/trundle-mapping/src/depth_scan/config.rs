@@ -24,7 +24,7 @@ pub struct DepthScanConfig {
     /// Growth of the depth noise with depth squared, m / m^2, 0 to 0.1. Default 0.0015: about the Kinects' (0.0019
     /// for the first, Khoshelham and Elberink 2012; less for the second).
     pub noise_growth: f64,
-    /// Height of the lowest obstacle above the floor, in sigmas of the depth noise, 0 to 10. A smaller value sees lower obstacles and gives
+    /// Height of the lowest obstacle above the floor, in sigmas of the depth noise, 0 to 10. A smaller value detects lower obstacles and gives
     /// false ones. Default 3.
     pub floor_sigmas: f64,
     /// Largest error of the camera's tilt at which the floor is no obstacle, deg, 0 to 10. A larger value hides low obstacles far away. If

@@ -121,7 +121,7 @@ fn a_start_within_the_clearance_is_planned_out_of() {
 }
 
 #[test]
-fn unknown_space_is_allowed_dear_or_forbidden() {
+fn unknown_space_is_allowed_has_a_high_cost_or_is_forbidden() {
     // A known way around an unknown field: 1.4 times as long.
     let mut grid = OccupancyGrid::from_ascii(0.1, &vec![".".repeat(60); 40].join("\n")).unwrap();
     for col in 20..40 {

@@ -82,9 +82,9 @@ impl LoopConfig {
             ("loops.consistency", self.consistency, 1),
             ("loops.tied_by", self.tied_by, 1),
         ];
-        for (name, value, least) in counts {
-            if value < least {
-                return Err(Invalid::new(name, value, "", format!("{least} or more")));
+        for (name, value, min) in counts {
+            if value < min {
+                return Err(Invalid::new(name, value, "", format!("{min} or more")));
             }
         }
         for (name, value, unit, high) in [

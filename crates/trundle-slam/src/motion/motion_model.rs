@@ -17,7 +17,7 @@ pub struct MotionModelConfig {
     pub prior_drift: f64,
     /// Standard deviation of the speed of a camera without a prior, m/s, and of its turn rate, rad/s, 0 to 100. Default 1.
     pub unseen: f64,
-    /// Readout time of a camera that has none of its own, s. Deprecated: set the camera's readout time
+    /// Readout time of a camera that has none of its own, s, 0 to 0.05. Deprecated: set the camera's readout time
     /// ([`PinholeCamera::with_readout`]). Default 0.
     #[serde(skip_serializing_if = "is_zero")]
     pub readout: f64,

@@ -21,9 +21,9 @@ fn sequence() -> Option<Drive> {
 }
 
 /// The first frames; `None` if the sequence is not at hand.
-pub fn frames(most: usize) -> Option<Vec<RgbdImage>> {
+pub fn frames(max: usize) -> Option<Vec<RgbdImage>> {
     let drive = sequence()?;
-    Some((0..most.min(drive.frames.len())).map(|i| drive.image(i)).collect())
+    Some((0..max.min(drive.frames.len())).map(|i| drive.image(i)).collect())
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn freiburg1_rpy_is_tracked_within_2_cm() {
         total / n * 1e3,
         slowest * 1e3,
     );
-    assert_eq!(located, drive.frames.len(), "every frame is located by sight");
+    assert_eq!(located, drive.frames.len(), "every frame is located by its image");
     assert!(rmse < 0.02, "ATE RMSE {rmse} m");
 }
 

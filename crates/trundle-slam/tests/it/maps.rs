@@ -26,9 +26,9 @@ fn run(images: &[RgbdImage]) -> (RgbdSlam, Vec<TrackReport>) {
 
 #[test]
 fn a_lost_camera_begins_a_second_map_that_is_merged_when_the_first_is_seen() {
-    let way = carried();
+    let path = carried();
     let shot = |(i, pose): (usize, &Option<Pose3>)| pose.map_or_else(|| dark(i), |pose| shoot(i, pose));
-    let images: Vec<RgbdImage> = way.iter().enumerate().map(shot).collect();
+    let images: Vec<RgbdImage> = path.iter().enumerate().map(shot).collect();
     let (slam, reports) = run(&images);
     let second_map = reports.iter().position(|r| r.map != reports[0].map).expect("a second map");
     assert_eq!(second_map, 17, "after 8 frames of patience");
@@ -43,13 +43,13 @@ fn a_lost_camera_begins_a_second_map_that_is_merged_when_the_first_is_seen() {
     assert!((merged.correction.inverse() * jump).log().norm() < 0.2, "reported as a correction: {jump:?}");
 
     let located =
-        reports.iter().zip(&way).filter(|(r, _)| r.tracking.is_located()).map(|(_, pose)| pose.unwrap());
+        reports.iter().zip(&path).filter(|(r, _)| r.tracking.is_located()).map(|(_, pose)| pose.unwrap());
     let trajectory = slam.trajectory();
     let errors = located.zip(&trajectory).map(|(truth, (_, pose))| (truth.inverse() * *pose).log().norm());
     let errors: Vec<f64> = errors.collect();
     let worst = errors.iter().copied().fold(0.0, f64::max);
     println!("merged at {at} by {} points, worst error {worst:.3} (m and rad)", merged.points);
-    assert_eq!((errors.len(), trajectory.len()), (way.len() - 7, way.len() - 7));
+    assert_eq!((errors.len(), trajectory.len()), (path.len() - 7, path.len() - 7));
     assert!(worst < 0.06, "{worst}");
 
     let (again, the_same) = run(&images);
@@ -112,9 +112,9 @@ fn after_uncertain_dead_reckoning_another_map_begins_and_is_merged() {
         assert!(slam.step(&shoot(i, turned(2 * i)), Some(turned(2).into())).tracking.is_located());
     }
     // Half way round, of which the wheels tell all but 0.2 rad, and a third of a metre that was none.
-    let told = turned(4) * Pose3::exp(Vector6::new(0.0, 0.0, 0.03, 0.0, 0.01, 0.0));
+    let reported = turned(4) * Pose3::exp(Vector6::new(0.0, 0.0, 0.03, 0.0, 0.01, 0.0));
     for i in 20..30 {
-        assert_eq!(slam.step(&dark(i), Some(unsure(told))).tracking, Tracking::DeadReckoning);
+        assert_eq!(slam.step(&dark(i), Some(unsure(reported))).tracking, Tracking::DeadReckoning);
     }
     let mut merged = None;
     for (i, view) in (30..100).zip((80..).step_by(2)) {
@@ -169,7 +169,7 @@ fn a_lost_camera_is_found_where_two_maps_overlap() {
 
 /// Nobody tells how it turns: 0.38 rad a frame, and 0.19 with every second image dark.
 #[test]
-fn a_lost_camera_that_turns_fast_or_sees_now_and_then_is_found() {
+fn a_lost_camera_that_turns_fast_or_has_few_usable_images_is_found() {
     let mut slam = RgbdSlam::new(camera(), SlamConfig::default()).unwrap();
     for i in 0..25 {
         slam.step(&shoot(i, turned(4 * i)), None);

@@ -112,13 +112,13 @@ fn noise_on_a_bare_wall_makes_no_map() {
     config.orb.min_texture = 0.0;
     let mut slam = RgbdSlam::new(camera(), config).unwrap();
     assert_eq!(slam.step(&shoot(0, Pose3::identity()), None).tracking, Tracking::Ok);
-    let told = || Some(forward(0.0).into());
+    let reported = || Some(forward(0.0).into());
     for i in 1..60 {
-        let report = slam.step(&noise(i), told());
+        let report = slam.step(&noise(i), reported());
         assert!(report.features > 100 && !report.new_keyframe, "frame {i}: {}", report.features);
         assert_eq!(report.tracking, Tracking::DeadReckoning);
     }
-    assert_eq!(slam.step(&shoot(60, Pose3::identity()), told()).tracking, Tracking::Ok);
+    assert_eq!(slam.step(&shoot(60, Pose3::identity()), reported()).tracking, Tracking::Ok);
 }
 
 #[test]

@@ -48,13 +48,13 @@ fn a_loaded_map_is_identical_and_the_camera_is_relocalized_in_it() {
     let report = slam.step(&shoot(102, turned(21)), None);
     assert!(report.tracking == Tracking::Ok && report.relocalised);
     assert!((turned(21).inverse() * report.visual_from_camera).log().norm() < 0.03);
-    let told = report.covariance.fixed_view::<3, 3>(0, 0).trace().sqrt();
+    let reported = report.covariance.fixed_view::<3, 3>(0, 0).trace().sqrt();
     let mut unsure = SlamConfig::default();
-    unsure.tracking.recognised_sigma = told / 10.0;
+    unsure.tracking.recognised_sigma = reported / 10.0;
     let mut other = RgbdSlam::load(&bytes, camera(), unsure).unwrap();
     for i in 0..4 {
         let report = other.step(&shoot(101 + i, turned(21)), None);
-        assert_eq!(report.tracking, Tracking::Lost, "image {i}, {told} m is too little");
+        assert_eq!(report.tracking, Tracking::Lost, "image {i}, {reported} m is too little");
     }
     let keyframes = report.keyframes;
     for i in 1..10 {

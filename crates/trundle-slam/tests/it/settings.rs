@@ -74,10 +74,10 @@ fn a_depth_scale_off_by_five_is_noticed() {
 #[test]
 fn swapped_focal_lengths_are_noticed() {
     let lens = freiburg::camera().distortion();
-    let said = |fx: f64, fy: f64| PinholeCamera::new((512, 480), (fx, fy), (254.9, 255.3), lens).unwrap();
-    let Some(found) = suspected(said(516.5, 413.8), |image| squeezed(&image)) else { return };
+    let reported = |fx: f64, fy: f64| PinholeCamera::new((512, 480), (fx, fy), (254.9, 255.3), lens).unwrap();
+    let Some(found) = suspected(reported(516.5, 413.8), |image| squeezed(&image)) else { return };
     assert!(found.iter().any(|s| s.to_string().contains("fx and fy swapped")), "{found:?}");
-    let right = suspected(said(413.8, 516.5), |image| squeezed(&image)).unwrap();
+    let right = suspected(reported(413.8, 516.5), |image| squeezed(&image)).unwrap();
     assert_eq!(right, vec![]);
 }
 
@@ -96,16 +96,16 @@ fn colour_and_depth_that_are_not_registered_are_noticed() {
     assert!(found.iter().any(|s| s.to_string().contains("not registered")), "{found:?}");
 }
 
-/// Suspected settings of `said` after 100 frames of a robot that drives and turns in the rendered room; its wheels say
+/// Suspected settings of `reported` after 100 frames of a robot that drives and turns in the rendered room; its wheels say
 /// `wheels` times the way.
-fn suspected_in_the_room(said: PinholeCamera, wheels: f64) -> Vec<CalibrationIssue> {
+fn suspected_in_the_room(reported: PinholeCamera, wheels: f64) -> Vec<CalibrationIssue> {
     let pose = |i: usize| {
         let turn = 0.5 * (i as f64 * 0.06).sin();
         Pose3::exp(Vector6::new(0.0, 0.0, i as f64 * 0.012 - 0.6, 0.0, 0.0, 0.0))
             * Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.14, 0.0, 0.0))
             * Pose3::exp(Vector6::new(0.0, 0.0, 0.0, 0.0, turn, 0.0))
     };
-    let mut slam = RgbdSlam::new(said, SlamConfig::default()).unwrap();
+    let mut slam = RgbdSlam::new(reported, SlamConfig::default()).unwrap();
     for i in 0..100 {
         let step = pose(i.max(1) - 1).inverse() * pose(i);
         let prior = Pose3::new(step.rotation, step.translation * wheels);

@@ -16,7 +16,7 @@ fn walk(frame: usize) -> Pose3 {
 }
 
 #[test]
-fn a_walk_through_a_room_is_followed_and_the_covariance_is_honest() {
+fn a_walk_through_a_room_is_tracked_with_a_consistent_covariance() {
     let mut slam = slam().starting_at(walk(0));
     let mut nees = 0.0;
     for i in 0..=90 {

@@ -12,7 +12,7 @@ fn walk(frame: usize) -> Pose3 {
 }
 
 /// The mean error of the last pose over some runs, m, where the wheels say this of each true step.
-fn error(told: impl Fn(usize, Pose3) -> Option<CameraMotion>) -> f64 {
+fn error(reported: impl Fn(usize, Pose3) -> Option<CameraMotion>) -> f64 {
     const RUNS: u64 = 6;
     let room = Room::new();
     let of_run = |seed| {
@@ -21,7 +21,7 @@ fn error(told: impl Fn(usize, Pose3) -> Option<CameraMotion>) -> f64 {
         let mut step = |i: usize| {
             let motion = walk(i.saturating_sub(1)).inverse() * walk(i);
             let (features, depth) = room.seen_from(walk(i), &mut dice);
-            slam.step_with_features(stamp(i), features, &depth, told(i, motion)).visual_from_camera
+            slam.step_with_features(stamp(i), features, &depth, reported(i, motion)).visual_from_camera
         };
         let last = (0..=45).map(&mut step).last().unwrap();
         (walk(45).inverse() * last).translation.norm()

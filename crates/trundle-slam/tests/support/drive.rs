@@ -79,12 +79,12 @@ impl Drive {
 
 /// How far off wheels without a gyro are, as `OdometryConfig` of trundle-estimation has it.
 fn noise(motion: &Pose2) -> Matrix3<f64> {
-    let (way, turn) = (motion.x.hypot(motion.y), motion.theta.abs());
+    let (distance, turn) = (motion.x.hypot(motion.y), motion.theta.abs());
     let spot = 0.002_f64.powi(2) * turn;
-    let heading = 0.05_f64.powi(2) * turn + 0.02_f64.powi(2) * way;
+    let heading = 0.05_f64.powi(2) * turn + 0.02_f64.powi(2) * distance;
     Matrix3::from_diagonal(&Vector3::new(
-        0.02_f64.powi(2) * way + spot,
-        0.001_f64.powi(2) * way + spot,
+        0.02_f64.powi(2) * distance + spot,
+        0.001_f64.powi(2) * distance + spot,
         heading,
     ))
 }

@@ -89,6 +89,6 @@ fn normals_are_unit_vectors_out_of_the_body() {
         cosines.push((at - centre).normalize().dot(&normal));
     }
     cosines.sort_by(f64::total_cmp);
-    let (least, median) = (cosines[0], cosines[cosines.len() / 2]);
-    assert!(least > 0.9 && median > 0.995, "cosine to the radius: {least} at least, median {median}");
+    let (min, median) = (cosines[0], cosines[cosines.len() / 2]);
+    assert!(min > 0.9 && median > 0.995, "cosine to the radius: {min} at least, median {median}");
 }
