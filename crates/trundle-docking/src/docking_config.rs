@@ -46,9 +46,9 @@ pub struct DockingConfig {
     pub reach: f64,
     /// Largest distance of the goal, m, 0.1 to 20. Farther goals need a path first. Default 5 (ours).
     pub max_distance: f64,
-    /// Tolerance of the position, m, 0.001 to 0.1; also the side of the certificate's cells. Default 0.01.
+    /// Tolerance of the position, m, 0.001 to 0.1; also the side of the certificate's cells. Default 0.01 (ours).
     pub position_tolerance: f64,
-    /// Tolerance of the heading, rad, 0.001 to 0.2. Default 0.0175 (1 deg).
+    /// Tolerance of the heading, rad, 0.001 to 0.2. Default 0.0175 (1 deg; ours).
     pub heading_tolerance: f64,
     /// Maximum number of nodes in the search for manoeuvres of three and more straight moves, 0 to 10^7. More find more manoeuvres and take
     /// longer. Default 2500 (ours: at most a second, in hard problems only).
@@ -65,7 +65,7 @@ pub struct DockingConfig {
     /// Number of boxes of the branch and bound for the lower bound, 0 to 10^8. With more than 200 segments the number is reduced in
     /// proportion. Default 400 (ours: a few ms).
     pub bound_boxes: usize,
-    /// Relative gap between time and lower bound at which the search ends, 0 to 1. Default 0.01.
+    /// Relative gap between time and lower bound at which the search ends, 0 to 1. Default 0.01 (ours).
     pub gap: f64,
     /// Parameters of \[Hong24\], for [`Method::Hong24`].
     pub paper: Hong24Config,

@@ -9,6 +9,13 @@
 //! | `home` | state, map picture, places and commands for a home; Home Assistant's discovery |
 //! | [`vda5050`] | orders and states of VDA 5050 2.1 for a master control |
 //! | `worker` | the thread that connects the parts |
+//!
+//! ```
+//! use trundle_fleet::{HomeCommand, read_home_command};
+//! assert_eq!(read_home_command(b"pause")?, HomeCommand::Pause);
+//! assert!(read_home_command(b"fly").is_err());
+//! # Ok::<(), String>(())
+//! ```
 
 mod address;
 mod broker;

@@ -19,7 +19,7 @@ pub fn execute(
     let is_paused = view.hold == Some(MotionHold::Paused);
     let command = match command {
         HomeCommand::Pause => OperatorCommand::Pause,
-        HomeCommand::GoOn => OperatorCommand::Continue,
+        HomeCommand::Continue => OperatorCommand::Continue,
         HomeCommand::Start if is_paused => OperatorCommand::Continue,
         HomeCommand::Stop => OperatorCommand::cancel(),
         task => {

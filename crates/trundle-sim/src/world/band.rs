@@ -61,24 +61,28 @@ impl Outlines {
     }
 }
 
-/// Parts of all solids and triangles within a height band, seen from above: one list per thread's share.
-pub(super) fn outlines_in(world: &World, band: HeightBand) -> Vec<Outlines> {
-    let mut solids = Outlines::default();
-    for (solid, outline) in world.solids.iter().zip(&world.outlines) {
-        let bounds = solid.shape.aabb();
-        if band.is_reached(bounds.min.z, bounds.max.z) {
-            solids.push(outline.region().corners, outline.region().radius);
+impl World {
+    /// Parts of all solids and triangles within a height band, seen from above: one list per thread's share.
+    pub(super) fn outlines_in(&self, band: HeightBand) -> Vec<Outlines> {
+        let mut solids = Outlines::default();
+        for (solid, outline) in self.solids.iter().zip(&self.outlines) {
+            let bounds = solid.shape.aabb();
+            if band.is_reached(bounds.min.z, bounds.max.z) {
+                solids.push(outline.region().corners, outline.region().radius);
+            }
         }
+        let mut lists = vec![solids];
+        for mesh in &self.meshes {
+            let count = mesh.triangles().len();
+            let starts: Vec<usize> = (0..count).step_by(TRIANGLES_PER_CHUNK).collect();
+            lists.par_extend(
+                starts
+                    .par_iter()
+                    .map(|&start| clip(mesh, start..(start + TRIANGLES_PER_CHUNK).min(count), band)),
+            );
+        }
+        lists
     }
-    let mut lists = vec![solids];
-    for mesh in &world.meshes {
-        let count = mesh.triangles().len();
-        let starts: Vec<usize> = (0..count).step_by(TRIANGLES_PER_CHUNK).collect();
-        lists.par_extend(
-            starts.par_iter().map(|&start| clip(mesh, start..(start + TRIANGLES_PER_CHUNK).min(count), band)),
-        );
-    }
-    lists
 }
 
 fn clip(mesh: &Mesh, triangles: std::ops::Range<usize>, band: HeightBand) -> Outlines {

@@ -1,6 +1,5 @@
 //! Clearance of a footprint to a world's obstacles, exact.
 
-use super::band::outlines_in;
 use super::outline::Outline;
 use super::outline_index::OutlineIndex;
 use super::region::Region;
@@ -17,13 +16,6 @@ pub struct Obstacles {
 }
 
 impl Obstacles {
-    /// The parts of a world that reach into a height band.
-    pub(super) fn of(world: &World, band: HeightBand) -> Self {
-        let lists = outlines_in(world, band);
-        let outlines: Vec<Region<'_>> = lists.iter().flat_map(|list| list.iter()).collect();
-        Self { index: OutlineIndex::new(&outlines) }
-    }
-
     /// Distance between a footprint at `pose` (in the obstacles' frame) and the nearest obstacle, m; 0 or less in contact, infinite without
     /// obstacles.
     ///
@@ -50,6 +42,33 @@ impl Obstacles {
     }
 }
 
+impl World {
+    /// All parts that reach into a height band.
+    pub fn obstacles(&self, band: HeightBand) -> Obstacles {
+        let lists = self.outlines_in(band);
+        let outlines: Vec<Region<'_>> = lists.iter().flat_map(|list| list.iter()).collect();
+        Obstacles { index: OutlineIndex::new(&outlines) }
+    }
+
+    /// Distance between a footprint at `pose` (`world_from_base`) and the nearest object in the height band, m; 0 or less in contact,
+    /// infinite without objects. For a single query; for many queries, reuse [`World::obstacles`].
+    ///
+    /// # Errors
+    /// When the pose is not finite.
+    pub fn clearance(&self, footprint: &Footprint, pose: Pose2, band: HeightBand) -> Result<f64, Invalid> {
+        check(pose)?;
+        Ok(self.obstacles(band).clearance(footprint, pose))
+    }
+
+    /// Whether a footprint standing at `pose` (`world_from_base`) touches a solid of the height band.
+    ///
+    /// # Errors
+    /// When the pose is not finite.
+    pub fn collides(&self, footprint: &Footprint, pose: Pose2, band: HeightBand) -> Result<bool, Invalid> {
+        Ok(self.clearance(footprint, pose, band)? <= 0.0)
+    }
+}
+
 impl SceneSnapshot<'_> {
     /// As [`World::clearance`], for static and moving objects.
     ///
@@ -65,7 +84,7 @@ impl SceneSnapshot<'_> {
     }
 }
 
-pub(super) fn check(pose: Pose2) -> Result<(), Invalid> {
+fn check(pose: Pose2) -> Result<(), Invalid> {
     require_in("pose x", pose.x, "m", -1e9, 1e9)?;
     require_in("pose y", pose.y, "m", -1e9, 1e9)?;
     require_finite("pose theta", pose.theta, "rad").map(|_| ())

@@ -1,6 +1,5 @@
 //! The true occupancy grid of a world.
 
-use super::band::outlines_in;
 use super::region::Region;
 use super::{HeightBand, World};
 use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, require_positive};
@@ -8,32 +7,40 @@ use trundle_core::{Cell, CellIndex, GridGeometry, Invalid, OccupancyGrid, requir
 /// Fraction of their side by which cells are shrunk: a wall that ends at a cell's border does not fill the cell. Source: ours.
 const CELL_SHRINK_RATIO: f64 = 1e-6;
 
-/// Maximum number of cells of a grid: one byte each. Source: ours.
-const MAX_CELLS: f64 = (1_u64 << 31) as f64;
+/// Most cells of a grid: one byte each. Source: ours.
+const MOST_CELLS: f64 = (1_u64 << 31) as f64;
 
-/// See [`World::true_grid`].
-pub(super) fn true_grid(world: &World, resolution: f64, band: HeightBand) -> Result<OccupancyGrid, Invalid> {
-    let mut grid = OccupancyGrid::filled(grid_geometry(world, resolution)?, Cell::Free);
-    for outlines in outlines_in(world, band) {
-        for outline in outlines.iter() {
-            fill(&mut grid, &outline);
+impl World {
+    /// The true map: every cell that overlaps a solid in the height band is occupied, all others are free.
+    ///
+    /// Meshes count with their surface: cells inside a closed shell are free. The grid is in the world frame and covers the whole world;
+    /// cells are `resolution` m wide, with borders at multiples of it. Cost: the cells, and the triangles of the band.
+    ///
+    /// # Errors
+    /// When the resolution is not positive or gives more than 2^31 cells.
+    pub fn true_grid(&self, resolution: f64, band: HeightBand) -> Result<OccupancyGrid, Invalid> {
+        let mut grid = OccupancyGrid::filled(self.grid_geometry(resolution)?, Cell::Free);
+        for outlines in self.outlines_in(band) {
+            for outline in outlines.iter() {
+                fill(&mut grid, &outline);
+            }
         }
+        Ok(grid)
     }
-    Ok(grid)
-}
 
-fn grid_geometry(world: &World, resolution: f64) -> Result<GridGeometry, Invalid> {
-    require_positive("resolution", resolution, "m")?;
-    let low = (world.bounds.min.xy() / resolution).map(f64::floor);
-    let high = (world.bounds.max.xy() / resolution).map(f64::ceil);
-    let size = (high - low).map(|n| n.max(1.0));
-    if size.x * size.y > MAX_CELLS {
-        let min = ((world.bounds.max - world.bounds.min).xy().product() / MAX_CELLS).sqrt();
-        let value = format!("{resolution} m, {:.3e} x {:.3e} cells", size.x, size.y);
-        let expected = format!("at most 2^31 cells: {min:.1e} m or more for this world");
-        return Err(Invalid::new("resolution", value, "", expected));
+    fn grid_geometry(&self, resolution: f64) -> Result<GridGeometry, Invalid> {
+        require_positive("resolution", resolution, "m")?;
+        let low = (self.bounds.min.xy() / resolution).map(f64::floor);
+        let high = (self.bounds.max.xy() / resolution).map(f64::ceil);
+        let size = (high - low).map(|n| n.max(1.0));
+        if size.x * size.y > MOST_CELLS {
+            let min = ((self.bounds.max - self.bounds.min).xy().product() / MOST_CELLS).sqrt();
+            let value = format!("{resolution} m, {:.3e} x {:.3e} cells", size.x, size.y);
+            let expected = format!("at most 2^31 cells: {min:.1e} m or more for this world");
+            return Err(Invalid::new("resolution", value, "", expected));
+        }
+        GridGeometry::new(resolution, low * resolution, size.x as usize, size.y as usize)
     }
-    GridGeometry::new(resolution, low * resolution, size.x as usize, size.y as usize)
 }
 
 /// Occupies the cells that an outline reaches into, row by row: of a convex outline each row holds one run of cells.

@@ -37,7 +37,7 @@ pub use scene_snapshot::SceneSnapshot;
 pub use shape::{Cuboid, Cylinder, Shape};
 use std::sync::OnceLock;
 pub(crate) use triangles::{Block, TRIANGLES_PER_BLOCK, Triangles};
-use trundle_core::{Footprint, Invalid, OccupancyGrid, Pose2, Vector3};
+use trundle_core::{Invalid, Vector3};
 
 /// A static scene: frame `world`, z up, the floor's top at z = 0, metres.
 ///
@@ -139,40 +139,6 @@ impl World {
             let materials: Vec<&Material> = self.meshes.iter().flat_map(Mesh::materials).collect();
             materials.par_iter().map(|m| Texture::of_picture(m.color, m.texture.as_ref())).collect()
         })
-    }
-
-    /// The true map: every cell that overlaps a solid in the height band is occupied, all others are free.
-    ///
-    /// Meshes count with their surface: cells inside a closed shell are free. The grid is in the world frame and covers the whole world;
-    /// cells are `resolution` m wide, with borders at multiples of it. Cost: the cells, and the triangles of the band.
-    ///
-    /// # Errors
-    /// When the resolution is not positive or gives more than 2^31 cells.
-    pub fn true_grid(&self, resolution: f64, band: HeightBand) -> Result<OccupancyGrid, Invalid> {
-        grid::true_grid(self, resolution, band)
-    }
-
-    /// All parts that reach into a height band.
-    pub fn obstacles(&self, band: HeightBand) -> Obstacles {
-        Obstacles::of(self, band)
-    }
-
-    /// Distance between a footprint at `pose` (`world_from_base`) and the nearest object in the height band, m; 0 or less in contact,
-    /// infinite without objects. For a single query; for many queries, reuse [`World::obstacles`].
-    ///
-    /// # Errors
-    /// When the pose is not finite.
-    pub fn clearance(&self, footprint: &Footprint, pose: Pose2, band: HeightBand) -> Result<f64, Invalid> {
-        contact::check(pose)?;
-        Ok(self.obstacles(band).clearance(footprint, pose))
-    }
-
-    /// Whether a footprint standing at `pose` (`world_from_base`) touches a solid of the height band.
-    ///
-    /// # Errors
-    /// When the pose is not finite.
-    pub fn collides(&self, footprint: &Footprint, pose: Pose2, band: HeightBand) -> Result<bool, Invalid> {
-        Ok(self.clearance(footprint, pose, band)? <= 0.0)
     }
 }
 

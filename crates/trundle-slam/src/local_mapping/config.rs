@@ -15,7 +15,7 @@ pub struct LocalMappingConfig {
     /// about as many.
     pub local_keyframes: usize,
     /// Number of keyframes that a local bundle adjustment keeps fixed around the moved ones, 0 or more. More hold them more firmly and take longer.
-    /// Default 10.
+    /// Default 10 (ours).
     pub fixed_keyframes: usize,
     /// Number of neighbouring keyframes in which the landmarks of a new keyframe are searched, 0 or more. More find more observations and take longer.
     /// Default 10 \[MurArtal17\].

@@ -24,7 +24,7 @@ pub struct KeyframeConfig {
     /// beyond twice the rotation any frame does. Default 0.35 (20 deg): a third of the image is new.
     pub max_rotation: f64,
     /// Fraction of the features with depth in areas without an expected landmark, 0 to 1, above which a frame becomes a keyframe. Expected
-    /// landmarks count, not found ones: a blurred frame finds few landmarks and would be a bad keyframe. Default 0.25.
+    /// landmarks count, not found ones: a blurred frame finds few landmarks and would be a bad keyframe. Default 0.25 (ours).
     pub new_ratio: f64,
     /// Number of tracked landmarks, 0 or more, below which a frame becomes a keyframe, if twice as many features have a depth. Default 50: tracking is
     /// about to fail.

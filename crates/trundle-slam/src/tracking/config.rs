@@ -22,16 +22,16 @@ pub struct TrackingConfig {
     /// 80: unlike points differ by 128 on average.
     pub window_distance: u32,
     /// Largest quotient of the best and the second-best distance within a window, above 0 to 1. A smaller value drops ambiguous matches.
-    /// Default 0.9.
+    /// Default 0.9 (ours).
     pub window_ratio: f32,
     /// Largest distance of descriptors in a match without a window, bits, 0 to 256. Default 64 (ours).
     pub free_distance: u32,
-    /// Largest quotient of the best and the second-best distance without a window, above 0 to 1. Default 0.8.
+    /// Largest quotient of the best and the second-best distance without a window, above 0 to 1. Default 0.8 (ours).
     pub free_ratio: f32,
     /// Maximum number of landmarks that are searched in one frame, `weak_inliers` or more. Default 4000 (ours).
     pub max_landmarks: usize,
     /// Number of inliers below which a frame is not located, 6 or more. A smaller number locates frames of bare walls, less reliably.
-    /// Default 20.
+    /// Default 20 (ours).
     pub min_inliers: usize,
     /// Number of inliers below which a frame is located weakly, and below which a relocalisation is refused, `min_inliers` or more.
     /// Default 40 (ours).
