@@ -158,7 +158,7 @@ fn csv(trials: &[Trial]) -> String {
     table_csv(header, rows)
 }
 
-const HEADER: [&str; 6] = ["run", "on the way at x, m", "from the side, m", "speed, m/s", "contacts", "end"];
+const HEADER: [&str; 6] = ["run", "on the path at x, m", "from the side, m", "speed, m/s", "contacts", "end"];
 
 fn report(trials: &[Trial], success: bool) -> Report {
     let verdict = if success { Verdict::Ok(verdict(trials)) } else { Verdict::Failed(verdict(trials)) };

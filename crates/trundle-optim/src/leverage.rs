@@ -54,7 +54,11 @@ mod tests {
     fn points_confirmed_by_others_have_full_weight() {
         assert_eq!(bounded(&rows(10)), vec![1.0; 30]);
         assert_eq!(bounded(&[]), Vec::<f64>::new());
-        assert_eq!(bounded(&rows(1)[..1]), vec![1.0], "of what tells no pose nothing is asked");
+        assert_eq!(
+            bounded(&rows(1)[..1]),
+            vec![1.0],
+            "points without information about a pose have full weight"
+        );
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! `trundle slam` on a drive through the dark: all frames get a pose, and what is missing is told.
+//! `trundle slam` on a drive through the dark: all frames get a pose, and missing frames are reported.
 
 use crate::program::{summary, text, trundle};
 use std::fs;

@@ -105,7 +105,7 @@ impl Vehicle {
     ) -> Result<ActionStatus, ErrorReport> {
         let refused = |text: String| ErrorReport::warning("instantActionError", text);
         if self.book.is_active() {
-            return Err(refused("an order is under way: cancel it first".to_owned()));
+            return Err(refused("an order is in execution: cancel it first".to_owned()));
         }
         let (work, mission) = NodeAction::begin(action.clone(), robot).map_err(refused)?;
         self.charging = Some(work);

@@ -36,7 +36,7 @@ fn one_viewer_is_in_control_and_the_other_is_shown_which() {
     assert_eq!(bert.ask(json!({"type": "explore"})).unwrap(), "Anna holds the wheel. Take it over first.");
     let state = std::iter::from_fn(|| Some(bert.wait_for("state"))).find(|state| !state["wheel"].is_null());
     assert_eq!(state.unwrap()["wheel"], json!({"name": "Anna", "is_you": false}));
-    assert_eq!(bert.ask(json!({"type": "stop"})), None, "whoever may drive may stop");
+    assert_eq!(bert.ask(json!({"type": "stop"})), None, "a viewer that may drive may stop");
     assert_eq!(bert.ask(json!({"type": "take_wheel"})), None);
     assert_eq!(bert.ask(json!({"type": "explore"})), None);
     assert!(anna.ask(json!({"type": "explore"})).unwrap().starts_with("Bert holds"));

@@ -6,7 +6,7 @@ use crate::lasting::{hall, mapped, round};
 use trundle_core::{Cell, OccupancyGrid, Pose2, Vector2};
 use trundle_mapping::{MappingPause, ParticleMapper, ScanUpdate};
 
-/// What a run in a given map told.
+/// Reports of a run in a given map.
 #[derive(Default)]
 struct Reports {
     pauses: Vec<MappingPause>,

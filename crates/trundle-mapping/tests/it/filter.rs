@@ -250,7 +250,7 @@ fn a_bare_corridor_is_left_to_the_odometry() {
     let (mapper, done) = run(&room, &poses, &odom, near, 1);
     assert!(done[1..].iter().all(|p| p.degenerate == 1), "{done:?}");
     let along = mapper.pose().x - (odom.last().unwrap().x - odom[0].x);
-    assert!(along.abs() < 0.6, "the way is the odometry's: {along} m");
+    assert!(along.abs() < 0.6, "the path is that of the odometry: {along} m");
     assert!(mapper.pose().y.abs() < 0.06, "across is the walls': {} m", mapper.pose().y);
     let sigma = done.last().unwrap().covariance[(0, 0)].sqrt();
     assert!(sigma > 0.03 && done.last().unwrap().covariance[(1, 1)].sqrt() < 0.03, "{sigma}");
@@ -286,7 +286,7 @@ fn the_live_grid_is_the_best_particles_map_and_says_what_changed() {
                     (corner.col..corner.col + cols).contains(&cell.col)
                         && (corner.row..corner.row + rows).contains(&cell.row)
                 });
-                assert!(prior || at(&grid, p) == at(&old, p), "a change that was not told");
+                assert!(prior || at(&grid, p) == at(&old, p), "a change that was not reported");
             }
         }
     }

@@ -143,7 +143,7 @@ fn every_change_of_the_grid_is_reported() {
                     (corner.col..corner.col + cols).contains(&cell.col)
                         && (corner.row..corner.row + rows).contains(&cell.row)
                 });
-                assert!(!changed || is_told, "scan {i}, {pose:?}: a change that was not told");
+                assert!(!changed || is_told, "scan {i}, {pose:?}: a change that was not reported");
             }
             assert!(
                 reported.len() < g.len() / 4096 || !(20..=79).contains(&i),

@@ -47,7 +47,7 @@ fn a_crossing_person_is_waited_for_or_driven_around() {
     }
 }
 
-/// Under way in a corridor too narrow to go around in.
+/// In motion in a corridor too narrow for a detour.
 #[test]
 fn a_robot_that_moves_stops_for_someone_who_crosses_and_goes_on() {
     let mut grid = hall(12);

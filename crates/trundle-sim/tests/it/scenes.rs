@@ -21,7 +21,7 @@ struct Promise {
     seeds: u64,
     /// Free around a Kobuki at start and goal, m.
     clearance: f64,
-    /// Half of the width of the narrowest way, m.
+    /// Half of the width of the narrowest passage, m.
     length: f64,
     /// Resolution of the true grid, m.
     resolution: f64,

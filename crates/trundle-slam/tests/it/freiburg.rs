@@ -1,4 +1,4 @@
-//! The TUM sequence freiburg1_rpy (Sturm et al. 2012), 400 frames, if it is at hand.
+//! The TUM sequence freiburg1_rpy (Sturm et al. 2012), 400 frames; skipped if the data set is missing.
 
 use crate::align::aligned_rmse;
 use crate::drive::Drive;
@@ -11,7 +11,7 @@ const SEQUENCE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/dat
 
 pub use crate::drive::freiburg1 as camera;
 
-/// The sequence; `None`, and a line about it, if it is not at hand.
+/// The sequence; `None`, with a printed note, if the data set is missing.
 fn sequence() -> Option<Drive> {
     let drive = Path::new(SEQUENCE).exists().then(|| Drive::open(SEQUENCE));
     if drive.is_none() {
@@ -20,7 +20,7 @@ fn sequence() -> Option<Drive> {
     drive
 }
 
-/// The first frames; `None` if the sequence is not at hand.
+/// The first frames; `None` if the data set is missing.
 pub fn frames(max: usize) -> Option<Vec<RgbdImage>> {
     let drive = sequence()?;
     Some((0..max.min(drive.frames.len())).map(|i| drive.image(i)).collect())

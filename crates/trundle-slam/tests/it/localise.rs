@@ -1,4 +1,4 @@
-//! Localise only: the map stays as it is, and the poses in it are those of the mapping run.
+//! Localise only: the map does not change, and the poses equal those of the mapping run.
 
 use crate::room::{Clean, camera, shoot};
 use crate::walks::{dark, turned};
@@ -29,7 +29,7 @@ fn map_of_a_corner() -> RgbdSlam {
     fixed(&mapped(&images, 1), 1)
 }
 
-/// The map of a SLAM, saved and loaded, to be used as it is.
+/// The map of a SLAM, saved and loaded as a fixed map.
 fn fixed(mapped: &RgbdSlam, seed: u64) -> RgbdSlam {
     let config = SlamConfig { seed, ..SlamConfig::default() };
     let mut slam = RgbdSlam::load(&mapped.save(), camera(), config).unwrap().starting_at(Pose3::identity());
@@ -131,5 +131,5 @@ fn a_camera_that_drifted_out_of_view_of_the_map_meets_it_again() {
     }
     println!("{:.3} m off before the map is met, {:.4} m at the end", offs[120], offs[199]);
     assert!(offs[120] > 0.3, "it drifted: {} m", offs[120]);
-    assert!(offs[199] < GOAL_M, "{} m off for good", offs[199]);
+    assert!(offs[199] < GOAL_M, "{} m off at the end", offs[199]);
 }

@@ -1,4 +1,4 @@
-//! Ten laps of one room take no more memory than three, and no time does.
+//! Ten laps of one room take the memory of three laps; memory does not grow with time.
 
 use crate::points::{Dice, Room, camera, darkness, stamp};
 use nalgebra::Vector6;
@@ -9,7 +9,7 @@ use trundle_slam::{RgbdSlam, SlamConfig, Tracking};
 /// Frames of a lap.
 const LAP: usize = 72;
 
-/// Round the room, never twice on quite the same way.
+/// A lap of the room, on a slightly different path each time.
 fn lap(frame: usize, dice: &mut Dice) -> Pose3 {
     let t = frame as f64 / LAP as f64 * TAU;
     let (dx, dz) = (0.05 * (dice.uniform() - 0.5), 0.05 * (dice.uniform() - 0.5));

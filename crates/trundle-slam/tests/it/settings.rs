@@ -1,4 +1,4 @@
-//! Wrong settings are noticed within the first 100 frames, and right ones are not suspected.
+//! Wrong settings are reported within the first 100 frames, and right ones are not.
 
 use crate::freiburg;
 use crate::room::{Clean, camera};
@@ -6,8 +6,8 @@ use nalgebra::Vector6;
 use trundle_core::{ColorImage, DepthImage, Distortion, PinholeCamera, Pose3, RgbdImage, Vector2, Vector3};
 use trundle_slam::{CalibrationIssue, RgbdSlam, SlamConfig};
 
-/// Suspected settings after the first 100 frames of freiburg1_rpy, changed by `change`, as `camera` is said to see them;
-/// `None` if the sequence is not at hand.
+/// Suspected settings after the first 100 frames of freiburg1_rpy, changed by `change`, with `camera` as the given calibration;
+/// `None` if the data set is missing.
 fn suspected(
     camera: PinholeCamera,
     change: impl Fn(RgbdImage) -> RgbdImage,
@@ -30,7 +30,7 @@ fn scaled(image: &RgbdImage, by: f32) -> RgbdImage {
     with_depth(image, DepthImage::from_fn(depth.width(), depth.height(), |x, y| by * depth[(x, y)]))
 }
 
-/// The depth image as the depth camera of a Kinect v1 sees it: 2.5 cm beside the colour camera, with a longer focal length.
+/// The depth image in the view of the depth camera of a Kinect v1: 2.5 cm beside the colour camera, with a longer focal length.
 fn unregistered(image: &RgbdImage) -> RgbdImage {
     let (camera, depth) = (freiburg::camera(), image.depth());
     let mut out = DepthImage::filled(640, 480, 0.0);
@@ -96,8 +96,8 @@ fn colour_and_depth_that_are_not_registered_are_noticed() {
     assert!(found.iter().any(|s| s.to_string().contains("not registered")), "{found:?}");
 }
 
-/// Suspected settings of `reported` after 100 frames of a robot that drives and turns in the rendered room; its wheels say
-/// `wheels` times the way.
+/// Suspected settings of `reported` after 100 frames of a robot that drives and turns in the rendered room; its wheels report
+/// `wheels` times the distance.
 fn suspected_in_the_room(reported: PinholeCamera, wheels: f64) -> Vec<CalibrationIssue> {
     let pose = |i: usize| {
         let turn = 0.5 * (i as f64 * 0.06).sin();

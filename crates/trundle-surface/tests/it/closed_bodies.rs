@@ -35,7 +35,7 @@ fn directed_edges(mesh: &SurfaceMesh) -> HashMap<(u32, u32), usize> {
     edges
 }
 
-/// Each edge leads as often one way as the other: the surface has no border, and neighbours face the same side.
+/// Each edge has two opposite directions: the surface has no border, and neighbours face the same side.
 fn assert_closed(mesh: &SurfaceMesh) {
     let edges = directed_edges(mesh);
     for ((from, to), count) in &edges {
