@@ -12,10 +12,10 @@ fn a_link_for_viewing_does_not_drive() {
     let mut viewer = Browser::enter(&run, Access::View, "viewer");
     for kind in ["explore", "return", "dock", "stop", "pause", "continue", "take_wheel"] {
         let refusal = viewer.ask(json!({"type": kind})).unwrap();
-        assert!(refusal.contains("only looks"), "{kind}: {refusal}");
+        assert!(refusal.contains("for viewing only"), "{kind}: {refusal}");
     }
     viewer.send(&json!({"type": "drive", "v": 1.0, "omega": 0.0}));
-    assert!(viewer.wait_for("refused")["refusal"].as_str().unwrap().contains("only looks"));
+    assert!(viewer.wait_for("refused")["refusal"].as_str().unwrap().contains("for viewing only"));
     assert!(viewer.wait_for("state")["wheel"].is_null());
 }
 
