@@ -186,7 +186,7 @@ impl fmt::Display for Reason {
             Self::PoseUncertain { sigma } => write!(f, "position uncertain: standard deviation {sigma:.2} m"),
             Self::ArrivalUncertain { bound, allowed } => uncertain_arrival(f, *bound, *allowed),
             Self::ArrivalContradicted => f.write_str(
-                "arrived, but not sure: two scans contradicted the odometry, and no image has confirmed the pose since",
+                "arrived, but the pose is uncertain: two scans contradicted the odometry, and no image has confirmed the pose since",
             ),
             Self::WheelsUnresponsive { sigma } => write!(
                 f,

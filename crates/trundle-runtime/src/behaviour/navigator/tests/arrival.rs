@@ -105,7 +105,7 @@ fn a_contradicted_pose_is_no_arrival_until_it_is_confirmed() {
     assert_eq!(kind(&base), Some(ReasonKind::ArrivalUncertain));
     let text = base.navigator.state().to_string();
     assert!(
-        text.starts_with("stopped: arrived, but not sure: two scans contradicted the odometry"),
+        text.starts_with("stopped: arrived, but the pose is uncertain: two scans contradicted the odometry"),
         "{text}"
     );
 
