@@ -8,7 +8,7 @@ use thiserror::Error;
 pub struct Invalid {
     /// The field or argument, as the user wrote it.
     pub field: String,
-    /// The value met.
+    /// The refused value.
     pub value: String,
     /// Unit of the value; empty without a unit.
     pub unit: &'static str,
