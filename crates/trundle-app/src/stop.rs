@@ -61,7 +61,13 @@ pub fn is_requested(done: impl FnOnce() -> String) -> bool {
 #[must_use]
 pub fn stopped() -> Option<(StopSignal, String)> {
     let done = STOPPED_AFTER.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
-    Some((StopSignal(SIGNAL.load(Ordering::Relaxed)), done))
+    Some((received()?, done))
+}
+
+/// The signal, whether or not it ended a loop.
+#[must_use]
+pub fn received() -> Option<StopSignal> {
+    Some(SIGNAL.load(Ordering::Relaxed)).filter(|number| *number != 0).map(StopSignal)
 }
 
 /// Notes in the summary of `folder` that the user ended the work, if a signal has.

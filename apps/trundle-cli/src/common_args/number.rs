@@ -26,6 +26,11 @@ impl NumberArg {
         Self(NumberText::new(unit, NumberRange::AboveZero))
     }
 
+    /// From `low` to `high` in `unit`.
+    pub const fn within(low: f64, high: f64, unit: &'static str) -> Self {
+        Self(NumberText::new(unit, NumberRange::Within(low, high)))
+    }
+
     /// Above 0 in `unit`, `limit` at most.
     pub const fn up_to(limit: f64, unit: &'static str) -> Self {
         Self(NumberText::new(unit, NumberRange::UpTo(limit)))

@@ -65,7 +65,7 @@ pub fn no_return_cause(log: &LaserLog) -> String {
     }
     if log.bad_ranges > 0 {
         return format!(
-            "no beam of any scan met anything: {} ranges are zero, negative, not a number, or below the laser's least range",
+            "no beam of any scan met anything: {} ranges are negative, zero, infinite, not a number or below the laser's least range",
             log.bad_ranges
         );
     }
