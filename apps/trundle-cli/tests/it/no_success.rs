@@ -47,7 +47,10 @@ fn a_long_log_in_millimetres_fails_after_a_few_scans() {
     assert_eq!(run.status.code(), Some(1), "{said}");
     assert!(said.contains("10 of 11 scans do not overlap") && said.contains("millimetres?"), "{said}");
     let summary = std::fs::read_to_string(out.join("summary.json")).unwrap();
-    assert!(summary.contains("\"success\": false") && !summary.contains("\"interrupted\": true"), "{summary}");
+    assert!(
+        summary.contains("\"success\": false") && !summary.contains("\"interrupted\": true"),
+        "{summary}"
+    );
 }
 
 #[test]

@@ -227,18 +227,23 @@ mod tests {
     /// A simulated drive along a curve in a room of 6 x 4 m with a box; the laser is mounted as `truth` and its log claims an upright laser
     /// at heading 0.
     fn drive(truth: LaserMount) -> LaserLog {
+        drive_with(truth, 60, TAU / 90.0)
+    }
+
+    /// The same drive with `beams` beams, `step` apart \[rad\].
+    fn drive_with(truth: LaserMount, beams: i32, step: f64) -> LaserLog {
         let scans = (0..36).map(|i| {
             let at = f64::from(i) * 0.17;
             let odom_from_base = Pose2::new(2.0 + at.sin(), 1.5 + 0.6 * (1.0 - at.cos()), at);
             let hand = if truth.upside_down { -1.0 } else { 1.0 };
             let beam = |k: i32| {
-                let angle = f64::from(k) * TAU / 90.0 - 2.0;
+                let angle = f64::from(k) * step - 2.0;
                 let heading = odom_from_base.theta + truth.turn + hand * angle;
                 Beam::Hit { range: range(odom_from_base.position(), heading) }
             };
-            let beams: Vec<Beam> = (0..60).map(beam).collect();
+            let beams: Vec<Beam> = (0..beams).map(beam).collect();
             let stamp = Stamp::from_nanos(i64::from(i) * 100_000_000);
-            let scan = Scan::new(stamp, Vector2::zeros(), -2.0, TAU / 90.0, beams).unwrap();
+            let scan = Scan::new(stamp, Vector2::zeros(), -2.0, step, beams).unwrap();
             LaserLogScan { odom_from_base, scan }
         });
         LaserLog { scans: scans.collect(), ..LaserLog::default() }
@@ -281,6 +286,26 @@ mod tests {
             assert_eq!(found.upside_down, upside_down, "{truth:?}: {found:?}");
             let error = wrap_angle(found.turn - truth.turn).abs();
             assert!(error < 2.0_f64.to_radians(), "{truth:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn beams_far_apart_hide_no_turn() {
+        for step_deg in [5.0_f64, 8.0] {
+            let beams = (230.0 / step_deg) as i32;
+            let log = |degrees: f64| {
+                let truth = LaserMount { turn: degrees.to_radians(), upside_down: false };
+                drive_with(truth, beams, step_deg.to_radians())
+            };
+            assert_eq!(better_mount(&log(0.0)), None, "{step_deg}");
+            for degrees in [30.0_f64, -30.0, 45.0, 120.0] {
+                let found = better_mount(&log(degrees)).unwrap();
+                let error = wrap_angle(found.turn - degrees.to_radians()).abs();
+                assert!(
+                    error < 3.0_f64.to_radians() && !found.upside_down,
+                    "{step_deg}, {degrees}: {found:?}"
+                );
+            }
         }
     }
 

@@ -29,8 +29,8 @@ impl CameraFields {
     }
 }
 
-/// Smallest and largest focal length, of the image's side \[1\]: fields of view of 157 and 6 degrees. Source: ours.
-const FOCAL_SHARES: [f64; 2] = [0.1, 10.0];
+/// Smallest and largest focal length, of the image's side \[1\]: fields of view of 160 and 3 degrees. Source: ours.
+const FOCAL_SHARES: [f64; 2] = [0.09, 20.0];
 
 /// Refuses a focal length that no rectified camera has: it is in mm, or in widths of the image.
 fn require_focal(name: &str, value: f64, side: usize) -> Result<(), Invalid> {
