@@ -162,7 +162,7 @@ mod tests {
         );
         let problem = camera(&ORB_SLAM.replace("525.0", "0.82")).unwrap_err();
         assert!(
-            problem.starts_with("FILE, line 4: Camera.fx is 0.82 px, expected 57.6 to 12800 px"),
+            problem.starts_with("FILE, line 4: Camera.fx is 0.82 px, expected 58 to 12800 px"),
             "{problem}"
         );
         assert!(camera("{\"intrinsic_matrix\": [1]}").unwrap_err().contains("expected width, height"));

@@ -38,7 +38,7 @@ fn require_focal(name: &str, value: f64, side: usize) -> Result<(), Invalid> {
     if (low..=high).contains(&value) {
         return Ok(());
     }
-    let expected = format!("{low} to {high} px for images of {side} px: is it in pixels?");
+    let expected = format!("{low:.0} to {high:.0} px for images of {side} px: is it in pixels?");
     Err(Invalid::new(name, value, "px", expected))
 }
 
