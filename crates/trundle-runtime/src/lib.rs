@@ -17,6 +17,7 @@ mod level_map;
 mod mission;
 mod monitors;
 mod operator;
+mod pose_status;
 mod range_source;
 pub mod real_time;
 mod reason;

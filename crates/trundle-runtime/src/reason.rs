@@ -63,6 +63,8 @@ pub enum Reason {
         /// Largest bound that the goal allows.
         allowed: PoseBound,
     },
+    /// The robot is at its goal by its estimate, but scans contradict the odometry on the way, and nothing has confirmed the pose since.
+    ArrivalContradicted,
     /// The position is too uncertain, and the wheels do not respond to commands.
     WheelsUnresponsive {
         /// Standard deviation of the position \[m\].
@@ -147,7 +149,7 @@ impl Reason {
             Self::NoPath { cause, .. } => ReasonKind::of_no_path(cause),
             Self::PoseUnknown => ReasonKind::PoseUnknown,
             Self::PoseUncertain { .. } => ReasonKind::PoseUncertain,
-            Self::ArrivalUncertain { .. } => ReasonKind::ArrivalUncertain,
+            Self::ArrivalUncertain { .. } | Self::ArrivalContradicted => ReasonKind::ArrivalUncertain,
             Self::WheelsUnresponsive { .. } => ReasonKind::WheelsUnresponsive,
             Self::RepeatedContact { .. } => ReasonKind::RepeatedContact,
             Self::NoSightOnPath => ReasonKind::NoSightOnPath,
@@ -183,6 +185,9 @@ impl fmt::Display for Reason {
             }
             Self::PoseUncertain { sigma } => write!(f, "position uncertain: standard deviation {sigma:.2} m"),
             Self::ArrivalUncertain { bound, allowed } => uncertain_arrival(f, *bound, *allowed),
+            Self::ArrivalContradicted => f.write_str(
+                "arrived, but not sure: two scans contradicted the odometry, and no image has confirmed the pose since",
+            ),
             Self::WheelsUnresponsive { sigma } => write!(
                 f,
                 "position uncertain, standard deviation {sigma:.2} m: {}",

@@ -269,6 +269,7 @@ impl Robot {
         let world = WorldState {
             now,
             estimate: self.localizer.estimate(),
+            pose_status: self.pose_status(now),
             grid: self.mapping.grid(),
             scan: self.latest.scan_with_odometry(),
             seen: self.latest.camera_health.seen(),
@@ -331,9 +332,7 @@ impl Robot {
 
     /// Whether the pose is known well enough for scans to enter the grid.
     fn is_pose_known(&self, now: Stamp) -> bool {
-        !self.latest.pose_monitor.is_doubtful(now)
-            && !self.latest.body.is_lifted()
-            && self.localizer.estimate().position_sigma() < self.lost_sigma
+        self.pose_status(now).allows_mapping()
     }
 
     /// Odometry at the stamp of an image, which may be older than the newest reading. Long after the newest reading, the result is that

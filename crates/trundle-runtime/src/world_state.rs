@@ -1,5 +1,6 @@
 //! The world state, input of a decision: by reference, and as a copy for a decision job.
 
+use crate::pose_status::PoseStatus;
 use crate::zones::{ZoneMasks, ZoneView};
 use std::sync::Arc;
 use trundle_control::{MotionHold, MotionSense, SafetyScan};
@@ -12,6 +13,7 @@ use trundle_planning::MovingObstacle;
 pub(crate) struct WorldState<'a> {
     pub(crate) now: Stamp,
     pub(crate) estimate: PoseEstimate,
+    pub(crate) pose_status: PoseStatus,
     pub(crate) grid: &'a OccupancyGrid,
     /// The newest scan, with the odometry since its stamp.
     pub(crate) scan: Option<SafetyScan<'a>>,
@@ -69,6 +71,7 @@ impl<'a> WorldState<'a> {
 pub(crate) struct OwnedWorldState {
     now: Stamp,
     estimate: PoseEstimate,
+    pose_status: PoseStatus,
     grid: OccupancyGrid,
     /// The last scan, with `odom_from_base` at the scan and now.
     scan: Option<(Scan, Pose2, Pose2)>,
@@ -90,6 +93,7 @@ impl From<&WorldState<'_>> for OwnedWorldState {
         Self {
             now: s.now,
             estimate: s.estimate,
+            pose_status: s.pose_status,
             grid: s.grid.clone(),
             scan: s.scan.map(|seen| (seen.scan.clone(), seen.odom_at_scan, seen.odom_now)),
             seen: s.seen,
@@ -116,6 +120,7 @@ impl OwnedWorldState {
         WorldState {
             now: self.now,
             estimate: self.estimate,
+            pose_status: self.pose_status,
             grid: &self.grid,
             scan: scan.map(|(scan, odom_at_scan, odom_now)| SafetyScan {
                 scan,
@@ -144,7 +149,11 @@ impl OwnedWorldState {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pose_status::PoseCertainty;
     use trundle_core::{Beam, CellIndex, Twist2};
+
+    const KNOWN: PoseStatus =
+        PoseStatus { certainty: PoseCertainty::Known, is_contradicted: true, is_doubtful: false };
 
     fn estimate() -> PoseEstimate {
         let (pose, covariance) = (Pose2::new(1.0, 2.0, 0.3), nalgebra::Matrix3::identity());
@@ -163,6 +172,7 @@ mod tests {
         let original = WorldState {
             now: Stamp::from_nanos(9),
             estimate: estimate(),
+            pose_status: KNOWN,
             grid: &grid,
             scan: Some(SafetyScan {
                 scan: &scan,
@@ -184,6 +194,7 @@ mod tests {
         let owned = OwnedWorldState::from(&original);
         let copy = owned.as_world_state();
         assert_eq!((copy.now, copy.estimate, copy.grid), (original.now, original.estimate, original.grid));
+        assert_eq!(copy.pose_status, KNOWN);
         assert_eq!(
             (copy.seen, copy.motion, copy.wheels, copy.hold),
             (original.seen, original.motion, original.wheels, original.hold)

@@ -121,8 +121,8 @@ impl VisualFrame {
         let to_base = adjoint(&pose.inverse());
         let anchor_covariance = to_base * anchor.covariance * to_base.transpose();
         let noise = (config.visual_noise() + own) * factor + out_of_plane(&map_from_base) + anchor_covariance;
-        let (prior_inflation, variance_floor) = (Matrix3::zeros(), anchor_covariance.diagonal());
-        let scale_error = Vector3::zeros();
+        let (prior_inflation, scale_error) = (Matrix3::zeros(), Vector3::zeros());
+        let variance_floor = (anchor_covariance + own).diagonal();
         Some(Measurement { pose, noise: symmetric(noise), prior_inflation, variance_floor, scale_error })
     }
 
@@ -131,12 +131,12 @@ impl VisualFrame {
     /// the anchor does not change.
     pub(crate) fn refine(&mut self, before: &Belief, measurement: &Measurement) {
         let Some(anchor) = self.anchors.get_mut(&self.current) else { return };
-        let anchor_variance = measurement.variance_floor.xy().max();
+        let to_base = adjoint(&measurement.pose.inverse());
+        let anchor_variance = (to_base * anchor.covariance * to_base.transpose()).diagonal().xy().max();
         if before.position_variance() > MAX_VARIANCE_RATIO * anchor_variance || anchor_variance == 0.0 {
             return;
         }
         let (innovation, _) = before.innovation(measurement);
-        let to_base = adjoint(&measurement.pose.inverse());
         let Some(spread) = symmetric(before.covariance() + measurement.noise).cholesky() else { return };
         let gain = anchor.covariance * to_base.transpose() * spread.inverse();
         // An anchor with an error ahead gives measured poses the same error.

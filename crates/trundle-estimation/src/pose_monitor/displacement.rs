@@ -160,6 +160,11 @@ impl DisplacementMonitor {
         self.evidence.is_some()
     }
 
+    /// Whether two successive scans contradict the odometry.
+    pub(crate) fn is_certain(&self) -> bool {
+        self.evidence.is_some_and(|evidence| evidence.is_certain)
+    }
+
     /// Whether, after evidence of displacement, images with enough features are not located for a short time.
     pub(crate) fn is_doubtful(&self, now: Stamp) -> bool {
         self.unlocated_since().is_some_and(|since| now - since > DOUBTFUL_AFTER_S)
@@ -170,7 +175,8 @@ impl DisplacementMonitor {
         Some(self.unlocated?.max(self.evidence?.since))
     }
 
-    fn settle(&mut self) {
+    /// Ends all evidence: the pose is confirmed.
+    pub(crate) fn settle(&mut self) {
         (self.evidence, self.unlocated, self.searched) = (None, None, None);
         self.continuity.settle();
     }

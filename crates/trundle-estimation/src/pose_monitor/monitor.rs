@@ -1,6 +1,7 @@
 //! The pose monitor: decides the use of visual poses, and detects a displacement of the robot.
 
 use crate::fusion::correction::VisualPose;
+use crate::odometry::state::OdometryState;
 use crate::pose_monitor::displacement::{DisplacementMonitor, ImageEvidence, VisualUse};
 use crate::pose_monitor::recent_scans::RecentScans;
 use crate::pose_monitor::visual_jump::{Drift, PoseBelief, VisualJump};
@@ -17,7 +18,8 @@ use trundle_core::{OccupancyGrid, Pose2, Pose3, Scan, Stamp};
 /// 3. Is a recognised place a look-alike? Evidence: the visual pose is away from the estimate, and the scans of the last seconds fit the
 ///    map worse there.
 ///
-/// After a displacement, a visual pose anywhere is accepted. Otherwise odometry and scans determine the pose. Cost: one comparison of two
+/// After a displacement, a visual pose anywhere is accepted unless the scans fit the pose by the odometry far better: people near the robot
+/// can break the sequence of scans, too. Otherwise odometry and scans determine the pose. Cost: one comparison of two
 /// scans per image; for a visual pose away from the estimate, one ray per 5 deg of twelve scans.
 #[derive(Debug, Clone, Default)]
 pub struct PoseMonitor {
@@ -32,6 +34,12 @@ pub struct PoseMonitor {
 /// scans in a comparison.
 const WRONG_ODOMETRY_S: f64 = 20.0;
 
+/// Log-likelihood ratio of the scans, against ranges at random, above which they confirm a pose \[nats\]. Source: ours, 400 to 1.
+const CONFIRMED_NATS: f64 = 6.0;
+
+/// Number of scans from different poses that end the evidence of a displacement. Source: ours, a turn by 30 deg or 1 m.
+const CONFIRMING_SCANS: usize = 4;
+
 /// A visual pose with the evidence for its verdict.
 #[derive(Debug, Clone, Copy)]
 pub struct VisualEvidence<'a> {
@@ -45,6 +53,8 @@ pub struct VisualEvidence<'a> {
     pub found: Option<Pose2>,
     /// Pose by the odometry at the image.
     pub odom_from_base: Pose2,
+    /// The odometry at the image, with its covariance; `None` if the image is too old.
+    pub odometry: Option<OdometryState>,
     /// Whether wheels and gyro measure no motion.
     pub is_still: bool,
     /// The scan of the image's depth.
@@ -85,29 +95,32 @@ impl PoseMonitor {
 
     /// The use of a visual pose.
     pub fn judge(&mut self, evidence: &VisualEvidence<'_>) -> VisualVerdict {
-        let unchecked = match self.displacement.visual_use(evidence.visual.recognised) {
-            VisualUse::Checked => None,
-            VisualUse::Anywhere => Some(VisualVerdict::Accepted),
-            VisualUse::Nothing => Some(VisualVerdict::Ignored),
-        };
-        if let Some(verdict) = unchecked {
+        let visual_use = self.displacement.visual_use(evidence.visual.recognised);
+        let motion = if visual_use == VisualUse::Checked {
+            self.motion_of(evidence)
+        } else {
             self.motion.restart();
-            return verdict;
-        }
-        match self.motion_of(evidence) {
-            VisualMotion::Own => {}
-            VisualMotion::OwnAgainstWheels => {
+            VisualMotion::Own
+        };
+        match (visual_use, motion) {
+            (VisualUse::Nothing, _) | (_, VisualMotion::Other) => return VisualVerdict::Ignored,
+            (_, VisualMotion::FrameMoved) => return VisualVerdict::FrameMoved,
+            (_, VisualMotion::OwnAgainstWheels) => {
                 self.wrong_odometry = Some(evidence.visual.stamp);
                 self.recent.restart(evidence.odom_from_base, evidence.scan);
             }
-            VisualMotion::Other => return VisualVerdict::Ignored,
-            VisualMotion::FrameMoved => return VisualVerdict::FrameMoved,
+            (_, VisualMotion::Own) => {}
         }
         let VisualEvidence { visual, found, belief, grid, odom_from_base, .. } = *evidence;
         let Some((found, belief)) = found.zip(belief) else { return VisualVerdict::Accepted };
         let is_odometry_wrong =
             self.wrong_odometry.is_some_and(|since| visual.stamp - since <= WRONG_ODOMETRY_S);
-        let drift = Drift { belief, is_odometry_wrong };
+        let drift = Drift {
+            belief,
+            is_odometry_wrong,
+            is_displaced: visual_use == VisualUse::Anywhere,
+            is_corrected: visual.recognised || evidence.is_corrected,
+        };
         match VisualJump::judge(&drift, found, odom_from_base, (&self.recent, grid)) {
             VisualJump::Allowed => VisualVerdict::Accepted,
             VisualJump::Refused if visual.recognised && !evidence.is_corrected => {
@@ -127,9 +140,34 @@ impl PoseMonitor {
         self.displacement.localized_by_scans();
     }
 
+    /// Whether the scans since the last evidence of a displacement fit the map at `map_from_base`, with the odometry at `odom_from_base`. A
+    /// person who steps in front of the camera breaks the sequence of scans; the parts of the view beside the person then fit the pose.
+    pub fn is_confirmed_by_scans(
+        &self,
+        grid: &OccupancyGrid,
+        map_from_base: Pose2,
+        odom_from_base: Pose2,
+    ) -> bool {
+        self.recent.log_likelihood(grid, map_from_base, odom_from_base) > CONFIRMED_NATS
+    }
+
+    /// Ends the evidence of a displacement if the scans since then, from several poses, fit the map at `map_from_base`, with the odometry at
+    /// `odom_from_base`.
+    pub fn confirm_by_scans(&mut self, grid: &OccupancyGrid, map_from_base: Pose2, odom_from_base: Pose2) {
+        let nats = self.recent.log_likelihood(grid, map_from_base, odom_from_base);
+        if self.recent.len() >= CONFIRMING_SCANS && nats > CONFIRMING_SCANS as f64 * CONFIRMED_NATS {
+            self.displacement.settle();
+        }
+    }
+
     /// Whether there is evidence that the robot was carried away.
     pub fn is_displaced(&self) -> bool {
         self.displacement.is_displaced()
+    }
+
+    /// Whether two scans contradict the odometry, and neither an image nor a scan has confirmed the pose since.
+    pub fn is_contradicted(&self) -> bool {
+        self.displacement.is_certain()
     }
 
     /// Whether the robot may be displaced, by images of a short time. Mapping then pauses.
@@ -139,16 +177,68 @@ impl PoseMonitor {
 
     /// Verdict on the motion by images. A recognition interrupts the motion.
     fn motion_of(&mut self, evidence: &VisualEvidence<'_>) -> VisualMotion {
-        let VisualEvidence { visual, visual_from_base, odom_from_base, is_still, scan, .. } = *evidence;
+        let VisualEvidence { visual, visual_from_base, odometry, is_still, scan, .. } = *evidence;
         if visual.recognised {
-            self.motion.restart();
+            self.motion.interrupt();
         }
-        let Some(scan) = scan else { return VisualMotion::Own };
-        let odometry = MeasuredMotion { odom_from_base, is_still };
-        let motion = self.motion.add((visual.map, visual_from_base), odometry, scan);
+        let Some((scan, odometry)) = scan.zip(odometry) else { return VisualMotion::Own };
+        let measured = MeasuredMotion { odometry, is_still };
+        let motion = self.motion.add((visual.map, visual_from_base), measured, scan);
         if motion == VisualMotion::FrameMoved {
             self.motion.restart();
         }
         motion
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pose_monitor::testing::Room;
+    use trundle_core::Vector2;
+
+    const START: Pose2 = Pose2 { x: -0.6, y: 0.2, theta: 0.3 };
+
+    /// A monitor after a sudden other view at the second scan, a turn by 75 deg and `turns` turns by 15 deg each; the scans after the first
+    /// are those of a robot that is `off` away from its odometry. With it, the odometry.
+    fn contradicted(off: Pose2, turns: u32) -> (PoseMonitor, Pose2) {
+        let room = Room::with_corner_box();
+        let mut monitor = PoseMonitor::default();
+        monitor.add_scan(START, &room.scan(START, 0.0));
+        let person = room.clone().with_person(START.transform(Vector2::new(0.5, 0.0)));
+        let mut odom = START;
+        for i in 0..=turns {
+            let angle = if i == 0 { 0.0 } else { 1.3 + 0.26 * f64::from(i) };
+            odom = START * Pose2::new(0.0, 0.0, angle);
+            let seen = if off == Pose2::IDENTITY && i == 0 { &person } else { &room };
+            let at = (START * off) * (START.inverse() * odom);
+            monitor.add_scan(odom, &seen.scan(at, 0.1 * f64::from(i + 1)));
+        }
+        (monitor, odom)
+    }
+
+    #[test]
+    fn a_person_before_the_camera_contradicts_the_pose_until_scans_from_several_poses_confirm_it() {
+        let map = Room::with_corner_box().map();
+        for (turns, is_contradicted) in [(0, true), (2, true), (5, false)] {
+            let (mut monitor, odom) = contradicted(Pose2::IDENTITY, turns);
+            monitor.confirm_by_scans(&map, odom, odom);
+            assert_eq!(monitor.is_contradicted(), is_contradicted, "{turns} turns");
+        }
+    }
+
+    #[test]
+    fn scans_of_a_robot_that_was_carried_do_not_confirm_the_pose_by_its_odometry() {
+        let map = Room::with_corner_box().map();
+        for off in [Pose2::new(0.9, 0.4, 0.6), Pose2::new(0.4, -0.6, -1.2)] {
+            let (mut monitor, odom) = contradicted(off, 8);
+            assert!(monitor.is_contradicted(), "{off:?}");
+            assert!(!monitor.is_confirmed_by_scans(&map, odom, odom), "{off:?}");
+            monitor.confirm_by_scans(&map, odom, odom);
+            assert!(monitor.is_contradicted(), "{off:?}");
+            let truth = (START * off) * (START.inverse() * odom);
+            monitor.confirm_by_scans(&map, truth, odom);
+            assert!(!monitor.is_contradicted(), "the true pose: {off:?}");
+        }
     }
 }

@@ -42,6 +42,11 @@ impl RecentScans {
         self.0.extend(scan.map(|scan| (odom_from_base, scan.clone())));
     }
 
+    /// Number of scans.
+    pub(crate) fn len(&self) -> usize {
+        self.0.len()
+    }
+
     /// Log-likelihood of the scans for a robot at `map_from_base`, with the odometry at `odom_from_base` \[nats\].
     pub(crate) fn log_likelihood(
         &self,

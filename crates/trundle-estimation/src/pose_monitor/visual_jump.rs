@@ -12,8 +12,6 @@ pub struct PoseBelief {
     pub position_sigma: f64,
     /// Standard deviation of the heading, rad.
     pub heading_sigma: f64,
-    /// Whether the estimate is too uncertain for a comparison of scans with the map.
-    pub is_lost: bool,
 }
 
 /// Possible drift of the estimate.
@@ -23,6 +21,10 @@ pub(crate) struct Drift {
     pub(crate) belief: PoseBelief,
     /// Whether wheels or gyro were wrong recently: the drift may exceed the standard deviations.
     pub(crate) is_odometry_wrong: bool,
+    /// Whether there is certain evidence that the robot was carried away: any distance is possible.
+    pub(crate) is_displaced: bool,
+    /// Whether the visual map was corrected at this image: its frame may have moved by any distance.
+    pub(crate) is_corrected: bool,
 }
 
 /// Verdict on a visual pose.
@@ -55,7 +57,7 @@ impl VisualJump {
         odom_from_base: Pose2,
         scans: (&RecentScans, &OccupancyGrid),
     ) -> Self {
-        let Drift { belief, is_odometry_wrong } = drift;
+        let Drift { belief, is_odometry_wrong, is_displaced, is_corrected } = drift;
         let off = belief.pose.inverse() * found;
         let is_within =
             |distance: f64, turn: f64| off.position().norm() <= distance && off.theta.abs() <= turn;
@@ -64,13 +66,14 @@ impl VisualJump {
             (DRIFT_SIGMAS * belief.position_sigma, DRIFT_SIGMAS * belief.heading_sigma);
         let is_likely = is_within(drift_m, drift_rad);
         let is_drift = is_within(drift_m.max(DRIFT_M), drift_rad.max(DRIFT_RAD));
-        if is_near || is_drift && belief.is_lost {
+        if is_near && (is_likely || !is_corrected) {
             return Self::Allowed;
         }
         let (recent, grid) = scans;
         let nats_at = |pose: Pose2| recent.log_likelihood(grid, pose, odom_from_base);
         let nats = nats_at(found) - nats_at(belief.pose);
-        let needed = match (is_likely || is_drift && *is_odometry_wrong, is_drift) {
+        let is_possible = is_likely || *is_displaced || is_drift && *is_odometry_wrong;
+        let needed = match (is_possible, is_drift) {
             (true, _) => -DECISIVE_NATS,
             (false, true) => 0.0,
             (false, false) => DECISIVE_NATS,
@@ -86,12 +89,8 @@ mod tests {
     use std::f64::consts::PI;
     use trundle_core::Vector2;
 
-    const BELIEF: PoseBelief = PoseBelief {
-        pose: Pose2 { x: -0.6, y: 0.2, theta: 0.3 },
-        position_sigma: 0.02,
-        heading_sigma: 0.01,
-        is_lost: false,
-    };
+    const BELIEF: PoseBelief =
+        PoseBelief { pose: Pose2 { x: -0.6, y: 0.2, theta: 0.3 }, position_sigma: 0.02, heading_sigma: 0.01 };
 
     /// The verdict after scans of a room during a turn by 40 deg.
     fn verdict(belief: &PoseBelief, map: &Room, (room, truth): (&Room, Pose2), found: Pose2) -> VisualJump {
@@ -100,7 +99,8 @@ mod tests {
             let odom_from_base = Pose2::new(0.0, 0.0, 0.175 * (f64::from(i) - 4.0));
             recent.add(odom_from_base, &room.scan(truth * odom_from_base, f64::from(i)));
         }
-        let drift = Drift { belief: *belief, is_odometry_wrong: false };
+        let drift =
+            Drift { belief: *belief, is_odometry_wrong: false, is_displaced: false, is_corrected: false };
         VisualJump::judge(&drift, found, Pose2::IDENTITY, (&recent, &map.map()))
     }
 
@@ -135,8 +135,7 @@ mod tests {
     fn a_robot_that_knows_nothing_of_its_pose_is_located_anywhere_and_a_lost_one_nearby() {
         let room = Room::default();
         let far = BELIEF.pose * Pose2::new(1.5, 0.4, 0.5);
-        let lost =
-            |sigma| PoseBelief { position_sigma: sigma, heading_sigma: sigma, is_lost: true, ..BELIEF };
+        let lost = |sigma| PoseBelief { position_sigma: sigma, heading_sigma: sigma, ..BELIEF };
         assert_eq!(verdict(&lost(100.0), &room, (&room, far), far), VisualJump::Allowed);
         let look_alike = Pose2::new(0.0, 0.0, PI) * BELIEF.pose;
         assert_eq!(verdict(&lost(0.4), &room, (&room, BELIEF.pose), look_alike), VisualJump::Refused);
@@ -149,7 +148,7 @@ mod tests {
         let judge = |is_odometry_wrong, scan_of: Pose2| {
             let mut recent = RecentScans::default();
             recent.add(Pose2::IDENTITY, &room.scan(scan_of, 0.0));
-            let drift = Drift { belief: BELIEF, is_odometry_wrong };
+            let drift = Drift { belief: BELIEF, is_odometry_wrong, is_displaced: false, is_corrected: false };
             VisualJump::judge(&drift, step, Pose2::IDENTITY, (&recent, &room.map()))
         };
         // A scan between both poses, slightly nearer to the estimate: worse at the visual pose, but not decisively.
@@ -157,5 +156,46 @@ mod tests {
         assert_eq!(judge(false, between), VisualJump::Refused);
         assert_eq!(judge(true, between), VisualJump::Allowed);
         assert_eq!(judge(false, step), VisualJump::Allowed, "the scan is that of the step");
+    }
+
+    #[test]
+    fn a_recognised_place_far_from_a_displaced_robot_is_refused_only_where_the_scans_fit_the_odometry_far_better()
+     {
+        let room = Room::with_corner_box();
+        let far = BELIEF.pose * Pose2::new(1.3, 0.3, 2.0);
+        for (sigma, scan_of, expected) in [
+            (0.02, BELIEF.pose, VisualJump::Refused),
+            (100.0, BELIEF.pose, VisualJump::Refused),
+            (0.02, far, VisualJump::Allowed),
+            (100.0, far, VisualJump::Allowed),
+        ] {
+            let mut recent = RecentScans::default();
+            recent.add(Pose2::IDENTITY, &room.scan(scan_of, 0.0));
+            let belief = PoseBelief { position_sigma: sigma, heading_sigma: sigma, ..BELIEF };
+            let drift = Drift { belief, is_odometry_wrong: false, is_displaced: true, is_corrected: true };
+            let verdict = VisualJump::judge(&drift, far, Pose2::IDENTITY, (&recent, &room.map()));
+            assert_eq!(verdict, expected, "{sigma} {scan_of:?}");
+        }
+    }
+
+    #[test]
+    fn a_near_pose_after_a_correction_of_the_visual_map_is_refused_where_the_scans_fit_the_estimate() {
+        let room = Room::with_corner_box();
+        let judge = |is_corrected, off: Pose2, scan_of: Pose2| {
+            let mut recent = RecentScans::default();
+            recent.add(Pose2::IDENTITY, &room.scan(scan_of, 0.0));
+            let drift = Drift { belief: BELIEF, is_odometry_wrong: false, is_displaced: false, is_corrected };
+            VisualJump::judge(&drift, BELIEF.pose * off, Pose2::IDENTITY, (&recent, &room.map()))
+        };
+        let pulled = Pose2::new(0.08, 0.08, 0.05);
+        assert_eq!(judge(false, pulled, BELIEF.pose), VisualJump::Allowed);
+        assert_eq!(judge(true, pulled, BELIEF.pose), VisualJump::Refused);
+        assert_eq!(
+            judge(true, pulled, BELIEF.pose * pulled),
+            VisualJump::Allowed,
+            "the scan is that of the step"
+        );
+        let within = Pose2::new(0.03, 0.03, 0.02);
+        assert_eq!(judge(true, within, BELIEF.pose), VisualJump::Allowed, "within three sigma");
     }
 }

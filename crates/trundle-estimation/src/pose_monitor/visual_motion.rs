@@ -1,5 +1,6 @@
 //! Detection of images that follow a moving object, such as a person who fills the view.
 
+use crate::odometry::state::OdometryState;
 use crate::pose_monitor::scan_continuity::mean_residual;
 use std::collections::VecDeque;
 use trundle_core::{Pose2, Pose3, Scan, Stamp};
@@ -22,15 +23,15 @@ pub(crate) struct VisualMotionMonitor {
 struct Moment {
     stamp: Stamp,
     visual_from_base: Pose3,
-    odom_from_base: Pose2,
+    odometry: OdometryState,
     scan: Scan,
 }
 
 /// The motion by wheels and gyro.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct MeasuredMotion {
-    /// Pose by the odometry at the image.
-    pub(crate) odom_from_base: Pose2,
+    /// The odometry at the image.
+    pub(crate) odometry: OdometryState,
     /// Whether wheels and gyro measure no motion.
     pub(crate) is_still: bool,
 }
@@ -54,8 +55,10 @@ const WINDOW_S: f64 = 1.0;
 const AGREEMENT_M: f64 = 0.025;
 /// Largest difference of the turns of two agreeing motions \[rad\]: 1 deg. Source: ours.
 const AGREEMENT_RAD: f64 = 0.0175;
-/// Largest error of a motion as a fraction of it \[1\]: the scale of depth and wheel radii. Source: ours.
+/// Largest error of a distance as a fraction of it \[1\]: the scale of depth and wheel radii. Source: ours.
 const SCALE_ERROR: f64 = 0.05;
+/// Number of standard deviations of a turn by wheels and gyro within which images agree with it \[1\]. Source: ours, three sigma.
+const TURN_SIGMAS: f64 = 3.0;
 /// Difference of the mean range residuals above which scans decide \[m\]. Source: ours, the noise of a mean.
 const DECISIVE_RESIDUAL_M: f64 = 0.004;
 /// Time without a contradiction after which the visual map counts as fixed again \[s\]. Source: ours.
@@ -71,7 +74,7 @@ impl VisualMotionMonitor {
     pub(crate) fn add(
         &mut self,
         (map, visual_from_base): (u32, Pose3),
-        odometry: MeasuredMotion,
+        measured: MeasuredMotion,
         scan: &Scan,
     ) -> VisualMotion {
         let stamp = scan.stamp();
@@ -81,8 +84,8 @@ impl VisualMotionMonitor {
             self.restart();
         }
         self.window.retain(|moment| stamp - moment.stamp <= WINDOW_S);
-        let MeasuredMotion { odom_from_base, is_still } = odometry;
-        let newest = Moment { stamp, visual_from_base, odom_from_base, scan: scan.clone() };
+        let MeasuredMotion { odometry, is_still } = measured;
+        let newest = Moment { stamp, visual_from_base, odometry, scan: scan.clone() };
         let is_other = self.window.front().and_then(|earlier| newest.follows_another(earlier, is_still));
         self.window.push_back(newest);
         match is_other {
@@ -98,10 +101,16 @@ impl VisualMotionMonitor {
         }
     }
 
-    /// Restarts after the visual frame was anchored again or has moved: motions across this event are invalid.
+    /// Restarts after the visual frame was anchored again: no contradiction is left.
     pub(crate) fn restart(&mut self) {
-        self.window.clear();
+        self.interrupt();
         self.conflict = None;
+    }
+
+    /// The visual map was corrected, or a place was recognised: motions across this event are invalid. A contradiction before it stays: the
+    /// recognised landmarks may be those of the moving object.
+    pub(crate) fn interrupt(&mut self) {
+        self.window.clear();
     }
 }
 
@@ -110,12 +119,11 @@ impl Moment {
     /// images and wheels agree, or scans do not decide. A person who fills the view moves scans and images alike, but not wheels and gyro:
     /// for a base that is still, scans do not decide.
     fn follows_another(&self, earlier: &Self, is_still: bool) -> Option<bool> {
-        let by_wheels = earlier.odom_from_base.inverse() * self.odom_from_base;
+        let (by_wheels, covariance) = self.odometry.since(&earlier.odometry);
         let by_images = (earlier.visual_from_base.inverse() * self.visual_from_base).to_pose2();
         let off = by_wheels.inverse() * by_images;
-        let agreement = |size: f64, motion: f64| size + SCALE_ERROR * motion.abs();
-        let is_same = off.position().norm() <= agreement(AGREEMENT_M, by_wheels.position().norm())
-            && off.theta.abs() <= agreement(AGREEMENT_RAD, by_wheels.theta);
+        let is_same = off.position().norm() <= AGREEMENT_M + SCALE_ERROR * by_wheels.position().norm()
+            && off.theta.abs() <= AGREEMENT_RAD + TURN_SIGMAS * covariance[(2, 2)].max(0.0).sqrt();
         if is_same {
             return None;
         }
@@ -137,9 +145,14 @@ fn is_at_rest(by_wheels: &Pose2) -> bool {
 mod tests {
     use super::*;
     use crate::pose_monitor::testing::Room;
+    use nalgebra::{Matrix3, Vector3};
+
+    fn by_wheels(pose: Pose2) -> OdometryState {
+        OdometryState { pose, covariance: Matrix3::zeros() }
+    }
 
     fn moving(odom_from_base: Pose2) -> MeasuredMotion {
-        MeasuredMotion { odom_from_base, is_still: false }
+        MeasuredMotion { odometry: by_wheels(odom_from_base), is_still: false }
     }
 
     /// Verdicts on images every 0.1 s for a robot whose wheels, images and body move along x with these speeds, m/s.
@@ -218,10 +231,46 @@ mod tests {
                 let time = 0.05 * f64::from(i);
                 let person = Pose2::new(0.5 * time, 0.0, 0.0);
                 let scan = Room::with_corner_box().scan(person, time);
-                let odometry = MeasuredMotion { odom_from_base: Pose2::new(slow * time, 0.0, 0.0), is_still };
-                monitor.add((0, Pose3::from_pose2(person)), odometry, &scan)
+                let odometry = by_wheels(Pose2::new(slow * time, 0.0, 0.0));
+                let measured = MeasuredMotion { odometry, is_still };
+                monitor.add((0, Pose3::from_pose2(person)), measured, &scan)
             });
             assert_eq!(verdicts.last(), Some(expected), "{is_still} {slow}");
+        }
+    }
+
+    #[test]
+    fn a_recognised_place_does_not_end_a_contradiction() {
+        let mut monitor = VisualMotionMonitor::default();
+        let images = |i: u32| walker(0.1 * f64::from(i) + 1.0);
+        let add = |i: u32, monitor: &mut VisualMotionMonitor| {
+            let scan = Room::with_corner_box().scan(Pose2::IDENTITY, 0.1 * f64::from(i));
+            let visual = Pose3::from_pose2(Pose2::new(images(i), 0.0, 0.0));
+            monitor.add((0, visual), moving(Pose2::IDENTITY), &scan)
+        };
+        let before = (0..6).map(|i| add(i, &mut monitor)).last();
+        assert_eq!(before, Some(VisualMotion::Other));
+        monitor.interrupt();
+        assert_eq!(add(6, &mut monitor), VisualMotion::Other);
+        monitor.restart();
+        assert_eq!(add(7, &mut monitor), VisualMotion::Own);
+    }
+
+    #[test]
+    fn a_turn_by_images_agrees_within_the_uncertainty_of_the_turn_by_the_gyro() {
+        let off = 0.04;
+        for (sigma, expected) in [(0.003, VisualMotion::Other), (0.01, VisualMotion::Own)] {
+            let mut monitor = VisualMotionMonitor::default();
+            let verdicts = (0..10).map(|i| {
+                let time = 0.1 * f64::from(i);
+                let (turn, found) = (0.7 * time, (0.7 + off) * time);
+                let covariance = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, sigma * sigma * time));
+                let odometry = OdometryState { pose: Pose2::new(0.0, 0.0, turn), covariance };
+                let scan = Room::with_corner_box().scan(odometry.pose, time);
+                let visual = Pose3::from_pose2(Pose2::new(0.0, 0.0, found));
+                monitor.add((0, visual), MeasuredMotion { odometry, is_still: false }, &scan)
+            });
+            assert_eq!(verdicts.last(), Some(expected), "{sigma}");
         }
     }
 }

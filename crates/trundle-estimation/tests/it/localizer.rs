@@ -1,6 +1,6 @@
 //! Laws, faults and recoveries of the localizer.
 
-use nalgebra::{Matrix3, Matrix6, UnitQuaternion};
+use nalgebra::{Matrix3, Matrix6, UnitQuaternion, Vector6};
 use proptest::prelude::*;
 use trundle_core::{Odometry, Pose2, Pose3, Stamp, Twist2, Vector2, Vector3, wrap_angle};
 use trundle_estimation::{
@@ -160,6 +160,22 @@ fn corrections_converge_to_the_measurement_and_keep_the_sigma_floor() {
     assert!(gap(estimate.pose, truth) < 2e-3, "{:?} {truth:?}", estimate.pose);
     assert!(estimate.covariance[(0, 0)].sqrt() >= 0.015 - 1e-12, "sixty correlated images");
     assert!(estimate.covariance[(2, 2)].sqrt() >= 0.45_f64.to_radians() - 1e-12);
+}
+
+#[test]
+fn sixty_images_of_the_same_landmarks_are_no_more_certain_than_one_of_them() {
+    let mut localizer = localizer();
+    driven(0, 200, &mut localizer);
+    localizer.correct_visual(&visual(0, Pose2::IDENTITY));
+    driven(220, 4000, &mut localizer);
+    let covariance = Matrix6::from_diagonal(&Vector6::from([2.25e-4; 6]));
+    let measured = VisualPose { covariance, ..visual(4000, odometry(4000).pose) };
+    let before = localizer.estimate();
+    assert!(before.heading_sigma() > 0.019 && before.position_sigma() > 0.02, "{before:?}");
+    (0..60).for_each(|_| assert!(localizer.correct_visual(&measured).is_applied()));
+    let after = localizer.estimate();
+    assert!((after.heading_sigma() - 0.015).abs() < 1e-6, "{}", after.heading_sigma());
+    assert!(after.position_sigma() >= 0.015, "{}", after.position_sigma());
 }
 
 #[test]

@@ -21,8 +21,8 @@ use crate::{
     config::RobotConfig,
     goal_approach::GoalApproachReport,
     mission::GoalOptions,
-    mission::executor_config::MissionExecutorConfig,
     operator::RunSetting,
+    pose_status::PoseCertainty,
     reason::{NoPath, Reason, ReasonKind, TransitionReason},
     stage::{Stage, StageTimes},
 };
@@ -41,7 +41,6 @@ pub(crate) struct Decision {
 /// robot turns on the spot and observes. The safety monitor checks each twist last. In narrow space docking makes the approach.
 #[derive(Debug)]
 pub(crate) struct Navigator {
-    config: MissionExecutorConfig,
     machine: StateMachine,
     tools: Tools,
     safety: SafetyMonitor,
@@ -49,13 +48,10 @@ pub(crate) struct Navigator {
     wanted: Twist2,
 }
 
-/// Standard deviation of the position \[m\] above which the position is unknown. Source: ours.
-const UNKNOWN_POSITION_SIGMA_M: f64 = 50.0;
-
 impl Navigator {
     pub(crate) fn new(config: &RobotConfig, footprint: &Footprint) -> Result<Self, Invalid> {
+        config.mission_executor.validated()?;
         Ok(Self {
-            config: config.mission_executor.validated()?,
             machine: StateMachine::default(),
             tools: Tools::new(config, footprint)?,
             safety: SafetyMonitor::new(config.safety.clone(), footprint)?,
@@ -163,14 +159,14 @@ impl Navigator {
     /// Checks that the pose is known.
     fn monitor_pose(&mut self, s: &WorldState<'_>) {
         let is_lost = matches!(self.machine.state(), State::Relocalize { .. });
-        match self.lost_reason(s) {
+        match lost_reason(s) {
             Some(reason) if !is_lost => {
                 self.tools.halt();
                 self.tools.plan = None;
                 let state = State::Relocalize { reason };
                 self.machine.change(state.because(TransitionReason::PoseLost));
             }
-            None if is_lost && s.estimate.position_sigma() < 0.5 * self.config.lost_sigma => {
+            None if is_lost && s.pose_status.certainty == PoseCertainty::Known => {
                 // The robot may have been carried here.
                 self.tools.planner.visibility.home = None;
                 self.tools.guard.carried(s.now, self.tools.planner.visibility.results());
@@ -256,23 +252,6 @@ impl Navigator {
         }
     }
 
-    /// Returns the reason for an unknown pose; `None` for a known pose.
-    fn lost_reason(&self, s: &WorldState<'_>) -> Option<Reason> {
-        let sigma = s.estimate.position_sigma();
-        if sigma > UNKNOWN_POSITION_SIGMA_M {
-            return Some(Reason::PoseUnknown);
-        }
-        if sigma > self.config.lost_sigma {
-            let is_unresponsive = s.motion != MotionSense::Wheels;
-            return Some(if is_unresponsive {
-                Reason::WheelsUnresponsive { sigma }
-            } else {
-                Reason::PoseUncertain { sigma }
-            });
-        }
-        None
-    }
-
     /// Safety's word on the wanted twist.
     fn guard(&mut self, s: &WorldState<'_>) -> Twist2 {
         let Contacts { touched, over_edge, .. } = self.tools.contacts;
@@ -280,6 +259,18 @@ impl Navigator {
         let report = self.safety.check(&SafetyInput { station: self.machine.permission(s), ..input });
         self.machine.on_safety(&mut self.tools, self.wanted, report.action, s);
         report.twist
+    }
+}
+
+/// Returns the reason for a lost pose; `None` for a known pose.
+fn lost_reason(s: &WorldState<'_>) -> Option<Reason> {
+    match s.pose_status.certainty {
+        PoseCertainty::Known | PoseCertainty::Weak => None,
+        PoseCertainty::Uncertain { sigma } if s.motion != MotionSense::Wheels => {
+            Some(Reason::WheelsUnresponsive { sigma })
+        }
+        PoseCertainty::Uncertain { sigma } => Some(Reason::PoseUncertain { sigma }),
+        PoseCertainty::Unknown => Some(Reason::PoseUnknown),
     }
 }
 

@@ -222,6 +222,7 @@ mod tests {
         WorldState {
             now,
             estimate: PoseEstimate { stamp: now, pose, twist: Twist2::ZERO, covariance },
+            pose_status: crate::behaviour::navigator::testing::KNOWN_POSE,
             grid,
             scan: None,
             seen: None,

@@ -20,6 +20,7 @@ fn world(grid: &OccupancyGrid, pose: Pose2, time: f64) -> WorldState<'_> {
     let covariance = nalgebra::Matrix3::from_diagonal_element(1e-6);
     WorldState {
         now,
+        pose_status: crate::behaviour::navigator::testing::KNOWN_POSE,
         estimate: PoseEstimate { stamp: now, pose, twist, covariance },
         grid,
         scan: None,

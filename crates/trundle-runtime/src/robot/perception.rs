@@ -45,7 +45,7 @@ impl Robot {
         let before = self.localizer.estimate().pose;
         let correction =
             visual.as_ref().zip(verdict).map(|(visual, verdict)| self.correct_by_image(visual, verdict));
-        self.add_image_evidence(&track, verdict, correction);
+        self.add_image_evidence(&track, verdict, correction, odom_from_base);
         report.measurements.visual = visual;
         event_log::correction(track.stamp, "the visual pose", before, self.localizer.estimate().pose);
         if correction == Some(Correction::Reanchored) {

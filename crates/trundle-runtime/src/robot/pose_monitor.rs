@@ -2,11 +2,14 @@
 
 use super::{MAX_VISUAL_MOTION_AGE_S, Robot, event_log};
 use crate::{
-    global_localization::LocalizedPose, monitors::scan_map_consistency::Fit, range_source::RangeSource,
+    global_localization::LocalizedPose,
+    monitors::scan_map_consistency::Fit,
+    pose_status::{PoseCertainty, PoseStatus},
+    range_source::RangeSource,
     report::StepReport,
 };
-use trundle_core::Scan;
-use trundle_estimation::{Correction, Localizer, PoseUncertainty, ScanPose};
+use trundle_core::{Scan, Stamp};
+use trundle_estimation::{Correction, PoseUncertainty, ScanPose};
 
 impl Robot {
     /// Processes a laser scan, if the laser is the range source.
@@ -35,9 +38,8 @@ impl Robot {
 
     /// While the pose is unknown, applies the result of global localization, or begins the search.
     pub(super) fn apply_global_localization(&mut self, place: Option<LocalizedPose>) {
-        let is_lost = |localizer: &Localizer| localizer.estimate().position_sigma() >= self.lost_sigma;
         if let Some(LocalizedPose { stamp, map_from_base, covariance }) = place
-            && is_lost(&self.localizer)
+            && self.is_lost()
         {
             let before = self.localizer.estimate().pose;
             // The search compares with the whole grid: the error of one part of it is not the error of the pose.
@@ -55,7 +57,7 @@ impl Robot {
                 _ => self.perception.iter_mut().for_each(|perception| perception.global_localization.end()),
             }
         }
-        let is_lost = is_lost(&self.localizer);
+        let is_lost = self.is_lost();
         let Some(perception) = &mut self.perception else { return };
         match (is_lost, perception.global_localization.is_sought()) {
             (true, false) if self.mapping.mapper.is_redrawing() => {}
@@ -82,6 +84,24 @@ impl Robot {
             self.carried_away();
         }
         fit == Fit::Fits
+    }
+
+    /// The status of the pose at `now`.
+    pub(super) fn pose_status(&self, now: Stamp) -> PoseStatus {
+        let monitor = &self.latest.pose_monitor;
+        PoseStatus {
+            certainty: self.pose_certainty(),
+            is_contradicted: monitor.is_contradicted(),
+            is_doubtful: monitor.is_doubtful(now) || self.latest.body.is_lifted(),
+        }
+    }
+
+    fn pose_certainty(&self) -> PoseCertainty {
+        PoseCertainty::of(&self.localizer.estimate(), self.lost_sigma)
+    }
+
+    fn is_lost(&self) -> bool {
+        self.pose_certainty().is_lost()
     }
 
     /// Handles a displacement: the pose is unknown, and the search includes the visual maps.

@@ -9,6 +9,7 @@ use trundle_estimation::{PlanarMeasurement, ScanPose};
 impl Robot {
     /// Processes a scan for safety and, at the map's rate, for estimate and map. Returns whether the scan was drawn.
     pub(super) fn on_scan(&mut self, scan: Scan, report: &mut StepReport) -> bool {
+        self.confirm_pose(&scan);
         let is_due = self.mapping.is_due(scan.stamp()) && self.is_pose_known(scan.stamp());
         let is_due = is_due && self.is_consistent_with_map(&scan);
         if is_due {
@@ -22,6 +23,18 @@ impl Robot {
             self.latest.scan = Some(scan);
         }
         is_due
+    }
+
+    /// Ends a contradiction of scans and odometry, if the scans since then fit the map at the estimate.
+    fn confirm_pose(&mut self, scan: &Scan) {
+        if !self.latest.pose_monitor.is_contradicted() {
+            return;
+        }
+        let (pose, odometer) =
+            (self.localizer.pose_at(scan.stamp()), self.localizer.odometry_at(scan.stamp()));
+        if let (Ok(pose), Ok(odometer)) = (pose, odometer) {
+            self.latest.pose_monitor.confirm_by_scans(self.mapping.grid(), pose, odometer.pose);
+        }
     }
 
     /// Tracks dynamic obstacles with the newest scan.

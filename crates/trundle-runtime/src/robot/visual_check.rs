@@ -22,6 +22,7 @@ impl Robot {
             visual_from_base: visual.visual_from_camera * self.base_from_camera.inverse(),
             found: self.localizer.base_by_visual(visual),
             odom_from_base,
+            odometry: self.localizer.odometry_at(visual.stamp).ok(),
             is_still: self.odometry.is_still(),
             scan,
             belief,
@@ -31,12 +32,10 @@ impl Robot {
 
     fn belief_at(&self, stamp: Stamp) -> Option<PoseBelief> {
         let estimate = self.localizer.estimate();
-        let position_sigma = estimate.position_sigma();
         Some(PoseBelief {
             pose: self.localizer.pose_at(stamp).ok()?,
-            position_sigma,
+            position_sigma: estimate.position_sigma(),
             heading_sigma: estimate.heading_sigma(),
-            is_lost: position_sigma >= self.lost_sigma,
         })
     }
 
@@ -58,12 +57,14 @@ impl Robot {
         }
     }
 
-    /// Passes the evidence of an image to the pose monitor. Without evidence of a displacement, odometry and scans continue the pose.
+    /// Passes the evidence of an image, taken at `odom_from_base`, to the pose monitor. Without evidence of a displacement, odometry and
+    /// scans continue the pose. With evidence, the pose is lost unless the scans since then fit it.
     pub(super) fn add_image_evidence(
         &mut self,
         track: &TrackReport,
         verdict: Option<VisualVerdict>,
         correction: Option<Correction>,
+        odom_from_base: Pose2,
     ) {
         let is_used = correction.is_some_and(|correction| correction.is_used());
         let evidence = match verdict {
@@ -75,7 +76,14 @@ impl Robot {
         if matches!(evidence, ImageEvidence::Recognised | ImageEvidence::Tracked) {
             self.latest.located = self.latest.located.max(Some(track.stamp));
         }
-        if self.latest.pose_monitor.add_image(track.stamp, evidence) {
+        if !self.latest.pose_monitor.add_image(track.stamp, evidence) {
+            return;
+        }
+        let (monitor, grid) = (&self.latest.pose_monitor, self.mapping.grid());
+        let pose = self.localizer.pose_at(track.stamp);
+        if pose.is_ok_and(|pose| monitor.is_confirmed_by_scans(grid, pose, odom_from_base)) {
+            self.perception.iter_mut().for_each(|perception| perception.kidnapped());
+        } else {
             self.carried_away();
         }
     }

@@ -4,6 +4,8 @@ use super::Navigator;
 use crate::behaviour::path_search::PathSearch;
 use crate::behaviour::state::{State, Wait};
 use crate::config::RobotConfig;
+use crate::mission::executor_config::MissionExecutorConfig;
+use crate::pose_status::{PoseCertainty, PoseStatus};
 use crate::reason::Reason;
 use crate::world_state::{DynamicObstacles, WorldState};
 use trundle_control::MotionSense;
@@ -28,11 +30,21 @@ pub(crate) fn navigator() -> Navigator {
     Navigator::new(&config, &footprint).unwrap()
 }
 
+/// The settings of [`navigator`].
+pub(crate) fn settings() -> MissionExecutorConfig {
+    RobotConfig::default().mission_executor
+}
+
+/// A pose without doubt.
+pub(crate) const KNOWN_POSE: PoseStatus =
+    PoseStatus { certainty: PoseCertainty::Known, is_contradicted: false, is_doubtful: false };
+
 pub(crate) fn at_rest(grid: &OccupancyGrid, now: Stamp, pose: Pose2) -> WorldState<'_> {
     let covariance = nalgebra::Matrix3::from_diagonal_element(1e-6);
     WorldState {
         now,
         estimate: PoseEstimate { stamp: now, pose, twist: Twist2::ZERO, covariance },
+        pose_status: KNOWN_POSE,
         grid,
         scan: None,
         seen: None,

@@ -8,10 +8,11 @@ mod view_monitor;
 mod visibility_constraint;
 mod zones;
 
-use super::testing::{at_rest, floor, navigator, waiting};
+use super::testing::{at_rest, floor, navigator, settings, waiting};
 use super::*;
 use crate::behaviour::contacts::MAX_BUMPER_CONTACTS;
 use crate::behaviour::path_search::PathSearch;
+use crate::pose_status::UNKNOWN_POSITION_SIGMA_M;
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 use trundle_control::{SafetyScan, StopReason};
@@ -52,6 +53,7 @@ impl Base {
         let scan = free_all_around(self.now);
         let mut s = shown(&self.grid, &scan, (self.now, self.pose, self.twist));
         change(&mut s);
+        s.pose_status.certainty = PoseCertainty::of(&s.estimate, settings().lost_sigma);
         let decision = self.navigator.step(&s, &mut StageTimes::default());
         self.pose = self.pose.advance(decision.twist, STEP_S);
         self.twist = decision.twist;
@@ -155,7 +157,7 @@ fn contacts_change_nothing_for_a_robot_that_has_arrived() {
 #[test]
 fn nothing_moves_before_the_opening_is_over_and_a_scan_is_there() {
     let mut base = Base::to(Goal::Exact(AHEAD));
-    let opening = base.navigator.config.opening;
+    let opening = settings().opening;
     for _ in 0..(2.0 * opening / STEP_S) as usize {
         assert_eq!(base.step_with(|s| s.scan = None).twist, Twist2::ZERO);
     }
@@ -169,7 +171,7 @@ fn nothing_moves_before_the_opening_is_over_and_a_scan_is_there() {
 #[test]
 fn a_spin_turns_once_around_and_ends_at_rest() {
     let mut base = Base::to(Goal::Spin);
-    base.run(base.navigator.config.opening);
+    base.run(settings().opening);
     let mut turned = 0.0;
     while !base.navigator.state().is_over() {
         let twist = base.step_with(|_| ()).twist;
@@ -202,7 +204,7 @@ fn an_order_to_stay_brakes_at_the_limit_of_acceleration_and_then_the_robot_stand
 #[test]
 fn a_pose_that_is_lost_is_known_again_only_well_below_the_limit() {
     let mut base = Base::to(Goal::Exact(AHEAD));
-    let limit = base.navigator.config.lost_sigma;
+    let limit = settings().lost_sigma;
     let mut with_sigma = |sigma: f64| {
         base.step_with(|s| s.estimate.covariance = nalgebra::Matrix3::from_diagonal_element(sigma * sigma));
         base.navigator.state()
@@ -258,7 +260,7 @@ fn patience_counts_from_the_last_progress_and_names_the_state() {
             !base.navigator.state().is_over()
         });
         let seconds = steps.count() as f64 * STEP_S;
-        let opening = base.navigator.config.opening;
+        let opening = settings().opening;
         assert!((seconds - opening - 3.0).abs() < 0.1, "{seconds} s");
         let DriveState::Stopped { reason: Reason::NoProgress { state, cause, .. } } = base.navigator.state()
         else {

@@ -47,11 +47,14 @@ impl Confirm {
     }
 }
 
-/// The doubt about an arrival: the bound of the pose is above this share of the goal's. A viewpoint and a relative motion need no certain
-/// pose.
+/// The doubt about an arrival: scans contradict the pose, or its bound is above this share of the goal's. A viewpoint and a relative motion
+/// need no certain pose.
 fn doubt(tools: &Tools, s: &WorldState<'_>, share: f64) -> Option<Reason> {
     if !matches!(tools.goal, Goal::Exact(_)) {
         return None;
+    }
+    if s.pose_status.is_contradicted {
+        return Some(Reason::ArrivalContradicted);
     }
     let (bound, allowed) = (s.estimate.bound_95(), allowed(tools));
     let is_certain = bound.distance <= share * allowed.distance && bound.heading <= share * allowed.heading;

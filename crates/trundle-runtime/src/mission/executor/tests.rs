@@ -10,6 +10,7 @@ fn world(grid: &OccupancyGrid) -> WorldState<'_> {
     let estimate = PoseEstimate { stamp, pose: Pose2::new(0.35, 0.35, 0.0), twist: Twist2::ZERO, covariance };
     WorldState {
         now: stamp,
+        pose_status: crate::behaviour::navigator::testing::KNOWN_POSE,
         estimate,
         grid,
         scan: None,

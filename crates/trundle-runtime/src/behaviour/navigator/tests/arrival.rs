@@ -96,3 +96,20 @@ fn a_viewpoint_needs_no_certain_pose() {
     let mut base = Base::to(Goal::Viewpoint(AHEAD));
     assert_eq!(run_until(&mut base, &["stopped", "arrived"], uncertain(UNCERTAIN_M, 0.1)), "arrived");
 }
+
+#[test]
+fn a_contradicted_pose_is_no_arrival_until_it_is_confirmed() {
+    let contradicted = |s: &mut WorldState<'_>| s.pose_status.is_contradicted = true;
+    let mut base = Base::to(Goal::Exact(AHEAD));
+    assert_eq!(run_until(&mut base, &["stopped", "arrived"], contradicted), "stopped");
+    assert_eq!(kind(&base), Some(ReasonKind::ArrivalUncertain));
+    let text = base.navigator.state().to_string();
+    assert!(
+        text.starts_with("stopped: arrived, but not sure: two scans contradicted the odometry"),
+        "{text}"
+    );
+
+    let mut base = Base::to(Goal::Exact(AHEAD));
+    assert_eq!(run_until(&mut base, &["recovering"], contradicted), "recovering");
+    assert_eq!(run_until(&mut base, &["stopped", "arrived"], |_| ()), "arrived");
+}

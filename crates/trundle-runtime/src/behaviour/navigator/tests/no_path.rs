@@ -20,7 +20,7 @@ fn a_viewpoint_without_a_path_is_given_up_at_once_and_a_goal_is_not() {
     for (goal, name) in [(Goal::Viewpoint(AHEAD), "stopped"), (Goal::Exact(AHEAD), "recovering")] {
         let mut base = Base::to(goal);
         base.wall(Cell::Occupied);
-        base.run(base.navigator.config.opening + 0.5);
+        base.run(settings().opening + 0.5);
         assert_eq!(base.navigator.state().name(), name, "{goal:?}");
         assert!(base.navigator.state().reason().unwrap().is_due_to(ReasonKind::PathBlocked));
         assert!(base.navigator.plan().is_none());
@@ -36,7 +36,7 @@ fn a_goal_that_does_not_wait_ends_once_no_plan_finds_a_path_to_it() {
         if goal == AHEAD {
             base.wall(Cell::Occupied);
         }
-        let opening = base.navigator.config.opening;
+        let opening = settings().opening;
         let seconds = base.run_to("stopped").unwrap() as f64 * STEP_S;
         assert!((opening + 2.0..opening + 2.5).contains(&seconds), "{seconds} s");
         assert_eq!(base.navigator.state().reason().unwrap().kind(), kind);
@@ -50,7 +50,7 @@ fn a_wall_of_one_second_ends_no_goal() {
     let mut base = Base::to(Goal::Exact(AHEAD));
     base.navigator.end_without_path(true);
     base.wall(Cell::Occupied);
-    base.run(base.navigator.config.opening + 1.0);
+    base.run(settings().opening + 1.0);
     assert_eq!(base.navigator.state().name(), "recovering");
     base.wall(Cell::Free);
     assert!(base.run_to("arrived").is_some(), "{}", base.navigator.state());

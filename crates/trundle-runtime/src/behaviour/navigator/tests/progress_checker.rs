@@ -142,7 +142,7 @@ fn a_goal_keeps_its_own_patience_when_the_robots_changes() {
     let mut base = Base::to(Goal::Exact(AHEAD));
     let own = GoalOptions { patience: Some(6.0), ..GoalOptions::default() };
     // The opening does not count.
-    let opening = base.navigator.config.opening;
+    let opening = settings().opening;
     for (options, expected) in [(GoalOptions::default(), opening + 3.0), (own, 6.0)] {
         base.navigator.set_goal_with(Goal::Exact(AHEAD), options);
         base.navigator.change(RunSetting::Patience(3.0));

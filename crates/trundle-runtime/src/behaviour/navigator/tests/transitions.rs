@@ -133,7 +133,7 @@ fn time_without_a_pose_is_no_time_without_a_path() {
     let mut base = Base::to(Goal::Exact(AHEAD));
     base.navigator.end_without_path(true);
     base.wall(Cell::Occupied);
-    base.run(base.navigator.config.opening + 1.0);
+    base.run(settings().opening + 1.0);
     assert_eq!(base.navigator.state().name(), "recovering");
     let unsure = nalgebra::Matrix3::from_diagonal_element(1.0);
     (0..100).for_each(|_| _ = base.step_with(|s| s.estimate.covariance = unsure));

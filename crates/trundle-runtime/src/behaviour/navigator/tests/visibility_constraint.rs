@@ -51,7 +51,7 @@ fn where_no_path_shows_the_floor_in_time_it_is_observed_first_and_never_driven_o
             assert_eq!(grid.at(at), Cell::Unknown);
         }
     }
-    let patience = navigator.config.patience;
+    let patience = settings().patience;
     assert!(
         looks > 1 && (patience..patience + LAST_LOOK_DURATION_S + 5.0).contains(&seconds),
         "{looks} looks, {seconds} s"
