@@ -1,7 +1,7 @@
 //! Output on the terminal: results, tables, errors, progress. The only module of the program that prints.
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{ErrorKind, IsTerminal, Write};
-use std::sync::{Mutex, OnceLock, PoisonError};
+use std::sync::OnceLock;
 use trundle::app::{AppError, Progress, StepProgress, aligned_table};
 
 /// The first refusal of standard output.
@@ -75,42 +75,35 @@ pub fn progress(quiet: bool) -> (ProgressBar, Progress) {
 
 /// The progress of work in steps: a bar if their number is known, else a spinner.
 pub struct StepDisplay {
+    /// Its prefix is the message of the work; its message is the whole line.
     bar: ProgressBar,
-    message: Mutex<String>,
 }
 
 impl StepDisplay {
     /// A display that appears when the work begins. With `quiet` it never appears.
     pub fn new(quiet: bool) -> Self {
-        Self::on(hidden_if(quiet, ProgressBar::new_spinner()))
-    }
-
-    fn on(bar: ProgressBar) -> Self {
-        Self { bar, message: Mutex::default() }
+        Self { bar: hidden_if(quiet, ProgressBar::new_spinner()) }
     }
 
     /// Shows the progress and the message as one text, which the bar cuts to the width of the terminal.
     fn show(&self) {
-        let message = self.message.lock().unwrap_or_else(PoisonError::into_inner);
-        let text = match self.bar.length() {
-            Some(steps) => {
-                let done = self.bar.position();
-                let eta = HumanDuration(self.bar.eta());
-                format!("{:>3} %  {done}/{steps}  ETA {eta:#}  {message}", 100 * done / steps.max(1))
-            }
-            None => message.clone(),
-        };
-        self.bar.set_message(text);
+        let (bar, done) = (&self.bar, self.bar.position());
+        let progress = bar.length().map(|steps| {
+            format!(
+                "{:>3} %  {done}/{steps}  ETA {:#}  ",
+                100 * done / steps.max(1),
+                HumanDuration(bar.eta())
+            )
+        });
+        bar.set_message(progress.unwrap_or_default() + &bar.prefix());
     }
 }
 
 impl StepProgress for StepDisplay {
     fn begin(&self, steps: Option<usize>) {
         self.bar.reset();
-        match steps {
-            Some(steps) => self.bar.set_length(steps as u64),
-            None => self.bar.unset_length(),
-        }
+        self.bar.unset_length();
+        steps.iter().for_each(|steps| self.bar.set_length(*steps as u64));
         self.bar.set_style(style(if steps.is_some() { STEPS } else { SPINNER }));
     }
 
@@ -120,7 +113,7 @@ impl StepProgress for StepDisplay {
     }
 
     fn message(&self, line: &str) {
-        line.clone_into(&mut self.message.lock().unwrap_or_else(PoisonError::into_inner));
+        self.bar.set_prefix(line.to_owned());
         self.show();
     }
 
@@ -165,7 +158,7 @@ mod tests {
     use super::*;
     use indicatif::TermLike;
     use std::io;
-    use std::sync::Arc;
+    use std::sync::{Arc, Mutex};
 
     /// A terminal of some width that records its lines.
     #[derive(Debug, Clone)]
@@ -209,7 +202,7 @@ mod tests {
     fn lines(width: u16, steps: Option<usize>) -> Vec<String> {
         let screen = Screen { width, drawn: Arc::default() };
         let target = ProgressDrawTarget::term_like(Box::new(screen.clone()));
-        let display = StepDisplay::on(ProgressBar::with_draw_target(None, target));
+        let display = StepDisplay { bar: ProgressBar::with_draw_target(None, target) };
         display.begin(steps);
         display.message(
             &"driving to (5.03 m, 2.24 m, 90 deg), 34.2 s of 120 s, 3 images per second, no contact, "

@@ -42,7 +42,9 @@ pub fn end(result: Result<Outcome, AppError>, folders: &[PathBuf]) -> u8 {
     {
         console::print_error(error);
     }
-    let Some((signal, done)) = stop::stopped() else { return end_of_done_work(code, folders) };
+    // A signal after the last loop also ends the script that called the program.
+    let late = || Some((stop::received()?, "the end of its work".to_owned()));
+    let Some((signal, done)) = stop::stopped().or_else(late) else { return code };
     let place = match folders {
         [folder, ..] if result.is_ok() || code == CODE_INCOMPLETE => {
             format!("the results so far are in {}", folder.display())
@@ -51,15 +53,4 @@ pub fn end(result: Result<Outcome, AppError>, folders: &[PathBuf]) -> u8 {
     };
     console::print_stopped(signal.name(), &format!(" after {done}; {place}"));
     if code == CODE_INCOMPLETE { code } else { signal.exit_code() }
-}
-
-/// The exit code of a command that ended by itself: a signal that came after its last loop also ends a script.
-fn end_of_done_work(code: u8, folders: &[PathBuf]) -> u8 {
-    let Some(signal) = stop::received().filter(|_| [0, CODE_MISSED].contains(&code)) else { return code };
-    let place = match folders {
-        [folder, ..] => format!("the results are in {}", folder.display()),
-        [] => trundle::app::written_text(),
-    };
-    console::print_stopped(signal.name(), &format!(" after the end of its work; {place}"));
-    signal.exit_code()
 }
