@@ -2,7 +2,7 @@
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::OnceLock;
-use trundle::app::{AppError, Progress, StepProgress, aligned_table};
+use trundle::app::{AppError, Progress, StepProgress, aligned_table, step_line};
 
 /// The first refusal of standard output.
 static PRINT_FAILURE: OnceLock<std::io::Error> = OnceLock::new();
@@ -87,15 +87,8 @@ impl StepDisplay {
 
     /// Shows the progress and the message as one text, which the bar cuts to the width of the terminal.
     fn show(&self) {
-        let (bar, done) = (&self.bar, self.bar.position());
-        let progress = bar.length().map(|steps| {
-            format!(
-                "{:>3} %  {done}/{steps}  ETA {:#}  ",
-                100 * done / steps.max(1),
-                HumanDuration(bar.eta())
-            )
-        });
-        bar.set_message(progress.unwrap_or_default() + &bar.prefix());
+        let (bar, eta) = (&self.bar, HumanDuration(self.bar.eta()));
+        bar.set_message(step_line(bar.length(), bar.position(), &format!("{eta:#}"), &bar.prefix()));
     }
 }
 
@@ -104,7 +97,7 @@ impl StepProgress for StepDisplay {
         self.bar.reset();
         self.bar.unset_length();
         steps.iter().for_each(|steps| self.bar.set_length(*steps as u64));
-        self.bar.set_style(style(if steps.is_some() { STEPS } else { SPINNER }));
+        self.bar.set_style(style(if steps.is_some() { "{wide_msg}" } else { SPINNER }));
     }
 
     fn advance(&self) {
@@ -128,8 +121,6 @@ impl StepProgress for StepDisplay {
 
 /// The template of a spinner with a message, cut to the width of the terminal.
 const SPINNER: &str = "{spinner} {wide_msg}";
-/// The template of work whose end is known: all of the line is the message, so that all of it is cut.
-const STEPS: &str = "{wide_msg}";
 
 fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).expect("invariant: the template is valid")

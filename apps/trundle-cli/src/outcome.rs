@@ -42,9 +42,7 @@ pub fn end(result: Result<Outcome, AppError>, folders: &[PathBuf]) -> u8 {
     {
         console::print_error(error);
     }
-    // A signal after the last loop also ends the script that called the program.
-    let late = || Some((stop::received()?, "the end of its work".to_owned()));
-    let Some((signal, done)) = stop::stopped().or_else(late) else { return code };
+    let Some((signal, done)) = stop::ended() else { return code };
     let place = match folders {
         [folder, ..] if result.is_ok() || code == CODE_INCOMPLETE => {
             format!("the results so far are in {}", folder.display())

@@ -1,6 +1,7 @@
 //! The number of an option as text, refused with option, value, unit and accepted range.
 
 use trundle_core::Invalid;
+use trundle_io::{MAX_CELL_M, MIN_CELL_M};
 
 /// Finite numbers that an option accepts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +27,9 @@ pub enum NumberRange {
 }
 
 impl NumberText {
+    /// The side of a map's cell.
+    pub const CELL_SIDE: Self = Self::new("m", NumberRange::Within(MIN_CELL_M, MAX_CELL_M));
+
     /// Numbers of `range` in `unit`.
     #[must_use]
     pub const fn new(unit: &'static str, range: NumberRange) -> Self {

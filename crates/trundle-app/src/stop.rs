@@ -64,9 +64,14 @@ pub fn stopped() -> Option<(StopSignal, String)> {
     Some((received()?, done))
 }
 
-/// The signal, whether or not it ended a loop.
+/// The signal and the finished work at the end of the program. A signal after the last loop counts too: it also ends the script that called
+/// the program.
 #[must_use]
-pub fn received() -> Option<StopSignal> {
+pub fn ended() -> Option<(StopSignal, String)> {
+    stopped().or_else(|| Some((received()?, "the end of its work".to_owned())))
+}
+
+fn received() -> Option<StopSignal> {
     Some(SIGNAL.load(Ordering::Relaxed)).filter(|number| *number != 0).map(StopSignal)
 }
 

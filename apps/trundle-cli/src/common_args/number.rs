@@ -8,7 +8,7 @@ use trundle::app::{NumberRange, NumberText};
 
 /// The number of an option.
 #[derive(Debug, Clone, Copy)]
-pub struct NumberArg(NumberText);
+pub struct NumberArg(pub NumberText);
 
 impl NumberArg {
     /// Any finite number in `unit`.
@@ -24,11 +24,6 @@ impl NumberArg {
     /// Above 0 in `unit`.
     pub const fn above_zero(unit: &'static str) -> Self {
         Self(NumberText::new(unit, NumberRange::AboveZero))
-    }
-
-    /// From `low` to `high` in `unit`.
-    pub const fn within(low: f64, high: f64, unit: &'static str) -> Self {
-        Self(NumberText::new(unit, NumberRange::Within(low, high)))
     }
 
     /// Above 0 in `unit`, `limit` at most.
