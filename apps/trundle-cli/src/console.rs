@@ -1,8 +1,8 @@
 //! Output on the terminal: results, tables, errors, progress. The only module of the program that prints.
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::OnceLock;
-use trundle::app::{AppError, Progress, StepProgress, aligned_table};
+use trundle::app::{AppError, Progress, StepProgress, aligned_table, step_line};
 
 /// The first refusal of standard output.
 static PRINT_FAILURE: OnceLock<std::io::Error> = OnceLock::new();
@@ -75,6 +75,7 @@ pub fn progress(quiet: bool) -> (ProgressBar, Progress) {
 
 /// The progress of work in steps: a bar if their number is known, else a spinner.
 pub struct StepDisplay {
+    /// Its prefix is the message of the work; its message is the whole line.
     bar: ProgressBar,
 }
 
@@ -83,27 +84,30 @@ impl StepDisplay {
     pub fn new(quiet: bool) -> Self {
         Self { bar: hidden_if(quiet, ProgressBar::new_spinner()) }
     }
+
+    /// Shows the progress and the message as one text, which the bar cuts to the width of the terminal.
+    fn show(&self) {
+        let (bar, eta) = (&self.bar, HumanDuration(self.bar.eta()));
+        bar.set_message(step_line(bar.length(), bar.position(), &format!("{eta:#}"), &bar.prefix()));
+    }
 }
 
 impl StepProgress for StepDisplay {
     fn begin(&self, steps: Option<usize>) {
         self.bar.reset();
-        let template = match steps {
-            Some(steps) => {
-                self.bar.set_length(steps as u64);
-                STEPS
-            }
-            None => SPINNER,
-        };
-        self.bar.set_style(style(template));
+        self.bar.unset_length();
+        steps.iter().for_each(|steps| self.bar.set_length(*steps as u64));
+        self.bar.set_style(style(if steps.is_some() { "{wide_msg}" } else { SPINNER }));
     }
 
     fn advance(&self) {
         self.bar.inc(1);
+        self.show();
     }
 
     fn message(&self, line: &str) {
-        self.bar.set_message(line.to_owned());
+        self.bar.set_prefix(line.to_owned());
+        self.show();
     }
 
     fn pause(&self, work: &dyn Fn()) {
@@ -117,8 +121,6 @@ impl StepProgress for StepDisplay {
 
 /// The template of a spinner with a message, cut to the width of the terminal.
 const SPINNER: &str = "{spinner} {wide_msg}";
-/// The template of work whose end is known, its message cut as well.
-const STEPS: &str = "{percent:>3} %  {pos}/{len}  ETA {eta}  {wide_msg}";
 
 fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template).expect("invariant: the template is valid")
@@ -187,30 +189,36 @@ mod tests {
         }
     }
 
-    fn lines(width: u16, template: &str) -> Vec<String> {
+    /// The lines of work of `steps` steps, of which a hundred are done.
+    fn lines(width: u16, steps: Option<usize>) -> Vec<String> {
         let screen = Screen { width, drawn: Arc::default() };
         let target = ProgressDrawTarget::term_like(Box::new(screen.clone()));
-        let bar = ProgressBar::with_draw_target(Some(400), target).with_style(style(template));
-        bar.set_message(
-            "driving to (5.03 m, 2.24 m, 90 deg), 34.2 s of 120 s, 3 images per second, no contact, "
+        let display = StepDisplay { bar: ProgressBar::with_draw_target(None, target) };
+        display.begin(steps);
+        display.message(
+            &"driving to (5.03 m, 2.24 m, 90 deg), 34.2 s of 120 s, 3 images per second, no contact, "
                 .repeat(3),
         );
-        bar.set_position(100);
-        bar.tick();
+        (0..100).for_each(|_| display.advance());
+        display.bar.force_draw();
         let drawn = screen.drawn.lock().unwrap().clone();
         drawn.into_iter().filter(|text| !text.trim().is_empty()).collect()
     }
 
     #[test]
     fn the_line_is_one_at_any_width() {
-        for width in [40, 60, 80, 200] {
-            for template in [SPINNER, STEPS] {
-                for line in lines(width, template) {
-                    assert!(line.trim_end().chars().count() <= usize::from(width), "{width}: {line:?}");
+        for width in [8, 10, 20, 40, 60, 80, 200] {
+            for steps in [None, Some(400), Some(1_000_000)] {
+                let lines = lines(width, steps);
+                assert!(!lines.is_empty(), "{width}");
+                for line in lines {
+                    assert!(line.chars().count() <= usize::from(width), "{width}: {line:?}");
                 }
             }
         }
-        assert!(lines(80, STEPS).iter().any(|line| line.contains("25 %")), "{:?}", lines(80, STEPS));
+        let last = lines(80, Some(400)).pop().unwrap();
+        assert!(last.starts_with(" 25 %  100/400  ETA ") && last.contains("driving"), "{last}");
+        assert!(lines(10, Some(400)).pop().unwrap().starts_with(" 25 %  100"));
     }
 
     #[test]

@@ -42,7 +42,7 @@ pub fn end(result: Result<Outcome, AppError>, folders: &[PathBuf]) -> u8 {
     {
         console::print_error(error);
     }
-    let Some((signal, done)) = stop::stopped() else { return code };
+    let Some((signal, done)) = stop::ended() else { return code };
     let place = match folders {
         [folder, ..] if result.is_ok() || code == CODE_INCOMPLETE => {
             format!("the results so far are in {}", folder.display())

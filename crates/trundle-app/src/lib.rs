@@ -90,7 +90,7 @@ pub use number_text::{NumberRange, NumberText};
 pub use pose_arg::PoseArg;
 pub use pose_sample::PoseSample;
 pub use program_log::{log_lines, start_log};
-pub use progress::Progress;
+pub use progress::{Progress, step_line};
 pub use recorder::{FileRecorder, RunRecorder};
 pub use recording_content::RecordingContent;
 pub use replayer::RunReplayer;

@@ -1,5 +1,8 @@
 //! The number of an option as text, refused with option, value, unit and accepted range.
 
+use trundle_core::Invalid;
+use trundle_io::{MAX_CELL_M, MIN_CELL_M};
+
 /// Finite numbers that an option accepts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NumberText {
@@ -19,9 +22,14 @@ pub enum NumberRange {
     AboveZero,
     /// A number above 0 and at most this.
     UpTo(f64),
+    /// A number from the first to the second.
+    Within(f64, f64),
 }
 
 impl NumberText {
+    /// The side of a map's cell.
+    pub const CELL_SIDE: Self = Self::new("m", NumberRange::Within(MIN_CELL_M, MAX_CELL_M));
+
     /// Numbers of `range` in `unit`.
     #[must_use]
     pub const fn new(unit: &'static str, range: NumberRange) -> Self {
@@ -35,6 +43,7 @@ impl NumberText {
                 NumberRange::FromZero => value >= 0.0,
                 NumberRange::AboveZero => value > 0.0,
                 NumberRange::UpTo(limit) => value > 0.0 && value <= limit,
+                NumberRange::Within(low, high) => (low..=high).contains(&value),
             }
     }
 
@@ -45,6 +54,7 @@ impl NumberText {
             NumberRange::FromZero => ", 0 or more".to_owned(),
             NumberRange::AboveZero => ", above 0".to_owned(),
             NumberRange::UpTo(limit) => format!(", above 0 and at most {limit}"),
+            NumberRange::Within(low, high) => format!(", {low} to {high}"),
         };
         format!("a number{unit}{range}")
     }
@@ -57,10 +67,7 @@ impl NumberText {
         let wanted = self.wanted();
         match text.trim().parse::<f64>() {
             Ok(value) if self.takes(value) => Ok(value),
-            Ok(value) if value.is_finite() => {
-                let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
-                Err(format!("{option} is {value}{unit}, expected {wanted}"))
-            }
+            Ok(value) if value.is_finite() => Err(Invalid::new(option, value, self.unit, wanted).to_string()),
             _ => Err(format!("{option} is '{text}', expected {wanted}")),
         }
     }
@@ -68,7 +75,7 @@ impl NumberText {
 
 #[cfg(test)]
 mod tests {
-    use super::NumberRange::{AboveZero, Any, FromZero, UpTo};
+    use super::NumberRange::{AboveZero, Any, FromZero, UpTo, Within};
     use super::*;
 
     #[test]
@@ -82,5 +89,8 @@ mod tests {
         assert_eq!(refused(AboveZero, "", "0"), "--near is 0, expected a number, above 0");
         let long = refused(UpTo(10.0), "s", "11");
         assert_eq!(long, "--near is 11 s, expected a number in s, above 0 and at most 10");
+        let small = refused(Within(0.001, 10.0), "m", "1e-300");
+        assert_eq!(small, "--near is 1e-300 m, expected a number in m, 0.001 to 10");
+        assert_eq!(NumberText::new("m", Within(0.001, 10.0)).read("--near", "10"), Ok(10.0));
     }
 }

@@ -48,6 +48,17 @@ impl fmt::Debug for Progress {
     }
 }
 
+/// One line of work in steps: share and count of the `done` ones if their number is known, the remaining time, and the message.
+#[must_use]
+pub fn step_line(steps: Option<u64>, done: u64, remaining: &str, message: &str) -> String {
+    match steps {
+        Some(steps) => {
+            format!("{:>3} %  {done}/{steps}  ETA {remaining}  {message}", 100 * done / steps.max(1))
+        }
+        None => message.to_owned(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -12,8 +12,8 @@ use frames::SequenceFrames;
 use std::path::{Path, PathBuf};
 use trundle_core::{Pose2, Pose3, Stamp};
 use trundle_io::{
-    CameraModel, FileKind, KINECT_V2_DEPTH_SCALE, RosSequence, RosSequenceOptions, RosTopics, SequenceCamera,
-    TumSequence, Warnings,
+    CameraModel, DepthStatistics, FileKind, KINECT_V2_DEPTH_SCALE, RosSequence, RosSequenceOptions,
+    RosTopics, SequenceCamera, TumSequence, Warnings,
 };
 use trundle_runtime::{CameraMount, RobotConfig};
 use trundle_slam::ReadoutEstimate;
@@ -106,6 +106,7 @@ impl SequenceInput {
                 model: CameraModel { camera, depth_scale: KINECT_V2_DEPTH_SCALE },
                 name: sequence.topics().info.clone(),
                 is_readout_known: false,
+                is_depth_scale_known: true,
                 is_assumed: false,
                 warnings: Warnings::default(),
             },
@@ -134,8 +135,12 @@ impl SequenceInput {
         log_warnings(&camera.warnings);
         let CameraModel { camera: lens, depth_scale } = &mut camera.model;
         *depth_scale = options.depth_scale.unwrap_or(*depth_scale);
-        let sequence = TumSequence::open(options.path, *depth_scale, TumSequence::MAX_DIFFERENCE)?;
+        let mut sequence = TumSequence::open(options.path, *depth_scale, TumSequence::MAX_DIFFERENCE)?;
         log_warnings(sequence.warnings());
+        if options.depth_scale.is_none() && !camera.is_depth_scale_known {
+            *depth_scale = assumed_depth_scale(&sequence, &camera.name, *depth_scale);
+            sequence = sequence.with_depth_scale(*depth_scale);
+        }
         let source = Source::Folder(Box::new(sequence.with_size(lens.width(), lens.height())));
         Ok(Self::new(options.path, camera, RobotConfig::default(), source))
     }
@@ -285,12 +290,32 @@ impl SequenceInput {
     }
 }
 
+/// The depth scale for a camera file without one: `usual`, or another one in use if the first images are unusable with it. A warning names
+/// it.
+fn assumed_depth_scale(sequence: &TumSequence, camera: &str, usual: f64) -> f64 {
+    let mut statistics = DepthStatistics::default();
+    sequence.frames().take(MAX_TRIED_IMAGES).flatten().for_each(|image| statistics.count(image.depth()));
+    let by_images = statistics.fitting_scale(usual);
+    let (scale, reason) = match by_images {
+        Some(scale) => (scale, format!(" by the images, which are hardly usable with {usual}")),
+        None => (usual, String::new()),
+    };
+    tracing::warn!(
+        "{camera}: no depth scale in the camera file: {scale} units per metre are assumed{reason}; --depth-scale N sets another"
+    );
+    scale
+}
+
+/// Number of images by which the depth scale is assumed. Source: ours.
+const MAX_TRIED_IMAGES: usize = 5;
+
 /// The camera of a recording's robot.
 fn camera_of(robot: &RobotConfig, recording: &Path) -> SequenceCamera {
     SequenceCamera {
         model: CameraModel { camera: robot.camera, depth_scale: KINECT_V2_DEPTH_SCALE },
         name: recording.display().to_string(),
         is_readout_known: true,
+        is_depth_scale_known: true,
         is_assumed: false,
         warnings: Warnings::default(),
     }

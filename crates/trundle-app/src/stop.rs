@@ -61,7 +61,18 @@ pub fn is_requested(done: impl FnOnce() -> String) -> bool {
 #[must_use]
 pub fn stopped() -> Option<(StopSignal, String)> {
     let done = STOPPED_AFTER.lock().unwrap_or_else(PoisonError::into_inner).clone()?;
-    Some((StopSignal(SIGNAL.load(Ordering::Relaxed)), done))
+    Some((received()?, done))
+}
+
+/// The signal and the finished work at the end of the program. A signal after the last loop counts too: it also ends the script that called
+/// the program.
+#[must_use]
+pub fn ended() -> Option<(StopSignal, String)> {
+    stopped().or_else(|| Some((received()?, "the end of its work".to_owned())))
+}
+
+fn received() -> Option<StopSignal> {
+    Some(SIGNAL.load(Ordering::Relaxed)).filter(|number| *number != 0).map(StopSignal)
 }
 
 /// Notes in the summary of `folder` that the user ended the work, if a signal has.

@@ -24,8 +24,24 @@ impl Invalid {
         unit: &'static str,
         expected: impl Into<String>,
     ) -> Self {
-        Self { field: field.into(), value: value.to_string(), unit, expected: expected.into() }
+        let value = value.to_string();
+        Self {
+            field: field.into(),
+            value: short_number(&value).unwrap_or(value),
+            unit,
+            expected: expected.into(),
+        }
     }
+}
+
+/// Length of a number above which it is written with an exponent \[characters\]. Source: ours, a stamp in nanoseconds has 19 digits.
+const MAX_NUMBER_LENGTH: usize = 24;
+
+/// A number with an exponent, if its digits would fill a line: `1e300`.
+fn short_number(text: &str) -> Option<String> {
+    let is_long = text.len() > MAX_NUMBER_LENGTH && text.bytes().all(|byte| b"0123456789.-".contains(&byte));
+    let number: f64 = if is_long { text.parse().ok()? } else { return None };
+    Some(format!("{number:e}"))
 }
 
 /// Passes a finite number through.
@@ -63,6 +79,18 @@ pub fn require_in(field: &str, value: f64, unit: &'static str, low: f64, high: f
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_of_many_digits_is_written_with_an_exponent() {
+        for (value, text) in
+            [(1e300, "1e300"), (-1e-300, "-1e-300"), (1.5, "1.5"), (1.7e18, "1700000000000000000")]
+        {
+            let message = require_in("x", value, "m", 2.0, 3.0).unwrap_err().to_string();
+            assert_eq!(message, format!("x is {text} m, expected 2 to 3"));
+        }
+        let words = "a".repeat(300);
+        assert_eq!(Invalid::new("x", &words, "", "y").value, words);
+    }
 
     #[test]
     fn the_sentence_names_field_value_and_unit() {

@@ -1,5 +1,6 @@
 //! Range of the depth images of an input, and the likely cause of unusable depth.
 
+use crate::camera::KINECT_V2_DEPTH_SCALE;
 use trundle_core::DepthImage;
 
 /// Depth below which a depth camera has no measurement, m. Source: Kinect v1 and V2, RealSense D435.
@@ -97,13 +98,32 @@ impl DepthStatistics {
                 "{problem}: the typical depth is {mean:.3} m, expected floats in metres, to which depth_scale does not apply{hint}"
             ));
         }
-        let off = |other: f64| (mean * scale / other / TYPICAL_DEPTH_M).ln().abs();
-        let best = KNOWN_SCALES.into_iter().min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(scale);
+        let best = likely_scale(mean * scale);
         Some(format!(
             "{problem}: the typical depth is {mean:.3} m at depth_scale = {scale}; with {best} it would be {:.2} m",
             mean * scale / best
         ))
     }
+
+    /// The depth scale in use that makes the depth usable, if `scale` leaves less than half of it usable. `None` if none does, or if the
+    /// images hold floats.
+    #[must_use]
+    pub fn fitting_scale(&self, scale: f64) -> Option<f64> {
+        let with_depth = self.pixels - self.without_depth;
+        if with_depth == 0 || 2 * (self.too_near + self.too_far) <= with_depth || self.is_of_floats(scale) {
+            return None;
+        }
+        let units = (self.log_sum / with_depth as f64).exp() * scale;
+        let best = likely_scale(units);
+        let usable = f64::from(MIN_USABLE_M)..=f64::from(MAX_USABLE_M);
+        (best != scale && usable.contains(&(units / best))).then_some(best)
+    }
+}
+
+/// The depth scale in use with which a depth of `units` is nearest to the typical one.
+fn likely_scale(units: f64) -> f64 {
+    let off = |scale: &f64| (units / scale / TYPICAL_DEPTH_M).ln().abs();
+    KNOWN_SCALES.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap_or(KINECT_V2_DEPTH_SCALE)
 }
 
 #[cfg(test)]
@@ -114,6 +134,17 @@ mod tests {
         let mut statistics = DepthStatistics::default();
         statistics.count(&DepthImage::filled(64, 48, metres));
         statistics
+    }
+
+    #[test]
+    fn the_scale_of_unusable_depth_is_found() {
+        assert_eq!(of(10.0).fitting_scale(1000.0), Some(5000.0));
+        assert_eq!(of(2.0).fitting_scale(1000.0), None, "usable");
+        assert_eq!(of(0.0).fitting_scale(1000.0), None, "no depth");
+        assert_eq!(of(70.0).fitting_scale(1000.0), None, "floats");
+        let mut mixed = of(2.0);
+        (0..2).for_each(|_| mixed.count(&DepthImage::filled(64, 48, 12.0)));
+        assert_eq!(mixed.fitting_scale(1000.0), Some(5000.0), "two of three pixels are too far");
     }
 
     #[test]

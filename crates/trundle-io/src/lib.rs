@@ -64,9 +64,10 @@ pub use laser_log::{
     no_overlap_cause, no_return_cause, range_unit_hint,
 };
 pub use map::{
-    GraphFile, KeepOutFile, MapDescription, MapFile, MapImage, SpeedFile, annotations_text, map_files,
-    map_pgm, map_picture, map_yaml, picture_size, read_annotations, read_graph, read_keep_out_mask, read_map,
-    read_map_file, read_places, read_speed_mask, write_map, write_map_as, write_speed_mask,
+    GraphFile, KeepOutFile, MAX_CELL_M, MIN_CELL_M, MapDescription, MapFile, MapImage, SpeedFile,
+    annotations_text, map_files, map_pgm, map_picture, map_yaml, picture_size, read_annotations, read_graph,
+    read_keep_out_mask, read_map, read_map_file, read_places, read_speed_mask, write_map, write_map_as,
+    write_speed_mask,
 };
 pub use output::{
     CommandOutputs, InputFiles, OutputFile, OutputFolder, abandon_outputs, abandon_unfinished, keep_aside,

@@ -212,6 +212,7 @@ impl OutputFolder {
             self.write(name, &content())?;
         }
         self.made.clear();
+        self.scratch.release_reserve();
         self.write_marker();
         let filled = unfinished::complete(|| self.place.fill(&self.scratch));
         filled.map_err(|problem| self.rescued(problem))?;

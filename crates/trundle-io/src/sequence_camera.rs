@@ -1,6 +1,6 @@
 //! The camera of a sequence: the requested one, the folder's own, or an assumed one.
 
-use crate::camera::{CameraModel, KINECT_V2_DEPTH_SCALE};
+use crate::camera::CameraModel;
 use crate::{Expected, FileKind, IoError, Warnings};
 use std::path::{Path, PathBuf};
 
@@ -16,6 +16,8 @@ pub struct SequenceCamera {
     pub name: String,
     /// Whether the readout time is known; else it is 0 in the model.
     pub is_readout_known: bool,
+    /// Whether the file or preset has the depth scale; else it is 1000 in the model.
+    pub is_depth_scale_known: bool,
     /// Whether the camera is a guess: neither options nor files give one.
     pub is_assumed: bool,
     /// Warnings about the choice.
@@ -44,15 +46,14 @@ impl SequenceCamera {
 
     fn named(name: &str) -> Result<Self, IoError> {
         let (model, held) = CameraModel::described(name)?;
-        let mut warnings = Warnings::default();
-        if !held.depth_scale {
-            let problem = format!(
-                "no depth scale in the camera file: {KINECT_V2_DEPTH_SCALE} units per metre are assumed; --depth-scale N sets another"
-            );
-            warnings.add(&problem, name);
-        }
-        let is_readout_known = held.readout;
-        Ok(Self { model, name: name.to_owned(), is_readout_known, is_assumed: false, warnings })
+        Ok(Self {
+            model,
+            name: name.to_owned(),
+            is_readout_known: held.readout,
+            is_depth_scale_known: held.depth_scale,
+            is_assumed: false,
+            warnings: Warnings::default(),
+        })
     }
 
     fn assumed(dir: &Path) -> Result<Self, IoError> {
@@ -68,7 +69,8 @@ impl SequenceCamera {
         );
         warnings.add(&problem, &dir.display().to_string());
         let name = ASSUMED_PRESET.to_owned();
-        Ok(Self { model, name, is_readout_known: true, is_assumed: true, warnings })
+        let (is_readout_known, is_depth_scale_known) = (true, true);
+        Ok(Self { model, name, is_readout_known, is_depth_scale_known, is_assumed: true, warnings })
     }
 }
 
@@ -123,7 +125,8 @@ mod tests {
         let stella = "Camera:\n  name: a\n  setup: \"RGBD\"\n  model: \"perspective\"\n  fx: 525\n  fy: 526\n  cx: 319.5\n  cy: 239.5\n\
                       \x20 k1: 0.1\n  cols: 640\n  rows: 480\n  depthmap_factor: 5000\n";
         let toml = "width = 640\nheight = 480\nfx = 525.0\nfy = 526.0\ncx = 319.5\ncy = 239.5\nk1 = 0.1\ndepth_scale = 5000.0\n";
-        for form in [&orb_slam3, stella, toml] {
+        let scale_of_preprocessing = stella.replace("  depthmap_factor", "Preprocessing:\n  depthmap_factor");
+        for form in [&orb_slam3, stella, &scale_of_preprocessing, toml] {
             assert_eq!(camera(form).as_ref(), Ok(&expected), "{form}");
         }
         let ros = "image_width: 640\nimage_height: 480\ncamera_name: a\ncamera_matrix:\n  rows: 3\n  cols: 3\n\
@@ -155,6 +158,11 @@ mod tests {
         let problem = camera(&ORB_SLAM.replace("PinHole", "KannalaBrandt8")).unwrap_err();
         assert!(
             problem.contains("line 3: Camera.type is 'KannalaBrandt8', expected a pinhole camera"),
+            "{problem}"
+        );
+        let problem = camera(&ORB_SLAM.replace("525.0", "0.82")).unwrap_err();
+        assert!(
+            problem.starts_with("FILE, line 4: Camera.fx is 0.82 px, expected 58 to 12800 px"),
             "{problem}"
         );
         assert!(camera("{\"intrinsic_matrix\": [1]}").unwrap_err().contains("expected width, height"));

@@ -37,7 +37,7 @@ impl StampUnit {
             MIN_NANOSECONDS.. => Self::Nanoseconds,
             MIN_MICROSECONDS.. => Self::Microseconds,
             MIN_MILLISECONDS.. => Self::Milliseconds,
-            _ if texts.iter().all(|text| text.bytes().all(|byte| byte.is_ascii_digit())) => by_step(&stamps),
+            _ if texts.iter().all(|text| is_whole(text)) => by_step(&stamps),
             _ => Self::Seconds,
         }
     }
@@ -72,6 +72,11 @@ impl fmt::Display for StampUnit {
             Self::Nanoseconds => "nanoseconds",
         })
     }
+}
+
+/// Whether a stamp has digits only; one before the start of the clock has a sign.
+fn is_whole(text: &str) -> bool {
+    text.strip_prefix('-').unwrap_or(text).bytes().all(|byte| byte.is_ascii_digit())
 }
 
 /// The unit of whole-numbered stamps by their median step: sensors do not pause for seconds between readings.
@@ -116,6 +121,7 @@ mod tests {
         assert_eq!(StampUnit::of(&["0", "5", "10"]), StampUnit::Milliseconds);
         assert_eq!(StampUnit::of(&["0", "1", "2"]), StampUnit::Seconds);
         assert_eq!(StampUnit::of(&["0", "4", "8"]), StampUnit::Seconds);
+        assert_eq!(StampUnit::of(&["-50", "0", "50"]), StampUnit::Milliseconds);
         assert_eq!(StampUnit::of(&["0.0", "33.0"]), StampUnit::Seconds);
         assert_eq!(StampUnit::of(&["0.0", "20000.0"]), StampUnit::Seconds);
         assert_eq!(StampUnit::of(&["x"]), StampUnit::Seconds);

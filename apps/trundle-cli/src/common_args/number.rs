@@ -8,7 +8,7 @@ use trundle::app::{NumberRange, NumberText};
 
 /// The number of an option.
 #[derive(Debug, Clone, Copy)]
-pub struct NumberArg(NumberText);
+pub struct NumberArg(pub NumberText);
 
 impl NumberArg {
     /// Any finite number in `unit`.

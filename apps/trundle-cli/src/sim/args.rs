@@ -5,7 +5,7 @@ use crate::live::ViewArgs;
 use crate::output_args::{OutputDirArg, OutputFileArg};
 use clap::{ArgGroup, Args};
 use std::path::PathBuf;
-use trundle::app::AppError;
+use trundle::app::{AppError, NumberText};
 use trundle::experiments::simulated::read_faults;
 use trundle::io::MapImage;
 use trundle::live::LiveAddress;
@@ -98,7 +98,7 @@ pub struct TrueMapArgs {
     #[arg(long, value_name = "FORMAT", default_value = "pgm", hide_short_help = true, requires = "map", value_parser = choice(&MapImage::CHOICES))]
     pub map_image: MapImage,
     /// Side of the map's cells, m.
-    #[arg(long, value_name = "M", default_value_t = 0.05, requires = "map_use", value_parser = NumberArg::above_zero("m"), allow_negative_numbers = true)]
+    #[arg(long, value_name = "M", default_value_t = 0.05, requires = "map_use", value_parser = NumberArg(NumberText::CELL_SIDE), allow_negative_numbers = true)]
     pub resolution: f64,
     /// Height band of obstacles, m, for the map [default: the robot's]
     #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], hide_short_help = true, requires = "map_use", value_parser = NumberArg::any("m"), allow_negative_numbers = true)]

@@ -195,6 +195,21 @@ fn a_stopped_drive_names_the_map_that_it_has_written() {
     assert!(!message.contains("nothing was written") && message.contains("map.yaml"), "{message}");
 }
 
+/// The drawing of a map has no loop that reads the signal. Its result is complete, and a script that calls the program ends.
+#[test]
+fn a_signal_after_the_last_loop_is_the_exit_code_too() {
+    let scratch = tempfile::tempdir().unwrap();
+    let map = scratch.path().join("map.yaml");
+    let child = start(&["sim", "warehouse", "--resolution=0.005", "--map", text(&map)]);
+    std::thread::sleep(Duration::from_millis(500));
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let message = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(130), "{message}");
+    assert!(message.contains("stopped by Ctrl-C") && message.contains("map.yaml"), "{message}");
+    assert!(map.exists() && map.with_extension("pgm").exists());
+}
+
 /// A closed terminal, or a pipe without a reader, receives no message of a program ended by a signal.
 #[test]
 fn a_signal_ends_a_command_whose_standard_error_has_no_reader() {

@@ -4,11 +4,15 @@ use crate::program::trundle;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// A CARMEN log of ten scans of 181 beams, all of one range.
+/// A CARMEN log of ten scans of 181 beams, all of about one range.
 fn log_of(dir: &Path, range: f64) -> String {
+    log_of_scans(dir, range, 10)
+}
+
+fn log_of_scans(dir: &Path, range: f64, scans: u32) -> String {
     let file = dir.join("robot.log");
     let mut text = String::new();
-    for i in 0..10 {
+    for i in 0..scans {
         let (x, stamp) = (f64::from(i) * 0.5, f64::from(i));
         write!(text, "FLASER 181").unwrap();
         (0..181).for_each(|beam| write!(text, " {:.2}", range * (1.0 + f64::from(beam) * 1e-3)).unwrap());
@@ -32,6 +36,25 @@ fn a_map_of_ranges_that_are_zero_or_in_millimetres_fails() {
         let summary = std::fs::read_to_string(out.join("summary.json")).unwrap();
         assert!(summary.contains("\"success\": false"), "{summary}");
     }
+}
+
+#[test]
+fn a_long_log_in_millimetres_fails_after_a_few_scans() {
+    let scratch = tempfile::tempdir().unwrap();
+    let log = log_of_scans(scratch.path(), 4000.0, 200);
+    let out = scratch.path().join("out");
+    let run = trundle(&["map", &log, "--quiet", "--out", out.to_str().unwrap()]);
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert_eq!(run.status.code(), Some(1), "{message}");
+    assert!(
+        message.contains("10 of 11 scans do not overlap") && message.contains("millimetres?"),
+        "{message}"
+    );
+    let summary = std::fs::read_to_string(out.join("summary.json")).unwrap();
+    assert!(
+        summary.contains("\"success\": false") && !summary.contains("\"interrupted\": true"),
+        "{summary}"
+    );
 }
 
 #[test]

@@ -96,3 +96,30 @@ fn a_saved_map_is_the_same_on_any_threads_and_is_begun_with() {
     let complaint = refusal(&["slam", text(&sequence), "--map", text(&broken), "--out", text(&again)]);
     assert!(complaint.contains("broken.map") && complaint.contains("checksum"), "{complaint}");
 }
+
+/// A camera file of ROS holds no depth scale; the images of this folder have TUM's 5000 units per metre.
+#[test]
+fn a_depth_scale_that_no_file_holds_is_found_by_the_images() {
+    let scratch = tempfile::tempdir().unwrap();
+    let (data, out) = (scratch.path().join("data"), scratch.path().join("out"));
+    let camera = scratch.path().join("camera.yaml");
+    std::fs::write(
+        &camera,
+        "image_width: 512\nimage_height: 424\ndistortion_model: plumb_bob\n\
+         camera_matrix: {rows: 3, cols: 3, data: [361.5617, 0, 255.5, 0, 367.19477, 211.5, 0, 0, 1]}\n",
+    )
+    .unwrap();
+    assert!(trundle(&["sim", "room", "--quiet", "--duration=0.5", "--record", text(&data)]).status.success());
+    let slam = |more: &[&str]| {
+        let common = ["slam", text(&data), "--camera", text(&camera), "--height=0.45", "--tilt=8", "--quiet"];
+        let output = trundle(&[&common, more, &["--out", text(&out)]].concat());
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{message}");
+        message
+    };
+    let message = slam(&[]);
+    assert!(message.contains("5000 units per metre are assumed by the images"), "{message}");
+    assert_eq!(summary(&out)["frames_lost"], 0);
+    let message = slam(&["--depth-scale=5000"]);
+    assert!(!message.contains("depth scale"), "{message}");
+}

@@ -23,6 +23,13 @@ const MAX_STEP_LENGTH_M: f64 = 1.0;
 const MAX_STEP_SCANS: usize = 40;
 /// Distance from which a point has no match \[m\]. Source: ours.
 const MAX_MATCH_DISTANCE_M: f64 = 0.3;
+/// Largest distance of the ends of neighbouring beams on one surface \[m\]: beams of 5 degrees on a wall at 3 m, 60 degrees aslant. Source:
+/// ours.
+const MAX_SURFACE_LENGTH_M: f64 = 0.5;
+/// Share of the points that are compared, the nearest ones \[1\]. Source: ours, a third of a scan may be hidden from the earlier place.
+const COUNTED_SHARE: f64 = 0.7;
+/// Smallest difference of the errors of two mounts that is no noise \[m\]. Source: ours, twice the noise of a laser.
+const MIN_ERROR_GAIN_M: f64 = 0.02;
 /// Difference of two turns of a laser below which they are equal \[rad\]: half a degree, since messages give whole degrees. Source: ours.
 const MIN_TURN_DIFFERENCE_RAD: f64 = 0.0087;
 /// Difference of the turns of a laser that are tried first \[rad\]: 15 degrees, so that one of them is within 8 degrees of the true turn.
@@ -95,9 +102,14 @@ pub(super) fn better_mount(log: &LaserLog) -> Option<LaserMount> {
     let (quarter_error, quarter) = best_reading(&steps, readings_every(FRAC_PI_2))?;
     let (turned_error, turned) = best_turn(&steps)?;
     // Most lasers are mounted by quarters of a turn, and beams far apart blur the error: another angle has to fit better than these.
-    let is_turned = turned_error < MAX_TURNED_SHARE * quarter_error;
+    let is_turned = is_better(turned_error, quarter_error, MAX_TURNED_SHARE);
     let (error, best) = if is_turned { (turned_error, turned) } else { (quarter_error, quarter) };
-    (error < MAX_ERROR_SHARE * taken).then(|| best.applied_to(log.mount))
+    is_better(error, taken, MAX_ERROR_SHARE).then(|| best.applied_to(log.mount))
+}
+
+/// Whether an error is below a share of the other, and by more than the noise.
+fn is_better(error: f64, other: f64, share: f64) -> bool {
+    error < share * other && other - error > MIN_ERROR_GAIN_M
 }
 
 /// The reading with the smallest mean error, and this error, m.
@@ -182,19 +194,34 @@ fn spread(steps: Vec<Step<'_>>) -> Vec<Step<'_>> {
     steps.into_iter().step_by(stride).collect()
 }
 
-/// The mean distance of the points of the later scans from those of the earlier ones, m; `None` without points.
+/// The mean distance of the points of the later scans from the surfaces of the earlier ones, m, without the farthest points: those have no
+/// surface in the earlier scan. `None` without points.
 fn mean_error(steps: &[Step<'_>], reading: Reading) -> Option<f64> {
-    let (mut sum, mut count) = (0.0, 0);
+    let mut errors = Vec::new();
     for step in steps {
         let first = points(step.first, reading);
         for point in points(step.second, reading) {
             let point = step.first_from_second.transform(point);
-            let distances = first.iter().map(|other| (other - point).norm_squared());
-            sum += distances.fold(MAX_MATCH_DISTANCE_M.powi(2), f64::min).sqrt();
-            count += 1;
+            let distances = first.iter().zip(first.iter().skip(1).chain(first.last()));
+            let distances = distances.map(|(a, b)| squared_distance(point, *a, *b));
+            errors.push(distances.fold(MAX_MATCH_DISTANCE_M.powi(2), f64::min).sqrt());
         }
     }
-    (count > 0).then(|| sum / f64::from(count))
+    errors.sort_by(f64::total_cmp);
+    errors.truncate((COUNTED_SHARE * errors.len() as f64).ceil() as usize);
+    (!errors.is_empty()).then(|| errors.iter().sum::<f64>() / errors.len() as f64)
+}
+
+/// The squared distance of a point from the surface between the ends `a` and `b` of neighbouring beams, m^2; from `a` alone if a gap lies
+/// between them. Beams of 5 degrees end 0.3 m apart, so the ends alone would hide an error of the mount.
+fn squared_distance(point: Vector2, a: Vector2, b: Vector2) -> f64 {
+    let (to_point, along) = (point - a, b - a);
+    let squared_length = along.norm_squared();
+    if squared_length == 0.0 || squared_length > MAX_SURFACE_LENGTH_M.powi(2) {
+        return to_point.norm_squared();
+    }
+    let share = (to_point.dot(&along) / squared_length).clamp(0.0, 1.0);
+    (to_point - along * share).norm_squared()
 }
 
 fn points(scan: &LaserLogScan, reading: Reading) -> Vec<Vector2> {
@@ -211,18 +238,23 @@ mod tests {
     /// A simulated drive along a curve in a room of 6 x 4 m with a box; the laser is mounted as `truth` and its log claims an upright laser
     /// at heading 0.
     fn drive(truth: LaserMount) -> LaserLog {
+        drive_with(truth, 60, TAU / 90.0)
+    }
+
+    /// The same drive with `beams` beams, `step` apart \[rad\].
+    fn drive_with(truth: LaserMount, beams: i32, step: f64) -> LaserLog {
         let scans = (0..36).map(|i| {
             let at = f64::from(i) * 0.17;
             let odom_from_base = Pose2::new(2.0 + at.sin(), 1.5 + 0.6 * (1.0 - at.cos()), at);
             let hand = if truth.upside_down { -1.0 } else { 1.0 };
             let beam = |k: i32| {
-                let angle = f64::from(k) * TAU / 90.0 - 2.0;
+                let angle = f64::from(k) * step - 2.0;
                 let heading = odom_from_base.theta + truth.turn + hand * angle;
                 Beam::Hit { range: range(odom_from_base.position(), heading) }
             };
-            let beams: Vec<Beam> = (0..60).map(beam).collect();
+            let beams: Vec<Beam> = (0..beams).map(beam).collect();
             let stamp = Stamp::from_nanos(i64::from(i) * 100_000_000);
-            let scan = Scan::new(stamp, Vector2::zeros(), -2.0, TAU / 90.0, beams).unwrap();
+            let scan = Scan::new(stamp, Vector2::zeros(), -2.0, step, beams).unwrap();
             LaserLogScan { odom_from_base, scan }
         });
         LaserLog { scans: scans.collect(), ..LaserLog::default() }
@@ -265,6 +297,26 @@ mod tests {
             assert_eq!(found.upside_down, upside_down, "{truth:?}: {found:?}");
             let error = wrap_angle(found.turn - truth.turn).abs();
             assert!(error < 2.0_f64.to_radians(), "{truth:?}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn beams_far_apart_hide_no_turn() {
+        for step_deg in [5.0_f64, 8.0] {
+            let beams = (230.0 / step_deg) as i32;
+            let log = |degrees: f64| {
+                let truth = LaserMount { turn: degrees.to_radians(), upside_down: false };
+                drive_with(truth, beams, step_deg.to_radians())
+            };
+            assert_eq!(better_mount(&log(0.0)), None, "{step_deg}");
+            for degrees in [20.0_f64, 30.0, -30.0, 45.0, 120.0] {
+                let found = better_mount(&log(degrees)).unwrap();
+                let error = wrap_angle(found.turn - degrees.to_radians()).abs();
+                assert!(
+                    error < 3.0_f64.to_radians() && !found.upside_down,
+                    "{step_deg}, {degrees}: {found:?}"
+                );
+            }
         }
     }
 

@@ -10,7 +10,7 @@ use super::run_result::LaserMapRun;
 use crate::{AppError, StepProgress, stop};
 use std::time::Instant;
 use trundle_core::{Pose2, Stamp};
-use trundle_io::{LaserLog, OutputFolder, write_map_as};
+use trundle_io::{LaserLog, OutputFolder, range_unit_hint, write_map_as};
 use trundle_mapping::{Localized, MapLocalizer, ParticleMapper, ScanUpdate};
 
 /// Maps a log, or with `localize_only` localizes the robot in the requested map; writes trajectory, map, picture and summary.
@@ -63,6 +63,10 @@ fn is_stopped(done: usize, log: &LaserLog) -> bool {
     stop::is_requested(|| format!("{done} of {} scans", log.scans.len()))
 }
 
+/// Number of scans without overlap after which a log of implausibly long ranges is not mapped any further: each of its scans takes a
+/// thousand times the usual memory and time. Source: ours.
+const MAX_SCANS_OF_WRONG_UNIT: usize = 10;
+
 /// Maps the scans of the log.
 fn map(
     log: &LaserLog,
@@ -70,9 +74,10 @@ fn map(
     progress: &dyn StepProgress,
 ) -> (ScanCounts, KnownStretches) {
     let (mut counts, mut known) = (ScanCounts::default(), KnownStretches::default());
+    let is_unit_wrong = range_unit_hint(log).is_some();
     progress.begin(Some(log.scans.len()));
     for (done, entry) in log.scans.iter().enumerate() {
-        if is_stopped(done, log) {
+        if is_stopped(done, log) || (is_unit_wrong && counts.without_overlap >= MAX_SCANS_OF_WRONG_UNIT) {
             break;
         }
         let update = mapper.update(entry.odom_from_base, &entry.scan);

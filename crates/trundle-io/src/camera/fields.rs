@@ -21,10 +21,25 @@ impl CameraFields {
     pub(super) fn camera(&self) -> Result<PinholeCamera, Invalid> {
         self.depth_scale.map_or(Ok(1.0), checked_depth_scale)?;
         let camera = PinholeCamera::new(self.size, self.focal, self.centre, self.lens)?;
+        require_focal("fx", self.focal.0, self.size.0)?;
+        require_focal("fy", self.focal.1, self.size.1)?;
         require_inside("cx", self.centre.0, self.size.0)?;
         require_inside("cy", self.centre.1, self.size.1)?;
         camera.with_readout(self.readout.unwrap_or(0.0))
     }
+}
+
+/// Smallest and largest focal length, of the image's side \[1\]: fields of view of 160 and 3 degrees. Source: ours.
+const FOCAL_SHARES: [f64; 2] = [0.09, 20.0];
+
+/// Refuses a focal length that no rectified camera has: it is in mm, or in widths of the image.
+fn require_focal(name: &str, value: f64, side: usize) -> Result<(), Invalid> {
+    let [low, high] = FOCAL_SHARES.map(|share| share * side as f64);
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    let expected = format!("{low:.0} to {high:.0} px for images of {side} px: is it in pixels?");
+    Err(Invalid::new(name, value, "px", expected))
 }
 
 /// Refuses a principal point outside the image.

@@ -39,7 +39,13 @@ pub(super) fn parse(path: &Path, text: &str) -> Result<CameraFields, IoError> {
 }
 
 fn depth_scale(document: &YamlDocument<'_>) -> Result<Option<f64>, IoError> {
-    let names = ["RGBD.DepthMapFactor", "DepthMapFactor", "Camera.depthmap_factor", "depthmap_factor"];
+    let names = [
+        "RGBD.DepthMapFactor",
+        "DepthMapFactor",
+        "Preprocessing.depthmap_factor",
+        "Camera.depthmap_factor",
+        "depthmap_factor",
+    ];
     let named = names.iter().find(|name| document.get(name).is_some());
     named.map(|name| document.number(name, "depth units per metre")).transpose()
 }

@@ -23,6 +23,9 @@ pub(crate) fn decode_depth_file(bytes: &[u8], depth_scale: f64) -> Result<DepthI
             let problem = format!("this is {found}, expected a PNG, TIFF, PGM or OpenEXR of depths");
             return Err(CodecError::decode("depth", problem));
         }
+        Err(_) if FileKind::of_bytes(bytes, bytes.len() as u64) == FileKind::Tiff => {
+            return Err(CodecError::decode("depth", "this is a BigTIFF picture, expected a TIFF below 4 GB"));
+        }
         Err(_) => {
             return Err(CodecError::decode("depth", "no picture, expected a PNG, TIFF, PGM or OpenEXR"));
         }
@@ -90,6 +93,15 @@ mod tests {
         bytes.into_inner()
     }
 
+    /// An OpenEXR file whose header names DWAA.
+    fn exr_by_dwaa() -> Vec<u8> {
+        let mut bytes = exr();
+        let name = b"compression\0compression\0";
+        let at = bytes.windows(name.len()).position(|part| part == name).unwrap();
+        bytes[at + name.len() + 4] = 8;
+        bytes
+    }
+
     fn exr() -> Vec<u8> {
         use exr::prelude::*;
         let samples = FlatSamples::F32(truth().data().to_vec());
@@ -149,6 +161,9 @@ mod tests {
             assert!(message.contains(&format!("has {found} pixels, expected 16-bit grey")), "{message}");
             assert!(!message.contains("too coarse"), "{message}");
         }
+        assert!(problem(b"II+\0\x08\0\0\0").contains("this is a BigTIFF picture, expected a TIFF"));
+        let lossy = problem(&exr_by_dwaa());
+        assert!(lossy.contains("compressed by dwaa compression, expected ZIP"), "{lossy}");
         assert!(problem(b"no image").contains("no picture, expected a PNG, TIFF, PGM or OpenEXR"));
     }
 

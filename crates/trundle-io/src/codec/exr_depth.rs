@@ -2,6 +2,7 @@
 
 use super::CodecError;
 use super::claim::check_size;
+use exr::compression::Compression;
 use exr::meta::MetaData;
 use exr::prelude::{ReadChannels, ReadLayers, read};
 use std::io::Cursor;
@@ -17,6 +18,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image<f32>, CodecError> {
     let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).map_err(damaged)?;
     for header in &meta.headers {
         let size = (header.layer_size.width(), header.layer_size.height());
+        require_readable(header.compression)?;
         check_size("depth", size, 16 * header.channels.list.len().max(1), bytes.len())?;
     }
     let image = read()
@@ -38,4 +40,15 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Image<f32>, CodecError> {
     let size = image.layer_data.size;
     let values = channel.sample_data.values_as_f32().collect();
     Ok(Image::new(size.width(), size.height(), values)?)
+}
+
+/// Refuses the lossy compressions that the decoder does not read.
+fn require_readable(compression: Compression) -> Result<(), CodecError> {
+    match compression {
+        Compression::DWAA(_) | Compression::DWAB(_) => {
+            let problem = format!("the OpenEXR file is compressed by {compression}, expected ZIP or none");
+            Err(CodecError::decode("depth", problem))
+        }
+        _ => Ok(()),
+    }
 }

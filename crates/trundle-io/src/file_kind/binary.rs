@@ -17,6 +17,8 @@ const MAGICS: &[(&[u8], FileKind)] = &[
     (b"\xff\xd8\xff", FileKind::Jpeg),
     (b"II*\0", FileKind::Tiff),
     (b"MM\0*", FileKind::Tiff),
+    (b"II+\0", FileKind::Tiff),
+    (b"MM\0+", FileKind::Tiff),
     (b"\x76\x2f\x31\x01", FileKind::Exr),
     (b"GIF8", FileKind::Gif),
     (b"glTF", FileKind::Glb),

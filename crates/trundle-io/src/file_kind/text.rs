@@ -38,6 +38,7 @@ pub(super) fn kind_of(head: &[u8]) -> FileKind {
         Some(_) => of_yaml(&lines)
             .or_else(|| of_words(&content))
             .or_else(|| of_toml(&content))
+            .or_else(|| is_json_list(text).then_some(FileKind::Json))
             .or_else(|| of_numbers(text, &content))
             .or_else(|| is_yaml(&content).then_some(FileKind::Yaml))
             .unwrap_or(FileKind::Text),
@@ -132,7 +133,7 @@ fn of_words(content: &[&str]) -> Option<FileKind> {
 /// TOML: its first line is a table or `key = value`.
 fn of_toml(content: &[&str]) -> Option<FileKind> {
     let first = content.first()?;
-    let is_table = first.starts_with('[') && first.split('#').next()?.trim_end().ends_with(']');
+    let is_table = first.split('#').next().is_some_and(|head| is_table_head(head.trim_end()));
     let is_key =
         |line: &str| line.split_once('=').is_some_and(|(key, _)| is_bare_key(key.trim().trim_matches('"')));
     if !is_table && !is_key(first) {
@@ -142,6 +143,22 @@ fn of_toml(content: &[&str]) -> Option<FileKind> {
         content.iter().any(|line| line.split_once('=').is_some_and(|(name, _)| name.trim() == key))
     };
     Some(if has("fx") && has("fy") { FileKind::CameraToml } else { FileKind::Toml })
+}
+
+/// `[NAME]`, or `[[NAME]]`; a name in quotation marks may be any text.
+fn is_table_head(line: &str) -> bool {
+    let inner = line.strip_prefix('[').and_then(|line| line.strip_suffix(']'));
+    let list = inner.and_then(|line| line.strip_prefix('[')?.strip_suffix(']'));
+    let Some(name) = list.or(inner).map(str::trim) else { return false };
+    let quoted = name.strip_prefix('"').and_then(|name| name.strip_suffix('"'));
+    quoted.map_or_else(|| is_bare_key(&name.replace('"', "")), |name| !name.contains('"'))
+}
+
+/// A list of JSON, by its first item.
+fn is_json_list(text: &str) -> bool {
+    let Some(items) = text.trim_start().strip_prefix('[').map(str::trim_start) else { return false };
+    let item = items.split([',', ']', '\n']).next().unwrap_or_default().trim();
+    item.parse::<f64>().is_ok() || items.starts_with(['"', '{', '[', ']'])
 }
 
 fn is_bare_key(key: &str) -> bool {

@@ -66,7 +66,7 @@ pub fn no_return_cause(log: &LaserLog) -> String {
     }
     if log.bad_ranges > 0 {
         return format!(
-            "no beam of any scan hit an obstacle: {} ranges are zero, negative, not a number, or below the laser's minimum range",
+            "no beam of any scan hit an obstacle: {} ranges are negative, zero, infinite, not a number or below the laser's minimum range",
             log.bad_ranges
         );
     }

@@ -8,6 +8,11 @@ use trundle_core::{Cell, Invalid, Vector2, require_finite, require_in, require_p
 /// Grey of an unknown cell, of 255. Source: ROS's `map_saver`.
 const UNKNOWN_GREY: u32 = 205;
 
+/// Smallest side of a cell \[m\]: the noise of a laser is larger. Source: ours.
+pub const MIN_CELL_M: f64 = 0.001;
+/// Largest side of a cell \[m\]: a room. Source: ours.
+pub const MAX_CELL_M: f64 = 10.0;
+
 /// The checked content of a map's YAML file.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct MapYaml {
@@ -47,7 +52,7 @@ impl MapYaml {
         let occupied = document.number("occupied_thresh", "0 to 1, as 0.65")?;
         let free = document.number("free_thresh", "0 to 1, as 0.196")?;
         let (origin, yaw) = pose(&origin).map_err(|invalid| document.invalid(invalid))?;
-        let resolution = coarse_enough(resolution).map_err(|invalid| document.invalid(invalid))?;
+        let resolution = of_a_floor(resolution).map_err(|invalid| document.invalid(invalid))?;
         check_thresholds(occupied, free).map_err(|invalid| document.invalid(invalid))?;
         Ok(Self { image, resolution, origin, yaw, negate, occupied, free, mode: mode(document)? })
     }
@@ -156,10 +161,10 @@ fn raw(value: u16, maxval: u16) -> u16 {
     if maxval <= 255 { value } else { (f64::from(value) * 255.0 / f64::from(maxval)).round() as u16 }
 }
 
-/// A cell larger than a house is a wrong unit, and would make any plan endless.
-fn coarse_enough(resolution: f64) -> Result<f64, Invalid> {
+/// The side of a cell, if it is one of a map of a floor: others are in a wrong unit, or would make a plan endless.
+fn of_a_floor(resolution: f64) -> Result<f64, Invalid> {
     require_positive("resolution", resolution, "m")?;
-    require_in("resolution", resolution, "m", 0.0, 10.0)
+    require_in("resolution", resolution, "m", MIN_CELL_M, MAX_CELL_M)
 }
 
 #[cfg(test)]
@@ -215,6 +220,8 @@ mod tests {
     fn wrong_values_are_named() {
         for (from, to, line, problem) in [
             ("0.050000", "-1", 2, "resolution is -1 m, expected a finite number above 0"),
+            ("0.050000", "1e-300", 2, "resolution is 1e-300 m, expected 0.001 to 10"),
+            ("0.050000", "50", 2, "resolution is 50 m, expected 0.001 to 10"),
             ("0.050000", ".nan", 2, "resolution is '.nan', expected metres a cell, as 0.05"),
             ("0.050000", "fine", 2, "resolution is 'fine', expected metres a cell, as 0.05"),
             (

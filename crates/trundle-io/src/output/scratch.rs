@@ -20,6 +20,11 @@ const REPLACED: &str = "replaced";
 /// The folder inside the hidden one for the marker of an unfinished commit, until the marker is complete.
 const UNFINISHED: &str = "unfinished";
 
+/// The file in the hidden folder that keeps space on the disk for the marker of the results.
+const RESERVE_FILE: &str = "reserve";
+/// Length of that file \[bytes\]: a marker of about 500 files. A marker that is longer may not fit on a full disk. Source: ours.
+const RESERVE_BYTES: usize = 1 << 16;
+
 /// A hidden folder for results; a drop removes it.
 #[derive(Debug)]
 pub(super) struct Scratch {
@@ -32,7 +37,7 @@ impl Scratch {
     /// Creates a hidden folder in the folder `beside` for the results of `target`.
     ///
     /// # Errors
-    /// When the folder cannot be created.
+    /// When the folder cannot be created, or the disk has no space for the marker of the results.
     pub(super) fn create(beside: &Path, target: &Path) -> io::Result<Self> {
         let dir = unfinished::begin(|| tempfile::Builder::new().prefix(PREFIX).tempdir_in(beside))?;
         let mut owner = File::create(dir.path().join(OWNER_FILE))?;
@@ -40,12 +45,18 @@ impl Scratch {
         let _ = owner.try_lock();
         owner.write_all(resolved(target).to_string_lossy().as_bytes())?;
         fs::create_dir(dir.path().join(STAGE))?;
+        fs::write(dir.path().join(RESERVE_FILE), vec![0; RESERVE_BYTES])?;
         Ok(Self { dir, _owner: owner })
     }
 
     /// The folder that holds the results.
     pub(super) fn stage(&self) -> PathBuf {
         self.dir.path().join(STAGE)
+    }
+
+    /// Frees the space that is kept for the marker.
+    pub(super) fn release_reserve(&self) {
+        let _ = fs::remove_file(self.dir.path().join(RESERVE_FILE));
     }
 
     /// Path at which the folder of the last run is prepared.

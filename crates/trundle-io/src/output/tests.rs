@@ -262,3 +262,19 @@ fn folders_of_the_user_without_files_stay() {
     run(&dir.path().join("run"), "map", "1");
     assert!(dir.path().join("run/mine/deeper").exists());
 }
+
+#[test]
+fn space_for_the_marker_is_kept_on_the_disk_until_the_commit() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("run");
+    let out = OutputFolder::create(&target).unwrap();
+    let hidden = dir.path().join(&names(dir.path())[0]);
+    let kept = fs::metadata(hidden.join("reserve")).unwrap();
+    assert_eq!(kept.len(), 1 << 16);
+    #[cfg(unix)]
+    assert!(std::os::unix::fs::MetadataExt::blocks(&kept) * 512 >= 1 << 16, "no hole");
+    out.write("a", b"1").unwrap();
+    out.commit().unwrap();
+    assert_eq!(names(&target), [".trundle-run", "a"]);
+    assert_eq!(names(dir.path()), ["run"]);
+}

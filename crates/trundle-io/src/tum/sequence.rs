@@ -69,6 +69,12 @@ impl TumSequence {
         self
     }
 
+    /// Decodes depth from now on by `depth_scale`, units per metre.
+    pub fn with_depth_scale(mut self, depth_scale: f64) -> Self {
+        self.depth_scale = depth_scale;
+        self
+    }
+
     /// The number of frames.
     pub fn len(&self) -> usize {
         self.frames.len()
