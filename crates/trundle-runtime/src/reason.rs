@@ -186,7 +186,7 @@ impl fmt::Display for Reason {
             Self::PoseUncertain { sigma } => write!(f, "position uncertain: standard deviation {sigma:.2} m"),
             Self::ArrivalUncertain { bound, allowed } => uncertain_arrival(f, *bound, *allowed),
             Self::ArrivalContradicted => f.write_str(
-                "arrived, but the pose is uncertain: two scans contradicted the odometry, and no image has confirmed the pose since",
+                "arrived, but not sure: two scans contradicted the odometry, and no image has confirmed the pose since",
             ),
             Self::WheelsUnresponsive { sigma } => write!(
                 f,
@@ -219,7 +219,7 @@ impl fmt::Display for Reason {
 
 /// An arrival by an uncertain pose: the bound of the position, or that of the heading if the position is certain.
 fn uncertain_arrival(f: &mut fmt::Formatter<'_>, bound: PoseBound, allowed: PoseBound) -> fmt::Result {
-    f.write_str("arrived, but the pose is uncertain: ")?;
+    f.write_str("arrived, but not sure: ")?;
     if bound.distance > allowed.distance {
         let (known, needed) = (bound.distance, allowed.distance);
         return write!(f, "the position is known within {known:.2} m (95 %), the goal needs {needed:.2} m");

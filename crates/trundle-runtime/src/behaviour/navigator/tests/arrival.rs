@@ -41,7 +41,7 @@ fn an_uncertain_arrival_ends_the_goal_after_a_turn_on_the_spot() {
     assert!((base.now - began) * SPIN_RATE_RAD_S >= TAU, "it turned for {} s only", base.now - began);
     assert!(base.pose.distance(&AHEAD) < 0.02 && heading.abs() < 0.1);
     let DriveState::Stopped { reason } = base.navigator.state() else { unreachable!("checked above") };
-    let text = "arrived, but the pose is uncertain: the position is known within 0.24 m (95 %), the goal needs 0.10 m";
+    let text = "arrived, but not sure: the position is known within 0.24 m (95 %), the goal needs 0.10 m";
     assert_eq!(reason.to_string(), text);
 }
 
@@ -49,7 +49,7 @@ fn an_uncertain_arrival_ends_the_goal_after_a_turn_on_the_spot() {
 fn an_uncertain_heading_is_no_arrival_either() {
     let mut base = Base::to(Goal::Exact(AHEAD));
     assert_eq!(run_until(&mut base, &["stopped", "arrived"], uncertain(0.01, 0.1)), "stopped");
-    let text = "arrived, but the pose is uncertain: the heading is known within 11.2 deg (95 %), the goal needs 5.0 deg";
+    let text = "arrived, but not sure: the heading is known within 11.2 deg (95 %), the goal needs 5.0 deg";
     assert_eq!(base.navigator.state().to_string(), format!("stopped: {text}"));
 }
 
@@ -105,7 +105,7 @@ fn a_contradicted_pose_is_no_arrival_until_it_is_confirmed() {
     assert_eq!(kind(&base), Some(ReasonKind::ArrivalUncertain));
     let text = base.navigator.state().to_string();
     assert!(
-        text.starts_with("stopped: arrived, but the pose is uncertain: two scans contradicted the odometry"),
+        text.starts_with("stopped: arrived, but not sure: two scans contradicted the odometry"),
         "{text}"
     );
 
